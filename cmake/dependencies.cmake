@@ -1,0 +1,15 @@
+# All from the distribution's packages; CMake fetches nothing.
+find_package(PkgConfig REQUIRED)
+find_package(Eigen3 REQUIRED NO_MODULE)
+find_package(fmt REQUIRED)
+find_package(TBB REQUIRED)
+find_package(nlohmann_json REQUIRED)
+find_package(meshoptimizer REQUIRED)
+pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)
+pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET spng)
+pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
+find_package(tinyexr REQUIRED)
+
+add_library(easypbr_dependencies INTERFACE)
+target_link_libraries(easypbr_dependencies INTERFACE Eigen3::Eigen fmt::fmt TBB::tbb nlohmann_json::nlohmann_json
+  meshoptimizer::meshoptimizer PkgConfig::EPOXY PkgConfig::SPNG PkgConfig::TURBOJPEG tinyexr::tinyexr ${CMAKE_DL_LIBS})

@@ -1,0 +1,7 @@
+set(text "")
+foreach(shader IN LISTS SHADERS)
+  get_filename_component(name ${shader} NAME)
+  file(READ ${shader} content)
+  string(APPEND text "{\"${name}\", R\"glsl(${content})glsl\"},\n")
+endforeach()
+file(WRITE ${OUTPUT} "${text}")

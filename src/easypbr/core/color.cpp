@@ -1,0 +1,88 @@
+#include "easypbr/core/color.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <map>
+#include <vector>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/suggest.h"
+
+namespace easypbr {
+namespace {
+
+const std::map<std::string, const char*, std::less<>>& named_colors() {
+    static const std::map<std::string, const char*, std::less<>> names = {
+        {"black", "#000000"}, {"white", "#ffffff"},  {"grey", "#808080"},  {"gray", "#808080"},
+        {"red", "#ff0000"},   {"green", "#008000"},  {"blue", "#0000ff"},  {"yellow", "#ffff00"},
+        {"cyan", "#00ffff"},  {"magenta", "#ff00ff"}, {"orange", "#ffa500"}, {"lightgrey", "#d3d3d3"},
+        {"darkgrey", "#a9a9a9"}};
+    return names;
+}
+
+[[noreturn]] void reject(std::string_view text) {
+    std::vector<std::string> names;
+    for (const auto& [name, hex] : named_colors()) names.push_back(name);
+    throw ArgumentError(fmt::format("colour '{}': expected '#rgb', '#rrggbb', 'r,g,b' with numbers from 0 to 1, or a "
+                                    "name such as white{}",
+                                    text, did_you_mean(text, names)));
+}
+
+Vec3 parse_hex(std::string_view text) {
+    const std::string_view digits = text.substr(1);
+    unsigned value = 0;
+    const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
+    if (error != std::errc() || end != digits.data() + digits.size()) reject(text);
+    if (digits.size() == 6) return Vec3((value >> 16) & 255, (value >> 8) & 255, value & 255) / 255.0f;
+    if (digits.size() == 3) return Vec3((value >> 8) & 15, (value >> 4) & 15, value & 15) / 15.0f;
+    reject(text);
+}
+
+Vec3 parse_numbers(std::string_view text) {
+    Vec3 color;
+    const char* at = text.data();
+    const char* const stop = text.data() + text.size();
+    for (int i = 0; i < 3; ++i) {
+        const auto [end, error] = std::from_chars(at, stop, color[i]);
+        const bool last = i == 2;
+        if (error != std::errc() || (last ? end != stop : end == stop || *end != ',')) reject(text);
+        at = end + 1;
+    }
+    if (!(color.minCoeff() >= 0 && color.maxCoeff() <= 1)) reject(text);
+    return color;
+}
+
+}  // namespace
+
+const float* srgb8_table() {
+    static const std::array<float, 256> table = [] {
+        std::array<float, 256> values{};
+        for (int i = 0; i < 256; ++i) values[i] = linear_from_srgb(float(i) / 255.0f);
+        return values;
+    }();
+    return table.data();
+}
+
+Vec3 srgb_from_linear(const Vec3& c) {
+    return c.unaryExpr([](float v) { return srgb_from_linear(v); });
+}
+
+Vec3 linear_from_srgb(const Vec3& c) {
+    return c.unaryExpr([](float v) { return linear_from_srgb(v); });
+}
+
+Vec3 parse_color(std::string_view text) {
+    if (!text.empty() && text[0] == '#') return parse_hex(text);
+    if (const auto found = named_colors().find(text); found != named_colors().end()) return parse_hex(found->second);
+    return parse_numbers(text);
+}
+
+std::string to_hex(const Vec3& srgb) {
+    const auto code = [&](int i) { return int(std::lround(std::clamp(srgb[i], 0.0f, 1.0f) * 255.0f)); };
+    return fmt::format("#{:02x}{:02x}{:02x}", code(0), code(1), code(2));
+}
+
+}  // namespace easypbr

@@ -1,0 +1,119 @@
+#include "easypbr/core/image.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/color.h"
+#include "easypbr/core/parallel.h"
+
+namespace easypbr {
+namespace {
+
+constexpr size_t pixel_grain = 1 << 14;
+
+bool is_alpha(int channel, int channels) { return channels % 2 == 0 && channel == channels - 1; }
+
+template <class T>
+T opaque() {
+    if constexpr (std::is_same_v<T, float>) return 1.0f;
+    return std::numeric_limits<T>::max();
+}
+
+template <class T>
+Image convert_channels(const Image& image, int channels) {
+    Image out(image.width(), image.height(), channels, image.type());
+    const int from = image.channels();
+    const T* in = image.pixels<T>().data();
+    T* to = out.pixels<T>().data();
+    const bool grey = from <= 2;
+    parallel_for(image.pixel_count(), pixel_grain, [&](size_t i) {
+        const T* p = in + i * from;
+        for (int c = 0; c < channels; ++c) {
+            T& value = to[i * channels + c];
+            if (is_alpha(c, channels))
+                value = from % 2 == 0 ? p[from - 1] : opaque<T>();
+            else
+                value = grey ? p[0] : p[std::min(c, from - 1)];
+        }
+    });
+    return out;
+}
+
+}  // namespace
+
+Image::Image(int width, int height, int channels, PixelType type)
+    : width_(width), height_(height), channels_(channels), type_(type) {
+    if (width < 1 || height < 1 || width > max_image_side || height > max_image_side)
+        throw ArgumentError(fmt::format("image size {}x{}: width and height must be 1 to {}", width, height,
+                                        max_image_side));
+    if (channels < 1 || channels > 4)
+        throw ArgumentError(fmt::format("image with {} channels: expected 1 to 4", channels));
+    data_.resize(row_bytes() * size_t(height));
+}
+
+Image with_channels(const Image& image, int channels) {
+    if (image.channels() == channels) return image;
+    switch (image.type()) {
+        case PixelType::u8: return convert_channels<uint8_t>(image, channels);
+        case PixelType::u16: return convert_channels<uint16_t>(image, channels);
+        default: return convert_channels<float>(image, channels);
+    }
+}
+
+Image to_u8(const Image& image) {
+    if (image.type() == PixelType::u8) return image;
+    Image out(image.width(), image.height(), image.channels(), PixelType::u8);
+    uint8_t* to = out.pixels<uint8_t>().data();
+    const int channels = image.channels();
+    const size_t count = image.pixel_count() * channels;
+    if (image.type() == PixelType::u16) {
+        const uint16_t* in = image.pixels<uint16_t>().data();
+        parallel_for(count, pixel_grain, [&](size_t i) { to[i] = uint8_t((in[i] * 255u + 32767u) / 65535u); });
+        return out;
+    }
+    const float* in = image.pixels<float>().data();
+    parallel_for(count, pixel_grain, [&](size_t i) {
+        const float v = in[i] > 0 ? std::min(in[i], 1.0f) : 0.0f;
+        const float coded = is_alpha(int(i % channels), channels) ? v : srgb_from_linear(v);
+        to[i] = uint8_t(std::lround(coded * 255.0f));
+    });
+    return out;
+}
+
+Image to_linear_f32(const Image& image) {
+    if (image.type() == PixelType::f32) return image;
+    Image out(image.width(), image.height(), image.channels(), PixelType::f32);
+    float* to = out.pixels<float>().data();
+    const int channels = image.channels();
+    const size_t count = image.pixel_count() * channels;
+    parallel_for(count, pixel_grain, [&](size_t i) {
+        const bool alpha = is_alpha(int(i % channels), channels);
+        if (image.type() == PixelType::u8) {
+            const uint8_t v = image.pixels<uint8_t>()[i];
+            to[i] = alpha ? float(v) / 255.0f : srgb8_table()[v];
+        } else {
+            const float v = float(image.pixels<uint16_t>()[i]) / 65535.0f;
+            to[i] = alpha ? v : linear_from_srgb(v);
+        }
+    });
+    return out;
+}
+
+Image half_size(const Image& image) {
+    Image out(std::max(1, image.width() / 2), std::max(1, image.height() / 2), image.channels(), PixelType::f32);
+    const int channels = image.channels();
+    parallel_for(size_t(out.height()), 16, [&](size_t row) {
+        const int y0 = int(row) * 2, y1 = std::min(y0 + 1, image.height() - 1);
+        for (int x = 0; x < out.width(); ++x) {
+            const int x0 = x * 2, x1 = std::min(x0 + 1, image.width() - 1);
+            for (int c = 0; c < channels; ++c)
+                out.at<float>(x, int(row))[c] = 0.25f * (image.at<float>(x0, y0)[c] + image.at<float>(x1, y0)[c] +
+                                                         image.at<float>(x0, y1)[c] + image.at<float>(x1, y1)[c]);
+        }
+    });
+    return out;
+}
+
+}  // namespace easypbr

@@ -1,0 +1,26 @@
+// Math aliases. World space is right-handed, +Y up by default; cameras look along their -Z.
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace easypbr {
+
+using Vec2 = Eigen::Vector2f;
+using Vec3 = Eigen::Vector3f;
+using Vec4 = Eigen::Vector4f;
+using Vec2i = Eigen::Vector2i;
+using Vec3d = Eigen::Vector3d;
+using Mat3 = Eigen::Matrix3f;
+using Mat4 = Eigen::Matrix4f;
+using Mat3d = Eigen::Matrix3d;
+using Mat4d = Eigen::Matrix4d;
+using Box3 = Eigen::AlignedBox3f;
+using Box3d = Eigen::AlignedBox3d;
+
+inline constexpr double pi = 3.14159265358979323846;
+
+constexpr double radians(double degrees) { return degrees * (pi / 180.0); }
+constexpr double degrees(double radians) { return radians * (180.0 / pi); }
+
+}  // namespace easypbr

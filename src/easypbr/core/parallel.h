@@ -1,0 +1,27 @@
+// Deterministic parallel loops: what is computed never depends on the number of threads.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace easypbr {
+
+/// Calls body(begin, end) for consecutive chunks of [0, count), each of `grain` items but the last, on all cores.
+/// The chunks depend on count and grain alone. Exceptions are passed on to the caller.
+void parallel_chunks(size_t count, size_t grain, const std::function<void(size_t begin, size_t end)>& body);
+
+/// Calls body(index) for every index in [0, count), on all cores, `grain` at a time.
+template <class Body>
+void parallel_for(size_t count, size_t grain, Body&& body) {
+    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) body(i);
+    });
+}
+
+/// Runs two functions at the same time; both have ended when it returns.
+void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second);
+
+/// Number of threads used by the loops.
+int thread_count();
+
+}  // namespace easypbr

@@ -1,0 +1,52 @@
+// Auto<T>: a setting that is inferred unless the user gives a value.
+#pragma once
+
+#include <optional>
+#include <utility>
+
+namespace easypbr {
+
+struct AutomaticTag {};
+struct FollowTag {};
+
+/// Assign to an Auto setting to have it inferred (again): once, at the next picture with content, then kept.
+inline constexpr AutomaticTag automatic{};
+
+/// Assign to an Auto setting to have it inferred anew for every picture.
+inline constexpr FollowTag follow{};
+
+/// A value that is `automatic` (inferred once, then latched), `follow` (inferred at every change) or pinned by the user.
+template <class T>
+class Auto {
+  public:
+    Auto() = default;
+    Auto(AutomaticTag) {}
+    Auto(FollowTag) : mode_(Mode::follow) {}
+    Auto(T value) : value_(std::move(value)), mode_(Mode::pinned) {}
+
+    bool is_pinned() const { return mode_ == Mode::pinned; }
+    bool is_follow() const { return mode_ == Mode::follow; }
+
+    /// The pinned or latched value; nothing when it has still to be inferred.
+    const std::optional<T>& value() const { return value_; }
+    const T& operator*() const { return *value_; }
+
+    T value_or(T inferred) const { return value_ ? *value_ : std::move(inferred); }
+
+    /// Keeps an inferred value. A pinned value stays as it is; one that follows keeps none.
+    void latch(T inferred) {
+        if (mode_ == Mode::automatic) value_ = std::move(inferred);
+    }
+
+    /// Forgets a latched value; a pinned one stays.
+    void release() {
+        if (mode_ != Mode::pinned) value_.reset();
+    }
+
+  private:
+    enum class Mode { automatic, follow, pinned };
+    std::optional<T> value_;
+    Mode mode_ = Mode::automatic;
+};
+
+}  // namespace easypbr

@@ -1,0 +1,52 @@
+// Environment: an equirectangular HDR picture that lights the scene from infinitely far.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "easypbr/core/image.h"
+#include "easypbr/core/math.h"
+
+namespace easypbr {
+
+/// Direction of an equirectangular picture's point (u, v) in [0, 1]^2, v = 0 on top: +Y is up, u = 0.5 is -Z, u grows
+/// to the right (towards +X) for a viewer inside.
+Vec3 equirect_direction(float u, float v);
+/// The inverse: (u, v) of a unit direction.
+Vec2 equirect_uv(const Vec3& direction);
+
+/// Immutable, shared by handle. Empty when default-constructed.
+class Environment {
+  public:
+    Environment() = default;
+    /// Takes a linear f32 picture with 3 channels (others are converted); the first row is straight up. NaN, infinite
+    /// and negative values are replaced by 0 and reported to the log. Throws ArgumentError when it is empty.
+    explicit Environment(Image equirect, std::string name = {});
+    /// Reads HDR, EXR, PNG or JPEG (defined in io). Throws FileError, FormatError.
+    explicit Environment(const std::filesystem::path& path);
+
+    bool empty() const { return data_ == nullptr; }
+    const Image& image() const { return data_->image; }
+    const std::string& name() const { return data_->name; }
+    /// Content hash of the pixels: the key of all that is derived from them.
+    const std::string& hash() const { return data_->hash; }
+
+    /// Irradiance divided by pi on a surface with this unit normal, from spherical harmonics up to degree 2
+    /// (Ramamoorthi and Hanrahan 2001), never negative. Good to a few percent: for exposure, not for shading.
+    Vec3 irradiance_over_pi(const Vec3& normal) const;
+
+  private:
+    struct Data {
+        Image image;
+        std::string name, hash;
+        std::array<Vec3, 9> sh;
+    };
+    std::shared_ptr<const Data> data_;
+};
+
+/// The embedded studio: a dim room with soft boxes above, left, right and behind, computed.
+const Environment& studio_environment();
+
+}  // namespace easypbr

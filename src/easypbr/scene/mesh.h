@@ -1,0 +1,148 @@
+// Mesh: a handle to matrices (vertices, faces, attributes), materials, a style, a pose and children.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/math.h"
+#include "easypbr/scene/array.h"
+#include "easypbr/scene/auto.h"
+#include "easypbr/scene/material.h"
+
+namespace easypbr {
+
+class Mesh;
+
+/// How an object is drawn. The table of its fields stands in scene/fields.h.
+struct Style {
+    bool visible = true;
+    Auto<bool> flat;       ///< one normal per face; automatic: smooth
+    Auto<bool> two_sided;  ///< back faces are drawn, lit from their side; automatic: the material's double_sided
+};
+
+/// A range of faces with one material.
+struct MeshPart {
+    std::string name;
+    int first_face = 0;
+    int face_count = 0;
+    int material = 0;  ///< index into MeshData::materials
+};
+
+/// The plain data of a mesh: n vertices, m faces, k edges. Copying is cheap (arrays are shared).
+struct MeshData {
+    std::string name;
+    std::filesystem::path source;  ///< the file it was read from; empty for a mesh made in memory
+
+    Array3f V;   ///< n x 3 positions
+    Array3f N;   ///< n x 3 unit normals, or empty: computed when it is drawn
+    ArrayXf C;   ///< n x 3 or n x 4 colours, sRGB-encoded, 0 .. 1 (alpha last), or empty
+    Array2f UV;  ///< n x 2 texture coordinates, v upwards, or empty
+    Array3f T;   ///< n x 3 tangent vectors (surfels), or empty
+    Array1f B;   ///< n x 1 bitangent lengths (surfels), or empty
+    Array3i F;   ///< m x 3 vertex indices of triangles, counter-clockwise seen from outside
+    Array2i E;   ///< k x 2 vertex indices of line segments
+    Array1i L;   ///< n x 1 labels
+    Array1f I;   ///< n x 1 intensities
+
+    Array1i source_vertex;  ///< n x 1 index of the file's vertex that each vertex came from; empty: the same
+    Array1i source_face;    ///< m x 1 index of the file's polygon that each triangle came from; empty: the same
+
+    std::vector<Material> materials;  ///< at least one as soon as the mesh is drawn; a default one is added
+    std::vector<MeshPart> parts;      ///< cover F without overlap; empty: all faces have material 0
+
+    Style style;
+    Eigen::Affine3d T_parent_mesh = Eigen::Affine3d::Identity();
+    std::vector<Mesh> children;
+};
+
+/// Throws ArgumentError that names the array, the expected and the given shape, when arrays do not fit together, when a
+/// face or edge index is out of range, or when a position is not finite.
+void validate(const MeshData& data);
+
+/// A shared object: copying a handle shares it, clone() copies it. All members may be called from any thread.
+class Mesh {
+  public:
+    /// An empty mesh.
+    Mesh();
+
+    /// Reads a file (see io/mesh_io.h for formats and errors).
+    explicit Mesh(const std::filesystem::path& path);
+    explicit Mesh(const char* path) : Mesh(std::filesystem::path(path)) {}
+
+    /// Vertices (n x 3) and triangles (m x 3). Throws ArgumentError as validate() does.
+    Mesh(Array3f V, Array3i F);
+
+    explicit Mesh(MeshData data);
+
+    /// The data as they are now; never changes afterwards.
+    std::shared_ptr<const MeshData> snapshot() const;
+
+    /// Changes a copy of the data and puts it in place, whole or (when `change` throws or the result is not valid) not
+    /// at all. Readers that hold a snapshot keep theirs.
+    template <class Change>
+    void edit(Change&& change) {
+        std::lock_guard lock(shared_->mutex);
+        MeshData next = *shared_->data;
+        change(next);
+        validate(next);
+        shared_->data = std::make_shared<const MeshData>(std::move(next));
+    }
+
+    Array3f V() const { return snapshot()->V; }
+    Array3f N() const { return snapshot()->N; }
+    ArrayXf C() const { return snapshot()->C; }
+    Array2f UV() const { return snapshot()->UV; }
+    Array3f T() const { return snapshot()->T; }
+    Array1f B() const { return snapshot()->B; }
+    Array3i F() const { return snapshot()->F; }
+    Array2i E() const { return snapshot()->E; }
+    Array1i L() const { return snapshot()->L; }
+    Array1f I() const { return snapshot()->I; }
+
+    void set_V(Array3f V) { edit([&](MeshData& d) { d.V = V; }); }
+    void set_N(Array3f N) { edit([&](MeshData& d) { d.N = N; }); }
+    void set_C(ArrayXf C) { edit([&](MeshData& d) { d.C = C; }); }
+    void set_UV(Array2f UV) { edit([&](MeshData& d) { d.UV = UV; }); }
+    void set_F(Array3i F) { edit([&](MeshData& d) { d.F = F; d.parts.clear(); d.source_face = {}; }); }
+
+    std::string name() const { return snapshot()->name; }
+
+    /// Material `index`; the default material when the mesh has none. Throws NameError when out of range.
+    Material material(int index = 0) const;
+    /// Replaces material `index`, or adds it when it is the next free one. Throws NameError beyond that.
+    void set_material(const Material& material, int index = 0);
+
+    Style style() const { return snapshot()->style; }
+    void set_style(const Style& style) { edit([&](MeshData& d) { d.style = style; }); }
+
+    Eigen::Affine3d T_parent_mesh() const { return snapshot()->T_parent_mesh; }
+    void set_T_parent_mesh(const Eigen::Affine3d& T) { edit([&](MeshData& d) { d.T_parent_mesh = T; }); }
+
+    void add_child(const Mesh& child);
+
+    /// A copy of its own, children included; arrays stay shared until one of the two is given others.
+    Mesh clone() const;
+
+    /// Writes PLY, OBJ or GLB, by the extension. Throws FileError, FormatError.
+    void save(const std::filesystem::path& path) const;
+
+    /// The same object (not: equal data).
+    bool operator==(const Mesh& other) const { return shared_ == other.shared_; }
+
+  private:
+    struct Shared {
+        mutable std::mutex mutex;
+        std::shared_ptr<const MeshData> data;
+    };
+    std::shared_ptr<Shared> shared_;
+};
+
+/// Calls visit(data, T_world_mesh) for the mesh and all its descendants, parents first.
+void for_each_node(const Mesh& root,
+                   const std::function<void(const std::shared_ptr<const MeshData>&, const Eigen::Affine3d&)>& visit);
+
+}  // namespace easypbr

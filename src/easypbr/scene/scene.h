@@ -1,0 +1,64 @@
+// Scene: named meshes, lights, an environment.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "easypbr/scene/environment.h"
+#include "easypbr/scene/light.h"
+#include "easypbr/scene/mesh.h"
+
+namespace easypbr {
+
+/// What a frame is drawn from: a consistent copy of a scene's content.
+struct SceneSnapshot {
+    struct Object {
+        std::string name;
+        std::shared_ptr<const MeshData> mesh;
+        Eigen::Affine3d T_world_mesh;
+    };
+    std::vector<Object> objects;  ///< all visible nodes in the order of their names, parents before children
+    std::map<std::string, Light> lights;
+    Environment environment;  ///< empty: none was given
+
+    /// Bounding box of all vertices in world space (exact under rotation); empty when there are none.
+    Box3d bounds() const;
+};
+
+/// Shared by handle; all members may be called from any thread.
+class Scene {
+  public:
+    Scene();
+
+    /// Shows a mesh under a name; the same name again replaces it.
+    void show(const Mesh& mesh, const std::string& name);
+    /// Throws NameError with the nearest name when there is none.
+    Mesh get(const std::string& name) const;
+    void remove(const std::string& name);
+    /// Hides (or shows again) without removing. Throws NameError.
+    void hide(const std::string& name, bool hidden = true);
+    /// Removes all meshes and lights and the environment.
+    void clear();
+    std::vector<std::string> names() const;
+    bool contains(const std::string& name) const;
+
+    /// Adds or replaces a light.
+    void set_light(const std::string& name, const Light& light);
+    Light light(const std::string& name) const;
+    void remove_light(const std::string& name);
+    std::vector<std::string> light_names() const;
+
+    void set_environment(const Environment& environment);
+    Environment environment() const;
+
+    SceneSnapshot snapshot() const;
+
+  private:
+    struct Shared;
+    std::shared_ptr<Shared> shared_;
+};
+
+}  // namespace easypbr

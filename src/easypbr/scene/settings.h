@@ -1,0 +1,100 @@
+// Settings: one plain struct per effect. Defaults stand here; unit, range and documentation in fields.cpp.
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/math.h"
+#include "easypbr/scene/auto.h"
+#include "easypbr/scene/camera.h"
+#include "easypbr/scene/light.h"
+
+namespace easypbr {
+
+enum class Antialias { none, fxaa };
+enum class BackgroundMode { color, environment, blur, image, transparent };
+enum class Brdf { height_correlated, separable, ue4 };
+enum class ToneOperator { aces, reinhard, agx, neutral, none };
+
+struct ImageSettings {
+    Vec2i size{800, 600};
+    int samples = 16;
+    Antialias antialias = Antialias::fxaa;
+};
+
+struct CameraSettings {
+    Projection projection = Projection::perspective;
+    Auto<Vec3d> position;
+    Auto<Vec3d> target;
+    std::string up = "+y";
+    float fov_y_deg = 30;
+    Auto<double> ortho_height;
+    Auto<double> near;
+    float azimuth_deg = 30;
+    float elevation_deg = 15;
+    float margin = 0.05f;
+    std::vector<double> pose;        ///< empty, or 16 numbers: T_world_cam row by row, OpenGL axes
+    std::vector<double> intrinsics;  ///< empty, or fx, fy, cx, cy, width, height (OpenCV)
+};
+
+struct EnvironmentSettings {
+    std::string file;
+    Auto<bool> enabled;
+    float rotation_deg = 0;
+    float intensity = 1;
+};
+
+struct BackgroundSettings {
+    BackgroundMode mode = BackgroundMode::color;
+    Vec3 color{0.25f, 0.25f, 0.25f};
+    std::string image;
+    float blur = 0.4f;
+};
+
+struct LightsSettings {
+    StudioLight key, fill, rim;
+    float intensity = 1;
+};
+
+struct ShadingSettings {
+    Brdf brdf = Brdf::height_correlated;
+    bool multiple_scattering = true;
+    float dielectric_f0 = 0.04f;
+};
+
+struct ToneSettings {
+    ToneOperator tone_operator = ToneOperator::aces;
+    Auto<float> exposure;
+    float exposure_compensation = 0;
+};
+
+/// Overrides of every material from outside; automatic: the material's own value.
+struct MaterialSettings {
+    Auto<Vec3> color;
+    Auto<float> metallic;
+    Auto<float> roughness;
+    Auto<Vec3> emissive;
+    std::string base_color_texture, metallic_texture, roughness_texture, normal_texture, occlusion_texture,
+        emissive_texture, opacity_texture;
+};
+
+/// Overrides of every object's style; automatic: the object's own value.
+struct StyleSettings {
+    Auto<bool> flat;
+    Auto<bool> two_sided;
+};
+
+struct Settings {
+    ImageSettings image;
+    CameraSettings camera;
+    EnvironmentSettings environment;
+    BackgroundSettings background;
+    LightsSettings lights;
+    ShadingSettings shading;
+    ToneSettings tone;
+    MaterialSettings material;
+    StyleSettings style;
+};
+
+}  // namespace easypbr
