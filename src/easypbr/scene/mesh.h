@@ -62,6 +62,13 @@ struct MeshData {
 /// Throws ArgumentError that names the array, the expected and the given shape, when arrays do not fit together, when a
 /// face or edge index is out of range, or when a position is not finite.
 void validate(const MeshData& data);
+/// The same, without reading arrays again that `data` shares with data known to be valid.
+void validate(const MeshData& data, const MeshData& valid);
+
+/// Deepest hierarchy of children that is followed.
+inline constexpr int max_mesh_depth = 1000;
+/// Throws ArgumentError beyond max_mesh_depth: a mesh is its own descendant.
+void require_mesh_depth(int depth);
 
 /// A shared object: copying a handle shares it, clone() copies it. All members may be called from any thread.
 class Mesh {
@@ -82,14 +89,17 @@ class Mesh {
     std::shared_ptr<const MeshData> snapshot() const;
 
     /// Changes a copy of the data and puts it in place, whole or (when `change` throws or the result is not valid) not
-    /// at all. Readers that hold a snapshot keep theirs.
+    /// at all. Readers that hold a snapshot keep theirs. No lock is held meanwhile: `change` may use this mesh, and is
+    /// called again with newer data when another thread's edit came first.
     template <class Change>
     void edit(Change&& change) {
-        std::lock_guard lock(shared_->mutex);
-        MeshData next = *shared_->data;
-        change(next);
-        validate(next);
-        shared_->data = std::make_shared<const MeshData>(std::move(next));
+        for (;;) {
+            const std::shared_ptr<const MeshData> before = snapshot();
+            MeshData next = *before;
+            change(next);
+            validate(next, *before);
+            if (replace(before, std::make_shared<const MeshData>(std::move(next)))) return;
+        }
     }
 
     Array3f V() const { return snapshot()->V; }
@@ -134,6 +144,9 @@ class Mesh {
     bool operator==(const Mesh& other) const { return shared_ == other.shared_; }
 
   private:
+    /// Puts `next` in place if the data are still the `expected` ones.
+    bool replace(const std::shared_ptr<const MeshData>& expected, std::shared_ptr<const MeshData> next);
+
     struct Shared {
         mutable std::mutex mutex;
         std::shared_ptr<const MeshData> data;

@@ -20,12 +20,20 @@ struct SceneSnapshot {
         std::shared_ptr<const MeshData> mesh;
         Eigen::Affine3d T_world_mesh;
     };
-    std::vector<Object> objects;  ///< all visible nodes in the order of their names, parents before children
+    /// All visible nodes in the order of their names, parents before children ("car", "car/wheel"). What is hidden, or
+    /// invisible by its style, is left out with its descendants.
+    std::vector<Object> objects;
     std::map<std::string, Light> lights;
     Environment environment;  ///< empty: none was given
 
     /// Bounding box of all vertices in world space (exact under rotation); empty when there are none.
     Box3d bounds() const;
+
+    /// The largest dot product of each of six world directions (rows) with the vertices' world positions: how far the
+    /// content reaches along them. Computed in double in parallel; minus infinity when there are no vertices.
+    using Directions = Eigen::Matrix<double, 6, 3>;
+    using Support = Eigen::Matrix<double, 6, 1>;
+    Support support(const Directions& directions) const;
 };
 
 /// Shared by handle; all members may be called from any thread.
@@ -37,6 +45,7 @@ class Scene {
     void show(const Mesh& mesh, const std::string& name);
     /// Throws NameError with the nearest name when there is none.
     Mesh get(const std::string& name) const;
+    /// Throws NameError.
     void remove(const std::string& name);
     /// Hides (or shows again) without removing. Throws NameError.
     void hide(const std::string& name, bool hidden = true);
@@ -47,7 +56,9 @@ class Scene {
 
     /// Adds or replaces a light.
     void set_light(const std::string& name, const Light& light);
+    /// Throws NameError.
     Light light(const std::string& name) const;
+    /// Throws NameError.
     void remove_light(const std::string& name);
     std::vector<std::string> light_names() const;
 

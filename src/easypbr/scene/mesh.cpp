@@ -1,0 +1,208 @@
+#include "easypbr/scene/mesh.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <limits>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/parallel.h"
+
+namespace easypbr {
+namespace {
+
+constexpr size_t scan_grain = 1 << 15;
+constexpr size_t no_row = std::numeric_limits<size_t>::max();
+
+/// The first row in [0, count) for which is_bad(row) holds, or no_row; the same for any number of threads.
+template <class IsBad>
+size_t first_bad_row(Eigen::Index count, IsBad&& is_bad) {
+    std::atomic<size_t> first{no_row};
+    parallel_chunks(size_t(count), scan_grain, [&](size_t begin, size_t end) {
+        for (size_t row = begin; row < end; ++row) {
+            if (!is_bad(row)) continue;
+            size_t known = first.load();
+            while (row < known && !first.compare_exchange_weak(known, row)) {
+            }
+            return;
+        }
+    });
+    return first;
+}
+
+/// An array that is optional and otherwise has one row for each of `rows` things.
+template <class Array>
+void require_rows(const char* name, const Array& array, Eigen::Index rows, const char* of) {
+    if (array.empty() || array.rows() == rows) return;
+    throw ArgumentError(fmt::format("mesh array {}: expected {} rows, one per {}, or none; got {} x {}", name,
+                                    rows, of, array.rows(), array.cols()));
+}
+
+void require_shapes(const MeshData& data) {
+    const Eigen::Index n = data.V.rows(), m = data.F.rows();
+    require_rows("N", data.N, n, "vertex");
+    require_rows("C", data.C, n, "vertex");
+    require_rows("UV", data.UV, n, "vertex");
+    require_rows("T", data.T, n, "vertex");
+    require_rows("B", data.B, n, "vertex");
+    require_rows("L", data.L, n, "vertex");
+    require_rows("I", data.I, n, "vertex");
+    require_rows("source_vertex", data.source_vertex, n, "vertex");
+    require_rows("source_face", data.source_face, m, "face");
+    if (!data.C.empty() && data.C.cols() != 3 && data.C.cols() != 4)
+        throw ArgumentError(fmt::format("mesh array C: expected {} x 3 or {} x 4, got {} x {}", n, n,
+                                        data.C.rows(), data.C.cols()));
+}
+
+void require_finite(const Array3f& V) {
+    const size_t row = first_bad_row(V.rows(), [&](size_t i) { return !V.row(Eigen::Index(i)).allFinite(); });
+    if (row == no_row) return;
+    const Eigen::Index i = Eigen::Index(row);
+    throw ArgumentError(
+        fmt::format("mesh array V: expected finite positions, got ({}, {}, {}) in row {} of {}", V(i, 0),
+                    V(i, 1), V(i, 2), row, V.rows()));
+}
+
+template <class Indices>
+void require_indices(const char* name, const Indices& indices, Eigen::Index vertices) {
+    const auto is_outside = [&](int32_t index) { return index < 0 || index >= vertices; };
+    const size_t row = first_bad_row(indices.rows(), [&](size_t i) {
+        for (Eigen::Index k = 0; k < indices.cols(); ++k)
+            if (is_outside(indices(Eigen::Index(i), k))) return true;
+        return false;
+    });
+    if (row == no_row) return;
+    for (Eigen::Index k = 0; k < indices.cols(); ++k)
+        if (const int32_t index = indices(Eigen::Index(row), k); is_outside(index))
+            throw ArgumentError(
+                fmt::format("mesh array {}: expected vertex indices from 0 to {}, got {} in row {} of {}",
+                            name, vertices - 1, index, row, indices.rows()));
+}
+
+void require_parts(const MeshData& data) {
+    for (const MeshPart& part : data.parts) {
+        const int64_t end = int64_t(part.first_face) + part.face_count;
+        if (part.first_face < 0 || part.face_count < 0 || end > data.F.rows())
+            throw ArgumentError(
+                fmt::format("mesh part '{}': expected a range of the {} faces, got faces {} to {}", part.name,
+                            data.F.rows(), part.first_face, end));
+        const size_t materials = std::max<size_t>(1, data.materials.size());
+        if (part.material < 0 || size_t(part.material) >= materials)
+            throw ArgumentError(fmt::format("mesh part '{}': expected a material index from 0 to {}, got {}",
+                                            part.name, materials - 1, part.material));
+    }
+}
+
+template <class Array>
+bool same_array(const Array& a, const Array& b) {
+    return a.data() == b.data() && a.rows() == b.rows() && a.revision() == b.revision();
+}
+
+bool reaches(const Mesh& from, const Mesh& wanted, int depth) {
+    if (from == wanted || depth > max_mesh_depth) return true;
+    const auto data = from.snapshot();
+    return std::any_of(data->children.begin(), data->children.end(),
+                       [&](const Mesh& child) { return reaches(child, wanted, depth + 1); });
+}
+
+using NodeVisitor = std::function<void(const std::shared_ptr<const MeshData>&, const Eigen::Affine3d&)>;
+
+void visit_node(const Mesh& mesh, const Eigen::Affine3d& T_world_parent, const NodeVisitor& visit,
+                int depth) {
+    require_mesh_depth(depth);
+    const auto data = mesh.snapshot();
+    const Eigen::Affine3d T_world_mesh = T_world_parent * data->T_parent_mesh;
+    visit(data, T_world_mesh);
+    for (const Mesh& child : data->children) visit_node(child, T_world_mesh, visit, depth + 1);
+}
+
+}  // namespace
+
+void validate(const MeshData& data) {
+    validate(data, MeshData{});
+}
+
+void validate(const MeshData& data, const MeshData& valid) {
+    require_shapes(data);
+    const bool same_V = same_array(data.V, valid.V);
+    const bool same_count = data.V.rows() == valid.V.rows();
+    if (!same_V) require_finite(data.V);
+    if (!same_count || !same_array(data.F, valid.F)) require_indices("F", data.F, data.V.rows());
+    if (!same_count || !same_array(data.E, valid.E)) require_indices("E", data.E, data.V.rows());
+    require_parts(data);
+}
+
+void require_mesh_depth(int depth) {
+    if (depth > max_mesh_depth)
+        throw ArgumentError(fmt::format(
+            "mesh hierarchy: expected at most {} levels; is a mesh its own descendant?", max_mesh_depth));
+}
+
+Mesh::Mesh() : Mesh(MeshData{}) {}
+
+Mesh::Mesh(Array3f V, Array3i F)
+    : Mesh([&] {
+          MeshData data;
+          data.V = V;
+          data.F = F;
+          return data;
+      }()) {}
+
+Mesh::Mesh(MeshData data) : shared_(std::make_shared<Shared>()) {
+    validate(data);
+    shared_->data = std::make_shared<const MeshData>(std::move(data));
+}
+
+std::shared_ptr<const MeshData> Mesh::snapshot() const {
+    std::lock_guard lock(shared_->mutex);
+    return shared_->data;
+}
+
+bool Mesh::replace(const std::shared_ptr<const MeshData>& expected, std::shared_ptr<const MeshData> next) {
+    std::lock_guard lock(shared_->mutex);
+    if (shared_->data != expected) return false;
+    shared_->data = std::move(next);
+    return true;
+}
+
+Material Mesh::material(int index) const {
+    const auto data = snapshot();
+    if (index == 0 && data->materials.empty()) return Material{};
+    if (index < 0 || size_t(index) >= data->materials.size())
+        throw NameError(fmt::format("mesh '{}' has no material {}: it has {}", data->name, index,
+                                    data->materials.size()));
+    return data->materials[size_t(index)];
+}
+
+void Mesh::set_material(const Material& material, int index) {
+    edit([&](MeshData& data) {
+        if (index < 0 || size_t(index) > data.materials.size())
+            throw NameError(fmt::format("mesh '{}': expected a material index from 0 to {}, got {}",
+                                        data.name, data.materials.size(), index));
+        if (size_t(index) == data.materials.size()) data.materials.emplace_back();
+        data.materials[size_t(index)] = material;
+    });
+}
+
+void Mesh::add_child(const Mesh& child) {
+    if (reaches(child, *this, 0))
+        throw ArgumentError(fmt::format(
+            "mesh '{}' cannot become a child of '{}': it is that mesh or contains it", child.name(), name()));
+    edit([&](MeshData& data) { data.children.push_back(child); });
+}
+
+Mesh Mesh::clone() const {
+    // Refuses a hierarchy that contains itself before following it.
+    for_each_node(*this, [](const auto&, const auto&) {});
+    MeshData copy = *snapshot();
+    for (Mesh& child : copy.children) child = child.clone();
+    Mesh result;
+    result.shared_->data = std::make_shared<const MeshData>(std::move(copy));
+    return result;
+}
+
+void for_each_node(const Mesh& root, const NodeVisitor& visit) {
+    visit_node(root, Eigen::Affine3d::Identity(), visit, 0);
+}
+
+}  // namespace easypbr

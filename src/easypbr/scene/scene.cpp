@@ -1,0 +1,168 @@
+#include "easypbr/scene/scene.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/core/suggest.h"
+
+namespace easypbr {
+namespace {
+
+constexpr size_t vertex_grain = 1 << 15;
+
+template <class Map>
+std::vector<std::string> keys_of(const Map& map) {
+    std::vector<std::string> keys;
+    for (const auto& entry : map) keys.push_back(entry.first);
+    return keys;
+}
+
+template <class Map>
+auto& require_entry(Map& map, const std::string& name, const char* kind) {
+    const auto found = map.find(name);
+    if (found == map.end())
+        throw NameError(
+            fmt::format("the scene has no {} '{}'{}", kind, name, did_you_mean(name, keys_of(map))));
+    return found->second;
+}
+
+/// Adds the node and its descendants; what is invisible takes its descendants along.
+void add_nodes(const Mesh& mesh, const std::string& name, const Eigen::Affine3d& T_world_parent, int depth,
+               std::vector<SceneSnapshot::Object>& objects) {
+    require_mesh_depth(depth);
+    const auto data = mesh.snapshot();
+    if (!data->style.visible) return;
+    const Eigen::Affine3d T_world_mesh = T_world_parent * data->T_parent_mesh;
+    objects.push_back({name, data, T_world_mesh});
+    for (const Mesh& child : data->children)
+        add_nodes(child, name + "/" + child.name(), T_world_mesh, depth + 1, objects);
+}
+
+}  // namespace
+
+SceneSnapshot::Support SceneSnapshot::support(const Directions& directions) const {
+    Support result = Support::Constant(-std::numeric_limits<double>::infinity());
+    std::mutex mutex;
+    for (const Object& object : objects) {
+        const Array3f& V = object.mesh->V;
+        const Directions local = directions * object.T_world_mesh.linear();
+        const Support offset = directions * object.T_world_mesh.translation();
+        parallel_chunks(size_t(V.rows()), vertex_grain, [&](size_t begin, size_t end) {
+            Support best = Support::Constant(-std::numeric_limits<double>::infinity());
+            for (Eigen::Index i = Eigen::Index(begin); i < Eigen::Index(end); ++i)
+                best = best.cwiseMax(local.col(0) * double(V(i, 0)) + local.col(1) * double(V(i, 1)) +
+                                     local.col(2) * double(V(i, 2)));
+            best += offset;
+            // A maximum is the same in any order, so the result does not depend on which thread comes first.
+            std::lock_guard lock(mutex);
+            result = result.cwiseMax(best);
+        });
+    }
+    return result;
+}
+
+Box3d SceneSnapshot::bounds() const {
+    Directions axes;
+    axes << Mat3d::Identity(), -Mat3d::Identity();
+    const Support extent = support(axes);
+    if (!extent.allFinite()) return {};
+    return Box3d(Vec3d(-extent.tail<3>()), Vec3d(extent.head<3>()));
+}
+
+struct Scene::Shared {
+    struct Entry {
+        Mesh mesh;
+        bool hidden = false;
+    };
+
+    mutable std::mutex mutex;
+    std::map<std::string, Entry> meshes;
+    std::map<std::string, Light> lights;
+    Environment environment;
+};
+
+Scene::Scene() : shared_(std::make_shared<Shared>()) {}
+
+void Scene::show(const Mesh& mesh, const std::string& name) {
+    std::lock_guard lock(shared_->mutex);
+    shared_->meshes.insert_or_assign(name, Shared::Entry{mesh});
+}
+
+Mesh Scene::get(const std::string& name) const {
+    std::lock_guard lock(shared_->mutex);
+    return require_entry(shared_->meshes, name, "mesh").mesh;
+}
+
+void Scene::remove(const std::string& name) {
+    std::lock_guard lock(shared_->mutex);
+    require_entry(shared_->meshes, name, "mesh");
+    shared_->meshes.erase(name);
+}
+
+void Scene::hide(const std::string& name, bool hidden) {
+    std::lock_guard lock(shared_->mutex);
+    require_entry(shared_->meshes, name, "mesh").hidden = hidden;
+}
+
+void Scene::clear() {
+    std::lock_guard lock(shared_->mutex);
+    shared_->meshes.clear();
+    shared_->lights.clear();
+    shared_->environment = {};
+}
+
+std::vector<std::string> Scene::names() const {
+    std::lock_guard lock(shared_->mutex);
+    return keys_of(shared_->meshes);
+}
+
+bool Scene::contains(const std::string& name) const {
+    std::lock_guard lock(shared_->mutex);
+    return shared_->meshes.count(name) > 0;
+}
+
+void Scene::set_light(const std::string& name, const Light& light) {
+    std::lock_guard lock(shared_->mutex);
+    shared_->lights.insert_or_assign(name, light);
+}
+
+Light Scene::light(const std::string& name) const {
+    std::lock_guard lock(shared_->mutex);
+    return require_entry(shared_->lights, name, "light");
+}
+
+void Scene::remove_light(const std::string& name) {
+    std::lock_guard lock(shared_->mutex);
+    require_entry(shared_->lights, name, "light");
+    shared_->lights.erase(name);
+}
+
+std::vector<std::string> Scene::light_names() const {
+    std::lock_guard lock(shared_->mutex);
+    return keys_of(shared_->lights);
+}
+
+void Scene::set_environment(const Environment& environment) {
+    std::lock_guard lock(shared_->mutex);
+    shared_->environment = environment;
+}
+
+Environment Scene::environment() const {
+    std::lock_guard lock(shared_->mutex);
+    return shared_->environment;
+}
+
+SceneSnapshot Scene::snapshot() const {
+    SceneSnapshot result;
+    std::lock_guard lock(shared_->mutex);
+    for (const auto& [name, entry] : shared_->meshes)
+        if (!entry.hidden) add_nodes(entry.mesh, name, Eigen::Affine3d::Identity(), 0, result.objects);
+    result.lights = shared_->lights;
+    result.environment = shared_->environment;
+    return result;
+}
+
+}  // namespace easypbr
