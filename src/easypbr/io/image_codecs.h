@@ -1,0 +1,40 @@
+// One pair of functions per image format; load_image() and save_image() choose among them.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "easypbr/core/image.h"
+
+namespace easypbr::io {
+
+using Bytes = std::span<const std::byte>;
+
+/// Each throws FormatError, with `name` in the message, for content that is damaged, truncated or not
+/// supported.
+Image decode_png(Bytes bytes, const std::string& name);
+Image decode_jpeg(Bytes bytes, const std::string& name);
+Image decode_hdr(Bytes bytes, const std::string& name);
+Image decode_exr(Bytes bytes, const std::string& name);
+
+/// Quality 95, no chroma subsampling; alpha is dropped. u8 only.
+std::vector<std::byte> encode_jpeg(const Image& image);
+/// Run-length encoded RGBE; alpha is dropped, negative and NaN become 0. f32 only.
+std::vector<std::byte> encode_hdr(const Image& image);
+/// float32 channels, ZIP-compressed scanlines. f32 only.
+std::vector<std::byte> encode_exr(const Image& image);
+
+/// Throws FormatError: "cannot read NAME: WHAT".
+[[noreturn]] void fail_image(const std::string& name, std::string_view what);
+
+/// Throws FormatError unless 1 <= width, height <= max_image_side.
+void check_image_size(long long width, long long height, const std::string& name);
+
+/// Throws FormatError when `pixel_bytes` are more than `bytes_per_byte` for each byte of the file: a header
+/// that promises more than the rest can hold.
+void check_plausible(size_t pixel_bytes, size_t file_bytes, size_t bytes_per_byte, const std::string& name);
+
+}  // namespace easypbr::io
