@@ -1,0 +1,102 @@
+// The embedded studio, computed at its first use: a dim room with soft boxes, for lighting that flatters any
+// material.
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "easypbr/core/parallel.h"
+#include "easypbr/scene/environment.h"
+
+namespace easypbr {
+
+namespace {
+
+/// A rectangular lamp seen from the centre: the directions within `half_width` and `half_height` (tangents of
+/// angles) of its axis, fading out over `edge`.
+struct SoftBox {
+    Vec3 axis, right, up;
+    float half_width, half_height, edge;
+    Vec3 radiance;
+};
+
+float smooth_step(float from, float to, float x) {
+    const float t = std::clamp((x - from) / (to - from), 0.0f, 1.0f);
+    return t * t * (3 - 2 * t);
+}
+
+/// `roll_up` is any direction that is not along the axis: the box's upper edge faces it.
+SoftBox make_box(const Vec3& towards, const Vec3& roll_up, Vec2 size_deg, float edge_deg,
+                 const Vec3& radiance) {
+    const Vec3 axis = towards.normalized();
+    const Vec3 right = axis.cross(roll_up).normalized();
+    const auto tangent = [](float angle_deg) { return float(std::tan(radians(angle_deg))); };
+    return {axis,
+            right,
+            right.cross(axis),
+            tangent(size_deg.x() / 2),
+            tangent(size_deg.y() / 2),
+            tangent(edge_deg),
+            radiance};
+}
+
+const std::array<SoftBox, 5>& soft_boxes() {
+    static const std::array<SoftBox, 5> boxes{
+        make_box({0.0f, 1.0f, 0.12f}, Vec3::UnitZ(), {46, 34}, 5, {4.7f, 4.6f, 4.45f}),  // overhead
+        make_box({-1.0f, 0.32f, 0.42f}, Vec3::UnitY(), {25, 58}, 3.5f,
+                 {11.8f, 11.3f, 10.6f}),                                                    // left, the key
+        make_box({1.0f, 0.26f, 0.30f}, Vec3::UnitY(), {20, 56}, 3.5f, {4.6f, 4.9f, 5.3f}),  // right
+        make_box({0.25f, 0.42f, -1.0f}, Vec3::UnitY(), {64, 7}, 2.5f, {8.4f, 8.2f, 7.8f}),  // strip behind
+        make_box({0.15f, 0.10f, 1.0f}, Vec3::UnitY(), {56, 34}, 9,
+                 {0.72f, 0.70f, 0.67f}),  // fill at the camera
+    };
+    return boxes;
+}
+
+/// The room: floor dark, walls brighter towards the horizon, ceiling in between; warm grey.
+Vec3 room_radiance(float height) {
+    const float wall =
+        0.16f + 0.16f * std::exp(-6 * height * height) + 0.05f * smooth_step(0.0f, 1.0f, height);
+    const float floor_shadow = 1 - 0.62f * smooth_step(0.04f, -0.35f, height);
+    return wall * floor_shadow * Vec3(1.04f, 1.0f, 0.95f);
+}
+
+/// The part of the lamp's radiance that a direction sees.
+float coverage(const SoftBox& box, const Vec3& direction) {
+    const float forward = direction.dot(box.axis);
+    if (forward <= 0) return 0;
+    const float x = std::abs(direction.dot(box.right)) / forward,
+                y = std::abs(direction.dot(box.up)) / forward;
+    return smooth_step(box.half_width + box.edge, box.half_width, x) *
+           smooth_step(box.half_height + box.edge, box.half_height, y);
+}
+
+Vec3 studio_radiance(const Vec3& direction) {
+    Vec3 radiance = room_radiance(direction.y());
+    for (const SoftBox& box : soft_boxes()) {
+        const float part = coverage(box, direction);
+        radiance += part * (box.radiance - radiance);
+    }
+    return radiance;
+}
+
+Image studio_image() {
+    Image image(1024, 512, 3, PixelType::f32);
+    parallel_for(size_t(image.height()), 16, [&](size_t y) {
+        float* pixel = image.at<float>(0, int(y));
+        for (int x = 0; x < image.width(); ++x, pixel += 3) {
+            const Vec2 uv((float(x) + 0.5f) / float(image.width()),
+                          (float(y) + 0.5f) / float(image.height()));
+            Eigen::Map<Vec3>{pixel} = studio_radiance(equirect_direction(uv.x(), uv.y()));
+        }
+    });
+    return image;
+}
+
+}  // namespace
+
+const Environment& studio_environment() {
+    static const Environment studio(studio_image(), "studio");
+    return studio;
+}
+
+}  // namespace easypbr
