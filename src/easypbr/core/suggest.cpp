@@ -25,7 +25,7 @@ size_t edit_distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::string did_you_mean(std::string_view wrong, std::span<const std::string> candidates) {
+std::string nearest(std::string_view wrong, std::span<const std::string> candidates) {
     const std::string* best = nullptr;
     size_t best_distance = 0;
     for (const std::string& candidate : candidates) {
@@ -33,7 +33,12 @@ std::string did_you_mean(std::string_view wrong, std::span<const std::string> ca
         if (!best || distance < best_distance) best = &candidate, best_distance = distance;
     }
     if (!best || best_distance > std::max<size_t>(1, best->size() / 3)) return {};
-    return " (did you mean '" + *best + "'?)";
+    return *best;
+}
+
+std::string did_you_mean(std::string_view wrong, std::span<const std::string> candidates) {
+    const std::string name = nearest(wrong, candidates);
+    return name.empty() ? name : " (did you mean '" + name + "'?)";
 }
 
 }  // namespace easypbr

@@ -7,7 +7,10 @@
 
 namespace easypbr {
 
-/// " (did you mean 'NAME'?)" for the nearest candidate within a third of its letters; empty when none is near.
+/// The nearest candidate within a third of its letters; empty when none is near.
+std::string nearest(std::string_view wrong, std::span<const std::string> candidates);
+
+/// " (did you mean 'NAME'?)" for nearest(); empty when none is near.
 std::string did_you_mean(std::string_view wrong, std::span<const std::string> candidates);
 
 }  // namespace easypbr

@@ -37,6 +37,7 @@ struct Field {
     double max = std::numeric_limits<double>::infinity();
     std::vector<std::string> choices;
     std::vector<size_t> sizes;  ///< allowed lengths of a vector
+    bool whole = false;         ///< the number, or each of a vector's, is a whole one
 
     std::function<Value(const Settings&)> get;
     /// Sets an already checked value.
@@ -52,6 +53,9 @@ const Field& field(std::string_view name);
 /// Throws NameError or ArgumentError that says what was expected.
 void set(Settings& settings, std::string_view name, const Value& value);
 Value get(const Settings& settings, std::string_view name);
+
+/// The value in the form in which `put` takes it. Throws ArgumentError that says what was expected.
+Value checked(const Field& field, const Value& value);
 
 /// The value written as on the command line: numbers separated by commas, '#rrggbb', true/false, 'auto', 'follow'.
 Value parse_value(const Field& field, std::string_view text);

@@ -52,8 +52,16 @@ struct BackgroundSettings {
     float blur = 0.4f;
 };
 
+inline StudioLight studio_light(int red, int green, int blue) {
+    StudioLight light;
+    light.color = Vec3(float(red), float(green), float(blue)) / 255.0f;
+    return light;
+}
+
 struct LightsSettings {
-    StudioLight key, fill, rim;
+    StudioLight key = studio_light(255, 241, 224);   ///< a little warm
+    StudioLight fill = studio_light(230, 239, 255);  ///< a little cool
+    StudioLight rim = studio_light(255, 255, 255);
     float intensity = 1;
 };
 

@@ -1,0 +1,166 @@
+// How a member of a settings struct becomes a row of the table of fields. Used by fields_table.cpp alone.
+#pragma once
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <type_traits>
+
+#include "easypbr/scene/fields.h"
+
+namespace easypbr::detail {
+
+/// The double whose shortest decimal form is that of the float: 0.1 for 0.1f, so that texts and files stay
+/// short. Turned back into a float it gives the same bits.
+inline double shortest_double(float value) {
+    char text[32];
+    const char* const end = std::to_chars(text, text + sizeof text, value).ptr;
+    double result = 0;
+    std::from_chars(text, end, result);
+    return result;
+}
+
+/// Names of an enumeration's values, in their order.
+template <class Enum>
+const std::vector<std::string>& enum_names();
+
+inline Value::Data to_data(bool value) {
+    return value;
+}
+inline Value::Data to_data(int value) {
+    return double(value);
+}
+inline Value::Data to_data(float value) {
+    return shortest_double(value);
+}
+inline Value::Data to_data(double value) {
+    return value;
+}
+inline Value::Data to_data(const std::string& value) {
+    return value;
+}
+inline Value::Data to_data(const std::vector<double>& value) {
+    return value;
+}
+
+template <class Scalar, int Rows>
+Value::Data to_data(const Eigen::Matrix<Scalar, Rows, 1>& value) {
+    std::vector<double> numbers;
+    for (Scalar number : value) numbers.push_back(std::get<double>(to_data(number)));
+    return numbers;
+}
+
+template <class Enum>
+requires std::is_enum_v<Enum> Value::Data to_data(Enum value) {
+    return enum_names<Enum>()[size_t(value)];
+}
+
+inline void from_data(const Value::Data& data, bool& value) {
+    value = std::get<bool>(data);
+}
+inline void from_data(const Value::Data& data, int& value) {
+    value = int(std::get<double>(data));
+}
+inline void from_data(const Value::Data& data, float& value) {
+    value = float(std::get<double>(data));
+}
+inline void from_data(const Value::Data& data, double& value) {
+    value = std::get<double>(data);
+}
+inline void from_data(const Value::Data& data, std::string& value) {
+    value = std::get<std::string>(data);
+}
+inline void from_data(const Value::Data& data, std::vector<double>& value) {
+    value = std::get<std::vector<double>>(data);
+}
+
+template <class Scalar, int Rows>
+void from_data(const Value::Data& data, Eigen::Matrix<Scalar, Rows, 1>& value) {
+    const auto& numbers = std::get<std::vector<double>>(data);
+    for (int i = 0; i < Rows; ++i) value[i] = Scalar(numbers[size_t(i)]);
+}
+
+template <class Enum>
+requires std::is_enum_v<Enum>
+void from_data(const Value::Data& data, Enum& value) {
+    const auto& names = enum_names<Enum>();
+    value = Enum(std::find(names.begin(), names.end(), std::get<std::string>(data)) - names.begin());
+}
+
+template <class T>
+Value to_value(const T& member) {
+    return {to_data(member)};
+}
+
+template <class T>
+Value to_value(const Auto<T>& member) {
+    Value value;
+    if (member.value()) value.data = to_data(*member);
+    value.state = member.is_pinned()   ? Value::State::given
+                  : member.is_follow() ? Value::State::follow
+                                       : Value::State::automatic;
+    value.latched = value.state == Value::State::automatic && member.value().has_value();
+    return value;
+}
+
+template <class T>
+void from_value(const Value& value, T& member) {
+    from_data(value.data, member);
+}
+
+template <class T>
+void from_value(const Value& value, Auto<T>& member) {
+    member = value.state == Value::State::follow ? Auto<T>(follow) : Auto<T>(automatic);
+    if (value.state != Value::State::given && !value.latched) return;
+    T data{};
+    from_data(value.data, data);
+    if (value.latched)
+        member.latch(data);
+    else
+        member = Auto<T>(data);
+}
+
+template <class T>
+struct Unwrapped {
+    using type = T;
+    static constexpr bool is_auto = false;
+};
+template <class T>
+struct Unwrapped<Auto<T>> {
+    using type = T;
+    static constexpr bool is_auto = true;
+};
+
+/// Type, choices, lengths and the range that the member itself can hold.
+template <class T>
+void describe(Field& field) {
+    if constexpr (std::is_same_v<T, bool>) {
+        field.type = FieldType::boolean;
+    } else if constexpr (std::is_enum_v<T>) {
+        field.type = FieldType::choice;
+        field.choices = enum_names<T>();
+    } else if constexpr (std::is_same_v<T, std::string>) {
+        field.type = FieldType::text;
+    } else if constexpr (std::is_same_v<T, std::vector<double>>) {
+        field.type = FieldType::vector;
+    } else if constexpr (std::is_arithmetic_v<T>) {
+        field.type = std::is_integral_v<T> ? FieldType::integer : FieldType::number;
+        field.whole = std::is_integral_v<T>;
+        field.min = double(std::numeric_limits<T>::lowest());
+        field.max = double(std::numeric_limits<T>::max());
+    } else {
+        describe<typename T::Scalar>(field);
+        field.type = FieldType::vector;
+        field.sizes = {size_t(T::RowsAtCompileTime)};
+    }
+}
+
+/// Follows a chain of pointers to members from the settings to a field.
+template <class... Members>
+auto at(Members... members) {
+    return [members...](auto& settings) -> auto& {
+        return (settings.*....*members);
+    };
+}
+
+}  // namespace easypbr::detail

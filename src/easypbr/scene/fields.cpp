@@ -1,0 +1,187 @@
+#include "easypbr/scene/fields.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <map>
+
+#include "easypbr/core/color.h"
+#include "easypbr/core/error.h"
+#include "easypbr/core/suggest.h"
+
+namespace easypbr {
+namespace {
+
+std::string_view last_part(std::string_view name) {
+    return name.substr(name.rfind('.') + 1);
+}
+
+/// The full names whose last part is `last`, quoted.
+std::string names_ending_in(std::string_view last) {
+    std::vector<std::string> names;
+    for (const Field& field : fields())
+        if (last_part(field.name) == last) names.push_back("'" + field.name + "'");
+    return fmt::format("{}", fmt::join(names, " or "));
+}
+
+/// Names that begin with what was written, then names that are nearly it, then names whose last part nearly
+/// is.
+std::string hint_for(std::string_view wrong) {
+    std::vector<std::string> names, last_parts;
+    for (const Field& field : fields()) {
+        if (wrong.size() >= 4 && field.name.starts_with(wrong) && wrong.find('.') != wrong.npos)
+            return fmt::format(" (did you mean '{}'?)", field.name);
+        names.push_back(field.name);
+        last_parts.emplace_back(last_part(field.name));
+    }
+    if (const std::string hint = did_you_mean(wrong, names); !hint.empty()) return hint;
+    const std::string last = nearest(last_part(wrong), last_parts);
+    return last.empty() ? "" : fmt::format(" (did you mean {}?)", names_ending_in(last));
+}
+
+std::string describe_range(const Field& field) {
+    const std::string kind = field.whole ? "whole number" : "number";
+    const bool from = field.min > -FLT_MAX, to = field.max < FLT_MAX;
+    const std::string unit = field.unit.empty() ? "" : " " + field.unit;
+    if (from && to)
+        return fmt::format("{}{} to {}{}", field.whole ? "a whole number from " : "", field.min, field.max,
+                           unit);
+    if (from) return fmt::format("a {} of at least {}{}", kind, field.min, unit);
+    if (to) return fmt::format("a {} of at most {}{}", kind, field.max, unit);
+    return "a " + kind;
+}
+
+std::string describe_vector(const Field& field) {
+    const auto [shortest, longest] = std::minmax_element(field.sizes.begin(), field.sizes.end());
+    const std::string count =
+        *shortest == *longest ? fmt::format("{}", *longest) : fmt::format("none or {}", *longest);
+    const bool free = field.min <= -FLT_MAX && field.max >= FLT_MAX;
+    return fmt::format("{} numbers{}", count, free ? "" : ", each " + describe_range(field));
+}
+
+std::string describe_expected(const Field& field) {
+    const std::string or_auto = field.can_be_automatic ? ", or 'auto' or 'follow'" : "";
+    switch (field.type) {
+        case FieldType::boolean:
+            return "true or false" + or_auto;
+        case FieldType::integer:
+        case FieldType::number:
+            return describe_range(field) + or_auto;
+        case FieldType::color:
+            return "a colour: '#rrggbb', a name, or 3 numbers from 0 to 1" + or_auto;
+        case FieldType::vector:
+            return describe_vector(field) + or_auto;
+        case FieldType::text:
+            return "a text" + or_auto;
+        case FieldType::choice:
+            return fmt::format("one of {}", fmt::join(field.choices, ", ")) + or_auto;
+    }
+    return {};
+}
+
+std::string describe_given(const Value& value) {
+    if (value.state == Value::State::follow) return "'follow'";
+    if (value.state == Value::State::automatic && !value.latched) return "'auto'";
+    struct Printer {
+        std::string operator()(bool b) const { return b ? "true" : "false"; }
+        std::string operator()(double number) const { return fmt::format("{}", number); }
+        std::string operator()(const std::string& text) const { return "'" + text + "'"; }
+        std::string operator()(const std::vector<double>& numbers) const {
+            return numbers.size() > 16 ? fmt::format("{} numbers", numbers.size())
+                                       : fmt::format("({})", fmt::join(numbers, ", "));
+        }
+    };
+    return std::visit(Printer{}, value.data);
+}
+
+[[noreturn]] void reject(const Field& field, const Value& value) {
+    std::string hint;
+    if (field.type == FieldType::choice)
+        if (const auto* text = std::get_if<std::string>(&value.data))
+            hint = did_you_mean(*text, field.choices);
+    throw ArgumentError(fmt::format("setting '{}': expected {}, got {}{}", field.name,
+                                    describe_expected(field), describe_given(value), hint));
+}
+
+bool is_allowed(const Field& field, double number) {
+    return std::isfinite(number) && number >= field.min && number <= field.max &&
+           (!field.whole || number == std::floor(number));
+}
+
+bool is_allowed(const Field& field, const std::vector<double>& numbers) {
+    return std::find(field.sizes.begin(), field.sizes.end(), numbers.size()) != field.sizes.end() &&
+           std::all_of(numbers.begin(), numbers.end(),
+                       [&](double number) { return is_allowed(field, number); });
+}
+
+bool is_allowed(const Field& field, const Value::Data& data) {
+    switch (field.type) {
+        case FieldType::boolean:
+            return std::holds_alternative<bool>(data);
+        case FieldType::integer:
+        case FieldType::number: {
+            const auto* number = std::get_if<double>(&data);
+            return number && is_allowed(field, *number);
+        }
+        case FieldType::color:
+        case FieldType::vector: {
+            const auto* numbers = std::get_if<std::vector<double>>(&data);
+            return numbers && is_allowed(field, *numbers);
+        }
+        case FieldType::text:
+            return std::holds_alternative<std::string>(data);
+        case FieldType::choice: {
+            const auto* text = std::get_if<std::string>(&data);
+            return text &&
+                   std::find(field.choices.begin(), field.choices.end(), *text) != field.choices.end();
+        }
+    }
+    return false;
+}
+
+}  // namespace
+
+const Field& field(std::string_view name) {
+    static const auto by_name = [] {
+        std::map<std::string, const Field*, std::less<>> map;
+        for (const Field& field : fields()) map.emplace(field.name, &field);
+        return map;
+    }();
+    const auto found = by_name.find(name);
+    if (found == by_name.end())
+        throw NameError(fmt::format("there is no setting '{}'{}", name, hint_for(name)));
+    return *found->second;
+}
+
+Value checked(const Field& field, const Value& value) {
+    const bool has_data = value.state == Value::State::given || value.latched;
+    if (value.state != Value::State::given && !field.can_be_automatic) reject(field, value);
+    if (!has_data) return {{}, value.state};
+    if (field.type == FieldType::color && std::holds_alternative<std::string>(value.data)) {
+        Value parsed = parse_value(field, std::get<std::string>(value.data));
+        if (parsed.state != Value::State::given) reject(field, value);
+        parsed.state = value.state;
+        parsed.latched = value.latched;
+        return parsed;
+    }
+    if (!is_allowed(field, value.data)) reject(field, value);
+    return value;
+}
+
+void set(Settings& settings, std::string_view name, const Value& value) {
+    const Field& target = field(name);
+    target.put(settings, checked(target, value));
+}
+
+Value get(const Settings& settings, std::string_view name) {
+    return field(name).get(settings);
+}
+
+void set_from_text(Settings& settings, std::string_view name, std::string_view text) {
+    set(settings, name, parse_value(field(name), text));
+}
+
+}  // namespace easypbr

@@ -1,0 +1,278 @@
+#include <utility>
+
+#include "easypbr/core/image.h"
+#include "easypbr/scene/field_builder.h"
+#include "easypbr/scene/fields.h"
+
+namespace easypbr {
+namespace detail {
+
+template <>
+const std::vector<std::string>& enum_names<Antialias>() {
+    static const std::vector<std::string> names = {"none", "fxaa"};
+    return names;
+}
+template <>
+const std::vector<std::string>& enum_names<Projection>() {
+    static const std::vector<std::string> names = {"perspective", "orthographic"};
+    return names;
+}
+template <>
+const std::vector<std::string>& enum_names<BackgroundMode>() {
+    static const std::vector<std::string> names = {"color", "environment", "blur", "image", "transparent"};
+    return names;
+}
+template <>
+const std::vector<std::string>& enum_names<Brdf>() {
+    static const std::vector<std::string> names = {"height_correlated", "separable", "ue4"};
+    return names;
+}
+template <>
+const std::vector<std::string>& enum_names<ToneOperator>() {
+    static const std::vector<std::string> names = {"aces", "reinhard", "agx", "neutral", "none"};
+    return names;
+}
+
+}  // namespace detail
+
+namespace {
+
+using detail::at;
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+/// Below any length that occurs, above zero.
+constexpr double positive = 1e-30;
+
+struct Range {
+    double min = -unlimited, max = unlimited;
+};
+
+template <class Access>
+Field make(std::string name, Access access, std::string doc, std::string unit = {}, Range range = {}) {
+    using Member = std::remove_cvref_t<decltype(access(std::declval<Settings&>()))>;
+    Field field;
+    field.name = std::move(name);
+    field.doc = std::move(doc);
+    field.unit = std::move(unit);
+    detail::describe<typename detail::Unwrapped<Member>::type>(field);
+    field.can_be_automatic = detail::Unwrapped<Member>::is_auto;
+    field.min = std::max(field.min, range.min);
+    field.max = std::min(field.max, range.max);
+    field.get = [access](const Settings& settings) { return detail::to_value(access(settings)); };
+    field.put = [access](Settings& settings, const Value& value) {
+        detail::from_value(value, access(settings));
+    };
+    return field;
+}
+
+template <class Access>
+Field color(std::string name, Access access, std::string doc) {
+    Field field = make(std::move(name), access, std::move(doc), "sRGB", {0, 1});
+    field.type = FieldType::color;
+    return field;
+}
+
+Field with_choices(Field field, std::vector<std::string> choices) {
+    field.type = FieldType::choice;
+    field.choices = std::move(choices);
+    return field;
+}
+
+Field with_sizes(Field field, std::vector<size_t> sizes) {
+    field.sizes = std::move(sizes);
+    return field;
+}
+
+using Table = std::vector<Field>;
+
+void add_image(Table& table) {
+    const auto image = [](auto member) { return at(&Settings::image, member); };
+    table.push_back(make("image.size", image(&ImageSettings::size), "Width and height of the picture.",
+                         "pixels", {1, max_image_side}));
+    table.push_back(make("image.samples", image(&ImageSettings::samples),
+                         "Jittered frames averaged for a still picture; 1 gives a single frame.", "",
+                         {1, 65536}));
+    table.push_back(make("image.antialias", image(&ImageSettings::antialias),
+                         "Smoothing of edges in a single frame; stills are smoothed by their samples."));
+}
+
+void add_camera(Table& table) {
+    const auto camera = [](auto member) { return at(&Settings::camera, member); };
+    table.push_back(make("camera.projection", camera(&CameraSettings::projection),
+                         "Perspective, or orthographic: without foreshortening."));
+    table.push_back(
+        make("camera.position", camera(&CameraSettings::position),
+             "Where the camera stands in the world; automatic: so that the content fills the picture.",
+             "world units"));
+    table.push_back(make("camera.target", camera(&CameraSettings::target),
+                         "The point the camera looks at; automatic: so that the content is in the middle.",
+                         "world units"));
+    table.push_back(
+        with_choices(make("camera.up", camera(&CameraSettings::up),
+                          "World axis that points up in the picture and to the sky of the environment."),
+                     {"+x", "-x", "+y", "-y", "+z", "-z", "x", "y", "z"}));
+    table.push_back(make("camera.fov_y_deg", camera(&CameraSettings::fov_y_deg),
+                         "Full vertical opening angle of a perspective camera.", "degrees", {1, 170}));
+    table.push_back(
+        make("camera.ortho_height", camera(&CameraSettings::ortho_height),
+             "World height of an orthographic picture; automatic: so that the content fills the picture.",
+             "world units", {positive, unlimited}));
+    table.push_back(make("camera.near", camera(&CameraSettings::near),
+                         "Distance of the near plane; automatic: well before the content.", "world units",
+                         {positive, unlimited}));
+    table.push_back(
+        make("camera.azimuth_deg", camera(&CameraSettings::azimuth_deg),
+             "Direction an automatic camera looks from: 0 in front of the content, positive further right.",
+             "degrees", {-360, 360}));
+    table.push_back(
+        make("camera.elevation_deg", camera(&CameraSettings::elevation_deg),
+             "Height an automatic camera looks from: 0 level with the content, 90 straight above it.",
+             "degrees", {-90, 90}));
+    table.push_back(
+        make("camera.margin", camera(&CameraSettings::margin),
+             "Part of the picture that an automatic camera leaves free, both sides of an axis together.", "",
+             {0, 0.9}));
+    table.push_back(
+        with_sizes(make("camera.pose", camera(&CameraSettings::pose),
+                        "Camera-to-world matrix, 16 numbers row by row, axes x right, y up, z backwards; "
+                        "replaces position and target."),
+                   {0, 16}));
+    table.push_back(
+        with_sizes(make("camera.intrinsics", camera(&CameraSettings::intrinsics),
+                        "fx, fy, cx, cy, width, height as OpenCV has them (pixel centres at integers); "
+                        "replaces fov_y_deg.",
+                        "pixels"),
+                   {0, 6}));
+}
+
+void add_surroundings(Table& table) {
+    const auto environment = [](auto member) { return at(&Settings::environment, member); };
+    table.push_back(
+        make("environment.file", environment(&EnvironmentSettings::file),
+             "Equirectangular picture (HDR, EXR, PNG, JPEG) that lights the scene; empty: a studio."));
+    table.push_back(make("environment.enabled", environment(&EnvironmentSettings::enabled),
+                         "Whether an environment lights the scene; automatic: yes."));
+    table.push_back(make("environment.rotation_deg", environment(&EnvironmentSettings::rotation_deg),
+                         "Turns the environment about the up axis, counter-clockwise seen from above.",
+                         "degrees", {-360, 360}));
+    table.push_back(make("environment.intensity", environment(&EnvironmentSettings::intensity),
+                         "Factor on the environment's light.", "", {0, 1e6}));
+
+    const auto background = [](auto member) { return at(&Settings::background, member); };
+    table.push_back(
+        make("background.mode", background(&BackgroundSettings::mode),
+             "What is seen behind the content: a colour, the environment, the environment blurred, an "
+             "image, or nothing (alpha 0)."));
+    table.push_back(color("background.color", background(&BackgroundSettings::color),
+                          "Background colour, shown exactly: exposure and tone curve do not touch it."));
+    table.push_back(make("background.image", background(&BackgroundSettings::image),
+                         "Image file shown behind the content in mode 'image'."));
+    table.push_back(make("background.blur", background(&BackgroundSettings::blur),
+                         "How blurred the environment is in mode 'blur': 0 sharp, 1 soft.", "", {0, 1}));
+}
+
+void add_studio_light(Table& table, const std::string& name, StudioLight LightsSettings::*light) {
+    const auto field = [&](auto member) { return at(&Settings::lights, light, member); };
+    const std::string prefix = "lights." + name + ".", the = "the " + name + " light";
+    table.push_back(make(prefix + "enabled", field(&StudioLight::enabled),
+                         "Whether " + the + " is on; automatic: on when no environment was given."));
+    table.push_back(
+        make(prefix + "position", field(&StudioLight::position),
+             "Where " + the + " stands in the world; automatic: placed relative to the first camera.",
+             "world units"));
+    table.push_back(color(prefix + "color", field(&StudioLight::color), "Colour of " + the + "."));
+    table.push_back(
+        make(prefix + "intensity", field(&StudioLight::intensity),
+             "Luminous intensity of " + the + "; automatic: the same light on the content at any scale.",
+             "candela", {0, unlimited}));
+}
+
+void add_lights(Table& table) {
+    table.push_back(make("lights.intensity", at(&Settings::lights, &LightsSettings::intensity),
+                         "Factor on the key, fill and rim light together.", "", {0, 1e6}));
+    add_studio_light(table, "key", &LightsSettings::key);
+    add_studio_light(table, "fill", &LightsSettings::fill);
+    add_studio_light(table, "rim", &LightsSettings::rim);
+}
+
+void add_shading(Table& table) {
+    const auto shading = [](auto member) { return at(&Settings::shading, member); };
+    table.push_back(
+        make("shading.brdf", shading(&ShadingSettings::brdf),
+             "Geometry term of the GGX reflection: height-correlated Smith, separable Smith, or the "
+             "approximation of Unreal Engine 4."));
+    table.push_back(
+        make("shading.multiple_scattering", shading(&ShadingSettings::multiple_scattering),
+             "Adds the light that bounces several times within a rough surface, so that none is lost."));
+    table.push_back(make("shading.dielectric_f0", shading(&ShadingSettings::dielectric_f0),
+                         "Reflectance of non-metals at normal incidence.", "", {0, 1}));
+
+    const auto tone = [](auto member) { return at(&Settings::tone, member); };
+    table.push_back(make("tonemap.operator", tone(&ToneSettings::tone_operator),
+                         "Curve from scene light to the picture's range."));
+    table.push_back(
+        make("tonemap.exposure", tone(&ToneSettings::exposure),
+             "Factor on scene light before the tone curve; automatic: a white surface facing the camera "
+             "averages 1.",
+             "", {0, 1e30}));
+    table.push_back(make("tonemap.exposure_compensation", tone(&ToneSettings::exposure_compensation),
+                         "Makes the picture brighter or darker by this many doublings.", "stops", {-30, 30}));
+}
+
+void add_overrides(Table& table) {
+    const auto material = [](auto member) { return at(&Settings::material, member); };
+    const auto texture = [&](const std::string& name, std::string MaterialSettings::*member,
+                             const std::string& doc) {
+        table.push_back(make("material." + name, material(member), doc + " Empty: the material's own."));
+    };
+    table.push_back(color("material.color", material(&MaterialSettings::color),
+                          "Base colour of every material; automatic: the material's own."));
+    table.push_back(make(
+        "material.metallic", material(&MaterialSettings::metallic),
+        "Metalness of every material, 0 dielectric to 1 metal; automatic: the material's own.", "", {0, 1}));
+    table.push_back(make("material.roughness", material(&MaterialSettings::roughness),
+                         "Perceptual roughness of every material; automatic: the material's own.", "",
+                         {0, 1}));
+    table.push_back(color("material.emissive", material(&MaterialSettings::emissive),
+                          "Colour that every material glows in; automatic: the material's own."));
+    texture("base_color_texture", &MaterialSettings::base_color_texture,
+            "Image file for the base colour (sRGB) of every material.");
+    texture("metallic_texture", &MaterialSettings::metallic_texture,
+            "Image file for the metalness of every material.");
+    texture("roughness_texture", &MaterialSettings::roughness_texture,
+            "Image file for the roughness of every material.");
+    texture("normal_texture", &MaterialSettings::normal_texture,
+            "Image file for the tangent-space normals (+Y up) of every material.");
+    texture("occlusion_texture", &MaterialSettings::occlusion_texture,
+            "Image file for the baked ambient occlusion of every material.");
+    texture("emissive_texture", &MaterialSettings::emissive_texture,
+            "Image file for the glow (sRGB) of every material.");
+    texture("opacity_texture", &MaterialSettings::opacity_texture,
+            "Image file for the opacity of every material.");
+
+    const auto style = [](auto member) { return at(&Settings::style, member); };
+    table.push_back(make("style.flat", style(&StyleSettings::flat),
+                         "One normal per face on every object; automatic: the object's own choice."));
+    table.push_back(
+        make("style.two_sided", style(&StyleSettings::two_sided),
+             "Back faces of every object are drawn, lit from their side; automatic: the object's own "
+             "choice."));
+}
+
+}  // namespace
+
+const std::vector<Field>& fields() {
+    static const Table table = [] {
+        Table all;
+        add_image(all);
+        add_camera(all);
+        add_surroundings(all);
+        add_lights(all);
+        add_shading(all);
+        add_overrides(all);
+        return all;
+    }();
+    return table;
+}
+
+}  // namespace easypbr
