@@ -11,16 +11,16 @@ namespace easypbr {
 
 /// All that the renderer asks of the settings, with nothing left to infer.
 struct ResolvedSettings {
-    Settings settings;  ///< every automatic field holds its value
+    Settings settings;  ///< every automatic field holds its value, but overrides of materials and styles
     Camera camera;
-    std::vector<Light> lights;  ///< enabled lights of the scene, then key, fill and rim
-    Environment environment;    ///< what lights the scene: the given one, the studio, or empty
+    std::vector<Light> lights;            ///< enabled lights of the scene, then key, fill and rim
+    Environment environment;              ///< what lights the scene: the given one, the studio, or empty
     Mat3 R_env_world = Mat3::Identity();  ///< turns a world direction into the environment's frame
-    float exposure = 1;                   ///< factor from radiance to the tone curve's input, compensation included
+    float exposure = 1;  ///< factor from radiance to the tone curve's input, compensation included
 };
 
-/// Pure: the same scene, settings and size give the same result. Throws ArgumentError when settings contradict each
-/// other or when there is nothing to place a camera for.
+/// Pure: the same scene, settings and size give the same result. Throws ArgumentError when settings
+/// contradict each other or when there is nothing to place a camera for.
 ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, Vec2i size);
 
 /// Copies inferred values into the automatic (not pinned, not following) fields of `settings`.
@@ -28,14 +28,23 @@ void latch(Settings& settings, const Settings& resolved);
 /// Forgets all latched values, so that the next picture infers them anew.
 void release(Settings& settings);
 
-/// World direction of an up setting: "+x", "-x", "+y", "-y", "+z", "-z" (F3D's spelling, the sign may be missing).
+/// World direction of an up setting: "+x", "-x", "+y", "-y", "+z", "-z" (F3D's spelling, the sign may be
+/// missing).
 Vec3d parse_up(const std::string& up);
 
-/// The camera looking along `forward` that shows all points, the limiting dimension filling 1 - margin of the picture
-/// exactly. Closed form per axis: see "Auto lights, camera" in docs/architecture.md.
-/// `for_each_point` calls its argument with every world-space point, and may be called several times.
-using PointVisitor = std::function<void(const std::function<void(const Vec3d&)>&)>;
-Camera fit_camera(const PointVisitor& for_each_point, const Eigen::Matrix3d& R_world_cam, const CameraSettings& settings,
+/// Rows: the world's right, up and front for an up direction that is a world axis. The front is where an
+/// automatic camera with azimuth 0 stands: +z for +y up, -y for +z up. Turns world directions into a frame
+/// with +Y up.
+Mat3d up_frame(const Vec3d& up);
+
+/// Axes (columns) of a camera that looks at the content from the settings' azimuth and elevation.
+Mat3d view_rotation(const CameraSettings& settings);
+
+/// The camera with these axes that shows all vertices, the limiting dimension filling 1 - margin of the
+/// picture exactly (but no vertex is nearer than a twentieth of the content's radius). Projection, angle or
+/// intrinsics and margin are those of the settings. Closed form per axis: see "Auto lights, camera" in
+/// docs/architecture.md. Throws ArgumentError when there are no vertices.
+Camera fit_camera(const SceneSnapshot& scene, const Mat3d& R_world_cam, const CameraSettings& settings,
                   double aspect);
 
 }  // namespace easypbr

@@ -1,0 +1,125 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/image.h"
+#include "easypbr/scene/auto_parameters.h"
+
+namespace easypbr::detail {
+namespace {
+
+void reject_contradictions(const CameraSettings& settings) {
+    if (!settings.pose.empty() && (settings.position.is_pinned() || settings.target.is_pinned()))
+        throw ArgumentError(
+            fmt::format("settings 'camera.pose' and 'camera.{}' contradict each other: give one of them",
+                        settings.position.is_pinned() ? "position" : "target"));
+    if (!settings.intrinsics.empty() && settings.projection == Projection::orthographic)
+        throw ArgumentError(
+            "settings 'camera.intrinsics' and 'camera.projection' = orthographic contradict each other");
+}
+
+/// Looks as view_rotation() does, also straight up and down where `up` alone says nothing about the picture's
+/// top.
+Camera look_from(const Vec3d& position, const Vec3d& target, const CameraSettings& settings) {
+    const Vec3d up = parse_up(settings.up);
+    const Vec3d forward = (target - position).normalized();
+    if (forward.cross(up).norm() >= 1e-6) return Camera::look_at(position, target, up);
+    CameraSettings level = settings;
+    level.elevation_deg = 0;
+    const Vec3d from = view_rotation(level).col(2);
+    return Camera::look_at(position, target, forward.dot(up) < 0 ? Vec3d(-from) : from);
+}
+
+/// The point of the optical axis beside the content's centre, or ahead when that lies behind.
+Vec3d target_on_axis(const Content& content, const Vec3d& position, const Vec3d& forward) {
+    const double depth = (content.centre() - position).dot(forward);
+    return position + forward * (depth > 0 ? depth : content.radius());
+}
+
+void place(const Content& content, const Camera& lens, double aspect, CameraSettings& settings) {
+    const auto position = settings.position.value(), target = settings.target.value();
+    const Mat3d R = view_rotation(settings);
+    if (!position && content.empty())
+        throw ArgumentError(
+            "nothing to show: the scene has no vertices to place the camera for; show a mesh, or set "
+            "camera.position");
+    if (position && target) return;
+    if (position) {
+        const bool inside = (content.centre() - *position).norm() <= 1e-6 * content.radius();
+        fill(settings.target, inside ? Vec3d(*position - R.col(2) * content.radius()) : content.centre());
+    } else if (target) {
+        const double distance = fitted_distance(content, *target, R, lens, settings.margin, aspect);
+        fill(settings.position, Vec3d(*target + R.col(2) * distance));
+    } else {
+        const Vec3d fitted = fitted_position(content, R, lens, settings.margin, aspect);
+        fill(settings.position, fitted);
+        fill(settings.target, target_on_axis(content, fitted, -R.col(2)));
+    }
+}
+
+/// Near and far only have to enclose the content: the depth buffer's relative precision does not depend on
+/// them.
+void set_depth_range(const Content& content, CameraSettings& settings, Camera& camera) {
+    const double distance = (*settings.target - *settings.position).norm();
+    double nearest = 0, farthest = distance;
+    if ((!settings.near.value() || camera.projection == Projection::orthographic) && !content.empty()) {
+        const Vec3d forward = -camera.T_world_cam.linear().col(2);
+        const auto [least, most] = content.extent_along(forward);
+        nearest = least - forward.dot(camera.position());
+        farthest = most - forward.dot(camera.position());
+    }
+    fill(settings.near, std::max(0.1 * nearest, 1e-3 * distance));
+    camera.near = *settings.near;
+    camera.far = std::max(farthest + distance, 2 * camera.near);
+}
+
+}  // namespace
+
+Camera lens_of(const CameraSettings& settings) {
+    Camera lens;
+    if (!settings.intrinsics.empty()) {
+        const std::vector<double>& k = settings.intrinsics;
+        if (std::min(k[4], k[5]) < 1 || std::max(k[4], k[5]) > max_image_side)
+            throw ArgumentError(
+                fmt::format("setting 'camera.intrinsics': expected a width and height from 1 to {}, got {} "
+                            "and {}",
+                            max_image_side, k[4], k[5]));
+        Mat3d K;
+        K << k[0], 0, k[2], 0, k[1], k[3], 0, 0, 1;
+        lens = Camera::from_opencv(K, Mat4d::Identity(), int(k[4]), int(k[5]));
+    } else {
+        lens.fov_y_deg = settings.fov_y_deg;
+    }
+    lens.projection = settings.projection;
+    return lens;
+}
+
+Camera resolve_camera(const Content& content, CameraSettings& settings, double aspect) {
+    reject_contradictions(settings);
+    Camera camera = lens_of(settings);
+    if (settings.pose.empty()) {
+        place(content, camera, aspect, settings);
+        camera.T_world_cam = look_from(*settings.position, *settings.target, settings).T_world_cam;
+    } else {
+        const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> pose(settings.pose.data());
+        camera.T_world_cam = Camera::from_opengl(pose).T_world_cam;
+        const Vec3d target = target_on_axis(content, camera.position(), -camera.T_world_cam.linear().col(2));
+        settings.position = settings.target = Auto<Vec3d>(automatic);
+        fill(settings.position, camera.position());
+        fill(settings.target, target);
+    }
+    const double distance = (*settings.target - *settings.position).norm();
+    if (!settings.ortho_height.value()) {
+        const bool fits = camera.projection == Projection::orthographic && !content.empty();
+        // The height at the target, so that switching the projection keeps its size.
+        fill(settings.ortho_height, fits ? fitted_height(content, camera.T_world_cam, settings.margin, aspect)
+                                         : 2 * distance * std::tan(radians(camera.fov_y_deg) / 2));
+    }
+    camera.ortho_height = *settings.ortho_height;
+    set_depth_range(content, settings, camera);
+    return camera;
+}
+
+}  // namespace easypbr::detail

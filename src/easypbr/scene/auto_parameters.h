@@ -1,0 +1,69 @@
+// The parts of resolve(): each fills the automatic fields of one group of settings. Lengths enter only as
+// multiples of the content's own, so that a scaled scene gives exactly the scaled result.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "easypbr/scene/resolve.h"
+
+namespace easypbr::detail {
+
+/// Bounds of what is shown, computed when they are first asked for: with everything latched nobody asks.
+class Content {
+  public:
+    explicit Content(const SceneSnapshot& scene) : scene_(scene) {}
+
+    const SceneSnapshot& scene() const { return scene_; }
+    bool empty() const;
+    /// Centre of the bounding box; the origin when empty.
+    Vec3d centre() const;
+    /// Half the diagonal of the bounding box. Never zero: a single point's distance from the origin stands
+    /// in, or 1.
+    double radius() const;
+    /// Smallest and largest product of the direction with a corner of the bounding box; not for empty
+    /// content.
+    std::pair<double, double> extent_along(const Vec3d& direction) const;
+
+  private:
+    const Box3d& bounds() const;
+
+    const SceneSnapshot& scene_;
+    mutable std::optional<Box3d> bounds_;
+};
+
+/// Gives an automatic or following setting its inferred value; a pinned or latched value stays.
+template <class T>
+void fill(Auto<T>& setting, const T& inferred) {
+    if (setting.is_follow())
+        setting = Auto<T>(inferred);
+    else if (!setting.value())
+        setting.latch(inferred);
+}
+
+/// Projection, angle or intrinsics of the settings, without a pose. Throws ArgumentError for bad intrinsics.
+Camera lens_of(const CameraSettings& settings);
+
+/// Position with the given axes that frames the content, as fit_camera().
+Vec3d fitted_position(const Content& content, const Mat3d& R_world_cam, const Camera& lens, double margin,
+                      double aspect);
+
+/// Distance from `target`, along the camera's z, at which all vertices are in the picture.
+double fitted_distance(const Content& content, const Vec3d& target, const Mat3d& R_world_cam,
+                       const Camera& lens, double margin, double aspect);
+
+/// World height of an orthographic picture around the optical axis that shows all vertices.
+double fitted_height(const Content& content, const Eigen::Isometry3d& T_world_cam, double margin,
+                     double aspect);
+
+Camera resolve_camera(const Content& content, CameraSettings& settings, double aspect);
+
+/// Key, fill and rim as far as they are on.
+std::vector<Light> resolve_studio_lights(const Content& content, const Camera& camera, bool on_by_default,
+                                         LightsSettings& settings, const Vec3d& up);
+
+/// Exposure by incident light at the content's centre, whatever the content looks like (as a hand-held meter
+/// does).
+float metered_exposure(const Content& content, const ResolvedSettings& resolved);
+
+}  // namespace easypbr::detail

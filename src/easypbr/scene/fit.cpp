@@ -1,0 +1,156 @@
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/error.h"
+#include "easypbr/scene/auto_parameters.h"
+
+namespace easypbr {
+namespace detail {
+namespace {
+
+/// No vertex comes nearer to a fitted camera than this part of the content's radius.
+constexpr double nearest_part = 0.05;
+
+/// How far the picture (less its margin) reaches to each side, per unit of depth.
+struct Slopes {
+    double right, left, top, bottom;
+};
+
+Slopes slopes_of(const Camera& lens, double margin, double aspect) {
+    const Mat4d P = lens.projection_matrix(aspect);
+    const double edge = 1 - margin;
+    return {(edge + P(0, 2)) / P(0, 0), (edge - P(0, 2)) / P(0, 0), (edge + P(1, 2)) / P(1, 1),
+            (edge - P(1, 2)) / P(1, 1)};
+}
+
+/// Rows: the inward normals of the picture's four sides in the world (not of unit length), then backwards,
+/// forwards.
+SceneSnapshot::Directions frustum_directions(const Mat3d& R_world_cam, const Slopes& slopes) {
+    const Eigen::RowVector3d x = R_world_cam.col(0), y = R_world_cam.col(1), z = R_world_cam.col(2);
+    SceneSnapshot::Directions directions;
+    directions << x + slopes.right * z, -x + slopes.left * z, y + slopes.top * z, -y + slopes.bottom * z, z,
+        -z;
+    return directions;
+}
+
+SceneSnapshot::Directions axis_directions(const Mat3d& R_world_cam) {
+    SceneSnapshot::Directions directions;
+    directions << R_world_cam.col(0).transpose(), -R_world_cam.col(0).transpose(),
+        R_world_cam.col(1).transpose(), -R_world_cam.col(1).transpose(), R_world_cam.col(2).transpose(),
+        -R_world_cam.col(2).transpose();
+    return directions;
+}
+
+/// A camera at (c, d) sees a point (x, z) when x - c <= right (d - z) and c - x <= left (d - z). With
+/// P = max(x + right z) and Q = max(left z - x) that is P - right d <= c <= left d - Q: possible from
+/// d = (P + Q) / (right + left) on, where both sides are touched. Further away the middle of the room is
+/// taken.
+double centre_of(double P, double Q, double right, double left, double d) {
+    return ((P - right * d) + (left * d - Q)) / 2;
+}
+
+}  // namespace
+
+bool Content::empty() const {
+    return std::all_of(scene_.objects.begin(), scene_.objects.end(),
+                       [](const SceneSnapshot::Object& object) { return object.mesh->V.empty(); });
+}
+
+const Box3d& Content::bounds() const {
+    if (!bounds_) bounds_ = scene_.bounds();
+    return *bounds_;
+}
+
+Vec3d Content::centre() const {
+    if (bounds().isEmpty()) return Vec3d::Zero();
+    return bounds().center();
+}
+
+double Content::radius() const {
+    const double half_diagonal = bounds().isEmpty() ? 0 : bounds().diagonal().norm() / 2;
+    if (half_diagonal > 0) return half_diagonal;
+    const double from_origin = centre().norm();
+    return from_origin > 0 ? from_origin : 1;
+}
+
+std::pair<double, double> Content::extent_along(const Vec3d& direction) const {
+    const double middle = direction.dot(bounds().center());
+    const double half = direction.cwiseAbs().dot(bounds().sizes()) / 2;
+    return {middle - half, middle + half};
+}
+
+Vec3d fitted_position(const Content& content, const Mat3d& R_world_cam, const Camera& lens, double margin,
+                      double aspect) {
+    if (lens.projection == Projection::orthographic) {
+        const SceneSnapshot::Support s = content.scene().support(axis_directions(R_world_cam));
+        return R_world_cam * Vec3d((s[0] - s[1]) / 2, (s[2] - s[3]) / 2, s[4] + content.radius());
+    }
+    const Slopes slopes = slopes_of(lens, margin, aspect);
+    const SceneSnapshot::Support s = content.scene().support(frustum_directions(R_world_cam, slopes));
+    const double d =
+        std::max({(s[0] + s[1]) / (slopes.right + slopes.left), (s[2] + s[3]) / (slopes.top + slopes.bottom),
+                  s[4] + nearest_part * content.radius()});
+    return R_world_cam * Vec3d(centre_of(s[0], s[1], slopes.right, slopes.left, d),
+                               centre_of(s[2], s[3], slopes.top, slopes.bottom, d), d);
+}
+
+double fitted_distance(const Content& content, const Vec3d& target, const Mat3d& R_world_cam,
+                       const Camera& lens, double margin, double aspect) {
+    const bool orthographic = lens.projection == Projection::orthographic;
+    const Slopes slopes = orthographic ? Slopes{} : slopes_of(lens, margin, aspect);
+    const SceneSnapshot::Directions directions = frustum_directions(R_world_cam, slopes);
+    const SceneSnapshot::Support s = content.scene().support(directions) - directions * target;
+    double distance = s[4] + (orthographic ? 1 : nearest_part) * content.radius();
+    const double sides[] = {slopes.right, slopes.left, slopes.top, slopes.bottom};
+    // A side that the optical axis does not reach cannot be cleared by stepping back.
+    for (int i = 0; i < 4; ++i)
+        if (sides[i] > 0) distance = std::max(distance, s[i] / sides[i]);
+    return std::max(distance, nearest_part * content.radius());
+}
+
+double fitted_height(const Content& content, const Eigen::Isometry3d& T_world_cam, double margin,
+                     double aspect) {
+    const SceneSnapshot::Directions directions = axis_directions(T_world_cam.linear());
+    const SceneSnapshot::Support s =
+        content.scene().support(directions) - directions * T_world_cam.translation();
+    const double height = 2 * std::max({s[2], s[3], s[0] / aspect, s[1] / aspect}) / (1 - margin);
+    return height > 0 ? height : 2 * content.radius();
+}
+
+}  // namespace detail
+
+Mat3d up_frame(const Vec3d& up) {
+    const Vec3d front = up.z() > 0.5    ? Vec3d(-Vec3d::UnitY())
+                        : up.z() < -0.5 ? Vec3d::UnitY()
+                                        : Vec3d::UnitZ();
+    Mat3d frame;
+    frame << up.cross(front).transpose(), up.transpose(), front.transpose();
+    return frame;
+}
+
+Mat3d view_rotation(const CameraSettings& settings) {
+    const double azimuth = radians(settings.azimuth_deg), elevation = radians(settings.elevation_deg);
+    const Mat3d frame = up_frame(parse_up(settings.up));
+    const Vec3d right = frame.row(0), up = frame.row(1), front = frame.row(2);
+    const Vec3d level = std::cos(azimuth) * front + std::sin(azimuth) * right;
+    Mat3d R;
+    R << std::cos(azimuth) * right - std::sin(azimuth) * front,
+        std::cos(elevation) * up - std::sin(elevation) * level,
+        std::cos(elevation) * level + std::sin(elevation) * up;
+    return R;
+}
+
+Camera fit_camera(const SceneSnapshot& scene, const Mat3d& R_world_cam, const CameraSettings& settings,
+                  double aspect) {
+    const detail::Content content(scene);
+    if (content.empty()) throw ArgumentError("camera: there are no vertices to fit a camera to");
+    Camera camera = detail::lens_of(settings);
+    camera.T_world_cam.linear() = R_world_cam;
+    camera.T_world_cam.translation() =
+        detail::fitted_position(content, R_world_cam, camera, settings.margin, aspect);
+    if (camera.projection == Projection::orthographic)
+        camera.ortho_height = detail::fitted_height(content, camera.T_world_cam, settings.margin, aspect);
+    return camera;
+}
+
+}  // namespace easypbr

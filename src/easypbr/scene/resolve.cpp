@@ -1,0 +1,94 @@
+#include "easypbr/scene/resolve.h"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/image.h"
+#include "easypbr/scene/auto_parameters.h"
+#include "easypbr/scene/fields.h"
+
+namespace easypbr {
+namespace {
+
+/// A positive rotation turns what is seen in the environment counter-clockwise, seen from above.
+Mat3 environment_rotation(const Vec3d& up, double rotation_deg) {
+    const Mat3d R =
+        Eigen::AngleAxisd(-radians(rotation_deg), Vec3d::UnitY()).toRotationMatrix() * up_frame(up);
+    return R.cast<float>();
+}
+
+void resolve_environment(const SceneSnapshot& scene, ResolvedSettings& resolved) {
+    EnvironmentSettings& settings = resolved.settings.environment;
+    detail::fill(settings.enabled, true);
+    if (*settings.enabled)
+        resolved.environment = scene.environment.empty() ? studio_environment() : scene.environment;
+    resolved.R_env_world = environment_rotation(parse_up(resolved.settings.camera.up), settings.rotation_deg);
+}
+
+void resolve_lights(const detail::Content& content, ResolvedSettings& resolved) {
+    for (const auto& [name, light] : content.scene().lights)
+        if (light.enabled) resolved.lights.push_back(light);
+    const EnvironmentSettings& environment = resolved.settings.environment;
+    const bool given =
+        *environment.enabled && (!content.scene().environment.empty() || !environment.file.empty());
+    for (const Light& light :
+         detail::resolve_studio_lights(content, resolved.camera, !given, resolved.settings.lights,
+                                       parse_up(resolved.settings.camera.up)))
+        resolved.lights.push_back(light);
+}
+
+void resolve_exposure(const detail::Content& content, ResolvedSettings& resolved) {
+    ToneSettings& tone = resolved.settings.tone;
+    if (!tone.exposure.value()) detail::fill(tone.exposure, detail::metered_exposure(content, resolved));
+    resolved.exposure = *tone.exposure * std::exp2(tone.exposure_compensation);
+}
+
+}  // namespace
+
+ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, Vec2i size) {
+    if (size.minCoeff() < 1 || size.maxCoeff() > max_image_side)
+        throw ArgumentError(fmt::format("picture size: expected width and height from 1 to {}, got {}x{}",
+                                        max_image_side, size.x(), size.y()));
+    for (const Field& field : fields()) checked(field, field.get(settings));
+    const detail::Content content(scene);
+    ResolvedSettings resolved;
+    resolved.settings = settings;
+    resolved.camera = detail::resolve_camera(content, resolved.settings.camera, double(size.x()) / size.y());
+    resolve_environment(scene, resolved);
+    resolve_lights(content, resolved);
+    resolve_exposure(content, resolved);
+    return resolved;
+}
+
+void latch(Settings& settings, const Settings& resolved) {
+    for (const Field& field : fields()) {
+        if (!field.can_be_automatic || field.get(settings).state != Value::State::automatic) continue;
+        Value inferred = field.get(resolved);
+        if (inferred.state == Value::State::follow ||
+            (inferred.state == Value::State::automatic && !inferred.latched))
+            continue;
+        inferred.state = Value::State::automatic;
+        inferred.latched = true;
+        field.put(settings, inferred);
+    }
+}
+
+void release(Settings& settings) {
+    for (const Field& field : fields())
+        if (field.can_be_automatic && field.get(settings).latched)
+            field.put(settings, {{}, Value::State::automatic});
+}
+
+Vec3d parse_up(const std::string& up) {
+    const bool has_sign = !up.empty() && (up[0] == '+' || up[0] == '-');
+    const std::string axis = has_sign ? up.substr(1) : up;
+    const double sign = has_sign && up[0] == '-' ? -1 : 1;
+    if (axis == "x") return Vec3d(sign, 0, 0);
+    if (axis == "y") return Vec3d(0, sign, 0);
+    if (axis == "z") return Vec3d(0, 0, sign);
+    throw ArgumentError(fmt::format("up direction: expected one of +x, -x, +y, -y, +z, -z, got '{}'", up));
+}
+
+}  // namespace easypbr
