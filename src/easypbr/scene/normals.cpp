@@ -45,7 +45,8 @@ float scale_of(const Array3f& V) {
 /// Angle between two vectors from y = |cross product|, its square, and x = dot product: pi/2 -+ (pi/2 - 2
 /// atan(t)) with t = y / (hypot(x, y) + |x|) in [0, 1]. Arctangent: Abramowitz and Stegun 4.4.49, error below
 /// 1e-5. No branches.
-void angles(const Lanes& y_squared, const Lanes& y, const Lanes& x, Lanes& angle) {
+Lanes angles(const float* y_squared, const float* y, const float* x) {
+    Lanes angle;
     constexpr float half_pi = float(pi / 2);
     for (int k = 0; k < lanes; ++k) {
         const float hypotenuse = std::sqrt(y_squared[k] + x[k] * x[k]);
@@ -55,6 +56,7 @@ void angles(const Lanes& y_squared, const Lanes& y, const Lanes& x, Lanes& angle
             t * (0.9998660f + s * (-0.3302995f + s * (0.1801410f + s * (-0.0851330f + s * 0.0208351f))));
         angle[k] = half_pi - std::copysign(half_pi - 2 * arctangent, x[k]);
     }
+    return angle;
 }
 
 /// Faces first .. first + count - 1; lanes beyond repeat the last one.
@@ -64,7 +66,9 @@ FaceBlock face_block(const Array3f& V, const Array3i& F, float scale, size_t fir
         const int32_t* face = F.data() + 3 * (first + std::min(k, count - 1));
         for (int corner = 0; corner < 3; ++corner) {
             const float* position = V.data() + 3 * size_t(face[corner]);
-            for (int axis = 0; axis < 3; ++axis) p[3 * corner + axis][k] = position[axis] * scale;
+            p[3 * corner][k] = position[0] * scale;
+            p[3 * corner + 1][k] = position[1] * scale;
+            p[3 * corner + 2][k] = position[2] * scale;
         }
     }
     FaceBlock block;
@@ -81,8 +85,8 @@ FaceBlock face_block(const Array3f& V, const Array3i& F, float scale, size_t fir
         dot0[k] = ux * vx + uy * vy + uz * vz;
         dot1[k] = ux * (ux - vx) + uy * (uy - vy) + uz * (uz - vz);
     }
-    angles(area_squared, area, dot0, block.angle[0]);
-    angles(area_squared, area, dot1, block.angle[1]);
+    block.angle[0] = angles(area_squared.data(), area.data(), dot0.data());
+    block.angle[1] = angles(area_squared.data(), area.data(), dot1.data());
     for (int k = 0; k < lanes; ++k) block.angle[2][k] = float(pi) - block.angle[0][k] - block.angle[1][k];
     return block;
 }
@@ -98,8 +102,8 @@ class Accumulator {
           F_(F),
           scale_(scale_of(V)),
           sums_(sums),
-          owners_(std::min(64u, std::bit_ceil(unsigned(thread_count())))),
-          chunks_(std::max<size_t>(16, 2 * owners_)),
+          owners_(std::min(most_owners, std::bit_ceil(size_t(thread_count())))),
+          chunks_(std::max<size_t>(32, 2 * owners_)),
           bins_(chunks_ * owners_) {}
 
     void add_all() {
@@ -114,7 +118,8 @@ class Accumulator {
     }
 
   private:
-    static constexpr size_t chunk_faces = 8192;
+    static constexpr size_t chunk_faces = 4096, most_owners = 16;
+    using Cursors = std::array<Contribution*, most_owners>;
 
     struct Bin {
         std::vector<Contribution> items;
@@ -127,24 +132,26 @@ class Accumulator {
     size_t owner_of(int32_t vertex) const { return (size_t(vertex) >> 12) & (owners_ - 1); }
 
     void compute(size_t chunk, size_t begin, size_t end) {
+        Cursors cursors;
         for (size_t owner = 0; owner < owners_; ++owner) {
-            bin(chunk, owner).items.resize(3 * (end - begin));
-            bin(chunk, owner).count = 0;
+            bin(chunk, owner).items.resize(3 * chunk_faces);
+            cursors[owner] = bin(chunk, owner).items.data();
         }
         for (size_t first = begin; first < end; first += lanes) {
             const int count = int(std::min<size_t>(lanes, end - first));
-            distribute(chunk, face_block(V_, F_, scale_, first, count), first, count);
+            distribute(face_block(V_, F_, scale_, first, count), first, count, cursors);
         }
+        for (size_t owner = 0; owner < owners_; ++owner)
+            bin(chunk, owner).count = size_t(cursors[owner] - bin(chunk, owner).items.data());
     }
 
-    void distribute(size_t chunk, const FaceBlock& block, size_t first, int count) {
+    void distribute(const FaceBlock& block, size_t first, int count, Cursors& cursors) const {
+        const int32_t* vertex = F_.data() + 3 * first;
         for (int k = 0; k < count; ++k) {
-            const int32_t* face = F_.data() + 3 * (first + k);
-            for (int corner = 0; corner < 3; ++corner) {
+            const float x = block.normal[0][k], y = block.normal[1][k], z = block.normal[2][k];
+            for (int corner = 0; corner < 3; ++corner, ++vertex) {
                 const float angle = block.angle[corner][k];
-                Bin& target = bin(chunk, owner_of(face[corner]));
-                target.items[target.count++] = {face[corner], angle * block.normal[0][k],
-                                                angle * block.normal[1][k], angle * block.normal[2][k]};
+                *cursors[owner_of(*vertex)]++ = {*vertex, angle * x, angle * y, angle * z};
             }
         }
     }
