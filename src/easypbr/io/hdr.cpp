@@ -56,12 +56,10 @@ class HeaderReader {
             divide({value[0], value[1], value[2]});
     }
 
+    /// Some writers put EXPOSURE=0 where they mean none: a factor that is no positive number counts as 1.
     void divide(const std::array<double, 3>& factor) {
-        for (int c = 0; c < 3; ++c) {
-            header_.divisor[c] *= factor[c];
-            if (!(header_.divisor[c] > 0) || !std::isfinite(header_.divisor[c]))
-                fail_image(name_, "damaged HDR: EXPOSURE and COLORCORR must be positive");
-        }
+        for (int c = 0; c < 3; ++c)
+            if (factor[c] > 1e-30 && factor[c] < 1e30) header_.divisor[c] *= factor[c];
     }
 
     void resolution(const std::string& line) {

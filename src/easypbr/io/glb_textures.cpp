@@ -1,0 +1,185 @@
+#include "easypbr/io/glb_textures.h"
+
+#include <cmath>
+
+#include "easypbr/io/image_io.h"
+
+namespace easypbr::io {
+namespace {
+
+/// One channel of an image, as 8 bits.
+struct Plane {
+    Image image;
+    int channel = 0;
+
+    uint8_t at(int x, int y, int width, int height) const {
+        const int column = int((long long)x * image.width() / width),
+                  row = int((long long)y * image.height() / height);
+        return image.at<uint8_t>(column, row)[channel];
+    }
+};
+
+Plane plane_of(const Texture& texture, int channel) {
+    const Image image = to_u8(*texture.image);
+    return {image, std::min(channel, image.channels() - 1)};
+}
+
+/// A texture like `like`, of the larger of its planes' sizes; a channel without an image is 255.
+Texture merged(const Texture& like, const std::vector<Plane>& planes) {
+    int width = 1, height = 1;
+    for (const Plane& plane : planes) {
+        width = std::max(width, plane.image.width());
+        height = std::max(height, plane.image.height());
+    }
+    auto image = std::make_shared<Image>(width, height, int(planes.size()), PixelType::u8);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (size_t c = 0; c < planes.size(); ++c)
+                image->at<uint8_t>(x, y)[c] =
+                    planes[c].image.empty() ? 255 : planes[c].at(x, y, width, height);
+    Texture out = like;
+    out.image = std::move(image);
+    out.channel = 0;
+    return out;
+}
+
+/// glTF's one texture for both: roughness in green, metallic in blue.
+Texture metallic_roughness(const Material& material) {
+    const Texture& metallic = material.metallic_texture;
+    const Texture& roughness = material.roughness_texture;
+    if (!metallic && !roughness) return {};
+    if (metallic.image == roughness.image && metallic.channel == 2 && roughness.channel == 1) return metallic;
+    std::vector<Plane> planes(3);
+    if (roughness) planes[1] = plane_of(roughness, roughness.channel);
+    if (metallic) planes[2] = plane_of(metallic, metallic.channel);
+    return merged(metallic ? metallic : roughness, planes);
+}
+
+Texture base_color(const Material& material) {
+    const Texture& color = material.base_color_texture;
+    const Texture& opacity = material.opacity_texture;
+    if (!opacity) return color;
+    std::vector<Plane> planes(4);
+    if (color)
+        for (int c = 0; c < 3; ++c) planes[size_t(c)] = plane_of(color, color.image->channels() < 3 ? 0 : c);
+    planes[3] = plane_of(opacity, opacity.channel);
+    return merged(color ? color : opacity, planes);
+}
+
+Texture occlusion(const Material& material) {
+    const Texture& texture = material.occlusion_texture;
+    if (!texture || texture.channel == 0) return texture;
+    return merged(texture, {plane_of(texture, texture.channel)});
+}
+
+int wrap_code(Wrap wrap) {
+    return wrap == Wrap::clamp ? 33071 : wrap == Wrap::mirror ? 33648 : 10497;
+}
+
+/// KHR_texture_transform of a transform, which can only be scaling, then turning, then shifting; v goes down
+/// in glTF.
+OrderedJson transform_json(const Mat3& ours) {
+    Mat3d flip = Mat3d::Identity();
+    flip.row(1) << 0, -1, 1;
+    const Mat3d T = flip * ours.cast<double>() * flip;
+    const double angle = std::atan2(-T(1, 0), T(0, 0));
+    const double scale_x = std::hypot(T(0, 0), T(1, 0));
+    const double scale_y = T(0, 1) * std::sin(angle) + T(1, 1) * std::cos(angle);
+    return {{"offset", {T(0, 2), T(1, 2)}}, {"rotation", angle}, {"scale", {scale_x, scale_y}}};
+}
+
+OrderedJson json_of(const Vec3& v) {
+    return {v[0], v[1], v[2]};
+}
+
+}  // namespace
+
+size_t GlbContent::add_view(const void* data, size_t size, int target) {
+    binary.resize((binary.size() + 3) / 4 * 4, '\0');
+    OrderedJson view = {{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", size}};
+    if (target) view["target"] = target;
+    binary.append(static_cast<const char*>(data), size);
+    json["bufferViews"].push_back(std::move(view));
+    return json["bufferViews"].size() - 1;
+}
+
+size_t GlbMaterials::image_index(const std::shared_ptr<const Image>& image) {
+    const auto [found, is_new] = images_.try_emplace(image, images_.size());
+    if (is_new) {
+        const auto png = encode_png(image->type() == PixelType::f32 ? to_u8(*image) : *image);
+        const size_t view = content_.add_view(png.data(), png.size());
+        content_.json["images"].push_back({{"bufferView", view}, {"mimeType", "image/png"}});
+    }
+    return found->second;
+}
+
+size_t GlbMaterials::texture_index(const Texture& texture) {
+    const bool nearest = texture.filter == Filter::nearest;
+    const OrderedJson sampler = {{"magFilter", nearest ? 9728 : 9729},
+                                 {"minFilter", nearest ? 9728 : 9987},
+                                 {"wrapS", wrap_code(texture.wrap_u)},
+                                 {"wrapT", wrap_code(texture.wrap_v)}};
+    const auto index_in = [&](const char* array, const OrderedJson& value) {
+        OrderedJson& values = content_.json[array];
+        for (size_t i = 0; i < values.size(); ++i)
+            if (values[i] == value) return i;
+        values.push_back(value);
+        return values.size() - 1;
+    };
+    const size_t source = image_index(texture.image);
+    return index_in("textures", {{"sampler", index_in("samplers", sampler)}, {"source", source}});
+}
+
+OrderedJson GlbMaterials::texture_info(const Texture& texture) {
+    OrderedJson info = {{"index", texture_index(texture)}};
+    if (texture.uv_transform != Mat3::Identity()) {
+        info["extensions"]["KHR_texture_transform"] = transform_json(texture.uv_transform);
+        extensions_.push_back("KHR_texture_transform");
+    }
+    return info;
+}
+
+size_t GlbMaterials::add(const Material& material) {
+    OrderedJson json;
+    if (!material.name.empty()) json["name"] = material.name;
+    OrderedJson& surface = json["pbrMetallicRoughness"];
+    surface["baseColorFactor"] = {material.base_color[0], material.base_color[1], material.base_color[2],
+                                  material.opacity};
+    surface["metallicFactor"] = material.metallic;
+    surface["roughnessFactor"] = material.roughness;
+    if (const Texture texture = base_color(material)) surface["baseColorTexture"] = texture_info(texture);
+    if (const Texture texture = metallic_roughness(material))
+        surface["metallicRoughnessTexture"] = texture_info(texture);
+    if (const Texture& texture = material.normal_texture) {
+        json["normalTexture"] = texture_info(texture);
+        json["normalTexture"]["scale"] = material.normal_scale;
+    }
+    if (const Texture texture = occlusion(material)) {
+        json["occlusionTexture"] = texture_info(texture);
+        json["occlusionTexture"]["strength"] = material.occlusion_strength;
+    }
+    if (const Texture& texture = material.emissive_texture) json["emissiveTexture"] = texture_info(texture);
+    const float strength = std::max(1.0f, material.emissive.maxCoeff());
+    json["emissiveFactor"] = json_of(material.emissive / strength);
+    if (strength > 1) {
+        json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = strength;
+        extensions_.push_back("KHR_materials_emissive_strength");
+    }
+    if (material.unlit) {
+        json["extensions"]["KHR_materials_unlit"] = OrderedJson::object();
+        extensions_.push_back("KHR_materials_unlit");
+    }
+    const char* modes[] = {"OPAQUE", "MASK", "BLEND"};
+    json["alphaMode"] = modes[int(material.alpha_mode)];
+    if (material.alpha_mode == AlphaMode::mask) json["alphaCutoff"] = material.alpha_cutoff;
+    json["doubleSided"] = material.double_sided;
+    for (const std::string& extension : extensions_) {
+        OrderedJson& used = content_.json["extensionsUsed"];
+        if (std::find(used.begin(), used.end(), extension) == used.end()) used.push_back(extension);
+    }
+    extensions_.clear();
+    content_.json["materials"].push_back(std::move(json));
+    return content_.json["materials"].size() - 1;
+}
+
+}  // namespace easypbr::io

@@ -1,0 +1,43 @@
+// Textures and materials of a GLB file that is being written.
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "easypbr/scene/material.h"
+
+namespace easypbr::io {
+
+/// JSON in the order it is written.
+using OrderedJson = nlohmann::ordered_json;
+
+/// The growing content of a GLB file.
+struct GlbContent {
+    OrderedJson json;
+    std::string binary;
+
+    /// Appends bytes, aligned to 4, as a buffer view and returns its index.
+    size_t add_view(const void* data, size_t size, int target = 0);
+};
+
+class GlbMaterials {
+  public:
+    explicit GlbMaterials(GlbContent& content) : content_(content) {}
+
+    /// Index of the material in the file, appended with its textures.
+    size_t add(const Material& material);
+
+  private:
+    OrderedJson texture_info(const Texture& texture);
+    size_t image_index(const std::shared_ptr<const Image>& image);
+    size_t texture_index(const Texture& texture);
+
+    GlbContent& content_;
+    std::map<std::shared_ptr<const Image>, size_t> images_;
+    std::vector<std::string> extensions_;
+};
+
+}  // namespace easypbr::io

@@ -1,0 +1,20 @@
+// Meshes as binary glTF 2.0.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "easypbr/scene/mesh.h"
+
+namespace easypbr::io {
+
+/// Writes the hierarchy with poses, parts as primitives, materials and textures (embedded as PNG). Colours
+/// become linear floats. Metallic and roughness textures that are two images are merged into one, an opacity
+/// texture becomes the base colour's alpha. Styles, labels, intensities and surfels are not part of the
+/// format. Throws FileError; ArgumentError for a mesh without any vertices. Never leaves half a file.
+void save_glb(const Mesh& mesh, const std::filesystem::path& path);
+
+/// The bytes of such a file.
+std::string encode_glb(const Mesh& mesh);
+
+}  // namespace easypbr::io
