@@ -12,13 +12,16 @@ namespace {
 
 constexpr size_t hash_digits = 32;
 
-fs::path path_of(std::string_view key) { return cache_folder() / std::string(key); }
+fs::path path_of(std::string_view key) {
+    return cache_folder() / std::string(key);
+}
 
 }  // namespace
 
 fs::path cache_folder() {
     if (const char* folder = std::getenv("EASYPBR_CACHE_DIR"); folder && *folder) return folder;
-    if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder) return fs::path(folder) / "easypbr";
+    if (const char* folder = std::getenv("XDG_CACHE_HOME"); folder && *folder)
+        return fs::path(folder) / "easypbr";
     const char* home = std::getenv("HOME");
     return fs::path(home && *home ? home : "/tmp") / ".cache" / "easypbr";
 }

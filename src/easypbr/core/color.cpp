@@ -16,9 +16,9 @@ namespace {
 
 const std::map<std::string, const char*, std::less<>>& named_colors() {
     static const std::map<std::string, const char*, std::less<>> names = {
-        {"black", "#000000"}, {"white", "#ffffff"},  {"grey", "#808080"},  {"gray", "#808080"},
-        {"red", "#ff0000"},   {"green", "#008000"},  {"blue", "#0000ff"},  {"yellow", "#ffff00"},
-        {"cyan", "#00ffff"},  {"magenta", "#ff00ff"}, {"orange", "#ffa500"}, {"lightgrey", "#d3d3d3"},
+        {"black", "#000000"},   {"white", "#ffffff"},   {"grey", "#808080"},   {"gray", "#808080"},
+        {"red", "#ff0000"},     {"green", "#008000"},   {"blue", "#0000ff"},   {"yellow", "#ffff00"},
+        {"cyan", "#00ffff"},    {"magenta", "#ff00ff"}, {"orange", "#ffa500"}, {"lightgrey", "#d3d3d3"},
         {"darkgrey", "#a9a9a9"}};
     return names;
 }
@@ -26,9 +26,10 @@ const std::map<std::string, const char*, std::less<>>& named_colors() {
 [[noreturn]] void reject(std::string_view text) {
     std::vector<std::string> names;
     for (const auto& [name, hex] : named_colors()) names.push_back(name);
-    throw ArgumentError(fmt::format("colour '{}': expected '#rgb', '#rrggbb', 'r,g,b' with numbers from 0 to 1, or a "
-                                    "name such as white{}",
-                                    text, did_you_mean(text, names)));
+    throw ArgumentError(
+        fmt::format("colour '{}': expected '#rgb', '#rrggbb', 'r,g,b' with numbers from 0 to 1, or a "
+                    "name such as white{}",
+                    text, did_you_mean(text, names)));
 }
 
 Vec3 parse_hex(std::string_view text) {
@@ -76,7 +77,8 @@ Vec3 linear_from_srgb(const Vec3& c) {
 
 Vec3 parse_color(std::string_view text) {
     if (!text.empty() && text[0] == '#') return parse_hex(text);
-    if (const auto found = named_colors().find(text); found != named_colors().end()) return parse_hex(found->second);
+    if (const auto found = named_colors().find(text); found != named_colors().end())
+        return parse_hex(found->second);
     return parse_numbers(text);
 }
 

@@ -26,22 +26,28 @@ ImageDifference compare_as(const Image& a, const Image& b, double peak) {
     const double count = double(p.size());
     result.mean = sum / count;
     result.rmse = std::sqrt(squares / count);
-    result.psnr = squares > 0 ? 20.0 * std::log10(peak / result.rmse) : std::numeric_limits<double>::infinity();
+    result.psnr =
+        squares > 0 ? 20.0 * std::log10(peak / result.rmse) : std::numeric_limits<double>::infinity();
     return result;
 }
 
 }  // namespace
 
 ImageDifference compare(const Image& a, const Image& b) {
-    if (a.width() != b.width() || a.height() != b.height() || a.channels() != b.channels() || a.type() != b.type())
-        throw ArgumentError(fmt::format("images differ in kind: {}x{} with {} channels of {} bytes and {}x{} with {} "
-                                        "channels of {} bytes",
-                                        a.width(), a.height(), a.channels(), size_of(a.type()), b.width(), b.height(),
-                                        b.channels(), size_of(b.type())));
+    if (a.width() != b.width() || a.height() != b.height() || a.channels() != b.channels() ||
+        a.type() != b.type())
+        throw ArgumentError(
+            fmt::format("images differ in kind: {}x{} with {} channels of {} bytes and {}x{} with {} "
+                        "channels of {} bytes",
+                        a.width(), a.height(), a.channels(), size_of(a.type()), b.width(), b.height(),
+                        b.channels(), size_of(b.type())));
     switch (a.type()) {
-        case PixelType::u8: return compare_as<uint8_t>(a, b, 255);
-        case PixelType::u16: return compare_as<uint16_t>(a, b, 65535);
-        default: return compare_as<float>(a, b, 1);
+        case PixelType::u8:
+            return compare_as<uint8_t>(a, b, 255);
+        case PixelType::u16:
+            return compare_as<uint16_t>(a, b, 65535);
+        default:
+            return compare_as<float>(a, b, 1);
     }
 }
 

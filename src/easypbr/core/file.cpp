@@ -47,11 +47,13 @@ void write_all(int descriptor, std::span<const std::byte> bytes, const fs::path&
 
 MappedFile::MappedFile(const fs::path& path) {
     const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-    if (file.value < 0) throw FileError(fmt::format("cannot read {}: {}", path.string(), std::strerror(errno)));
+    if (file.value < 0)
+        throw FileError(fmt::format("cannot read {}: {}", path.string(), std::strerror(errno)));
     struct stat info {};
     if (::fstat(file.value, &info) != 0)
         throw FileError(fmt::format("cannot read {}: {}", path.string(), std::strerror(errno)));
-    if (!S_ISREG(info.st_mode)) throw FileError(fmt::format("cannot read {}: not a regular file", path.string()));
+    if (!S_ISREG(info.st_mode))
+        throw FileError(fmt::format("cannot read {}: not a regular file", path.string()));
     size_ = size_t(info.st_size);
     if (size_ == 0) return;
     data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.value, 0);

@@ -25,7 +25,8 @@ class MappedFile {
     std::string_view text() const { return {static_cast<const char*>(data_), size_}; }
     size_t size() const { return size_; }
 
-    /// Tells the system that bytes [0, end) are not needed again soon, so that they do not count as used memory.
+    /// Tells the system that bytes [0, end) are not needed again soon, so that they do not count as used
+    /// memory.
     void release_until(size_t end) const;
 
   private:
@@ -37,8 +38,8 @@ class MappedFile {
 void write_file(const fs::path& path, std::span<const std::byte> bytes);
 void write_file(const fs::path& path, std::string_view text);
 
-/// Throws FileError unless a file could be written at `path` (its folder exists and is writable, it is no folder).
-/// Leaves nothing behind.
+/// Throws FileError unless a file could be written at `path` (its folder exists and is writable, it is no
+/// folder). Leaves nothing behind.
 void check_writable(const fs::path& path);
 
 /// Extension in lower case without the dot: "ply" for "Drone.PLY", empty when there is none.

@@ -13,7 +13,9 @@ namespace {
 
 constexpr size_t pixel_grain = 1 << 14;
 
-bool is_alpha(int channel, int channels) { return channels % 2 == 0 && channel == channels - 1; }
+bool is_alpha(int channel, int channels) {
+    return channels % 2 == 0 && channel == channels - 1;
+}
 
 template <class T>
 T opaque() {
@@ -46,8 +48,8 @@ Image convert_channels(const Image& image, int channels) {
 Image::Image(int width, int height, int channels, PixelType type)
     : width_(width), height_(height), channels_(channels), type_(type) {
     if (width < 1 || height < 1 || width > max_image_side || height > max_image_side)
-        throw ArgumentError(fmt::format("image size {}x{}: width and height must be 1 to {}", width, height,
-                                        max_image_side));
+        throw ArgumentError(
+            fmt::format("image size {}x{}: width and height must be 1 to {}", width, height, max_image_side));
     if (channels < 1 || channels > 4)
         throw ArgumentError(fmt::format("image with {} channels: expected 1 to 4", channels));
     data_.resize(row_bytes() * size_t(height));
@@ -56,9 +58,12 @@ Image::Image(int width, int height, int channels, PixelType type)
 Image with_channels(const Image& image, int channels) {
     if (image.channels() == channels) return image;
     switch (image.type()) {
-        case PixelType::u8: return convert_channels<uint8_t>(image, channels);
-        case PixelType::u16: return convert_channels<uint16_t>(image, channels);
-        default: return convert_channels<float>(image, channels);
+        case PixelType::u8:
+            return convert_channels<uint8_t>(image, channels);
+        case PixelType::u16:
+            return convert_channels<uint16_t>(image, channels);
+        default:
+            return convert_channels<float>(image, channels);
     }
 }
 
@@ -70,7 +75,8 @@ Image to_u8(const Image& image) {
     const size_t count = image.pixel_count() * channels;
     if (image.type() == PixelType::u16) {
         const uint16_t* in = image.pixels<uint16_t>().data();
-        parallel_for(count, pixel_grain, [&](size_t i) { to[i] = uint8_t((in[i] * 255u + 32767u) / 65535u); });
+        parallel_for(count, pixel_grain,
+                     [&](size_t i) { to[i] = uint8_t((in[i] * 255u + 32767u) / 65535u); });
         return out;
     }
     const float* in = image.pixels<float>().data();
@@ -102,15 +108,17 @@ Image to_linear_f32(const Image& image) {
 }
 
 Image half_size(const Image& image) {
-    Image out(std::max(1, image.width() / 2), std::max(1, image.height() / 2), image.channels(), PixelType::f32);
+    Image out(std::max(1, image.width() / 2), std::max(1, image.height() / 2), image.channels(),
+              PixelType::f32);
     const int channels = image.channels();
     parallel_for(size_t(out.height()), 16, [&](size_t row) {
         const int y0 = int(row) * 2, y1 = std::min(y0 + 1, image.height() - 1);
         for (int x = 0; x < out.width(); ++x) {
             const int x0 = x * 2, x1 = std::min(x0 + 1, image.width() - 1);
             for (int c = 0; c < channels; ++c)
-                out.at<float>(x, int(row))[c] = 0.25f * (image.at<float>(x0, y0)[c] + image.at<float>(x1, y0)[c] +
-                                                         image.at<float>(x0, y1)[c] + image.at<float>(x1, y1)[c]);
+                out.at<float>(x, int(row))[c] =
+                    0.25f * (image.at<float>(x0, y0)[c] + image.at<float>(x1, y0)[c] +
+                             image.at<float>(x0, y1)[c] + image.at<float>(x1, y1)[c]);
         }
     });
     return out;

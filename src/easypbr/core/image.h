@@ -13,7 +13,9 @@ namespace easypbr {
 /// Type of one channel. u8 and u16 colour is sRGB-encoded, f32 colour is linear.
 enum class PixelType { u8, u16, f32 };
 
-constexpr size_t size_of(PixelType type) { return type == PixelType::u8 ? 1 : type == PixelType::u16 ? 2 : 4; }
+constexpr size_t size_of(PixelType type) {
+    return type == PixelType::u8 ? 1 : type == PixelType::u16 ? 2 : 4;
+}
 
 /// Largest width or height that any function of the library accepts.
 inline constexpr int max_image_side = 65536;
@@ -22,7 +24,8 @@ class Image {
   public:
     Image() = default;
 
-    /// A zero-filled image. Throws ArgumentError unless 1 <= width, height <= max_image_side and 1 <= channels <= 4.
+    /// A zero-filled image. Throws ArgumentError unless 1 <= width, height <= max_image_side and 1 <=
+    /// channels <= 4.
     Image(int width, int height, int channels, PixelType type);
 
     int width() const { return width_; }
@@ -72,13 +75,15 @@ class Image {
     std::vector<std::byte> data_;
 };
 
-/// The same picture with another number of channels: grey is repeated, missing alpha is opaque, extra channels dropped.
+/// The same picture with another number of channels: grey is repeated, missing alpha is opaque, extra
+/// channels dropped.
 Image with_channels(const Image& image, int channels);
 
 /// The same picture as u8 (sRGB) when it is f32 (linear, clamped to [0, 1]) or u16; u8 is returned as it is.
 Image to_u8(const Image& image);
 
-/// The same picture as linear f32; u8 and u16 colour is decoded from sRGB, alpha (2nd or 4th channel) is scaled only.
+/// The same picture as linear f32; u8 and u16 colour is decoded from sRGB, alpha (2nd or 4th channel) is
+/// scaled only.
 Image to_linear_f32(const Image& image);
 
 /// Every second row and column averaged in 2x2 boxes, as for mip levels (at least 1x1). f32 only.

@@ -40,12 +40,20 @@ Slot<ProgressSink>& progress_slot() {
 
 }  // namespace
 
-void set_log_sink(LogSink sink) { log_slot().replace(std::move(sink)); }
+void set_log_sink(LogSink sink) {
+    log_slot().replace(std::move(sink));
+}
 
-void log(LogLevel level, std::string_view message) { log_slot().call(level, message); }
+void log(LogLevel level, std::string_view message) {
+    log_slot().call(level, message);
+}
 
-void set_progress_sink(ProgressSink sink) { progress_slot().replace(std::move(sink)); }
+void set_progress_sink(ProgressSink sink) {
+    progress_slot().replace(std::move(sink));
+}
 
-void report_progress(std::string_view what, double fraction) { progress_slot().call(what, fraction); }
+void report_progress(std::string_view what, double fraction) {
+    progress_slot().call(what, fraction);
+}
 
 }  // namespace easypbr

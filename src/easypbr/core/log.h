@@ -16,12 +16,15 @@ void set_log_sink(LogSink sink);
 /// Sends one message (without line end) to the sink. Thread-safe.
 void log(LogLevel level, std::string_view message);
 
-inline void log_warning(std::string_view message) { log(LogLevel::warning, message); }
+inline void log_warning(std::string_view message) {
+    log(LogLevel::warning, message);
+}
 
 /// Progress of a long operation: what is being done and the part done in [0, 1].
 using ProgressSink = std::function<void(std::string_view what, double fraction)>;
 
-/// Replaces the progress sink (process-wide); called from one thread at a time, a few times per second at most.
+/// Replaces the progress sink (process-wide); called from one thread at a time, a few times per second at
+/// most.
 void set_progress_sink(ProgressSink sink);
 
 /// Reports progress to the sink, if there is one.

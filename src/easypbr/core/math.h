@@ -9,6 +9,7 @@ namespace easypbr {
 using Vec2 = Eigen::Vector2f;
 using Vec3 = Eigen::Vector3f;
 using Vec4 = Eigen::Vector4f;
+using Vec2d = Eigen::Vector2d;
 using Vec2i = Eigen::Vector2i;
 using Vec3d = Eigen::Vector3d;
 using Mat3 = Eigen::Matrix3f;
@@ -20,7 +21,11 @@ using Box3d = Eigen::AlignedBox3d;
 
 inline constexpr double pi = 3.14159265358979323846;
 
-constexpr double radians(double degrees) { return degrees * (pi / 180.0); }
-constexpr double degrees(double radians) { return radians * (180.0 / pi); }
+constexpr double radians(double degrees) {
+    return degrees * (pi / 180.0);
+}
+constexpr double degrees(double radians) {
+    return radians * (180.0 / pi);
+}
 
 }  // namespace easypbr

@@ -23,6 +23,8 @@ void parallel_invoke(const std::function<void()>& first, const std::function<voi
     tbb::parallel_invoke(first, second);
 }
 
-int thread_count() { return tbb::this_task_arena::max_concurrency(); }
+int thread_count() {
+    return tbb::this_task_arena::max_concurrency();
+}
 
 }  // namespace easypbr

@@ -1,0 +1,13 @@
+// Adds one jittered frame to the sum, tone mapped, so that each sample of an edge weighs what the eye makes of it.
+#include "common_tone.glsl"
+
+uniform sampler2D u_radiance;
+uniform vec2 u_size;
+uniform float u_exposure;
+
+layout(location = 0) out vec4 o_sum;
+
+void main() {
+    vec4 radiance = textureLod(u_radiance, gl_FragCoord.xy / u_size, 0.0);
+    o_sum = vec4(tone_map(radiance.rgb * u_exposure) * radiance.a, radiance.a);
+}

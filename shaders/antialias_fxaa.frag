@@ -1,0 +1,39 @@
+// Fast approximate anti-aliasing of a single frame (Lottes 2009, the four-tap form): blurs along edges of luma.
+uniform sampler2D u_color;  // sRGB-encoded, linear filtering
+uniform vec2 u_size;
+
+layout(location = 0) out vec4 o_color;
+
+const vec3 luma_weights = vec3(0.299, 0.587, 0.114);
+const float span = 8.0;
+
+float luma_at(vec2 uv) {
+    vec4 c = textureLod(u_color, uv, 0.0);
+    return dot(c.rgb, luma_weights) * c.a;
+}
+
+vec4 premultiplied(vec2 uv) {
+    vec4 c = textureLod(u_color, uv, 0.0);
+    return vec4(c.rgb * c.a, c.a);
+}
+
+void main() {
+    vec2 texel = 1.0 / u_size;
+    vec2 uv = gl_FragCoord.xy * texel;
+    vec4 centre = textureLod(u_color, uv, 0.0);
+    float m = dot(centre.rgb, luma_weights) * centre.a;
+    float nw = luma_at(uv - texel), ne = luma_at(uv + vec2(texel.x, -texel.y));
+    float sw = luma_at(uv + vec2(-texel.x, texel.y)), se = luma_at(uv + texel);
+    float low = min(m, min(min(nw, ne), min(sw, se))), high = max(m, max(max(nw, ne), max(sw, se)));
+
+    vec2 along = vec2(sw + se - nw - ne, nw + sw - ne - se);
+    float reduce = max((nw + ne + sw + se) * 0.03125, 1.0 / 128.0);
+    along = clamp(along / (min(abs(along.x), abs(along.y)) + reduce), -span, span) * texel;
+
+    vec4 near = 0.5 * (premultiplied(uv - along / 6.0) + premultiplied(uv + along / 6.0));
+    vec4 wide = 0.5 * near + 0.25 * (premultiplied(uv - along * 0.5) + premultiplied(uv + along * 0.5));
+    float wide_luma = dot(wide.rgb, luma_weights);
+    vec4 blurred = wide_luma < low || wide_luma > high ? near : wide;
+    bool edge = high - low > max(1.0 / 16.0, high * 0.125);
+    o_color = edge ? vec4(blurred.rgb / max(blurred.a, 1e-4), blurred.a) : centre;
+}

@@ -1,0 +1,156 @@
+// Triangles into the G-buffer. What each target holds is defined in render/gbuffer.h.
+#include "common_encoding.glsl"
+
+#ifdef VERTEX_COLOR
+in vec4 v_color;
+#endif
+#ifdef UV
+in vec2 v_uv;
+#endif
+#ifdef NORMAL_TEXTURE
+in vec4 v_tangent;
+#endif
+#ifndef FLAT
+in vec3 v_normal;
+#endif
+#ifdef FACE_NORMAL
+in vec3 v_position;
+#endif
+
+layout(location = 0) out vec4 o_albedo;
+layout(location = 1) out vec2 o_normal;
+layout(location = 2) out vec4 o_material;
+layout(location = 3) out float o_depth;
+#ifdef EMISSION
+layout(location = 4) out vec4 o_emission;
+#endif
+
+uniform vec4 u_base_color;  // linear, opacity in w
+uniform vec4 u_surface;     // metallic, roughness, occlusion strength, alpha cutoff
+uniform vec4 u_emissive;    // radiance; w: 1 for unlit
+uniform float u_normal_scale;
+uniform float u_lod_bias;
+uniform float u_sample_index;
+
+#ifdef UV
+uniform mat3 u_uv_transform[7];
+// Images have row 0 on top and texture coordinates have v upwards.
+vec2 uv_of(int slot) {
+    vec2 uv = (u_uv_transform[slot] * vec3(v_uv, 1.0)).xy;
+    return vec2(uv.x, 1.0 - uv.y);
+}
+#endif
+#ifdef BASE_COLOR_TEXTURE
+uniform sampler2D u_base_color_texture;
+#endif
+#ifdef METALLIC_TEXTURE
+uniform sampler2D u_metallic_texture;
+uniform vec4 u_metallic_channel;
+#endif
+#ifdef ROUGHNESS_TEXTURE
+uniform vec4 u_roughness_channel;
+#ifndef ROUGHNESS_IN_METALLIC
+uniform sampler2D u_roughness_texture;
+#endif
+#endif
+#ifdef NORMAL_TEXTURE
+uniform sampler2D u_normal_texture;
+#endif
+#ifdef OCCLUSION_TEXTURE
+uniform sampler2D u_occlusion_texture;
+uniform vec4 u_occlusion_channel;
+#endif
+#ifdef EMISSIVE_TEXTURE
+uniform sampler2D u_emissive_texture;
+#endif
+#ifdef OPACITY_TEXTURE
+uniform sampler2D u_opacity_texture;
+uniform vec4 u_opacity_channel;
+#endif
+
+vec4 base_color() {
+    vec4 color = u_base_color;
+#ifdef VERTEX_COLOR
+    color *= v_color;
+#endif
+#ifdef BASE_COLOR_TEXTURE
+    color *= texture(u_base_color_texture, uv_of(0), u_lod_bias);
+#endif
+#ifdef OPACITY_TEXTURE
+    color.a *= dot(texture(u_opacity_texture, uv_of(6), u_lod_bias), u_opacity_channel);
+#endif
+    return color;
+}
+
+vec3 shading_normal() {
+#ifdef FACE_NORMAL
+    // Derivatives know which side is seen whatever the winding says. Rows run downwards, so dFdy points down.
+    vec3 face = normalize(cross(dFdy(v_position), dFdx(v_position)));
+    if (dot(face, v_position) > 0.0) face = -face;
+#endif
+#ifdef FLAT
+    vec3 n = face;
+#else
+    vec3 n = normalize(v_normal);
+#ifdef NORMAL_TEXTURE
+    vec3 m = texture(u_normal_texture, uv_of(4), u_lod_bias).xyz * 2.0 - 1.0;
+    vec3 t = v_tangent.xyz - n * dot(n, v_tangent.xyz);
+    t *= inversesqrt(max(dot(t, t), 1e-20));
+    vec3 b = cross(n, t) * (v_tangent.w < 0.0 ? -1.0 : 1.0);
+    vec3 mapped = t * (m.x * u_normal_scale) + b * (m.y * u_normal_scale) + n * max(m.z, 0.0);
+    n = dot(mapped, mapped) > 1e-12 ? normalize(mapped) : n;
+#endif
+#ifdef FACE_NORMAL
+    if (dot(normalize(v_normal), face) < 0.0) n = -n;
+#elif defined(TWO_SIDED)
+    if (!gl_FrontFacing) n = -n;
+#endif
+#endif
+    return n;
+}
+
+#ifdef ALPHA_BLEND
+// Interleaved gradient noise (Jimenez 2014), shifted by the golden ratio from one accumulated frame to the next, so that
+// the frames' thresholds are spread evenly and their mean is the exact blend.
+float alpha_threshold() {
+    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
+    return fract(noise + u_sample_index * 0.6180339887);
+}
+#endif
+
+void main() {
+    vec4 color = base_color();
+#if defined(ALPHA_MASK)
+    if (color.a < u_surface.w) discard;
+#elif defined(ALPHA_BLEND)
+    if (color.a <= alpha_threshold()) discard;
+#endif
+
+    float metallic = u_surface.x, roughness = u_surface.y, occlusion = 1.0;
+#ifdef METALLIC_TEXTURE
+    vec4 metallic_texel = texture(u_metallic_texture, uv_of(1), u_lod_bias);
+    metallic *= dot(metallic_texel, u_metallic_channel);
+#endif
+#ifdef ROUGHNESS_TEXTURE
+#ifdef ROUGHNESS_IN_METALLIC
+    roughness *= dot(metallic_texel, u_roughness_channel);
+#else
+    roughness *= dot(texture(u_roughness_texture, uv_of(2), u_lod_bias), u_roughness_channel);
+#endif
+#endif
+#ifdef OCCLUSION_TEXTURE
+    occlusion = mix(1.0, dot(texture(u_occlusion_texture, uv_of(3), u_lod_bias), u_occlusion_channel), u_surface.z);
+#endif
+
+    o_albedo = vec4(color.rgb, 1.0);
+    o_normal = oct_encode(shading_normal()) * 0.5 + 0.5;
+    o_material = vec4(metallic, roughness, occlusion, u_emissive.w);
+    o_depth = gl_FragCoord.z;
+#ifdef EMISSION
+    vec3 emission = u_emissive.rgb;
+#ifdef EMISSIVE_TEXTURE
+    emission *= texture(u_emissive_texture, uv_of(5), u_lod_bias).rgb;
+#endif
+    o_emission = vec4(u_emissive.w > 0.5 ? color.rgb : emission, 1.0);
+#endif
+}

@@ -1,0 +1,110 @@
+// Lights the G-buffer: analytic lights and the environment.
+#include "common_encoding.glsl"
+#include "common_camera.glsl"
+#include "common_environment.glsl"
+#include "common_brdf.glsl"
+
+uniform sampler2D u_albedo;
+uniform sampler2D u_normal;
+uniform sampler2D u_material;
+uniform sampler2D u_depth_target;
+uniform sampler2D u_dfg;
+uniform float u_dielectric_f0;
+
+layout(location = 0) out vec4 o_radiance;
+
+#ifdef ENVIRONMENT
+uniform samplerCube u_prefiltered;
+uniform samplerCube u_irradiance;
+uniform float u_last_level;
+uniform float u_env_intensity;
+#endif
+
+struct Light {
+    vec4 position;   // relative to the camera; w: 0 directional, 1 point, 2 spot
+    vec4 color;      // intensity times colour; w: 1 / range^2, or 0
+    vec4 direction;  // unit, where the light goes; w: unused
+    vec4 cone;       // scale and offset of the cosine
+};
+layout(std140, binding = 0) uniform Lights { Light u_lights[LIGHTS_PER_BLOCK]; };
+uniform int u_light_count;
+
+struct Surface {
+    vec3 position, normal, view, diffuse, f0;
+    float n_dot_v, roughness, alpha;
+    Energy energy;
+};
+
+// Radiance from one light. Compensation of multiple scattering as Turquin 2019.
+vec3 direct(Light light, Surface s) {
+    vec3 to_light = light.position.w > 0.5 ? light.position.xyz - s.position : -light.direction.xyz;
+    float d2 = dot(to_light, to_light);
+    vec3 l = to_light * inversesqrt(max(d2, 1e-30));
+    float falloff = 1.0;
+    if (light.position.w > 0.5) {
+        float window = clamp(1.0 - d2 * d2 * light.color.w * light.color.w, 0.0, 1.0);
+        falloff = window * window / max(d2, 1e-30);
+    }
+    if (light.position.w > 1.5) {
+        float cone = clamp(-dot(l, light.direction.xyz) * light.cone.x + light.cone.y, 0.0, 1.0);
+        falloff *= cone * cone;
+    }
+    vec3 h = normalize(l + s.view);
+    float n_dot_l = clamp(dot(s.normal, l), 0.0, 1.0);
+    float n_dot_h = clamp(dot(s.normal, h), 0.0, 1.0);
+    float v_dot_h = clamp(dot(s.view, h), 0.0, 1.0);
+    vec3 specular = D_ggx(n_dot_h, s.alpha) * V_smith(s.n_dot_v, max(n_dot_l, 1e-5), s.roughness) * F_schlick(v_dot_h, s.f0);
+#ifdef MULTIPLE_SCATTERING
+    specular *= 1.0 + s.f0 * (1.0 / s.energy.e - 1.0);
+#endif
+    return light.color.rgb * (falloff * n_dot_l) * (s.diffuse / pi + specular);
+}
+
+#ifdef ENVIRONMENT
+vec3 indirect(Surface s, float occlusion) {
+    // Dominant direction of the specular lobe (Lagarde and de Rousiers 2014).
+    float smoothness = 1.0 - s.alpha;
+    vec3 r = reflect(-s.view, s.normal);
+    vec3 dominant = mix(s.normal, r, smoothness * (sqrt(smoothness) + s.alpha));
+    vec3 radiance = textureLod(u_prefiltered, u_env_from_world * dominant, prefiltered_level(s.roughness, u_last_level)).rgb;
+    vec3 irradiance = textureLod(u_irradiance, u_env_from_world * s.normal, 0.0).rgb;
+    // Specular occlusion from ambient occlusion (Lagarde and de Rousiers 2014).
+    float specular_occlusion =
+        clamp(pow(s.n_dot_v + occlusion, exp2(-16.0 * s.roughness - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
+    return u_env_intensity * (s.energy.single * radiance * specular_occlusion +
+                              (s.energy.multiple + s.diffuse) * irradiance * occlusion);
+}
+#endif
+
+void main() {
+    vec2 uv = gl_FragCoord.xy / u_size;
+    vec3 albedo = textureLod(u_albedo, uv, 0.0).rgb;
+    vec4 material = textureLod(u_material, uv, 0.0);
+    vec3 view_p = view_position(gl_FragCoord.xy, textureLod(u_depth_target, uv, 0.0).r);
+
+    Surface s;
+    s.position = u_world_from_view * view_p;
+    s.normal = oct_decode(textureLod(u_normal, uv, 0.0).rg * 2.0 - 1.0);
+    s.view = -ray_direction(gl_FragCoord.xy);
+    // Interpolated normals may face away at silhouettes; 1e-5 keeps the divisions finite.
+    s.n_dot_v = abs(dot(s.normal, s.view)) + 1e-5;
+    float metallic = material.x;
+    s.roughness = material.y;
+    // Below 0.045 the peak of D leaves the range where 32-bit floats resolve NoH (Lagarde and de Rousiers 2014).
+    float light_roughness = max(s.roughness, 0.045);
+    s.alpha = s.roughness * s.roughness;
+    s.f0 = mix(vec3(u_dielectric_f0), albedo, metallic);
+    const float nodes = float(DFG_SIZE);
+    vec2 dfg = textureLod(u_dfg, (vec2(sqrt(min(s.n_dot_v, 1.0)), s.roughness) * (nodes - 1.0) + 0.5) / nodes, 0.0).rg;
+    s.energy = surface_energy(s.f0, dfg);
+    s.diffuse = albedo * (1.0 - metallic) * (1.0 - s.energy.single - s.energy.multiple);
+
+    vec3 radiance = vec3(0.0);
+#ifdef ENVIRONMENT
+    radiance = indirect(s, material.z);
+#endif
+    s.roughness = light_roughness;
+    s.alpha = light_roughness * light_roughness;
+    for (int i = 0; i < u_light_count; ++i) radiance += direct(u_lights[i], s);
+    o_radiance = vec4(material.w > 0.5 ? vec3(0.0) : radiance, 1.0);
+}

@@ -1,0 +1,74 @@
+#include "easypbr/app/output.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/core/log.h"
+#include "easypbr/core/suggest.h"
+#include "easypbr/io/image_io.h"
+#include "easypbr/io/settings_io.h"
+
+namespace easypbr::app {
+
+Encoding encoding_for(const fs::path& path, bool deep) {
+    const std::string extension = extension_of(path);
+    const std::vector<std::string> known = io::writable_image_extensions();
+    if (std::find(known.begin(), known.end(), extension) == known.end())
+        throw ArgumentError(fmt::format("cannot write {}: unknown extension '{}'{}, expected one of {}",
+                                        path.string(), extension, did_you_mean(extension, known),
+                                        fmt::join(known, ", ")));
+    if (extension == "hdr" || extension == "exr") return Encoding::scene_linear;
+    return deep && extension == "png" ? Encoding::srgb16 : Encoding::srgb8;
+}
+
+fs::path render_to_file(Session& session, const fs::path& path, const PictureOptions& options, bool deep) {
+    PictureOptions picture = options;
+    picture.encoding = encoding_for(path, deep);
+    check_writable(path);
+    io::save_image(session.render(picture), path);
+    return path;
+}
+
+std::vector<fs::path> layers_to_files(Session& session, const fs::path& path,
+                                      const std::vector<std::string>& layers, std::optional<Vec2i> size) {
+    const auto file_of = [&](const std::string& layer) {
+        return path.parent_path() / fmt::format("{}_{}.exr", path.stem().string(), layer);
+    };
+    for (const std::string& layer : layers) check_writable(file_of(layer));
+    std::vector<fs::path> written;
+    for (const auto& [layer, image] : session.render_layers(layers, size)) {
+        io::save_image(image, file_of(layer));
+        written.push_back(file_of(layer));
+    }
+    return written;
+}
+
+void save_settings(const Session& session, const std::vector<fs::path>& files, const fs::path& path) {
+    io::SettingsFile file;
+    file.settings = session.settings();
+    const Scene scene = session.scene();
+    for (const std::string& name : scene.light_names()) file.lights[name] = scene.light(name);
+    for (const fs::path& source : files) file.files[source.string()] = io::hash_file(source);
+    const Settings& s = file.settings;
+    for (const std::string* named :
+         {&s.environment.file, &s.background.image, &s.material.base_color_texture,
+          &s.material.metallic_texture, &s.material.roughness_texture, &s.material.normal_texture,
+          &s.material.occlusion_texture, &s.material.emissive_texture, &s.material.opacity_texture})
+        if (!named->empty()) file.files[*named] = io::hash_file(*named);
+    io::save_settings(file, path);
+}
+
+void load_settings(Session& session, const fs::path& path) {
+    const io::SettingsFile file = io::load_settings(path);
+    for (const auto& [source, hash] : file.files)
+        if (fs::exists(source) && io::hash_file(source) != hash)
+            log_warning(fmt::format("{} is not the file that {} was saved with: its content has changed",
+                                    source, path.string()));
+    session.settings() = file.settings;
+    for (const auto& [name, light] : file.lights) session.scene().set_light(name, light);
+}
+
+}  // namespace easypbr::app

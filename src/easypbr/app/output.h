@@ -1,0 +1,44 @@
+// Pictures to files: which encoding a file takes, and the recorder.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "easypbr/app/session.h"
+
+namespace easypbr::app {
+
+/// What a file of this extension holds: scene_linear for HDR and EXR, srgb16 for PNG when `deep`, else srgb8.
+/// Throws ArgumentError for an extension that cannot be written.
+Encoding encoding_for(const std::filesystem::path& path, bool deep = false);
+
+/// Draws and writes one picture. The target is checked before anything is drawn; it appears whole or not at
+/// all. Returns the path. Throws FileError, ArgumentError, ContextError.
+std::filesystem::path render_to_file(Session& session, const std::filesystem::path& path,
+                                     const PictureOptions& options = {}, bool deep = false);
+
+/// Writes "OUT_depth.exr" and so on next to `path`, one file per layer; returns their paths.
+std::vector<std::filesystem::path> layers_to_files(Session& session, const std::filesystem::path& path,
+                                                   const std::vector<std::string>& layers,
+                                                   std::optional<Vec2i> size = std::nullopt);
+
+/// Every value, chosen and inferred, of the last picture, with the hashes of the files it was made from.
+void save_settings(const Session& session, const std::vector<std::filesystem::path>& files,
+                   const std::filesystem::path& path);
+
+/// Takes over settings and lights from a file that save_settings() wrote. Files with another content than
+/// then are reported as warnings.
+void load_settings(Session& session, const std::filesystem::path& path);
+
+/// Pictures of a session, written when the call returns.
+class Recorder {
+  public:
+    explicit Recorder(Session& session) : session_(session) {}
+    std::filesystem::path record(const std::filesystem::path& path) { return render_to_file(session_, path); }
+
+  private:
+    Session& session_;
+};
+
+}  // namespace easypbr::app

@@ -1,0 +1,179 @@
+#include "easypbr/app/session.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+
+#include "easypbr/core/error.h"
+#include "easypbr/io/image_io.h"
+
+namespace easypbr::app {
+namespace {
+
+/// Adds the time from construction to destruction to a total.
+class Stopwatch {
+  public:
+    explicit Stopwatch(double& seconds) : seconds_(seconds) {}
+    ~Stopwatch() {
+        seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+  private:
+    double& seconds_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+void check_size(Vec2i size) {
+    if (size.x() < 1 || size.y() < 1 || size.x() > max_image_side || size.y() > max_image_side)
+        throw ArgumentError(fmt::format("picture size {}x{}: width and height must be 1 to {}", size.x(),
+                                        size.y(), max_image_side));
+}
+
+struct NamedTexture {
+    std::string MaterialSettings::*path;
+    Texture Material::*texture;
+};
+
+constexpr NamedTexture named_textures[] = {
+    {&MaterialSettings::base_color_texture, &Material::base_color_texture},
+    {&MaterialSettings::metallic_texture, &Material::metallic_texture},
+    {&MaterialSettings::roughness_texture, &Material::roughness_texture},
+    {&MaterialSettings::normal_texture, &Material::normal_texture},
+    {&MaterialSettings::occlusion_texture, &Material::occlusion_texture},
+    {&MaterialSettings::emissive_texture, &Material::emissive_texture},
+    {&MaterialSettings::opacity_texture, &Material::opacity_texture}};
+
+}  // namespace
+
+render::Renderer& Session::renderer() {
+    if (!renderer_) {
+        const Stopwatch watch(timing_.context);
+        if (!context_) context_ = gl::Context::create();
+        const gl::ContextScope scope(*context_);
+        renderer_ = std::make_unique<render::Renderer>();
+    }
+    return *renderer_;
+}
+
+const gl::ContextInfo& Session::context_info() {
+    if (!context_) context_ = gl::Context::create();
+    return context_->info();
+}
+
+void Session::load_images() {
+    const auto image = [&](const std::string& path) -> std::shared_ptr<const Image> {
+        if (path.empty()) return nullptr;
+        std::shared_ptr<const Image>& slot = images_[path];
+        if (!slot) slot = std::make_shared<const Image>(io::load_image(path));
+        return slot;
+    };
+    settings_images_ = {};
+    for (const NamedTexture& named : named_textures) {
+        const std::string& path = settings_.material.*named.path;
+        Texture& texture = settings_images_.textures.*named.texture;
+        texture.image = image(path);
+        texture.path = path;
+    }
+    if (settings_.background.mode == BackgroundMode::image) {
+        if (settings_.background.image.empty())
+            throw ArgumentError("background.mode is image, but background.image names no file");
+        settings_images_.background = image(settings_.background.image);
+    }
+    if (settings_.environment.file != environment_file_) {
+        environment_ = settings_.environment.file.empty()
+                           ? Environment()
+                           : Environment(std::filesystem::path(settings_.environment.file));
+        environment_file_ = settings_.environment.file;
+    }
+}
+
+SceneSnapshot Session::snapshot() {
+    load_images();
+    SceneSnapshot scene = scene_.snapshot();
+    if (!environment_.empty()) scene.environment = environment_;
+    return scene;
+}
+
+ResolvedSettings Session::resolve(std::optional<Vec2i> size) {
+    check_size(size_or(size));
+    return easypbr::resolve(snapshot(), settings_, size_or(size));
+}
+
+Session::Prepared Session::prepare(const PictureOptions& options) {
+    timing_ = {};
+    Prepared prepared;
+    prepared.options = {size_or(options.size), options.samples.value_or(settings_.image.samples),
+                        options.encoding};
+    check_size(prepared.options.size);
+    {
+        const Stopwatch watch(timing_.images);
+        prepared.scene = snapshot();
+    }
+    const Stopwatch watch(timing_.draw);
+    prepared.resolved = easypbr::resolve(prepared.scene, settings_, prepared.options.size);
+    return prepared;
+}
+
+Image Session::render(const PictureOptions& options) {
+    const Prepared prepared = prepare(options);
+    render::Renderer& renderer = this->renderer();
+    const gl::ContextScope scope(*context_);
+    {
+        const Stopwatch watch(timing_.draw);
+        renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
+        renderer.read_picture(1, 1);
+    }
+    latch(settings_, prepared.resolved.settings);
+    const Stopwatch watch(timing_.read);
+    return renderer.read_picture();
+}
+
+void Session::draw_frame(const PictureOptions& options) {
+    const Prepared prepared = prepare(options);
+    render::Renderer& renderer = this->renderer();
+    const gl::ContextScope scope(*context_);
+    const Stopwatch watch(timing_.draw);
+    renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
+    renderer.read_picture(1, 1);
+    latch(settings_, prepared.resolved.settings);
+}
+
+std::map<std::string, Image> Session::render_layers(const std::vector<std::string>& names,
+                                                    std::optional<Vec2i> size) {
+    std::vector<render::Layer> layers;
+    for (const std::string& name : names) layers.push_back(render::layer_named(name));
+    const Prepared prepared = prepare({size, 1, Encoding::scene_linear});
+    render::Renderer& renderer = this->renderer();
+    const gl::ContextScope scope(*context_);
+    renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
+    latch(settings_, prepared.resolved.settings);
+    std::map<std::string, Image> images;
+    for (size_t i = 0; i < names.size(); ++i) images[names[i]] = renderer.read_layer(layers[i]);
+    return images;
+}
+
+void Session::load_environment(const std::filesystem::path& path) {
+    environment_ = Environment(path);
+    environment_file_ = settings_.environment.file = path.string();
+}
+
+void Session::set_camera(const Camera& camera) {
+    CameraSettings& to = settings_.camera;
+    const Mat4d T = camera.T_world_cam.matrix();
+    to.pose.clear();
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column) to.pose.push_back(T(row, column));
+    to.projection = camera.projection;
+    to.fov_y_deg = float(camera.fov_y_deg);
+    to.ortho_height = camera.ortho_height;
+    to.intrinsics.clear();
+    if (camera.intrinsics) {
+        const Intrinsics& k = *camera.intrinsics;
+        to.intrinsics = {k.fx, k.fy, k.cx, k.cy, double(k.width), double(k.height)};
+    }
+}
+
+}  // namespace easypbr::app

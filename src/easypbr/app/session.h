@@ -1,0 +1,106 @@
+// Session: a scene, settings and a renderer; everything a viewer is, without a window.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/image.h"
+#include "easypbr/gl/context.h"
+#include "easypbr/render/renderer.h"
+#include "easypbr/scene/resolve.h"
+#include "easypbr/scene/scene.h"
+#include "easypbr/scene/settings.h"
+
+namespace easypbr::app {
+
+using render::Encoding;
+
+/// What to draw; a value that is not given comes from the settings.
+struct PictureOptions {
+    std::optional<Vec2i> size;
+    std::optional<int> samples;
+    Encoding encoding = Encoding::srgb8;
+};
+
+/// Seconds that the steps of the last picture took.
+struct Timing {
+    double context = 0;  ///< making the GL context; 0 when it was there
+    double images = 0;   ///< reading the environment and the images that the settings name
+    double draw = 0;     ///< auto parameters, upload and all frames
+    double read = 0;     ///< reading the picture back
+};
+
+/// May be used from any thread, by one at a time. The GL context is made at the first picture.
+class Session {
+  public:
+    explicit Session(Scene scene = {}) : scene_(std::move(scene)) {}
+
+    Scene& scene() { return scene_; }
+    const Scene& scene() const { return scene_; }
+    Settings& settings() { return settings_; }
+    const Settings& settings() const { return settings_; }
+
+    /// Draws the scene and returns RGBA, row 0 on top. What was automatic is latched in settings().
+    /// Throws ArgumentError, FileError (images that the settings name), ContextError.
+    Image render(const PictureOptions& options = {});
+
+    /// The same scene, camera and size in exact values through the pixels' centres (no anti-aliasing).
+    std::map<std::string, Image> render_layers(const std::vector<std::string>& names,
+                                               std::optional<Vec2i> size = std::nullopt);
+
+    /// Draws one frame without reading the picture back, but for its first pixel, which makes the driver
+    /// finish: for measuring.
+    void draw_frame(const PictureOptions& options = {});
+
+    /// Everything that the next picture would be drawn with. Nothing is latched.
+    ResolvedSettings resolve(std::optional<Vec2i> size = std::nullopt);
+
+    /// Lights the scene with a file: settings().environment.file, read at once. Throws FileError,
+    /// FormatError.
+    void load_environment(const std::filesystem::path& path);
+
+    /// Pins the camera to a pose: settings().camera follows.
+    void set_camera(const Camera& camera);
+    /// The camera of the next picture.
+    Camera camera() { return resolve().camera; }
+
+    /// Forgets what was inferred, so that the next picture infers it anew.
+    void refit() { release(settings_); }
+
+    /// What the GL context is; makes it when there is none yet.
+    const gl::ContextInfo& context_info();
+
+    const Timing& timing() const { return timing_; }
+
+  private:
+    struct Prepared {
+        SceneSnapshot scene;
+        ResolvedSettings resolved;
+        render::DrawOptions options;
+    };
+    render::Renderer& renderer();
+    /// Snapshot, images, auto parameters.
+    Prepared prepare(const PictureOptions& options);
+    void load_images();
+    SceneSnapshot snapshot();
+    Vec2i size_or(std::optional<Vec2i> size) const { return size.value_or(settings_.image.size); }
+
+    Scene scene_;
+    Settings settings_;
+    Timing timing_;
+
+    std::unique_ptr<gl::Context> context_;
+    std::unique_ptr<render::Renderer> renderer_;
+
+    /// Images that the settings name, by path.
+    std::map<std::string, std::shared_ptr<const Image>> images_;
+    std::string environment_file_;
+    Environment environment_;
+    render::SettingsImages settings_images_;
+};
+
+}  // namespace easypbr::app

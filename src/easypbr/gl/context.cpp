@@ -1,0 +1,206 @@
+#include "easypbr/gl/context.h"
+
+#include <dlfcn.h>
+#include <epoxy/egl.h>
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
+#include "easypbr/gl/object.h"
+
+namespace easypbr::gl {
+namespace {
+
+thread_local Context* current_context = nullptr;
+
+/// A display worth trying, by the name a person knows it under.
+struct Candidate {
+    std::string what;
+    EGLDisplay display = EGL_NO_DISPLAY;
+};
+
+std::string egl_error(const char* call) {
+    return fmt::format("{} failed with EGL error 0x{:04x}", call, eglGetError());
+}
+
+bool has_extension(const char* list, const char* name) {
+    if (!list) return false;
+    const size_t length = std::strlen(name);
+    for (const char* at = list; (at = std::strstr(at, name)); at += length)
+        if ((at == list || at[-1] == ' ') && (at[length] == ' ' || at[length] == '\0')) return true;
+    return false;
+}
+
+/// libepoxy ends the process when a library is missing, so that is found out first.
+void require_libraries() {
+    if (!dlopen("libEGL.so.1", RTLD_LAZY | RTLD_GLOBAL))
+        throw ContextError(
+            "no OpenGL context: libEGL.so.1 is not installed. Install 'libegl1 libegl-mesa0 libgl1-mesa-dri' "
+            "(Debian), "
+            "or the driver of your GPU");
+    if (!dlopen("libOpenGL.so.0", RTLD_LAZY | RTLD_GLOBAL) && !dlopen("libGL.so.1", RTLD_LAZY | RTLD_GLOBAL))
+        throw ContextError(
+            "no OpenGL context: neither libOpenGL.so.0 nor libGL.so.1 is installed. Install 'libopengl0'");
+}
+
+std::vector<Candidate> device_candidates(const char* client_extensions) {
+    std::vector<Candidate> hardware, software;
+    if (!has_extension(client_extensions, "EGL_EXT_platform_device")) return {};
+    EGLDeviceEXT devices[32];
+    EGLint count = 0;
+    if (!eglQueryDevicesEXT(32, devices, &count)) return {};
+    for (int i = 0; i < count; ++i) {
+        const char* extensions = eglQueryDeviceStringEXT(devices[i], EGL_EXTENSIONS);
+        const bool is_software = has_extension(extensions, "EGL_MESA_device_software");
+        Candidate candidate{fmt::format("EGL device {}{}", i, is_software ? " (software)" : "")};
+        candidate.display = eglGetPlatformDisplayEXT(EGL_PLATFORM_DEVICE_EXT, devices[i], nullptr);
+        (is_software ? software : hardware).push_back(candidate);
+    }
+    hardware.insert(hardware.end(), software.begin(), software.end());
+    return hardware;
+}
+
+std::vector<Candidate> candidates() {
+    const char* extensions = eglQueryString(EGL_NO_DISPLAY, EGL_EXTENSIONS);
+    std::vector<Candidate> found = device_candidates(extensions);
+    if (has_extension(extensions, "EGL_MESA_platform_surfaceless"))
+        found.push_back({"EGL surfaceless", eglGetPlatformDisplayEXT(EGL_PLATFORM_SURFACELESS_MESA,
+                                                                     EGL_DEFAULT_DISPLAY, nullptr)});
+    found.push_back({"EGL default display", eglGetDisplay(EGL_DEFAULT_DISPLAY)});
+    return found;
+}
+
+/// Makes a 4.5 core context on the display; returns EGL_NO_CONTEXT and the reason in `error`.
+EGLContext try_display(EGLDisplay display, std::string& error) {
+    EGLint major = 0, minor = 0;
+    if (display == EGL_NO_DISPLAY || !eglInitialize(display, &major, &minor)) {
+        error = egl_error("eglInitialize");
+        return EGL_NO_CONTEXT;
+    }
+    const char* extensions = eglQueryString(display, EGL_EXTENSIONS);
+    for (const char* needed : {"EGL_KHR_surfaceless_context", "EGL_KHR_no_config_context"})
+        if (!has_extension(extensions, needed)) {
+            error = fmt::format("{} is missing", needed);
+            return EGL_NO_CONTEXT;
+        }
+    if (!eglBindAPI(EGL_OPENGL_API)) {
+        error = egl_error("eglBindAPI(OpenGL)");
+        return EGL_NO_CONTEXT;
+    }
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
+                                 4,
+                                 EGL_CONTEXT_MINOR_VERSION,
+                                 5,
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                 EGL_NONE};
+    const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+    if (context == EGL_NO_CONTEXT) error = egl_error("eglCreateContext for OpenGL 4.5 core");
+    return context;
+}
+
+[[noreturn]] void fail(const std::vector<Attempt>& attempts) {
+    std::string message = "no OpenGL 4.5 context:";
+    for (const Attempt& attempt : attempts) message += fmt::format(" [{}: {}]", attempt.what, attempt.error);
+    message +=
+        ". Install the driver of your GPU, or Mesa's software renderer: libegl1 libegl-mesa0 libgl1-mesa-dri";
+    throw ContextError(message);
+}
+
+/// Errors of the driver become log messages; the exception of the failing operation follows from its own
+/// checks.
+void GLAPIENTRY debug_message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length,
+                              const GLchar* text, const void*) {
+    if (type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH)
+        log_warning(fmt::format("OpenGL: {}", std::string_view(text, size_t(length))));
+}
+
+std::string gl_string(GLenum name) {
+    const GLubyte* text = glGetString(name);
+    return text ? reinterpret_cast<const char*>(text) : "";
+}
+
+}  // namespace
+
+std::unique_ptr<Context> Context::create() {
+    require_libraries();
+    std::unique_ptr<Context> made(new Context);
+    made->deletions_ = std::make_shared<DeletionQueue>();
+    made->process_ = getpid();
+    std::vector<Attempt>& attempts = made->info_.attempts;
+    for (const Candidate& candidate : candidates()) {
+        attempts.push_back({candidate.what, {}});
+        made->context_ = try_display(candidate.display, attempts.back().error);
+        if (made->context_ == EGL_NO_CONTEXT) continue;
+        made->display_ = candidate.display;
+        made->info_.platform = candidate.what;
+        made->initialize();
+        return made;
+    }
+    fail(attempts);
+}
+
+void Context::initialize() {
+    const ContextScope scope(*this);
+    info_.vendor = gl_string(GL_VENDOR);
+    info_.renderer = gl_string(GL_RENDERER);
+    info_.version = gl_string(GL_VERSION);
+    for (const char* name : {"llvmpipe", "softpipe", "swrast", "SWR"})
+        info_.software |= info_.renderer.find(name) != std::string::npos;
+    glGetIntegerv(GL_MAX_TEXTURE_SIZE, &info_.max_texture_size);
+    GLint viewport[2] = {0, 0};
+    glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
+    info_.max_viewport = std::min(viewport[0], viewport[1]);
+    glDebugMessageCallback(debug_message, nullptr);
+    glEnable(GL_DEBUG_OUTPUT);
+}
+
+Context::~Context() {
+    deletions_->close();
+    // A forked child shares the driver's state with its parent and must leave it alone.
+    if (context_ && process_ == getpid()) eglDestroyContext(display_, context_);
+}
+
+Context* Context::current_or_null() {
+    return current_context;
+}
+
+Context& Context::current() {
+    if (!current_context) throw ContextError("an OpenGL object was made outside of a ContextScope");
+    return *current_context;
+}
+
+ContextScope::ContextScope(Context& context) : previous_(current_context) {
+    if (context.process_ != getpid())
+        throw ContextError(
+            "the viewer was made before this process was forked: start workers with 'spawn' instead");
+    lock_ = std::unique_lock(context.mutex_);
+    if (previous_ == &context) return;
+    old_display_ = eglGetCurrentDisplay();
+    old_context_ = eglGetCurrentContext();
+    old_draw_ = eglGetCurrentSurface(EGL_DRAW);
+    old_read_ = eglGetCurrentSurface(EGL_READ);
+    eglBindAPI(EGL_OPENGL_API);
+    if (!eglMakeCurrent(context.display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context.context_))
+        throw ContextError(egl_error("eglMakeCurrent"));
+    switched_ = true;
+    current_context = &context;
+    context.deletions_->flush();
+}
+
+ContextScope::~ContextScope() {
+    if (!switched_) return;
+    Context& context = *current_context;
+    current_context = previous_;
+    if (old_context_ != EGL_NO_CONTEXT)
+        eglMakeCurrent(old_display_, old_draw_, old_read_, old_context_);
+    else
+        eglMakeCurrent(context.display_, EGL_NO_SURFACE, EGL_NO_SURFACE, EGL_NO_CONTEXT);
+}
+
+}  // namespace easypbr::gl

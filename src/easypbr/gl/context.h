@@ -1,0 +1,77 @@
+// OpenGL 4.5 contexts without a window: EGL device (a real GPU first), surfaceless, software.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+namespace easypbr::gl {
+
+/// What was tried on the way to a context, in order; `error` is empty for the one that worked.
+struct Attempt {
+    std::string what;
+    std::string error;
+};
+
+struct ContextInfo {
+    std::string vendor, renderer, version, platform;
+    bool software = false;  ///< a CPU rasteriser such as llvmpipe
+    int max_texture_size = 0;
+    int max_viewport = 0;
+    std::vector<Attempt> attempts;
+};
+
+class DeletionQueue;
+
+/// One OpenGL 4.5 core context. May be used from any thread, by one at a time: through ContextScope.
+class Context {
+  public:
+    /// Throws ContextError that lists what was tried, why each failed and what to install.
+    static std::unique_ptr<Context> create();
+
+    ~Context();
+    Context(const Context&) = delete;
+    Context& operator=(const Context&) = delete;
+
+    const ContextInfo& info() const { return info_; }
+
+    /// The context that is current on this thread through a ContextScope. Throws ContextError when there is
+    /// none.
+    static Context& current();
+    /// The same, or null.
+    static Context* current_or_null();
+
+    /// GL objects that died while the context was not current wait here.
+    const std::shared_ptr<DeletionQueue>& deletions() const { return deletions_; }
+
+  private:
+    friend class ContextScope;
+    Context() = default;
+    void initialize();
+
+    void* display_ = nullptr;
+    void* context_ = nullptr;
+    long process_ = 0;
+    ContextInfo info_;
+    std::recursive_mutex mutex_;
+    std::shared_ptr<DeletionQueue> deletions_;
+};
+
+/// Makes a context current for a scope and gives back what was current before. Nested scopes are fine; a
+/// second thread waits. Throws ContextError in a process forked after the context was made.
+class ContextScope {
+  public:
+    explicit ContextScope(Context& context);
+    ~ContextScope();
+    ContextScope(const ContextScope&) = delete;
+    ContextScope& operator=(const ContextScope&) = delete;
+
+  private:
+    std::unique_lock<std::recursive_mutex> lock_;
+    Context* previous_;
+    bool switched_ = false;
+    void *old_display_ = nullptr, *old_context_ = nullptr, *old_draw_ = nullptr, *old_read_ = nullptr;
+};
+
+}  // namespace easypbr::gl

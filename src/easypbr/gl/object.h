@@ -1,0 +1,55 @@
+// Ownership of OpenGL names: move-only handles that are deleted in their own context.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <utility>
+#include <vector>
+
+namespace easypbr::gl {
+
+enum class ObjectKind { buffer, texture, framebuffer, vertex_array, program, query };
+
+/// Names of objects whose handles died elsewhere; emptied whenever the context is current.
+class DeletionQueue {
+  public:
+    void push(ObjectKind kind, uint32_t id);
+    /// Deletes all waiting names; the context must be current.
+    void flush();
+    /// From now on names are forgotten: the context is gone.
+    void close();
+
+  private:
+    std::mutex mutex_;
+    bool closed_ = false;
+    std::vector<std::pair<ObjectKind, uint32_t>> waiting_;
+};
+
+/// Owns one OpenGL name. Empty by default and after a move. May be destroyed on any thread.
+class Object {
+  public:
+    Object() = default;
+    /// Creates a name in the current context.
+    explicit Object(ObjectKind kind, uint32_t target = 0);
+    ~Object() { reset(); }
+    Object(Object&& other) noexcept
+        : queue_(std::move(other.queue_)), id_(std::exchange(other.id_, 0)), kind_(other.kind_) {}
+    Object& operator=(Object&& other) noexcept {
+        std::swap(queue_, other.queue_);
+        std::swap(id_, other.id_);
+        std::swap(kind_, other.kind_);
+        return *this;
+    }
+
+    uint32_t id() const { return id_; }
+    explicit operator bool() const { return id_ != 0; }
+    void reset();
+
+  private:
+    std::shared_ptr<DeletionQueue> queue_;
+    uint32_t id_ = 0;
+    ObjectKind kind_ = ObjectKind::buffer;
+};
+
+}  // namespace easypbr::gl

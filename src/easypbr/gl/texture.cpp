@@ -1,0 +1,161 @@
+#include "easypbr/gl/texture.h"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <bit>
+#include <vector>
+
+#include "easypbr/core/error.h"
+#include "easypbr/gl/context.h"
+
+namespace easypbr::gl {
+namespace {
+
+struct FormatInfo {
+    GLenum internal, layout, type;
+    size_t bytes;
+};
+
+FormatInfo info(Format format) {
+    switch (format) {
+        case Format::r8:
+            return {GL_R8, GL_RED, GL_UNSIGNED_BYTE, 1};
+        case Format::rg8:
+            return {GL_RG8, GL_RG, GL_UNSIGNED_BYTE, 2};
+        case Format::rgba8:
+            return {GL_RGBA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
+        case Format::srgb8_alpha8:
+            return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
+        case Format::rg16:
+            return {GL_RG16, GL_RG, GL_UNSIGNED_SHORT, 4};
+        case Format::rgba16:
+            return {GL_RGBA16, GL_RGBA, GL_UNSIGNED_SHORT, 8};
+        case Format::r32f:
+            return {GL_R32F, GL_RED, GL_FLOAT, 4};
+        case Format::rgba16f:
+            return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8};
+        case Format::rgba32f:
+            return {GL_RGBA32F, GL_RGBA, GL_FLOAT, 16};
+        case Format::rg16f:
+            return {GL_RG16F, GL_RG, GL_HALF_FLOAT, 4};
+        case Format::r32ui:
+            return {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4};
+        case Format::depth32f:
+            return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, 4};
+    }
+    return {};
+}
+
+GLenum gl_wrap(Wrapping wrapping) {
+    return wrapping == Wrapping::repeat   ? GL_REPEAT
+           : wrapping == Wrapping::mirror ? GL_MIRRORED_REPEAT
+                                          : GL_CLAMP_TO_EDGE;
+}
+
+}  // namespace
+
+size_t pixel_bytes(Format format) {
+    return info(format).bytes;
+}
+
+int full_levels(int width, int height) {
+    return int(std::bit_width(unsigned(std::max(width, height))));
+}
+
+Texture::Texture(Format format, int width, int height, int levels, TextureKind kind)
+    : format_(format), kind_(kind), width_(width), height_(height) {
+    const int limit = Context::current().info().max_texture_size;
+    if (width < 1 || height < 1 || width > limit || height > limit)
+        throw ContextError(fmt::format("a picture of {}x{} is beyond this driver's limit of {}x{}", width,
+                                       height, limit, limit));
+    object_ = Object(ObjectKind::texture, kind == TextureKind::cube ? GL_TEXTURE_CUBE_MAP : GL_TEXTURE_2D);
+    glTextureStorage2D(id(), levels, info(format).internal, width, height);
+    glTextureParameteri(id(), GL_TEXTURE_MAX_LEVEL, levels - 1);
+    sampling(Filtering::nearest);
+}
+
+void Texture::upload(std::span<const std::byte> pixels, int level, int face) {
+    const FormatInfo f = info(format_);
+    const int w = std::max(1, width_ >> level), h = std::max(1, height_ >> level);
+    if (pixels.size() != size_t(w) * h * f.bytes)
+        throw ArgumentError(
+            fmt::format("texture upload: expected {} bytes, got {}", size_t(w) * h * f.bytes, pixels.size()));
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    if (kind_ == TextureKind::cube)
+        glTextureSubImage3D(id(), level, 0, 0, face, w, h, 1, f.layout, f.type, pixels.data());
+    else
+        glTextureSubImage2D(id(), level, 0, 0, w, h, f.layout, f.type, pixels.data());
+}
+
+void Texture::clear(std::span<const std::byte> pixel, int level) {
+    const FormatInfo f = info(format_);
+    glClearTexImage(id(), level, f.layout, f.type, pixel.data());
+}
+
+void Texture::sampling(Filtering filtering, Wrapping u, Wrapping v, float anisotropy) {
+    const GLenum min = filtering == Filtering::nearest  ? GL_NEAREST
+                       : filtering == Filtering::linear ? GL_LINEAR
+                                                        : GL_LINEAR_MIPMAP_LINEAR;
+    glTextureParameteri(id(), GL_TEXTURE_MIN_FILTER, GLint(min));
+    glTextureParameteri(id(), GL_TEXTURE_MAG_FILTER,
+                        filtering == Filtering::nearest ? GL_NEAREST : GL_LINEAR);
+    glTextureParameteri(id(), GL_TEXTURE_WRAP_S, GLint(gl_wrap(u)));
+    glTextureParameteri(id(), GL_TEXTURE_WRAP_T, GLint(gl_wrap(v)));
+    if (anisotropy > 1 && epoxy_has_gl_extension("GL_EXT_texture_filter_anisotropic"))
+        glTextureParameterf(id(), GL_TEXTURE_MAX_ANISOTROPY_EXT, anisotropy);
+}
+
+void Texture::bind(unsigned unit) const {
+    glBindTextureUnit(unit, id());
+}
+
+Framebuffer::Framebuffer(std::initializer_list<const Texture*> colors, const Texture* depth)
+    : object_(ObjectKind::framebuffer) {
+    std::vector<GLenum> targets;
+    for (const Texture* color : colors) {
+        targets.push_back(GL_COLOR_ATTACHMENT0 + GLenum(targets.size()));
+        glNamedFramebufferTexture(object_.id(), targets.back(), color->id(), 0);
+    }
+    if (depth) glNamedFramebufferTexture(object_.id(), GL_DEPTH_ATTACHMENT, depth->id(), 0);
+    glNamedFramebufferDrawBuffers(object_.id(), GLsizei(targets.size()), targets.data());
+    const Texture& first = colors.size() ? **colors.begin() : *depth;
+    width_ = first.width();
+    height_ = first.height();
+    const GLenum status = glCheckNamedFramebufferStatus(object_.id(), GL_FRAMEBUFFER);
+    if (status != GL_FRAMEBUFFER_COMPLETE)
+        throw ContextError(fmt::format(
+            "this driver cannot draw to the render targets (framebuffer status 0x{:04x})", status));
+}
+
+void Framebuffer::bind() const {
+    glBindFramebuffer(GL_FRAMEBUFFER, object_.id());
+    glViewport(0, 0, width_, height_);
+}
+
+void Framebuffer::clear_color(unsigned index, const float (&rgba)[4]) const {
+    glClearNamedFramebufferfv(object_.id(), GL_COLOR, GLint(index), rgba);
+}
+
+void Framebuffer::clear_depth(float depth) const {
+    glClearNamedFramebufferfv(object_.id(), GL_DEPTH, 0, &depth);
+}
+
+void Framebuffer::read(unsigned index, Format format, int x, int y, int width, int height,
+                       std::span<std::byte> pixels) const {
+    const FormatInfo f = info(format);
+    if (pixels.size() < size_t(width) * height * f.bytes)
+        throw ArgumentError("framebuffer read: the buffer is too small");
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, object_.id());
+    glReadBuffer(GL_COLOR_ATTACHMENT0 + index);
+    glPixelStorei(GL_PACK_ALIGNMENT, 1);
+    glReadPixels(x, y, width, height, f.layout, f.type, pixels.data());
+}
+
+void copy(const Texture& from, const Texture& to) {
+    glCopyImageSubData(from.id(), GL_TEXTURE_2D, 0, 0, 0, 0, to.id(), GL_TEXTURE_2D, 0, 0, 0, 0, from.width(),
+                       from.height(), 1);
+}
+
+}  // namespace easypbr::gl

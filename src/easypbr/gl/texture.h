@@ -1,0 +1,92 @@
+// Textures and framebuffers.
+#pragma once
+
+#include <cstddef>
+#include <initializer_list>
+#include <span>
+
+#include "easypbr/gl/object.h"
+
+namespace easypbr::gl {
+
+enum class Format {
+    r8,
+    rg8,
+    rgba8,
+    srgb8_alpha8,
+    rg16,
+    rgba16,
+    r32f,
+    rgba16f,
+    rgba32f,
+    rg16f,
+    r32ui,
+    depth32f
+};
+
+/// Bytes of one pixel as upload() and read() take it (16-bit floats are given as halves).
+size_t pixel_bytes(Format format);
+
+enum class TextureKind { flat, cube };
+enum class Filtering { nearest, linear, trilinear };
+enum class Wrapping { clamp, repeat, mirror };
+
+class Texture {
+  public:
+    Texture() = default;
+    /// Throws ContextError when the size is beyond the driver's limit.
+    Texture(Format format, int width, int height, int levels = 1, TextureKind kind = TextureKind::flat);
+
+    /// Pixels of one level (and cube face), row 0 first, tightly packed.
+    void upload(std::span<const std::byte> pixels, int level = 0, int face = 0);
+    void clear(std::span<const std::byte> pixel, int level = 0);
+    void sampling(Filtering filtering, Wrapping u = Wrapping::clamp, Wrapping v = Wrapping::clamp,
+                  float anisotropy = 1);
+    void bind(unsigned unit) const;
+
+    uint32_t id() const { return object_.id(); }
+    Format format() const { return format_; }
+    int width() const { return width_; }
+    int height() const { return height_; }
+    explicit operator bool() const { return bool(object_); }
+
+  private:
+    Object object_;
+    Format format_ = Format::rgba8;
+    TextureKind kind_ = TextureKind::flat;
+    int width_ = 0, height_ = 0;
+};
+
+/// Where a pass draws to. Keeps no texture alive.
+class Framebuffer {
+  public:
+    Framebuffer() = default;
+    /// Throws ContextError when the driver cannot draw to this set of textures.
+    Framebuffer(std::initializer_list<const Texture*> colors, const Texture* depth = nullptr);
+
+    /// Binds it for drawing with the viewport on all of it.
+    void bind() const;
+    void clear_color(unsigned index, const float (&rgba)[4]) const;
+    void clear_depth(float depth) const;
+
+    /// Reads a rectangle of color attachment `index`, rows as they lie in the texture. `pixels` holds
+    /// width * height * pixel_bytes(format).
+    void read(unsigned index, Format format, int x, int y, int width, int height,
+              std::span<std::byte> pixels) const;
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    explicit operator bool() const { return bool(object_); }
+
+  private:
+    Object object_;
+    int width_ = 0, height_ = 0;
+};
+
+/// Number of levels down to 1x1.
+int full_levels(int width, int height);
+
+/// Copies a whole texture to another of the same format and size.
+void copy(const Texture& from, const Texture& to);
+
+}  // namespace easypbr::gl

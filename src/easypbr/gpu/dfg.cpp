@@ -1,0 +1,21 @@
+#include "easypbr/gpu/dfg.h"
+
+namespace easypbr::gpu {
+namespace {
+
+#include "easypbr_dfg.inc"
+
+}  // namespace
+
+std::span<const uint16_t> dfg_table(Brdf brdf) {
+    switch (brdf) {
+        case Brdf::separable:
+            return dfg_separable;
+        case Brdf::ue4:
+            return dfg_ue4;
+        default:
+            return dfg_height_correlated;
+    }
+}
+
+}  // namespace easypbr::gpu

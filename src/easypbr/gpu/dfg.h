@@ -1,0 +1,17 @@
+// The table of the split sum: A and B with L_specular = L_prefiltered (F0 A + B) (Karis 2013).
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "easypbr/scene/settings.h"
+
+namespace easypbr::gpu {
+
+/// Nodes per side. Node (i, j) holds NoV = (i / (N - 1))^2, roughness = j / (N - 1), row by row in roughness.
+inline constexpr int dfg_size = 64;
+
+/// A and B of one node's geometry term as halves: 2 dfg_size^2 values, computed when the library was built.
+std::span<const uint16_t> dfg_table(Brdf brdf);
+
+}  // namespace easypbr::gpu

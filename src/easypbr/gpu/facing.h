@@ -1,0 +1,16 @@
+// What may be said about the sides of a mesh's faces without drawing them.
+#pragma once
+
+#include "easypbr/scene/array.h"
+
+namespace easypbr::gpu {
+
+/// True when every connected component is closed and its faces look outward: then back faces are never seen
+/// from outside, and leaving them out changes no picture. Constant memory per vertex, one pass over the faces
+/// for an open mesh.
+bool is_closed_outward(const Array3f& V, const Array3i& F);
+
+/// True when every given vertex normal is on the same side as the winding of the faces around it.
+bool normals_agree_with_winding(const Array3f& V, const Array3f& N, const Array3i& F);
+
+}  // namespace easypbr::gpu

@@ -1,0 +1,35 @@
+// Material images on the device, with mip levels.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <tuple>
+
+#include "easypbr/gl/texture.h"
+#include "easypbr/scene/material.h"
+
+namespace easypbr::gpu {
+
+/// Textures by image, use (colour or data) and sampling.
+class TextureCache {
+  public:
+    /// `color` images are sRGB (decoded before filtering), others are data.
+    const gl::Texture& get(const Texture& texture, bool color);
+
+    /// Drops what was not asked for since the last call.
+    void evict_unused();
+
+  private:
+    using Key = std::tuple<const Image*, bool, Wrap, Wrap, Filter>;
+    struct Entry {
+        std::shared_ptr<const Image> image;  ///< keeps the address from being used again
+        gl::Texture texture;
+        bool used = false;
+    };
+    std::map<Key, Entry> entries_;
+};
+
+/// An image as 8-bit RGBA with all mip levels, on its own: for backgrounds.
+gl::Texture make_texture(const Image& image, bool color);
+
+}  // namespace easypbr::gpu

@@ -1,0 +1,98 @@
+// Writes the tables of gpu/dfg.h as C++ arrays. Usage: generate_dfg OUTPUT
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <thread>
+#include <vector>
+
+namespace {
+
+constexpr int size = 64;     // as dfg_size in gpu/dfg.h
+constexpr int samples = 72;  // per axis; 5184 stratified samples leave an error below 2e-4
+constexpr double pi = 3.14159265358979323846;
+
+enum class Model { height_correlated, separable, ue4 };
+
+double lambda(double cosine, double alpha) {
+    const double c2 = cosine * cosine;
+    return 0.5 * (std::sqrt(1.0 + alpha * alpha * (1.0 - c2) / c2) - 1.0);
+}
+
+double masking_shadowing(Model model, double n_dot_v, double n_dot_l, double alpha) {
+    if (model == Model::ue4) {
+        // Karis 2013: k = alpha / 2 for image-based lighting.
+        const double k = alpha / 2;
+        return n_dot_v / (n_dot_v * (1 - k) + k) * (n_dot_l / (n_dot_l * (1 - k) + k));
+    }
+    const double v = lambda(n_dot_v, alpha), l = lambda(n_dot_l, alpha);
+    return model == Model::separable ? 1.0 / ((1.0 + v) * (1.0 + l)) : 1.0 / (1.0 + v + l);
+}
+
+/// A visible normal of GGX for a view direction in the xz plane (Heitz 2018).
+Eigen::Vector3d visible_normal(const Eigen::Vector3d& view, double alpha, double u1, double u2) {
+    const Eigen::Vector3d v = Eigen::Vector3d(alpha * view.x(), 0, view.z()).normalized();
+    const Eigen::Vector3d t1 = Eigen::Vector3d::UnitY();
+    const Eigen::Vector3d t2 = v.cross(t1);
+    const double r = std::sqrt(u1), phi = 2 * pi * u2;
+    const double p1 = r * std::cos(phi), s = 0.5 * (1 + v.z());
+    const double p2 = (1 - s) * std::sqrt(1 - p1 * p1) + s * r * std::sin(phi);
+    const Eigen::Vector3d n = p1 * t1 + p2 * t2 + std::sqrt(std::max(0.0, 1 - p1 * p1 - p2 * p2)) * v;
+    return Eigen::Vector3d(alpha * n.x(), alpha * n.y(), std::max(1e-12, n.z())).normalized();
+}
+
+/// A and B by importance sampling: the weight of a visible normal is F G2 / G1.
+Eigen::Vector2d integrate(Model model, double n_dot_v, double roughness) {
+    const double alpha = std::max(roughness * roughness, 1e-4);
+    const Eigen::Vector3d view(std::sqrt(1 - n_dot_v * n_dot_v), 0, n_dot_v);
+    Eigen::Vector2d sum(0, 0);
+    for (int i = 0; i < samples; ++i)
+        for (int j = 0; j < samples; ++j) {
+            const Eigen::Vector3d h = visible_normal(view, alpha, (i + 0.5) / samples, (j + 0.5) / samples);
+            const double v_dot_h = std::max(0.0, view.dot(h));
+            const double n_dot_l = (2 * v_dot_h * h - view).z();
+            if (n_dot_l <= 0) continue;
+            const double weight =
+                masking_shadowing(model, n_dot_v, n_dot_l, alpha) * (1 + lambda(n_dot_v, alpha));
+            const double fresnel = std::pow(1 - v_dot_h, 5);
+            sum += weight * Eigen::Vector2d(1 - fresnel, fresnel);
+        }
+    return sum / (samples * samples);
+}
+
+std::vector<uint16_t> table(Model model) {
+    std::vector<uint16_t> halves(2 * size * size);
+    const auto rows = [&](int first) {
+        for (int j = first; j < size; j += 2)
+            for (int i = 0; i < size; ++i) {
+                const double root = std::max(double(i), 0.25) / (size - 1);
+                const Eigen::Vector2d ab = integrate(model, root * root, double(j) / (size - 1));
+                for (int c = 0; c < 2; ++c)
+                    halves[2 * (j * size + i) + c] = Eigen::half_impl::float_to_half_rtne(float(ab[c])).x;
+            }
+    };
+    std::thread odd(rows, 1);
+    rows(0);
+    odd.join();
+    return halves;
+}
+
+void write(std::FILE* out, const char* name, const std::vector<uint16_t>& halves) {
+    std::fprintf(out, "constexpr uint16_t %s[%zu] = {", name, halves.size());
+    for (size_t i = 0; i < halves.size(); ++i)
+        std::fprintf(out, "%s%u,", i % 16 ? "" : "\n", unsigned(halves[i]));
+    std::fprintf(out, "};\n");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc != 2) return 2;
+    std::FILE* out = std::fopen(argv[1], "w");
+    if (!out) return 1;
+    write(out, "dfg_height_correlated", table(Model::height_correlated));
+    write(out, "dfg_separable", table(Model::separable));
+    write(out, "dfg_ue4", table(Model::ue4));
+    return std::fclose(out);
+}

@@ -1,0 +1,20 @@
+// The environment behind the geometry.
+#pragma once
+
+#include "easypbr/gpu/environment_maps.h"
+#include "easypbr/render/frame.h"
+#include "easypbr/render/gbuffer.h"
+#include "easypbr/render/programs.h"
+
+namespace easypbr::render {
+
+class BackgroundPass {
+  public:
+    /// Draws the environment, sharp or blurred, where there is no geometry.
+    void draw(const Frame& frame, const GBuffer& targets, const gpu::EnvironmentMaps& maps);
+
+  private:
+    ProgramVariants programs_{"screen_triangle.vert", "background_environment.frag"};
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,46 @@
+// What every pass of one frame needs to know: the camera in the shaders' terms.
+#pragma once
+
+#include <vector>
+
+#include "easypbr/gl/buffer.h"
+#include "easypbr/gl/program.h"
+#include "easypbr/scene/resolve.h"
+
+namespace easypbr::render {
+
+/// A rectangle of pixels, row 0 on top.
+struct PixelRect {
+    int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// One frame of an accumulated picture.
+struct Frame {
+    const SceneSnapshot* scene = nullptr;
+    const ResolvedSettings* resolved = nullptr;
+    Vec2i size{0, 0};
+    int sample_index = 0;
+    int sample_count = 1;
+    Mat4d clip_from_view = Mat4d::Identity();  ///< jittered
+    PixelRect covered;                         ///< all geometry is inside
+
+    bool orthographic() const { return resolved->camera.projection == Projection::orthographic; }
+};
+
+/// Sub-pixel offset of a sample in [-0.5, 0.5): points of the Halton sequence in bases 2 and 3, moved so that
+/// the mean of the first `count` is the pixel's centre. One sample is the centre itself.
+Vec2d jitter_of(int index, int count);
+
+/// Fills in the jittered projection and the covered rectangle.
+void prepare_frame(Frame& frame);
+
+/// Sets the uniforms of shaders/common_camera.glsl.
+void set_camera_uniforms(const gl::Program& program, const Frame& frame);
+
+/// Macros that shaders with the camera depend on.
+std::vector<std::string> camera_defines(const Frame& frame);
+
+/// Draws shaders/screen_triangle.vert; the program is in use and the framebuffer bound.
+void draw_screen_triangle();
+
+}  // namespace easypbr::render

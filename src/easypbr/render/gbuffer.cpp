@@ -1,0 +1,18 @@
+#include "easypbr/render/gbuffer.h"
+
+namespace easypbr::render {
+
+GBuffer::GBuffer(Vec2i size) {
+    const int w = size.x(), h = size.y();
+    albedo = gl::Texture(gl::Format::rgba16, w, h);
+    normal = gl::Texture(gl::Format::rg16, w, h);
+    material = gl::Texture(gl::Format::rgba8, w, h);
+    depth = gl::Texture(gl::Format::r32f, w, h);
+    depth_test = gl::Texture(gl::Format::depth32f, w, h);
+    radiance = gl::Texture(gl::Format::rgba32f, w, h);
+    surface = gl::Framebuffer({&albedo, &normal, &material, &depth}, &depth_test);
+    surface_emission = gl::Framebuffer({&albedo, &normal, &material, &depth, &radiance}, &depth_test);
+    lit = gl::Framebuffer({&radiance}, &depth_test);
+}
+
+}  // namespace easypbr::render

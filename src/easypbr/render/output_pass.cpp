@@ -1,0 +1,159 @@
+#include "easypbr/render/output_pass.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+
+#include "easypbr/core/color.h"
+
+namespace easypbr::render {
+namespace {
+
+std::vector<std::string> tone_defines(const Frame& frame, Encoding encoding) {
+    if (encoding == Encoding::scene_linear) return {};
+    switch (frame.resolved->settings.tone.tone_operator) {
+        case ToneOperator::reinhard:
+            return {"TONE_REINHARD"};
+        case ToneOperator::agx:
+            return {"TONE_AGX"};
+        case ToneOperator::neutral:
+            return {"TONE_NEUTRAL"};
+        case ToneOperator::none:
+            return {"TONE_NONE"};
+        default:
+            return {"TONE_ACES"};
+    }
+}
+
+gl::Format format_of(Encoding encoding) {
+    return encoding == Encoding::srgb8    ? gl::Format::rgba8
+           : encoding == Encoding::srgb16 ? gl::Format::rgba16
+                                          : gl::Format::rgba32f;
+}
+
+float exposure_of(const Frame& frame, Encoding encoding) {
+    return encoding == Encoding::scene_linear ? 1.0f : frame.resolved->exposure;
+}
+
+bool sees_environment(const Frame& frame) {
+    const BackgroundMode mode = frame.resolved->settings.background.mode;
+    return mode == BackgroundMode::environment || mode == BackgroundMode::blur;
+}
+
+Vec4 background_color(const Frame& frame) {
+    const BackgroundSettings& background = frame.resolved->settings.background;
+    if (background.mode == BackgroundMode::transparent || sees_environment(frame)) return Vec4::Zero();
+    const Vec3 c = linear_from_srgb(background.color);
+    return {c.x(), c.y(), c.z(), 1};
+}
+
+/// Scale and offset of texture coordinates with which an image covers the picture, centred, nothing
+/// distorted.
+Vec4 cover(const gl::Texture& image, Vec2i size) {
+    const float picture = float(size.x()) / float(size.y()),
+                own = float(image.width()) / float(image.height());
+    const Vec2 scale = picture > own ? Vec2(1, own / picture) : Vec2(picture / own, 1);
+    return {scale.x(), scale.y(), (1 - scale.x()) / 2, (1 - scale.y()) / 2};
+}
+
+/// Screen passes touch only where geometry may be, when nothing else was drawn.
+void limit_to_content(const Frame& frame) {
+    if (sees_environment(frame)) return;
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(frame.covered.x, frame.covered.y, frame.covered.width, frame.covered.height);
+}
+
+}  // namespace
+
+void OutputPass::begin(Vec2i size, Encoding encoding) {
+    const gl::Format format = format_of(encoding);
+    if (!picture_ || picture_.width() != size.x() || picture_.height() != size.y() ||
+        picture_.format() != format) {
+        picture_ = gl::Texture(format, size.x(), size.y());
+        picture_framebuffer_ = gl::Framebuffer({&picture_});
+        sum_ = gl::Texture();
+        aliased_ = gl::Texture();
+    }
+    encoding_ = encoding;
+}
+
+void OutputPass::accumulate(const Frame& frame, const GBuffer& targets) {
+    if (!sum_) {
+        sum_ = gl::Texture(gl::Format::rgba32f, frame.size.x(), frame.size.y());
+        sum_framebuffer_ = gl::Framebuffer({&sum_});
+    }
+    const float zero[4] = {0, 0, 0, 0};
+    if (frame.sample_index == 0) sum_framebuffer_.clear_color(0, zero);
+    sum_framebuffer_.bind();
+    const gl::Program& program = accumulate_.get(tone_defines(frame, encoding_));
+    program.use();
+    program.set("u_size", Vec2(frame.size.cast<float>()));
+    program.set("u_exposure", exposure_of(frame, encoding_));
+    program.set("u_radiance", 0);
+    targets.radiance.bind(0);
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE);
+    limit_to_content(frame);
+    draw_screen_triangle();
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_BLEND);
+}
+
+void OutputPass::finish(const Frame& frame, const GBuffer& targets, const gl::Texture* background_image) {
+    const bool sum = frame.sample_count > 1;
+    std::vector<std::string> defines = tone_defines(frame, encoding_);
+    if (sum) defines.emplace_back("SUM");
+    if (background_image) defines.emplace_back("BACKGROUND_IMAGE");
+    if (encoding_ == Encoding::scene_linear) defines.emplace_back("LINEAR_OUTPUT");
+    const gl::Program& program = display_.get(defines);
+    glDisable(GL_DEPTH_TEST);
+    picture_framebuffer_.bind();
+    if (!background_image) {
+        const Vec4 b = background_color(frame);
+        Vec4 code = b;
+        if (encoding_ != Encoding::scene_linear) code.head<3>() = srgb_from_linear(Vec3(b.head<3>()));
+        const float rgba[4] = {code.x(), code.y(), code.z(), code.w()};
+        picture_framebuffer_.clear_color(0, rgba);
+        limit_to_content(frame);
+    }
+    program.use();
+    program.set("u_size", Vec2(frame.size.cast<float>()));
+    program.set("u_exposure", exposure_of(frame, encoding_));
+    program.set("u_sample_scale", 1.0f / float(frame.sample_count));
+    program.set("u_background", background_color(frame));
+    program.set("u_source", 0);
+    (sum ? sum_ : targets.radiance).bind(0);
+    if (background_image) {
+        program.set("u_background_image", 1);
+        program.set("u_background_uv", cover(*background_image, frame.size));
+        background_image->bind(1);
+    }
+    draw_screen_triangle();
+    glDisable(GL_SCISSOR_TEST);
+    const bool single = !sum && encoding_ != Encoding::scene_linear;
+    if (single && frame.resolved->settings.image.antialias == Antialias::fxaa) blur_edges(frame);
+}
+
+void OutputPass::blur_edges(const Frame& frame) {
+    const PixelRect& area = frame.covered;
+    if (area.width == 0 || area.height == 0) return;
+    if (!aliased_) {
+        aliased_ = gl::Texture(picture_.format(), frame.size.x(), frame.size.y());
+        aliased_.sampling(gl::Filtering::linear);
+    }
+    gl::copy(picture_, aliased_);
+    picture_framebuffer_.bind();
+    const gl::Program& program = fxaa_.get({});
+    program.use();
+    program.set("u_size", Vec2(frame.size.cast<float>()));
+    program.set("u_color", 0);
+    aliased_.bind(0);
+    // Edges are where geometry is; the environment behind it is smooth.
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(area.x, area.y, area.width, area.height);
+    draw_screen_triangle();
+    glDisable(GL_SCISSOR_TEST);
+}
+
+}  // namespace easypbr::render

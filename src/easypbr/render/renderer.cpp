@@ -1,0 +1,155 @@
+#include "easypbr/render/renderer.h"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/core/suggest.h"
+
+namespace easypbr::render {
+namespace {
+
+bool sees_environment(const ResolvedSettings& resolved) {
+    const BackgroundMode mode = resolved.settings.background.mode;
+    return mode == BackgroundMode::environment || mode == BackgroundMode::blur;
+}
+
+template <class T>
+std::vector<T> read(const gl::Framebuffer& framebuffer, unsigned index, gl::Format format) {
+    const size_t bytes = size_t(framebuffer.width()) * size_t(framebuffer.height()) * gl::pixel_bytes(format);
+    std::vector<T> values(bytes / sizeof(T));
+    framebuffer.read(index, format, 0, 0, framebuffer.width(), framebuffer.height(),
+                     std::as_writable_bytes(std::span(values)));
+    return values;
+}
+
+Vec3 oct_decode(float x, float y) {
+    Vec3 n(x, y, 1 - std::abs(x) - std::abs(y));
+    const float fold = std::max(-n.z(), 0.0f);
+    n.x() -= n.x() >= 0 ? fold : -fold;
+    n.y() -= n.y() >= 0 ? fold : -fold;
+    return n.normalized();
+}
+
+}  // namespace
+
+const std::vector<std::string>& layer_names() {
+    static const std::vector<std::string> names = {"albedo",    "normal",   "depth",
+                                                   "roughness", "metallic", "occlusion"};
+    return names;
+}
+
+Layer layer_named(const std::string& name) {
+    const auto& names = layer_names();
+    const auto found = std::find(names.begin(), names.end(), name);
+    if (found == names.end())
+        throw NameError(fmt::format("there is no layer '{}'{}: expected {}", name, did_you_mean(name, names),
+                                    fmt::join(names, ", ")));
+    return Layer(found - names.begin());
+}
+
+Renderer::Renderer() : no_attributes_(gl::VertexArray::make()) {}
+
+void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved, const DrawOptions& options,
+                    const SettingsImages& images) {
+    if (options.samples < 1)
+        throw ArgumentError(fmt::format("samples: expected 1 or more, got {}", options.samples));
+    // Row 0 of every target is the top of the picture; depth runs from 1 (near) to 0 (infinitely far).
+    glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+    glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+    if (!targets_.albedo || targets_.size() != options.size) targets_ = GBuffer(options.size);
+    output_.begin(options.size, options.encoding);
+    geometry_.set_texture_overrides(images.textures);
+    if (!resolved.environment.empty()) environment_.prepare(resolved.environment, sees_environment(resolved));
+
+    Frame frame;
+    frame.scene = &scene;
+    frame.resolved = &resolved;
+    frame.size = options.size;
+    frame.sample_count = options.samples;
+    for (frame.sample_index = 0; frame.sample_index < options.samples; ++frame.sample_index) {
+        draw_frame(frame);
+        if (options.samples > 1) output_.accumulate(frame, targets_);
+    }
+    output_.finish(frame, targets_, background_texture(frame, images));
+    geometry_.evict_unused();
+    camera_ = resolved.camera;
+    glFlush();
+}
+
+void Renderer::draw_frame(Frame& frame) {
+    prepare_frame(frame);
+    geometry_.draw(frame, targets_);
+    no_attributes_.bind();
+    const bool with_environment = !frame.resolved->environment.empty();
+    lighting_.draw(frame, targets_, with_environment ? &environment_ : nullptr);
+    if (with_environment && sees_environment(*frame.resolved))
+        background_.draw(frame, targets_, environment_);
+}
+
+const gl::Texture* Renderer::background_texture(const Frame& frame, const SettingsImages& images) {
+    if (frame.resolved->settings.background.mode != BackgroundMode::image || !images.background)
+        return nullptr;
+    if (images.background != background_image_) {
+        background_image_ = images.background;
+        background_texture_ = gpu::make_texture(*background_image_, true);
+        background_texture_.sampling(gl::Filtering::linear);
+    }
+    return &background_texture_;
+}
+
+Image Renderer::read_picture() const {
+    return read_picture(output_.picture().width(), output_.picture().height());
+}
+
+Image Renderer::read_picture(int width, int height) const {
+    const gl::Format format = output_.format();
+    const PixelType type = format == gl::Format::rgba8    ? PixelType::u8
+                           : format == gl::Format::rgba16 ? PixelType::u16
+                                                          : PixelType::f32;
+    Image image(width, height, 4, type);
+    output_.picture().read(0, format, 0, 0, width, height, image.bytes());
+    return image;
+}
+
+Image Renderer::read_layer(Layer layer) const {
+    const std::vector<float> depth = read<float>(targets_.surface, 3, gl::Format::r32f);
+    const int channels = layer == Layer::albedo ? 4 : layer == Layer::normal ? 3 : 1;
+    Image image(targets_.size().x(), targets_.size().y(), channels, PixelType::f32);
+    float* to = image.pixels<float>().data();
+    const auto for_each_covered = [&](auto&& body) {
+        parallel_for(depth.size(), 1 << 14, [&](size_t i) {
+            if (depth[i] > 0) body(i);
+        });
+    };
+    if (layer == Layer::depth) {
+        const float near = float(camera_.near), far = float(camera_.far);
+        const bool orthographic = camera_.projection == Projection::orthographic;
+        for_each_covered(
+            [&](size_t i) { to[i] = orthographic ? far + (near - far) * depth[i] : near / depth[i]; });
+    } else if (layer == Layer::albedo) {
+        const auto texels = read<uint16_t>(targets_.surface, 0, gl::Format::rgba16);
+        for_each_covered([&](size_t i) {
+            for (size_t c = 0; c < 3; ++c) to[4 * i + c] = float(texels[4 * i + c]) / 65535.0f;
+            to[4 * i + 3] = 1;
+        });
+    } else if (layer == Layer::normal) {
+        const auto texels = read<uint16_t>(targets_.surface, 1, gl::Format::rg16);
+        for_each_covered([&](size_t i) {
+            const Vec3 n =
+                oct_decode(float(texels[2 * i]) / 32767.5f - 1, float(texels[2 * i + 1]) / 32767.5f - 1);
+            std::copy_n(n.data(), 3, to + 3 * i);
+        });
+    } else {
+        const size_t channel = layer == Layer::metallic ? 0 : layer == Layer::roughness ? 1 : 2;
+        const auto texels = read<uint8_t>(targets_.surface, 2, gl::Format::rgba8);
+        for_each_covered([&](size_t i) { to[i] = float(texels[4 * i + channel]) / 255.0f; });
+    }
+    return image;
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,74 @@
+// Renderer: runs the passes in order. Source order is pipeline order.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/image.h"
+#include "easypbr/render/background_pass.h"
+#include "easypbr/render/geometry_pass.h"
+#include "easypbr/render/lighting_pass.h"
+#include "easypbr/render/output_pass.h"
+
+namespace easypbr::render {
+
+/// Pictures beside the final one, read from the frame drawn last: of a picture of one sample, through the pixels'
+/// centres.
+enum class Layer {
+    albedo,     ///< RGBA f32, linear base colour, alpha 1 where there is geometry
+    normal,     ///< RGB f32, unit world normal, 0 where there is nothing
+    depth,      ///< one channel f32, distance along the optical axis, 0 where there is nothing
+    roughness,  ///< one channel f32
+    metallic,   ///< one channel f32
+    occlusion   ///< one channel f32, the material's
+};
+
+/// "albedo", "normal", ... Throws NameError with the nearest name.
+Layer layer_named(const std::string& name);
+const std::vector<std::string>& layer_names();
+
+struct DrawOptions {
+    Vec2i size{800, 600};
+    int samples = 1;
+    Encoding encoding = Encoding::srgb8;
+};
+
+/// Images that the settings name, loaded by the caller.
+struct SettingsImages {
+    Material textures;                        ///< texture overrides
+    std::shared_ptr<const Image> background;  ///< for background mode image
+};
+
+/// All members need the context current. Throws ContextError when a size is beyond the driver's limit.
+class Renderer {
+  public:
+    Renderer();
+
+    /// Draws a picture; read_picture() and read_layer() give what was drawn last.
+    void draw(const SceneSnapshot& scene, const ResolvedSettings& resolved, const DrawOptions& options,
+              const SettingsImages& images = {});
+
+    /// RGBA, row 0 on top: u8, u16 or f32 by the encoding.
+    Image read_picture() const;
+    /// The first `width` x `height` pixels only: forces the picture to be finished.
+    Image read_picture(int width, int height) const;
+    Image read_layer(Layer layer) const;
+
+  private:
+    void draw_frame(Frame& frame);
+    const gl::Texture* background_texture(const Frame& frame, const SettingsImages& images);
+
+    GBuffer targets_;
+    gl::VertexArray no_attributes_;
+    gpu::EnvironmentMaps environment_;
+    GeometryPass geometry_;
+    LightingPass lighting_;
+    BackgroundPass background_;
+    OutputPass output_;
+    std::shared_ptr<const Image> background_image_;
+    gl::Texture background_texture_;
+    Camera camera_;
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,57 @@
+// Viewer: what a program holds. One line shows data, one line records a picture.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "easypbr/app/output.h"
+#include "easypbr/app/session.h"
+
+namespace easypbr {
+
+/// The one scene there is without being made: what show() fills and a Viewer without a scene draws.
+Scene& default_scene();
+
+/// Shows a mesh in the default scene.
+inline void show(const Mesh& mesh, const std::string& name) {
+    default_scene().show(mesh, name);
+}
+
+/// Removes everything from the default scene.
+inline void clear() {
+    default_scene().clear();
+}
+
+/// Draws a scene. No window is opened and no GL context made until they are needed.
+class Viewer {
+    // First, because the recorder keeps a reference to it.
+    std::unique_ptr<app::Session> session_;
+
+  public:
+    Viewer() : Viewer(default_scene()) {}
+    explicit Viewer(const Scene& scene);
+    /// Settings from a file that --save-settings wrote, and a picture size.
+    explicit Viewer(Vec2i size, const std::filesystem::path& settings = {});
+
+    app::Recorder recorder;
+
+    Scene& scene() { return session_->scene(); }
+    Settings& settings() { return session_->settings(); }
+    app::Session& session() { return *session_; }
+
+    /// Lights the scene with an equirectangular picture (HDR, EXR, PNG, JPEG). Throws FileError, FormatError.
+    void load_environment_map(const std::filesystem::path& path);
+
+    Image render(const app::PictureOptions& options = {}) { return session_->render(options); }
+    Camera camera() { return session_->camera(); }
+    void set_camera(const Camera& camera) { session_->set_camera(camera); }
+    void refit() { session_->refit(); }
+
+    /// Adds or replaces a light of the scene.
+    void add_light(const std::string& name, const Light& light) { scene().set_light(name, light); }
+    void remove_light(const std::string& name) { scene().remove_light(name); }
+};
+
+}  // namespace easypbr
