@@ -1,0 +1,27 @@
+// Readers and writers of the mesh formats, over bytes; mesh_io.h chooses among them by extension.
+#pragma once
+
+#include <string>
+
+#include "easypbr/io/mesh_io.h"
+#include "easypbr/io/source.h"
+
+namespace easypbr::io {
+
+/// Each throws FormatError as load_scene() does. The result passes validate() and has no name yet.
+MeshData read_ply(const Source& source);
+MeshData read_obj(const Source& source);
+MeshData read_stl(const Source& source, const LoadOptions& options);
+MeshData read_off(const Source& source);
+
+/// Binary little-endian PLY: V, N, C (as uchar), UV (as s, t), L, I, F, E.
+std::string encode_ply(const MeshData& mesh);
+
+/// OBJ, and MTL named `mtl_name`, with the textures' paths relative to `folder`; MTL is empty without
+/// materials.
+struct ObjText {
+    std::string obj, mtl;
+};
+ObjText encode_obj(const MeshData& mesh, const std::string& mtl_name, const fs::path& folder);
+
+}  // namespace easypbr::io

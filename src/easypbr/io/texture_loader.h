@@ -1,0 +1,31 @@
+// Images that mesh files name, read once each; what cannot be read is a warning, not an error.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+
+#include "easypbr/core/file.h"
+#include "easypbr/core/image.h"
+#include "easypbr/scene/material.h"
+
+namespace easypbr::io {
+
+/// Loads the images named in one mesh file.
+class TextureLoader {
+  public:
+    /// `mesh_file`: names are relative to its folder.
+    explicit TextureLoader(const fs::path& mesh_file) : folder_(mesh_file.parent_path()) {}
+
+    /// A texture with the named image, found under its path or, failing that, beside the mesh file under its
+    /// bare name. Empty, with a warning in the log, when it is missing or damaged.
+    Texture load(std::string name);
+
+  private:
+    fs::path find(const std::string& name) const;
+
+    fs::path folder_;
+    std::map<std::string, Texture> textures_;
+};
+
+}  // namespace easypbr::io
