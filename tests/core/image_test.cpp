@@ -1,0 +1,94 @@
+#include "easypbr/core/image.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "easypbr/core/compare.h"
+
+using namespace easypbr;
+
+namespace {
+
+template <class T>
+Image image_of(int width, int height, int channels, PixelType type, std::initializer_list<T> values) {
+    Image image(width, height, channels, type);
+    std::copy(values.begin(), values.end(), image.pixels<T>().begin());
+    return image;
+}
+
+template <class T>
+std::vector<T> values_of(const Image& image) {
+    const auto pixels = image.pixels<T>();
+    return {pixels.begin(), pixels.end()};
+}
+
+}  // namespace
+
+TEST(Image, RefusesImpossibleSizes) {
+    EXPECT_THROW(Image(0, 1, 1, PixelType::u8), ArgumentError);
+    EXPECT_THROW(Image(1, -1, 1, PixelType::u8), ArgumentError);
+    EXPECT_THROW(Image(max_image_side + 1, 1, 1, PixelType::u8), ArgumentError);
+    EXPECT_THROW(Image(1, 1, 5, PixelType::u8), ArgumentError);
+    EXPECT_THROW(Image(1, 1, 1, PixelType::u8).pixels<float>(), ArgumentError);
+}
+
+TEST(Image, ChangesItsChannels) {
+    const Image grey = image_of<uint8_t>(2, 1, 1, PixelType::u8, {10, 20});
+    EXPECT_EQ(values_of<uint8_t>(with_channels(grey, 4)),
+              (std::vector<uint8_t>{10, 10, 10, 255, 20, 20, 20, 255}));
+    const Image grey_alpha = image_of<uint16_t>(1, 1, 2, PixelType::u16, {7, 9});
+    EXPECT_EQ(values_of<uint16_t>(with_channels(grey_alpha, 4)), (std::vector<uint16_t>{7, 7, 7, 9}));
+    const Image rgba = image_of<float>(1, 1, 4, PixelType::f32, {1, 2, 3, 0.5f});
+    EXPECT_EQ(values_of<float>(with_channels(rgba, 3)), (std::vector<float>{1, 2, 3}));
+    EXPECT_EQ(values_of<float>(with_channels(with_channels(rgba, 3), 4)), (std::vector<float>{1, 2, 3, 1}));
+}
+
+TEST(Image, EncodesColorAndLeavesAlphaLinear) {
+    // 255 * 0.73536 = 187.5 rounds to 188 (0.735357 * 255 = 187.516); alpha 0.5 * 255 = 127.5 rounds away
+    // from zero.
+    const Image linear = image_of<float>(1, 1, 4, PixelType::f32, {0.5f, -1, 7, 0.5f});
+    EXPECT_EQ(values_of<uint8_t>(to_u8(linear)), (std::vector<uint8_t>{188, 0, 255, 128}));
+    const Image nothing = image_of<float>(1, 1, 1, PixelType::f32, {std::numeric_limits<float>::quiet_NaN()});
+    EXPECT_EQ(values_of<uint8_t>(to_u8(nothing)), (std::vector<uint8_t>{0}));
+}
+
+TEST(Image, SurvivesTheWayToLinearAndBack) {
+    Image codes(256, 1, 2, PixelType::u8);
+    for (int i = 0; i < 256; ++i) codes.at<uint8_t>(i, 0)[0] = codes.at<uint8_t>(i, 0)[1] = uint8_t(i);
+    EXPECT_EQ(compare(to_u8(to_linear_f32(codes)), codes).different, 0u);
+    // 65535 / 255 = 257, so k * 257 is exactly the 8-bit code k.
+    const Image wide = image_of<uint16_t>(3, 1, 1, PixelType::u16, {0, 100 * 257, 65535});
+    EXPECT_EQ(values_of<uint8_t>(to_u8(wide)), (std::vector<uint8_t>{0, 100, 255}));
+}
+
+TEST(Image, HalvesByAveraging) {
+    const Image odd = image_of<float>(3, 2, 1, PixelType::f32, {1, 3, 100, 5, 7, 100});
+    EXPECT_EQ(values_of<float>(half_size(odd)), (std::vector<float>{4}));
+    const Image column = image_of<float>(1, 2, 1, PixelType::f32, {2, 4});
+    EXPECT_EQ(values_of<float>(half_size(column)), (std::vector<float>{3}));
+}
+
+TEST(Compare, MeasuresEveryDifference) {
+    const Image a = image_of<uint8_t>(2, 1, 2, PixelType::u8, {0, 0, 10, 10});
+    const Image b = image_of<uint8_t>(2, 1, 2, PixelType::u8, {0, 0, 13, 14});
+    const ImageDifference d = compare(a, b);
+    EXPECT_EQ(d.max, 4);
+    EXPECT_EQ(d.different, 1u);
+    EXPECT_DOUBLE_EQ(d.mean, 7.0 / 4);
+    EXPECT_DOUBLE_EQ(d.rmse, 2.5);  // sqrt((9 + 16) / 4)
+    EXPECT_DOUBLE_EQ(d.psnr, 20 * std::log10(255 / 2.5));
+}
+
+TEST(Compare, KnowsEqualAndUnlikeImages) {
+    const float infinity = std::numeric_limits<float>::infinity(),
+                nan = std::numeric_limits<float>::quiet_NaN();
+    const Image a = image_of<float>(1, 1, 2, PixelType::f32, {infinity, nan});
+    EXPECT_EQ(compare(a, a).max, 0);
+    EXPECT_EQ(compare(a, a).psnr, std::numeric_limits<double>::infinity());
+    const Image b = image_of<float>(1, 1, 2, PixelType::f32, {infinity, 0});
+    EXPECT_EQ(compare(a, b).max, std::numeric_limits<double>::infinity());
+    EXPECT_THROW(compare(a, with_channels(a, 3)), ArgumentError);
+    EXPECT_THROW(compare(a, to_u8(a)), ArgumentError);
+}

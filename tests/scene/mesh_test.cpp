@@ -1,0 +1,162 @@
+#include "easypbr/scene/mesh.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <thread>
+
+#include "easypbr/core/error.h"
+#include "easypbr/scene/scene.h"
+
+using namespace easypbr;
+
+namespace {
+
+using Positions = Array3f::Dense;
+using Faces = Array3i::Dense;
+
+MeshData triangle() {
+    MeshData data;
+    data.V = Positions{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    data.F = Faces{{0, 1, 2}};
+    return data;
+}
+
+template <class Change>
+std::string message_of(Change&& change) {
+    MeshData data = triangle();
+    change(data);
+    try {
+        validate(data);
+    } catch (const ArgumentError& error) {
+        return error.what();
+    }
+    return "valid";
+}
+
+}  // namespace
+
+TEST(Mesh, AcceptsWhatFitsTogether) {
+    MeshData data = triangle();
+    data.N = Positions{{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+    data.C = ArrayXf(ArrayXf::Dense::Ones(3, 4));
+    data.E = Array2i(Array2i::Dense{{0, 2}});
+    data.parts = {{"all", 0, 1, 0}};
+    EXPECT_NO_THROW(validate(data));
+    EXPECT_NO_THROW(validate(MeshData{}));
+}
+
+TEST(Mesh, NamesTheArrayThatDoesNotFit) {
+    EXPECT_EQ(message_of([](MeshData& d) { d.N = Positions(Positions::Zero(2, 3)); }),
+              "mesh array N: expected 3 rows, one per vertex, or none; got 2 x 3");
+    EXPECT_EQ(message_of([](MeshData& d) { d.C = ArrayXf(ArrayXf::Dense::Zero(3, 2)); }),
+              "mesh array C: expected 3 x 3 or 3 x 4, got 3 x 2");
+    EXPECT_EQ(message_of([](MeshData& d) {
+                  d.F = Faces{{0, 1, 2}, {0, 3, 1}};
+              }),
+              "mesh array F: expected vertex indices from 0 to 2, got 3 in row 1 of 2");
+    EXPECT_EQ(message_of([](MeshData& d) {
+                  d.E = Array2i(Array2i::Dense{{-1, 0}});
+              }),
+              "mesh array E: expected vertex indices from 0 to 2, got -1 in row 0 of 1");
+    EXPECT_EQ(message_of([](MeshData& d) {
+                  d.V = Positions{{0, 0, 0}, {1, std::numeric_limits<float>::infinity(), 0}, {0, 0, 0}};
+              }),
+              "mesh array V: expected finite positions, got (1, inf, 0) in row 1 of 3");
+    EXPECT_NE(message_of([](MeshData& d) {
+                  d.parts = {{"wing", 0, 2, 0}};
+              }).find("'wing'"),
+              std::string::npos);
+    EXPECT_NE(message_of([](MeshData& d) {
+                  d.parts = {{"wing", 0, 1, 1}};
+              }).find("material index"),
+              std::string::npos);
+}
+
+TEST(Mesh, FindsTheFirstBadRowOfMany) {
+    // The scan runs in parallel chunks; the row reported is the first one all the same.
+    Faces F = Faces::Zero(300000, 3);
+    F(299999, 0) = F(150000, 2) = F(70001, 1) = 9;
+    EXPECT_NE(message_of([&](MeshData& d) { d.F = F; }).find("row 70001 of 300000"), std::string::npos);
+}
+
+TEST(Mesh, StaysAsItWasWhenAnEditFails) {
+    Mesh mesh(triangle());
+    const auto before = mesh.snapshot();
+    EXPECT_THROW(mesh.set_F(Faces{{0, 1, 3}}), ArgumentError);
+    EXPECT_THROW(mesh.set_V(Positions(Positions::Zero(2, 3))),
+                 ArgumentError);  // F now refers to a missing vertex
+    EXPECT_EQ(mesh.snapshot(), before);
+    mesh.set_V(Positions(Positions::Ones(3, 3)));
+    EXPECT_EQ(before->V(1, 1), 0);
+    EXPECT_EQ(mesh.V()(1, 1), 1);
+    EXPECT_NE(mesh.V().revision(), before->V.revision());
+    EXPECT_EQ(mesh.F().revision(), before->F.revision());
+}
+
+TEST(Mesh, LosesNoEditOfTwoThreads) {
+    Mesh mesh(triangle());
+    const auto count_up = [&] {
+        for (int i = 0; i < 2000; ++i) mesh.edit([](MeshData& d) { d.name += "x"; });
+    };
+    std::thread other(count_up);
+    count_up();
+    other.join();
+    EXPECT_EQ(mesh.name().size(), 4000u);
+}
+
+TEST(Mesh, MayBeReadWhileItIsEdited) {
+    Mesh mesh(triangle());
+    mesh.edit([&](MeshData& d) { d.V = Positions(2 * mesh.V()); });
+    EXPECT_EQ(mesh.V()(1, 0), 2);
+}
+
+TEST(Mesh, HandlesShareAndClonesDoNot) {
+    Mesh mesh(triangle()), child(triangle());
+    mesh.add_child(child);
+    const Mesh handle = mesh, copy = mesh.clone();
+    EXPECT_TRUE(handle == mesh);
+    EXPECT_FALSE(copy == mesh);
+    EXPECT_EQ(copy.V().data(), mesh.V().data());
+    child.edit([](MeshData& d) { d.name = "renamed"; });
+    EXPECT_EQ(handle.snapshot()->children[0].name(), "renamed");
+    EXPECT_EQ(copy.snapshot()->children[0].name(), "");
+}
+
+TEST(Mesh, HasMaterials) {
+    Mesh mesh(triangle());
+    EXPECT_EQ(mesh.material().base_color, Material{}.base_color);
+    EXPECT_THROW(mesh.material(1), NameError);
+    EXPECT_THROW(mesh.set_material({}, 1), NameError);
+    Material red;
+    red.base_color = Vec3(1, 0, 0);
+    mesh.set_material(red);
+    EXPECT_EQ(mesh.material().base_color, Vec3(1, 0, 0));
+    EXPECT_THROW(mesh.material(-1), NameError);
+}
+
+TEST(Mesh, CannotContainItself) {
+    Mesh a(triangle()), b(triangle());
+    a.add_child(b);
+    EXPECT_THROW(a.add_child(a), ArgumentError);
+    EXPECT_THROW(b.add_child(a), ArgumentError);
+    b.edit([&](MeshData& d) { d.children = {a}; });
+    EXPECT_THROW(for_each_node(a, [](const auto&, const auto&) {}), ArgumentError);
+    EXPECT_THROW(a.clone(), ArgumentError);
+    Scene scene;
+    scene.show(a, "a");
+    EXPECT_THROW(scene.snapshot(), ArgumentError);
+    b.edit([](MeshData& d) { d.children.clear(); });
+}
+
+TEST(Mesh, ComposesPosesFromParentToChild) {
+    Mesh parent(triangle()), child(triangle());
+    parent.set_T_parent_mesh(Eigen::Affine3d(Eigen::Scaling(2.0)));
+    child.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(1, 0, 0)));
+    parent.add_child(child);
+    std::vector<Vec3d> origins;
+    for_each_node(parent,
+                  [&](const auto&, const Eigen::Affine3d& T) { origins.push_back(T * Vec3d(0, 0, 0)); });
+    ASSERT_EQ(origins.size(), 2u);
+    EXPECT_EQ(origins[1], Vec3d(2, 0, 0));
+}
