@@ -43,7 +43,7 @@ float scale_of(const Array3f& V) {
 }
 
 /// Angle between two vectors from y = |cross product|, its square, and x = dot product: pi/2 -+ (pi/2 - 2
-/// atan(t)) with t = y / (hypot(x, y) + |x|) in [0, 1]. Arctangent: Abramowitz and Stegun 4.4.49, error below
+/// atan(t)) with t = y / (hypot(x, y) + |x|) in [0, 1]. Arctangent: Abramowitz and Stegun 4.4.47, error below
 /// 1e-5. No branches.
 Lanes angles(const float* y_squared, const float* y, const float* x) {
     Lanes angle;
