@@ -142,8 +142,8 @@ class Fan {
         for (size_t e = 1; e < edges_.size(); ++e) {
             const Edge &one = edges_[e - 1], &two = edges_[e];
             if (one.other != two.other || one.orientation != two.orientation) continue;
-            const auto [low, high] = std::minmax(root(one.corner), root(two.corner));
-            fan_[high].group = low;
+            const uint32_t a = root(one.corner), b = root(two.corner);
+            fan_[std::max(a, b)].group = std::min(a, b);
         }
     }
 
