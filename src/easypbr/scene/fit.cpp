@@ -9,7 +9,7 @@ namespace detail {
 namespace {
 
 /// No vertex comes nearer to a fitted camera than this part of the content's radius.
-constexpr double nearest_part = 0.05;
+constexpr double nearest_part = 0.01;
 
 /// How far the picture (less its margin) reaches to each side, per unit of depth.
 struct Slopes {

@@ -1,0 +1,223 @@
+#include "easypbr/scene/fields.h"
+
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cmath>
+#include <random>
+#include <set>
+
+#include "easypbr/core/error.h"
+#include "easypbr/scene/resolve.h"
+
+using namespace easypbr;
+
+namespace {
+
+std::string message_of(const std::string& name, const std::string& text) {
+    Settings settings;
+    try {
+        set_from_text(settings, name, text);
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+/// Some value that the field takes and that is not its default.
+Value other_value(const Field& field) {
+    const double low = std::max(field.min, -1e3), high = std::min(field.max, 1e3);
+    // Two decimals, so that the double is the nearest to a short text, as those that come from floats are.
+    const double number = field.whole ? low + 7 : std::round((low + 0.37 * (high - low)) * 100) / 100;
+    switch (field.type) {
+        case FieldType::boolean:
+            return {!std::get<bool>(field.get(Settings{}).data)};
+        case FieldType::integer:
+        case FieldType::number:
+            return {number};
+        case FieldType::color:
+            return {std::vector<double>{0.1, 0.2, 0.7}};
+        case FieldType::vector:
+            return {std::vector<double>(field.sizes.back(), number)};
+        case FieldType::text:
+            return {std::string("some, text = '1'")};
+        case FieldType::choice:
+            return {field.choices[field.get(Settings{}).data == Value::Data(field.choices[0])]};
+    }
+    return {};
+}
+
+}  // namespace
+
+TEST(Fields, AreDocumentedOnce) {
+    std::set<std::string> names;
+    for (const Field& field : fields()) {
+        EXPECT_TRUE(names.insert(field.name).second) << field.name;
+        EXPECT_GT(field.doc.size(), 15u) << field.name;
+        EXPECT_EQ(field.doc.back(), '.') << field.name;
+        EXPECT_EQ(field.type == FieldType::choice, !field.choices.empty()) << field.name;
+        EXPECT_LT(field.min, field.max) << field.name;
+        EXPECT_EQ(field.can_be_automatic, field.doc.find("utomatic: ") != std::string::npos) << field.name;
+    }
+}
+
+// Every member of every struct, counted in settings.h: image 3, camera 12, environment 4, background 4,
+// lights 1 + 3 * 4, shading 3, tonemap 3, material 4 + 7, style 2.
+TEST(Fields, AreComplete) {
+    EXPECT_EQ(fields().size(), 3u + 12 + 4 + 4 + 13 + 3 + 3 + 11 + 2);
+}
+
+TEST(Fields, DefaultsAreAllowed) {
+    for (const Field& field : fields()) {
+        const Value value = field.get(Settings{});
+        EXPECT_EQ(checked(field, value), value) << field.name;
+        EXPECT_EQ(value.state, field.can_be_automatic ? Value::State::automatic : Value::State::given)
+            << field.name;
+    }
+}
+
+TEST(Fields, EachReachesItsOwnMember) {
+    for (const Field& field : fields()) {
+        Settings settings;
+        const Value value = other_value(field);
+        set(settings, field.name, value);
+        EXPECT_EQ(get(settings, field.name), value) << field.name;
+        for (const Field& other : fields())
+            EXPECT_EQ(other.get(settings) == other.get(Settings{}), other.name != field.name)
+                << field.name << " and " << other.name;
+    }
+}
+
+TEST(Fields, SurviveTheWayThroughText) {
+    for (const Field& field : fields()) {
+        for (const Value& value : {field.get(Settings{}), other_value(field)})
+            EXPECT_EQ(parse_value(field, to_text(field, value)), value)
+                << field.name << " " << to_text(field, value);
+    }
+}
+
+// Any float goes through a value and its text without losing a bit, and 0.1f is written 0.1.
+TEST(Fields, NumbersKeepTheirBits) {
+    std::mt19937 random(1);
+    Settings settings;
+    const Field& exposure = field("tonemap.exposure");
+    for (int i = 0; i < 100000; ++i) {
+        const float number = std::bit_cast<float>(uint32_t(random()) & 0x7fffffffu);
+        if (!(number <= 1e30f)) continue;
+        settings.tone.exposure = number;
+        Settings read;
+        set_from_text(read, "tonemap.exposure", to_text(exposure, exposure.get(settings)));
+        ASSERT_EQ(std::bit_cast<uint32_t>(*read.tone.exposure), std::bit_cast<uint32_t>(number)) << number;
+    }
+    settings.camera.margin = 0.1f;
+    EXPECT_EQ(to_text(field("camera.margin"), get(settings, "camera.margin")), "0.1");
+}
+
+TEST(Fields, ReadCommonSpellings) {
+    Settings settings;
+    set_from_text(settings, "image.size", "1920x1080");
+    EXPECT_EQ(settings.image.size, Vec2i(1920, 1080));
+    set_from_text(settings, "background.color", "#ff0000");
+    EXPECT_EQ(settings.background.color, Vec3(1, 0, 0));
+    EXPECT_EQ(to_text(field("background.color"), get(settings, "background.color")), "#ff0000");
+    set_from_text(settings, "camera.position", " 1, -2.5 ,+3e2 ");
+    EXPECT_EQ(*settings.camera.position, Vec3d(1, -2.5, 300));
+    EXPECT_TRUE(settings.camera.position.is_pinned());
+    set_from_text(settings, "shading.multiple_scattering", "off");
+    EXPECT_FALSE(settings.shading.multiple_scattering);
+    set_from_text(settings, "tonemap.operator", "agx");
+    EXPECT_EQ(settings.tone.tone_operator, ToneOperator::agx);
+    set_from_text(settings, "camera.position", "auto");
+    EXPECT_FALSE(settings.camera.position.value());
+    set_from_text(settings, "camera.position", "follow");
+    EXPECT_TRUE(settings.camera.position.is_follow());
+    set(settings, "material.color", {std::string("white")});
+    EXPECT_EQ(*settings.material.color, Vec3(1, 1, 1));
+}
+
+TEST(Fields, SayWhatTheyExpected) {
+    EXPECT_EQ(message_of("camera.fov_y_deg", "400"),
+              "setting 'camera.fov_y_deg': expected 1 to 170 degrees, got 400");
+    EXPECT_EQ(message_of("image.samples", "1.5"),
+              "setting 'image.samples': expected a whole number from 1 to 65536, got 1.5");
+    EXPECT_EQ(
+        message_of("image.size", "800"),
+        "setting 'image.size': expected 2 numbers, each a whole number from 1 to 65536 pixels, got (800)");
+    EXPECT_EQ(message_of("camera.near", "0"),
+              "setting 'camera.near': expected a number of at least 1e-30 world units, or 'auto' or "
+              "'follow', got 0");
+    EXPECT_EQ(message_of("tonemap.operator", "acess"),
+              "setting 'tonemap.operator': expected one of aces, reinhard, agx, neutral, none, got 'acess' "
+              "(did you mean "
+              "'aces'?)");
+    EXPECT_EQ(message_of("shading.multiple_scattering", "maybe"),
+              "setting 'shading.multiple_scattering': expected true or false, got 'maybe'");
+    EXPECT_EQ(message_of("camera.margin", "auto"), "setting 'camera.margin': expected 0 to 0.9, got 'auto'");
+    for (const char* text : {"", "nan", "inf", "1e999", "12abc", "1,2"})
+        EXPECT_NE(message_of("environment.rotation_deg", text), "accepted") << text;
+    for (const char* text : {"1,2", "1,2,3,4", "1,,2", "1,2,x", "1,2,nan"})
+        EXPECT_NE(message_of("camera.position", text), "accepted") << text;
+    EXPECT_NE(message_of("background.color", "1,2,3"), "accepted");
+    EXPECT_NE(message_of("camera.pose", "1,2,3"), "accepted");
+    EXPECT_NE(message_of("camera.up", "north"), "accepted");
+}
+
+TEST(Fields, RefuseValuesOfAnotherType) {
+    Settings settings;
+    EXPECT_THROW(set(settings, "camera.fov_y_deg", {true}), ArgumentError);
+    EXPECT_THROW(set(settings, "style.flat", {1.0}), ArgumentError);
+    EXPECT_THROW(set(settings, "tonemap.operator", {2.0}), ArgumentError);
+    EXPECT_THROW(set(settings, "background.color", {0.5}), ArgumentError);
+    EXPECT_THROW(set(settings, "camera.margin", {{}, Value::State::follow}), ArgumentError);
+}
+
+TEST(Fields, SuggestNames) {
+    EXPECT_EQ(message_of("camra.fov_y_deg", "1"),
+              "there is no setting 'camra.fov_y_deg' (did you mean 'camera.fov_y_deg'?)");
+    EXPECT_EQ(message_of("camera.fov", "1"),
+              "there is no setting 'camera.fov' (did you mean 'camera.fov_y_deg'?)");
+    EXPECT_EQ(message_of("rougness", "1"),
+              "there is no setting 'rougness' (did you mean 'material.roughness'?)");
+    EXPECT_EQ(message_of("render.azimuth_deg", "1"),
+              "there is no setting 'render.azimuth_deg' (did you mean 'camera.azimuth_deg'?)");
+    EXPECT_EQ(message_of("margin", "1"), "there is no setting 'margin' (did you mean 'camera.margin'?)");
+    EXPECT_EQ(message_of("qqqqqqqq", "1"), "there is no setting 'qqqqqqqq'");
+}
+
+TEST(Fields, KeepLatchedValuesAutomatic) {
+    Settings settings;
+    settings.camera.position.latch(Vec3d(1, 2, 3));
+    const Value value = get(settings, "camera.position");
+    EXPECT_EQ(value.state, Value::State::automatic);
+    EXPECT_TRUE(value.latched);
+    Settings copy;
+    set(copy, "camera.position", value);
+    EXPECT_FALSE(copy.camera.position.is_pinned());
+    EXPECT_EQ(*copy.camera.position, Vec3d(1, 2, 3));
+    copy.camera.position.release();
+    EXPECT_FALSE(copy.camera.position.value());
+}
+
+TEST(Auto, IsInferredLatchedPinnedOrFollowing) {
+    Auto<float> setting;
+    setting.latch(1);
+    EXPECT_EQ(*setting, 1);
+    setting.release();
+    EXPECT_FALSE(setting.value());
+    setting = 2.0f;
+    setting.latch(3);
+    setting.release();
+    EXPECT_EQ(*setting, 2);
+    setting = follow;
+    setting.latch(4);
+    EXPECT_FALSE(setting.value());
+    setting = automatic;
+    EXPECT_FALSE(setting.is_pinned() || setting.is_follow() || setting.value());
+}
+
+TEST(Settings, StudioLightsAreWarmAndCool) {
+    const Settings settings;
+    EXPECT_EQ(to_text(field("lights.key.color"), get(settings, "lights.key.color")), "#fff1e0");
+    EXPECT_EQ(to_text(field("lights.fill.color"), get(settings, "lights.fill.color")), "#e6efff");
+    EXPECT_EQ(to_text(field("lights.rim.color"), get(settings, "lights.rim.color")), "#ffffff");
+}

@@ -1,0 +1,262 @@
+#include "easypbr/scene/resolve.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "easypbr/core/error.h"
+#include "easypbr/scene/fields.h"
+#include "point_mesh.h"
+
+using namespace easypbr;
+
+namespace {
+
+const Vec2i size(800, 600);
+
+/// An irregular cloud away from the origin.
+Mesh blob() {
+    std::mt19937 random(7);
+    std::normal_distribution<float> normal;
+    Array3f::Dense V(500, 3);
+    for (auto row : V.rowwise()) row << 3 + normal(random), 0.5f * normal(random), 2 * normal(random);
+    return cloud(V);
+}
+
+SceneSnapshot scene_of(const Mesh& mesh) {
+    Scene scene;
+    scene.show(mesh, "mesh");
+    return scene.snapshot();
+}
+
+Environment constant_environment(float radiance) {
+    Image image(8, 4, 3, PixelType::f32);
+    for (float& value : image.pixels<float>()) value = radiance;
+    return Environment(image);
+}
+
+/// Settings that light by nothing but what a test adds.
+Settings unlit() {
+    Settings settings;
+    settings.environment.enabled = false;
+    settings.lights.key.enabled = settings.lights.fill.enabled = settings.lights.rim.enabled = false;
+    return settings;
+}
+
+}  // namespace
+
+TEST(Resolve, LeavesNothingToInfer) {
+    const ResolvedSettings resolved = resolve(scene_of(blob()), {}, size);
+    for (const Field& field : fields()) {
+        const bool is_override = field.name.starts_with("material.") || field.name.starts_with("style.");
+        if (!field.can_be_automatic || is_override) continue;
+        const Value value = field.get(resolved.settings);
+        EXPECT_TRUE(value.latched) << field.name;
+    }
+    EXPECT_EQ(resolved.camera.position(), *resolved.settings.camera.position);
+    EXPECT_EQ(resolved.lights.size(), 3u);
+    EXPECT_FALSE(resolved.environment.empty());
+    EXPECT_GT(resolved.exposure, 0);
+}
+
+// Scaling by a power of two changes exponents alone: every length must come out scaled, and all else the
+// same, bit for bit. A constant with a length's unit anywhere would break this.
+TEST(Resolve, ScalesWithTheScene) {
+    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+        Settings settings;
+        settings.camera.projection = projection;
+        settings.camera.azimuth_deg = 37;
+        const Mesh mesh = blob();
+        const ResolvedSettings one = resolve(scene_of(mesh), settings, size);
+        for (const float scale : {1024.0f, 1 / 1024.0f}) {
+            const ResolvedSettings other = resolve(scene_of(cloud(mesh.V() * scale)), settings, size);
+            EXPECT_EQ(other.camera.T_world_cam.linear(), one.camera.T_world_cam.linear());
+            EXPECT_EQ(other.camera.position(), one.camera.position() * scale);
+            EXPECT_EQ(other.camera.near, one.camera.near * scale);
+            EXPECT_EQ(other.camera.far, one.camera.far * scale);
+            EXPECT_EQ(other.camera.ortho_height, one.camera.ortho_height * scale);
+            EXPECT_EQ(other.exposure, one.exposure);
+            for (size_t i = 0; i < 3; ++i) {
+                EXPECT_EQ(other.lights[i].position, one.lights[i].position * scale);
+                EXPECT_EQ(other.lights[i].intensity, one.lights[i].intensity * scale * scale);
+            }
+        }
+    }
+}
+
+TEST(Resolve, GivesTheSameAgainFromLatchedValues) {
+    const SceneSnapshot scene = scene_of(blob());
+    Settings settings;
+    settings.camera.elevation_deg = 90;
+    const ResolvedSettings first = resolve(scene, settings, size);
+    latch(settings, first.settings);
+    const ResolvedSettings again = resolve(scene, settings, size);
+    EXPECT_EQ(again.camera.T_world_cam.matrix(), first.camera.T_world_cam.matrix());
+    EXPECT_EQ(again.camera.near, first.camera.near);
+    EXPECT_EQ(again.exposure, first.exposure);
+    for (const Field& field : fields())
+        EXPECT_EQ(field.get(again.settings), field.get(first.settings)) << field.name;
+}
+
+TEST(Resolve, LatchesPinsFollowsAndReleases) {
+    Settings settings;
+    settings.camera.target = Vec3d(0, 0, 0);
+    settings.lights.key.position = follow;
+    latch(settings, resolve(scene_of(blob()), settings, size).settings);
+    const Vec3d latched = *settings.camera.position;
+    EXPECT_FALSE(settings.camera.position.is_pinned());
+    EXPECT_TRUE(settings.camera.target.is_pinned());
+    EXPECT_FALSE(settings.lights.key.position.value());
+    EXPECT_TRUE(settings.lights.fill.position.value());
+
+    // New content: what is latched stays, what follows moves along.
+    const SceneSnapshot larger = scene_of(cloud(blob().V() * 3));
+    const ResolvedSettings resolved = resolve(larger, settings, size);
+    EXPECT_EQ(resolved.camera.position(), latched);
+    EXPECT_EQ(*resolved.settings.lights.fill.position, *settings.lights.fill.position);
+    Settings fresh;
+    fresh.camera.position = latched;
+    fresh.camera.target = Vec3d(0, 0, 0);
+    const Vec3 followed = *resolve(larger, fresh, size).settings.lights.key.position;
+    EXPECT_EQ(*resolved.settings.lights.key.position, followed);
+
+    release(settings);
+    EXPECT_FALSE(settings.camera.position.value());
+    EXPECT_TRUE(settings.camera.target.is_pinned());
+    EXPECT_TRUE(settings.lights.key.position.is_follow());
+    EXPECT_FALSE(settings.camera.near.value());
+}
+
+// Two lights' worth of radiance is half the exposure, whatever stands in the scene.
+TEST(Resolve, HalvesExposureWhenLightDoubles) {
+    SceneSnapshot scene = scene_of(blob());
+    Settings settings = unlit();
+    scene.lights["sun"].type = LightType::directional;
+    scene.lights["sun"].direction = Vec3(-0.3f, -0.5f, -1);
+    const float one = resolve(scene, settings, size).exposure;
+    scene.lights["sun"].intensity = 2;
+    EXPECT_EQ(resolve(scene, settings, size).exposure, one / 2);
+    settings.tone.exposure_compensation = 1;
+    EXPECT_EQ(resolve(scene, settings, size).exposure, one);
+    settings.tone.exposure = 3.0f;
+    EXPECT_EQ(resolve(scene, settings, size).exposure, 6);
+    EXPECT_EQ(resolve(scene_of(blob()), unlit(), size).exposure, 1) << "nothing lights the scene";
+}
+
+// A white surface under constant radiance L reflects L in every direction, so the exposure is 1 / L.
+// Tolerance: the environment's irradiance is good to a percent.
+TEST(Resolve, MetersAConstantEnvironment) {
+    SceneSnapshot scene = scene_of(blob());
+    scene.environment = constant_environment(0.25f);
+    const ResolvedSettings resolved = resolve(scene, {}, size);
+    EXPECT_TRUE(resolved.lights.empty()) << "with an environment given the studio's lights are off";
+    EXPECT_NEAR(resolved.exposure, 4, 0.04);
+    Settings twice;
+    twice.environment.intensity = 2;
+    EXPECT_NEAR(resolve(scene, twice, size).exposure, 2, 0.02);
+}
+
+// A sun of irradiance E from the camera's direction: the cosine-weighted mean of E cos / pi over the
+// hemisphere is E / pi * (1/3) / (1/2) = 2 E / (3 pi). Tolerance: 64 midpoints in z integrate z^2 to 1 / (12
+// * 64^2) of itself.
+TEST(Resolve, MetersASunFromTheCamera) {
+    SceneSnapshot scene = scene_of(blob());
+    const Settings settings = unlit();
+    const Vec3d forward = -resolve(scene, settings, size).camera.T_world_cam.linear().col(2);
+    scene.lights["sun"].type = LightType::directional;
+    scene.lights["sun"].direction = forward.cast<float>();
+    EXPECT_NEAR(resolve(scene, settings, size).exposure, 3 * pi / 2, 1e-3);
+    scene.lights["sun"].enabled = false;
+    EXPECT_EQ(resolve(scene, settings, size).exposure, 1);
+}
+
+// With the camera in front (+z) and up +y: the key to the left, above and before the content, 3 radii away;
+// the rim behind it. The content is a cube of half diagonal sqrt(3).
+TEST(Resolve, PlacesStudioLightsAroundTheContent) {
+    Settings settings;
+    settings.camera.azimuth_deg = settings.camera.elevation_deg = 0;
+    const ResolvedSettings resolved = resolve(scene_of(points({{-1, -1, -1}, {1, 1, 1}})), settings, size);
+    const double d = 3 * std::sqrt(3.0), c = std::cos(radians(40)) * std::sqrt(0.5);
+    const Vec3d key(-c * d, std::sin(radians(40)) * d, c * d);
+    EXPECT_TRUE(resolved.lights[0].position.isApprox(key.cast<float>(), 1e-6f))
+        << resolved.lights[0].position;
+    EXPECT_FLOAT_EQ(resolved.lights[0].intensity, float(2.0 * d * d));
+    EXPECT_GT(resolved.lights[1].position.x(), 0);
+    EXPECT_LT(resolved.lights[2].position.z(), 0);
+    for (const Light& light : resolved.lights) EXPECT_NEAR(light.position.norm(), d, 1e-6 * d);
+
+    settings.lights.intensity = 0.5f;
+    settings.lights.fill.enabled = false;
+    const ResolvedSettings dimmed = resolve(scene_of(points({{-1, -1, -1}, {1, 1, 1}})), settings, size);
+    ASSERT_EQ(dimmed.lights.size(), 2u);
+    EXPECT_FLOAT_EQ(dimmed.lights[0].intensity, float(1.0 * d * d));
+}
+
+TEST(Resolve, TakesTheGivenEnvironmentOrTheStudio) {
+    SceneSnapshot scene = scene_of(blob());
+    EXPECT_EQ(resolve(scene, {}, size).environment.hash(), studio_environment().hash());
+    scene.environment = constant_environment(1);
+    EXPECT_EQ(resolve(scene, {}, size).environment.hash(), scene.environment.hash());
+    Settings settings;
+    settings.environment.enabled = false;
+    const ResolvedSettings without = resolve(scene, settings, size);
+    EXPECT_TRUE(without.environment.empty());
+    EXPECT_EQ(without.lights.size(), 3u) << "something has to light the scene";
+}
+
+TEST(Resolve, TurnsTheEnvironmentAboutUp) {
+    const SceneSnapshot scene = scene_of(blob());
+    Settings settings;
+    EXPECT_EQ(resolve(scene, settings, size).R_env_world, Mat3(Mat3::Identity()));
+    // Counter-clockwise from above by 90 degrees: what was seen towards +z is now seen towards +x.
+    settings.environment.rotation_deg = 90;
+    EXPECT_TRUE(
+        Vec3(resolve(scene, settings, size).R_env_world * Vec3(1, 0, 0)).isApprox(Vec3(0, 0, 1), 1e-6f));
+    settings.environment.rotation_deg = 0;
+    for (const char* up : {"+x", "-x", "+y", "-y", "+z", "-z", "z"}) {
+        settings.camera.up = up;
+        const Mat3 R = resolve(scene, settings, size).R_env_world;
+        EXPECT_EQ(Vec3(R * parse_up(up).cast<float>()), Vec3(0, 1, 0)) << up;
+        EXPECT_NEAR(R.determinant(), 1, 1e-6) << up;
+    }
+    settings.camera.up = "+z";
+    EXPECT_EQ(Vec3(resolve(scene, settings, size).R_env_world * Vec3(0, -1, 0)), Vec3(0, 0, 1));
+}
+
+TEST(Resolve, RefusesContradictions) {
+    const SceneSnapshot scene = scene_of(blob());
+    const auto refuses = [&](const auto& change) {
+        Settings settings;
+        change(settings);
+        EXPECT_THROW(resolve(scene, settings, size), ArgumentError);
+    };
+    const std::vector<double> pose = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 5, 0, 0, 0, 1};
+    refuses([&](Settings& s) { s.camera.pose = pose, s.camera.position = Vec3d(0, 0, 1); });
+    refuses([&](Settings& s) { s.camera.pose = {1, 2, 3}; });
+    refuses([&](Settings& s) { s.camera.pose = std::vector<double>(16, 1.0); });
+    refuses([&](Settings& s) { s.camera.position = s.camera.target = Vec3d(1, 1, 1); });
+    refuses([&](Settings& s) { s.camera.fov_y_deg = 0; });
+    refuses([&](Settings& s) { s.camera.up = "up"; });
+    refuses([&](Settings& s) { s.camera.intrinsics = {500, 500, 320, 240, 1e300, 480}; });
+    refuses([&](Settings& s) {
+        s.camera.intrinsics = {500, 500, 320, 240, 640, 480};
+        s.camera.projection = Projection::orthographic;
+    });
+    EXPECT_THROW(resolve(scene, {}, Vec2i(0, 600)), ArgumentError);
+    EXPECT_THROW(resolve(scene, {}, Vec2i(800, max_image_side + 1)), ArgumentError);
+}
+
+TEST(Resolve, NeedsContentOnlyToPlaceTheCamera) {
+    try {
+        resolve(SceneSnapshot{}, {}, size);
+        FAIL();
+    } catch (const ArgumentError& error) {
+        EXPECT_EQ(std::string(error.what()).find("nothing to show:"), 0u) << error.what();
+    }
+    Settings settings;
+    settings.camera.position = Vec3d(0, 0, 5);
+    const ResolvedSettings resolved = resolve(SceneSnapshot{}, settings, size);
+    EXPECT_EQ(*resolved.settings.camera.target, Vec3d(0, 0, 0));
+    EXPECT_TRUE(std::isfinite(resolved.exposure));
+}
