@@ -40,20 +40,20 @@ void show_teapots(Scene& scene) {
     const auto add = [&](const Material& material, const Place& place) {
         show(scene, teapot, material, pose(place));
     };
-    add(make_material("copper teapot", {0.97f, 0.74f, 0.62f}, 1, 0.22f), {-2.35f, -1.0f, 18});
-    add(make_material("white teapot", {0.90f, 0.89f, 0.86f}, 0, 0.6f), {0.05f, -1.35f, -24});
-    add(make_material("aluminium teapot", {0.91f, 0.92f, 0.92f}, 1, 0.35f), {2.4f, -0.95f, 28});
-    add(make_material("red teapot", {0.74f, 0.06f, 0.05f}, 0, 0.08f), {-1.2f, 1.05f, -30});
-    add(make_material("gold teapot", {1.00f, 0.85f, 0.57f}, 1, 0.12f), {1.3f, 1.0f, 22});
+    add(make_material("copper teapot", {0.97f, 0.74f, 0.62f}, 1, 0.22f), {-2.15f, -0.95f, 24});
+    add(make_material("white teapot", {0.90f, 0.89f, 0.86f}, 0, 0.6f), {0.0f, -1.45f, -32});
+    add(make_material("aluminium teapot", {0.91f, 0.92f, 0.92f}, 1, 0.35f), {2.2f, -0.9f, 152});
+    add(make_material("red teapot", {0.74f, 0.06f, 0.05f}, 0, 0.08f), {-1.15f, 0.95f, 206});
+    add(make_material("gold teapot", {1.00f, 0.85f, 0.57f}, 1, 0.12f), {1.2f, 0.95f, 20});
 }
 
 void show_spheres(Scene& scene) {
     const auto add = [&](const Material& material, const Place& place, float radius) {
         show(scene, make_sphere(radius, 96), material, pose(place, radius));
     };
-    add(make_material("chrome sphere", {0.76f, 0.77f, 0.78f}, 1, 0.04f), {0.02f, 2.05f, 0}, 0.30f);
-    add(make_material("teal sphere", {0.08f, 0.46f, 0.47f}, 0, 0.45f), {-2.85f, 1.25f, 0}, 0.34f);
-    add(make_material("blue sphere", {0.10f, 0.20f, 0.55f}, 0, 0.15f), {3.0f, 1.0f, 0}, 0.26f);
+    add(make_material("chrome sphere", {0.76f, 0.77f, 0.78f}, 1, 0.04f), {0.04f, 1.75f, 0}, 0.30f);
+    add(make_material("teal sphere", {0.08f, 0.46f, 0.47f}, 0, 0.45f), {-2.55f, 1.05f, 0}, 0.34f);
+    add(make_material("blue sphere", {0.10f, 0.20f, 0.55f}, 0, 0.15f), {2.75f, 0.85f, 0}, 0.26f);
 }
 
 /// A low cylinder whose top is y = 0.
@@ -88,7 +88,7 @@ Mesh make_floor(float radius, float thickness) {
 
 Scene make_demo_scene() {
     Scene scene;
-    show(scene, make_floor(4.1f, 0.12f), make_material("floor", {0.80f, 0.80f, 0.79f}, 0, 0.5f),
+    show(scene, make_floor(3.5f, 0.07f), make_material("floor", {0.80f, 0.80f, 0.79f}, 0, 0.5f),
          Eigen::Affine3d::Identity());
     show_teapots(scene);
     show_spheres(scene);

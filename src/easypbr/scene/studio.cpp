@@ -70,8 +70,7 @@ float coverage(const SoftBox& box, const Vec3& direction) {
            smooth_step(box.half_height + box.edge, box.half_height, y);
 }
 
-Vec3 studio_radiance(const Vec3& direction) {
-    Vec3 radiance = room_radiance(direction.y());
+Vec3 with_lamps(Vec3 radiance, const Vec3& direction) {
     for (const SoftBox& box : soft_boxes()) {
         const float part = coverage(box, direction);
         radiance += part * (box.radiance - radiance);
@@ -83,10 +82,11 @@ Image studio_image() {
     Image image(1024, 512, 3, PixelType::f32);
     parallel_for(size_t(image.height()), 16, [&](size_t y) {
         float* pixel = image.at<float>(0, int(y));
+        const float v = (float(y) + 0.5f) / float(image.height());
+        const Vec3 room = room_radiance(equirect_direction(0, v).y());
         for (int x = 0; x < image.width(); ++x, pixel += 3) {
-            const Vec2 uv((float(x) + 0.5f) / float(image.width()),
-                          (float(y) + 0.5f) / float(image.height()));
-            Eigen::Map<Vec3>{pixel} = studio_radiance(equirect_direction(uv.x(), uv.y()));
+            const float u = (float(x) + 0.5f) / float(image.width());
+            Eigen::Map<Vec3>{pixel} = with_lamps(room, equirect_direction(u, v));
         }
     });
     return image;
