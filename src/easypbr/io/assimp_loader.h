@@ -1,4 +1,4 @@
-// The long tail of formats (FBX, DAE, 3DS...), by way of assimp's module.
+// The long tail of mesh formats, through assimp: a module of its own that is loaded when it is first needed.
 #pragma once
 
 #include <filesystem>
@@ -9,10 +9,12 @@
 
 namespace easypbr::io {
 
-/// Throws FileError, or FormatError when the file is damaged or the module is absent.
+/// Reads any format that assimp knows. Throws FileError; FormatError when assimp refuses the file, or when
+/// its module (libeasypbr_assimp.so, searched beside libeasypbr.so and then where the system searches) is not
+/// there.
 LoadedScene load_assimp(const std::filesystem::path& path);
 
-/// Extensions, in lower case without the dot, that the module reads; empty when it is absent.
+/// Extensions that assimp reads, sorted; empty without its module.
 std::vector<std::string> assimp_extensions();
 
 }  // namespace easypbr::io
