@@ -1,0 +1,143 @@
+#include "easypbr/gl/context.h"
+
+#include <epoxy/gl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <thread>
+
+#include "easypbr/core/error.h"
+#include "easypbr/gl/buffer.h"
+#include "easypbr/gl/program.h"
+#include "easypbr/gl/texture.h"
+
+namespace easypbr::gl {
+namespace {
+
+TEST(Context, SaysWhatItIs) {
+    const auto context = Context::create();
+    EXPECT_FALSE(context->info().renderer.empty());
+    EXPECT_EQ(context->info().version.substr(0, 2), "4.");
+    EXPECT_GE(context->info().max_texture_size, 16384);
+    ASSERT_FALSE(context->info().attempts.empty());
+    EXPECT_EQ(context->info().attempts.back().error, "");
+}
+
+TEST(Context, ScopesNestAndGiveBack) {
+    const auto a = Context::create(), b = Context::create();
+    EXPECT_EQ(Context::current_or_null(), nullptr);
+    {
+        const ContextScope outer(*a);
+        EXPECT_EQ(Context::current_or_null(), a.get());
+        {
+            const ContextScope inner(*b);
+            EXPECT_EQ(Context::current_or_null(), b.get());
+            const ContextScope again(*b);
+        }
+        EXPECT_EQ(Context::current_or_null(), a.get());
+        EXPECT_NE(glGetString(GL_VERSION), nullptr);
+    }
+    EXPECT_EQ(Context::current_or_null(), nullptr);
+    EXPECT_THROW(Context::current(), ContextError);
+}
+
+TEST(Context, ServesSeveralThreadsInTurn) {
+    const auto context = Context::create();
+    const auto work = [&] {
+        for (int i = 0; i < 20; ++i) {
+            const ContextScope scope(*context);
+            const Buffer buffer(size_t(64));
+            EXPECT_TRUE(buffer);
+        }
+    };
+    std::thread first(work), second(work);
+    first.join();
+    second.join();
+}
+
+TEST(Context, DeletesObjectsThatDieElsewhere) {
+    const auto context = Context::create();
+    Buffer buffer;
+    GLuint id = 0;
+    {
+        const ContextScope scope(*context);
+        buffer = Buffer(size_t(64));
+        id = buffer.id();
+    }
+    std::thread([dying = std::move(buffer)]() mutable { dying = Buffer(); }).join();
+    const ContextScope scope(*context);
+    EXPECT_FALSE(glIsBuffer(id));
+}
+
+TEST(Context, ObjectsMayOutliveIt) {
+    auto context = Context::create();
+    Texture texture;
+    {
+        const ContextScope scope(*context);
+        texture = Texture(Format::rgba8, 4, 4);
+    }
+    context.reset();
+    texture = Texture();
+}
+
+TEST(Context, RefusesToWorkAfterFork) {
+    const auto context = Context::create();
+    const pid_t child = fork();
+    if (child == 0) {
+        try {
+            const ContextScope scope(*context);
+        } catch (const ContextError& error) {
+            _exit(std::string(error.what()).find("spawn") != std::string::npos ? 0 : 2);
+        }
+        _exit(1);
+    }
+    int status = 0;
+    waitpid(child, &status, 0);
+    EXPECT_EQ(WEXITSTATUS(status), 0);
+}
+
+TEST(Program, ReportsFileAndLine) {
+    char folder[] = "/tmp/easypbr_shadersXXXXXX";
+    ASSERT_NE(mkdtemp(folder), nullptr);
+    const std::string path = std::string(folder) + "/broken.frag";
+    FILE* file = fopen(path.c_str(), "w");
+    fputs("#include \"common_encoding.glsl\"\n\nout vec4 o;\nvoid main() { o = nonsense; }\n", file);
+    fclose(file);
+    setenv("EASYPBR_SHADER_DIR", folder, 1);
+    const auto context = Context::create();
+    const ContextScope scope(*context);
+    try {
+        const Program program("screen_triangle.vert", "broken.frag");
+        ADD_FAILURE() << "compiled";
+    } catch (const ContextError& error) {
+        EXPECT_NE(std::string(error.what()).find("broken.frag:4"), std::string::npos) << error.what();
+    }
+    unsetenv("EASYPBR_SHADER_DIR");
+    unlink(path.c_str());
+    rmdir(folder);
+    EXPECT_THROW(shader_source("missing.frag"), ArgumentError);
+}
+
+TEST(Texture, RefusesSizesBeyondTheDriver) {
+    const auto context = Context::create();
+    const ContextScope scope(*context);
+    EXPECT_THROW(Texture(Format::rgba8, context->info().max_texture_size + 1, 1), ContextError);
+    EXPECT_THROW(Texture(Format::rgba8, 0, 1), ContextError);
+    Texture texture(Format::rgba8, 2, 2);
+    EXPECT_THROW(texture.upload(std::vector<std::byte>(3)), ArgumentError);
+}
+
+TEST(Texture, RoundTrips) {
+    const auto context = Context::create();
+    const ContextScope scope(*context);
+    Texture texture(Format::rg16, 3, 2);
+    std::vector<uint16_t> values(12), back(12);
+    for (size_t i = 0; i < values.size(); ++i) values[i] = uint16_t(i * 5000);
+    texture.upload(std::as_bytes(std::span(values)));
+    Framebuffer({&texture}).read(0, Format::rg16, 0, 0, 3, 2, std::as_writable_bytes(std::span(back)));
+    EXPECT_EQ(values, back);
+}
+
+}  // namespace
+}  // namespace easypbr::gl

@@ -1,0 +1,56 @@
+// A session with exact conditions: no environment, no studio lights, exposure 1, no tone curve.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include "easypbr/app/session.h"
+#include "easypbr/scene/primitives.h"
+
+namespace easypbr {
+
+inline app::Session plain_session(const Scene& scene, int size = 64) {
+    app::Session session(scene);
+    Settings& s = session.settings();
+    s.image.size = Vec2i(size, size);
+    s.image.samples = 1;
+    s.image.antialias = Antialias::none;
+    s.environment.enabled = false;
+    for (StudioLight* light : {&s.lights.key, &s.lights.fill, &s.lights.rim}) light->enabled = false;
+    s.tone.tone_operator = ToneOperator::none;
+    s.tone.exposure = 1.0f;
+    s.background.mode = BackgroundMode::transparent;
+    return session;
+}
+
+inline Image render_linear(app::Session& session, int samples = 1) {
+    return session.render({std::nullopt, samples, app::Encoding::scene_linear});
+}
+
+/// An environment of constant radiance.
+inline Environment constant_environment(float radiance) {
+    Image image(16, 8, 3, PixelType::f32);
+    for (float& v : image.pixels<float>()) v = radiance;
+    return Environment(image);
+}
+
+/// A square of the given half width in the plane z = 0 that faces +z.
+inline Mesh facing_square(float half = 1, const Material& material = {}) {
+    Array3f::Dense V(4, 3);
+    V << -half, -half, 0, half, -half, 0, half, half, 0, -half, half, 0;
+    Array3i::Dense F(2, 3);
+    F << 0, 1, 2, 0, 2, 3;
+    Array2f::Dense UV(4, 2);
+    UV << 0, 0, 1, 0, 1, 1, 0, 1;
+    Mesh mesh{Array3f(V), Array3i(F)};
+    mesh.set_UV(Array2f(UV));
+    mesh.set_material(material);
+    return mesh;
+}
+
+inline void look_from(app::Session& session, const Vec3d& position, float fov_y_deg = 30) {
+    session.settings().camera.position = position;
+    session.settings().camera.target = Vec3d(0, 0, 0);
+    session.settings().camera.fov_y_deg = fov_y_deg;
+}
+
+}  // namespace easypbr
