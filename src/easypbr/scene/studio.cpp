@@ -1,8 +1,11 @@
 // The embedded studio, computed at its first use: a dim room with soft boxes, for lighting that flatters any
 // material.
+#include <tbb/task_arena.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/scene/environment.h"
@@ -80,13 +83,17 @@ Vec3 with_lamps(Vec3 radiance, const Vec3& direction) {
 
 Image studio_image() {
     Image image(1024, 512, 3, PixelType::f32);
+    std::vector<Vec3> horizon(size_t(image.width()));
+    for (size_t x = 0; x < horizon.size(); ++x)
+        horizon[x] = equirect_direction((float(x) + 0.5f) / float(image.width()), 0.5f);
     parallel_for(size_t(image.height()), 16, [&](size_t y) {
+        const Vec3 meridian = equirect_direction(0.5f, (float(y) + 0.5f) / float(image.height()));
+        const float height = meridian.y(), sine = -meridian.z();
+        const Vec3 room = room_radiance(height);
         float* pixel = image.at<float>(0, int(y));
-        const float v = (float(y) + 0.5f) / float(image.height());
-        const Vec3 room = room_radiance(equirect_direction(0, v).y());
-        for (int x = 0; x < image.width(); ++x, pixel += 3) {
-            const float u = (float(x) + 0.5f) / float(image.width());
-            Eigen::Map<Vec3>{pixel} = with_lamps(room, equirect_direction(u, v));
+        for (const Vec3& east : horizon) {
+            Eigen::Map<Vec3>{pixel} = with_lamps(room, Vec3(sine * east.x(), height, sine * east.z()));
+            pixel += 3;
         }
     });
     return image;
@@ -95,7 +102,10 @@ Image studio_image() {
 }  // namespace
 
 const Environment& studio_environment() {
-    static const Environment studio(studio_image(), "studio");
+    // Isolated: while the loops inside wait, this thread must not take up a task that asks for the studio
+    // again.
+    static const Environment studio =
+        tbb::this_task_arena::isolate([] { return Environment(studio_image(), "studio"); });
     return studio;
 }
 

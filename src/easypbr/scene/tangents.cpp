@@ -69,7 +69,7 @@ Vec3d any_perpendicular(const Vec3d& normal) {
 }
 
 Vec3d in_plane(const Vec3d& vector, const Vec3d& normal) {
-    return (vector - normal * normal.dot(vector)).stableNormalized();
+    return (vector - normal * normal.dot(vector)).normalized();
 }
 
 /// One vertex's corners, put into groups that share a tangent.
@@ -109,7 +109,7 @@ class Fan {
     Vec3d position(int32_t v) const { return V_.row(v).transpose().cast<double>(); }
 
     void read(size_t count) {
-        normal_ = N_.row(vertex(corners_[0], 0)).transpose().cast<double>().stableNormalized();
+        normal_ = N_.row(vertex(corners_[0], 0)).transpose().cast<double>().normalized();
         fan_.resize(count);
         for (size_t i = 0; i < count; ++i) read_corner(uint32_t(i));
     }
