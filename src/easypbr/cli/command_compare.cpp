@@ -1,0 +1,51 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "easypbr/cli/command.h"
+#include "easypbr/cli/console.h"
+#include "easypbr/core/compare.h"
+#include "easypbr/io/image_io.h"
+
+namespace easypbr::cli {
+namespace {
+
+struct CompareOptions {
+    std::string a, b;
+    double max_difference = 0;
+};
+
+void declare(CLI::App& command, CompareOptions& options) {
+    command.add_option("A", options.a, "Image file");
+    command.add_option("B", options.b, "Image file of the same size and type");
+    command
+        .add_option("--max-difference", options.max_difference,
+                    "Largest difference of a channel that passes, in units of the type (0 to 255 for 8 bits)")
+        ->option_text("N")
+        ->check(CLI::NonNegativeNumber);
+}
+
+int run(const CompareOptions& options) {
+    require(!options.b.empty(), "compare", "two image files");
+    const Image a = io::load_image(options.a), b = io::load_image(options.b);
+    // A picture with opaque alpha is the same as one without.
+    const int channels = std::max(a.channels(), b.channels());
+    const ImageDifference d = compare(with_channels(a, channels), with_channels(b, channels));
+    fmt::print("max {:.6g}, mean {:.6g}, rmse {:.6g}, psnr {:.2f} dB, {} of {} pixels differ\n", d.max,
+               d.mean, d.rmse, d.psnr, d.different, a.pixel_count());
+    std::fflush(stdout);
+    // Not "greater", so that images with NaN never pass.
+    if (d.max <= options.max_difference) return 0;
+    print_error(fmt::format("{} and {} differ by up to {:.6g}, more than {:.6g}", options.a, options.b, d.max,
+                            options.max_difference));
+    return 1;
+}
+
+}  // namespace
+
+void add_compare(CLI::App& app, Job& job) {
+    set_job<CompareOptions>(*app.add_subcommand("compare", "Say how much two images differ"), job, declare,
+                            run);
+}
+
+}  // namespace easypbr::cli

@@ -1,0 +1,50 @@
+#include <fmt/format.h>
+
+#include <cstdio>
+
+#include "easypbr/app/output.h"
+#include "easypbr/app/session.h"
+#include "easypbr/cli/command.h"
+#include "easypbr/cli/render_options.h"
+#include "easypbr/cli/stopwatch.h"
+#include "easypbr/core/file.h"
+#include "easypbr/io/image_io.h"
+#include "easypbr/scene/primitives.h"
+
+namespace easypbr::cli {
+namespace {
+
+struct DemoOptions {
+    std::string output = "demo.png", size = "1280x720";
+};
+
+void declare(CLI::App& command, DemoOptions& options) {
+    command.add_option("-o,--output", options.output, "Picture to write")->option_text("FILE");
+    command.add_option("--size,--resolution", options.size, "Width and height in pixels")->option_text("WxH");
+}
+
+int run(const DemoOptions& options) {
+    const Vec2i size = parse_size(options.size);
+    const app::Encoding encoding = app::encoding_for(options.output);
+    check_writable(options.output);
+    Stopwatch watch;
+    app::Session session(make_demo_scene());
+    watch.lap("make the scene");
+    session.context_info();
+    watch.lap("open an OpenGL context");
+    const Image image = session.render({size, std::nullopt, encoding});
+    watch.lap("draw");
+    io::save_image(image, options.output);
+    watch.lap("write the picture");
+    for (const auto& [stage, seconds] : watch.stages()) fmt::print("{:<24}{:8.3f} s\n", stage, seconds);
+    fmt::print("{:<24}{:8.3f} s\n{}\n", "total", watch.total(), fs::absolute(options.output).string());
+    return 0;
+}
+
+}  // namespace
+
+void add_demo(CLI::App& app, Job& job) {
+    set_job<DemoOptions>(*app.add_subcommand("demo", "Draw the embedded demo scene"), job, declare, run);
+}
+
+}  // namespace easypbr::cli

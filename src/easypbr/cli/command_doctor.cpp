@@ -1,0 +1,78 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <cstdio>
+
+#include "easypbr/app/session.h"
+#include "easypbr/cli/command.h"
+#include "easypbr/cli/console.h"
+#include "easypbr/core/cache.h"
+#include "easypbr/core/error.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/io/assimp_loader.h"
+
+namespace easypbr::cli {
+namespace {
+
+struct DoctorOptions {};
+
+void declare(CLI::App&, DoctorOptions&) {}
+
+void print(const std::string& name, const std::string& value) {
+    fmt::print("{:<12}{}\n", name, value);
+}
+
+/// The cache's folder is made when it is first needed, so its nearest ancestor that exists must be writable.
+bool can_be_written(fs::path folder) {
+    while (!folder.empty() && !fs::exists(folder) && folder != folder.root_path())
+        folder = folder.parent_path();
+    return ::access(folder.c_str(), W_OK | X_OK) == 0;
+}
+
+void print_cache() {
+    const fs::path folder = cache_folder();
+    print("cache",
+          fmt::format("{} ({})", folder.string(),
+                      can_be_written(folder) ? "writable" : "not writable: nothing is kept between runs"));
+}
+
+void print_formats() {
+    const std::vector<std::string> extensions = io::assimp_extensions();
+    print("formats", fmt::format("{}", fmt::join(io::readable_extensions(), " ")));
+    print("assimp",
+          extensions.empty()
+              ? "module not found: FBX, DAE, 3DS and others cannot be read; install libassimp5 and easypbr's "
+                "assimp module"
+              : fmt::format("module found, {} formats", extensions.size()));
+}
+
+void print_context(const gl::ContextInfo& info) {
+    for (const gl::Attempt& attempt : info.attempts)
+        print("tried", fmt::format("{}: {}", attempt.what, attempt.error.empty() ? "works" : attempt.error));
+    print("vendor", info.vendor);
+    print("renderer", info.renderer + (info.software ? " (software: draws on the CPU)" : ""));
+    print("OpenGL", info.version);
+    print("limits", fmt::format("textures up to {0}x{0}, pictures up to {1}x{1}", info.max_texture_size,
+                                std::min(info.max_texture_size, info.max_viewport)));
+}
+
+int run(const DoctorOptions&) {
+    print("easypbr", EASYPBR_VERSION);
+    print("threads", fmt::format("{}", thread_count()));
+    print_cache();
+    print_formats();
+    std::fflush(stdout);
+    app::Session session;
+    print_context(session.context_info());
+    return 0;
+}
+
+}  // namespace
+
+void add_doctor(CLI::App& app, Job& job) {
+    set_job<DoctorOptions>(*app.add_subcommand("doctor", "Say what this machine can draw with"), job, declare,
+                           run);
+}
+
+}  // namespace easypbr::cli

@@ -1,0 +1,164 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "easypbr/cli/command.h"
+#include "easypbr/io/image_io.h"
+#include "easypbr/io/mesh_io.h"
+
+namespace easypbr::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+struct InfoOptions {
+    std::string file;
+    bool json = false;
+};
+
+void declare(CLI::App& command, InfoOptions& options) {
+    command.add_option("FILE", options.file, "Mesh or image file");
+    command.add_flag("--json", options.json, "Print JSON");
+}
+
+Json describe(const Image& image) {
+    static const char* const types[] = {"u8", "u16", "f32"};
+    return {{"width", image.width()},
+            {"height", image.height()},
+            {"channels", image.channels()},
+            {"type", types[int(image.type())]}};
+}
+
+Json describe(const Vec3d& v) {
+    return {v.x(), v.y(), v.z()};
+}
+
+std::vector<std::string> attributes_of(const MeshData& data) {
+    std::vector<std::string> names;
+    const auto add = [&](const char* name, bool present) {
+        if (present) names.push_back(name);
+    };
+    add("normals", !data.N.empty());
+    add("colors", !data.C.empty());
+    add("uv", !data.UV.empty());
+    add("tangents", !data.T.empty());
+    add("edges", !data.E.empty());
+    add("labels", !data.L.empty());
+    add("intensities", !data.I.empty());
+    return names;
+}
+
+void add_texture(const char* use, const Texture& texture, Json& textures) {
+    if (!texture) return;
+    Json entry{{"use", use}, {"path", texture.path}};
+    entry.update(describe(*texture.image));
+    textures.push_back(std::move(entry));
+}
+
+Json describe(const Material& material) {
+    Json textures = Json::array();
+    add_texture("base_color", material.base_color_texture, textures);
+    add_texture("metallic", material.metallic_texture, textures);
+    add_texture("roughness", material.roughness_texture, textures);
+    add_texture("normal", material.normal_texture, textures);
+    add_texture("occlusion", material.occlusion_texture, textures);
+    add_texture("emissive", material.emissive_texture, textures);
+    add_texture("opacity", material.opacity_texture, textures);
+    return {{"name", material.name},
+            {"base_color", describe(material.base_color.cast<double>())},
+            {"metallic", material.metallic},
+            {"roughness", material.roughness},
+            {"textures", textures}};
+}
+
+/// Sums over all nodes of a file.
+struct Summary {
+    Eigen::Index vertices = 0, faces = 0;
+    size_t nodes = 0, parts = 0;
+    Box3d bounds;
+    std::set<std::string> attributes;
+    std::map<std::string, Json> materials;
+
+    void add(const MeshData& data, const Eigen::Affine3d& T_world_mesh) {
+        ++nodes;
+        vertices += data.V.rows();
+        faces += data.F.rows();
+        parts += data.parts.empty() && !data.F.empty() ? 1 : data.parts.size();
+        for (Eigen::Index i = 0; i < data.V.rows(); ++i)
+            bounds.extend(T_world_mesh * Vec3d(data.V.row(i).transpose().cast<double>()));
+        for (const std::string& name : attributes_of(data)) attributes.insert(name);
+        for (const Material& material : data.materials) {
+            Json entry = describe(material);
+            const std::string key = entry.dump(-1, ' ', false, Json::error_handler_t::replace);
+            materials.emplace(key, std::move(entry));
+        }
+    }
+};
+
+Json describe(const io::LoadedScene& loaded) {
+    Summary sum;
+    for_each_node(loaded.mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d& T) {
+        sum.add(*data, T);
+    });
+    Json materials = Json::array();
+    for (const auto& entry : sum.materials) materials.push_back(entry.second);
+    Json json{{"vertices", sum.vertices}, {"faces", sum.faces},     {"nodes", sum.nodes},
+              {"parts", sum.parts},       {"materials", materials}, {"attributes", sum.attributes}};
+    if (!sum.bounds.isEmpty())
+        json["bounds"] = {{"min", describe(sum.bounds.min())}, {"max", describe(sum.bounds.max())}};
+    json["lights"] = loaded.lights.size();
+    json["cameras"] = loaded.cameras.size();
+    return json;
+}
+
+std::string row(const Json& numbers) {
+    return fmt::format("({:.6g}, {:.6g}, {:.6g})", numbers[0].get<double>(), numbers[1].get<double>(),
+                       numbers[2].get<double>());
+}
+
+std::string image_text(const Json& image) {
+    return fmt::format("{}x{}, {} channels, {}", image["width"].get<int>(), image["height"].get<int>(),
+                       image["channels"].get<int>(), image["type"].get<std::string>());
+}
+
+void print_mesh(const Json& mesh) {
+    for (const char* count : {"vertices", "faces", "nodes", "parts", "lights", "cameras"})
+        fmt::print("{:<12}{}\n", count, mesh[count].get<size_t>());
+    fmt::print("{:<12}{}\n", "attributes",
+               fmt::join(mesh["attributes"].get<std::vector<std::string>>(), ", "));
+    if (mesh.contains("bounds"))
+        fmt::print("{:<12}{} to {}\n", "bounds", row(mesh["bounds"]["min"]), row(mesh["bounds"]["max"]));
+    for (const Json& material : mesh["materials"]) {
+        fmt::print("{:<12}'{}': base colour {}, metallic {:.3g}, roughness {:.3g}\n", "material",
+                   material["name"].get<std::string>(), row(material["base_color"]),
+                   material["metallic"].get<float>(), material["roughness"].get<float>());
+        for (const Json& texture : material["textures"])
+            fmt::print("{:<12}  {}: {} ({})\n", "", texture["use"].get<std::string>(),
+                       texture["path"].get<std::string>(), image_text(texture));
+    }
+}
+
+int run(const InfoOptions& options) {
+    require(!options.file.empty(), "info", "a FILE");
+    const bool is_image = is_image_file(options.file);
+    const Json json =
+        is_image ? describe(io::load_image(options.file)) : describe(io::load_scene(options.file));
+    if (options.json)
+        fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    else if (is_image)
+        fmt::print("{}\n", image_text(json));
+    else
+        print_mesh(json);
+    return 0;
+}
+
+}  // namespace
+
+void add_info(CLI::App& app, Job& job) {
+    set_job<InfoOptions>(*app.add_subcommand("info", "Say what a mesh or image file holds"), job, declare,
+                         run);
+}
+
+}  // namespace easypbr::cli

@@ -1,0 +1,186 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <cstdio>
+#include <future>
+
+#include "easypbr/app/output.h"
+#include "easypbr/app/session.h"
+#include "easypbr/cli/command.h"
+#include "easypbr/cli/console.h"
+#include "easypbr/cli/drawable.h"
+#include "easypbr/cli/render_options.h"
+#include "easypbr/cli/stopwatch.h"
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/io/image_io.h"
+
+namespace easypbr::cli {
+namespace {
+
+/// One picture to make.
+struct Picture {
+    std::vector<std::string> files, names;
+    std::string output, save_settings;
+};
+
+/// What every picture of a batch starts from.
+struct Look {
+    Settings settings;
+    std::map<std::string, Light> lights;
+};
+
+std::string with_name(std::string pattern, const std::string& name) {
+    const std::string place = "{name}";
+    for (size_t at = 0; (at = pattern.find(place, at)) != pattern.npos; at += name.size())
+        pattern.replace(at, place.size(), name);
+    return pattern;
+}
+
+std::vector<Picture> pictures_of(const RenderOptions& options) {
+    const std::vector<std::string> names = unique_names(options.files);
+    if (!options.batch) return {{options.files, names, options.output, options.save_settings}};
+    std::vector<Picture> pictures;
+    for (size_t i = 0; i < names.size(); ++i)
+        pictures.push_back({{options.files[i]},
+                            {names[i]},
+                            with_name(options.output, names[i]),
+                            with_name(options.save_settings, names[i])});
+    return pictures;
+}
+
+Look look_of(const RenderOptions& options) {
+    app::Session session;
+    if (!options.settings.empty()) app::load_settings(session, options.settings);
+    apply(options, session.settings());
+    Look look{session.settings(), {}};
+    for (const std::string& name : session.scene().light_names())
+        look.lights[name] = session.scene().light(name);
+    return look;
+}
+
+/// Throws FileError, ArgumentError before anything is loaded or drawn.
+void check_files(const Picture& picture, const Settings& settings) {
+    if (picture.output != "-") {
+        app::encoding_for(picture.output);
+        check_writable(picture.output);
+    }
+    if (!picture.save_settings.empty()) check_writable(picture.save_settings);
+    for (const std::string& file : picture.files) MappedFile{file};
+    const MaterialSettings& m = settings.material;
+    for (const std::string& file :
+         {settings.environment.file, settings.background.image, m.base_color_texture, m.metallic_texture,
+          m.roughness_texture, m.normal_texture, m.occlusion_texture, m.emissive_texture, m.opacity_texture})
+        if (!file.empty()) MappedFile{file};
+}
+
+std::vector<io::LoadedScene> load_all(const std::vector<std::string>& files, const io::LoadOptions& options) {
+    std::vector<io::LoadedScene> loaded;
+    for (const std::string& file : files) loaded.push_back(load_drawable(file, options));
+    return loaded;
+}
+
+void write_to_stdout(const Image& image) {
+    const std::vector<std::byte> png = io::encode_png(image);
+    if (std::fwrite(png.data(), 1, png.size(), stdout) != png.size() || std::fflush(stdout) != 0)
+        throw FileError("cannot write the picture to standard output");
+}
+
+class RenderJob {
+  public:
+    explicit RenderJob(const RenderOptions& options) : options_(options), look_(look_of(options)) {}
+
+    int run() {
+        const std::vector<Picture> pictures = pictures_of(options_);
+        if (!options_.batch) {
+            check_files(pictures.front(), look_.settings);
+            make(pictures.front());
+            return 0;
+        }
+        int code = 0;
+        for (const Picture& picture : pictures) code = std::max(code, try_to_make(picture));
+        return code;
+    }
+
+  private:
+    /// One file that cannot be drawn must not keep the others from it.
+    int try_to_make(const Picture& picture) {
+        try {
+            check_files(picture, look_.settings);
+            make(picture);
+            return 0;
+        } catch (const Error& error) {
+            print_error(error.what());
+            return 1;
+        }
+    }
+
+    void make(const Picture& picture) {
+        Stopwatch watch;
+        start_look();
+        load(picture, watch);
+        const Image image = session_.render({std::nullopt, std::nullopt, encoding_of(picture)});
+        watch.add("context", session_.timing().context);
+        watch.add("images", session_.timing().images);
+        watch.add("draw", session_.timing().draw);
+        watch.add("read", session_.timing().read);
+        watch.restart();
+        write(picture, image);
+        watch.lap("write");
+        if (options_.timing) fmt::print(stderr, "easypbr: timing: {}\n", watch.summary());
+    }
+
+    void start_look() {
+        session_.settings() = look_.settings;
+        session_.scene().clear();
+    }
+
+    /// Reads the files while the GL context is made, for both take long.
+    void load(const Picture& picture, Stopwatch& watch) {
+        const io::LoadOptions load_options{.crease_angle_deg = float(options_.crease_deg)};
+        auto loading = std::async(std::launch::async, load_all, picture.files, load_options);
+        session_.context_info();
+        watch.lap("context");
+        const std::vector<io::LoadedScene> loaded = loading.get();
+        watch.lap("load");
+        for (size_t i = 0; i < loaded.size(); ++i) show(session_.scene(), loaded[i], picture.names[i]);
+        for (const auto& [name, light] : look_.lights) session_.scene().set_light(name, light);
+    }
+
+    app::Encoding encoding_of(const Picture& picture) const {
+        const bool deep = options_.bit_depth == 16;
+        return app::encoding_for(picture.output == "-" ? "-.png" : picture.output, deep);
+    }
+
+    void write(const Picture& picture, const Image& image) {
+        if (picture.output == "-")
+            write_to_stdout(image);
+        else
+            io::save_image(image, picture.output);
+        if (!options_.layers.empty()) app::layers_to_files(session_, picture.output, options_.layers);
+        if (!picture.save_settings.empty())
+            app::save_settings(session_, {picture.files.begin(), picture.files.end()}, picture.save_settings);
+    }
+
+    const RenderOptions& options_;
+    Look look_;
+    app::Session session_;
+};
+
+int run_render(const RenderOptions& options) {
+    check_usage(options);
+    if (options.quiet) be_quiet();
+    if (options.output == "-" && ::isatty(STDOUT_FILENO))
+        throw UsageError("render: standard output is a terminal; redirect it or name a file");
+    return RenderJob(options).run();
+}
+
+}  // namespace
+
+void add_render(CLI::App& app, Job& job) {
+    set_job<RenderOptions>(*app.add_subcommand("render", "Draw mesh files into a picture"), job,
+                           declare_render_options, run_render);
+}
+
+}  // namespace easypbr::cli

@@ -1,0 +1,42 @@
+#include "easypbr/cli/drawable.h"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "easypbr/core/error.h"
+
+namespace easypbr::cli {
+
+io::LoadedScene load_drawable(const std::filesystem::path& path, const io::LoadOptions& options) {
+    io::LoadedScene loaded = io::load_scene(path, options);
+    Eigen::Index vertices = 0, faces = 0;
+    for_each_node(loaded.mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d&) {
+        vertices += data->V.rows();
+        faces += data->F.rows();
+    });
+    if (faces == 0)
+        throw FormatError(
+            fmt::format("{} has no faces, {} vertices only: this version does not draw point clouds",
+                        path.string(), vertices));
+    return loaded;
+}
+
+std::vector<std::string> unique_names(const std::vector<std::string>& files) {
+    std::set<std::string> taken;
+    std::vector<std::string> names;
+    for (const std::string& file : files) {
+        const std::string stem = std::filesystem::path(file).stem().string();
+        std::string name = stem;
+        for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}-{}", stem, number);
+        names.push_back(name);
+    }
+    return names;
+}
+
+void show(Scene& scene, const io::LoadedScene& loaded, const std::string& name) {
+    scene.show(loaded.mesh, name);
+    for (const auto& [light_name, light] : loaded.lights) scene.set_light(name + "/" + light_name, light);
+}
+
+}  // namespace easypbr::cli

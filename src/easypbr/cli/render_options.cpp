@@ -1,0 +1,242 @@
+#include "easypbr/cli/render_options.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <map>
+
+#include "easypbr/cli/command.h"
+#include "easypbr/cli/pose_file.h"
+#include "easypbr/core/color.h"
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/core/suggest.h"
+#include "easypbr/render/renderer.h"
+#include "easypbr/scene/fields.h"
+
+namespace easypbr::cli {
+namespace {
+
+struct ShorthandOption {
+    const char *names, *setting, *placeholder;
+};
+
+/// Their help is the setting's documentation.
+constexpr ShorthandOption shorthand_options[] = {{"--samples", "image.samples", "N"},
+                                                 {"--env,--hdri-file", "environment.file", "FILE"},
+                                                 {"--env-rotation", "environment.rotation_deg", "DEG"},
+                                                 {"--env-intensity", "environment.intensity", "X"},
+                                                 {"--tonemap", "tonemap.operator", "NAME"},
+                                                 {"--exposure", "tonemap.exposure", "auto|X"},
+                                                 {"--camera-position", "camera.position", "X,Y,Z"},
+                                                 {"--camera-target", "camera.target", "X,Y,Z"},
+                                                 {"--fov-y", "camera.fov_y_deg", "DEG"},
+                                                 {"--up", "camera.up", "AXIS"},
+                                                 {"--color", "material.color", "COLOR"},
+                                                 {"--metallic", "material.metallic", "X"},
+                                                 {"--roughness", "material.roughness", "X"}};
+
+const std::vector<std::string> texture_names{"base_color", "metallic", "roughness", "normal",
+                                             "occlusion",  "emissive", "opacity"};
+
+void declare_shorthands(CLI::App& command, RenderOptions& options) {
+    for (const ShorthandOption& shorthand : shorthand_options) {
+        const std::string names = shorthand.names, setting = shorthand.setting;
+        const auto keep = [&options, option = names.substr(0, names.find(',')),
+                           setting](const std::string& text) {
+            options.shorthands.push_back({option, setting, text});
+        };
+        command.add_option_function<std::string>(names, keep, field(setting).doc)
+            ->option_text(shorthand.placeholder);
+    }
+}
+
+void declare_output(CLI::App& command, RenderOptions& options) {
+    command
+        .add_option("-o,--output", options.output,
+                    "Picture to write: PNG, JPEG, HDR or EXR; '-': PNG to standard output")
+        ->option_text("FILE");
+    command.add_option("--size,--resolution", options.size, "Width and height in pixels")->option_text("WxH");
+    command.add_option("--bit-depth", options.bit_depth, "Bits per channel of a PNG: 8 or 16")
+        ->check(CLI::IsMember({8, 16}));
+    command
+        .add_option("--layers", options.layers,
+                    "Also write OUT_LAYER.exr for each of albedo, normal, depth, ...")
+        ->delimiter(',')
+        ->allow_extra_args(false)
+        ->option_text("A,B");
+    command.add_flag("--batch", options.batch,
+                     "Each file its own picture; '{name}' in the output is the file's stem");
+    command.add_flag("--quiet", options.quiet, "No warnings, no progress");
+    command.add_flag("--timing", options.timing, "Print the time of each stage on stderr");
+}
+
+void declare_look(CLI::App& command, RenderOptions& options) {
+    command
+        .add_option("--background", options.background, "A colour, env, blur, transparent or an image file")
+        ->option_text("COLOR|env|blur|transparent|FILE");
+    command
+        .add_option("--texture", options.textures, "Texture of every material, for example base_color=FILE")
+        ->allow_extra_args(false)
+        ->option_text("NAME=FILE");
+    command.add_flag("--smooth", options.smooth, "One normal per vertex");
+    command.add_flag("--flat", options.flat, "One normal per face");
+    command.add_option("--crease", options.crease_deg, "STL: edges sharper than this angle stay sharp")
+        ->option_text("DEG");
+    command.add_option("--set", options.values, "Any setting, for example tonemap.exposure=2")
+        ->allow_extra_args(false)
+        ->option_text("KEY=VALUE");
+    command.add_option("--settings", options.settings, "Start from a file that --save-settings wrote")
+        ->option_text("FILE");
+    command.add_option("--save-settings", options.save_settings, "Write every value, chosen and inferred")
+        ->option_text("FILE");
+}
+
+void declare_camera(CLI::App& command, RenderOptions& options) {
+    command
+        .add_option("--camera-pose", options.camera_pose,
+                    "Text file with the 16 numbers of T_world_cam, row by row")
+        ->option_text("FILE");
+    command.add_option("--camera-axes", options.camera_axes, "Axes of the pose's camera: opengl or opencv")
+        ->check(CLI::IsMember({"opengl", "opencv"}));
+    command.add_option("--ortho", options.ortho, "Orthographic picture of this world height")
+        ->option_text("HEIGHT|auto");
+}
+
+void set_value(Settings& settings, const std::string& option, const std::string& name,
+               const std::string& text) {
+    try {
+        set_from_text(settings, name, text);
+    } catch (const Error& error) {
+        throw UsageError(fmt::format("{}: {}", option, error.what()));
+    }
+}
+
+/// "a=b" as its two sides.
+std::pair<std::string, std::string> split(const std::string& option, const std::string& text) {
+    const size_t at = text.find('=');
+    if (at == text.npos || at == 0)
+        throw UsageError(fmt::format("{}: expected NAME=VALUE, got '{}'", option, text));
+    return {text.substr(0, at), text.substr(at + 1)};
+}
+
+void apply_background(const std::string& text, BackgroundSettings& background) {
+    static const std::map<std::string, BackgroundMode> modes{{"env", BackgroundMode::environment},
+                                                             {"environment", BackgroundMode::environment},
+                                                             {"blur", BackgroundMode::blur},
+                                                             {"transparent", BackgroundMode::transparent}};
+    if (const auto mode = modes.find(text); mode != modes.end()) {
+        background.mode = mode->second;
+    } else if (is_image_file(text)) {
+        background.mode = BackgroundMode::image;
+        background.image = text;
+    } else {
+        try {
+            background.color = parse_color(text);
+            background.mode = BackgroundMode::color;
+        } catch (const ArgumentError& error) {
+            throw UsageError(
+                fmt::format("--background: expected a colour, env, blur, transparent or an image file: {}",
+                            error.what()));
+        }
+    }
+}
+
+void apply_texture(const std::string& text, Settings& settings) {
+    auto [name, file] = split("--texture", text);
+    if (name == "ao") name = "occlusion";
+    if (std::find(texture_names.begin(), texture_names.end(), name) == texture_names.end())
+        throw UsageError(fmt::format("--texture: there is no texture '{}'{}; expected one of {}", name,
+                                     did_you_mean(name, texture_names), fmt::join(texture_names, ", ")));
+    set_value(settings, "--texture", "material." + name + "_texture", file);
+}
+
+void apply_camera(const RenderOptions& options, CameraSettings& camera) {
+    if (options.camera_pose.empty()) return;
+    const PoseAxes axes = options.camera_axes == "opencv" ? PoseAxes::opencv : PoseAxes::opengl;
+    camera.pose = load_pose(options.camera_pose, axes);
+}
+
+/// What a settings file says in another way must give way to the command line.
+void drop_replaced(const RenderOptions& options, CameraSettings& camera) {
+    for (const RenderOptions::Shorthand& shorthand : options.shorthands) {
+        if (shorthand.setting == "camera.position" || shorthand.setting == "camera.target")
+            camera.pose.clear();
+        if (shorthand.setting != "camera.fov_y_deg") continue;
+        camera.intrinsics.clear();
+        camera.projection = Projection::perspective;
+    }
+}
+
+int parse_side(std::string_view text, const std::string& whole) {
+    long long side = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), side);
+    if (text.empty() || end != text.data() + text.size() || error == std::errc::invalid_argument)
+        throw UsageError(fmt::format("--size: expected WIDTHxHEIGHT, got '{}'", whole));
+    if (error != std::errc() || side < 1 || side > max_image_side)
+        throw ArgumentError(
+            fmt::format("picture size {}: expected width and height from 1 to {}", whole, max_image_side));
+    return int(side);
+}
+
+}  // namespace
+
+Vec2i parse_size(const std::string& text) {
+    const size_t at = text.find_first_of("x,");
+    if (at == text.npos) throw UsageError(fmt::format("--size: expected WIDTHxHEIGHT, got '{}'", text));
+    return {parse_side(std::string_view(text).substr(0, at), text),
+            parse_side(std::string_view(text).substr(at + 1), text)};
+}
+
+void declare_render_options(CLI::App& command, RenderOptions& options) {
+    command.add_option("FILE", options.files, "Meshes: PLY, OBJ, STL, OFF, glTF, GLB and more");
+    declare_output(command, options);
+    declare_look(command, options);
+    declare_camera(command, options);
+    declare_shorthands(command, options);
+}
+
+void check_usage(const RenderOptions& options) {
+    require(!options.files.empty(), "render", "at least one FILE");
+    require(!options.output.empty(), "render", "-o OUT.png");
+    if (options.smooth && options.flat) throw UsageError("render: --smooth and --flat exclude each other");
+    if (!options.camera_pose.empty())
+        for (const RenderOptions::Shorthand& shorthand : options.shorthands)
+            if (shorthand.setting == "camera.position" || shorthand.setting == "camera.target")
+                throw UsageError("render: --camera-pose and " + shorthand.option + " exclude each other");
+    if (options.bit_depth == 16 && options.output != "-" && extension_of(options.output) != "png")
+        throw UsageError("render: --bit-depth 16 needs a PNG file as output");
+    if (options.output == "-" && (options.batch || !options.layers.empty()))
+        throw UsageError("render: standard output takes one picture, neither --batch nor --layers");
+    for (const std::string& file : {options.output, options.save_settings})
+        if (options.batch && !file.empty() && file.find("{name}") == file.npos)
+            throw UsageError(fmt::format("render: with --batch, '{}' must contain '{{name}}'", file));
+    for (const std::string& layer : options.layers) try {
+            render::layer_named(layer);
+        } catch (const NameError& error) {
+            throw UsageError(fmt::format("--layers: {}", error.what()));
+        }
+}
+
+void apply(const RenderOptions& options, Settings& settings) {
+    if (!options.size.empty()) settings.image.size = parse_size(options.size);
+    if (!options.background.empty()) apply_background(options.background, settings.background);
+    for (const std::string& text : options.textures) apply_texture(text, settings);
+    if (options.smooth || options.flat) settings.style.flat = options.flat;
+    drop_replaced(options, settings.camera);
+    apply_camera(options, settings.camera);
+    for (const RenderOptions::Shorthand& shorthand : options.shorthands)
+        set_value(settings, shorthand.option, shorthand.setting, shorthand.text);
+    if (!options.ortho.empty()) {
+        settings.camera.projection = Projection::orthographic;
+        set_value(settings, "--ortho", "camera.ortho_height", options.ortho);
+    }
+    for (const std::string& text : options.values) {
+        const auto [name, value] = split("--set", text);
+        set_value(settings, "--set", name, value);
+    }
+}
+
+}  // namespace easypbr::cli

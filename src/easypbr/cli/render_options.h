@@ -1,0 +1,49 @@
+// The options of `easypbr render` and what they mean as settings.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "easypbr/core/math.h"
+#include "easypbr/scene/settings.h"
+
+namespace easypbr::cli {
+
+struct RenderOptions {
+    std::vector<std::string> files;
+    std::string output;
+    bool batch = false, quiet = false, timing = false;
+    bool smooth = false, flat = false;
+    int bit_depth = 8;
+    double crease_deg = 30;
+    std::string size, background, ortho;
+    std::string camera_pose, camera_axes = "opengl";
+    std::string settings, save_settings;
+    std::vector<std::string> layers;
+    std::vector<std::string> textures;  ///< "base_color=FILE"
+    std::vector<std::string> values;    ///< --set: "group.name=value"
+
+    /// An option whose value is a setting's, as it was written.
+    struct Shorthand {
+        std::string option, setting, text;
+    };
+    std::vector<Shorthand> shorthands;
+};
+
+/// Ties the command's options to `options`, which must outlive the parsing.
+void declare_render_options(CLI::App& command, RenderOptions& options);
+
+/// Throws UsageError for options that contradict each other or lack another.
+void check_usage(const RenderOptions& options);
+
+/// Sets what the options say, --set last; the rest stays as it is. Throws UsageError for a value that cannot
+/// be understood, FileError or FormatError for a pose file, ArgumentError for a picture size out of range.
+void apply(const RenderOptions& options, Settings& settings);
+
+/// Width and height from "800x600" or "800,600". Throws UsageError when it is not of this form, ArgumentError
+/// when it is out of range.
+Vec2i parse_size(const std::string& text);
+
+}  // namespace easypbr::cli
