@@ -1,0 +1,128 @@
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/io/settings_io.h"
+#include "easypbr/scene/fields.h"
+#include "io/temporary_folder.h"
+
+using namespace easypbr;
+
+namespace {
+
+std::string message_of(const std::function<void()>& action) {
+    try {
+        action();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+std::string parse_message(const std::string& json) {
+    return message_of([&] { io::parse_settings(json, "look.json"); });
+}
+
+}  // namespace
+
+TEST(SettingsFile, DefaultsRoundTripInEveryField) {
+    const Settings settings;
+    const Settings read = io::parse_settings(io::to_json({settings, {}, {}}), "x").settings;
+    for (const Field& field : fields()) EXPECT_EQ(field.get(read), field.get(settings)) << field.name;
+}
+
+TEST(SettingsFile, KeepsWhatIsAutomaticPinnedAndFollowing) {
+    Settings settings;
+    settings.camera.position.latch(Vec3d(1.0 / 3, -2e-17, 1e20));
+    settings.camera.target = follow;
+    settings.camera.near = 0.1;
+    settings.tone.exposure.latch(0.1f);
+    settings.lights.key.intensity = 1e-7f;
+    settings.image.size = {1920, 1080};
+    settings.background.color = Vec3(0.1f, 0.2f, 1.0f / 3);
+    const std::string json = io::to_json({settings, {}, {}});
+    const Settings read = io::parse_settings(json, "x").settings;
+    // Bit for bit: doubles and floats are written with as many digits as give them back.
+    EXPECT_EQ(*read.camera.position, *settings.camera.position);
+    EXPECT_FALSE(read.camera.position.is_pinned());
+    EXPECT_TRUE(read.camera.target.is_follow());
+    EXPECT_TRUE(read.camera.near.is_pinned());
+    EXPECT_EQ(*read.camera.near, 0.1);
+    EXPECT_EQ(*read.tone.exposure, 0.1f);
+    EXPECT_FALSE(read.tone.exposure.is_pinned());
+    EXPECT_EQ(*read.lights.key.intensity, 1e-7f);
+    EXPECT_FALSE(read.lights.fill.intensity.value().has_value());
+    EXPECT_EQ(read.image.size, settings.image.size);
+    EXPECT_EQ(read.background.color, settings.background.color);
+    EXPECT_NE(json.find("\"auto\": 0.1\n"), std::string::npos) << json;
+    EXPECT_EQ(io::to_json({read, {}, {}}), json);
+}
+
+TEST(SettingsFile, KeepsLightsAndFiles) {
+    Light lamp;
+    lamp.type = LightType::spot;
+    lamp.enabled = false;
+    lamp.position = {0.1f, 1e-30f, 3e20f};
+    lamp.direction = {1, 0, 0};
+    lamp.color = {0.3f, 0.7f, 1};
+    lamp.intensity = 1.0f / 3;
+    lamp.inner_cone_deg = 12;
+    lamp.outer_cone_deg = 34;
+    lamp.range = 56;
+    const TemporaryFolder folder;
+    io::save_settings({{}, {{"lamp", lamp}}, {{"a/b.ply", "0123"}}}, folder / "look.json");
+    const io::SettingsFile read = io::load_settings(folder / "look.json");
+    const Light& back = read.lights.at("lamp");
+    EXPECT_EQ(back.type, lamp.type);
+    EXPECT_EQ(back.enabled, lamp.enabled);
+    EXPECT_EQ(back.position, lamp.position);
+    EXPECT_EQ(back.direction, lamp.direction);
+    EXPECT_EQ(back.color, lamp.color);
+    EXPECT_EQ(back.intensity, lamp.intensity);
+    EXPECT_EQ(back.inner_cone_deg, lamp.inner_cone_deg);
+    EXPECT_EQ(back.outer_cone_deg, lamp.outer_cone_deg);
+    EXPECT_EQ(back.range, lamp.range);
+    EXPECT_EQ(read.files.at("a/b.ply"), "0123");
+}
+
+TEST(SettingsFile, SaysWhatIsWrong) {
+    const std::vector<std::pair<std::string, std::string>> table = {
+        {"", "parse error"},
+        {"{\"easypbr\": 1,\n \"settings\": }", "line 2"},
+        {"[]", "\"easypbr\": 1"},
+        {"{}", "\"easypbr\": 1"},
+        {"{\"easypbr\": 2}", "got 2"},
+        {"{\"easypbr\": 1, \"setings\": {}}", "unknown key 'setings'"},
+        {"{\"easypbr\": 1, \"settings\": 3}", "expected an object"},
+        {"{\"easypbr\": 1, \"settings\": {\"tonemap\": {\"expossure\": 1}}}", "tonemap.exposure"},
+        {"{\"easypbr\": 1, \"settings\": {\"image\": {\"samples\": \"many\"}}}", "image.samples"},
+        {"{\"easypbr\": 1, \"settings\": {\"image\": {\"samples\": null}}}", "image.samples"},
+        {"{\"easypbr\": 1, \"settings\": {\"image\": {\"samples\": {\"auto\": 3}}}}", "image.samples"},
+        {"{\"easypbr\": 1, \"settings\": {\"image\": {\"size\": [1, \"x\"]}}}", "image.size"},
+        {"{\"easypbr\": 1, \"lights\": {\"a\": {\"type\": \"spott\"}}}", "did you mean 'spot'"},
+        {"{\"easypbr\": 1, \"lights\": {\"a\": {\"colour\": [1, 1, 1]}}}", "colour"},
+        {"{\"easypbr\": 1, \"lights\": {\"a\": {\"color\": [1, 1]}}}", "3 numbers"},
+        {"{\"easypbr\": 1, \"files\": {\"a\": 1}}", "files 'a'"},
+    };
+    for (const auto& [json, expected] : table) {
+        const std::string message = parse_message(json);
+        EXPECT_NE(message.find(expected), std::string::npos) << json << "\n" << message;
+        EXPECT_NE(message.find("look.json"), std::string::npos) << message;
+    }
+    EXPECT_THROW(io::parse_settings("{\"easypbr\": 1, \"settings\": {\"tone\": {\"x\": 1}}}", "x"),
+                 NameError);
+    EXPECT_THROW(io::load_settings("missing.json"), FileError);
+}
+
+TEST(SettingsFile, HashesContent) {
+    const TemporaryFolder folder;
+    write_file(folder / "a", std::string_view("content"));
+    write_file(folder / "b", std::string_view("content"));
+    write_file(folder / "c", std::string_view("contents"));
+    EXPECT_EQ(io::hash_file(folder / "a"), io::hash_file(folder / "b"));
+    EXPECT_NE(io::hash_file(folder / "a"), io::hash_file(folder / "c"));
+    EXPECT_EQ(io::hash_file(folder / "a").size(), 32u);
+    EXPECT_THROW(io::hash_file(folder / "missing"), FileError);
+}
