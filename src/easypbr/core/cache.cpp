@@ -1,5 +1,6 @@
 #include "easypbr/core/cache.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <string>
 

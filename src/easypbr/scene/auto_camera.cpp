@@ -32,10 +32,10 @@ Camera look_from(const Vec3d& position, const Vec3d& target, const CameraSetting
     return Camera::look_at(position, target, forward.dot(up) < 0 ? Vec3d(-from) : from);
 }
 
-/// The point of the optical axis beside the content's centre, or ahead when that lies behind.
-Vec3d target_on_axis(const Content& content, const Vec3d& position, const Vec3d& forward) {
+/// Depth of the content's centre, or the content's radius when the centre lies behind.
+double target_depth(const Content& content, const Vec3d& position, const Vec3d& forward) {
     const double depth = (content.centre() - position).dot(forward);
-    return position + forward * (depth > 0 ? depth : content.radius());
+    return depth > 0 ? depth : content.radius();
 }
 
 void place(const Content& content, const Camera& lens, double aspect, CameraSettings& settings) {
@@ -55,7 +55,7 @@ void place(const Content& content, const Camera& lens, double aspect, CameraSett
     } else {
         const Vec3d fitted = fitted_position(content, R, lens, settings.margin, aspect);
         fill(settings.position, fitted);
-        fill(settings.target, target_on_axis(content, fitted, -R.col(2)));
+        fill(settings.target, Vec3d(fitted - R.col(2) * target_depth(content, fitted, -R.col(2))));
     }
 }
 
@@ -73,6 +73,20 @@ void set_depth_range(const Content& content, CameraSettings& settings, Camera& c
     fill(settings.near, std::max(0.1 * nearest, 1e-3 * distance));
     camera.near = *settings.near;
     camera.far = std::max(farthest + distance, 2 * camera.near);
+}
+
+/// The camera of a given pose; position and target follow from it, the target as far away as it was, if it
+/// was anywhere.
+void take_pose(const Content& content, CameraSettings& settings, Camera& camera) {
+    const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> pose(settings.pose.data());
+    camera.T_world_cam = Camera::from_opengl(pose).T_world_cam;
+    const Vec3d position = camera.position(), forward = -camera.T_world_cam.linear().col(2);
+    const bool known = settings.position.value() && settings.target.value();
+    const double depth =
+        known ? (*settings.target - *settings.position).norm() : target_depth(content, position, forward);
+    settings.position = settings.target = Auto<Vec3d>(automatic);
+    fill(settings.position, position);
+    fill(settings.target, Vec3d(position + forward * depth));
 }
 
 }  // namespace
@@ -103,12 +117,7 @@ Camera resolve_camera(const Content& content, CameraSettings& settings, double a
         place(content, camera, aspect, settings);
         camera.T_world_cam = look_from(*settings.position, *settings.target, settings).T_world_cam;
     } else {
-        const Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>> pose(settings.pose.data());
-        camera.T_world_cam = Camera::from_opengl(pose).T_world_cam;
-        const Vec3d target = target_on_axis(content, camera.position(), -camera.T_world_cam.linear().col(2));
-        settings.position = settings.target = Auto<Vec3d>(automatic);
-        fill(settings.position, camera.position());
-        fill(settings.target, target);
+        take_pose(content, settings, camera);
     }
     const double distance = (*settings.target - *settings.position).norm();
     if (!settings.ortho_height.value()) {

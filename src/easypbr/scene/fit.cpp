@@ -23,21 +23,13 @@ Slopes slopes_of(const Camera& lens, double margin, double aspect) {
             (edge - P(1, 2)) / P(1, 1)};
 }
 
-/// Rows: the inward normals of the picture's four sides in the world (not of unit length), then backwards,
-/// forwards.
+/// Rows: what decides about the right, left, upper and lower side of a picture (for slopes of 0: the axes
+/// themselves), then backwards and forwards.
 SceneSnapshot::Directions frustum_directions(const Mat3d& R_world_cam, const Slopes& slopes) {
     const Eigen::RowVector3d x = R_world_cam.col(0), y = R_world_cam.col(1), z = R_world_cam.col(2);
     SceneSnapshot::Directions directions;
     directions << x + slopes.right * z, -x + slopes.left * z, y + slopes.top * z, -y + slopes.bottom * z, z,
         -z;
-    return directions;
-}
-
-SceneSnapshot::Directions axis_directions(const Mat3d& R_world_cam) {
-    SceneSnapshot::Directions directions;
-    directions << R_world_cam.col(0).transpose(), -R_world_cam.col(0).transpose(),
-        R_world_cam.col(1).transpose(), -R_world_cam.col(1).transpose(), R_world_cam.col(2).transpose(),
-        -R_world_cam.col(2).transpose();
     return directions;
 }
 
@@ -82,7 +74,7 @@ std::pair<double, double> Content::extent_along(const Vec3d& direction) const {
 Vec3d fitted_position(const Content& content, const Mat3d& R_world_cam, const Camera& lens, double margin,
                       double aspect) {
     if (lens.projection == Projection::orthographic) {
-        const SceneSnapshot::Support s = content.scene().support(axis_directions(R_world_cam));
+        const SceneSnapshot::Support s = content.scene().support(frustum_directions(R_world_cam, {}));
         return R_world_cam * Vec3d((s[0] - s[1]) / 2, (s[2] - s[3]) / 2, s[4] + content.radius());
     }
     const Slopes slopes = slopes_of(lens, margin, aspect);
@@ -110,7 +102,7 @@ double fitted_distance(const Content& content, const Vec3d& target, const Mat3d&
 
 double fitted_height(const Content& content, const Eigen::Isometry3d& T_world_cam, double margin,
                      double aspect) {
-    const SceneSnapshot::Directions directions = axis_directions(T_world_cam.linear());
+    const SceneSnapshot::Directions directions = frustum_directions(T_world_cam.linear(), {});
     const SceneSnapshot::Support s =
         content.scene().support(directions) - directions * T_world_cam.translation();
     const double height = 2 * std::max({s[2], s[3], s[0] / aspect, s[1] / aspect}) / (1 - margin);
