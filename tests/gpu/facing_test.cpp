@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "easypbr/scene/normals.h"
 #include "easypbr/scene/primitives.h"
 
 namespace easypbr::gpu {
@@ -49,11 +48,10 @@ TEST(Facing, EveryComponentCounts) {
 }
 
 TEST(Facing, NormalsAgree) {
-    const Array3f V = points(corners);
-    const Array3i F = faces(outward);
-    const Array3f N = vertex_normals(V, F);
-    EXPECT_TRUE(normals_agree_with_winding(V, N, F));
-    EXPECT_FALSE(normals_agree_with_winding(V, Array3f(Array3f::Dense(-N)), F));
+    const Mesh sphere = make_sphere(1, 16);
+    const Array3f V = sphere.V(), N = sphere.N();
+    EXPECT_TRUE(normals_agree_with_winding(V, N, sphere.F()));
+    EXPECT_FALSE(normals_agree_with_winding(V, Array3f(Array3f::Dense(-N)), sphere.F()));
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "easypbr/core/parallel.h"
 
@@ -108,12 +109,25 @@ CubeMap CubeMap::from_equirect(const Image& equirect, int size) {
 
 CubeMap CubeMap::half() const {
     CubeMap smaller(size_ / 2);
-    for (int face = 0; face < 6; ++face)
-        for (int y = 0; y < smaller.size(); ++y)
-            for (int x = 0; x < smaller.size(); ++x)
-                smaller.at(face, x, y) =
-                    0.25f * (at(face, 2 * x, 2 * y) + at(face, 2 * x + 1, 2 * y) +
-                             at(face, 2 * x, 2 * y + 1) + at(face, 2 * x + 1, 2 * y + 1));
+    // Solid angle of a texel, up to a factor: 1 / (1 + u^2 + v^2)^(3/2).
+    const auto weight = [&](int x, int y) {
+        const float u = (float(x) + 0.5f) * 2 / float(size_) - 1, v = (float(y) + 0.5f) * 2 / float(size_) - 1;
+        const float r2 = 1 + u * u + v * v;
+        return 1 / (r2 * std::sqrt(r2));
+    };
+    parallel_for(size_t(6) * smaller.size(), 8, [&](size_t row) {
+        const int face = int(row) / smaller.size(), y = int(row) % smaller.size();
+        for (int x = 0; x < smaller.size(); ++x) {
+            Vec4 sum = Vec4::Zero();
+            float total = 0;
+            for (const auto& [i, j] : {std::pair(0, 0), std::pair(1, 0), std::pair(0, 1), std::pair(1, 1)}) {
+                const float w = weight(2 * x + i, 2 * y + j);
+                sum += w * at(face, 2 * x + i, 2 * y + j);
+                total += w;
+            }
+            smaller.at(face, x, y) = sum / total;
+        }
+    });
     smaller.fill_gutter();
     return smaller;
 }

@@ -34,7 +34,7 @@ class CubeMap {
 
     /// Area averages of an equirectangular picture.
     static CubeMap from_equirect(const Image& equirect, int size);
-    /// Every 2x2 texels averaged, gutter filled.
+    /// Every 2x2 texels averaged by their solid angles, gutter filled.
     CubeMap half() const;
 
   private:

@@ -153,12 +153,12 @@ void GeometryPass::draw(const Frame& frame, const GBuffer& targets) {
 
     const gl::Framebuffer& framebuffer = emission ? targets.surface_emission : targets.surface;
     framebuffer.bind();
+    glDepthMask(GL_TRUE);  // Clears obey the mask.
     const float zero[4] = {0, 0, 0, 0};
     framebuffer.clear_color(3, zero);
     framebuffer.clear_depth(0);
     targets.lit.clear_color(0, zero);
     glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_TRUE);
     glDepthFunc(GL_GREATER);
     for (Draw& draw : draws) {
         draw.emission = emission;
