@@ -71,7 +71,7 @@ class MtlParser {
         if (keyword == "pr") entry_->roughness = number();
         if (keyword == "pm") entry_->metallic = number();
         if (keyword == "ns") entry_->exponent = number();
-        if (keyword == "d") set_opacity(number());
+        if (keyword == "d") set_opacity(dissolve());
         if (keyword == "tr") set_opacity(1 - number().value_or(0));
         if (keyword == "illum") entry_->material.unlit = number() == 0.0f;
     }
@@ -80,15 +80,18 @@ class MtlParser {
         if (opacity) entry_->material.opacity = std::clamp(*opacity, 0.0f, 1.0f);
     }
 
-    /// The next number; options such as -halo before it are passed over. Nothing when there is none or it is
-    /// not finite.
+    /// The next number; nothing when there is none or it is not finite.
     std::optional<float> number() {
-        p_ = skip_blanks(p_, end_);
-        if (p_ != end_ && *p_ == '-' && p_ + 1 != end_ && std::isalpha(static_cast<unsigned char>(p_[1])))
-            read_word(p_, end_);
         float value = 0;
         if (!read_number(p_, end_, value) || !std::isfinite(value)) return {};
         return value;
+    }
+
+    /// "d 0.5", or "d -halo 0.5" for an opacity that depends on the direction, which is taken as constant.
+    std::optional<float> dissolve() {
+        const char* after = p_;
+        if (read_word(after, end_) == "-halo") p_ = after;
+        return number();
     }
 
     /// One number stands for all three.

@@ -1,0 +1,146 @@
+#include <string>
+#include <vector>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/io/mesh_io.h"
+#include "io/ply_builder.h"
+#include "io/temporary_folder.h"
+
+using namespace easypbr;
+
+namespace {
+
+struct BadFile {
+    std::string name, content, message;
+};
+
+const std::string ply_head = "ply\nformat ascii 1.0\n";
+const std::string xyz = "property float x\nproperty float y\nproperty float z\n";
+const std::string faces = "property list uchar int vertex_indices\n";
+const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+std::string binary_ply(const std::string& counts) {
+    return "ply\nformat binary_little_endian 1.0\n" + counts + "end_header\n" + std::string(36, '\0');
+}
+
+std::string stl(uint32_t facets, size_t bytes) {
+    std::string text(bytes, '\0');
+    std::memcpy(text.data() + 80, &facets, 4);
+    return text;
+}
+
+const std::vector<BadFile> bad_files{
+    {"empty.ply", "", "empty"},
+    {"magic.ply", "obj\n", "'ply' expected"},
+    {"header.ply", ply_head + "element vertex 3\n", "end_header"},
+    {"keyword.ply", ply_head + "elephant vertex 3\nend_header\n", "elephant"},
+    {"format.ply", "ply\nformat binary_middle_endian 1.0\nend_header\n", "binary_middle_endian"},
+    {"noformat.ply", "ply\nelement vertex 1\n" + xyz + "end_header\n0 0 0\n", "format"},
+    {"type.ply", ply_head + "element vertex 1\nproperty quad x\nend_header\n", "quad"},
+    {"count.ply", ply_head + "element vertex -1\n" + xyz + "end_header\n", "-1"},
+    {"noxyz.ply", ply_head + "element vertex 1\nproperty float x\nend_header\n0\n", "x, y, z"},
+    {"novertices.ply", ply_head + "element face 0\n" + faces + "end_header\n", "no vertices"},
+    {"zero.ply", ply_head + "element vertex 0\n" + xyz + "end_header\n", "no vertices"},
+    {"short.ply", ply_head + "element vertex 2\n" + xyz + "end_header\n0 0 0\n", "2 rows"},
+    {"cut.ply", ply_head + "element vertex 2\n" + xyz + "end_header\n0 0 0\n1 1\n", "cut.ply:9"},
+    {"word.ply", ply_head + "element vertex 1\n" + xyz + "end_header\n0 zero 0\n", "'zero'"},
+    {"lying.ply", ply_head + "element vertex 2000000000\n" + xyz + "end_header\n0 0 0\n", "2000000000"},
+    {"nan.ply", ply_head + "element vertex 1\n" + xyz + "end_header\n0 nan 0\n", "vertex 0"},
+    {"inf.ply", ply_head + "element vertex 2\n" + xyz + "end_header\n0 0 0\n1e99 0 0\n", "vertex 1"},
+    {"range.ply",
+     ply_head + "element vertex 3\n" + xyz + "element face 1\n" + faces +
+         "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",
+     "index 3"},
+    {"negative.ply",
+     ply_head + "element vertex 1\n" + xyz + "element face 1\n" + faces + "end_header\n0 0 0\n3 0 0 -1\n",
+     "index -1"},
+    {"longlist.ply",
+     ply_head + "element vertex 1\n" + xyz + "element face 1\n" + faces + "end_header\n0 0 0\n2000000000 0\n",
+     "2000000000"},
+    {"realindex.ply",
+     ply_head + "element vertex 1\n" + xyz +
+         "element face 1\nproperty list uchar float vertex_indices\nend_header\n0 0 0\n3 0 0 0\n",
+     "list of integers"},
+    {"bincut.ply", binary_ply("element vertex 4\n" + xyz), "4 rows"},
+    {"binlying.ply", binary_ply("element vertex 2147483647\n" + xyz), "2147483647"},
+    {"binfaces.ply", binary_ply("element vertex 3\n" + xyz + "element face 1\n" + faces), "1 rows"},
+    {"empty.obj", "", "empty"},
+    {"nothing.obj", "# nothing\n", "no vertices"},
+    {"short.obj", "v 0 0 0\nv 1 2\n", "short.obj:2"},
+    {"zero.obj", square + "f 0 1 2\n", "index 0"},
+    {"range.obj", square + "f 1 2 5\n", "index 4"},
+    {"before.obj", square + "f -5 1 2\n", "a face"},
+    {"uv.obj", square + "vt 0 0\nf 1/1 2/2 3/1\n", "texture coordinates"},
+    {"normal.obj", square + "vn 0 0 1\nf 1//1 2//-2 3//1\n", "normals"},
+    {"word.obj", square + "f 1 2 x\n", "word.obj:5"},
+    {"corner.obj", square + "f 1/a 2/2 3\n", "'a'"},
+    {"nan.obj", "v 0 0 nan\n", "vertex 0"},
+    {"line.obj", square + "l 1\n", "'l'"},
+    {"huge.obj", square + "f 1 2 99999999999999999999\n", "a face"},
+    {"empty.stl", "", "empty"},
+    {"tiny.stl", "abc", "truncated"},
+    {"lying.stl", stl(4000000000u, 200), "truncated"},
+    {"none.stl", stl(0, 84), "no facets"},
+    {"text.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nendloop\nendfacet\n",
+     "2 vertices"},
+    {"number.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0\n", "number.stl:4"},
+    {"cut.stl", "solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 1 1 0\n",
+     "inside a facet"},
+    {"nan.stl",
+     "solid\nfacet normal 0 0 1\nouter loop\nvertex nan 0 0\nvertex 1 0 0\nvertex 1 1 0\nendloop\nendfacet\n",
+     "vertex"},
+    {"empty.off", "", "empty"},
+    {"kind.off", "4OFF\n1 0 0\n0 0 0 0\n", "4OFF"},
+    {"binary.off", "OFF BINARY\n", "binary"},
+    {"counts.off", "OFF\n1\n", "header"},
+    {"short.off", "OFF\n2 0 0\n0 0 0\n", "2 rows"},
+    {"lying.off", "OFF\n2000000000 0 0\n0 0 0\n", "2000000000"},
+    {"range.off", "OFF\n1 1 0\n0 0 0\n3 0 0 1\n", "index 1"},
+    {"color.off", "COFF\n1 0 0\n0 0 0\n", "colours"},
+    {"unknown.xyzzy", "hello", "xyzzy"},
+    {"unknown.plyy", "hello", "did you mean 'ply'"},
+    {"noextension", "hello", "expected one of"},
+};
+
+}  // namespace
+
+TEST(BadMeshes, AreRefusedWithTheReason) {
+    const TemporaryFolder folder;
+    for (const BadFile& file : bad_files) {
+        write_file(folder / file.name, file.content);
+        try {
+            io::load_mesh(folder / file.name);
+            ADD_FAILURE() << file.name << " was read";
+        } catch (const FormatError& error) {
+            const std::string message = error.what();
+            EXPECT_NE(message.find(file.message), std::string::npos) << file.name << ": " << message;
+            EXPECT_NE(message.find(file.name), std::string::npos) << "the file is not named: " << message;
+        }
+    }
+}
+
+TEST(BadMeshes, MissingFilesAndFoldersAreFileErrors) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "folder.obj");
+    for (const char* name : {"gone.ply", "gone.obj", "gone.stl", "gone.off", "folder.obj"})
+        EXPECT_THROW(io::load_mesh(folder / name), FileError) << name;
+}
+
+TEST(BadMeshes, TruncatedAnywhereTheyLoadOrThrow) {
+    PlyBuilder ply("binary_big_endian");
+    ply.header("element vertex 3\n" + xyz + "element face 2\n" + faces + "property uchar f").end_header();
+    for (int i = 0; i < 9; ++i) ply.value("float", i % 4);
+    for (int i = 0; i < 2; ++i)
+        ply.value("uchar", 3 + i)
+            .values("int", {0, 1, 2})
+            .values("int", std::vector<int>(size_t(i), 0))
+            .value("uchar", 1);
+    const TemporaryFolder folder;
+    for (size_t size = 0; size < ply.text().size(); ++size) {
+        write_file(folder / "cut.ply", ply.text().substr(0, size));
+        EXPECT_THROW(io::load_mesh(folder / "cut.ply"), FormatError) << size << " bytes";
+    }
+    write_file(folder / "whole.ply", ply.text());
+    EXPECT_EQ(io::load_mesh(folder / "whole.ply").F().rows(), 3);
+}

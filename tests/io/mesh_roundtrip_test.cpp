@@ -1,0 +1,144 @@
+#include <cstring>
+#include <random>
+#include <string>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/io/image_io.h"
+#include "easypbr/io/mesh_io.h"
+#include "io/temporary_folder.h"
+
+using namespace easypbr;
+
+namespace {
+
+template <class A, class B>
+::testing::AssertionResult same_bits(const A& a, const B& b) {
+    if (a.rows() != b.rows() || a.cols() != b.cols()) return ::testing::AssertionFailure() << "shapes differ";
+    if (a.size() && std::memcmp(a.data(), b.data(), size_t(a.size()) * sizeof(*a.data())) != 0)
+        return ::testing::AssertionFailure() << "values differ";
+    return ::testing::AssertionSuccess();
+}
+
+/// A mesh with every array that PLY holds, of random values.
+MeshData random_mesh(unsigned seed, int n) {
+    std::mt19937 random(seed);
+    // Raw bits with all exponents: also very large, very small and negative zero.
+    const auto any_float = [&] {
+        for (;;) {
+            const uint32_t bits = uint32_t(random());
+            float value;
+            std::memcpy(&value, &bits, 4);
+            if (std::isfinite(value)) return value;
+        }
+    };
+    MeshData mesh;
+    mesh.V = Array3f::Dense::NullaryExpr(n, 3, any_float);
+    Array3f::Dense N = Array3f::Dense::NullaryExpr(n, 3, [&] { return float(random() % 2001) / 1000 - 1; });
+    N.col(2).array() += 2;
+    mesh.N = Array3f::Dense(N.rowwise().normalized());
+    mesh.C = ArrayXf::Dense(ArrayXf::Dense::NullaryExpr(n, 4, [&] { return float(random() % 256) / 255; }));
+    mesh.UV = Array2f::Dense::NullaryExpr(n, 2, any_float);
+    mesh.L = Array1i::Dense::NullaryExpr(n, [&] { return int32_t(random()); });
+    mesh.I = Array1f::Dense::NullaryExpr(n, any_float);
+    mesh.F = Array3i::Dense::NullaryExpr(2 * n, 3, [&] { return int32_t(random() % unsigned(n)); });
+    mesh.E = Array2i::Dense::NullaryExpr(n, 2, [&] { return int32_t(random() % unsigned(n)); });
+    return mesh;
+}
+
+}  // namespace
+
+TEST(MeshFiles, PlyKeepsEveryBit) {
+    const TemporaryFolder folder;
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        const MeshData mesh = random_mesh(seed, int(1 + seed * 50));
+        Mesh(mesh).save(folder / "m.ply");
+        const auto back = Mesh(folder / "m.ply").snapshot();
+        EXPECT_TRUE(same_bits(mesh.V, back->V));
+        EXPECT_TRUE(same_bits(mesh.N, back->N));
+        EXPECT_TRUE(same_bits(mesh.UV, back->UV));
+        EXPECT_TRUE(same_bits(mesh.L, back->L));
+        EXPECT_TRUE(same_bits(mesh.I, back->I));
+        EXPECT_TRUE(same_bits(mesh.F, back->F));
+        EXPECT_TRUE(same_bits(mesh.E, back->E));
+        // Colours are codes of 8 bits in the file; reading multiplies instead of dividing by 255.
+        EXPECT_LE((mesh.C - back->C).cwiseAbs().maxCoeff(), 1.2e-7f);
+        EXPECT_EQ(back->name, "m");
+    }
+}
+
+TEST(MeshFiles, ObjKeepsPositionsNormalsAndFaces) {
+    const TemporaryFolder folder;
+    MeshData mesh = random_mesh(7, 300);
+    Mesh(mesh).save(folder / "m.obj");
+    EXPECT_FALSE(fs::exists(folder / "m.mtl")) << "no materials, no file for them";
+    const auto back = Mesh(folder / "m.obj").snapshot();
+    EXPECT_TRUE(same_bits(mesh.V, back->V));
+    EXPECT_TRUE(same_bits(mesh.N, back->N));
+    EXPECT_TRUE(same_bits(mesh.UV, back->UV));
+    EXPECT_TRUE(same_bits(mesh.F, back->F));
+    EXPECT_TRUE(same_bits(mesh.E, back->E));
+    EXPECT_TRUE(same_bits(ArrayXf::Dense(mesh.C.leftCols(3)), back->C));
+}
+
+TEST(MeshFiles, ObjKeepsMaterialsAndParts) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "out");
+    io::save_image(Image(2, 2, 3, PixelType::u8), folder / "t.png");
+    MeshData mesh = random_mesh(3, 10);
+    Material paint;
+    paint.name = "paint";
+    paint.base_color = Vec3(0.1f, 0.2f, 0.3f);
+    paint.roughness = 0.123f;
+    paint.metallic = 1;
+    paint.normal_scale = 0.5f;
+    paint.base_color_texture.image = std::make_shared<const Image>(2, 2, 3, PixelType::u8);
+    paint.base_color_texture.path = (folder / "t.png").string();
+    paint.normal_texture = paint.base_color_texture;
+    mesh.materials = {Material(), paint};
+    mesh.parts = {{"a", 0, 5, 0}, {"b", 5, 15, 1}};
+    Mesh(mesh).save(folder / "out/m.obj");
+    const auto back = Mesh(folder / "out/m.obj").snapshot();
+    ASSERT_EQ(back->materials.size(), 2u);
+    const Material& read = back->materials[1];
+    EXPECT_EQ(read.name, "paint");
+    EXPECT_EQ(read.base_color, paint.base_color);
+    EXPECT_EQ(read.roughness, paint.roughness);
+    EXPECT_EQ(read.metallic, paint.metallic);
+    EXPECT_EQ(read.normal_scale, paint.normal_scale);
+    EXPECT_TRUE(read.base_color_texture);
+    ASSERT_EQ(back->parts.size(), 2u);
+    EXPECT_EQ(back->parts[1].first_face, 5);
+    EXPECT_TRUE(same_bits(mesh.F, back->F));
+}
+
+TEST(MeshFiles, ChildrenAreMergedInWorldSpace) {
+    const TemporaryFolder folder;
+    Array3f::Dense V(3, 3);
+    V << 0, 0, 0, 1, 0, 0, 0, 1, 0;
+    Array3i::Dense F(1, 3);
+    F << 0, 1, 2;
+    const Mesh parent{Array3f(V), Array3i(F)}, child{Array3f(V), Array3i(F)};
+    Eigen::Affine3d mirror = Eigen::Affine3d::Identity();
+    mirror.translate(Vec3d(10, 0, 0)).scale(Vec3d(-1, 1, 1));
+    Mesh moved = child.clone();
+    moved.set_T_parent_mesh(mirror);
+    Mesh root = parent.clone();
+    root.add_child(moved);
+    for (const char* name : {"m.ply", "m.obj"}) {
+        root.save(folder / name);
+        const auto back = Mesh(folder / name).snapshot();
+        ASSERT_EQ(back->V.rows(), 6) << name;
+        EXPECT_EQ(Vec3(back->V.row(4)), Vec3(9, 0, 0));
+        // A mirrored triangle is wound the other way round, so that its outside stays outside.
+        EXPECT_EQ(Eigen::Vector3i(back->F.row(1)), Eigen::Vector3i(5, 4, 3));
+    }
+}
+
+TEST(MeshFiles, AnUnwritableTargetIsAnErrorAndLeavesNothing) {
+    const TemporaryFolder folder;
+    const Mesh mesh(random_mesh(1, 5));
+    EXPECT_THROW(mesh.save(folder / "no/such/m.ply"), FileError);
+    EXPECT_THROW(mesh.save(folder / "m.stl"), FormatError);
+    EXPECT_TRUE(fs::is_empty(folder.path()));
+}

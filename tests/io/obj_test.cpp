@@ -1,0 +1,193 @@
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/core/log.h"
+#include "easypbr/io/image_io.h"
+#include "easypbr/io/mesh_readers.h"
+#include "io/temporary_folder.h"
+
+using namespace easypbr;
+
+namespace {
+
+MeshData read(const std::string& text, const fs::path& path = "test.obj") {
+    MeshData mesh = io::read_obj(io::Source(std::string_view(text), path));
+    validate(mesh);
+    return mesh;
+}
+
+Array3i::Dense triangles(std::initializer_list<int> indices) {
+    return Eigen::Map<const Array3i::Dense>(indices.begin(), Eigen::Index(indices.size() / 3), 3);
+}
+
+const std::string square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+
+/// Reads a mesh whose only material is written as MTL lines.
+Material read_material(const std::string& lines, const TemporaryFolder& folder) {
+    write_file(folder / "m.mtl", "newmtl red paint\n" + lines);
+    const MeshData mesh =
+        read("mtllib m.mtl\n" + square + "usemtl red paint\nf 1 2 3\n", folder / "test.obj");
+    EXPECT_EQ(mesh.materials.size(), 1u);
+    return mesh.materials.at(0);
+}
+
+}  // namespace
+
+TEST(Obj, ReadsPolygonsNegativeIndicesContinuationsAndWindowsLineEnds) {
+    EXPECT_EQ(read(square + "f 1 2 3 4\n").F, triangles({0, 1, 2, 0, 2, 3}));
+    EXPECT_EQ(read(square + "f -4 -3 -2\nv 5 5 5\nf -1 -2 1\n").F, triangles({0, 1, 2, 4, 3, 0}));
+    EXPECT_EQ(read(square + "f 1 2 \\\n 3 \\\r\n4\n").F, triangles({0, 1, 2, 0, 2, 3}));
+    EXPECT_EQ(read("v 0 0 0\r\nv 1 0 0\r\nv 0 1 0\r\n\r\n# end\r\nf 1 2 3\r\n").F, triangles({0, 1, 2}));
+    EXPECT_EQ(read("  v 0 0 +1e0\n\tv 1 0 0\nv 0 1 0\ng group\no object\ns off\nvp 1\nf 1 2 3 # comment").F,
+              triangles({0, 1, 2}));
+}
+
+TEST(Obj, ReadsVertexColorsAndLines) {
+    const MeshData mesh = read("v 0 0 0\nv 1 0 0 1 0.5 0.25\nv 0 1 0 1\nl 1 2 3\nl -1 -3\n");
+    ASSERT_EQ(mesh.C.rows(), 3);
+    EXPECT_EQ(Vec3(mesh.C.row(0)), Vec3(1, 1, 1)) << "a vertex without a colour is white";
+    EXPECT_EQ(Vec3(mesh.C.row(1)), Vec3(1, 0.5f, 0.25f));
+    Array2i::Dense edges(3, 2);
+    edges << 0, 1, 1, 2, 2, 0;
+    EXPECT_EQ(mesh.E, edges);
+    EXPECT_EQ(mesh.F.rows(), 0);
+}
+
+TEST(Obj, KeepsVerticesWhoseIndicesAgree) {
+    const MeshData mesh = read(square + "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\nf 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
+    EXPECT_EQ(mesh.V.rows(), 4);
+    EXPECT_TRUE(mesh.source_vertex.empty());
+    EXPECT_EQ(Vec2(mesh.UV.row(2)), Vec2(1, 1));
+}
+
+TEST(Obj, SplitsVerticesByTheirIndices) {
+    const MeshData mesh = read(square +
+                               "vt 0 0\nvt 1 0\nvn 0 0 1\nvn 0 0 -1\n"
+                               "f 1/1/1 2/2/1 3/1/1\nf 1/1/2 3/1/1 4//1\n");
+    // Vertex 1 has two normals; vertex 3 is the same in both faces; vertex 4 has no uv.
+    ASSERT_EQ(mesh.V.rows(), 5);
+    const std::vector<int> sources(mesh.source_vertex.data(), mesh.source_vertex.data() + 5);
+    EXPECT_EQ(sources, (std::vector<int>{0, 0, 1, 2, 3}));
+    EXPECT_EQ(mesh.F, triangles({0, 2, 3, 1, 3, 4}));
+    EXPECT_EQ(mesh.N(mesh.F(1, 0), 2), -1);
+    EXPECT_EQ(Vec2(mesh.UV.row(2)), Vec2(1, 0));
+    EXPECT_EQ(Vec2(mesh.UV.row(4)), Vec2(0, 0));
+}
+
+TEST(Obj, ComputesNormalsThatOnlySomeFacesLack) {
+    const MeshData mesh = read(square + "vn 0 0 -1\nf 1//1 2//1 3//1\nf 1 3 4\n");
+    ASSERT_EQ(mesh.N.rows(), 6);
+    EXPECT_EQ(mesh.N(mesh.F(0, 0), 2), -1) << "the file's own normal is kept although it points back";
+    EXPECT_EQ(Vec3(mesh.N.row(mesh.F(1, 0))), Vec3(0, 0, 1));
+}
+
+TEST(Obj, SortsFacesByMaterialInOrderOfUse) {
+    const TemporaryFolder folder;
+    write_file(folder / "m.mtl", "newmtl a\nKd 1 0 0\nnewmtl unused\nnewmtl b\nKd 0 1 0\n");
+    const MeshData mesh =
+        read("mtllib m.mtl\n" + square +
+                 "usemtl b\nf 1 2 3\nusemtl a\nf 1 2 3 4\nusemtl b\nf 2 3 4\nusemtl c\nf 4 3 2\n",
+             folder / "test.obj");
+    ASSERT_EQ(mesh.materials.size(), 3u);
+    EXPECT_EQ(mesh.materials[0].name, "b");
+    EXPECT_EQ(mesh.materials[1].base_color, Vec3(1, 0, 0));
+    EXPECT_EQ(mesh.materials[2].base_color, Material().base_color) << "an undefined material is the default";
+    ASSERT_EQ(mesh.parts.size(), 3u);
+    EXPECT_EQ(mesh.parts[0].face_count, 2);
+    EXPECT_EQ(mesh.parts[1].first_face, 2);
+    EXPECT_EQ(mesh.parts[1].face_count, 2);
+    EXPECT_EQ(mesh.F, triangles({0, 1, 2, 1, 2, 3, 0, 1, 2, 0, 2, 3, 3, 2, 1}));
+    const std::vector<int> sources(mesh.source_face.data(), mesh.source_face.data() + 5);
+    EXPECT_EQ(sources, (std::vector<int>{0, 2, 1, 1, 3}));
+}
+
+TEST(Obj, ReadsMaterialFactors) {
+    const TemporaryFolder folder;
+    const Material pbr = read_material("Kd 0.25 0.5 1\nKe 2 0 0\nPr 0.3\nPm 0.7\nd 0.5\nNs 10\n", folder);
+    EXPECT_EQ(pbr.name, "red paint");
+    EXPECT_EQ(pbr.base_color, Vec3(0.25f, 0.5f, 1)) << "Kd is linear";
+    EXPECT_EQ(pbr.emissive, Vec3(2, 0, 0));
+    EXPECT_EQ(pbr.roughness, 0.3f);
+    EXPECT_EQ(pbr.metallic, 0.7f);
+    EXPECT_EQ(pbr.opacity, 0.5f);
+    EXPECT_EQ(pbr.alpha_mode, AlphaMode::blend);
+    EXPECT_EQ(read_material("Tr 0.25\n", folder).opacity, 0.75f);
+    EXPECT_TRUE(read_material("illum 0\n", folder).unlit);
+    EXPECT_FALSE(read_material("illum 2\n", folder).unlit);
+    // alpha = sqrt(2 / (Ns + 2)): 1 for Ns = 0, 1/4 for Ns = 30; roughness = sqrt(alpha).
+    EXPECT_FLOAT_EQ(read_material("Ns 0\n", folder).roughness, 1);
+    EXPECT_FLOAT_EQ(read_material("Ns 30\n", folder).roughness, 0.5f);
+    EXPECT_EQ(read_material("Kd nan 0 0\nPr 7\n", folder).base_color, Material().base_color);
+    EXPECT_EQ(read_material("Pr 7\n", folder).roughness, 1);
+}
+
+TEST(Obj, ReadsMaps) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "maps");
+    io::save_image(Image(2, 2, 3, PixelType::u8), folder / "maps/a b.png");
+    io::save_image(Image(2, 2, 1, PixelType::u8), folder / "grey.png");
+    const Material m = read_material(
+        "Kd 0 0 0\nmap_Kd -s 2 3 1 -o 0.5 -clamp on maps\\a b.png\nmap_Pr grey.png\n"
+        "map_Pm -imfchan g maps/a b.png\nmap_Ke maps/a b.png\nmap_d grey.png\n"
+        "norm -bm 0.5 maps/a b.png\n",
+        folder);
+    ASSERT_TRUE(m.base_color_texture);
+    EXPECT_EQ(m.base_color, Vec3(1, 1, 1)) << "black beside a map means the map alone";
+    EXPECT_EQ(m.base_color_texture.wrap_u, Wrap::clamp);
+    EXPECT_EQ(Vec3(m.base_color_texture.uv_transform * Vec3(1, 1, 1)), Vec3(2.5f, 3, 1));
+    EXPECT_TRUE(m.roughness_texture);
+    EXPECT_EQ(m.roughness, 1);
+    EXPECT_EQ(m.metallic, 1);
+    EXPECT_EQ(m.metallic_texture.channel, 1);
+    EXPECT_EQ(m.emissive, Vec3(1, 1, 1));
+    EXPECT_EQ(m.alpha_mode, AlphaMode::mask);
+    EXPECT_EQ(m.normal_scale, 0.5f);
+    EXPECT_EQ(m.base_color_texture.image, m.normal_texture.image) << "an image is read once";
+    EXPECT_TRUE(read_material("bump maps/a b.png\n", folder).normal_texture);
+    EXPECT_FALSE(read_material("bump grey.png\n", folder).normal_texture) << "a height map is no normal map";
+}
+
+TEST(Obj, WarnsOfMissingLibrariesAndTextures) {
+    const TemporaryFolder folder;
+    std::vector<std::string> warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });
+    const Material m = read_material("map_Kd gone.png\n", folder);
+    read("mtllib gone.mtl\n" + square + "usemtl a\nf 1 2 3\n", folder / "test.obj");
+    set_log_sink({});
+    EXPECT_FALSE(m.base_color_texture);
+    ASSERT_EQ(warnings.size(), 2u);
+    EXPECT_NE(warnings[0].find("gone.png"), std::string::npos);
+    EXPECT_NE(warnings[1].find("gone.mtl"), std::string::npos);
+}
+
+TEST(Obj, GivesTheSameMeshHoweverItIsCutIntoPieces) {
+    // About 3 MB, so that it is parsed in several pieces; relative and absolute indices, continued lines,
+    // materials.
+    std::string text;
+    constexpr int strips = 60000;
+    for (int i = 0; i < strips; ++i) {
+        text += fmt::format("v {} 0 0\nv {} 1 0 0.5 0.5 0.5\n", i, i);
+        if (i % 1000 == 0) text += fmt::format("usemtl m{}\n", i / 1000 % 7);
+        if (i)
+            text += i % 2 ? "f -4 -2 \\\n -1 -3\n"
+                          : fmt::format("f {} {} {} {}\n", 2 * i - 1, 2 * i + 1, 2 * i + 2, 2 * i);
+    }
+    ASSERT_GT(text.size(), 2'500'000u);
+    const MeshData mesh = read(text);
+    ASSERT_EQ(mesh.V.rows(), 2 * strips);
+    ASSERT_EQ(mesh.F.rows(), 2 * (strips - 1));
+    EXPECT_EQ(mesh.parts.size(), 7u);
+    for (int f = 0; f < mesh.F.rows(); f += 2) {
+        // Face k joins strips k and k + 1: vertices 2k, 2k + 2, 2k + 3, 2k + 1.
+        const int k = mesh.source_face(f);
+        ASSERT_EQ(mesh.F.middleRows(f, 2),
+                  triangles({2 * k, 2 * k + 2, 2 * k + 3, 2 * k, 2 * k + 3, 2 * k + 1}));
+    }
+    for (const MeshPart& part : mesh.parts)
+        for (int f = part.first_face; f < part.first_face + part.face_count; ++f)
+            ASSERT_EQ(mesh.materials[size_t(part.material)].name,
+                      fmt::format("m{}", (mesh.source_face(f) + 1) / 1000 % 7));
+}

@@ -1,0 +1,41 @@
+#include <string>
+
+#include "easypbr/core/error.h"
+#include "easypbr/io/mesh_readers.h"
+
+using namespace easypbr;
+
+namespace {
+
+MeshData read(const std::string& text) {
+    MeshData mesh = io::read_off(io::Source(std::string_view(text), "test.off"));
+    validate(mesh);
+    return mesh;
+}
+
+}  // namespace
+
+TEST(Off, ReadsPolygonsCommentsAndCountsOnEitherLine) {
+    for (const std::string head :
+         {"OFF\n4 2 5\n", "OFF 4 2 5\n", "# made by a test\nOFF # kind\n\n4 2 5 # counts\n"}) {
+        const MeshData mesh =
+            read(head + "0 0 0\n1 0 0 # corner\n\n1 1 0\n# comment\n0 1 0\n4 0 1 2 3\n3 2 1 0 255 0 0\n");
+        ASSERT_EQ(mesh.V.rows(), 4);
+        EXPECT_EQ(Vec3(mesh.V.row(2)), Vec3(1, 1, 0));
+        ASSERT_EQ(mesh.F.rows(), 3);
+        EXPECT_EQ(mesh.source_face(1), 0);
+        EXPECT_EQ(mesh.F(2, 0), 2);
+        EXPECT_TRUE(mesh.C.empty());
+    }
+}
+
+TEST(Off, ReadsAttributesInTheOrderOfTheManual) {
+    const MeshData mesh = read("STCNOFF\n1 0 0\n1 2 3  0 1 0  255 0 51 255  0.25 0.75\n");
+    EXPECT_EQ(Vec3(mesh.N.row(0)), Vec3(0, 1, 0));
+    ASSERT_EQ(mesh.C.cols(), 4);
+    EXPECT_FLOAT_EQ(mesh.C(0, 2), 0.2f);
+    EXPECT_EQ(Vec2(mesh.UV.row(0)), Vec2(0.25f, 0.75f));
+    EXPECT_EQ(read("NOFF\n1 0 0\n1 2 3 0 0 1\n").N(0, 2), 1);
+    EXPECT_EQ(read("COFF\n1 0 0\n1 2 3 1 0.5 0\n").C(0, 1), 0.5f) << "real colours are taken as they are";
+    EXPECT_EQ(read("OFF\n1 0 0\n1 2 3 255 0 0\n").C.cols(), 3) << "colours of a plain OFF";
+}

@@ -1,0 +1,255 @@
+#include <array>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/core/log.h"
+#include "easypbr/io/image_io.h"
+#include "easypbr/io/mesh_readers.h"
+#include "io/ply_builder.h"
+#include "io/temporary_folder.h"
+
+using namespace easypbr;
+
+namespace {
+
+const std::vector<std::string> formats{"ascii", "binary_little_endian", "binary_big_endian"};
+
+MeshData read(const std::string& text) {
+    MeshData mesh = io::read_ply(io::Source(std::string_view(text), "test.ply"));
+    validate(mesh);
+    return mesh;
+}
+
+/// A tetrahedron's vertices; 100 keeps them exact in every type.
+const std::vector<std::array<double, 3>> corners{{0, 0, 0}, {100, 0, 0}, {0, 100, 0}, {0, 0, 100}};
+
+Array3f::Dense expected_corners() {
+    Array3f::Dense V(4, 3);
+    V << 0, 0, 0, 100, 0, 0, 0, 100, 0, 0, 0, 100;
+    return V;
+}
+
+Array3i::Dense triangles(std::initializer_list<int> indices) {
+    return Eigen::Map<const Array3i::Dense>(indices.begin(), Eigen::Index(indices.size() / 3), 3);
+}
+
+/// Header and vertices x y z as float; faces and more follow.
+PlyBuilder with_vertices(const std::string& format, const std::string& more_header) {
+    PlyBuilder ply(format);
+    ply.header("element vertex 4\nproperty float x\nproperty float y\nproperty float z")
+        .header(more_header)
+        .end_header();
+    for (const auto& corner : corners) ply.values("float", corner).end_row();
+    return ply;
+}
+
+const std::string face_header = "property list uchar int vertex_indices";
+
+}  // namespace
+
+TEST(Ply, ReadsEveryTypeAndSpellingInEveryFormat) {
+    const std::vector<std::string> types{"char",   "int8",    "uchar",  "uint8",  "short", "int16",
+                                         "ushort", "uint16",  "int",    "int32",  "uint",  "uint32",
+                                         "float",  "float32", "double", "float64"};
+    for (const std::string& format : formats) {
+        for (const std::string& type : types) {
+            PlyBuilder ply(format);
+            // Property order y, unknown, x, z, and an index list of the same type where that is an integer.
+            ply.header("element vertex 4\nproperty " + type + " y\nproperty double extra\nproperty " + type +
+                       " x\nproperty " + type + " z");
+            const bool integer = type.find("float") == std::string::npos && type != "double";
+            const std::string index = integer ? type : "int";
+            ply.header("element face 2\nproperty list " + index + " " + index + " vertex_index").end_header();
+            for (const auto& c : corners)
+                ply.value(type, c[1]).value("double", 0.5).value(type, c[0]).value(type, c[2]).end_row();
+            ply.values(index, {3, 0, 1, 2}).end_row().values(index, {3, 0, 3, 1}).end_row();
+            const MeshData mesh = read(ply.text());
+            EXPECT_EQ(mesh.V, expected_corners()) << format << " " << type;
+            EXPECT_EQ(mesh.F, triangles({0, 1, 2, 0, 3, 1})) << format << " " << type;
+            EXPECT_TRUE(mesh.source_face.empty());
+        }
+    }
+}
+
+TEST(Ply, CutsPolygonsIntoFansAndRemembersThem) {
+    for (const std::string& format : formats) {
+        PlyBuilder ply = with_vertices(format, "element face 3\n" + face_header);
+        ply.values("uchar", {3}).values("int", {0, 1, 2}).end_row();
+        ply.values("uchar", {4}).values("int", {0, 1, 2, 3}).end_row();
+        ply.values("uchar", {2}).values("int", {0, 1}).end_row();
+        const MeshData mesh = read(ply.text());
+        EXPECT_EQ(mesh.F, triangles({0, 1, 2, 0, 1, 2, 0, 2, 3})) << format;
+        ASSERT_EQ(mesh.source_face.rows(), 3);
+        EXPECT_EQ(mesh.source_face(2), 1);
+    }
+}
+
+TEST(Ply, ReadsManyFacesWhoseLastIsAPentagon) {
+    // More rows than are read at once, so that the guess "all triangles" fails late.
+    constexpr int faces = 70000;
+    for (const std::string& format : formats) {
+        PlyBuilder ply = with_vertices(format, "element face " + std::to_string(faces) + "\n" + face_header);
+        for (int i = 0; i < faces - 1; ++i)
+            ply.value("uchar", 3).values("int", {0, 1, double(i % 4)}).end_row();
+        ply.value("uchar", 5).values("int", {3, 2, 1, 0, 2}).end_row();
+        const MeshData mesh = read(ply.text());
+        ASSERT_EQ(mesh.F.rows(), faces + 2) << format;
+        EXPECT_EQ(mesh.F(69998, 2), 69998 % 4);
+        EXPECT_EQ(mesh.F.bottomRows(3), triangles({3, 2, 1, 3, 1, 0, 3, 0, 2}));
+        EXPECT_EQ(mesh.source_face(faces), faces - 1);
+    }
+}
+
+TEST(Ply, CutsAConcaveQuadInside) {
+    // An arrowhead: vertex 1 is the notch, so that only the diagonal 1-3 lies inside.
+    PlyBuilder ply("ascii");
+    ply.header("element vertex 4\nproperty float x\nproperty float y\nproperty float z\nelement face 1\n" +
+               face_header);
+    ply.end_header().header("0 2 0\n0 1 0\n2 0 0\n0 5 0").header("4 0 1 2 3");
+    const MeshData mesh = read(ply.text());
+    ASSERT_EQ(mesh.F.rows(), 2);
+    // 0 1 2 would turn the other way than 0 2 3; both halves of the right cut have the quad's orientation.
+    for (int i = 0; i < 2; ++i) {
+        const Vec3 a = mesh.V.row(mesh.F(i, 0)), b = mesh.V.row(mesh.F(i, 1)), c = mesh.V.row(mesh.F(i, 2));
+        EXPECT_GT((b - a).cross(c - a).z(), 0) << "triangle " << i;
+    }
+}
+
+TEST(Ply, ReadsStrips) {
+    for (const std::string& format : formats) {
+        PlyBuilder ply = with_vertices(format, "element tristrips 1\nproperty list int int vertex_indices");
+        ply.values("int", {9, 0, 1, 2, 3, -1, 3, 2, 2, 1}).end_row();
+        // Every second triangle of a strip is wound the other way round; those with a repeated index are
+        // none.
+        EXPECT_EQ(read(ply.text()).F, triangles({0, 1, 2, 2, 1, 3})) << format;
+    }
+}
+
+TEST(Ply, SkipsUnknownElements) {
+    for (const std::string& format : formats) {
+        PlyBuilder ply(format);
+        ply.header("comment made by a test\nobj_info nothing\nelement camera 2\nproperty double focal");
+        ply.header(
+            "property list ushort float samples\nelement vertex 4\nproperty float x\nproperty float y");
+        ply.header("property float z\nproperty list uchar int neighbours\nelement face 1")
+            .header(face_header);
+        ply.header("property uchar flags\nproperty list int double weights").end_header();
+        ply.value("double", 1).value("ushort", 2).values("float", {1, 2}).end_row();
+        ply.value("double", 1).value("ushort", 0).end_row();
+        for (const auto& c : corners) ply.values("float", c).value("uchar", 1).value("int", 7).end_row();
+        ply.value("uchar", 3)
+            .values("int", {1, 2, 3})
+            .value("uchar", 9)
+            .value("int", 1)
+            .value("double", 0.5)
+            .end_row();
+        const MeshData mesh = read(ply.text());
+        EXPECT_EQ(mesh.V, expected_corners()) << format;
+        EXPECT_EQ(mesh.F, triangles({1, 2, 3})) << format;
+    }
+}
+
+TEST(Ply, ReadsAttributes) {
+    for (const std::string& format : formats) {
+        PlyBuilder ply(format);
+        ply.header(
+            "element vertex 1\nproperty float x\nproperty float y\nproperty float z\nproperty float nx");
+        ply.header("property float ny\nproperty float nz\nproperty uchar red\nproperty uchar green");
+        ply.header("property uchar blue\nproperty uchar alpha\nproperty float s\nproperty double t");
+        ply.header("property int label\nproperty float intensity").end_header();
+        ply.values("float", {1, 2, 3}).values("float", {0, 0, 2}).values("uchar", {255, 51, 0, 102});
+        ply.value("float", 0.25).value("double", 0.75).value("int", -7).value("float", 12.5).end_row();
+        const MeshData mesh = read(ply.text());
+        EXPECT_EQ(Vec3(mesh.N.row(0)), Vec3(0, 0, 1)) << "normals are made unit";
+        ASSERT_EQ(mesh.C.cols(), 4);
+        // 1/255 is rounded once and multiplied once: two roundings of half a unit in the last place.
+        EXPECT_NEAR(mesh.C(0, 0), 1.0f, 2e-7f);
+        EXPECT_NEAR(mesh.C(0, 1), 0.2f, 2e-7f);
+        EXPECT_NEAR(mesh.C(0, 3), 0.4f, 2e-7f);
+        EXPECT_EQ(mesh.UV(0, 0), 0.25f);
+        EXPECT_EQ(mesh.UV(0, 1), 0.75f);
+        EXPECT_EQ(mesh.L(0), -7);
+        EXPECT_EQ(mesh.I(0), 12.5f);
+        EXPECT_EQ(mesh.F.rows(), 0) << "a cloud needs no faces";
+    }
+}
+
+TEST(Ply, ReadsAttributesUnderTheirOtherNames) {
+    const std::vector<std::array<std::string, 2>> uv_names{
+        {"s", "t"}, {"u", "v"}, {"texture_u", "texture_v"}};
+    for (const auto& [u, v] : uv_names) {
+        const MeshData mesh = read(
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
+            "property float z\nproperty float " +
+            u + "\nproperty float " + v +
+            "\nproperty float diffuse_red\nproperty float diffuse_green\n"
+            "property float diffuse_blue\nend_header\n0 0 0 0.5 0.25 1.5 0.5 -1\n");
+        ASSERT_EQ(mesh.UV.rows(), 1);
+        EXPECT_EQ(mesh.UV(0, 1), 0.25f);
+        EXPECT_EQ(Vec3(mesh.C.row(0)), Vec3(1, 0.5f, 0))
+            << "real colours are taken as they are, within 0 .. 1";
+    }
+}
+
+TEST(Ply, SplitsVerticesByCornerTexcoords) {
+    for (const std::string& format : formats) {
+        // Two triangles share vertices 1 and 2; vertex 1 has one uv in both, vertex 2 has two.
+        PlyBuilder ply = with_vertices(format, "element face 2\n" + face_header +
+                                                   "\nproperty list uchar float texcoord\nelement edge 1\n"
+                                                   "property int vertex1\nproperty int vertex2");
+        ply.value("uchar", 3)
+            .values("int", {0, 1, 2})
+            .value("uchar", 6)
+            .values("float", {0, 0, 1, 0, 0, 1})
+            .end_row();
+        ply.value("uchar", 3)
+            .values("int", {1, 3, 2})
+            .value("uchar", 6)
+            .values("float", {1, 0, 0.5, 0.5, 1, 1})
+            .end_row();
+        ply.values("int", {3, 2}).end_row();
+        const MeshData mesh = read(ply.text());
+        ASSERT_EQ(mesh.V.rows(), 5) << format;
+        const std::vector<int> sources(mesh.source_vertex.data(), mesh.source_vertex.data() + 5);
+        EXPECT_EQ(sources, (std::vector<int>{0, 1, 2, 2, 3}));
+        EXPECT_EQ(Vec2(mesh.UV.row(mesh.F(0, 2))), Vec2(0, 1));
+        EXPECT_EQ(Vec2(mesh.UV.row(mesh.F(1, 2))), Vec2(1, 1));
+        EXPECT_EQ(Vec2(mesh.UV.row(mesh.F(1, 1))), Vec2(0.5f, 0.5f));
+        EXPECT_EQ(mesh.F(0, 1), mesh.F(1, 0)) << "equal uv stay one vertex";
+        EXPECT_EQ(Vec3(mesh.V.row(mesh.E(0, 0))), Vec3(0, 0, 100)) << "edges follow";
+    }
+}
+
+TEST(Ply, LoadsTexturesBesideTheFileAndWarnsOfMissingOnes) {
+    const TemporaryFolder folder;
+    io::save_image(Image(2, 2, 3, PixelType::u8), folder / "here.png");
+    const std::string text =
+        "ply\r\nformat ascii 1.0\r\ncomment TextureFile here.png\r\ncomment TextureFile gone.png\r\n"
+        "element vertex 3\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\n"
+        "element face 2\r\nproperty list uchar int vertex_indices\r\nproperty int texnumber\r\n"
+        "end_header\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n3 0 1 2 1\r\n3 2 1 0 0\r\n";
+    std::vector<std::string> warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });
+    const MeshData mesh = io::read_ply(io::Source(std::string_view(text), folder / "test.ply"));
+    set_log_sink({});
+    ASSERT_EQ(mesh.materials.size(), 2u);
+    EXPECT_TRUE(mesh.materials[0].base_color_texture);
+    EXPECT_EQ(mesh.materials[0].base_color, Vec3(1, 1, 1));
+    EXPECT_FALSE(mesh.materials[1].base_color_texture);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("gone.png"), std::string::npos);
+    // Faces are sorted by their texture.
+    ASSERT_EQ(mesh.parts.size(), 2u);
+    EXPECT_EQ(mesh.F, triangles({2, 1, 0, 0, 1, 2}));
+    EXPECT_EQ(mesh.source_face(0), 1);
+}
+
+TEST(Ply, ReadsBinaryRowsAfterAWindowsHeader) {
+    PlyBuilder ply("binary_little_endian");
+    ply.header(
+        "element vertex 1\r\nproperty float x\r\nproperty float y\r\nproperty float z\r\nend_header\r");
+    ply.values("float", {13, 10, 2});
+    EXPECT_EQ(Vec3(read(ply.text()).V.row(0)), Vec3(13, 10, 2));
+}
