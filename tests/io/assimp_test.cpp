@@ -99,7 +99,8 @@ TEST_F(Assimp, ReadsAc3d) {
     EXPECT_EQ(data->V.rows(), 3);
     EXPECT_EQ(data->F.rows(), 1);
     EXPECT_EQ(data->materials.at(0).base_color, Vec3(0, 1, 0));
-    EXPECT_LT((T.translation() - Vec3d(0, 0, 5)).norm(), 1e-6);
+    const Vec3d corner = T * Vec3d(data->V.row(0).transpose().cast<double>());
+    EXPECT_LT((corner - Vec3d(0, 0, 5)).norm(), 1e-6);
 }
 
 TEST_F(Assimp, KnowsItsExtensions) {
