@@ -1,0 +1,15 @@
+# Headers stand beside their sources and are installed as they are: #include <easypbr/scene/mesh.h> inside and outside.
+include(CMakePackageConfigHelpers)
+install(TARGETS easypbr EXPORT easypbrTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
+if(TARGET easypbr_assimp)
+  install(TARGETS easypbr_assimp LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
+endif()
+install(TARGETS easypbr_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT library)
+install(DIRECTORY src/easypbr DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library
+        FILES_MATCHING PATTERN "*.h" PATTERN cli EXCLUDE PATTERN python EXCLUDE PATTERN tools EXCLUDE PATTERN assimp EXCLUDE)
+install(EXPORT easypbrTargets NAMESPACE easypbr:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/easypbr COMPONENT library)
+configure_package_config_file(cmake/easypbrConfig.cmake.in ${PROJECT_BINARY_DIR}/easypbrConfig.cmake
+                              INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/easypbr)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/easypbrConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/easypbrConfig.cmake ${PROJECT_BINARY_DIR}/easypbrConfigVersion.cmake
+        DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/easypbr COMPONENT library)

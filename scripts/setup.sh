@@ -1,0 +1,36 @@
+#!/usr/bin/env bash
+# Installs what the build needs and this machine lacks: Debian packages (as root or with sudo) and .venv.
+# usage: setup.sh
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+packages=(
+  g++ cmake ninja-build ccache pkg-config clang-format
+  libeigen3-dev libfmt-dev libtbb-dev nlohmann-json3-dev libcli11-dev libxxhash-dev libfast-float-dev
+  libepoxy-dev libegl1 libegl-mesa0 libopengl0 libgl1-mesa-dri
+  libspng-dev libturbojpeg0-dev libtinyexr-dev libassimp-dev
+  libgtest-dev python3-dev python3-venv
+)
+missing=()
+for package in "${packages[@]}"; do
+  [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
+done
+if [ ${#missing[@]} -gt 0 ]; then
+  echo "installing Debian packages: ${missing[*]}"
+  as_root=()
+  if [ "$(id -u)" != 0 ]; then
+    command -v sudo >/dev/null || { echo "setup: run as root or install sudo, then again" >&2; exit 1; }
+    as_root=(sudo)
+  fi
+  "${as_root[@]}" apt-get update -qq
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+fi
+
+# Debian's Python with its own packages in sight, so that its torch can be used; that torch needs numpy below 2.
+stamp=.venv/requirements
+if ! cmp -s scripts/requirements.txt "$stamp" 2>/dev/null; then
+  echo "making .venv"
+  [ -x .venv/bin/python ] || /usr/bin/python3 -m venv --system-site-packages .venv
+  .venv/bin/python -m pip install --quiet --disable-pip-version-check -r scripts/requirements.txt
+  cp scripts/requirements.txt "$stamp"
+fi

@@ -1,0 +1,59 @@
+"""The installed library: an outside program finds it, builds and runs after the source tree is out of reach, and makes
+the same picture as the Python program of the same five lines."""
+import pathlib
+import shutil
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+OUTSIDE = pathlib.Path(__file__).parent / "outside"
+
+SCRIPT = """
+from easypbr import *
+view  = Viewer()
+view.load_environment_map("./map.hdr")
+drone = Mesh("./drone.ply")
+Scene.show(drone, "drone")
+view.recorder.record("img.png")
+"""
+
+
+def run(*command, cwd):
+    result = subprocess.run([str(c) for c in command], cwd=cwd, capture_output=True, text=True)
+    assert result.returncode == 0, result.stdout + result.stderr
+    return result
+
+
+def write_inputs(folder):
+    """A small environment and a tetrahedron, written by hand."""
+    width, height = 32, 16
+    rows = b"".join(bytes([2, 2, 0, width]) + b"".join(bytes([128 + width % 128, value]) * (width // 32)
+                    for value in (100 + y * 8, 120, 140, 129)) for y in range(height))
+    (folder / "map.hdr").write_bytes(
+        f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n".encode() + rows)
+    (folder / "drone.ply").write_text(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+        "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+        "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
+
+
+def test_outside_program_matches_python(tmp_path):
+    prefix, source, build = tmp_path / "prefix", tmp_path / "source", tmp_path / "build"
+    run("cmake", "--install", ROOT / "build", "--prefix", prefix, "--component", "library", cwd=tmp_path)
+    shutil.copytree(OUTSIDE, source)
+    for path in prefix.rglob("*.cmake"):
+        assert str(ROOT) not in path.read_text(), f"{path.name} points into the source tree"
+    run("cmake", "-S", source, "-B", build, f"-DCMAKE_PREFIX_PATH={prefix}", "-DCMAKE_BUILD_TYPE=Release", cwd=tmp_path)
+    run("cmake", "--build", build, cwd=tmp_path)
+
+    work = tmp_path / "work"
+    work.mkdir()
+    write_inputs(work)
+    # The program must not find anything in the tree: it runs with the tree's shared library out of its search path.
+    libraries = run("ldd", build / "outside", cwd=work).stdout
+    assert str(prefix) in libraries and str(ROOT) not in libraries
+    run(build / "outside", "drone.ply", "map.hdr", "cpp.png", cwd=work)
+
+    run(sys.executable, "-c", SCRIPT, cwd=work)
+    comparison = run(ROOT / "build/easypbr", "compare", "cpp.png", "img.png", cwd=work)
+    assert (work / "cpp.png").read_bytes() == (work / "img.png").read_bytes(), comparison.stdout
