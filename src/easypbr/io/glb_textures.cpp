@@ -1,5 +1,6 @@
 #include "easypbr/io/glb_textures.h"
 
+#include <algorithm>
 #include <cmath>
 
 #include "easypbr/io/image_io.h"
@@ -132,16 +133,12 @@ size_t GlbMaterials::texture_index(const Texture& texture) {
 
 OrderedJson GlbMaterials::texture_info(const Texture& texture) {
     OrderedJson info = {{"index", texture_index(texture)}};
-    if (texture.uv_transform != Mat3::Identity()) {
-        info["extensions"]["KHR_texture_transform"] = transform_json(texture.uv_transform);
-        extensions_.push_back("KHR_texture_transform");
-    }
+    if (texture.uv_transform != Mat3::Identity())
+        extend(info, "KHR_texture_transform") = transform_json(texture.uv_transform);
     return info;
 }
 
-size_t GlbMaterials::add(const Material& material) {
-    OrderedJson json;
-    if (!material.name.empty()) json["name"] = material.name;
+void GlbMaterials::add_surface(const Material& material, OrderedJson& json) {
     OrderedJson& surface = json["pbrMetallicRoughness"];
     surface["baseColorFactor"] = {material.base_color[0], material.base_color[1], material.base_color[2],
                                   material.opacity};
@@ -158,26 +155,32 @@ size_t GlbMaterials::add(const Material& material) {
         json["occlusionTexture"] = texture_info(texture);
         json["occlusionTexture"]["strength"] = material.occlusion_strength;
     }
+}
+
+void GlbMaterials::add_emission(const Material& material, OrderedJson& json) {
     if (const Texture& texture = material.emissive_texture) json["emissiveTexture"] = texture_info(texture);
+    // The factor ends at 1; what is brighter goes into the strength.
     const float strength = std::max(1.0f, material.emissive.maxCoeff());
     json["emissiveFactor"] = json_of(material.emissive / strength);
-    if (strength > 1) {
-        json["extensions"]["KHR_materials_emissive_strength"]["emissiveStrength"] = strength;
-        extensions_.push_back("KHR_materials_emissive_strength");
-    }
-    if (material.unlit) {
-        json["extensions"]["KHR_materials_unlit"] = OrderedJson::object();
-        extensions_.push_back("KHR_materials_unlit");
-    }
+    if (strength > 1) extend(json, "KHR_materials_emissive_strength")["emissiveStrength"] = strength;
+}
+
+OrderedJson& GlbMaterials::extend(OrderedJson& json, const char* extension) {
+    OrderedJson& used = content_.json["extensionsUsed"];
+    if (std::find(used.begin(), used.end(), extension) == used.end()) used.push_back(extension);
+    return json["extensions"][extension];
+}
+
+size_t GlbMaterials::add(const Material& material) {
+    OrderedJson json;
+    if (!material.name.empty()) json["name"] = material.name;
+    add_surface(material, json);
+    add_emission(material, json);
+    if (material.unlit) extend(json, "KHR_materials_unlit") = OrderedJson::object();
     const char* modes[] = {"OPAQUE", "MASK", "BLEND"};
     json["alphaMode"] = modes[int(material.alpha_mode)];
     if (material.alpha_mode == AlphaMode::mask) json["alphaCutoff"] = material.alpha_cutoff;
     json["doubleSided"] = material.double_sided;
-    for (const std::string& extension : extensions_) {
-        OrderedJson& used = content_.json["extensionsUsed"];
-        if (std::find(used.begin(), used.end(), extension) == used.end()) used.push_back(extension);
-    }
-    extensions_.clear();
     content_.json["materials"].push_back(std::move(json));
     return content_.json["materials"].size() - 1;
 }

@@ -5,7 +5,6 @@
 
 #include <map>
 #include <string>
-#include <vector>
 
 #include "easypbr/scene/material.h"
 
@@ -31,13 +30,16 @@ class GlbMaterials {
     size_t add(const Material& material);
 
   private:
+    void add_surface(const Material& material, OrderedJson& json);
+    void add_emission(const Material& material, OrderedJson& json);
+    /// The object of an extension of `json`, which is noted as used.
+    OrderedJson& extend(OrderedJson& json, const char* extension);
     OrderedJson texture_info(const Texture& texture);
     size_t image_index(const std::shared_ptr<const Image>& image);
     size_t texture_index(const Texture& texture);
 
     GlbContent& content_;
     std::map<std::shared_ptr<const Image>, size_t> images_;
-    std::vector<std::string> extensions_;
 };
 
 }  // namespace easypbr::io

@@ -1,8 +1,10 @@
 // Radiance pictures (Ward, "Real Pixels", Graphics Gems II; the reference manual's "picture file format").
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <string_view>
 
