@@ -1,0 +1,118 @@
+"""The other commands, and the command line itself."""
+import json
+import os
+import subprocess
+
+import numpy as np
+import pytest
+
+import conftest
+import exr
+import png
+
+
+def test_version_and_help_go_to_standard_output(easypbr):
+    assert easypbr("--version").stdout.startswith("easypbr 0.")
+    assert "render" in easypbr("--help").stdout
+    assert "--env-rotation" in easypbr("render", "--help").stdout
+
+
+@pytest.mark.parametrize("arguments, hint", [((), "render"), (("rendr", "a.ply"), "did you mean 'render'"),
+                                             (("info", "a", "b"), "'b'"), (("doctor", "--jsn"), "--jsn")])
+def test_wrong_commands_exit_with_2(easypbr, arguments, hint):
+    done = easypbr(*arguments, code=2)
+    assert hint in done.stderr and done.stderr.count("\n") == 1 and done.stdout == ""
+
+
+def test_info_counts_a_mesh(easypbr, box):
+    info = json.loads(easypbr("info", "--json", box).stdout)
+    assert info["faces"] == 12 and info["nodes"] == 1 and "uv" in info["attributes"]
+    assert info["bounds"] == {"min": [-1, -1, -1], "max": [1, 1, 1]}
+    assert "faces       12\n" in easypbr("info", box).stdout
+
+
+def test_info_describes_an_image(easypbr, tmp_path):
+    exr.write(tmp_path / "a.exr", np.zeros((3, 5, 3), np.float32))
+    info = json.loads(easypbr("info", "--json", "a.exr").stdout)
+    assert info == {"width": 5, "height": 3, "channels": 3, "type": "f32"}
+
+
+@pytest.mark.parametrize("extension", ["ply", "obj", "glb"])
+def test_convert_keeps_a_mesh(easypbr, box, tmp_path, extension):
+    easypbr("convert", box, f"copy.{extension}")
+    info = json.loads(easypbr("info", "--json", f"copy.{extension}").stdout)
+    assert info["faces"] == 12 and info["bounds"] == {"min": [-1, -1, -1], "max": [1, 1, 1]}
+
+
+def test_convert_encodes_images(easypbr, tmp_path):
+    exr.write(tmp_path / "a.exr", np.full((2, 2, 3), 0.2140411, np.float32))
+    easypbr("convert", "a.exr", "a.png")
+    # sRGB of 0.2140411 is 0.5, between codes 127 and 128.
+    assert png.read(tmp_path / "a.png")[0, 0, 0] in (127, 128)
+
+
+@pytest.mark.parametrize("out", ["copy.xyz", "missing/copy.ply"])
+def test_convert_refuses_what_cannot_be_written(easypbr, box, tmp_path, out):
+    assert out in easypbr("convert", box, out, code=1).stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture
+def two_images(easypbr, tmp_path):
+    for name, value in (("a", 100), ("b", 103)):
+        linear = ((value / 255 + 0.055) / 1.055) ** 2.4
+        exr.write(tmp_path / f"{name}.exr", np.full((2, 2, 3), linear, np.float32))
+        easypbr("convert", f"{name}.exr", f"{name}.png")
+
+
+def test_compare_equal_images(easypbr, two_images):
+    assert easypbr("compare", "a.png", "a.png").stdout.startswith("max 0, mean 0, rmse 0, psnr inf dB")
+
+
+def test_compare_different_images(easypbr, two_images):
+    done = easypbr("compare", "a.png", "b.png", code=1)
+    # Every channel differs by 3: psnr = 20 log10(255 / 3) = 38.59.
+    assert done.stdout.startswith("max 3, mean 3, rmse 3, psnr 38.59 dB, 4 of 4 pixels")
+    assert done.stderr.startswith("easypbr: error: ")
+    easypbr("compare", "a.png", "b.png", "--max-difference", "3")
+    easypbr("compare", "a.png", "b.png", "--max-difference", "2.9", code=1)
+
+
+def test_compare_refuses_other_sizes(easypbr, two_images, tmp_path):
+    exr.write(tmp_path / "c.exr", np.zeros((3, 2, 3), np.float32))
+    easypbr("convert", "c.exr", "c.png")
+    assert "2x3" in easypbr("compare", "a.png", "c.png", code=1).stderr
+    easypbr("compare", "a.png", code=2)
+
+
+def test_doctor_says_what_it_found(easypbr, environment):
+    out = easypbr("doctor").stdout
+    for part in ("easypbr", "works", "renderer", "OpenGL", environment["EASYPBR_CACHE_DIR"], "writable", "assimp"):
+        assert part in out
+
+
+def test_without_a_driver_the_attempts_are_listed(environment, sphere, tmp_path):
+    """An EGL without vendors stands for a machine without a driver."""
+    bare = {**environment, "__EGL_VENDOR_LIBRARY_FILENAMES": "/dev/null"}
+    for command in (["doctor"], ["render", str(sphere), "-o", "out.png"]):
+        done = subprocess.run([str(conftest.BINARY), *command], capture_output=True, text=True, env=bare, cwd=tmp_path,
+                              timeout=60)
+        assert done.returncode == 1 and done.stderr.count("\n") == 1
+        assert "easypbr: error: no OpenGL 4.5 context" in done.stderr and "Install" in done.stderr
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_view_says_that_there_is_no_window(easypbr):
+    assert "easypbr render a.ply" in easypbr("view", "a.ply", code=1).stderr
+
+
+def test_demo_writes_a_picture_and_says_where(easypbr, tmp_path):
+    out = easypbr("demo", "-o", "demo.png", "--size", "160x90").stdout
+    assert os.fspath(tmp_path / "demo.png") in out and "draw" in out
+    assert png.read(tmp_path / "demo.png").shape == (90, 160, 4)
+
+
+def test_demo_never_writes_what_it_cannot(easypbr, tmp_path):
+    easypbr("demo", "-o", "missing/demo.png", code=1)
+    easypbr("demo", "-o", "demo.png", "--size", "0x0", code=1)
+    assert list(tmp_path.iterdir()) == []

@@ -1,0 +1,149 @@
+"""`easypbr render` as a job: files in and out, batches, settings files, failures."""
+import re
+
+import pytest
+
+import png
+
+
+def one_error(done):
+    """The only line on stderr, which must be an error."""
+    lines = done.stderr.splitlines()
+    assert len(lines) == 1 and lines[0].startswith("easypbr: error: "), done.stderr
+    return lines[0]
+
+
+def test_success_is_silent(render, sphere, tmp_path):
+    done = render(sphere, "-o", "out.png")
+    assert (done.stdout, done.stderr) == ("", "")
+    assert png.read(tmp_path / "out.png").shape == (48, 64, 4)
+    assert [p.name for p in tmp_path.iterdir()] == ["out.png"]
+
+
+def test_standard_output_gets_the_same_bytes(render, sphere, tmp_path):
+    render(sphere, "-o", "out.png")
+    assert render(sphere, "-o", "-", text=False).stdout == (tmp_path / "out.png").read_bytes()
+
+
+def test_several_files_make_one_picture(render, sphere, box, tmp_path):
+    render(sphere, box, sphere, "-o", "all.png")
+    render(sphere, "-o", "one.png")
+    assert (png.read(tmp_path / "all.png") != png.read(tmp_path / "one.png")).any()
+
+
+def test_batch_draws_each_file_as_if_alone(render, sphere, box, tmp_path):
+    render(sphere, box, "--batch", "-o", "{name}.png")
+    for mesh in (sphere, box):
+        render(mesh, "-o", "alone.png")
+        assert (tmp_path / f"{mesh.stem}.png").read_bytes() == (tmp_path / "alone.png").read_bytes()
+
+
+def test_batch_goes_on_after_a_file_that_fails(render, sphere, box, tmp_path):
+    (tmp_path / "broken.ply").write_text("ply\nnonsense")
+    done = render(sphere, "broken.ply", box, "--batch", "-o", "{name}.png", code=1)
+    assert "broken.ply" in one_error(done)
+    assert sorted(p.name for p in tmp_path.glob("*.png")) == ["box.png", "sphere.png"]
+
+
+def test_batch_needs_a_name_in_the_output(render, sphere, tmp_path):
+    assert "{name}" in one_error(render(sphere, "--batch", "-o", "out.png", code=2))
+
+
+def test_saved_settings_reproduce_the_picture(render, box, tmp_path):
+    render(box, "-o", "a.png", "--roughness", "0.2", "--background", "#102030", "--set", "camera.azimuth_deg=70",
+           "--save-settings", "look.json")
+    render(box, "-o", "b.png", "--settings", "look.json")
+    assert (tmp_path / "a.png").read_bytes() == (tmp_path / "b.png").read_bytes()
+
+
+def test_command_line_wins_over_the_settings_file(easypbr, render, sphere, tmp_path):
+    render(sphere, "-o", "a.png", "--background", "#102030", "--save-settings", "look.json")
+    easypbr("render", sphere, "-o", "b.png", "--settings", "look.json", "--background", "#405060", "--size", "20x10")
+    pixels = png.read(tmp_path / "b.png")
+    assert pixels.shape == (10, 20, 4) and pixels[0, 0].tolist() == [0x40, 0x50, 0x60, 255]
+
+
+def test_settings_of_another_file_warn(render, sphere, tmp_path):
+    (tmp_path / "copy.obj").write_bytes(sphere.read_bytes())
+    render("copy.obj", "-o", "a.png", "--save-settings", "look.json")
+    (tmp_path / "copy.obj").write_bytes(sphere.read_bytes() + b"# changed\n")
+    done = render("copy.obj", "-o", "b.png", "--settings", "look.json")
+    assert done.stderr.startswith("easypbr: warning: copy.obj")
+    assert render("copy.obj", "-o", "b.png", "--settings", "look.json", "--quiet").stderr == ""
+
+
+def test_timing_names_the_stages(render, sphere):
+    line = render(sphere, "-o", "out.png", "--timing").stderr
+    stages = dict(re.findall(r"(\w+) ([\d.]+) s", line))
+    assert {"context", "load", "draw", "read", "write", "total"} <= stages.keys()
+    assert 0 < float(stages["draw"]) <= float(stages["total"])
+
+
+@pytest.mark.parametrize("output", ["missing/out.png", "out.xyz", "."])
+def test_output_is_checked_before_anything_is_read(render, tmp_path, output):
+    message = one_error(render("not-there.obj", "-o", output, code=1))
+    assert output in message and "not-there" not in message
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("size, code", [("0x600", 1), ("-4x3", 1), ("100000x100000", 1), ("99999999999999999999x3", 1),
+                                        ("large", 2), ("800", 2), ("8.5x3", 2), ("800x600x3", 2)])
+def test_impossible_sizes_are_refused(render, sphere, tmp_path, size, code):
+    assert size in one_error(render(sphere, "-o", "out.png", "--size", size, code=code))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_size_beyond_the_drivers_limit_is_refused(render, sphere, tmp_path):
+    # 65536 is the library's limit; no driver of OpenGL 4.5 hardware that exists draws more than 32768.
+    assert "65536" in one_error(render(sphere, "-o", "out.png", "--size", "65536x16", code=1))
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("option", [("--texture", "base_color=nowhere.png"), ("--env", "nowhere.png"),
+                                    ("--background", "nowhere.png"), ("--settings", "nowhere.png"),
+                                    ("--camera-pose", "nowhere.png")])
+def test_missing_files_are_named(render, sphere, tmp_path, option):
+    assert "nowhere.png" in one_error(render(sphere, "-o", "out.png", *option, code=1))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_pose_of_15_numbers_is_refused(render, sphere, tmp_path):
+    (tmp_path / "pose.txt").write_text("1 " * 15)
+    assert "16" in one_error(render(sphere, "-o", "out.png", "--camera-pose", "pose.txt", code=1))
+
+
+def test_points_without_faces_are_refused(render, tmp_path):
+    (tmp_path / "cloud.ply").write_text("ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\n"
+                                        "property float z\nend_header\n0 0 0\n1 1 1\n")
+    message = one_error(render("cloud.ply", "-o", "out.png", code=1))
+    assert "cloud.ply has no faces" in message and "point clouds" in message
+
+
+WRONG = [
+    (("--sampels", "4"), "--samples"),
+    (("--backgruond", "white"), "--background"),
+    (("--set", "tonemap.exposur=1"), "tonemap.exposure"),
+    (("--texture", "base_colour=x.png"), "base_color"),
+    (("--layers", "albdo"), "albedo"),
+    (("--tonemap", "acess"), "aces"),
+]
+
+
+@pytest.mark.parametrize("option, hint", WRONG)
+def test_misspelt_names_get_a_hint(render, sphere, tmp_path, option, hint):
+    assert f"did you mean '{hint}'" in one_error(render(sphere, "-o", "out.png", *option, code=2))
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("options", [
+    ("--roughness", "7"), ("--metallic", "shiny"), ("--color", "#12345"), ("--set", "nonsense"), ("--samples", "0"),
+    ("--bit-depth", "12"), ("--flat", "--smooth"), ("--camera-axes", "blender"), ("--size",), ("--background", "loud"),
+    ("--camera-pose", "p.txt", "--camera-position", "1,2,3")])
+def test_wrong_values_are_wrong_commands(render, sphere, tmp_path, options):
+    one_error(render(sphere, "-o", "out.png", *options, code=2))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_files_and_output_are_required(easypbr, sphere):
+    assert "FILE" in one_error(easypbr("render", "-o", "out.png", code=2))
+    assert "-o" in one_error(easypbr("render", sphere, code=2))
