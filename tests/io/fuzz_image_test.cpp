@@ -1,3 +1,5 @@
+#include <tinyexr.h>
+
 #include <cmath>
 
 #include "easypbr/core/file.h"
@@ -41,4 +43,34 @@ TEST(FuzzImage, Hdr) {
 }
 TEST(FuzzImage, Exr) {
     fuzz_image("exr", PixelType::f32);
+}
+
+// save_image() writes ZIP; PIZ comes from another library.
+TEST(FuzzImage, ExrPiz) {
+    const TemporaryFolder folder;
+    const Image noise = picture(PixelType::f32);
+    std::vector<float> plane(noise.pixels<float>().begin(), noise.pixels<float>().begin() + 48 * 40);
+    unsigned char* pointer = reinterpret_cast<unsigned char*>(plane.data());
+    EXRChannelInfo info{};
+    info.name[0] = 'Y';
+    int given = TINYEXR_PIXELTYPE_FLOAT, stored = TINYEXR_PIXELTYPE_HALF;
+    EXRHeader header;
+    InitEXRHeader(&header);
+    header.compression_type = TINYEXR_COMPRESSIONTYPE_PIZ;
+    header.num_channels = 1;
+    header.channels = &info;
+    header.pixel_types = &given;
+    header.requested_pixel_types = &stored;
+    EXRImage image;
+    InitEXRImage(&image);
+    image.images = &pointer;
+    image.width = 48;
+    image.height = 40;
+    image.num_channels = 1;
+    const char* message = nullptr;
+    ASSERT_EQ(SaveEXRImageToFile(&image, &header, (folder / "a.exr").c_str(), &message), TINYEXR_SUCCESS);
+    const std::string good(MappedFile(folder / "a.exr").text());
+    fuzz(good, [](const std::string& bytes) {
+        io::decode_image(std::as_bytes(std::span(bytes.data(), bytes.size())), "mutant");
+    });
 }
