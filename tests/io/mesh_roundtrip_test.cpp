@@ -112,6 +112,19 @@ TEST(MeshFiles, ObjKeepsMaterialsAndParts) {
     EXPECT_TRUE(same_bits(mesh.F, back->F));
 }
 
+TEST(MeshFiles, PlyRefersToItsTexture) {
+    const TemporaryFolder folder;
+    fs::create_directory(folder / "out");
+    io::save_image(Image(2, 2, 3, PixelType::u8), folder / "t.png");
+    MeshData mesh = random_mesh(3, 10);
+    mesh.materials.emplace_back();
+    mesh.materials[0].base_color_texture.path = (folder / "t.png").string();
+    Mesh(mesh).save(folder / "out/m.ply");
+    const auto back = Mesh(folder / "out/m.ply").snapshot();
+    ASSERT_EQ(back->materials.size(), 1u);
+    EXPECT_TRUE(back->materials[0].base_color_texture);
+}
+
 TEST(MeshFiles, ChildrenAreMergedInWorldSpace) {
     const TemporaryFolder folder;
     Array3f::Dense V(3, 3);

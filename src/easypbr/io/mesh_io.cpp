@@ -73,7 +73,8 @@ void save_mesh(const Mesh& mesh, const fs::path& path) {
     if (!contains(writable_extensions, extension)) fail_extension(path, "written", writable_extensions);
     check_writable(path);
     if (extension == "glb") return save_glb(mesh, path);
-    if (extension == "ply") return write_file(path, encode_ply(flatten(mesh)));
+    if (extension == "ply")
+        return write_file(path, encode_ply(flatten(mesh), fs::absolute(path).parent_path()));
     save_obj(mesh, path);
 }
 

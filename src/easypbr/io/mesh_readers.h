@@ -14,8 +14,9 @@ MeshData read_obj(const Source& source);
 MeshData read_stl(const Source& source, const LoadOptions& options);
 MeshData read_off(const Source& source);
 
-/// Binary little-endian PLY: V, N, C (as uchar), UV (as s, t), L, I, F, E.
-std::string encode_ply(const MeshData& mesh);
+/// Binary little-endian PLY: V, N, C (as uchar), UV (as s, t), L, I, F, E, and the base colour texture of a
+/// mesh with one material, by its path relative to `folder`.
+std::string encode_ply(const MeshData& mesh, const fs::path& folder);
 
 /// OBJ, and MTL named `mtl_name`, with the textures' paths relative to `folder`; MTL is empty without
 /// materials.

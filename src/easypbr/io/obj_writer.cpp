@@ -5,6 +5,7 @@
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh_readers.h"
+#include "easypbr/io/texture_loader.h"
 
 namespace easypbr::io {
 namespace {
@@ -105,14 +106,12 @@ class MtlWriter {
     /// A texture without a file (made in memory, embedded in a GLB) cannot be referred to.
     void map(const char* keyword, const Texture& texture, const std::string& option = {}) {
         if (texture.path.empty()) return;
-        std::error_code ignored;
-        const fs::path relative = fs::proximate(fs::absolute(texture.path), folder_, ignored);
         text_ += keyword + option;
         if (texture.channel > 0) line(" -imfchan {}", "rgbm"[texture.channel]);
         if (texture.wrap_u == Wrap::clamp) text_ += " -clamp on";
         const Mat3& M = texture.uv_transform;
         if (!M.isIdentity(0)) line(" -s {} {} -o {} {}", M(0, 0), M(1, 1), M(0, 2), M(1, 2));
-        line(" {}\n", relative.empty() ? texture.path : relative.string());
+        line(" {}\n", path_from_folder(texture.path, folder_));
     }
 
     fs::path folder_;

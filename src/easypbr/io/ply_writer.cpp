@@ -6,6 +6,7 @@
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh_readers.h"
+#include "easypbr/io/texture_loader.h"
 
 namespace easypbr::io {
 namespace {
@@ -77,12 +78,12 @@ void append_faces(const Array3i& F, std::string& out) {
 
 }  // namespace
 
-std::string encode_ply(const MeshData& mesh) {
+std::string encode_ply(const MeshData& mesh, const fs::path& folder) {
     const std::vector<Part> parts = vertex_parts(mesh);
     std::string out = "ply\nformat binary_little_endian 1.0\n";
-    for (const Material& material : mesh.materials)
-        if (!material.base_color_texture.path.empty() && mesh.materials.size() == 1)
-            out += fmt::format("comment TextureFile {}\n", material.base_color_texture.path);
+    if (mesh.materials.size() == 1 && !mesh.materials[0].base_color_texture.path.empty())
+        out += fmt::format("comment TextureFile {}\n",
+                           path_from_folder(mesh.materials[0].base_color_texture.path, folder));
     out += fmt::format("element vertex {}\n", mesh.V.rows());
     for (const Part& part : parts) out += part.header;
     out += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", mesh.F.rows());

@@ -29,8 +29,13 @@ void Progress::advance(size_t bytes) {
     constexpr size_t smallest_reported = 50'000'000;
     const size_t done = done_ += bytes;
     if (total_ < smallest_reported) return;
-    const std::unique_lock lock(mutex_, std::try_to_lock);
-    if (!lock || Clock::now() - last_ < std::chrono::milliseconds(250)) return;
+    // The end is always reported, what lies between a few times per second.
+    const bool at_end = done >= total_;
+    std::unique_lock lock(mutex_, std::defer_lock);
+    if (at_end)
+        lock.lock();
+    else if (!lock.try_lock() || Clock::now() - last_ < std::chrono::milliseconds(250))
+        return;
     last_ = Clock::now();
     report_progress(what_, std::min(1.0, double(done) / double(total_)));
 }

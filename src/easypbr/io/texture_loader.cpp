@@ -10,6 +10,12 @@
 
 namespace easypbr::io {
 
+std::string path_from_folder(const std::string& image_path, const fs::path& folder) {
+    std::error_code ignored;
+    const fs::path relative = fs::proximate(fs::absolute(image_path), folder, ignored);
+    return relative.empty() ? image_path : relative.string();
+}
+
 fs::path TextureLoader::find(const std::string& name) const {
     std::error_code ignored;
     const fs::path named = folder_ / name;

@@ -11,6 +11,9 @@
 
 namespace easypbr::io {
 
+/// How a mesh file in `folder` (absolute) refers to the image at `image_path`.
+std::string path_from_folder(const std::string& image_path, const fs::path& folder);
+
 /// Loads the images named in one mesh file.
 class TextureLoader {
   public:
