@@ -17,7 +17,7 @@ MAY_USE = {
     "app": {"core", "scene", "gl", "io", "gpu", "render"},
     "viewer": {"core", "scene", "gl", "io", "gpu", "render", "app"},
     "cli": {"core", "scene", "gl", "io", "gpu", "render", "app", "viewer"},
-    "python": {"core", "scene", "gl", "io", "gpu", "render", "app", "viewer"},
+    "python": {"core", "scene", "gl", "io", "gpu", "render", "app", "viewer", "cli"},
 }
 INCLUDE = re.compile(r'#include\s+["<]easypbr/(\w+)/')
 

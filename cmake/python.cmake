@@ -1,0 +1,52 @@
+# The Python package, complete in the build folder: python/easypbr holds the module, its stub and links to the sources.
+if(NOT DEFINED Python_EXECUTABLE AND EXISTS ${PROJECT_SOURCE_DIR}/.venv/bin/python)
+  set(Python_EXECUTABLE ${PROJECT_SOURCE_DIR}/.venv/bin/python)
+endif()
+find_package(Python 3.10 REQUIRED COMPONENTS Interpreter Development.Module)
+execute_process(COMMAND ${Python_EXECUTABLE} -m nanobind --cmake_dir OUTPUT_STRIP_TRAILING_WHITESPACE
+                OUTPUT_VARIABLE nanobind_ROOT RESULT_VARIABLE nanobind_missing ERROR_QUIET)
+if(nanobind_missing)
+  message(FATAL_ERROR "${Python_EXECUTABLE} has no nanobind: install it from PyPI (make build does), "
+                      "or configure with -DEASYPBR_BUILD_PYTHON=OFF")
+endif()
+find_package(nanobind CONFIG REQUIRED)
+
+set(package ${PROJECT_BINARY_DIR}/python/easypbr)
+file(GLOB bindings CONFIGURE_DEPENDS src/easypbr/python/*.cpp)
+nanobind_add_module(_easypbr NB_STATIC NB_SUPPRESS_WARNINGS NOMINSIZE ${bindings})
+target_link_libraries(_easypbr PRIVATE easypbr easypbr_options easypbr_dependencies)
+target_compile_definitions(_easypbr PRIVATE EASYPBR_VERSION="${PROJECT_VERSION}")
+if(TARGET easypbr_cli)
+  target_link_libraries(_easypbr PRIVATE easypbr_cli)
+  target_compile_definitions(_easypbr PRIVATE EASYPBR_HAS_CLI)
+endif()
+set_target_properties(_easypbr PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${package} INSTALL_RPATH "$ORIGIN")
+
+# The sources are linked, so that an edit needs no build.
+file(GLOB package_sources CONFIGURE_DEPENDS python/easypbr/*.py python/easypbr/py.typed)
+file(MAKE_DIRECTORY ${package})
+foreach(source IN LISTS package_sources)
+  get_filename_component(name ${source} NAME)
+  file(CREATE_LINK ${source} ${package}/${name} SYMBOLIC)
+endforeach()
+
+nanobind_add_stub(easypbr_stub MODULE easypbr._easypbr OUTPUT ${package}/_easypbr.pyi
+                  PYTHON_PATH ${PROJECT_BINARY_DIR}/python DEPENDS _easypbr)
+add_custom_command(OUTPUT ${package}/settings.pyi
+                   COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${PROJECT_BINARY_DIR}/python ${Python_EXECUTABLE}
+                           ${PROJECT_SOURCE_DIR}/scripts/write_settings_stub.py ${package}/settings.pyi
+                   DEPENDS _easypbr ${PROJECT_SOURCE_DIR}/scripts/write_settings_stub.py
+                   COMMENT "Writing the stub of the settings" VERBATIM)
+add_custom_target(easypbr_settings_stub ALL DEPENDS ${package}/settings.pyi)
+
+if(SKBUILD)
+  # A wheel holds no symbolic links, so the library takes the one name that the module asks for.
+  set_target_properties(easypbr PROPERTIES VERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+                                           INSTALL_RPATH "$ORIGIN")
+  install(TARGETS _easypbr LIBRARY DESTINATION easypbr COMPONENT python)
+  install(TARGETS easypbr LIBRARY DESTINATION easypbr COMPONENT python NAMELINK_SKIP)
+  if(TARGET easypbr_assimp)
+    install(TARGETS easypbr_assimp LIBRARY DESTINATION easypbr COMPONENT python)
+  endif()
+  install(FILES ${package}/_easypbr.pyi ${package}/settings.pyi DESTINATION easypbr COMPONENT python)
+endif()

@@ -1,0 +1,60 @@
+"""EasyPBR: give it a mesh, it makes a physically based picture.
+
+    from easypbr import *
+    view = Viewer()
+    Scene.show(Mesh("drone.ply"), "drone")
+    view.recorder.record("img.png")
+"""
+
+from . import errors, shapes
+from ._easypbr import (
+    Automatic,
+    Camera,
+    Environment,
+    Follow,
+    Light,
+    Material,
+    Mesh,
+    Style,
+    __version__,
+    auto,
+    compare_images,
+    follow,
+    load_image,
+    save_image,
+)
+from .convert import as_mesh
+from .errors import ArgumentError, ContextError, Error, FileError, FormatError, UnknownNameError
+from .rendering import render
+from .scene import Scene
+from .settings import Settings
+from .viewer import Viewer
+
+__all__ = [
+    "ArgumentError",
+    "Automatic",
+    "Camera",
+    "ContextError",
+    "Environment",
+    "Error",
+    "FileError",
+    "Follow",
+    "FormatError",
+    "Light",
+    "Material",
+    "Mesh",
+    "Scene",
+    "Settings",
+    "Style",
+    "UnknownNameError",
+    "Viewer",
+    "as_mesh",
+    "auto",
+    "compare_images",
+    "errors",
+    "follow",
+    "load_image",
+    "render",
+    "save_image",
+    "shapes",
+]

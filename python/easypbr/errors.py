@@ -1,0 +1,30 @@
+"""The exceptions that EasyPBR raises; each is also the built-in that fits it."""
+
+__all__ = ["Error", "FileError", "FormatError", "ArgumentError", "UnknownNameError", "ContextError"]
+
+
+class Error(Exception):
+    """Base of every exception of the library."""
+
+
+class FileError(Error, OSError):
+    """A file or folder cannot be opened, read or written."""
+
+
+class FormatError(Error, ValueError):
+    """A file's content is damaged, or is of a kind that is not understood."""
+
+
+class ArgumentError(Error, ValueError):
+    """A value is out of range, of the wrong shape or unknown."""
+
+
+class UnknownNameError(Error, KeyError):
+    """A named thing (mesh, light, setting) does not exist."""
+
+    # KeyError would show the message in quotes.
+    __str__ = Exception.__str__
+
+
+class ContextError(Error, RuntimeError):
+    """No OpenGL context could be made, or a limit of the driver was met."""

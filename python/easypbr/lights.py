@@ -1,0 +1,92 @@
+"""view.lights: the three-point lights, which are settings, and the scene's own lights, by name."""
+
+from . import _easypbr
+
+_STUDIO = ("key", "fill", "rim")
+
+
+class SceneLight:
+    """A light of the scene; assignments to its attributes go through."""
+
+    def __init__(self, scene, name: str):
+        object.__setattr__(self, "_scene", scene)
+        object.__setattr__(self, "_name", name)
+
+    def __getattr__(self, name: str):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self._scene.light(self._name), name)
+
+    def __setattr__(self, name: str, value):
+        light = self._scene.light(self._name)
+        setattr(light, name, value)
+        self._scene.set_light(self._name, light)
+
+    def __dir__(self):
+        return dir(_easypbr.Light)
+
+    def __repr__(self) -> str:
+        return f"<light '{self._name}': {self.type}, {self.intensity:g}>"
+
+
+class StudioLight:
+    """The key, fill or rim light: the settings lights.<name>.*, with a linear colour as all lights have it."""
+
+    def __init__(self, handle, name: str):
+        object.__setattr__(self, "_handle", handle)
+        object.__setattr__(self, "_prefix", f"lights.{name}.")
+
+    type = "point"
+
+    def _full(self, name: str) -> str:
+        if name not in ("enabled", "position", "color", "intensity"):
+            raise AttributeError(f"a studio light has enabled, position, color and intensity, but no '{name}'")
+        return self._prefix + name
+
+    def __getattr__(self, name: str):
+        value = self._handle.get_setting(self._full(name))
+        return tuple(map(_linear, value)) if name == "color" else value
+
+    def __setattr__(self, name: str, value):
+        if name == "color" and not isinstance(value, str):
+            value = tuple(map(_encoded, value))
+        self._handle.set_setting(self._full(name), value)
+
+    def __dir__(self):
+        return ["enabled", "position", "color", "intensity", "type"]
+
+
+class Lights:
+    """The lights of a viewer by name: "key", "fill", "rim", and those that were added."""
+
+    def __init__(self, handle, scene):
+        self._handle, self._scene = handle, scene
+
+    def __getitem__(self, name: str):
+        if name in _STUDIO:
+            return StudioLight(self._handle, name)
+        self._scene.light(name)
+        return SceneLight(self._scene, name)
+
+    def _names(self) -> list[str]:
+        return [*_STUDIO, *self._scene.light_names()]
+
+    def __contains__(self, name: str) -> bool:
+        return name in self._names()
+
+    def __iter__(self):
+        return iter(self._names())
+
+    def __len__(self) -> int:
+        return len(self._names())
+
+
+# IEC 61966-2-1.
+
+
+def _linear(c: float) -> float:
+    return c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4
+
+
+def _encoded(c: float) -> float:
+    return 12.92 * c if c <= 0.0031308 else 1.055 * c ** (1 / 2.4) - 0.055

@@ -1,0 +1,100 @@
+"""render(): one call from data to a picture."""
+
+import os
+
+import numpy as np
+
+from . import _easypbr
+from .convert import as_mesh
+from .errors import ArgumentError, UnknownNameError
+from .scene import Scene
+from .viewer import Viewer
+
+_SHORT_NAMES = {
+    "color": "material.color",
+    "tonemap": "tonemap.operator",
+    "flat": "style.flat",
+    "two_sided": "style.two_sided",
+    "environment_rotation_deg": "environment.rotation_deg",
+    "environment_intensity": "environment.intensity",
+}
+
+
+def render(
+    what,
+    out=None,
+    size=(800, 600),
+    samples: int = 16,
+    environment=None,
+    hdr: bool = False,
+    camera: "_easypbr.Camera | None" = None,
+    background=None,
+    settings=None,
+    **values,
+) -> np.ndarray:
+    """A picture of `what`: a path, a Mesh, a Scene, (V, F), a dict of arrays, or a trimesh, Open3D or PyVista object.
+
+    Returns height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`. `out` writes the picture to a
+    file too. `environment`: a path, an array or an Environment. `background`: a colour, an image file, "environment",
+    "blur" or "transparent". Other values are settings by the last part of their name (roughness=0.3, exposure=2) or,
+    through `settings`, a dict or file of them.
+    """
+    linear_file = out is not None and _easypbr.check_picture_path(out)
+    view = Viewer(size, settings, scene=_scene_of(what))
+    if environment is not None:
+        _set_environment(view, environment)
+    if background is not None:
+        _set_background(view, background)
+    for name, value in values.items():
+        view.settings[_full_name(name)] = value
+    if camera is not None:
+        view.camera = camera
+    picture = view.render(samples=samples, hdr=hdr)
+    if out is not None:
+        _easypbr.save_image(picture if hdr == linear_file else view.render(samples=samples, hdr=linear_file), out)
+    return picture
+
+
+def render_png(what) -> bytes:
+    """The picture as a PNG file's bytes: what notebooks show of a mesh."""
+    return _easypbr.encode_png(render(what))
+
+
+def _scene_of(what) -> Scene:
+    if isinstance(what, Scene):
+        return what
+    scene = Scene()
+    scene.show(what)
+    return scene
+
+
+def _set_environment(view: Viewer, environment) -> None:
+    if not isinstance(environment, (str, os.PathLike)) and not isinstance(environment, _easypbr.Environment):
+        environment = _easypbr.Environment(environment)
+    view.load_environment_map(environment)
+
+
+def _set_background(view: Viewer, background) -> None:
+    mode = {"env": "environment"}.get(background, background) if isinstance(background, str) else None
+    if mode in _easypbr.field("background.mode").choices and mode not in ("color", "image"):
+        view.settings["background.mode"] = mode
+    elif isinstance(background, os.PathLike) or (mode and os.path.splitext(mode)[1]):
+        view.settings["background.image"] = background
+        view.settings["background.mode"] = "image"
+    else:
+        view.settings["background.color"] = background
+
+
+def _full_name(name: str) -> str:
+    """The full name of a setting that is given by its last part."""
+    if name in _SHORT_NAMES:
+        return _SHORT_NAMES[name]
+    found = [field.name for field in _easypbr.fields() if name in (field.name, field.name.rsplit(".")[-1])]
+    if len(found) == 1:
+        return found[0]
+    if found:
+        raise ArgumentError(f"render(): '{name}' may be {' or '.join(found)}: give it as settings={{'{found[0]}': ...}}")
+    try:
+        return _easypbr.field(name).name
+    except UnknownNameError as error:
+        raise TypeError(f"render(): {error}") from None

@@ -1,0 +1,115 @@
+"""Scene: named meshes and lights and an environment."""
+
+import functools
+import types
+
+from . import _easypbr
+from .convert import as_mesh
+
+
+class _OnDefaultScene:
+    """A method that acts on the default scene when it is called on the class."""
+
+    def __init__(self, function):
+        self.function = function
+        functools.update_wrapper(self, function)
+
+    def __get__(self, instance, owner):
+        return types.MethodType(self.function, owner.default() if instance is None else instance)
+
+
+class Scene:
+    """A scene of its own. On the class, `Scene.show(...)` and the other methods act on the default scene."""
+
+    def __init__(self):
+        self._handle = _easypbr.SceneHandle()
+
+    @classmethod
+    def _of(cls, handle) -> "Scene":
+        scene = cls.__new__(cls)
+        scene._handle = handle
+        return scene
+
+    @classmethod
+    def default(cls) -> "Scene":
+        """The scene that a Viewer draws unless it is given another one."""
+        return cls._of(_easypbr.default_scene())
+
+    @classmethod
+    def demo(cls) -> "Scene":
+        """The embedded demo scene."""
+        return cls._of(_easypbr.demo_scene())
+
+    @_OnDefaultScene
+    def show(self, what, name: str | None = None) -> "_easypbr.Mesh":
+        """Shows a mesh (or whatever as_mesh() takes) under a name; the same name again replaces it."""
+        mesh = as_mesh(what)
+        self._handle.show(mesh, mesh.name or "mesh" if name is None else name)
+        return mesh
+
+    @_OnDefaultScene
+    def get(self, name: str) -> "_easypbr.Mesh":
+        """The mesh shown under this name."""
+        return self._handle.get(name)
+
+    @_OnDefaultScene
+    def remove(self, name: str) -> None:
+        """Removes a mesh."""
+        self._handle.remove(name)
+
+    @_OnDefaultScene
+    def clear(self) -> None:
+        """Removes all meshes and lights and the environment."""
+        self._handle.clear()
+
+    @_OnDefaultScene
+    def hide(self, name: str, hidden: bool = True) -> None:
+        """Hides (or shows again) a mesh without removing it."""
+        self._handle.hide(name, hidden)
+
+    @_OnDefaultScene
+    def names(self) -> list[str]:
+        """Names of the meshes shown, in their order."""
+        return self._handle.names()
+
+    @_OnDefaultScene
+    def contains(self, name: str) -> bool:
+        """Whether a mesh is shown under this name."""
+        return self._handle.contains(name)
+
+    @_OnDefaultScene
+    def set_light(self, name: str, light: "_easypbr.Light") -> None:
+        """Adds or replaces a light."""
+        self._handle.set_light(name, light)
+
+    @_OnDefaultScene
+    def light(self, name: str) -> "_easypbr.Light":
+        """A copy of the light with this name."""
+        return self._handle.light(name)
+
+    @_OnDefaultScene
+    def remove_light(self, name: str) -> None:
+        """Removes a light."""
+        self._handle.remove_light(name)
+
+    @_OnDefaultScene
+    def light_names(self) -> list[str]:
+        """Names of the scene's own lights."""
+        return self._handle.light_names()
+
+    @property
+    def environment(self) -> "_easypbr.Environment":
+        """What lights the scene from infinitely far; empty: none was given."""
+        return self._handle.environment
+
+    @environment.setter
+    def environment(self, environment):
+        if not isinstance(environment, _easypbr.Environment):
+            environment = _easypbr.Environment(environment)
+        self._handle.environment = environment
+
+    def __contains__(self, name: str) -> bool:
+        return self._handle.contains(name)
+
+    def __repr__(self) -> str:
+        return f"<easypbr.Scene: {', '.join(self._handle.names()) or 'empty'}>"

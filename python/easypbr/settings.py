@@ -1,0 +1,111 @@
+"""Settings as attributes: view.settings.camera.fov_y_deg = 45."""
+
+import json
+from collections.abc import Mapping
+
+from . import _easypbr
+from .errors import UnknownNameError
+
+
+class SettingsGroup:
+    """The settings whose names begin alike; attributes are the next parts of the names."""
+
+    def __init__(self, handle, prefix: str):
+        object.__setattr__(self, "_handle", handle)
+        object.__setattr__(self, "_prefix", prefix)
+
+    def _next_parts(self) -> list[str]:
+        parts = (f.name[len(self._prefix) :].split(".")[0] for f in _FIELDS.values() if f.name.startswith(self._prefix))
+        return list(dict.fromkeys(parts))
+
+    def __dir__(self):
+        return [*super().__dir__(), *self._next_parts()]
+
+    def __getattr__(self, name: str):
+        if name.startswith("_"):
+            raise AttributeError(name)
+        full = self._prefix + name
+        if full in _FIELDS:
+            return self._handle.get_setting(full)
+        if name in self._next_parts():
+            return SettingsGroup(self._handle, full + ".")
+        raise _attribute_error(full)
+
+    def __setattr__(self, name: str, value):
+        full = self._prefix + name
+        if full in _FIELDS:
+            self._handle.set_setting(full, value)
+        elif name in self._next_parts():
+            if not isinstance(value, Mapping):
+                raise AttributeError(f"'{full}' is a group of settings: set its members, or assign a dict of them")
+            _assign(self._handle, value, full + ".")
+        else:
+            raise _attribute_error(full)
+
+    def __iter__(self):
+        """Pairs of the full name and the value, in the order of the reference."""
+        for name in _FIELDS:
+            if name.startswith(self._prefix):
+                yield name, self._handle.get_setting(name)
+
+    def __repr__(self) -> str:
+        return "\n".join(f"{name} = {value!r}" for name, value in self)
+
+
+class Settings(SettingsGroup):
+    """All settings of a viewer, as groups: image, camera, environment, background, lights, shading, tonemap, ..."""
+
+    def __init__(self, handle):
+        super().__init__(handle, "")
+
+    def __getitem__(self, name: str):
+        """The setting with this full name: settings["camera.fov_y_deg"]."""
+        return self._handle.get_setting(name)
+
+    def __setitem__(self, name: str, value):
+        self._handle.set_setting(name, value)
+
+    def resolve(self, name: str):
+        """The value that the next picture would be drawn with (auto: each mesh has its own); nothing is kept."""
+        return self._handle.resolved_setting(name)
+
+    def describe(self, name: str) -> str:
+        """What a setting means, its unit, range and default."""
+        field = _easypbr.field(name)
+        lines = [field.name + (f" [{field.unit}]" if field.unit else ""), field.doc]
+        if field.choices:
+            lines.append("one of " + ", ".join(field.choices))
+        lines.append(f"default: {field.default!r}")
+        return "\n".join(lines)
+
+    def update(self, values: Mapping) -> None:
+        """Takes values over from a dict: nested ({"camera": {"fov_y_deg": 45}}), by full names, or as to_dict() gives it."""
+        if "easypbr" in values:
+            self._handle.settings_from_json(json.dumps(values))
+        else:
+            _assign(self._handle, values, "")
+
+    def to_dict(self) -> dict:
+        """Every setting, chosen and inferred, and the scene's lights, as they stand in a settings file."""
+        return json.loads(self._handle.settings_to_json())
+
+
+def _assign(handle, values: Mapping, prefix: str) -> None:
+    for name, value in values.items():
+        full = prefix + name
+        is_group = isinstance(value, Mapping) and full not in _FIELDS
+        if is_group:
+            _assign(handle, value, full + ".")
+        else:
+            handle.set_setting(full, value)
+
+
+def _attribute_error(full: str) -> AttributeError:
+    try:
+        _easypbr.field(full)
+    except UnknownNameError as error:
+        return AttributeError(str(error))
+    return AttributeError(full)
+
+
+_FIELDS = {field.name: field for field in _easypbr.fields()}

@@ -1,0 +1,130 @@
+"""Viewer: draws a scene."""
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from . import _easypbr
+from .errors import ArgumentError, ContextError
+from .lights import _STUDIO, Lights
+from .scene import Scene
+from .settings import Settings
+
+
+class Recorder:
+    """Pictures of a viewer as files, complete when the call returns."""
+
+    def __init__(self, handle):
+        self._handle = handle
+
+    def record(self, path, size=None, samples: int | None = None, deep: bool = False) -> Path:
+        """Writes PNG (16 bits with `deep`), JPEG, HDR or EXR, by the extension."""
+        return self._handle.record(path, size, samples, deep)
+
+
+class Viewer:
+    """Draws a scene, the default one unless another is given. Nothing is drawn, and no GL needed, before a picture is
+    asked for. Threads may share a viewer; they take turns."""
+
+    def __init__(self, size=None, settings=None, scene: Scene | None = None):
+        """`settings`: a file that save_settings() wrote, or a dict of values; `size`: (width, height)."""
+        self.scene = Scene.default() if scene is None else scene
+        self._handle = _easypbr.ViewerHandle(self.scene._handle)
+        self.recorder = Recorder(self._handle)
+        self._settings = Settings(self._handle)
+        if isinstance(settings, Mapping):
+            self._settings.update(settings)
+        elif settings is not None:
+            self.load_settings(settings)
+        if size is not None:
+            self._settings["image.size"] = size
+
+    @property
+    def settings(self) -> Settings:
+        """All settings: view.settings.<group>.<name>."""
+        return self._settings
+
+    @settings.setter
+    def settings(self, values):
+        self._settings.update(values)
+
+    @property
+    def lights(self) -> Lights:
+        """view.lights["key" | "fill" | "rim"] and the lights that were added, by name."""
+        return Lights(self._handle, self.scene._handle)
+
+    def add_light(self, name: str, type: str = "point", **values):
+        """Adds or replaces a light: position, direction, color, intensity, ... as _easypbr.Light has them."""
+        if name in _STUDIO:
+            raise ArgumentError(f"'{name}' is one of the three-point lights: use view.lights['{name}']")
+        self.scene.set_light(name, _easypbr.Light(type, **values))
+        return self.lights[name]
+
+    def remove_light(self, name: str) -> None:
+        """Removes a light that was added."""
+        if name in _STUDIO:
+            raise ArgumentError(f"'{name}' cannot be removed: use view.lights['{name}'].enabled = False")
+        self.scene.remove_light(name)
+
+    def load_environment_map(self, source) -> None:
+        """Lights the scene with an equirectangular picture: a path, an array or an Environment."""
+        if isinstance(source, (str, os.PathLike)):
+            self._handle.load_environment_map(source)
+        else:
+            self._handle.set_setting("environment.file", "")
+            self.scene.environment = source
+
+    @property
+    def camera(self) -> "_easypbr.Camera":
+        """A copy of the next picture's camera; assign a Camera to pin it."""
+        return self._handle.camera
+
+    @camera.setter
+    def camera(self, camera):
+        self._handle.camera = camera
+
+    def refit(self) -> None:
+        """Forgets what was inferred, so that the next picture infers it anew."""
+        self._handle.refit()
+
+    def render(self, size=None, samples: int | None = None, hdr: bool = False) -> np.ndarray:
+        """The picture, height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`."""
+        return self._handle.render(size, samples, "linear" if hdr else "srgb8")
+
+    def layers(self, names: Sequence[str] | None = None, size=None) -> dict[str, np.ndarray]:
+        """Exact values through the pixels' centres, by name: albedo, normal, depth, roughness, metallic, ..."""
+        if isinstance(names, str):
+            names = [names]
+        return self._handle.layers(list(_easypbr.layer_names() if names is None else names), size)
+
+    def save_settings(self, path) -> None:
+        """Writes every value, chosen and inferred, with hashes of the files shown."""
+        sources = (self.scene.get(name).source for name in self.scene.names())
+        self._handle.save_settings(path, [source for source in sources if source])
+
+    def load_settings(self, path) -> None:
+        """Takes over settings and lights from a file that save_settings() wrote."""
+        self._handle.load_settings(path)
+
+    @property
+    def timing(self) -> dict[str, float]:
+        """Seconds that the steps of the last picture took."""
+        return self._handle.timing()
+
+    def show(self):
+        """Would open a window; this build has none."""
+        raise ContextError(_NO_WINDOW)
+
+    update = show
+
+    def _repr_png_(self) -> bytes | None:
+        if not self.scene.names():
+            return None
+        return _easypbr.encode_png(self.render())
+
+
+_NO_WINDOW = (
+    "this build has no window: use view.render() for an array or view.recorder.record('picture.png') for a file"
+)

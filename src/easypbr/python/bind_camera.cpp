@@ -1,0 +1,94 @@
+// Camera: poses and projections, in OpenGL's and in OpenCV's axes.
+#include <fmt/format.h>
+#include <nanobind/stl/string.h>
+
+#include "easypbr/core/error.h"
+#include "easypbr/python/convert.h"
+#include "easypbr/scene/camera.h"
+
+namespace easypbr::python {
+namespace {
+
+Camera look_at(const ArrayLike& position, const ArrayLike& target, const nb::object& up, double fov_y_deg) {
+    const Vec3d up_vector = up.is_none() ? Vec3d::UnitY() : to_vector3(up, "up");
+    Camera camera =
+        Camera::look_at(to_vector3(position, "position"), to_vector3(target, "target"), up_vector);
+    camera.fov_y_deg = fov_y_deg;
+    return camera;
+}
+
+Camera from_opencv(const ArrayLike& K, const ArrayLike& T_world_cam, const ArrayLike& size) {
+    const Vec2i pixels = to_size(size, "size");
+    return Camera::from_opencv(to_matrix3(K, "K"), to_matrix4(T_world_cam, "T_world_cam"), pixels.x(),
+                               pixels.y());
+}
+
+void set_pose(Camera& camera, const ArrayLike& T_world_cam) {
+    camera.T_world_cam =
+        Camera::from_opengl(to_matrix4(T_world_cam, "T_world_cam"), camera.fov_y_deg).T_world_cam;
+}
+
+void set_projection(Camera& camera, const std::string& name) {
+    if (name != "perspective" && name != "orthographic")
+        throw ArgumentError(
+            fmt::format("camera.projection: expected perspective or orthographic, got '{}'", name));
+    camera.projection = name == "perspective" ? Projection::perspective : Projection::orthographic;
+}
+
+void bind_makers(nb::class_<Camera>& camera) {
+    camera
+        .def_static("look_at", look_at, nb::arg("position"), nb::arg("target"),
+                    nb::arg("up").none() = nb::none(), nb::arg("fov_y_deg") = 30.0,
+                    nb::sig("def look_at(position: numpy.typing.ArrayLike, target: numpy.typing.ArrayLike, "
+                            "up: numpy.typing.ArrayLike | None = None, fov_y_deg: float = 30.0) -> Camera"),
+                    "Looks from a position to a target; up is (0, 1, 0) unless given.")
+        .def_static(
+            "from_opencv", from_opencv, nb::arg("K"), nb::arg("T_world_cam"), nb::arg("size"),
+            "From OpenCV's K (pixel centres at integers), a camera-to-world pose with OpenCV's axes, and the "
+            "(width, height) that K belongs to.")
+        .def_static(
+            "from_opengl",
+            [](const ArrayLike& T, double fov_y_deg) {
+                return Camera::from_opengl(to_matrix4(T, "T_world_cam"), fov_y_deg);
+            },
+            nb::arg("T_world_cam"), nb::arg("fov_y_deg") = 30.0,
+            "From a camera-to-world pose with OpenGL's axes (x right, y up, z backwards).");
+}
+
+}  // namespace
+
+void bind_camera(nb::module_& module) {
+    nb::class_<Camera> camera(module, "Camera", "A pinhole or orthographic camera with a pose.");
+    camera.def(nb::init<>());
+    bind_makers(camera);
+    camera
+        .def_prop_rw(
+            "T_world_cam", [](const Camera& c) { return matrix_to_numpy(c.T_world_cam.matrix()); }, set_pose,
+            nb::for_getter(nb::sig("def T_world_cam(self) -> numpy.ndarray")),
+            "4 x 4 camera-to-world pose, OpenGL's axes.")
+        .def_prop_ro(
+            "position", [](const Camera& c) { return matrix_to_numpy(c.position().transpose()); },
+            nb::sig("def position(self) -> numpy.ndarray"))
+        .def_prop_rw(
+            "projection",
+            [](const Camera& c) {
+                return c.projection == Projection::perspective ? "perspective" : "orthographic";
+            },
+            set_projection, "'perspective' or 'orthographic'.")
+        .def_rw("fov_y_deg", &Camera::fov_y_deg, "Full vertical angle; perspective without intrinsics.")
+        .def_rw("ortho_height", &Camera::ortho_height, "World height of an orthographic picture.")
+        .def_rw("near", &Camera::near)
+        .def(
+            "opencv_K",
+            [](const Camera& c, const ArrayLike& size) {
+                const Vec2i pixels = to_size(size, "size");
+                return matrix_to_numpy(c.opencv_K(pixels.x(), pixels.y()));
+            },
+            nb::arg("size"), nb::sig("def opencv_K(self, size: numpy.typing.ArrayLike) -> numpy.ndarray"),
+            "OpenCV's K for a picture of (width, height).")
+        .def_prop_ro(
+            "opencv_T_world_cam", [](const Camera& c) { return matrix_to_numpy(c.opencv_T_world_cam()); },
+            nb::sig("def opencv_T_world_cam(self) -> numpy.ndarray"), "Pose with OpenCV's axes.");
+}
+
+}  // namespace easypbr::python

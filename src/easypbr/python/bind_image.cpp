@@ -1,0 +1,64 @@
+// Pictures as numpy arrays.
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "easypbr/app/output.h"
+#include "easypbr/core/compare.h"
+#include "easypbr/core/file.h"
+#include "easypbr/io/image_io.h"
+#include "easypbr/python/convert.h"
+
+namespace easypbr::python {
+namespace {
+
+nb::bytes png_bytes(const ArrayLike& array) {
+    const Image image = to_image(array, "image");
+    const std::vector<std::byte> bytes = released([&] { return io::encode_png(to_u8(image)); });
+    return nb::bytes(bytes.data(), bytes.size());
+}
+
+nb::dict compare_images(const ArrayLike& a, const ArrayLike& b) {
+    const ImageDifference difference = compare(to_image(a, "first image"), to_image(b, "second image"));
+    nb::dict result;
+    result["max"] = difference.max;
+    result["mean"] = difference.mean;
+    result["rmse"] = difference.rmse;
+    result["psnr"] = difference.psnr;
+    result["different"] = difference.different;
+    return result;
+}
+
+}  // namespace
+
+void bind_image(nb::module_& module) {
+    module.def(
+        "load_image",
+        [](const fs::path& path) { return to_numpy(released([&] { return io::load_image(path); })); },
+        nb::arg("path"), nb::sig("def load_image(path: str | os.PathLike) -> numpy.ndarray"),
+        "Reads PNG, JPEG, HDR or EXR: height x width x channels, row 0 on top; uint8 or uint16 (sRGB), or "
+        "float32 "
+        "(linear).");
+    module.def(
+        "save_image",
+        [](const ArrayLike& array, const fs::path& path) {
+            const Image image = to_image(array, "image");
+            released([&] { io::save_image(image, path); });
+        },
+        nb::arg("image"), nb::arg("path"),
+        "Writes PNG, JPEG, HDR or EXR by the extension. Floating-point pictures are linear, others sRGB.");
+    module.def("encode_png", png_bytes, nb::arg("image"), "The bytes of an 8-bit PNG file.");
+    module.def(
+        "compare_images", compare_images, nb::arg("a"), nb::arg("b"),
+        "How much two pictures of the same size and type differ: max, mean, rmse, psnr, different (pixels).");
+    module.def(
+        "check_picture_path",
+        [](const fs::path& path) {
+            const bool linear = app::encoding_for(path) == app::Encoding::scene_linear;
+            check_writable(path);
+            return linear;
+        },
+        nb::arg("path"), "Raises unless a picture can be written there; whether it will hold linear values.");
+}
+
+}  // namespace easypbr::python

@@ -1,0 +1,77 @@
+// Light: point, directional or spot.
+#include <fmt/format.h>
+#include <nanobind/stl/string.h>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/suggest.h"
+#include "easypbr/python/convert.h"
+#include "easypbr/scene/light.h"
+
+namespace easypbr::python {
+namespace {
+
+const std::vector<std::string> type_names = {"point", "directional", "spot"};
+
+void set_type(Light& light, const std::string& name) {
+    const auto found = std::find(type_names.begin(), type_names.end(), name);
+    if (found == type_names.end())
+        throw ArgumentError(fmt::format("light.type: expected point, directional or spot, got '{}'{}", name,
+                                        did_you_mean(name, type_names)));
+    light.type = LightType(found - type_names.begin());
+}
+
+void vector_property(nb::class_<Light>& light, const char* name, Vec3 Light::*member, const char* doc) {
+    light.def_prop_rw(
+        name, [member](const Light& l) { return vector_to_tuple(l.*member); },
+        [member, name](Light& l, const ArrayLike& value) {
+            l.*member = to_vector3(value, name).cast<float>();
+        },
+        doc);
+}
+
+void number_property(nb::class_<Light>& light, const char* name, float Light::*member, const char* doc) {
+    light.def_prop_rw(
+        name, [member](const Light& l) { return l.*member; },
+        [member, name](Light& l, float value) {
+            if (!(value >= 0 && std::isfinite(value)))
+                throw ArgumentError(
+                    fmt::format("light.{}: expected a number of at least 0, got {}", name, value));
+            l.*member = value;
+        },
+        doc);
+}
+
+void construct(Light* self, const std::string& type, const nb::kwargs& values) {
+    Light light;
+    set_type(light, type);
+    nb::object object = nb::cast(&light, nb::rv_policy::reference);
+    for (auto [name, value] : values) nb::setattr(object, name, value);
+    new (self) Light(light);
+}
+
+}  // namespace
+
+void bind_light(nb::module_& module) {
+    nb::class_<Light> light(
+        module, "Light", "A light in world space. Its colour is linear numbers, or text ('#rrggbb', sRGB).");
+    light
+        .def("__init__", construct, nb::arg("type") = "point", nb::arg("values"),
+             nb::sig("def __init__(self, type: str = 'point', **values: object) -> None"))
+        .def_prop_rw(
+            "type", [](const Light& l) { return type_names[size_t(l.type)]; }, set_type,
+            "'point', 'directional' or 'spot'.")
+        .def_rw("enabled", &Light::enabled)
+        .def_prop_rw(
+            "color", [](const Light& l) { return vector_to_tuple(l.color); },
+            [](Light& l, const ColorLike& value) { l.color = to_linear_color(value, "light.color"); },
+            "Multiplies the intensity.");
+    vector_property(light, "position", &Light::position, "Point and spot.");
+    vector_property(light, "direction", &Light::direction, "Where the light goes; directional and spot.");
+    number_property(light, "intensity", &Light::intensity, "Candela (point, spot) or lux (directional).");
+    number_property(light, "inner_cone_deg", &Light::inner_cone_deg,
+                    "Half angle of a spot's full-intensity cone.");
+    number_property(light, "outer_cone_deg", &Light::outer_cone_deg, "Half angle at which a spot ends.");
+    number_property(light, "range", &Light::range, "Distance at which the light ends; 0: unlimited.");
+}
+
+}  // namespace easypbr::python

@@ -1,0 +1,283 @@
+// Mesh: arrays as read-only views that own their numbers.
+#include <fmt/format.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/core/suggest.h"
+#include "easypbr/io/mesh_io.h"
+#include "easypbr/python/convert.h"
+#include "easypbr/python/handles.h"
+
+namespace easypbr::python {
+namespace {
+
+/// One of a mesh's arrays: how Python reads it and writes it.
+struct MeshArray {
+    const char* name;
+    const char* doc;
+    nb::object (*view)(const MeshData&);
+    /// Reads the object (with the GIL) into a change of the data (made without it).
+    std::function<void(MeshData&)> (*prepare)(nb::handle object);
+};
+
+template <class Scalar, int Cols, Array<Scalar, Cols> MeshData::*member>
+std::function<void(MeshData&)> prepare(nb::handle object, const ArrayShape& shape, bool normalize) {
+    using Dense = typename Array<Scalar, Cols>::Dense;
+    Array<Scalar, Cols> array;
+    if (!object.is_none()) {
+        if constexpr (std::is_same_v<Scalar, float>)
+            array = Dense(to_floats(object, shape, normalize));
+        else
+            array = Dense(to_integers(object, shape));
+    }
+    return [array](MeshData& data) { data.*member = array; };
+}
+
+template <class Scalar, int Cols, Array<Scalar, Cols> MeshData::*member>
+nb::object view(const MeshData& data) {
+    return view_of(data.*member);
+}
+
+std::function<void(MeshData&)> prepare_V(nb::handle object) {
+    const auto assign = prepare<float, 3, &MeshData::V>(object, {"V", 3, 3}, false);
+    return [assign](MeshData& data) {
+        const Eigen::Index before = data.V.rows();
+        assign(data);
+        if (data.V.rows() != before) data.source_vertex = {};
+    };
+}
+
+std::function<void(MeshData&)> prepare_F(nb::handle object) {
+    const auto assign = prepare<int32_t, 3, &MeshData::F>(object, {"F", 3, 3}, false);
+    return [assign](MeshData& data) {
+        assign(data);
+        data.parts.clear();
+        data.source_face = {};
+    };
+}
+
+const std::vector<MeshArray>& mesh_arrays() {
+    static const std::vector<MeshArray> arrays = {
+        {"V", "n x 3 float32 positions.", view<float, 3, &MeshData::V>, prepare_V},
+        {"N", "n x 3 float32 unit normals; empty: computed when the mesh is drawn.",
+         view<float, 3, &MeshData::N>,
+         [](nb::handle o) {
+             return prepare<float, 3, &MeshData::N>(o, {"N", 3, 3}, false);
+         }},
+        {"C", "n x 3 or n x 4 float32 sRGB colours, 0 to 1; uint8 is scaled when assigned.",
+         view<float, Eigen::Dynamic, &MeshData::C>,
+         [](nb::handle o) {
+             return prepare<float, Eigen::Dynamic, &MeshData::C>(o, {"C", 3, 4}, true);
+         }},
+        {"UV", "n x 2 float32 texture coordinates, v upwards.", view<float, 2, &MeshData::UV>,
+         [](nb::handle o) {
+             return prepare<float, 2, &MeshData::UV>(o, {"UV", 2, 2}, false);
+         }},
+        {"T", "n x 3 float32 tangents of surfels.", view<float, 3, &MeshData::T>,
+         [](nb::handle o) {
+             return prepare<float, 3, &MeshData::T>(o, {"T", 3, 3}, false);
+         }},
+        {"B", "n float32 bitangent lengths of surfels.", view<float, 1, &MeshData::B>,
+         [](nb::handle o) {
+             return prepare<float, 1, &MeshData::B>(o, {"B", 1, 1}, false);
+         }},
+        {"F", "m x 3 int32 vertex indices of triangles, counter-clockwise seen from outside.",
+         view<int32_t, 3, &MeshData::F>, prepare_F},
+        {"E", "k x 2 int32 vertex indices of line segments.", view<int32_t, 2, &MeshData::E>,
+         [](nb::handle o) {
+             return prepare<int32_t, 2, &MeshData::E>(o, {"E", 2, 2}, false);
+         }},
+        {"L", "n int32 labels.", view<int32_t, 1, &MeshData::L>,
+         [](nb::handle o) {
+             return prepare<int32_t, 1, &MeshData::L>(o, {"L", 1, 1}, false);
+         }},
+        {"I", "n float32 intensities.", view<float, 1, &MeshData::I>, [](nb::handle o) {
+             return prepare<float, 1, &MeshData::I>(o, {"I", 1, 1}, false);
+         }}};
+    return arrays;
+}
+
+const MeshArray& mesh_array(const std::string& name) {
+    std::vector<std::string> names;
+    for (const MeshArray& array : mesh_arrays()) {
+        if (name == array.name) return array;
+        names.emplace_back(array.name);
+    }
+    throw NameError(fmt::format("a mesh has no array '{}'; it has {}", name, fmt::join(names, ", ")));
+}
+
+/// Several arrays at once: they need to fit together only afterwards.
+void assign(Mesh& mesh, const nb::kwargs& values) {
+    std::vector<std::function<void(MeshData&)>> changes;
+    for (auto [name, value] : values)
+        changes.push_back(mesh_array(nb::cast<std::string>(name)).prepare(value));
+    released([&] {
+        mesh.edit([&](MeshData& data) {
+            for (const auto& change : changes) change(data);
+        });
+    });
+}
+
+void construct_from_arrays(Mesh* self, const ArrayLike& V, const ArrayLike& F) {
+    const auto set_V = prepare_V(V), set_F = prepare_F(F);
+    released([&] {
+        MeshData data;
+        set_V(data);
+        set_F(data);
+        new (self) Mesh(std::move(data));
+    });
+}
+
+/// What `with mesh.edit("V") as v` holds: a writable copy, put in place when the block ends well.
+struct ArrayEdit {
+    Mesh mesh;
+    const MeshArray* array;
+    nb::object copy;
+
+    nb::object enter() {
+        copy = nb::module_::import_("numpy").attr("array")(array->view(*mesh.snapshot()));
+        return copy;
+    }
+    void exit(const nb::object& type, const nb::object&, const nb::object&) {
+        const nb::object edited = std::move(copy);
+        if (!type.is_none()) return;
+        const auto change = array->prepare(edited);
+        released([&] { mesh.edit(change); });
+    }
+};
+
+Eigen::Affine3d to_affine(nb::handle object) {
+    const Mat4d matrix = to_matrix4(object, "T_parent_mesh");
+    if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+        throw ArgumentError("T_parent_mesh: expected a last row of (0, 0, 0, 1)");
+    return Eigen::Affine3d(matrix);
+}
+
+std::vector<MaterialHandle> materials(const Mesh& mesh) {
+    std::vector<MaterialHandle> handles;
+    const size_t count = std::max<size_t>(1, mesh.snapshot()->materials.size());
+    for (size_t i = 0; i < count; ++i) handles.push_back({mesh, int(i), {}});
+    return handles;
+}
+
+std::string mesh_text(const Mesh& mesh) {
+    const auto data = mesh.snapshot();
+    return fmt::format("<easypbr.Mesh '{}': {} vertices, {} faces, {} children>", data->name, data->V.rows(),
+                       data->F.rows(), data->children.size());
+}
+
+void bind_arrays(nb::class_<Mesh>& mesh) {
+    for (const MeshArray& array : mesh_arrays())
+        mesh.def_prop_rw(
+            array.name, [&array](const Mesh& m) { return array.view(*m.snapshot()); },
+            [&array](Mesh& m, const ArrayLike& value) {
+                const auto change = array.prepare(value);
+                released([&] { m.edit(change); });
+            },
+            nb::for_getter(nb::sig(fmt::format("def {}(self) -> numpy.ndarray", array.name).c_str())),
+            nb::for_setter(nb::arg("value").none()),
+            nb::for_setter(
+                nb::sig(fmt::format("def {}(self, value: numpy.typing.ArrayLike | None) -> None", array.name)
+                            .c_str())),
+            array.doc);
+    mesh.def("assign", assign, nb::sig("def assign(self, **arrays: numpy.typing.ArrayLike | None) -> None"),
+             "Replaces several arrays at once, e.g. assign(V=v, F=f, N=None).");
+    mesh.def(
+        "edit",
+        [](const Mesh& m, const std::string& name) {
+            return ArrayEdit{m, &mesh_array(name), nb::none()};
+        },
+        nb::arg("array"),
+        "`with mesh.edit(\"V\") as v:` gives a writable copy and puts it in place at the end.");
+}
+
+void bind_look(nb::class_<Mesh>& mesh) {
+    mesh.def_prop_rw(
+            "material",
+            [](const Mesh& m) {
+                return MaterialHandle{m, 0, {}};
+            },
+            [](Mesh& m, const MaterialHandle& material) { m.set_material(material.get()); },
+            "The first material; changes of its attributes go through.")
+        .def_prop_ro("materials", materials, "All materials, at least one.")
+        .def(
+            "add_material",
+            [](Mesh& m, const MaterialHandle& material) {
+                const int index = int(m.snapshot()->materials.size());
+                m.set_material(material.get(), index);
+                return MaterialHandle{m, index, {}};
+            },
+            nb::arg("material"))
+        .def_prop_rw(
+            "style",
+            [](const Mesh& m) {
+                return StyleHandle{m, {}};
+            },
+            [](Mesh& m, const StyleHandle& style) { m.set_style(style.get()); },
+            "How the mesh is drawn; changes of its attributes go through.");
+}
+
+void bind_hierarchy(nb::class_<Mesh>& mesh) {
+    mesh.def_prop_rw(
+            "T_parent_mesh", [](const Mesh& m) { return matrix_to_numpy(m.T_parent_mesh().matrix()); },
+            [](Mesh& m, const ArrayLike& T) { m.set_T_parent_mesh(to_affine(T)); },
+            nb::for_getter(nb::sig("def T_parent_mesh(self) -> numpy.ndarray")),
+            "4 x 4 pose in the parent, or in the world.")
+        .def(
+            "add_child", [](Mesh& m, const Mesh& child) { released([&] { m.add_child(child); }); },
+            nb::arg("child"))
+        .def_prop_ro("children", [](const Mesh& m) { return m.snapshot()->children; })
+        .def(
+            "clone", [](const Mesh& m) { return released([&] { return m.clone(); }); },
+            "A copy of its own, children included.");
+}
+
+void bind_array_edit(nb::module_& module) {
+    nb::class_<ArrayEdit>(module, "ArrayEdit", "A mesh's array while it is edited.")
+        .def("__enter__", &ArrayEdit::enter, nb::sig("def __enter__(self) -> numpy.ndarray"))
+        .def("__exit__", &ArrayEdit::exit, nb::arg("type").none(), nb::arg("value").none(),
+             nb::arg("traceback").none());
+}
+
+}  // namespace
+
+void bind_mesh(nb::module_& module) {
+    bind_array_edit(module);
+    nb::class_<Mesh> mesh(
+        module, "Mesh",
+        "A handle to vertices, faces and attributes, materials, a pose and children. Copies of a "
+        "handle share the mesh; clone() copies it.");
+    mesh.def("__init__", [](Mesh* self) { new (self) Mesh(); })
+        .def(
+            "__init__", [](Mesh* self, const fs::path& path) { released([&] { new (self) Mesh(path); }); },
+            nb::arg("path"), "Reads PLY, OBJ, STL, OFF, glTF, GLB, and what the assimp module reads.")
+        .def("__init__", construct_from_arrays, nb::arg("V"), nb::arg("F"),
+             "n x 3 positions and m x 3 vertex indices, of any numeric type.");
+    bind_arrays(mesh);
+    bind_look(mesh);
+    bind_hierarchy(mesh);
+    mesh.def_prop_rw(
+            "name", [](const Mesh& m) { return m.name(); },
+            [](Mesh& m, const std::string& name) { m.edit([&](MeshData& data) { data.name = name; }); })
+        .def_prop_ro(
+            "source", [](const Mesh& m) { return m.snapshot()->source.string(); },
+            "The file it was read from; empty for a mesh made in memory.")
+        .def(
+            "save", [](const Mesh& m, const fs::path& path) { released([&] { m.save(path); }); },
+            nb::arg("path"), "Writes PLY, OBJ or GLB, by the extension.")
+        .def(
+            "__eq__", [](const Mesh& a, const Mesh& b) { return a == b; }, nb::is_operator(),
+            "Whether both are handles to the same mesh.")
+        .def("__repr__", mesh_text)
+        .def("_repr_png_", [](const nb::object& self) {
+            return nb::module_::import_("easypbr.rendering").attr("render_png")(self);
+        });
+    // Equal handles would need equal hashes; a mesh is no key.
+    mesh.attr("__hash__") = nb::none();
+    module.def("readable_mesh_extensions", [] { return released([] { return io::readable_extensions(); }); });
+}
+
+}  // namespace easypbr::python

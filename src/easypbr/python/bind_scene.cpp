@@ -1,0 +1,56 @@
+// Scene, as the Python class of the same name uses it.
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "easypbr/python/bindings.h"
+#include "easypbr/scene/primitives.h"
+#include "easypbr/scene/scene.h"
+#include "easypbr/viewer/viewer.h"
+
+namespace easypbr::python {
+
+void bind_scene(nb::module_& module) {
+    nb::class_<Scene>(module, "SceneHandle", "Named meshes, lights and an environment, shared by handle.")
+        .def(nb::init<>())
+        .def(
+            "show",
+            [](Scene& s, const Mesh& mesh, const std::string& name) {
+                released([&] { s.show(mesh, name); });
+            },
+            nb::arg("mesh"), nb::arg("name"))
+        .def("get", &Scene::get, nb::arg("name"))
+        .def(
+            "remove", [](Scene& s, const std::string& name) { released([&] { s.remove(name); }); },
+            nb::arg("name"))
+        .def("hide", &Scene::hide, nb::arg("name"), nb::arg("hidden") = true)
+        .def("clear", [](Scene& s) { released([&] { s.clear(); }); })
+        .def("names", &Scene::names)
+        .def("contains", &Scene::contains, nb::arg("name"))
+        .def("set_light", &Scene::set_light, nb::arg("name"), nb::arg("light"))
+        .def("light", &Scene::light, nb::arg("name"))
+        .def("remove_light", &Scene::remove_light, nb::arg("name"))
+        .def("light_names", &Scene::light_names)
+        .def_prop_rw("environment", &Scene::environment,
+                     [](Scene& s, const Environment& environment) { s.set_environment(environment); });
+    module.def(
+        "default_scene", [] { return default_scene(); }, "The scene that is there without being made.");
+    module.def("demo_scene", [] { return released([] { return make_demo_scene(); }); });
+
+    module.def(
+        "sphere",
+        [](float radius, int segments) { return released([&] { return make_sphere(radius, segments); }); },
+        nb::arg("radius") = 1.0f, nb::arg("segments") = 64, "A UV sphere.");
+    module.def(
+        "box", [] { return make_box(); }, "A unit cube.");
+    module.def(
+        "plane", [](float size) { return make_plane(size); }, nb::arg("size") = 1.0f,
+        "A square in the xz plane, facing up.");
+    module.def(
+        "teapot",
+        [](float height, int subdivisions) {
+            return released([&] { return make_teapot(height, subdivisions); });
+        },
+        nb::arg("height") = 1.0f, nb::arg("subdivisions") = 16, "Newell's teapot, standing on y = 0.");
+}
+
+}  // namespace easypbr::python

@@ -1,0 +1,37 @@
+// What the files of the Python module share: one bind function per class family, and how C++ is called.
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+#include <utility>
+
+namespace easypbr::python {
+
+namespace nb = nanobind;
+
+void bind_errors();
+void bind_log();
+void bind_settings(nb::module_& module);
+void bind_image(nb::module_& module);
+void bind_material(nb::module_& module);
+void bind_mesh(nb::module_& module);
+void bind_light(nb::module_& module);
+void bind_environment(nb::module_& module);
+void bind_scene(nb::module_& module);
+void bind_camera(nb::module_& module);
+void bind_viewer(nb::module_& module);
+
+/// Hands the messages logged so far to Python. Needs the GIL; no lock of ours may be held.
+void deliver_log();
+
+/// Runs work without the GIL. What it logs reaches Python afterwards, when no lock is held any more.
+template <class Work>
+auto released(Work&& work) {
+    struct Delivery {
+        ~Delivery() { deliver_log(); }
+    } delivery;
+    nb::gil_scoped_release release;
+    return std::forward<Work>(work)();
+}
+
+}  // namespace easypbr::python

@@ -1,0 +1,292 @@
+#include "easypbr/python/convert.h"
+
+#include <fmt/format.h>
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/string.h>
+
+#include <atomic>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "easypbr/core/color.h"
+#include "easypbr/core/error.h"
+#include "easypbr/core/parallel.h"
+
+namespace easypbr::python {
+namespace {
+
+constexpr size_t copy_grain = 1 << 15;
+
+template <class Scalar>
+using Matrix = Eigen::Matrix<Scalar, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+std::string dtype_text(const AnyArray& array) {
+    const nb::dlpack::dtype type = array.dtype();
+    const char* kind = type.code == uint8_t(nb::dlpack::dtype_code::Float) ? "float"
+                       : type.code == uint8_t(nb::dlpack::dtype_code::Int) ? "int"
+                                                                           : "uint";
+    return fmt::format("{}{}", kind, int(type.bits));
+}
+
+/// Calls visit(pointer to const T) with the array's own element type.
+template <class Visit>
+void visit_elements(const AnyArray& array, Visit&& visit) {
+    const void* data = array.data();
+    const nb::dlpack::dtype type = array.dtype();
+    if (type == nb::dtype<float>()) return visit(static_cast<const float*>(data));
+    if (type == nb::dtype<double>()) return visit(static_cast<const double*>(data));
+    if (type == nb::dtype<int8_t>()) return visit(static_cast<const int8_t*>(data));
+    if (type == nb::dtype<int16_t>()) return visit(static_cast<const int16_t*>(data));
+    if (type == nb::dtype<int32_t>()) return visit(static_cast<const int32_t*>(data));
+    if (type == nb::dtype<int64_t>()) return visit(static_cast<const int64_t*>(data));
+    if (type == nb::dtype<uint8_t>()) return visit(static_cast<const uint8_t*>(data));
+    if (type == nb::dtype<uint16_t>()) return visit(static_cast<const uint16_t*>(data));
+    if (type == nb::dtype<uint32_t>()) return visit(static_cast<const uint32_t*>(data));
+    visit(static_cast<const uint64_t*>(data));
+}
+
+/// Rows, columns and strides (in elements) of an array of one or two dimensions.
+struct Layout {
+    Eigen::Index rows, cols;
+    int64_t row_stride, col_stride;
+};
+
+[[noreturn]] void reject_shape(const AnyArray& array, const ArrayShape& shape) {
+    std::string expected = shape.columns == 1 ? "n numbers" : fmt::format("n x {}", shape.columns);
+    if (shape.more_columns != shape.columns) expected += fmt::format(" or n x {}", shape.more_columns);
+    throw ArgumentError(
+        fmt::format("mesh array {}: expected {}, got {}", shape.name, expected, shape_text(array)));
+}
+
+Layout layout_of(const AnyArray& array, const ArrayShape& shape) {
+    if (array.size() == 0) return {0, shape.columns, 0, 0};
+    if (array.ndim() == 1 && shape.columns == 1) return {Eigen::Index(array.shape(0)), 1, array.stride(0), 1};
+    const bool fits = array.ndim() == 2 && (int64_t(array.shape(1)) == shape.columns ||
+                                            int64_t(array.shape(1)) == shape.more_columns);
+    if (!fits) reject_shape(array, shape);
+    return {Eigen::Index(array.shape(0)), Eigen::Index(array.shape(1)), array.stride(0), array.stride(1)};
+}
+
+/// result(row, col) = convert(element, row), in parallel.
+template <class Scalar, class Element, class Convert>
+void copy_rows(Matrix<Scalar>& result, const Element* data, const Layout& layout, const Convert& convert) {
+    parallel_chunks(size_t(layout.rows), copy_grain, [&](size_t begin, size_t end) {
+        for (size_t row = begin; row < end; ++row)
+            for (Eigen::Index col = 0; col < layout.cols; ++col)
+                result(Eigen::Index(row), col) =
+                    convert(data[int64_t(row) * layout.row_stride + col * layout.col_stride], row);
+    });
+}
+
+template <class Element>
+bool fits_int32(Element value) {
+    if constexpr (std::is_floating_point_v<Element>)
+        return std::floor(value) == value && value >= -2147483648.0 && value <= 2147483647.0;
+    else
+        return std::in_range<int32_t>(value);
+}
+
+/// Numbers of an object that must have exactly `rows` x `cols` of them (a vector when rows is 1).
+Eigen::MatrixXd exact_matrix(nb::handle object, int rows, int cols, const char* what) {
+    const AnyArray array = numeric_array(object, what);
+    const bool fits = rows == 1
+                          ? array.ndim() == 1 && int(array.shape(0)) == cols
+                          : array.ndim() == 2 && int(array.shape(0)) == rows && int(array.shape(1)) == cols;
+    if (!fits)
+        throw ArgumentError(fmt::format(
+            "{}: expected {}, got {}", what,
+            rows == 1 ? fmt::format("{} numbers", cols) : fmt::format("a {} x {} matrix", rows, cols),
+            shape_text(array)));
+    Eigen::MatrixXd result(rows, cols);
+    const int64_t row_stride = rows == 1 ? 0 : array.stride(0), col_stride = array.stride(array.ndim() - 1);
+    visit_elements(array, [&](const auto* data) {
+        for (int row = 0; row < rows; ++row)
+            for (int col = 0; col < cols; ++col)
+                result(row, col) = double(data[row * row_stride + col * col_stride]);
+    });
+    if (!result.allFinite()) throw ArgumentError(fmt::format("{}: expected finite numbers", what));
+    return result;
+}
+
+nb::object numpy_array(nb::handle object, const char* what) {
+    const nb::module_ numpy = nb::module_::import_("numpy");
+    try {
+        return numpy.attr("asarray")(object);
+    } catch (nb::python_error& error) {
+        throw ArgumentError(fmt::format("{}: expected an array of numbers: {}", what, error.what()));
+    }
+}
+
+template <class T>
+nb::object image_view(const Image& image, const nb::capsule& owner) {
+    const size_t shape[3] = {size_t(image.height()), size_t(image.width()), size_t(image.channels())};
+    return nb::cast(
+        nb::ndarray<nb::numpy, T>(reinterpret_cast<T*>(const_cast<std::byte*>(image.bytes().data())),
+                                  image.channels() == 1 ? 2 : 3, shape, owner));
+}
+
+}  // namespace
+
+nb::object numeric_object(nb::handle object, const char* what) {
+    nb::object array = numpy_array(object, what);
+    const nb::object dtype = array.attr("dtype");
+    const std::string kind = nb::cast<std::string>(dtype.attr("kind"));
+    if (kind != "f" && kind != "i" && kind != "u")
+        throw ArgumentError(fmt::format("{}: expected numbers, got dtype {}", what, nb::str(dtype).c_str()));
+    const int bytes = nb::cast<int>(dtype.attr("itemsize"));
+    if (kind == "f" && (bytes < 4 || bytes > 8))
+        array = array.attr("astype")("float64");
+    else if (!nb::cast<bool>(dtype.attr("isnative")))
+        array = array.attr("astype")(dtype.attr("newbyteorder")("="));
+    return array;
+}
+
+AnyArray numeric_array(nb::handle object, const char* what) {
+    return nb::cast<AnyArray>(numeric_object(object, what));
+}
+
+std::string shape_text(const AnyArray& array) {
+    std::string text;
+    for (size_t i = 0; i < array.ndim(); ++i) text += fmt::format("{}{}", i ? " x " : "", array.shape(i));
+    if (array.ndim() == 0) text = "a single";
+    return fmt::format("{} {}", text, dtype_text(array));
+}
+
+Vec2i to_size(nb::handle object, const char* what) {
+    const Eigen::MatrixXd size = exact_matrix(object, 1, 2, what);
+    if (!fits_int32(size(0)) || !fits_int32(size(1)))
+        throw ArgumentError(
+            fmt::format("{}: expected two whole numbers, got ({}, {})", what, size(0), size(1)));
+    return {int(size(0)), int(size(1))};
+}
+
+Vec3d to_vector3(nb::handle object, const char* what) {
+    return exact_matrix(object, 1, 3, what).transpose();
+}
+
+Mat3d to_matrix3(nb::handle object, const char* what) {
+    return exact_matrix(object, 3, 3, what);
+}
+
+Mat4d to_matrix4(nb::handle object, const char* what) {
+    return exact_matrix(object, 4, 4, what);
+}
+
+Vec3 to_linear_color(nb::handle object, const char* what) {
+    if (nb::isinstance<nb::str>(object)) return linear_from_srgb(parse_color(nb::cast<std::string>(object)));
+    const Vec3d color = to_vector3(object, what);
+    if ((color.array() < 0).any())
+        throw ArgumentError(fmt::format("{}: expected numbers of at least 0, got ({}, {}, {})", what,
+                                        color.x(), color.y(), color.z()));
+    return color.cast<float>();
+}
+
+nb::object matrix_to_numpy(const Eigen::MatrixXd& matrix) {
+    auto* rows = new Matrix<double>(matrix);
+    nb::capsule owner(rows, [](void* p) noexcept { delete static_cast<Matrix<double>*>(p); });
+    const size_t shape[2] = {size_t(rows->rows()), size_t(rows->cols())};
+    const bool vector = rows->rows() == 1;
+    return nb::cast(
+        nb::ndarray<nb::numpy, double>(rows->data(), vector ? 1 : 2, vector ? shape + 1 : shape, owner));
+}
+
+nb::tuple vector_to_tuple(const Vec3& vector) {
+    return nb::make_tuple(vector.x(), vector.y(), vector.z());
+}
+
+Matrix<float> to_floats(nb::handle object, const ArrayShape& shape, bool normalize) {
+    const AnyArray array = numeric_array(object, fmt::format("mesh array {}", shape.name).c_str());
+    const Layout layout = layout_of(array, shape);
+    Matrix<float> result(layout.rows, layout.cols);
+    released([&] {
+        visit_elements(array, [&]<class Element>(const Element* data) {
+            const bool scaled = normalize && std::is_integral_v<Element>;
+            const float scale = scaled ? 1.0f / float(std::numeric_limits<Element>::max()) : 1.0f;
+            copy_rows(result, data, layout, [scale](Element value, size_t) { return float(value) * scale; });
+        });
+    });
+    return result;
+}
+
+Matrix<int32_t> to_integers(nb::handle object, const ArrayShape& shape) {
+    const AnyArray array = numeric_array(object, fmt::format("mesh array {}", shape.name).c_str());
+    const Layout layout = layout_of(array, shape);
+    Matrix<int32_t> result(layout.rows, layout.cols);
+    std::atomic<bool> all_fit{true};
+    released([&] {
+        visit_elements(array, [&]<class Element>(const Element* data) {
+            copy_rows(result, data, layout, [&](Element value, size_t) {
+                if (fits_int32(value)) return int32_t(value);
+                all_fit = false;
+                return int32_t(0);
+            });
+        });
+    });
+    if (!all_fit)
+        throw ArgumentError(
+            fmt::format("mesh array {}: expected whole numbers from -2147483648 to 2147483647, got "
+                        "others in {}",
+                        shape.name, shape_text(array)));
+    return result;
+}
+
+nb::object to_numpy(Image image) {
+    auto* held = new Image(std::move(image));
+    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<Image*>(p); });
+    switch (held->type()) {
+        case PixelType::u8:
+            return image_view<uint8_t>(*held, owner);
+        case PixelType::u16:
+            return image_view<uint16_t>(*held, owner);
+        case PixelType::f32:
+            break;
+    }
+    return image_view<float>(*held, owner);
+}
+
+nb::object to_numpy(std::shared_ptr<const Image> image) {
+    auto* held = new std::shared_ptr<const Image>(std::move(image));
+    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<std::shared_ptr<const Image>*>(p); });
+    switch ((*held)->type()) {
+        case PixelType::u8:
+            return image_view<const uint8_t>(**held, owner);
+        case PixelType::u16:
+            return image_view<const uint16_t>(**held, owner);
+        case PixelType::f32:
+            break;
+    }
+    return image_view<const float>(**held, owner);
+}
+
+Image to_image(nb::handle object, const char* what) {
+    const nb::object numbers = numeric_object(object, what);
+    const AnyArray given = nb::cast<AnyArray>(numbers);
+    const bool is_float = given.dtype().code == uint8_t(nb::dlpack::dtype_code::Float);
+    const PixelType type = is_float                                 ? PixelType::f32
+                           : given.dtype() == nb::dtype<uint16_t>() ? PixelType::u16
+                                                                    : PixelType::u8;
+    const bool known = is_float || type == PixelType::u16 || given.dtype() == nb::dtype<uint8_t>();
+    if (!known || (given.ndim() != 2 && given.ndim() != 3))
+        throw ArgumentError(
+            fmt::format("{}: expected height x width or height x width x (1 to 4) of uint8, uint16 or "
+                        "float, got {}",
+                        what, shape_text(given)));
+    constexpr size_t too_large = size_t(max_image_side) + 1;
+    const auto side = [&](size_t axis) { return int(std::min(given.shape(axis), too_large)); };
+    Image image(side(1), side(0), given.ndim() == 3 ? side(2) : 1, type);
+    const nb::object rows = nb::module_::import_("numpy").attr("ascontiguousarray")(
+        numbers, nb::arg("dtype") = type == PixelType::u8    ? "uint8"
+                                    : type == PixelType::u16 ? "uint16"
+                                                             : "float32");
+    const AnyArray contiguous = nb::cast<AnyArray>(rows);
+    std::memcpy(image.bytes().data(), contiguous.data(), image.bytes().size());
+    return image;
+}
+
+bool is_path(nb::handle object) {
+    return nb::isinstance<nb::str>(object) || nb::isinstance<nb::bytes>(object) ||
+           nb::hasattr(object, "__fspath__");
+}
+
+}  // namespace easypbr::python

@@ -1,0 +1,97 @@
+// Values between Python and C++: arrays, vectors, colours, images.
+#pragma once
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+
+#include <memory>
+
+#include "easypbr/core/image.h"
+#include "easypbr/core/math.h"
+#include "easypbr/python/bindings.h"
+#include "easypbr/scene/array.h"
+
+namespace easypbr::python {
+
+inline bool is_anything(nb::handle) {
+    return true;
+}
+
+/// Anything that numpy.asarray takes. Arguments are checked where they are read, with a message that says
+/// what was expected.
+class ArrayLike : public nb::object {
+    NB_OBJECT_DEFAULT(ArrayLike, nb::object, "numpy.typing.ArrayLike", is_anything)
+};
+
+/// '#rrggbb', a name, or three numbers.
+class ColorLike : public nb::object {
+    NB_OBJECT_DEFAULT(ColorLike, nb::object, "str | numpy.typing.ArrayLike", is_anything)
+};
+
+/// A path or an array.
+class PathOrArray : public nb::object {
+    NB_OBJECT_DEFAULT(PathOrArray, nb::object, "str | os.PathLike | numpy.typing.ArrayLike | None",
+                      is_anything)
+};
+
+using AnyArray = nb::ndarray<nb::ro, nb::device::cpu>;
+
+/// The object as a numpy array of real numbers in this machine's byte order. `what` names it in messages.
+/// Throws ArgumentError for what is not numeric.
+nb::object numeric_object(nb::handle object, const char* what);
+AnyArray numeric_array(nb::handle object, const char* what);
+
+/// "10 x 3 float64".
+std::string shape_text(const AnyArray& array);
+
+/// Throws ArgumentError unless the object holds exactly these many finite numbers.
+Vec2i to_size(nb::handle object, const char* what);
+Vec3d to_vector3(nb::handle object, const char* what);
+Mat3d to_matrix3(nb::handle object, const char* what);
+Mat4d to_matrix4(nb::handle object, const char* what);
+/// Linear colour; a text is sRGB, numbers are linear.
+Vec3 to_linear_color(nb::handle object, const char* what);
+
+/// A new numpy array that owns its numbers.
+nb::object matrix_to_numpy(const Eigen::MatrixXd& matrix);
+nb::tuple vector_to_tuple(const Vec3& vector);
+
+/// What a mesh array holds.
+struct ArrayShape {
+    const char* name;
+    int columns;       ///< columns it must have
+    int more_columns;  ///< or these
+};
+
+/// A copy, made in parallel, of rows x columns numbers. Integers in C are divided by their type's largest
+/// value when `normalize` is set. Throws ArgumentError that names the array, the expected and the given
+/// shape.
+Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> to_floats(nb::handle object,
+                                                                                const ArrayShape& shape,
+                                                                                bool normalize = false);
+/// The same for whole numbers within int32; throws ArgumentError for others.
+Eigen::Matrix<int32_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> to_integers(nb::handle object,
+                                                                                    const ArrayShape& shape);
+
+/// A read-only numpy view that keeps the data alive; one column gives one dimension.
+template <class Scalar, int Cols>
+nb::object view_of(const Array<Scalar, Cols>& array) {
+    static const Scalar nothing{};
+    auto* owner = new std::shared_ptr<const void>(array.owner());
+    nb::capsule capsule(owner, [](void* p) noexcept { delete static_cast<std::shared_ptr<const void>*>(p); });
+    const size_t shape[2] = {size_t(array.rows()), size_t(array.cols())};
+    return nb::cast(nb::ndarray<nb::numpy, const Scalar>(array.empty() ? &nothing : array.data(),
+                                                         Cols == 1 ? 1 : 2, shape, capsule));
+}
+
+/// The picture as H x W x channels (H x W for one channel), without a copy.
+nb::object to_numpy(Image image);
+/// A read-only view of a shared picture.
+nb::object to_numpy(std::shared_ptr<const Image> image);
+/// A copy of an array of uint8, uint16 or floating-point numbers. Throws ArgumentError.
+Image to_image(nb::handle object, const char* what);
+
+/// str, bytes or os.PathLike.
+bool is_path(nb::handle object);
+
+}  // namespace easypbr::python

@@ -1,0 +1,27 @@
+// Settings' values between Python and the table of fields.
+#pragma once
+
+#include <optional>
+
+#include "easypbr/python/bindings.h"
+#include "easypbr/scene/auto.h"
+#include "easypbr/scene/fields.h"
+
+namespace easypbr::python {
+
+/// Python's `auto`, and what an automatic setting reads as: it then carries the value inferred so far.
+struct Automatic {
+    std::optional<Value::Data> value;
+};
+/// Python's `follow`.
+struct Follow {};
+
+/// Throws ArgumentError when the object is no setting's value at all; the field's own check comes later.
+Value value_from_python(const Field& field, nb::handle object);
+nb::object value_to_python(const Field& field, const Value& value);
+
+/// A flag that may be `auto`. Throws ArgumentError for other objects.
+Auto<bool> to_auto_flag(nb::handle object, const char* what);
+nb::object from_auto_flag(const Auto<bool>& flag);
+
+}  // namespace easypbr::python

@@ -1,0 +1,48 @@
+import numpy as np
+import pytest
+
+from easypbr import Camera, Viewer, shapes, Scene
+
+
+def test_look_at():
+    camera = Camera.look_at((0, 0, 5), (0, 0, 0), fov_y_deg=40)
+    # Looking along -z with y up is the identity rotation.
+    expected = np.eye(4)
+    expected[2, 3] = 5
+    np.testing.assert_allclose(camera.T_world_cam, expected, atol=1e-12)
+    assert camera.fov_y_deg == 40
+    with pytest.raises(ValueError, match="position"):
+        Camera.look_at((1, 1, 1), (1, 1, 1))
+    with pytest.raises(ValueError, match="target: expected 3 numbers, got 2 int64"):
+        Camera.look_at((1, 1, 1), (1, 1))
+
+
+def test_opencv_round_trip():
+    K = np.array([[500, 0, 320], [0, 510, 240], [0, 0, 1.0]])
+    T = np.eye(4)
+    T[:3, 3] = 1, 2, 3
+    camera = Camera.from_opencv(K, T, (640, 480))
+    np.testing.assert_allclose(camera.opencv_K((640, 480)), K, atol=1e-9)
+    np.testing.assert_allclose(camera.opencv_T_world_cam, T, atol=1e-12)
+    # OpenCV looks along +z with y down; OpenGL along -z with y up.
+    np.testing.assert_allclose(camera.T_world_cam, T @ np.diag([1, -1, -1, 1]), atol=1e-12)
+    with pytest.raises(ValueError, match="K: expected a 3 x 3 matrix"):
+        Camera.from_opencv(np.eye(4), T, (640, 480))
+
+
+def test_from_opengl_refuses_what_is_no_pose():
+    with pytest.raises(ValueError):
+        Camera.from_opengl(np.diag([2, 1, 1, 1]))
+
+
+def test_a_pinned_camera_is_used_and_read_back(size):
+    Scene.show(shapes.plane(2), "plane")
+    view = Viewer(size)
+    # From (0, 3, 0) straight down, the plane's depth is 3 at every pixel that sees it.
+    camera = Camera.look_at((0, 3, 0), (0, 0, 0), up=(0, 0, -1))
+    view.camera = camera
+    np.testing.assert_allclose(view.camera.T_world_cam, camera.T_world_cam, atol=1e-9)
+    depth = view.layers("depth")["depth"]
+    # float32 depth through one matrix product: a few units in the last place of 3.
+    np.testing.assert_allclose(depth[depth > 0], 3, rtol=1e-5)
+    assert depth[24, 32] > 0

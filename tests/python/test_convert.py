@@ -1,0 +1,113 @@
+"""Objects of other libraries: tiny stand-ins with the same attributes, and the real ones where they are installed."""
+
+import types
+
+import numpy as np
+import pytest
+
+import easypbr
+from easypbr import Mesh, as_mesh
+
+
+def check(mesh, square):
+    V, F = square
+    np.testing.assert_array_equal(mesh.V, V)
+    np.testing.assert_array_equal(mesh.F, F)
+
+
+def test_paths_meshes_tuples_and_dicts(square, tmp_path):
+    mesh = Mesh(*square)
+    assert as_mesh(mesh) is mesh
+    check(as_mesh(square), square)
+    mesh.save(tmp_path / "square.ply")
+    check(as_mesh(tmp_path / "square.ply"), square)
+    V, F = square
+    named = as_mesh({"V": V, "F": F, "UV": V[:, :2], "name": "square"})
+    check(named, square)
+    assert named.name == "square" and named.UV.shape == (4, 2)
+
+
+def test_unknown_objects_are_refused():
+    with pytest.raises(TypeError.__base__, match="cannot show a builtins.int: expected a path, an easypbr.Mesh"):
+        as_mesh(3)
+    with pytest.raises(KeyError, match="no array 'W'"):
+        as_mesh({"W": [1]})
+
+
+def test_trimesh_stand_in(square):
+    V, F = square
+    colors = np.full((4, 4), 255, dtype=np.uint8)
+    visual = types.SimpleNamespace(kind="vertex", vertex_colors=colors)
+    mesh = as_mesh(types.SimpleNamespace(vertices=V, faces=F, visual=visual, vertex_normals=V))
+    check(mesh, square)
+    assert (mesh.C == 1).all() and mesh.C.shape == (4, 4)
+    assert len(mesh.N) == 0  # those would be computed, not the file's
+
+
+def test_open3d_stand_ins(square):
+    V, F = square
+    mesh = types.SimpleNamespace(vertices=V, triangles=F, vertex_normals=V, vertex_colors=[])
+    check(as_mesh(mesh), square)
+    np.testing.assert_array_equal(as_mesh(mesh).N, V)
+    # uv per corner: each of the six corners becomes a vertex.
+    mesh.triangle_uvs = np.arange(12.0).reshape(6, 2)
+    split = as_mesh(mesh)
+    np.testing.assert_array_equal(split.V, V[F.ravel()])
+    np.testing.assert_array_equal(split.UV, mesh.triangle_uvs)
+    np.testing.assert_array_equal(split.F, [[0, 1, 2], [3, 4, 5]])
+    cloud = types.SimpleNamespace(points=V, colors=V, normals=[], has_colors=lambda: True)
+    assert as_mesh(cloud).F.shape == (0, 3)
+    np.testing.assert_array_equal(as_mesh(cloud).C, V)
+
+
+def test_pyvista_stand_in(square):
+    V, F = square
+    faces = np.insert(F, 0, 3, axis=1).ravel()
+    mesh = types.SimpleNamespace(
+        points=V, faces=faces, point_data={"Normals": V}, n_points=4, is_all_triangles=True, regular_faces=F
+    )
+    check(as_mesh(mesh), square)
+    np.testing.assert_array_equal(as_mesh(mesh).N, V)
+    mesh.faces = np.array([4, 0, 1, 2, 3])
+    mesh.is_all_triangles = lambda: False
+    mesh.triangulate = lambda: types.SimpleNamespace(points=V, faces=faces, point_data={}, n_points=4)
+    check(as_mesh(mesh), square)
+
+
+def test_real_trimesh(square):
+    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed")
+    mesh = trimesh.Trimesh(*square, process=False)
+    check(as_mesh(mesh), square)
+    scene = trimesh.Scene()
+    T = trimesh.transformations.translation_matrix([1, 2, 3])
+    scene.add_geometry(mesh, node_name="moved", transform=T)
+    (child,) = as_mesh(scene).children
+    check(child, square)
+    assert child.name == "moved"
+    np.testing.assert_array_equal(child.T_parent_mesh, T)
+    cloud = trimesh.PointCloud(square[0])
+    np.testing.assert_array_equal(as_mesh(cloud).V, square[0])
+
+
+def test_real_open3d(square):
+    open3d = pytest.importorskip("open3d", reason="Open3D is not installed")
+    V, F = square
+    mesh = open3d.geometry.TriangleMesh(open3d.utility.Vector3dVector(V), open3d.utility.Vector3iVector(F))
+    check(as_mesh(mesh), square)
+    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(V))
+    np.testing.assert_array_equal(as_mesh(cloud).V, V)
+
+
+def test_real_pyvista(square):
+    pyvista = pytest.importorskip("pyvista", reason="PyVista is not installed")
+    V, F = square
+    mesh = pyvista.PolyData(V, np.insert(F, 0, 3, axis=1).ravel())
+    check(as_mesh(mesh), square)
+    quad = pyvista.PolyData(V, np.array([4, 0, 1, 2, 3]))
+    assert as_mesh(quad).F.shape == (2, 3)
+
+
+def test_real_torch_tensors(square):
+    torch = pytest.importorskip("torch", reason="torch is not installed")
+    V, F = square
+    check(easypbr.Mesh(torch.from_numpy(V), torch.from_numpy(F)), square)

@@ -1,0 +1,223 @@
+import gc
+
+import numpy as np
+import pytest
+
+import easypbr
+from easypbr import Material, Mesh, auto
+
+
+@pytest.mark.parametrize("dtype", ["float16", "float32", "float64", "int8", "int32", "int64", "uint8", ">f8", ">i4"])
+def test_positions_of_any_numeric_type_become_float32(square, dtype):
+    V, F = square
+    mesh = Mesh(V.astype(dtype), F)
+    assert mesh.V.dtype == np.float32
+    np.testing.assert_array_equal(mesh.V, V)
+
+
+@pytest.mark.parametrize("dtype", ["int8", "int32", "int64", "uint8", "uint16", "uint64", "float64"])
+def test_indices_of_any_numeric_type_become_int32(square, dtype):
+    V, F = square
+    mesh = Mesh(V, F.astype(dtype))
+    assert mesh.F.dtype == np.int32
+    np.testing.assert_array_equal(mesh.F, F)
+
+
+def test_strided_and_column_major_arrays_and_lists(square):
+    V, F = square
+    wide = np.zeros((4, 6))
+    wide[:, ::2] = V
+    for given in (np.asfortranarray(V), wide[:, ::2], V[::-1][::-1], V.tolist()):
+        np.testing.assert_array_equal(Mesh(given, F).V, V)
+
+
+def test_messages_name_the_array_and_both_shapes(square):
+    V, F = square
+    with pytest.raises(easypbr.ArgumentError, match=r"V: expected n x 3, got 4 x 2 float64"):
+        Mesh(V[:, :2], F)
+    with pytest.raises(ValueError, match=r"F: expected n x 3, got 3 int64"):
+        Mesh(V, F[0])
+    with pytest.raises(ValueError, match=r"array N: expected 4 rows.*got 2 x 3"):
+        Mesh(V, F).N = np.ones((2, 3))
+    with pytest.raises(ValueError, match=r"F: expected vertex indices from 0 to 3, got 4"):
+        Mesh(V, F + 1)
+    with pytest.raises(ValueError, match=r"V: expected numbers, got dtype"):
+        Mesh(np.array([["a", "b", "c"]]), F)
+    with pytest.raises(ValueError, match=r"V: expected finite positions"):
+        Mesh(V * np.nan, F)
+
+
+@pytest.mark.parametrize("value", [2**31, -(2**31) - 1, 0.5])
+def test_indices_that_no_int32_holds_are_refused(square, value):
+    V, _ = square
+    with pytest.raises(ValueError, match="F: expected whole numbers from -2147483648 to 2147483647"):
+        Mesh(V, np.array([[0, 1, value]]))
+
+
+def test_views_are_read_only_and_outlive_the_mesh(square):
+    V, F = square
+    mesh = Mesh(V, F)
+    view = mesh.V
+    with pytest.raises(ValueError, match="read-only"):
+        view[0, 0] = 7
+    assert view.ctypes.data == mesh.V.ctypes.data
+    mesh.V = V + 1
+    del mesh
+    gc.collect()
+    # Memory that was freed would be taken by these.
+    others = [np.full((4, 3), 9, dtype=np.float32) for _ in range(1000)]
+    np.testing.assert_array_equal(view, V)
+    assert len(others) == 1000
+
+
+def test_assignment_copies(square):
+    V, F = square
+    mesh = Mesh(V.astype(np.float32), F)
+    given = V.astype(np.float32)
+    mesh.V = given
+    given[:] = 5
+    np.testing.assert_array_equal(mesh.V, V)
+
+
+def test_every_array_is_read_back(square):
+    V, F = square
+    mesh = Mesh(V, F)
+    values = {
+        "N": np.tile([0, 0, 1.0], (4, 1)),
+        "UV": V[:, :2],
+        "T": np.tile([1.0, 0, 0], (4, 1)),
+        "B": np.arange(4.0),
+        "L": np.arange(4),
+        "I": np.arange(4.0) / 4,
+        "E": [[0, 1], [1, 2]],
+        "C": np.ones((4, 4)) / 2,
+    }
+    for name, value in values.items():
+        setattr(mesh, name, value)
+        np.testing.assert_array_equal(getattr(mesh, name), value)
+        setattr(mesh, name, None)
+        assert len(getattr(mesh, name)) == 0
+
+
+def test_byte_colors_are_scaled(square):
+    V, F = square
+    mesh = Mesh(V, F)
+    mesh.C = np.array([[0, 51, 255]] * 4, dtype=np.uint8)
+    # 51 / 255 = 0.2; the nearest float is at most 2^-26 away, twice rounded.
+    np.testing.assert_allclose(mesh.C[0], [0, 0.2, 1], atol=1e-7)
+
+
+def test_edit_puts_the_copy_in_place_only_when_the_block_ends_well(square):
+    V, F = square
+    mesh = Mesh(V, F)
+    with mesh.edit("V") as v:
+        v[:, 2] = 3
+        assert mesh.V[0, 2] == 0
+    assert (mesh.V[:, 2] == 3).all()
+    with pytest.raises(RuntimeError, match="stop"):
+        with mesh.edit("V") as v:
+            v[:] = 0
+            raise RuntimeError("stop")
+    assert (mesh.V[:, 2] == 3).all()
+    with pytest.raises(KeyError, match="a mesh has no array 'W'"):
+        mesh.edit("W")
+
+
+def test_assign_replaces_arrays_of_another_length_together(square):
+    V, F = square
+    mesh = Mesh(V, F)
+    mesh.N = np.tile([0, 0, 1.0], (4, 1))
+    with pytest.raises(ValueError, match="N: expected 3 rows"):
+        mesh.V = V[:3]
+    mesh.assign(V=V[:3], F=F[:1], N=None)
+    assert mesh.V.shape == (3, 3) and mesh.F.shape == (1, 3) and mesh.N.shape == (0, 3)
+
+
+def test_handles_share_and_clones_do_not(square):
+    mesh = Mesh(*square)
+    easypbr.Scene.show(mesh, "square")
+    shown = easypbr.Scene.get("square")
+    assert shown == mesh and shown is not None
+    copy = mesh.clone()
+    assert copy != mesh
+    mesh.name = "renamed"
+    assert shown.name == "renamed" and copy.name == ""
+
+
+def test_material_attributes_go_through(square):
+    mesh = Mesh(*square)
+    mesh.material.roughness = 0.25
+    material = mesh.material
+    material.base_color = (0.5, 0.25, 0)
+    assert mesh.material.roughness == 0.25
+    assert mesh.material.base_color == (0.5, 0.25, 0)
+    with pytest.raises(ValueError, match="material.metallic: expected 0 to 1, got 2"):
+        mesh.material.metallic = 2
+    with pytest.raises(AttributeError):
+        mesh.material.shininess = 1
+    mesh.material = Material(metallic=1, base_color="#ffffff")
+    assert mesh.material.metallic == 1 and mesh.material.roughness == 0.5
+    assert mesh.material.base_color == (1, 1, 1)
+    # sRGB 0.5 is linear ((0.5019608 + 0.055) / 1.055)^2.4 = 0.21586.
+    mesh.material.base_color = "#808080"
+    assert mesh.material.base_color[0] == pytest.approx(0.21586, abs=1e-5)
+
+
+def test_textures_are_arrays_or_files(square, tmp_path):
+    mesh = Mesh(*square)
+    assert mesh.material.base_color_texture is None
+    picture = np.arange(2 * 3 * 3, dtype=np.uint8).reshape(2, 3, 3)
+    mesh.material.base_color_texture = picture
+    np.testing.assert_array_equal(mesh.material.base_color_texture, picture)
+    easypbr.save_image(picture, tmp_path / "t.png")
+    mesh.material.roughness_texture = tmp_path / "t.png"
+    np.testing.assert_array_equal(mesh.material.roughness_texture[..., :3], picture)
+    mesh.material.base_color_texture = None
+    assert mesh.material.base_color_texture is None
+    with pytest.raises(FileNotFoundError.__base__, match="missing.png"):
+        mesh.material.normal_texture = tmp_path / "missing.png"
+
+
+def test_style(square):
+    mesh = Mesh(*square)
+    assert mesh.style.flat == auto and mesh.style.visible is True
+    mesh.style.flat = True
+    mesh.style.visible = False
+    assert mesh.style.flat is True and mesh.style.visible is False
+    mesh.style.flat = auto
+    assert mesh.style.flat == auto
+    with pytest.raises(ValueError, match="style.flat: expected True, False, auto or follow, got 'yes'"):
+        mesh.style.flat = "yes"
+
+
+def test_pose_and_children(square):
+    parent, child = Mesh(*square), Mesh(*square)
+    T = np.eye(4)
+    T[:3, 3] = 1, 2, 3
+    child.T_parent_mesh = T
+    np.testing.assert_array_equal(child.T_parent_mesh, T)
+    parent.add_child(child)
+    assert parent.children == [child]
+    with pytest.raises(ValueError, match="cannot become a child"):
+        child.add_child(parent)
+    with pytest.raises(ValueError, match="T_parent_mesh: expected a 4 x 4 matrix, got 3 x 3 float64"):
+        child.T_parent_mesh = np.eye(3)
+
+
+def test_files(square, tmp_path):
+    V, F = square
+    for extension in ("ply", "obj", "glb"):
+        path = tmp_path / f"square.{extension}"
+        Mesh(V, F).save(path)
+        loaded = Mesh(str(path))
+        while loaded.children:
+            loaded = loaded.children[0]
+        np.testing.assert_array_equal(loaded.V, V)
+        np.testing.assert_array_equal(loaded.F, F)
+    with pytest.raises(OSError, match="none.ply"):
+        Mesh(tmp_path / "none.ply")
+    (tmp_path / "empty.ply").write_text("")
+    with pytest.raises(easypbr.FormatError, match="empty.ply"):
+        Mesh(tmp_path / "empty.ply")
+    with pytest.raises(ValueError, match="plyy"):
+        Mesh(V, F).save(tmp_path / "square.plyy")

@@ -1,0 +1,101 @@
+"""Whole programs, as users start them."""
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import easypbr
+from easypbr import shapes
+
+FIVE_LINES = """\
+from easypbr import *
+view  = Viewer()
+view.load_environment_map("./map.hdr")
+drone = Mesh("./drone.ply")
+Scene.show(drone, "drone")
+view.recorder.record("img.png")
+"""
+
+
+def run(arguments, folder):
+    return subprocess.run(
+        [sys.executable, *arguments], cwd=folder, env=os.environ, capture_output=True, text=True, timeout=300
+    )
+
+
+def test_the_program_of_the_readme(tmp_path):
+    shapes.sphere(1, 16).save(tmp_path / "drone.ply")
+    easypbr.save_image(np.full((8, 16, 3), 0.7, dtype=np.float32), tmp_path / "map.hdr")
+    (tmp_path / "program.py").write_text(FIVE_LINES)
+    result = run(["program.py"], tmp_path)
+    assert result.returncode == 0, result.stderr
+    assert result.stdout == "" and result.stderr == ""
+    picture = easypbr.load_image(tmp_path / "img.png")
+    assert picture.shape == (600, 800, 4) and picture.dtype == np.uint8
+    # The sphere is in the middle, the background in the corner.
+    assert not np.array_equal(picture[300, 400], picture[0, 0])
+
+
+def test_import_touches_no_gl(tmp_path):
+    code = (
+        "import easypbr\n"
+        "maps = open('/proc/self/maps').read()\n"
+        "found = [name for name in ('libEGL', 'libGL.', 'libGLX', 'libOpenGL') if name in maps]\n"
+        "assert not found, found\n"
+        "easypbr.Viewer(); easypbr.Mesh()\n"
+        "maps = open('/proc/self/maps').read()\n"
+        "assert 'libEGL' not in maps\n"
+    )
+    result = run(["-c", code], tmp_path)
+    assert result.returncode == 0, result.stderr
+
+
+def test_star_import_hides_no_builtin():
+    import builtins
+
+    hidden = set(easypbr.__all__) & set(dir(builtins))
+    assert not hidden
+
+
+def test_command_line(tmp_path):
+    result = run(["-m", "easypbr", "info", "none.ply"], tmp_path)
+    assert result.returncode == 1
+    assert "none.ply" in result.stderr and result.stdout == ""
+    assert len(result.stderr.splitlines()) == 1
+    assert run(["-m", "easypbr", "rendr"], tmp_path).returncode == 2
+
+
+def test_command_line_picture_equals_the_one_from_python(tmp_path):
+    mesh = shapes.sphere(1, 16)
+    mesh.save(tmp_path / "sphere.ply")
+    arguments = ["render", "sphere.ply", "-o", "a.png", "--size", "64x48", "--samples", "4", "--quiet"]
+    result = run(["-m", "easypbr", *arguments], tmp_path)
+    assert result.returncode == 0, result.stderr
+    picture = easypbr.render(tmp_path / "sphere.ply", size=(64, 48), samples=4)
+    np.testing.assert_array_equal(easypbr.load_image(tmp_path / "a.png"), picture)
+
+
+def test_warnings_reach_logging(tmp_path, caplog):
+    (tmp_path / "a.obj").write_text("mtllib none.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    with caplog.at_level("WARNING", logger="easypbr"):
+        easypbr.Mesh(tmp_path / "a.obj")
+    assert any(r.name == "easypbr" and "none.mtl" in r.getMessage() for r in caplog.records)
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")
+def test_a_fork_is_told_to_spawn(tmp_path):
+    code = (
+        "import os, easypbr\n"
+        "view = easypbr.Viewer()\n"
+        "child = os.fork()\n"
+        "if child == 0:\n"
+        "    try: view.render()\n"
+        "    except easypbr.ContextError as error: os._exit(7 if 'spawn' in str(error) else 1)\n"
+        "    os._exit(2)\n"
+        "assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 7\n"
+    )
+    result = run(["-c", code], tmp_path)
+    assert result.returncode == 0, result.stderr

@@ -1,0 +1,155 @@
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import easypbr
+from easypbr import Scene, Viewer, auto, follow, shapes
+
+
+@pytest.fixture
+def view(size):
+    scene = Scene()
+    scene.show(shapes.sphere(1, 8), "sphere")
+    return Viewer(size, scene=scene)
+
+
+def test_values_of_every_kind(view):
+    s = view.settings
+    s.image.samples = 3
+    assert s.image.samples == 3 and isinstance(s.image.samples, int)
+    s.image.size = np.array([32, 16])
+    assert s.image.size == (32, 16) and isinstance(s.image.size[0], int)
+    s.shading.multiple_scattering = np.bool_(False)
+    assert s.shading.multiple_scattering is False
+    s.tonemap.operator = "agx"
+    assert s.tonemap.operator == "agx"
+    s.camera.fov_y_deg = np.float64(45)
+    assert s.camera.fov_y_deg == 45
+    s.background.color = "#ff0000"
+    assert s.background.color == (1, 0, 0)
+    s.background.color = (0, 0.5, 1)
+    assert s.background.color == (0, 0.5, 1)
+    s.camera.pose = np.eye(4)
+    assert s.camera.pose == tuple(np.eye(4).ravel())
+    s.camera.pose = None
+    assert s.camera.pose == ()
+    s.environment.file = Path("map.hdr")
+    assert s.environment.file == "map.hdr"
+    s.environment.file = None
+    assert s.environment.file == ""
+    s.lights.key.position = [1, 2, 3]
+    assert s["lights.key.position"] == (1, 2, 3)
+
+
+def test_auto_and_follow(view):
+    s = view.settings
+    assert s.tonemap.exposure == auto and s.tonemap.exposure.value is None
+    s.tonemap.exposure = 2
+    assert s.tonemap.exposure == 2
+    s.tonemap.exposure = follow
+    assert s.tonemap.exposure == follow
+    s.tonemap.exposure = auto
+    view.render(samples=1)
+    latched = s.tonemap.exposure
+    assert latched == auto and latched.value > 0
+    assert repr(latched).startswith("auto (now ")
+    # Assigning what was read keeps it.
+    s.tonemap.exposure = latched
+    assert s.tonemap.exposure.value == latched.value
+    view.refit()
+    assert s.tonemap.exposure.value is None
+    with pytest.raises(ValueError, match="image.samples"):
+        s.image.samples = auto
+
+
+def test_resolve_gives_what_would_be_drawn_and_keeps_nothing(view):
+    exposure = view.settings.resolve("tonemap.exposure")
+    assert view.settings.tonemap.exposure.value is None
+    view.render(samples=1)
+    assert view.settings.tonemap.exposure.value == exposure
+
+
+def test_misspelt_names_get_a_hint(view):
+    with pytest.raises(AttributeError, match="there is no setting 'camera.fovy_deg'.*'camera.fov_y_deg'"):
+        view.settings.camera.fovy_deg
+    with pytest.raises(AttributeError, match="did you mean 'camera.fov_y_deg'"):
+        view.settings.camera.fovy_deg = 3
+    with pytest.raises(AttributeError, match="tonemap"):
+        view.settings.tonemapp.exposure = 3
+    with pytest.raises(KeyError, match="did you mean 'camera.fov_y_deg'"):
+        view.settings["camera.fovy_deg"]
+    with pytest.raises(AttributeError, match="'lights.key' is a group"):
+        view.settings.lights.key = 3
+
+
+@pytest.mark.parametrize(
+    "name, value, message",
+    [
+        ("camera.fov_y_deg", "wide", "camera.fov_y_deg.*got 'wide'"),
+        ("image.samples", 1.5, "image.samples.*whole"),
+        ("image.size", (1, 2, 3), "image.size.*2 numbers"),
+        ("tonemap.operator", "acees", "did you mean 'aces'"),
+        ("background.color", "#12", "background.color"),
+        ("background.color", (1, 2, 3), "background.color"),
+        ("camera.margin", None, "None is no value"),
+        ("camera.position", ["a", "b", "c"], "camera.position.*expected numbers"),
+    ],
+)
+def test_bad_values_are_refused_and_change_nothing(view, name, value, message):
+    before = view.settings[name]
+    with pytest.raises(ValueError, match=message):
+        view.settings[name] = value
+    assert view.settings[name] == before
+
+
+def test_names_can_be_listed_and_described(view):
+    assert {"camera", "lights", "tonemap"} <= set(dir(view.settings))
+    assert {"key", "fill", "rim", "intensity"} <= set(dir(view.settings.lights))
+    assert "position" in dir(view.settings.lights.key)
+    text = view.settings.describe("camera.fov_y_deg")
+    assert "camera.fov_y_deg" in text and "degrees" in text and "default: 30" in text
+    assert "tonemap.operator = 'aces'" in repr(view.settings).splitlines()
+    assert dict(view.settings.camera)["camera.fov_y_deg"] == 30
+
+
+def test_from_dict(size):
+    nested = Viewer(settings={"camera": {"fov_y_deg": 40}, "lights": {"key": {"intensity": 3}}})
+    assert nested.settings.camera.fov_y_deg == 40 and nested.settings.lights.key.intensity == 3
+    flat = Viewer(size, settings={"camera.fov_y_deg": 40, "image.size": (1, 1)})
+    assert flat.settings.camera.fov_y_deg == 40 and flat.settings.image.size == size
+    with pytest.raises(KeyError, match="camera.fovy"):
+        Viewer(settings={"camera": {"fovy": 40}})
+
+
+def test_saved_settings_give_the_same_picture_bit_for_bit(view, tmp_path):
+    view.settings.tonemap.operator = "neutral"
+    view.add_light("lamp", position=(2, 2, 2), intensity=4)
+    picture = view.render(samples=2)
+    view.save_settings(tmp_path / "look.json")
+    assert json.loads((tmp_path / "look.json").read_text()) == view.settings.to_dict() | {
+        "files": json.loads((tmp_path / "look.json").read_text())["files"]
+    }
+    for settings in (tmp_path / "look.json", str(tmp_path / "look.json"), view.settings.to_dict()):
+        scene = Scene()
+        scene.show(view.scene.get("sphere"), "sphere")
+        again = Viewer(settings=settings, scene=scene)
+        assert again.settings.tonemap.operator == "neutral"
+        np.testing.assert_array_equal(again.render(samples=2), picture)
+
+
+def test_unreadable_settings_files(tmp_path):
+    with pytest.raises(OSError, match="none.json"):
+        Viewer(settings=tmp_path / "none.json")
+    (tmp_path / "bad.json").write_text("{")
+    with pytest.raises(easypbr.FormatError, match="bad.json"):
+        Viewer(settings=tmp_path / "bad.json")
+
+
+def test_the_stub_names_every_setting():
+    stub = (Path(easypbr.__file__).parent / "settings.pyi").read_text()
+    compile(stub, "settings.pyi", "exec")
+    for field in easypbr._easypbr.fields():
+        assert f"def {field.name.split('.')[-1]}(self)" in stub
+    assert "class LightsKeySettings(SettingsGroup):" in stub
