@@ -141,6 +141,19 @@ void Session::draw_frame(const PictureOptions& options) {
     latch(settings_, prepared.resolved.settings);
 }
 
+Image Session::last_picture() {
+    if (!renderer_) throw ArgumentError("nothing has been drawn yet");
+    const gl::ContextScope scope(*context_);
+    return renderer_->read_picture();
+}
+
+std::vector<std::pair<std::string, double>> Session::measure_passes(const PictureOptions& options) {
+    renderer().measure_passes(true);
+    draw_frame(options);
+    renderer().measure_passes(false);
+    return renderer().pass_times();
+}
+
 std::map<std::string, Image> Session::render_layers(const std::vector<std::string>& names,
                                                     std::optional<Vec2i> size) {
     std::vector<render::Layer> layers;

@@ -56,6 +56,9 @@ class Session {
     /// finish: for measuring.
     void draw_frame(const PictureOptions& options = {});
 
+    /// The picture that was drawn last, read back. Throws ArgumentError when there is none.
+    Image last_picture();
+
     /// Everything that the next picture would be drawn with. Nothing is latched.
     ResolvedSettings resolve(std::optional<Vec2i> size = std::nullopt);
 
@@ -75,6 +78,10 @@ class Session {
     const gl::ContextInfo& context_info();
 
     const Timing& timing() const { return timing_; }
+
+    /// Milliseconds of each pass of a frame that draw_frame() draws now, each pass finished before the next
+    /// begins.
+    std::vector<std::pair<std::string, double>> measure_passes(const PictureOptions& options = {});
 
   private:
     struct Prepared {

@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 
 #include "easypbr/core/error.h"
@@ -52,6 +53,23 @@ Layer layer_named(const std::string& name) {
     return Layer(found - names.begin());
 }
 
+template <class Pass>
+void Renderer::run(const char* name, Pass&& pass) {
+    if (!measure_) return pass();
+    glFinish();
+    const auto start = std::chrono::steady_clock::now();
+    pass();
+    glFinish();
+    const double ms =
+        std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
+    const auto found =
+        std::find_if(pass_times_.begin(), pass_times_.end(), [&](const auto& p) { return p.first == name; });
+    if (found == pass_times_.end())
+        pass_times_.emplace_back(name, ms);
+    else
+        found->second += ms;
+}
+
 Renderer::Renderer() : no_attributes_(gl::VertexArray::make()) {}
 
 void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved, const DrawOptions& options,
@@ -64,7 +82,9 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     if (!targets_.albedo || targets_.size() != options.size) targets_ = GBuffer(options.size);
     output_.begin(options.size, options.encoding);
     geometry_.set_texture_overrides(images.textures);
-    if (!resolved.environment.empty()) environment_.prepare(resolved.environment, sees_environment(resolved));
+    pass_times_.clear();
+    if (!resolved.environment.empty())
+        run("environment", [&] { environment_.prepare(resolved.environment, sees_environment(resolved)); });
 
     Frame frame;
     frame.scene = &scene;
@@ -73,9 +93,9 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     frame.sample_count = options.samples;
     for (frame.sample_index = 0; frame.sample_index < options.samples; ++frame.sample_index) {
         draw_frame(frame);
-        if (options.samples > 1) output_.accumulate(frame, targets_);
+        if (options.samples > 1) run("accumulate", [&] { output_.accumulate(frame, targets_); });
     }
-    output_.finish(frame, targets_, background_texture(frame, images));
+    run("output", [&] { output_.finish(frame, targets_, background_texture(frame, images)); });
     geometry_.evict_unused();
     camera_ = resolved.camera;
     glFlush();
@@ -83,12 +103,12 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
 
 void Renderer::draw_frame(Frame& frame) {
     prepare_frame(frame);
-    geometry_.draw(frame, targets_);
+    run("geometry", [&] { geometry_.draw(frame, targets_); });
     no_attributes_.bind();
     const bool with_environment = !frame.resolved->environment.empty();
-    lighting_.draw(frame, targets_, with_environment ? &environment_ : nullptr);
+    run("lighting", [&] { lighting_.draw(frame, targets_, with_environment ? &environment_ : nullptr); });
     if (with_environment && sees_environment(*frame.resolved))
-        background_.draw(frame, targets_, environment_);
+        run("background", [&] { background_.draw(frame, targets_, environment_); });
 }
 
 const gl::Texture* Renderer::background_texture(const Frame& frame, const SettingsImages& images) {

@@ -13,8 +13,8 @@
 
 namespace easypbr::render {
 
-/// Pictures beside the final one, read from the frame drawn last: of a picture of one sample, through the pixels'
-/// centres.
+/// Pictures beside the final one, read from the frame drawn last: of a picture of one sample, through the
+/// pixels' centres.
 enum class Layer {
     albedo,     ///< RGBA f32, linear base colour, alpha 1 where there is geometry
     normal,     ///< RGB f32, unit world normal, 0 where there is nothing
@@ -55,8 +55,15 @@ class Renderer {
     Image read_picture(int width, int height) const;
     Image read_layer(Layer layer) const;
 
+    /// From now on every pass is finished before the next begins, and timed.
+    void measure_passes(bool measure) { measure_ = measure; }
+    /// Milliseconds of each pass of the last picture, in pipeline order, summed over its frames.
+    const std::vector<std::pair<std::string, double>>& pass_times() const { return pass_times_; }
+
   private:
     void draw_frame(Frame& frame);
+    template <class Pass>
+    void run(const char* name, Pass&& pass);
     const gl::Texture* background_texture(const Frame& frame, const SettingsImages& images);
 
     GBuffer targets_;
@@ -69,6 +76,8 @@ class Renderer {
     std::shared_ptr<const Image> background_image_;
     gl::Texture background_texture_;
     Camera camera_;
+    bool measure_ = false;
+    std::vector<std::pair<std::string, double>> pass_times_;
 };
 
 }  // namespace easypbr::render

@@ -29,7 +29,7 @@ struct Texture {
 /// Factors multiply their textures. Colours are linear Rec.709.
 struct Material {
     std::string name;
-    Vec3 base_color{0.8f, 0.8f, 0.8f};
+    Vec3 base_color{0.6f, 0.6f, 0.6f};
     float opacity = 1;
     float metallic = 0;    ///< 0 dielectric .. 1 metal
     float roughness = 0.5f;  ///< perceptual, 0 .. 1; alpha = roughness^2

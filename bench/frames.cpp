@@ -1,0 +1,98 @@
+// Milliseconds per frame on an orbit, as peer_vtk.py measures them: 3 degrees a frame, each frame finished by
+// reading a pixel back. Prints one JSON line. usage: bench_frames MESH FRAMES ENVIRONMENT WIDTHxHEIGHT
+// [group.name=value]...
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/compare.h"
+#include "easypbr/easypbr.h"
+
+namespace {
+
+using namespace easypbr;
+
+double seconds_since(std::chrono::steady_clock::time_point start) {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+/// The same picture drawn again must be the timed frame: share of pixels that differ by 2/255 at most.
+double equal_share(const Image& a, const Image& b) {
+    size_t equal = 0;
+    for (size_t i = 0; i < a.pixel_count(); ++i) {
+        int worst = 0;
+        for (size_t c = 0; c < 4; ++c)
+            worst = std::max(
+                worst, std::abs(int(a.pixels<uint8_t>()[4 * i + c]) - int(b.pixels<uint8_t>()[4 * i + c])));
+        equal += worst <= 2;
+    }
+    return double(equal) / double(a.pixel_count());
+}
+
+int measure(int argc, char** argv) {
+    if (argc < 5) return 2;
+    auto start = std::chrono::steady_clock::now();
+    Mesh mesh(argv[1]);
+    const double load = seconds_since(start);
+    Scene scene;
+    scene.show(mesh, "mesh");
+    app::Session session(scene);
+    session.load_environment(argv[3]);
+    Settings& settings = session.settings();
+    Vec2i size;
+    if (std::sscanf(argv[4], "%dx%d", &size.x(), &size.y()) != 2) return 2;
+    settings.image.size = size;
+    settings.image.samples = 1;
+    settings.background.mode = BackgroundMode::environment;
+    settings.material.roughness = 0.4f;
+    settings.material.metallic = 0.0f;
+    for (int i = 5; i < argc; ++i) {
+        const std::string option = argv[i];
+        const size_t equals = option.find('=');
+        if (equals != std::string::npos)
+            set_from_text(settings, option.substr(0, equals), option.substr(equals + 1));
+    }
+    start = std::chrono::steady_clock::now();
+    session.draw_frame();
+    const double first = seconds_since(start);
+
+    const int frames = std::stoi(argv[2]);
+    std::vector<double> times;
+    for (int i = 0; i < frames; ++i) {
+        settings.camera.azimuth_deg = float(3 * (i + 1));
+        settings.camera.position = automatic;
+        settings.camera.target = automatic;
+        // The camera is fitted anew, while VTK only turns it: the fit is not part of the frame.
+        latch(settings, session.resolve().settings);
+        start = std::chrono::steady_clock::now();
+        session.draw_frame();
+        times.push_back(seconds_since(start) * 1e3);
+    }
+    const Image timed = session.last_picture();
+    const double equal = equal_share(timed, session.render());
+    std::string passes;
+    for (const auto& [name, ms] : session.measure_passes())
+        passes += fmt::format(R"({}"{}": {:.1f})", passes.empty() ? "" : ", ", name, ms);
+    std::sort(times.begin(), times.end());
+    fmt::print(
+        R"({{"tool": "easypbr", "mesh": "{}", "size": "{}x{}", "load_s": {:.3f}, "first_frame_s": {:.3f}, )"
+        R"("frame_ms_median": {:.1f}, "frame_ms_min": {:.1f}, "equal_to_still": {:.5f}, "passes_ms": {{{}}}}})"
+        "\n",
+        argv[1], size.x(), size.y(), load, first, times[times.size() / 2], times[0], equal, passes);
+    return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    try {
+        return measure(argc, argv);
+    } catch (const std::exception& error) {
+        std::fprintf(stderr, "bench_frames: %s\n", error.what());
+        return 1;
+    }
+}

@@ -1,0 +1,3 @@
+# What `make bench` runs beside VTK.
+add_executable(bench_frames bench/frames.cpp)
+target_link_libraries(bench_frames PRIVATE easypbr easypbr_options easypbr_dependencies)
