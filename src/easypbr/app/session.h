@@ -34,7 +34,8 @@ struct Timing {
     double read = 0;     ///< reading the picture back
 };
 
-/// May be used from any thread, by one at a time. The GL context is made at the first picture.
+/// May be used from any thread, by one at a time; load_environment() alone may run beside context_info().
+/// The GL context is made at the first picture.
 class Session {
   public:
     explicit Session(Scene scene = {}) : scene_(std::move(scene)) {}

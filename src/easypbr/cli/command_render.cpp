@@ -136,16 +136,24 @@ class RenderJob {
         session_.scene().clear();
     }
 
-    /// Reads the files while the GL context is made, for both take long.
+    /// Reads the files while the GL context is made, for all of it takes long.
     void load(const Picture& picture, Stopwatch& watch) {
         const io::LoadOptions load_options{.crease_angle_deg = float(options_.crease_deg)};
         auto loading = std::async(std::launch::async, load_all, picture.files, load_options);
+        auto lighting = std::async(std::launch::async, [this] { load_environment(); });
         session_.context_info();
         watch.lap("context");
         const std::vector<io::LoadedScene> loaded = loading.get();
+        lighting.get();
         watch.lap("load");
         for (size_t i = 0; i < loaded.size(); ++i) show(session_.scene(), loaded[i], picture.names[i]);
         for (const auto& [name, light] : look_.lights) session_.scene().set_light(name, light);
+    }
+
+    void load_environment() {
+        const std::string& file = look_.settings.environment.file;
+        if (!environment_is_loaded_ && !file.empty()) session_.load_environment(file);
+        environment_is_loaded_ = true;
     }
 
     app::Encoding encoding_of(const Picture& picture) const {
@@ -166,6 +174,7 @@ class RenderJob {
     const RenderOptions& options_;
     Look look_;
     app::Session session_;
+    bool environment_is_loaded_ = false;
 };
 
 int run_render(const RenderOptions& options) {
