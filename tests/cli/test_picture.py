@@ -131,6 +131,13 @@ def test_pose_file_is_the_same_camera(picture, box, tmp_path):
     assert (picture(box, "--camera-pose", "cv.txt", "--camera-axes", "opencv") == by_position).all()
 
 
+def test_camera_of_the_command_line_replaces_the_pose_of_a_settings_file(layers, box, tmp_path):
+    (tmp_path / "pose.txt").write_text("1 0 0 0\n0 1 0 0\n0 0 1 9\n0 0 0 1\n")
+    layers("depth", box, "--camera-pose", "pose.txt", "--save-settings", "look.json")
+    (depth,) = layers("depth", box, "--settings", "look.json", *FRONT)
+    assert next(iter(depth.values()))[24, 32] == pytest.approx(4, rel=1e-5)
+
+
 @pytest.mark.parametrize("up, channel, sign", [("+y", "G", 1), ("-y", "G", -1), ("+z", "B", 1)])
 def test_up_axis_points_up(layers, sphere, up, channel, sign):
     (normal,) = layers("normal", sphere, "--camera-position", "5,0,0", "--camera-target", "0,0,0", "--up", up)

@@ -1,0 +1,46 @@
+"""The progress bar of long loads: on a terminal only, and never with --quiet."""
+import os
+import pty
+import subprocess
+
+import pytest
+
+import conftest
+
+
+@pytest.fixture(scope="module")
+def large(tmp_path_factory):
+    """Beyond the 50 MB from which on progress is reported, and long to parse on one core."""
+    path = tmp_path_factory.mktemp("large") / "large.obj"
+    path.write_bytes(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" + b"v 0.1234567 0.2345678 0.3456789\n" * 6_000_000)
+    yield path
+    path.unlink()
+
+
+def said_on_a_terminal(environment, *arguments):
+    master, terminal = pty.openpty()
+    one_core = {min(os.sched_getaffinity(0))}
+    process = subprocess.Popen([str(conftest.BINARY), *map(str, arguments)], stderr=terminal, env=environment,
+                               preexec_fn=lambda: os.sched_setaffinity(0, one_core))
+    os.close(terminal)
+    said = b""
+    try:
+        while piece := os.read(master, 4096):
+            said += piece
+    except OSError:
+        pass  # Linux reports the end of a terminal as an error
+    os.close(master)
+    assert process.wait(timeout=120) == 0
+    return said.decode()
+
+
+def test_bar_is_shown_on_a_terminal_and_erased(environment, large, tmp_path):
+    said = said_on_a_terminal(environment, "render", large, "-o", tmp_path / "a.png", "--size", "8x8", "--samples", "1")
+    assert "%" in said and "large.obj" in said
+    assert said.endswith("\r\033[K")
+
+
+def test_no_bar_when_quiet_or_not_on_a_terminal(environment, easypbr, large, tmp_path):
+    arguments = ("render", large, "-o", tmp_path / "a.png", "--size", "8x8", "--samples", "1")
+    assert said_on_a_terminal(environment, *arguments, "--quiet") == ""
+    assert easypbr(*arguments).stderr == ""
