@@ -33,11 +33,15 @@ endforeach()
 nanobind_add_stub(easypbr_stub MODULE easypbr._easypbr OUTPUT ${package}/_easypbr.pyi
                   PYTHON_PATH ${PROJECT_BINARY_DIR}/python DEPENDS _easypbr)
 add_custom_command(OUTPUT ${package}/settings.pyi
-                   COMMAND ${CMAKE_COMMAND} -E env PYTHONPATH=${PROJECT_BINARY_DIR}/python ${Python_EXECUTABLE}
-                           ${PROJECT_SOURCE_DIR}/scripts/write_settings_stub.py ${package}/settings.pyi
+                   COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/write_settings_stub.py
+                           ${PROJECT_BINARY_DIR}/python
                    DEPENDS _easypbr ${PROJECT_SOURCE_DIR}/scripts/write_settings_stub.py
                    COMMENT "Writing the stub of the settings" VERBATIM)
-add_custom_target(easypbr_settings_stub ALL DEPENDS ${package}/settings.pyi)
+# All that the package needs: what a wheel is built from.
+add_custom_target(python_package ALL DEPENDS easypbr_stub ${package}/settings.pyi)
+if(TARGET easypbr_assimp)
+  add_dependencies(python_package easypbr_assimp)
+endif()
 
 if(SKBUILD)
   # A wheel holds no symbolic links, so the library takes the one name that the module asks for.

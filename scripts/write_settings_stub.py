@@ -1,12 +1,10 @@
 #!/usr/bin/env python3
 """Writes the typed stub of view.settings from the table of settings, so that editors complete names.
 
-usage: write_settings_stub.py settings.pyi      needs the package on PYTHONPATH
+usage: write_settings_stub.py FOLDER      that holds the package; writes FOLDER/easypbr/settings.pyi
 """
 import pathlib
 import sys
-
-from easypbr import _easypbr
 
 TYPES = {"boolean": "bool", "integer": "int", "number": "float", "text": "str"}
 HEADER = '''from collections.abc import Iterator, Mapping
@@ -70,9 +68,9 @@ def group(path: tuple, tree: dict) -> list:
     return [*lines, "", f"class {class_name(path)}(SettingsGroup):", *methods, *members]
 
 
-def stub() -> str:
+def stub(fields) -> str:
     tree: dict = {}
-    for field in _easypbr.fields():
+    for field in fields:
         *groups, name = field.name.split(".")
         place = tree
         for part in groups:
@@ -82,4 +80,8 @@ def stub() -> str:
 
 
 if __name__ == "__main__":
-    pathlib.Path(sys.argv[1]).write_text(stub())
+    folder = pathlib.Path(sys.argv[1])
+    sys.path.insert(0, str(folder))
+    from easypbr import _easypbr
+
+    (folder / "easypbr/settings.pyi").write_text(stub(_easypbr.fields()))

@@ -51,16 +51,42 @@ def _is_trimesh(what) -> bool:
 
 
 def _from_trimesh(what) -> Mesh:
-    count = len(what.vertices)
+    V, F, count = what.vertices, what.faces, len(what.vertices)
     kind = getattr(what.visual, "kind", None)
+    if kind == "face":
+        return _with_face_colors(V, F, what.visual.face_colors)
     colors = what.visual.vertex_colors if kind == "vertex" else None
     uv = getattr(what.visual, "uv", None) if kind == "texture" else None
     # Normals that trimesh has to compute are better computed here.
     cached = getattr(what, "_cache", {})
     normals = what.vertex_normals if "vertex_normals" in cached else None
+    mesh = _from_arrays(V=V, F=F, N=_rows(normals, count), C=_rows(colors, count), UV=_rows(uv, count))
+    if kind == "texture" and getattr(what.visual, "material", None) is not None:
+        _take_trimesh_material(mesh.material, what.visual.material)
+    return mesh
+
+
+def _with_face_colors(V, F, colors) -> Mesh:
+    """Every corner becomes a vertex, so that a face can have a colour of its own."""
+    F = np.asarray(F)
     return _from_arrays(
-        V=what.vertices, F=what.faces, N=_rows(normals, count), C=_rows(colors, count), UV=_rows(uv, count)
+        V=np.asarray(V)[F.ravel()], F=np.arange(F.size).reshape(-1, 3), C=np.repeat(np.asarray(colors), 3, axis=0)
     )
+
+
+def _take_trimesh_material(material, given) -> None:
+    """https://trimesh.org/trimesh.visual.material.html: PBRMaterial has glTF's fields, SimpleMaterial diffuse and image."""
+    image = getattr(given, "baseColorTexture", None) or getattr(given, "image", None)
+    if image is not None:
+        material.base_color_texture = np.asarray(image.convert("RGBA"))
+    if hasattr(given, "baseColorFactor"):
+        factor = given.baseColorFactor
+        material.base_color = (1, 1, 1) if factor is None else np.asarray(factor)[:3] / 255
+        material.metallic = 1 if given.metallicFactor is None else given.metallicFactor
+        material.roughness = 1 if given.roughnessFactor is None else given.roughnessFactor
+    elif getattr(given, "diffuse", None) is not None:
+        red, green, blue = np.asarray(given.diffuse)[:3]
+        material.base_color = f"#{red:02x}{green:02x}{blue:02x}"
 
 
 def _is_trimesh_scene(what) -> bool:
@@ -123,9 +149,10 @@ def _is_pyvista(what) -> bool:
 
 
 def _from_pyvista(what) -> Mesh:
-    if not hasattr(what, "regular_faces") and hasattr(what, "extract_surface"):
+    # Only surfaces can tell whether they are made of triangles.
+    if not hasattr(what, "is_all_triangles"):
         what = what.extract_surface()
-    if hasattr(what, "is_all_triangles") and not _called(what.is_all_triangles):
+    if len(what.faces) and not _called(what.is_all_triangles):
         what = what.triangulate()
     faces = np.asarray(what.faces)
     data, count = what.point_data, what.n_points

@@ -2,19 +2,24 @@
 
 import functools
 import types
+from collections.abc import Callable
+from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
 
 from . import _easypbr
 from .convert import as_mesh
 
+Arguments = ParamSpec("Arguments")
+Result = TypeVar("Result")
 
-class _OnDefaultScene:
+
+class _OnDefaultScene(Generic[Arguments, Result]):
     """A method that acts on the default scene when it is called on the class."""
 
-    def __init__(self, function):
+    def __init__(self, function: Callable[Concatenate[Any, Arguments], Result]):
         self.function = function
         functools.update_wrapper(self, function)
 
-    def __get__(self, instance, owner):
+    def __get__(self, instance, owner) -> Callable[Arguments, Result]:
         return types.MethodType(self.function, owner.default() if instance is None else instance)
 
 

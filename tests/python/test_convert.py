@@ -44,6 +44,33 @@ def test_trimesh_stand_in(square):
     assert len(mesh.N) == 0  # those would be computed, not the file's
 
 
+def test_trimesh_materials(square):
+    V, F = square
+    image = types.SimpleNamespace(convert=lambda mode: np.full((2, 2, 4), 7, dtype=np.uint8))
+    simple = types.SimpleNamespace(image=image, diffuse=np.array([255, 0, 128, 255], dtype=np.uint8))
+    visual = types.SimpleNamespace(kind="texture", uv=V[:, :2], material=simple)
+    mesh = as_mesh(types.SimpleNamespace(vertices=V, faces=F, visual=visual))
+    np.testing.assert_array_equal(mesh.UV, V[:, :2])
+    assert (mesh.material.base_color_texture == 7).all()
+    # sRGB 128 / 255 is linear 0.21586.
+    assert mesh.material.base_color == pytest.approx((1, 0, 0.21586), abs=1e-5)
+    visual.material = types.SimpleNamespace(
+        baseColorTexture=None, baseColorFactor=[255, 51, 0, 255], metallicFactor=0.25, roughnessFactor=None
+    )
+    material = as_mesh(types.SimpleNamespace(vertices=V, faces=F, visual=visual)).material
+    # glTF's factors are linear, and roughness is 1 unless given.
+    assert material.base_color == pytest.approx((1, 0.2, 0), abs=1e-6)
+    assert (material.metallic, material.roughness) == (0.25, 1)
+
+
+def test_trimesh_face_colors(square):
+    V, F = square
+    visual = types.SimpleNamespace(kind="face", face_colors=np.array([[255, 0, 0], [0, 0, 255]], dtype=np.uint8))
+    mesh = as_mesh(types.SimpleNamespace(vertices=V, faces=F, visual=visual))
+    np.testing.assert_array_equal(mesh.V, V[F.ravel()])
+    np.testing.assert_array_equal(mesh.C, [[1, 0, 0]] * 3 + [[0, 0, 1]] * 3)
+
+
 def test_open3d_stand_ins(square):
     V, F = square
     mesh = types.SimpleNamespace(vertices=V, triangles=F, vertex_normals=V, vertex_colors=[])
@@ -64,7 +91,7 @@ def test_pyvista_stand_in(square):
     V, F = square
     faces = np.insert(F, 0, 3, axis=1).ravel()
     mesh = types.SimpleNamespace(
-        points=V, faces=faces, point_data={"Normals": V}, n_points=4, is_all_triangles=True, regular_faces=F
+        points=V, faces=faces, point_data={"Normals": V}, n_points=4, is_all_triangles=True
     )
     check(as_mesh(mesh), square)
     np.testing.assert_array_equal(as_mesh(mesh).N, V)
@@ -105,6 +132,11 @@ def test_real_pyvista(square):
     check(as_mesh(mesh), square)
     quad = pyvista.PolyData(V, np.array([4, 0, 1, 2, 3]))
     assert as_mesh(quad).F.shape == (2, 3)
+    # The surface of a grid of one cell has six sides of two triangles each.
+    assert as_mesh(pyvista.ImageData(dimensions=(2, 2, 2))).F.shape == (12, 3)
+    cloud = as_mesh(pyvista.PolyData(V))
+    np.testing.assert_array_equal(cloud.V, V)
+    assert len(cloud.F) == 0
 
 
 def test_real_torch_tensors(square):

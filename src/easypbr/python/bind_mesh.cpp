@@ -25,14 +25,8 @@ struct MeshArray {
 
 template <class Scalar, int Cols, Array<Scalar, Cols> MeshData::*member>
 std::function<void(MeshData&)> prepare(nb::handle object, const ArrayShape& shape, bool normalize) {
-    using Dense = typename Array<Scalar, Cols>::Dense;
     Array<Scalar, Cols> array;
-    if (!object.is_none()) {
-        if constexpr (std::is_same_v<Scalar, float>)
-            array = Dense(to_floats(object, shape, normalize));
-        else
-            array = Dense(to_integers(object, shape));
-    }
+    if (!object.is_none()) array = to_array<Scalar, Cols>(object, shape, normalize);
     return [array](MeshData& data) { data.*member = array; };
 }
 

@@ -68,14 +68,14 @@ Layout layout_of(const AnyArray& array, const ArrayShape& shape) {
     return {Eigen::Index(array.shape(0)), Eigen::Index(array.shape(1)), array.stride(0), array.stride(1)};
 }
 
-/// result(row, col) = convert(element, row), in parallel.
-template <class Scalar, class Element, class Convert>
-void copy_rows(Matrix<Scalar>& result, const Element* data, const Layout& layout, const Convert& convert) {
+/// result(row, col) = convert(element), in parallel.
+template <class Dense, class Element, class Convert>
+void copy_rows(Dense& result, const Element* data, const Layout& layout, const Convert& convert) {
     parallel_chunks(size_t(layout.rows), copy_grain, [&](size_t begin, size_t end) {
         for (size_t row = begin; row < end; ++row)
             for (Eigen::Index col = 0; col < layout.cols; ++col)
                 result(Eigen::Index(row), col) =
-                    convert(data[int64_t(row) * layout.row_stride + col * layout.col_stride], row);
+                    convert(data[int64_t(row) * layout.row_stride + col * layout.col_stride]);
     });
 }
 
@@ -85,6 +85,28 @@ bool fits_int32(Element value) {
         return std::floor(value) == value && value >= -2147483648.0 && value <= 2147483647.0;
     else
         return std::in_range<int32_t>(value);
+}
+
+template <class Dense, class Element>
+void copy_floats(Dense& result, const Element* data, const Layout& layout, bool normalize) {
+    const bool scaled = normalize && std::is_integral_v<Element>;
+    const float scale = scaled ? 1.0f / float(std::numeric_limits<Element>::max()) : 1.0f;
+    copy_rows(result, data, layout, [scale](Element value) { return float(value) * scale; });
+}
+
+template <class Dense, class Element>
+void copy_integers(Dense& result, const Element* data, const Layout& layout, const AnyArray& array,
+                   const ArrayShape& shape) {
+    std::atomic<bool> all_fit{true};
+    copy_rows(result, data, layout, [&](Element value) {
+        if (fits_int32(value)) return int32_t(value);
+        all_fit = false;
+        return int32_t(0);
+    });
+    if (!all_fit)
+        throw ArgumentError(fmt::format(
+            "mesh array {}: expected whole numbers from -2147483648 to 2147483647, got others in {}",
+            shape.name, shape_text(array)));
 }
 
 /// Numbers of an object that must have exactly `rows` x `cols` of them (a vector when rows is 1).
@@ -195,41 +217,29 @@ nb::tuple vector_to_tuple(const Vec3& vector) {
     return nb::make_tuple(vector.x(), vector.y(), vector.z());
 }
 
-Matrix<float> to_floats(nb::handle object, const ArrayShape& shape, bool normalize) {
+template <class Scalar, int Cols>
+typename Array<Scalar, Cols>::Dense to_array(nb::handle object, const ArrayShape& shape, bool normalize) {
     const AnyArray array = numeric_array(object, fmt::format("mesh array {}", shape.name).c_str());
     const Layout layout = layout_of(array, shape);
-    Matrix<float> result(layout.rows, layout.cols);
+    typename Array<Scalar, Cols>::Dense result(layout.rows, layout.cols);
     released([&] {
-        visit_elements(array, [&]<class Element>(const Element* data) {
-            const bool scaled = normalize && std::is_integral_v<Element>;
-            const float scale = scaled ? 1.0f / float(std::numeric_limits<Element>::max()) : 1.0f;
-            copy_rows(result, data, layout, [scale](Element value, size_t) { return float(value) * scale; });
+        visit_elements(array, [&](const auto* data) {
+            if constexpr (std::is_integral_v<Scalar>)
+                copy_integers(result, data, layout, array, shape);
+            else
+                copy_floats(result, data, layout, normalize);
         });
     });
     return result;
 }
 
-Matrix<int32_t> to_integers(nb::handle object, const ArrayShape& shape) {
-    const AnyArray array = numeric_array(object, fmt::format("mesh array {}", shape.name).c_str());
-    const Layout layout = layout_of(array, shape);
-    Matrix<int32_t> result(layout.rows, layout.cols);
-    std::atomic<bool> all_fit{true};
-    released([&] {
-        visit_elements(array, [&]<class Element>(const Element* data) {
-            copy_rows(result, data, layout, [&](Element value, size_t) {
-                if (fits_int32(value)) return int32_t(value);
-                all_fit = false;
-                return int32_t(0);
-            });
-        });
-    });
-    if (!all_fit)
-        throw ArgumentError(
-            fmt::format("mesh array {}: expected whole numbers from -2147483648 to 2147483647, got "
-                        "others in {}",
-                        shape.name, shape_text(array)));
-    return result;
-}
+template Array1f::Dense to_array<float, 1>(nb::handle, const ArrayShape&, bool);
+template Array2f::Dense to_array<float, 2>(nb::handle, const ArrayShape&, bool);
+template Array3f::Dense to_array<float, 3>(nb::handle, const ArrayShape&, bool);
+template ArrayXf::Dense to_array<float, Eigen::Dynamic>(nb::handle, const ArrayShape&, bool);
+template Array1i::Dense to_array<int32_t, 1>(nb::handle, const ArrayShape&, bool);
+template Array2i::Dense to_array<int32_t, 2>(nb::handle, const ArrayShape&, bool);
+template Array3i::Dense to_array<int32_t, 3>(nb::handle, const ArrayShape&, bool);
 
 nb::object to_numpy(Image image) {
     auto* held = new Image(std::move(image));

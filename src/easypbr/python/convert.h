@@ -63,15 +63,12 @@ struct ArrayShape {
     int more_columns;  ///< or these
 };
 
-/// A copy, made in parallel, of rows x columns numbers. Integers in C are divided by their type's largest
-/// value when `normalize` is set. Throws ArgumentError that names the array, the expected and the given
-/// shape.
-Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> to_floats(nb::handle object,
-                                                                                const ArrayShape& shape,
-                                                                                bool normalize = false);
-/// The same for whole numbers within int32; throws ArgumentError for others.
-Eigen::Matrix<int32_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> to_integers(nb::handle object,
-                                                                                    const ArrayShape& shape);
+/// The object's numbers, copied once and in parallel. Integers are divided by their type's largest value when
+/// `normalize` is set. Integer arrays take whole numbers within int32. Throws ArgumentError that names the
+/// array, the expected and the given shape.
+template <class Scalar, int Cols>
+typename Array<Scalar, Cols>::Dense to_array(nb::handle object, const ArrayShape& shape,
+                                             bool normalize = false);
 
 /// A read-only numpy view that keeps the data alive; one column gives one dimension.
 template <class Scalar, int Cols>
