@@ -1,11 +1,16 @@
 """The command line: python -m easypbr."""
 
+import signal
 import sys
 
 from ._easypbr import main as run
 
 
 def main() -> int:
+    """Runs the command line on sys.argv; returns the exit code."""
+    # Python's handlers would wait for the native job to end.
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
     return run(["easypbr", *sys.argv[1:]])
 
 

@@ -151,7 +151,7 @@ def _is_pyvista(what) -> bool:
 def _from_pyvista(what) -> Mesh:
     # Only surfaces can tell whether they are made of triangles.
     if not hasattr(what, "is_all_triangles"):
-        what = what.extract_surface()
+        what = _surface(what)
     if len(what.faces) and not _called(what.is_all_triangles):
         what = what.triangulate()
     faces = np.asarray(what.faces)
@@ -163,6 +163,14 @@ def _from_pyvista(what) -> Mesh:
         C=_rows(data["RGB"] if "RGB" in data else None, count),
         UV=_rows(getattr(what, "active_texture_coordinates", None), count),
     )
+
+
+def _surface(grid):
+    try:
+        return grid.extract_surface(algorithm=None)
+    except TypeError:
+        # Older versions have nothing to choose.
+        return grid.extract_surface()
 
 
 def _called(flag):

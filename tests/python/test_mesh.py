@@ -155,6 +155,9 @@ def test_material_attributes_go_through(square):
         mesh.material.metallic = 2
     with pytest.raises(AttributeError):
         mesh.material.shininess = 1
+    with pytest.raises(AttributeError) as caught:
+        Material(roughness=0.25, shininess=1)
+    assert caught.value.obj is None or caught.value.obj.roughness == 0.25
     mesh.material = Material(metallic=1, base_color="#ffffff")
     assert mesh.material.metallic == 1 and mesh.material.roughness == 0.5
     assert mesh.material.base_color == (1, 1, 1)

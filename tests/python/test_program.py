@@ -1,8 +1,10 @@
 """Whole programs, as users start them."""
 
 import os
+import signal
 import subprocess
 import sys
+import time
 
 import numpy as np
 import pytest
@@ -99,3 +101,17 @@ def test_a_fork_is_told_to_spawn(tmp_path):
     )
     result = run(["-c", code], tmp_path)
     assert result.returncode == 0, result.stderr
+
+
+def test_the_command_line_can_be_interrupted(tmp_path):
+    shapes.sphere(1, 16).save(tmp_path / "sphere.ply")
+    # In software such a picture takes minutes.
+    arguments = ["render", "sphere.ply", "-o", "a.png", "--size", "4000x4000", "--samples", "1024", "--quiet"]
+    process = subprocess.Popen([sys.executable, "-m", "easypbr", *arguments], cwd=tmp_path)
+    try:
+        time.sleep(1.5)
+        process.send_signal(signal.SIGINT)
+        assert process.wait(timeout=5) == -signal.SIGINT
+    finally:
+        process.kill()
+    assert not (tmp_path / "a.png").exists()

@@ -44,9 +44,10 @@ void number_property(nb::class_<Light>& light, const char* name, float Light::*m
 void construct(Light* self, const std::string& type, const nb::kwargs& values) {
     Light light;
     set_type(light, type);
-    nb::object object = nb::cast(&light, nb::rv_policy::reference);
+    // Python owns the object: an AttributeError holds on to it.
+    nb::object object = nb::cast(light);
     for (auto [name, value] : values) nb::setattr(object, name, value);
-    new (self) Light(light);
+    new (self) Light(nb::cast<const Light&>(object));
 }
 
 }  // namespace

@@ -93,10 +93,10 @@ const char* alpha_mode(const MaterialHandle& m) {
 /// Keyword arguments are assignments to attributes; a misspelt one is an AttributeError.
 template <class Handle>
 void construct(Handle* self, const nb::kwargs& values) {
-    Handle handle;
-    nb::object object = nb::cast(&handle, nb::rv_policy::reference);
+    // Python owns the object: an AttributeError holds on to it.
+    nb::object object = nb::cast(Handle());
     for (auto [name, value] : values) nb::setattr(object, name, value);
-    new (self) Handle(std::move(handle));
+    new (self) Handle(nb::cast<const Handle&>(object));
 }
 
 void bind_textures(MaterialClass& material) {
