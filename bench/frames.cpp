@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <string>
 #include <vector>
@@ -33,6 +34,14 @@ double equal_share(const Image& a, const Image& b) {
     return double(equal) / double(a.pixel_count());
 }
 
+/// VTK's camera after ResetCamera() and Azimuth(): 30 degrees, the bounding sphere just fits.
+Camera vtk_camera(const Box3d& bounds, double azimuth_deg) {
+    const double distance = bounds.diagonal().norm() / 2 / std::sin(radians(15)),
+                 angle = radians(azimuth_deg);
+    return Camera::look_at(bounds.center() + distance * Vec3d(std::sin(angle), 0, std::cos(angle)),
+                           bounds.center());
+}
+
 int measure(int argc, char** argv) {
     if (argc < 5) return 2;
     auto start = std::chrono::steady_clock::now();
@@ -56,6 +65,7 @@ int measure(int argc, char** argv) {
         if (equals != std::string::npos)
             set_from_text(settings, option.substr(0, equals), option.substr(equals + 1));
     }
+    session.set_camera(vtk_camera(scene.snapshot().bounds(), 0));
     start = std::chrono::steady_clock::now();
     session.draw_frame();
     const double first = seconds_since(start);
@@ -63,11 +73,7 @@ int measure(int argc, char** argv) {
     const int frames = std::stoi(argv[2]);
     std::vector<double> times;
     for (int i = 0; i < frames; ++i) {
-        settings.camera.azimuth_deg = float(3 * (i + 1));
-        settings.camera.position = automatic;
-        settings.camera.target = automatic;
-        // The camera is fitted anew, while VTK only turns it: the fit is not part of the frame.
-        latch(settings, session.resolve().settings);
+        session.set_camera(vtk_camera(scene.snapshot().bounds(), 3.0 * (i + 1)));
         start = std::chrono::steady_clock::now();
         session.draw_frame();
         times.push_back(seconds_since(start) * 1e3);

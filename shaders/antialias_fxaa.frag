@@ -7,10 +7,10 @@ layout(location = 0) out vec4 o_color;
 const vec3 luma_weights = vec3(0.299, 0.587, 0.114);
 const float span = 8.0;
 
-float luma_at(vec2 uv) {
-    vec4 c = textureLod(u_color, uv, 0.0);
-    return dot(c.rgb, luma_weights) * c.a;
-}
+// Texels by their indices: on CPU rasterisers less than half the cost of a filtered fetch.
+vec4 texel_at(ivec2 p) { return texelFetch(u_color, clamp(p, ivec2(0), ivec2(u_size) - 1), 0); }
+
+float luma_of(vec4 c) { return dot(c.rgb, luma_weights) * c.a; }
 
 vec4 premultiplied(vec2 uv) {
     vec4 c = textureLod(u_color, uv, 0.0);
@@ -20,10 +20,11 @@ vec4 premultiplied(vec2 uv) {
 void main() {
     vec2 texel = 1.0 / u_size;
     vec2 uv = gl_FragCoord.xy * texel;
-    vec4 centre = textureLod(u_color, uv, 0.0);
-    float m = dot(centre.rgb, luma_weights) * centre.a;
-    float nw = luma_at(uv - texel), ne = luma_at(uv + vec2(texel.x, -texel.y));
-    float sw = luma_at(uv + vec2(-texel.x, texel.y)), se = luma_at(uv + texel);
+    ivec2 p = ivec2(gl_FragCoord.xy);
+    vec4 centre = texel_at(p);
+    float m = luma_of(centre);
+    float nw = luma_of(texel_at(p - 1)), ne = luma_of(texel_at(p + ivec2(1, -1)));
+    float sw = luma_of(texel_at(p + ivec2(-1, 1))), se = luma_of(texel_at(p + 1));
     float low = min(m, min(min(nw, ne), min(sw, se))), high = max(m, max(max(nw, ne), max(sw, se)));
 
     vec2 along = vec2(sw + se - nw - ne, nw + sw - ne - se);

@@ -18,6 +18,9 @@ uniform samplerCube u_prefiltered;
 uniform samplerCube u_irradiance;
 uniform float u_last_level;
 uniform float u_env_intensity;
+#ifdef LOBE_SAMPLES
+uniform float u_lobe_slope;  // of the facet that this frame reflects in, in units of alpha
+#endif
 #endif
 
 struct Light {
@@ -61,17 +64,35 @@ vec3 direct(Light light, Surface s) {
 }
 
 #ifdef ENVIRONMENT
+vec3 prefiltered(vec3 direction, float roughness) {
+    return textureLod(u_prefiltered, u_env_from_world * direction, prefiltered_level(roughness, u_last_level)).rgb;
+}
+
+// Average radiance in the specular lobe.
+vec3 lobe_radiance(Surface s) {
+    // The lobe leans towards the normal the more the rougher the surface is.
+    vec3 dominant = normalize(mix(reflect(-s.view, s.normal), s.normal, s.alpha * s.alpha));
+#ifdef LOBE_SAMPLES
+    // Seen from the side a lobe is NoV times as wide across the plane of incidence as within it, whereas the
+    // environment is prefiltered for NoV = 1. The frames of an accumulated picture take it narrower, side by side
+    // within the plane.
+    float narrowed = mix(min(s.n_dot_v, 1.0), 1.0, s.alpha);
+    float slope = u_lobe_slope * s.alpha * sqrt(1.0 - narrowed * narrowed);
+    vec3 facet = normalize(s.view + dominant);
+    vec3 within = s.view - facet * dot(facet, s.view);
+    vec3 h = normalize(facet + within * (slope * inversesqrt(max(dot(within, within), 1e-12))));
+    return prefiltered(reflect(-s.view, h), s.roughness * sqrt(narrowed));
+#else
+    return prefiltered(dominant, s.roughness);
+#endif
+}
+
 vec3 indirect(Surface s, float occlusion) {
-    // Dominant direction of the specular lobe (Lagarde and de Rousiers 2014).
-    float smoothness = 1.0 - s.alpha;
-    vec3 r = reflect(-s.view, s.normal);
-    vec3 dominant = mix(s.normal, r, smoothness * (sqrt(smoothness) + s.alpha));
-    vec3 radiance = textureLod(u_prefiltered, u_env_from_world * dominant, prefiltered_level(s.roughness, u_last_level)).rgb;
     vec3 irradiance = textureLod(u_irradiance, u_env_from_world * s.normal, 0.0).rgb;
     // Specular occlusion from ambient occlusion (Lagarde and de Rousiers 2014).
     float specular_occlusion =
         clamp(pow(s.n_dot_v + occlusion, exp2(-16.0 * s.roughness - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
-    return u_env_intensity * (s.energy.single * radiance * specular_occlusion +
+    return u_env_intensity * (s.energy.single * lobe_radiance(s) * specular_occlusion +
                               (s.energy.multiple + s.diffuse) * irradiance * occlusion);
 }
 #endif

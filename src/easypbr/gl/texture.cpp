@@ -89,9 +89,13 @@ void Texture::upload(std::span<const std::byte> pixels, int level, int face) {
         glTextureSubImage2D(id(), level, 0, 0, w, h, f.layout, f.type, pixels.data());
 }
 
-void Texture::clear(std::span<const std::byte> pixel, int level) {
+void Texture::upload_area(int x, int y, int width, int height, std::span<const std::byte> pixels) const {
     const FormatInfo f = info(format_);
-    glClearTexImage(id(), level, f.layout, f.type, pixel.data());
+    if (pixels.size() != size_t(width) * size_t(height) * f.bytes)
+        throw ArgumentError(fmt::format("texture upload: expected {} bytes, got {}",
+                                        size_t(width) * size_t(height) * f.bytes, pixels.size()));
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTextureSubImage2D(id(), 0, x, y, width, height, f.layout, f.type, pixels.data());
 }
 
 void Texture::sampling(Filtering filtering, Wrapping u, Wrapping v, float anisotropy) {
@@ -140,6 +144,10 @@ void Framebuffer::clear_color(unsigned index, const float (&rgba)[4]) const {
 
 void Framebuffer::clear_depth(float depth) const {
     glClearNamedFramebufferfv(object_.id(), GL_DEPTH, 0, &depth);
+}
+
+void Framebuffer::allow_depth_writes() {
+    glDepthMask(GL_TRUE);
 }
 
 void Framebuffer::read(unsigned index, Format format, int x, int y, int width, int height,

@@ -39,7 +39,8 @@ class Texture {
 
     /// Pixels of one level (and cube face), row 0 first, tightly packed.
     void upload(std::span<const std::byte> pixels, int level = 0, int face = 0);
-    void clear(std::span<const std::byte> pixel, int level = 0);
+    /// Pixels of a rectangle of level 0, row 0 first.
+    void upload_area(int x, int y, int width, int height, std::span<const std::byte> pixels) const;
     void sampling(Filtering filtering, Wrapping u = Wrapping::clamp, Wrapping v = Wrapping::clamp,
                   float anisotropy = 1);
     void bind(unsigned unit) const;
@@ -68,6 +69,8 @@ class Framebuffer {
     void bind() const;
     void clear_color(unsigned index, const float (&rgba)[4]) const;
     void clear_depth(float depth) const;
+    /// Lets clear_depth() and draws write the depth: clears obey the mask that passes set.
+    static void allow_depth_writes();
 
     /// Reads a rectangle of color attachment `index`, rows as they lie in the texture. `pixels` holds
     /// width * height * pixel_bytes(format).

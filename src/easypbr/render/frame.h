@@ -31,8 +31,8 @@ struct Frame {
 /// the mean of the first `count` is the pixel's centre. One sample is the centre itself.
 Vec2d jitter_of(int index, int count);
 
-/// Fills in the jittered projection and the covered rectangle.
-void prepare_frame(Frame& frame);
+/// Fills in the jittered projection and, from the bounds of all geometry, the covered rectangle.
+void prepare_frame(Frame& frame, const Box3d& bounds);
 
 /// Sets the uniforms of shaders/common_camera.glsl.
 void set_camera_uniforms(const gl::Program& program, const Frame& frame);

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "easypbr/core/color.h"
-
 namespace easypbr::render {
 namespace {
 
@@ -44,24 +42,6 @@ constexpr TextureUse texture_uses[] = {
     {opacity_slot, "OPACITY_TEXTURE", "u_opacity_texture", "u_opacity_channel", &Material::opacity_texture,
      false}};
 
-bool emits(const Material& material) {
-    return material.unlit || !material.emissive.isZero();
-}
-
-bool is_drawn(const MeshData& mesh) {
-    return mesh.style.visible && !mesh.F.empty();
-}
-
-/// The parts of a mesh; one part for all faces when it names none.
-std::vector<MeshPart> parts_of(const MeshData& mesh) {
-    if (!mesh.parts.empty()) return mesh.parts;
-    return {MeshPart{{}, 0, int(mesh.F.rows()), 0}};
-}
-
-Material material_of(const MeshData& mesh, const MeshPart& part) {
-    return size_t(part.material) < mesh.materials.size() ? mesh.materials[size_t(part.material)] : Material{};
-}
-
 bool same_texels(const Texture& a, const Texture& b) {
     return a.image == b.image && a.uv_transform == b.uv_transform && a.wrap_u == b.wrap_u &&
            a.wrap_v == b.wrap_v && a.filter == b.filter;
@@ -85,110 +65,50 @@ void set_culling(bool cull, bool mirrored) {
 
 }  // namespace
 
-Material overridden(const Material& material, const MaterialSettings& settings, const Material& textures) {
-    Material m = material;
-    if (settings.color.value()) m.base_color = linear_from_srgb(*settings.color);
-    if (settings.metallic.value()) m.metallic = *settings.metallic;
-    if (settings.roughness.value()) m.roughness = *settings.roughness;
-    if (settings.emissive.value()) m.emissive = linear_from_srgb(*settings.emissive);
-    // A texture from outside stands for the whole value unless a factor is given beside it.
-    const auto replace = [](Texture& own, const Texture& given, auto&& neutral_factor) {
-        if (!given) return;
-        own = given;
-        neutral_factor();
-    };
-    replace(m.base_color_texture, textures.base_color_texture, [&] {
-        if (!settings.color.value()) m.base_color = Vec3::Ones();
-    });
-    replace(m.metallic_texture, textures.metallic_texture, [&] {
-        if (!settings.metallic.value()) m.metallic = 1;
-    });
-    replace(m.roughness_texture, textures.roughness_texture, [&] {
-        if (!settings.roughness.value()) m.roughness = 1;
-    });
-    replace(m.emissive_texture, textures.emissive_texture, [&] {
-        if (m.emissive.isZero()) m.emissive = Vec3::Ones();
-    });
-    replace(m.normal_texture, textures.normal_texture, [] {});
-    replace(m.occlusion_texture, textures.occlusion_texture, [] {});
-    replace(m.opacity_texture, textures.opacity_texture, [&] {
-        if (m.alpha_mode == AlphaMode::opaque) m.alpha_mode = AlphaMode::mask;
-    });
-    return m;
-}
-
-/// One part of one object with all that decides how it is drawn.
-struct GeometryPass::Draw {
-    const SceneSnapshot::Object* object;
-    const gpu::MeshBuffers* buffers;
-    MeshPart part;
-    Material material;
-    bool flat, two_sided, emission;
-};
-
-void GeometryPass::draw(const Frame& frame, const GBuffer& targets) {
-    const Settings& settings = frame.resolved->settings;
-    std::vector<Draw> draws;
-    bool emission = false;
-    for (const auto& object : frame.scene->objects) {
-        if (!is_drawn(*object.mesh)) continue;
-        const size_t first = draws.size();
-        bool tangents = false;
-        for (const MeshPart& part : parts_of(*object.mesh)) {
-            Draw draw{&object, nullptr,
-                      part,    overridden(material_of(*object.mesh, part), settings.material, overrides_),
-                      false,   false,
-                      false};
-            const Style& style = object.mesh->style;
-            draw.flat = settings.style.flat.value_or(style.flat.value_or(false));
-            draw.two_sided =
-                settings.style.two_sided.value_or(style.two_sided.value_or(draw.material.double_sided));
-            emission |= emits(draw.material);
-            tangents |= bool(draw.material.normal_texture) && !object.mesh->UV.empty();
-            draws.push_back(std::move(draw));
-        }
-        const gpu::MeshBuffers& buffers = meshes_.get(*object.mesh, tangents);
-        for (size_t i = first; i < draws.size(); ++i) draws[i].buffers = &buffers;
-    }
-
+void GeometryPass::draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets) {
+    const bool emission = std::ranges::any_of(items, &DrawItem::emits);
     const gl::Framebuffer& framebuffer = emission ? targets.surface_emission : targets.surface;
     framebuffer.bind();
-    glDepthMask(GL_TRUE);  // Clears obey the mask.
+    framebuffer.allow_depth_writes();
     const float zero[4] = {0, 0, 0, 0};
     framebuffer.clear_color(3, zero);
     framebuffer.clear_depth(0);
     targets.lit.clear_color(0, zero);
     glEnable(GL_DEPTH_TEST);
     glDepthFunc(GL_GREATER);
-    for (Draw& draw : draws) {
-        draw.emission = emission;
-        draw_part(frame, draw);
+    for (size_t first = 0, last; first < items.size(); first = last) {
+        // All parts of an object share its buffers.
+        const auto same_object = [&](const DrawItem& item) { return item.object == items[first].object; };
+        for (last = first; last < items.size() && same_object(items[last]);) ++last;
+        const bool tangents = std::any_of(items.begin() + long(first), items.begin() + long(last),
+                                          [](const DrawItem& item) { return item.normal_mapped(); });
+        const gpu::MeshBuffers& buffers = meshes_.get(items[first].mesh(), tangents);
+        for (size_t i = first; i < last; ++i) draw_item(frame, items[i], buffers, emission);
     }
     glDisable(GL_CULL_FACE);
 }
 
-void GeometryPass::draw_part(const Frame& frame, const Draw& draw) {
-    const gpu::MeshBuffers& buffers = *draw.buffers;
-    const Material& m = draw.material;
-    const bool with_uv = bool(buffers.uvs) && m.has_textures();
-    const bool face_normal = draw.flat || (draw.two_sided && !buffers.normals_agree);
-    const Mat4d mesh_matrix = draw.object->T_world_mesh.matrix();
+void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu::MeshBuffers& buffers,
+                             bool emission) {
+    const Material& m = item.material;
+    const bool with_uv = item.textured();
+    const bool face_normal = item.flat || (item.two_sided && !buffers.normals_agree);
+    const Mat4d mesh_matrix = item.object->T_world_mesh.matrix();
     const Mat3d linear = mesh_matrix.topLeftCorner<3, 3>();
     const bool mirrored = linear.determinant() < 0;
 
     std::vector<std::string> defines;
-    if (buffers.colors && !frame.resolved->settings.material.color.value())
-        defines.emplace_back("VERTEX_COLOR");
+    if (item.with_colors) defines.emplace_back("VERTEX_COLOR");
     if (with_uv) defines.emplace_back("UV");
     if (face_normal) defines.emplace_back("FACE_NORMAL");
-    if (draw.flat) defines.emplace_back("FLAT");
-    if (draw.two_sided) defines.emplace_back("TWO_SIDED");
-    if (draw.emission) defines.emplace_back("EMISSION");
+    if (item.flat) defines.emplace_back("FLAT");
+    if (item.two_sided) defines.emplace_back("TWO_SIDED");
+    if (emission) defines.emplace_back("EMISSION");
     if (m.alpha_mode == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
     if (m.alpha_mode == AlphaMode::blend) defines.emplace_back("ALPHA_BLEND");
     if (with_uv)
         for (const TextureUse& use : texture_uses)
-            if ((m.*use.member) && !(use.slot == normal_slot && draw.flat)) defines.emplace_back(use.define);
+            if ((m.*use.member) && !(use.slot == normal_slot && item.flat)) defines.emplace_back(use.define);
     if (with_uv && m.metallic_texture && m.roughness_texture &&
         same_texels(m.metallic_texture, m.roughness_texture))
         defines.emplace_back("ROUGHNESS_IN_METALLIC");
@@ -211,11 +131,11 @@ void GeometryPass::draw_part(const Frame& frame, const Draw& draw) {
     if (with_uv) bind_textures(program, m);
 
     set_culling(
-        !draw.two_sided || (buffers.closed_outward && m.alpha_mode == AlphaMode::opaque && !draw.flat),
+        !item.two_sided || (buffers.closed_outward && m.alpha_mode == AlphaMode::opaque && !item.flat),
         mirrored);
     buffers.array.bind();
-    glDrawElements(GL_TRIANGLES, draw.part.face_count * 3, GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(size_t(draw.part.first_face) * 12));
+    glDrawElements(GL_TRIANGLES, item.part.face_count * 3, GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(size_t(item.part.first_face) * 12));
 }
 
 void GeometryPass::bind_textures(const gl::Program& program, const Material& material) {

@@ -35,12 +35,20 @@ void write_light(const Light& light, const Vec3d& camera, LightBlock& block, siz
     to.cone << scale, -outer * scale, 0, 0;
 }
 
+/// Slope of the facets that frame `index` of `count` reflects in, in units of alpha: quantiles of the slopes
+/// of GGX along one axis, whose distribution function is (1 + x / sqrt(1 + x^2)) / 2.
+float lobe_slope(int index, int count) {
+    const double u = (2 * index + 1.0) / count - 1;
+    return float(u / std::sqrt(1 - u * u));
+}
+
 std::vector<std::string> defines_of(const Frame& frame, bool with_environment) {
     const ShadingSettings& shading = frame.resolved->settings.shading;
     std::vector<std::string> defines = camera_defines(frame);
     defines.push_back(fmt::format("DFG_SIZE {}", gpu::dfg_size));
     defines.push_back(fmt::format("LIGHTS_PER_BLOCK {}", lights_per_block));
     if (with_environment) defines.emplace_back("ENVIRONMENT");
+    if (with_environment && frame.sample_count > 1) defines.emplace_back("LOBE_SAMPLES");
     if (shading.multiple_scattering) defines.emplace_back("MULTIPLE_SCATTERING");
     if (shading.brdf == Brdf::ue4) defines.emplace_back("BRDF_UE4");
     if (shading.brdf == Brdf::separable) defines.emplace_back("BRDF_SEPARABLE");
@@ -96,6 +104,8 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const gpu::E
         if (with_environment) {
             program.set("u_env_from_world", Mat3(frame.resolved->R_env_world.cast<float>()));
             program.set("u_last_level", maps->last_level());
+            if (frame.sample_count > 1)
+                program.set("u_lobe_slope", lobe_slope(frame.sample_index, frame.sample_count));
             program.set("u_env_intensity", frame.resolved->settings.environment.intensity);
         }
         LightBlock block{};

@@ -10,6 +10,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/gl/context.h"
 
 namespace easypbr::render {
 namespace {
@@ -81,29 +82,48 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
     if (!targets_.albedo || targets_.size() != options.size) targets_ = GBuffer(options.size);
     output_.begin(options.size, options.encoding);
-    geometry_.set_texture_overrides(images.textures);
     pass_times_.clear();
     if (!resolved.environment.empty())
         run("environment", [&] { environment_.prepare(resolved.environment, sees_environment(resolved)); });
 
+    const std::vector<DrawItem> items = draw_list(scene, resolved.settings, images.textures);
     Frame frame;
     frame.scene = &scene;
     frame.resolved = &resolved;
     frame.size = options.size;
     frame.sample_count = options.samples;
     for (frame.sample_index = 0; frame.sample_index < options.samples; ++frame.sample_index) {
-        draw_frame(frame);
+        draw_frame(frame, items);
         if (options.samples > 1) run("accumulate", [&] { output_.accumulate(frame, targets_); });
     }
     run("output", [&] { output_.finish(frame, targets_, background_texture(frame, images)); });
     geometry_.evict_unused();
+    software_geometry_.evict_unused();
     camera_ = resolved.camera;
     glFlush();
 }
 
-void Renderer::draw_frame(Frame& frame) {
-    prepare_frame(frame);
-    run("geometry", [&] { geometry_.draw(frame, targets_); });
+const Box3d& Renderer::bounds_of(const SceneSnapshot& scene) {
+    std::vector<std::pair<uint64_t, Eigen::Affine3d>> key;
+    for (const auto& object : scene.objects) key.emplace_back(object.mesh->V.revision(), object.T_world_mesh);
+    const auto same = [](const auto& a, const auto& b) {
+        return a.first == b.first && a.second.matrix() == b.second.matrix();
+    };
+    if (!std::ranges::equal(key, bounded_, same)) {
+        bounds_ = scene.bounds();
+        bounded_ = std::move(key);
+    }
+    return bounds_;
+}
+
+void Renderer::draw_geometry(const Frame& frame, const std::vector<DrawItem>& items) {
+    const bool software = gl::Context::current().info().software && SoftwareGeometryPass::handles(items);
+    if (!software || !software_geometry_.draw(frame, items, targets_)) geometry_.draw(frame, items, targets_);
+}
+
+void Renderer::draw_frame(Frame& frame, const std::vector<DrawItem>& items) {
+    prepare_frame(frame, bounds_of(*frame.scene));
+    run("geometry", [&] { draw_geometry(frame, items); });
     no_attributes_.bind();
     const bool with_environment = !frame.resolved->environment.empty();
     run("lighting", [&] { lighting_.draw(frame, targets_, with_environment ? &environment_ : nullptr); });

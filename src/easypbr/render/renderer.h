@@ -10,6 +10,7 @@
 #include "easypbr/render/geometry_pass.h"
 #include "easypbr/render/lighting_pass.h"
 #include "easypbr/render/output_pass.h"
+#include "easypbr/render/software_geometry_pass.h"
 
 namespace easypbr::render {
 
@@ -61,7 +62,10 @@ class Renderer {
     const std::vector<std::pair<std::string, double>>& pass_times() const { return pass_times_; }
 
   private:
-    void draw_frame(Frame& frame);
+    void draw_frame(Frame& frame, const std::vector<DrawItem>& items);
+    /// Fills the G-buffer by the faster way that can draw these items.
+    void draw_geometry(const Frame& frame, const std::vector<DrawItem>& items);
+    const Box3d& bounds_of(const SceneSnapshot& scene);
     template <class Pass>
     void run(const char* name, Pass&& pass);
     const gl::Texture* background_texture(const Frame& frame, const SettingsImages& images);
@@ -70,12 +74,16 @@ class Renderer {
     gl::VertexArray no_attributes_;
     gpu::EnvironmentMaps environment_;
     GeometryPass geometry_;
+    SoftwareGeometryPass software_geometry_;
     LightingPass lighting_;
     BackgroundPass background_;
     OutputPass output_;
     std::shared_ptr<const Image> background_image_;
     gl::Texture background_texture_;
     Camera camera_;
+    /// Bounds of the last scene, and what they were computed from.
+    std::vector<std::pair<uint64_t, Eigen::Affine3d>> bounded_;
+    Box3d bounds_;
     bool measure_ = false;
     std::vector<std::pair<std::string, double>> pass_times_;
 };
