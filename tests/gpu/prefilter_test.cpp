@@ -84,7 +84,7 @@ TEST(Prefilter, KeepsThePower) {
     };
     const double reference = mean(maps.radiance[0], 256);
     for (int level = 1; level < PrefilteredEnvironment::level_count; ++level)
-        // The NoL weight of Karis's sum keeps the power only roughly; 2 % is what 32 to 512 samples give
+        // The NoL weight of Karis's sum keeps the power only roughly; 2 % is what 64 to 1024 samples give
         // here.
         EXPECT_NEAR(mean(maps.radiance[size_t(level)], 256 >> level) / reference, 1.0, 0.02) << level;
 }

@@ -13,7 +13,7 @@ namespace easypbr::gpu {
 namespace {
 
 /// Raise it when anything here changes what is computed.
-constexpr const char* cache_version = "env4-";
+constexpr const char* cache_version = "env5-";
 
 constexpr float largest_half = 65504.0f;
 
@@ -60,7 +60,7 @@ std::vector<LobeSample> lobe_samples(float roughness, int count) {
         // pdf of l: D NoH / (4 VoH) = D / 4 because V = N.
         const double f = n_dot_h * n_dot_h * (a2 - 1) + 1;
         const double pdf = a2 / (pi * f * f) / 4;
-        const double level = 0.5 * std::log2(1.0 / (count * pdf) / texel) + 1.0;
+        const double level = 0.5 * std::log2(1.0 / (count * pdf) / texel);
         samples.push_back({l.cast<float>(), float(l.z()), float(std::max(0.0, level))});
     }
     return samples;
@@ -87,8 +87,7 @@ Vec4 sample_chain(const std::vector<CubeMap>& chain, const Vec3& direction, floa
 std::vector<uint16_t> filter_level(const std::vector<CubeMap>& chain, int level) {
     const int size = level_size(level);
     // Fewer texels have wider lobes and get more samples: about the same work for each level.
-    const std::vector<LobeSample> lobe =
-        lobe_samples(roughness_of_level(level), std::min(32 << (level - 1), 512));
+    const std::vector<LobeSample> lobe = lobe_samples(roughness_of_level(level), 64 << (level - 1));
     const CubeMap shape(size);
     std::vector<uint16_t> halves(size_t(6) * size * size * 4);
     parallel_for(size_t(6) * size, 2, [&](size_t row) {
