@@ -99,9 +99,9 @@ void Texture::upload_area(int x, int y, int width, int height, std::span<const s
 }
 
 void Texture::sampling(Filtering filtering, Wrapping u, Wrapping v, float anisotropy) {
-    const GLenum min = filtering == Filtering::nearest  ? GL_NEAREST
-                       : filtering == Filtering::linear ? GL_LINEAR
-                                                        : GL_LINEAR_MIPMAP_LINEAR;
+    constexpr GLenum min_filters[] = {GL_NEAREST, GL_LINEAR, GL_LINEAR_MIPMAP_NEAREST,
+                                      GL_LINEAR_MIPMAP_LINEAR};
+    const GLenum min = min_filters[int(filtering)];
     glTextureParameteri(id(), GL_TEXTURE_MIN_FILTER, GLint(min));
     glTextureParameteri(id(), GL_TEXTURE_MAG_FILTER,
                         filtering == Filtering::nearest ? GL_NEAREST : GL_LINEAR);

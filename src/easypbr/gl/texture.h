@@ -28,7 +28,8 @@ enum class Format {
 size_t pixel_bytes(Format format);
 
 enum class TextureKind { flat, cube };
-enum class Filtering { nearest, linear, trilinear };
+/// `linear_nearest_level` filters in the nearest mip level, `trilinear` between two.
+enum class Filtering { nearest, linear, linear_nearest_level, trilinear };
 enum class Wrapping { clamp, repeat, mirror };
 
 class Texture {

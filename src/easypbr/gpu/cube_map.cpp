@@ -111,7 +111,8 @@ CubeMap CubeMap::half() const {
     CubeMap smaller(size_ / 2);
     // Solid angle of a texel, up to a factor: 1 / (1 + u^2 + v^2)^(3/2).
     const auto weight = [&](int x, int y) {
-        const float u = (float(x) + 0.5f) * 2 / float(size_) - 1, v = (float(y) + 0.5f) * 2 / float(size_) - 1;
+        const float u = (float(x) + 0.5f) * 2 / float(size_) - 1,
+                    v = (float(y) + 0.5f) * 2 / float(size_) - 1;
         const float r2 = 1 + u * u + v * v;
         return 1 / (r2 * std::sqrt(r2));
     };

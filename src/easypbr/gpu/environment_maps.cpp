@@ -41,7 +41,8 @@ gl::Texture equirect_texture(const Image& image) {
         texture.upload(std::as_bytes(std::span(halves)), i);
         if (i + 1 < levels) level = half_size(level);
     }
-    texture.sampling(gl::Filtering::trilinear, gl::Wrapping::repeat, gl::Wrapping::clamp);
+    // Seen through one camera, the whole picture has the same level: one fetch instead of two.
+    texture.sampling(gl::Filtering::linear_nearest_level, gl::Wrapping::repeat, gl::Wrapping::clamp);
     return texture;
 }
 

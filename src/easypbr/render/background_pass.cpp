@@ -31,10 +31,11 @@ void BackgroundPass::draw(const Frame& frame, const GBuffer& targets, const gpu:
     set_camera_uniforms(program, frame);
     program.set("u_env_from_world", Mat3(frame.resolved->R_env_world.cast<float>()));
     program.set("u_env_intensity", frame.resolved->settings.environment.intensity);
+    const float level =
+        blur ? background.blur * maps.last_level() : equirect_level(frame, maps.equirect().width());
     (blur ? maps.prefiltered() : maps.equirect()).bind(0);
     program.set(blur ? "u_prefiltered" : "u_equirect", 0);
-    program.set("u_level",
-                blur ? background.blur * maps.last_level() : equirect_level(frame, maps.equirect().width()));
+    program.set("u_level", level);
     draw_screen_triangle();
 }
 
