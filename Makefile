@@ -8,7 +8,7 @@ export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 build: setup
 	cmake --preset release -DPython_EXECUTABLE=$(CURDIR)/$(PYTHON)
 	cmake --build $(BUILD)
-	$(PYTHON) scripts/link_python.py $(BUILD)
+	$(PYTHON) scripts/link_python.py $(BUILD) .venv
 
 setup:
 	@scripts/setup.sh

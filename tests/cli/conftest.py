@@ -1,14 +1,12 @@
 """The command line is tested as a user runs it: the built executable in a process of its own."""
 import os
-import pathlib
 import subprocess
 
 import pytest
 
 import shapes
+from binary import BINARY
 
-ROOT = pathlib.Path(__file__).resolve().parents[2]
-BINARY = pathlib.Path(os.environ.get("EASYPBR_BINARY", ROOT / "build/easypbr"))
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,7 @@ import subprocess
 import numpy as np
 import pytest
 
-import conftest
+from binary import BINARY
 import exr
 import png
 
@@ -95,7 +95,7 @@ def test_without_a_driver_the_attempts_are_listed(environment, sphere, tmp_path)
     """An EGL without vendors stands for a machine without a driver."""
     bare = {**environment, "__EGL_VENDOR_LIBRARY_FILENAMES": "/dev/null"}
     for command in (["doctor"], ["render", str(sphere), "-o", "out.png"]):
-        done = subprocess.run([str(conftest.BINARY), *command], capture_output=True, text=True, env=bare, cwd=tmp_path,
+        done = subprocess.run([str(BINARY), *command], capture_output=True, text=True, env=bare, cwd=tmp_path,
                               timeout=60)
         assert done.returncode == 1 and done.stderr.count("\n") == 1
         assert "easypbr: error: no OpenGL 4.5 context" in done.stderr and "Install" in done.stderr

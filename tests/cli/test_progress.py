@@ -5,7 +5,7 @@ import subprocess
 
 import pytest
 
-import conftest
+from binary import BINARY
 
 
 @pytest.fixture(scope="module")
@@ -20,7 +20,7 @@ def large(tmp_path_factory):
 def said_on_a_terminal(environment, *arguments):
     master, terminal = pty.openpty()
     one_core = {min(os.sched_getaffinity(0))}
-    process = subprocess.Popen([str(conftest.BINARY), *map(str, arguments)], stderr=terminal, env=environment,
+    process = subprocess.Popen([str(BINARY), *map(str, arguments)], stderr=terminal, env=environment,
                                preexec_fn=lambda: os.sched_setaffinity(0, one_core))
     os.close(terminal)
     said = b""

@@ -102,7 +102,8 @@ def test_pyvista_stand_in(square):
 
 
 def test_real_trimesh(square):
-    trimesh = pytest.importorskip("trimesh", reason="trimesh is not installed")
+    import trimesh
+
     mesh = trimesh.Trimesh(*square, process=False)
     check(as_mesh(mesh), square)
     scene = trimesh.Scene()
@@ -116,17 +117,9 @@ def test_real_trimesh(square):
     np.testing.assert_array_equal(as_mesh(cloud).V, square[0])
 
 
-def test_real_open3d(square):
-    open3d = pytest.importorskip("open3d", reason="Open3D is not installed")
-    V, F = square
-    mesh = open3d.geometry.TriangleMesh(open3d.utility.Vector3dVector(V), open3d.utility.Vector3iVector(F))
-    check(as_mesh(mesh), square)
-    cloud = open3d.geometry.PointCloud(open3d.utility.Vector3dVector(V))
-    np.testing.assert_array_equal(as_mesh(cloud).V, V)
-
-
 def test_real_pyvista(square):
-    pyvista = pytest.importorskip("pyvista", reason="PyVista is not installed")
+    import pyvista
+
     V, F = square
     mesh = pyvista.PolyData(V, np.insert(F, 0, 3, axis=1).ravel())
     check(as_mesh(mesh), square)
@@ -137,9 +130,3 @@ def test_real_pyvista(square):
     cloud = as_mesh(pyvista.PolyData(V))
     np.testing.assert_array_equal(cloud.V, V)
     assert len(cloud.F) == 0
-
-
-def test_real_torch_tensors(square):
-    torch = pytest.importorskip("torch", reason="torch is not installed")
-    V, F = square
-    check(easypbr.Mesh(torch.from_numpy(V), torch.from_numpy(F)), square)
