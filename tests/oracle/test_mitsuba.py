@@ -142,6 +142,6 @@ def test_reference_can_be_drawn_anew(tmp_path):
     subprocess.run([str(argument) for argument in command], check=True, capture_output=True, timeout=600)
     error, bias = difference(tmp_path / f"{picture['name']}.exr", reference(picture))
     print(f"\n{picture['name']} drawn anew: error {error:.4f}, bias {bias:+.5f}")
-    # Six seeds gave 0.0125 to 0.0130 and a bias within 0.001; a roughness of 0.1 instead gives 0.096.
-    assert error <= 0.018
-    assert abs(bias) <= 0.003
+    # Six seeds gave 0.0108 to 0.0117 and a bias within 0.0015; a roughness of 0.1 instead gives 0.096 and 0.007.
+    assert error <= 0.015
+    assert abs(bias) <= 0.004
