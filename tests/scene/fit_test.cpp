@@ -82,6 +82,19 @@ TEST(Fit, TouchesTheMarginForRandomPoses) {
     }
 }
 
+// The axis with room to spare is centred: its two sides are about as far from the picture's edges.
+TEST(Fit, CentresTheOtherAxis) {
+    std::mt19937 random(16);
+    for (int i = 0; i < 100; ++i) {
+        const RandomCase c = random_case(random);
+        const Camera camera = fit_camera(c.scene, c.R_world_cam, c.settings, c.aspect);
+        const Extent extent = extent_of(c.scene, camera, c.aspect);
+        // Two secant steps from the full slopes, for content up to a tenth of its size away: within 5 % of
+        // the picture.
+        EXPECT_LT((extent.low + extent.high).cwiseAbs().maxCoeff(), 0.1) << i;
+    }
+}
+
 TEST(Fit, TouchesTheMarginOrthographically) {
     std::mt19937 random(12);
     for (int i = 0; i < 100; ++i) {

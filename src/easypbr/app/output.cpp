@@ -67,7 +67,7 @@ void load_settings(Session& session, const fs::path& path) {
         if (fs::exists(source) && io::hash_file(source) != hash)
             log_warning(fmt::format("{} is not the file that {} was saved with: its content has changed",
                                     source, path.string()));
-    session.settings() = file.settings;
+    session.replace_settings(file.settings);
     for (const auto& [name, light] : file.lights) session.scene().set_light(name, light);
 }
 

@@ -66,9 +66,12 @@ const gl::ContextInfo& Session::context_info() {
 void Session::load_images() {
     const auto image = [&](const std::string& path) -> std::shared_ptr<const Image> {
         if (path.empty()) return nullptr;
-        std::shared_ptr<const Image>& slot = images_[path];
-        if (!slot) slot = std::make_shared<const Image>(io::load_image(path));
-        return slot;
+        std::error_code ignored;  // A file that is missing is reported by load_image().
+        const auto time = std::filesystem::last_write_time(path, ignored);
+        LoadedImage& slot = images_[path];
+        if (!slot.image || slot.time != time)
+            slot = {time, std::make_shared<const Image>(io::load_image(path))};
+        return slot.image;
     };
     settings_images_ = {};
     for (const NamedTexture& named : named_textures) {
@@ -94,6 +97,15 @@ SceneSnapshot Session::snapshot() {
     load_images();
     SceneSnapshot scene = scene_.snapshot();
     if (!environment_.empty()) scene.environment = environment_;
+    const std::string hash = scene.environment.empty() ? "" : scene.environment.hash();
+    if (environment_hash_ && hash != *environment_hash_) {
+        // Which lights are on and how the picture is exposed follows from the environment: they are inferred
+        // anew.
+        for (StudioLight* light : {&settings_.lights.key, &settings_.lights.fill, &settings_.lights.rim})
+            light->enabled.release();
+        settings_.tone.exposure.release();
+    }
+    environment_hash_ = hash;
     return scene;
 }
 
@@ -126,7 +138,7 @@ Image Session::render(const PictureOptions& options) {
         renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
         renderer.read_picture(1, 1);
     }
-    latch(settings_, prepared.resolved.settings);
+    latch_from(prepared);
     const Stopwatch watch(timing_.read);
     return renderer.read_picture();
 }
@@ -138,7 +150,7 @@ void Session::draw_frame(const PictureOptions& options) {
     const Stopwatch watch(timing_.draw);
     renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
     renderer.read_picture(1, 1);
-    latch(settings_, prepared.resolved.settings);
+    latch_from(prepared);
 }
 
 Image Session::last_picture() {
@@ -162,10 +174,19 @@ std::map<std::string, Image> Session::render_layers(const std::vector<std::strin
     render::Renderer& renderer = this->renderer();
     const gl::ContextScope scope(*context_);
     renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
-    latch(settings_, prepared.resolved.settings);
+    latch_from(prepared);
     std::map<std::string, Image> images;
     for (size_t i = 0; i < names.size(); ++i) images[names[i]] = renderer.read_layer(layers[i]);
     return images;
+}
+
+void Session::replace_settings(const Settings& settings) {
+    settings_ = settings;
+    environment_hash_.reset();
+}
+
+void Session::latch_from(const Prepared& prepared) {
+    if (!prepared.scene.objects.empty()) latch(settings_, prepared.resolved.settings);
 }
 
 void Session::load_environment(const std::filesystem::path& path) {

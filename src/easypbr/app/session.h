@@ -45,6 +45,9 @@ class Session {
     Settings& settings() { return settings_; }
     const Settings& settings() const { return settings_; }
 
+    /// Takes settings over as they are, latched values included.
+    void replace_settings(const Settings& settings);
+
     /// Draws the scene and returns RGBA, row 0 on top. What was automatic is latched in settings().
     /// Throws ArgumentError, FileError (images that the settings name), ContextError.
     Image render(const PictureOptions& options = {});
@@ -95,6 +98,8 @@ class Session {
     Prepared prepare(const PictureOptions& options);
     void load_images();
     SceneSnapshot snapshot();
+    /// Keeps what was inferred, unless there was nothing to infer it from.
+    void latch_from(const Prepared& prepared);
     Vec2i size_or(std::optional<Vec2i> size) const { return size.value_or(settings_.image.size); }
 
     Scene scene_;
@@ -104,9 +109,14 @@ class Session {
     std::unique_ptr<gl::Context> context_;
     std::unique_ptr<render::Renderer> renderer_;
 
-    /// Images that the settings name, by path.
-    std::map<std::string, std::shared_ptr<const Image>> images_;
+    /// Images that the settings name, by path; read again when the file has changed.
+    struct LoadedImage {
+        std::filesystem::file_time_type time;
+        std::shared_ptr<const Image> image;
+    };
+    std::map<std::string, LoadedImage> images_;
     std::string environment_file_;
+    std::optional<std::string> environment_hash_;  ///< what was latched belongs to this environment
     Environment environment_;
     render::SettingsImages settings_images_;
 };

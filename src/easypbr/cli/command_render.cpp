@@ -132,7 +132,7 @@ class RenderJob {
     }
 
     void start_look() {
-        session_.settings() = look_.settings;
+        session_.replace_settings(look_.settings);
         session_.scene().clear();
     }
 

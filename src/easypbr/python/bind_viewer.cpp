@@ -108,7 +108,7 @@ std::string settings_to_json(SharedViewer& self) {
 void settings_from_json(SharedViewer& self, const std::string& json) {
     self.run([&](Viewer& viewer) {
         const io::SettingsFile file = io::parse_settings(json, "settings");
-        viewer.settings() = file.settings;
+        viewer.session().replace_settings(file.settings);
         for (const auto& [name, light] : file.lights) viewer.scene().set_light(name, light);
     });
 }

@@ -43,6 +43,42 @@ double centre_of(double P, double Q, double right, double left, double d) {
 
 }  // namespace
 
+namespace {
+
+/// The axis that does not decide about the distance has room to spare. It is centred in the picture where
+/// both sides touch narrower slopes t: f(t) = P(t) + Q(t) - 2 t d = 0. f is convex and falls; two secant
+/// steps leave a small part of the room. The interval that the full slopes allow is kept in any case.
+Vec2d balanced_centre(const Content& content, const Mat3d& R_world_cam, const Slopes& slopes,
+                      const SceneSnapshot::Support& support, double d) {
+    const double depth =
+        std::max(d - R_world_cam.col(2).dot(content.centre()), nearest_part * content.radius());
+    const Vec2d full(slopes.right, slopes.top);
+    const auto excess = [&](const SceneSnapshot::Support& s, const Vec2d& t) {
+        return Vec2d(s[0] + s[1] - 2 * t.x() * d, s[2] + s[3] - 2 * t.y() * d);
+    };
+    const auto support_at = [&](const Vec2d& t) {
+        return content.scene().support(frustum_directions(R_world_cam, {t.x(), t.x(), t.y(), t.y()}));
+    };
+    const Vec2d f0 = excess(support, full);
+    Vec2d t = (full + f0 / (2 * depth)).cwiseMax(0.0);
+    SceneSnapshot::Support s = support_at(t);
+    const Vec2d f1 = excess(s, t);
+    for (int axis = 0; axis < 2; ++axis)
+        if (f1[axis] != f0[axis])
+            t[axis] = std::clamp(t[axis] - f1[axis] * (t[axis] - full[axis]) / (f1[axis] - f0[axis]), 0.0,
+                                 full[axis]);
+    s = support_at(t);
+    Vec2d centre;
+    for (int axis = 0; axis < 2; ++axis) {
+        const double low = support[2 * axis] - full[axis] * d, high = full[axis] * d - support[2 * axis + 1];
+        const double middle = centre_of(s[2 * axis], s[2 * axis + 1], t[axis], t[axis], d);
+        centre[axis] = low <= high ? std::clamp(middle, low, high) : (low + high) / 2;
+    }
+    return centre;
+}
+
+}  // namespace
+
 bool Content::empty() const {
     return std::all_of(scene_.objects.begin(), scene_.objects.end(),
                        [](const SceneSnapshot::Object& object) { return object.mesh->V.empty(); });
@@ -82,8 +118,11 @@ Vec3d fitted_position(const Content& content, const Mat3d& R_world_cam, const Ca
     const double d =
         std::max({(s[0] + s[1]) / (slopes.right + slopes.left), (s[2] + s[3]) / (slopes.top + slopes.bottom),
                   s[4] + nearest_part * content.radius()});
-    return R_world_cam * Vec3d(centre_of(s[0], s[1], slopes.right, slopes.left, d),
-                               centre_of(s[2], s[3], slopes.top, slopes.bottom, d), d);
+    Vec2d centre(centre_of(s[0], s[1], slopes.right, slopes.left, d),
+                 centre_of(s[2], s[3], slopes.top, slopes.bottom, d));
+    if (slopes.right == slopes.left && slopes.top == slopes.bottom)
+        centre = balanced_centre(content, R_world_cam, slopes, s, d);
+    return R_world_cam * Vec3d(centre.x(), centre.y(), d);
 }
 
 double fitted_distance(const Content& content, const Vec3d& target, const Mat3d& R_world_cam,

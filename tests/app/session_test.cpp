@@ -1,0 +1,182 @@
+#include "easypbr/app/session.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <thread>
+
+#include "easypbr/app/output.h"
+#include "easypbr/core/compare.h"
+#include "easypbr/io/image_io.h"
+#include "easypbr/scene/primitives.h"
+
+namespace easypbr::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+class SessionFiles : public testing::Test {
+  protected:
+    void SetUp() override {
+        char name[] = "/tmp/easypbr_sessionXXXXXX";
+        ASSERT_NE(mkdtemp(name), nullptr);
+        folder_ = name;
+    }
+    void TearDown() override { fs::remove_all(folder_); }
+
+    size_t file_count() const {
+        return size_t(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+    }
+
+    static Session small_session() {
+        Scene scene;
+        scene.show(make_sphere(1, 16), "sphere");
+        Session session(scene);
+        session.settings().image.size = Vec2i(48, 32);
+        session.settings().image.samples = 2;
+        return session;
+    }
+
+    fs::path folder_;
+};
+
+Image constant_image(const Vec3& color) {
+    Image image(8, 4, 3, PixelType::f32);
+    for (size_t i = 0; i < image.pixel_count(); ++i)
+        std::copy_n(color.data(), 3, image.pixels<float>().data() + 3 * i);
+    return image;
+}
+
+TEST_F(SessionFiles, SavedSettingsReproduceThePicture) {
+    Session first = small_session();
+    first.settings().camera.azimuth_deg = 77;
+    first.settings().tone.tone_operator = ToneOperator::agx;
+    render_to_file(first, folder_ / "first.png");
+    save_settings(first, {}, folder_ / "look.json");
+
+    Session second = small_session();
+    load_settings(second, folder_ / "look.json");
+    render_to_file(second, folder_ / "second.png");
+    EXPECT_EQ(
+        compare(io::load_image(folder_ / "first.png"), io::load_image(folder_ / "second.png")).different, 0u);
+}
+
+// The camera and lights stay where they were put when the content grows; refit() infers them anew.
+TEST_F(SessionFiles, LatchesUntilRefit) {
+    Session session = small_session();
+    session.render();
+    const Vec3d position = session.camera().position();
+    session.scene().show(make_sphere(10, 16), "large");
+    session.render();
+    EXPECT_EQ(session.camera().position(), position);
+    session.refit();
+    session.render();
+    EXPECT_GT(session.camera().position().norm(), 5 * position.norm());
+}
+
+TEST_F(SessionFiles, FollowsWhenAskedTo) {
+    Session session = small_session();
+    session.settings().camera.position = follow;
+    session.settings().camera.target = follow;
+    session.render();
+    const Vec3d position = session.camera().position();
+    session.scene().show(make_sphere(10, 16), "large");
+    EXPECT_GT(session.camera().position().norm(), 5 * position.norm());
+}
+
+// An environment that is given after the first picture switches the three-point lights off.
+TEST_F(SessionFiles, NewEnvironmentIsInferredAnew) {
+    Session session = small_session();
+    session.render();
+    EXPECT_TRUE(session.resolve().settings.lights.key.enabled.value_or(false));
+    io::save_image(constant_image(Vec3(4, 4, 4)), folder_ / "env.exr");
+    session.load_environment(folder_ / "env.exr");
+    const ResolvedSettings resolved = session.resolve();
+    EXPECT_FALSE(resolved.settings.lights.key.enabled.value_or(true));
+    // A constant environment of 4 gives a white diffuse object a radiance of 4: it is brought to 1.
+    EXPECT_NEAR(resolved.exposure, 0.25f, 0.01f);
+}
+
+TEST_F(SessionFiles, AnEmptySceneLatchesNothing) {
+    Session session;
+    session.settings().image.size = Vec2i(16, 16);
+    session.settings().camera.position = Vec3d(0, 0, 5);
+    session.settings().camera.target = Vec3d(0, 0, 0);
+    session.render();
+    EXPECT_FALSE(session.settings().lights.key.position.value().has_value());
+    EXPECT_THROW(Session().render(), ArgumentError);
+}
+
+TEST_F(SessionFiles, NothingHalfWritten) {
+    Session session = small_session();
+    EXPECT_THROW(render_to_file(session, folder_ / "missing" / "a.png"), FileError);
+    EXPECT_THROW(render_to_file(session, folder_), ArgumentError);
+    EXPECT_THROW(render_to_file(session, folder_ / "a.gif"), ArgumentError);
+    session.settings().background.mode = BackgroundMode::image;
+    session.settings().background.image = (folder_ / "none.png").string();
+    EXPECT_THROW(render_to_file(session, folder_ / "a.png"), FileError);
+    EXPECT_EQ(file_count(), 0u);
+}
+
+TEST_F(SessionFiles, ImageBackgroundCoversThePicture) {
+    io::save_image(to_u8(constant_image(Vec3(0, 1, 0))), folder_ / "green.png");
+    Session session = small_session();
+    session.settings().background.mode = BackgroundMode::image;
+    session.settings().background.image = (folder_ / "green.png").string();
+    const auto corner = [&] {
+        const Image image = session.render();
+        const uint8_t* p = image.at<uint8_t>(0, 0);
+        return std::vector<int>(p, p + 4);
+    };
+    EXPECT_EQ(corner(), (std::vector<int>{0, 255, 0, 255}));
+    // A file that changes is read again.
+    io::save_image(to_u8(constant_image(Vec3(1, 0, 0))), folder_ / "green.png");
+    fs::last_write_time(folder_ / "green.png", fs::file_time_type::clock::now() + std::chrono::seconds(5));
+    EXPECT_EQ(corner(), (std::vector<int>{255, 0, 0, 255}));
+}
+
+TEST_F(SessionFiles, LayersAreWrittenBesideThePicture) {
+    Session session = small_session();
+    const auto files = layers_to_files(session, folder_ / "out.png", {"depth", "normal"});
+    ASSERT_EQ(files.size(), 2u);
+    EXPECT_TRUE(fs::exists(folder_ / "out_depth.exr"));
+    EXPECT_EQ(io::load_image(folder_ / "out_normal.exr").channels(), 3);
+}
+
+TEST_F(SessionFiles, SixteenBitPng) {
+    Session session = small_session();
+    render_to_file(session, folder_ / "deep.png", {}, true);
+    EXPECT_EQ(io::load_image(folder_ / "deep.png").type(), PixelType::u16);
+}
+
+// Two viewers on two threads, and one viewer used from two threads: the same pictures as alone.
+TEST_F(SessionFiles, Threads) {
+    Session alone = small_session();
+    const Image expected = alone.render();
+    std::vector<std::thread> threads;
+    std::array<Image, 4> images;
+    for (Image& image : images)
+        threads.emplace_back([&image] {
+            Session own = small_session();
+            image = own.render();
+        });
+    for (std::thread& thread : threads) thread.join();
+    for (const Image& image : images) EXPECT_EQ(compare(expected, image).different, 0u);
+}
+
+// An edit while a picture is drawn: the picture is that of before or after, never a mixture or a crash.
+TEST_F(SessionFiles, EditsWhileDrawing) {
+    Session session = small_session();
+    Mesh mesh = session.scene().get("sphere");
+    std::thread editor([&] {
+        for (int i = 0; i < 50; ++i) mesh.set_V(Array3f(Array3f::Dense(mesh.V() * (i % 2 ? 2.0f : 0.5f))));
+    });
+    for (int i = 0; i < 10; ++i) session.render();
+    editor.join();
+    EXPECT_NO_THROW(session.render());
+}
+
+}  // namespace
+}  // namespace easypbr::app
