@@ -47,6 +47,9 @@ int measure(int argc, char** argv) {
     auto start = std::chrono::steady_clock::now();
     Mesh mesh(argv[1]);
     const double load = seconds_since(start);
+    start = std::chrono::steady_clock::now();
+    vertex_normals(mesh.V(), mesh.F());
+    const double normals = seconds_since(start);
     Scene scene;
     scene.show(mesh, "mesh");
     app::Session session(scene);
@@ -85,10 +88,10 @@ int measure(int argc, char** argv) {
         passes += fmt::format(R"({}"{}": {:.1f})", passes.empty() ? "" : ", ", name, ms);
     std::sort(times.begin(), times.end());
     fmt::print(
-        R"({{"tool": "easypbr", "mesh": "{}", "size": "{}x{}", "load_s": {:.3f}, "first_frame_s": {:.3f}, )"
+        R"({{"tool": "easypbr", "mesh": "{}", "size": "{}x{}", "load_s": {:.3f}, "normals_s": {:.3f}, "first_frame_s": {:.3f}, )"
         R"("frame_ms_median": {:.1f}, "frame_ms_min": {:.1f}, "equal_to_still": {:.5f}, "passes_ms": {{{}}}}})"
         "\n",
-        argv[1], size.x(), size.y(), load, first, times[times.size() / 2], times[0], equal, passes);
+        argv[1], size.x(), size.y(), load, normals, first, times[times.size() / 2], times[0], equal, passes);
     return 0;
 }
 
