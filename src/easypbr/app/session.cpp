@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <set>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/parallel.h"
 #include "easypbr/io/image_io.h"
 
 namespace easypbr::app {
@@ -63,32 +65,42 @@ const gl::ContextInfo& Session::context_info() {
     return context_->info();
 }
 
-void Session::load_images() {
-    const auto image = [&](const std::string& path) -> std::shared_ptr<const Image> {
-        if (path.empty()) return nullptr;
+std::shared_ptr<const Image> Session::image(const std::string& path) {
+    return path.empty() ? nullptr : images_.at(path).image;
+}
+
+void Session::read_images(const std::vector<std::string>& paths) {
+    for (const std::string& path : paths) images_[path];  // The map must not change while threads use it.
+    parallel_for(paths.size(), 1, [&](size_t i) {
+        LoadedImage& slot = images_.at(paths[i]);
         std::error_code ignored;  // A file that is missing is reported by load_image().
-        const auto time = std::filesystem::last_write_time(path, ignored);
-        LoadedImage& slot = images_[path];
+        const auto time = std::filesystem::last_write_time(paths[i], ignored);
         if (!slot.image || slot.time != time)
-            slot = {time, std::make_shared<const Image>(io::load_image(path))};
-        return slot.image;
-    };
-    settings_images_ = {};
-    for (const NamedTexture& named : named_textures) {
-        const std::string& path = settings_.material.*named.path;
-        Texture& texture = settings_images_.textures.*named.texture;
-        texture.image = image(path);
-        texture.path = path;
-    }
+            slot = {time, std::make_shared<const Image>(io::load_image(paths[i]))};
+    });
+}
+
+void Session::load_images() {
+    std::set<std::string> paths;
+    for (const NamedTexture& named : named_textures) paths.insert(settings_.material.*named.path);
     if (settings_.background.mode == BackgroundMode::image) {
         if (settings_.background.image.empty())
             throw ArgumentError("background.mode is image, but background.image names no file");
-        settings_images_.background = image(settings_.background.image);
+        paths.insert(settings_.background.image);
     }
+    paths.erase("");
+    read_images({paths.begin(), paths.end()});
+    settings_images_ = {};
+    for (const NamedTexture& named : named_textures) {
+        Texture& texture = settings_images_.textures.*named.texture;
+        texture.path = settings_.material.*named.path;
+        texture.image = image(texture.path);
+    }
+    if (settings_.background.mode == BackgroundMode::image)
+        settings_images_.background = image(settings_.background.image);
     if (settings_.environment.file != environment_file_) {
-        environment_ = settings_.environment.file.empty()
-                           ? Environment()
-                           : Environment(std::filesystem::path(settings_.environment.file));
+        const std::filesystem::path file = settings_.environment.file;
+        environment_ = file.empty() ? Environment() : Environment(file);
         environment_file_ = settings_.environment.file;
     }
 }

@@ -97,6 +97,9 @@ class Session {
     /// Snapshot, images, auto parameters.
     Prepared prepare(const PictureOptions& options);
     void load_images();
+    /// Reads the files that are new or have changed, all at once.
+    void read_images(const std::vector<std::string>& paths);
+    std::shared_ptr<const Image> image(const std::string& path);
     SceneSnapshot snapshot();
     /// Keeps what was inferred, unless there was nothing to infer it from.
     void latch_from(const Prepared& prepared);

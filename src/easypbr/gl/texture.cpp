@@ -89,6 +89,16 @@ void Texture::upload(std::span<const std::byte> pixels, int level, int face) {
         glTextureSubImage2D(id(), level, 0, 0, w, h, f.layout, f.type, pixels.data());
 }
 
+void Texture::upload_u8(std::span<const std::byte> pixels, int channels, int level) {
+    const int w = std::max(1, width_ >> level), h = std::max(1, height_ >> level);
+    if (pixels.size() != size_t(w) * size_t(h) * size_t(channels))
+        throw ArgumentError(fmt::format("texture upload: expected {} bytes, got {}",
+                                        size_t(w) * size_t(h) * size_t(channels), pixels.size()));
+    glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
+    glTextureSubImage2D(id(), level, 0, 0, w, h, channels == 3 ? GL_RGB : GL_RGBA, GL_UNSIGNED_BYTE,
+                        pixels.data());
+}
+
 void Texture::upload_area(int x, int y, int width, int height, std::span<const std::byte> pixels) const {
     const FormatInfo f = info(format_);
     if (pixels.size() != size_t(width) * size_t(height) * f.bytes)

@@ -40,6 +40,8 @@ class Texture {
 
     /// Pixels of one level (and cube face), row 0 first, tightly packed.
     void upload(std::span<const std::byte> pixels, int level = 0, int face = 0);
+    /// Bytes of one level of an 8-bit texture, 3 (opaque) or 4 channels.
+    void upload_u8(std::span<const std::byte> pixels, int channels, int level);
     /// Pixels of a rectangle of level 0, row 0 first.
     void upload_area(int x, int y, int width, int height, std::span<const std::byte> pixels) const;
     void sampling(Filtering filtering, Wrapping u = Wrapping::clamp, Wrapping v = Wrapping::clamp,

@@ -21,9 +21,10 @@ const std::array<uint8_t, 4096>& encode_table() {
     return table;
 }
 
-/// Every 2x2 pixels of an RGBA8 image averaged.
+/// Every 2x2 pixels of a u8 image averaged; the first three channels as light when they are colour.
 Image next_level(const Image& image, bool color) {
-    Image out(std::max(1, image.width() / 2), std::max(1, image.height() / 2), 4, PixelType::u8);
+    const int channels = image.channels();
+    Image out(std::max(1, image.width() / 2), std::max(1, image.height() / 2), channels, PixelType::u8);
     const float* decode = srgb8_table();
     const auto& encode = encode_table();
     parallel_for(size_t(out.height()), 32, [&](size_t row) {
@@ -33,7 +34,7 @@ Image next_level(const Image& image, bool color) {
             const uint8_t* p[4] = {image.at<uint8_t>(x0, y0), image.at<uint8_t>(x1, y0),
                                    image.at<uint8_t>(x0, y1), image.at<uint8_t>(x1, y1)};
             uint8_t* to = out.at<uint8_t>(x, int(row));
-            for (int c = 0; c < 4; ++c) {
+            for (int c = 0; c < channels; ++c) {
                 if (color && c < 3) {
                     const float sum = decode[p[0][c]] + decode[p[1][c]] + decode[p[2][c]] + decode[p[3][c]];
                     to[c] = encode[size_t(sum * (4095.0f / 4) + 0.5f)];
@@ -55,7 +56,9 @@ gl::Wrapping wrapping(Wrap wrap) {
 }  // namespace
 
 gl::Texture make_texture(const Image& image, bool color) {
-    Image level = with_channels(to_u8(image), 4);
+    // Three channels are uploaded as they are; grey and grey with alpha are spread to four.
+    Image level = to_u8(image);
+    if (level.channels() < 3) level = with_channels(level, 4);
     // A texture larger than the driver takes is drawn at half the resolution, or less.
     while (std::max(level.width(), level.height()) > gl::Context::current().info().max_texture_size)
         level = next_level(level, color);
@@ -63,7 +66,7 @@ gl::Texture make_texture(const Image& image, bool color) {
     gl::Texture texture(color ? gl::Format::srgb8_alpha8 : gl::Format::rgba8, level.width(), level.height(),
                         levels);
     for (int i = 0; i < levels; ++i) {
-        texture.upload(level.bytes(), i);
+        texture.upload_u8(level.bytes(), level.channels(), i);
         if (i + 1 < levels) level = next_level(level, color);
     }
     texture.sampling(gl::Filtering::trilinear);
