@@ -52,8 +52,8 @@ void show_spheres(Scene& scene) {
         show(scene, make_sphere(radius, 96), material, pose(place, radius));
     };
     add(make_material("chrome sphere", {0.76f, 0.77f, 0.78f}, 1, 0.04f), {0.04f, 1.75f, 0}, 0.30f);
-    add(make_material("teal sphere", {0.08f, 0.46f, 0.47f}, 0, 0.45f), {-2.55f, 1.05f, 0}, 0.34f);
-    add(make_material("blue sphere", {0.10f, 0.20f, 0.55f}, 0, 0.15f), {2.75f, 0.85f, 0}, 0.26f);
+    add(make_material("teal sphere", {0.08f, 0.46f, 0.47f}, 0, 0.45f), {-1.42f, 2.15f, 0}, 0.25f);
+    add(make_material("blue sphere", {0.10f, 0.20f, 0.55f}, 0, 0.15f), {1.45f, 2.2f, 0}, 0.21f);
 }
 
 /// A low cylinder whose top is y = 0.
@@ -88,7 +88,7 @@ Mesh make_floor(float radius, float thickness) {
 
 Scene make_demo_scene() {
     Scene scene;
-    show(scene, make_floor(3.5f, 0.07f), make_material("floor", {0.80f, 0.80f, 0.79f}, 0, 0.5f),
+    show(scene, make_floor(4.2f, 0.07f), make_material("floor", {0.17f, 0.17f, 0.18f}, 0, 0.6f),
          Eigen::Affine3d::Identity());
     show_teapots(scene);
     show_spheres(scene);
