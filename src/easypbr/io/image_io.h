@@ -11,16 +11,16 @@
 
 namespace easypbr::io {
 
-/// Reads PNG (u8 or u16), JPEG (u8), Radiance HDR (f32) and EXR (f32; channels R, G, B, A or Y), told apart by their
-/// first bytes. Throws FileError or FormatError (a damaged or truncated file, or an unknown kind).
+/// Reads PNG (u8 or u16), JPEG (u8), Radiance HDR (f32) and EXR (f32; channels R, G, B, A or Y), told apart
+/// by their first bytes. Throws FileError or FormatError (a damaged or truncated file, or an unknown kind).
 Image load_image(const std::filesystem::path& path);
 
 /// The same from memory; `name` stands in messages.
 Image decode_image(std::span<const std::byte> bytes, const std::string& name);
 
-/// Writes by the extension: PNG (u8, u16), JPEG (quality 95), HDR, EXR (float32). Types are converted where the format
-/// asks for it: f32 is clamped and sRGB-encoded for PNG and JPEG, u8 and u16 are decoded for HDR and EXR.
-/// Throws FileError, or ArgumentError for an unknown extension. Never leaves half a file.
+/// Writes by the extension: PNG (u8, u16), JPEG (quality 95), HDR, EXR (float32). Types are converted where
+/// the format asks for it: f32 is clamped and sRGB-encoded for PNG and JPEG, u8 and u16 are decoded for HDR
+/// and EXR. Throws FileError, or ArgumentError for an unknown extension. Never leaves half a file.
 void save_image(const Image& image, const std::filesystem::path& path);
 
 /// The bytes of a PNG file (u8 or u16 image).

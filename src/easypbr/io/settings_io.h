@@ -11,16 +11,17 @@
 
 namespace easypbr::io {
 
-/// Content of a settings file (JSON): {"easypbr": 1, "settings": {group: {name: value}}, "lights": {...}, "files": {...}}.
-/// An inferred value is written as {"auto": value}: reading it back gives the same picture, and "auto" is not lost.
+/// Content of a settings file (JSON): {"easypbr": 1, "settings": {group: {name: value}}, "lights": {...},
+/// "files": {...}}. An inferred value is written as {"auto": value}: reading it back gives the same picture,
+/// and "auto" is not lost.
 struct SettingsFile {
     Settings settings;
     std::map<std::string, Light> lights;       ///< the scene's own lights
     std::map<std::string, std::string> files;  ///< path -> content hash
 };
 
-/// Throws FileError; FormatError with the place for JSON that is no settings file; NameError with the nearest name for
-/// an unknown setting.
+/// Throws FileError; FormatError with the place for JSON that is no settings file; NameError with the nearest
+/// name for an unknown setting.
 SettingsFile load_settings(const std::filesystem::path& path);
 SettingsFile parse_settings(const std::string& json, const std::string& name);
 

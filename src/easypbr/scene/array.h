@@ -13,8 +13,9 @@ namespace easypbr {
 /// Row-major matrix with a fixed or dynamic number of columns. Copies share the data; the data never change.
 /// It is an Eigen::Map, so it goes wherever an Eigen::MatrixBase goes. Every new array has a new revision.
 template <class Scalar, int Cols>
-class Array : public Eigen::Map<const Eigen::Matrix<Scalar, Eigen::Dynamic, Cols,
-                                                    Cols == 1 ? Eigen::ColMajor : Eigen::RowMajor>> {
+class Array
+    : public Eigen::Map<
+          const Eigen::Matrix<Scalar, Eigen::Dynamic, Cols, Cols == 1 ? Eigen::ColMajor : Eigen::RowMajor>> {
   public:
     using Dense = Eigen::Matrix<Scalar, Eigen::Dynamic, Cols, Cols == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
     using Map = Eigen::Map<const Dense>;
@@ -27,8 +28,9 @@ class Array : public Eigen::Map<const Eigen::Matrix<Scalar, Eigen::Dynamic, Cols
 
     /// A copy of any Eigen expression of fitting shape.
     template <class Derived>
-        requires(!std::is_base_of_v<Map, Derived> && !std::is_same_v<Dense, Derived>)
-    Array(const Eigen::MatrixBase<Derived>& values) : Array(Dense(values.template cast<Scalar>())) {}
+    requires(!std::is_base_of_v<Map, Derived> && !std::is_same_v<Dense, Derived>)
+        Array(const Eigen::MatrixBase<Derived>& values)
+        : Array(Dense(values.template cast<Scalar>())) {}
 
     /// A view of memory that `owner` keeps alive and unchanged.
     Array(std::shared_ptr<const void> owner, const Scalar* data, Eigen::Index rows, Eigen::Index cols)

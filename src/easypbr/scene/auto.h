@@ -15,7 +15,8 @@ inline constexpr AutomaticTag automatic{};
 /// Assign to an Auto setting to have it inferred anew for every picture.
 inline constexpr FollowTag follow{};
 
-/// A value that is `automatic` (inferred once, then latched), `follow` (inferred at every change) or pinned by the user.
+/// A value that is `automatic` (inferred once, then latched), `follow` (inferred at every change) or pinned
+/// by the user.
 template <class T>
 class Auto {
   public:

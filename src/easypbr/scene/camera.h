@@ -18,11 +18,12 @@ struct Intrinsics {
 struct Camera {
     Eigen::Isometry3d T_world_cam = Eigen::Isometry3d::Identity();
     Projection projection = Projection::perspective;
-    double fov_y_deg = 30;                 ///< full vertical angle; perspective without intrinsics
-    double ortho_height = 2;               ///< world height of the picture; orthographic
-    double near = 0.01;                    ///< distance of the near plane; the far plane is infinitely far (perspective)
-    double far = 100;                      ///< orthographic only
-    std::optional<Intrinsics> intrinsics;  ///< perspective; replaces fov_y_deg, scaled to the size of the picture
+    double fov_y_deg = 30;    ///< full vertical angle; perspective without intrinsics
+    double ortho_height = 2;  ///< world height of the picture; orthographic
+    double near = 0.01;       ///< distance of the near plane; the far plane is infinitely far (perspective)
+    double far = 100;         ///< orthographic only
+    std::optional<Intrinsics>
+        intrinsics;  ///< perspective; replaces fov_y_deg, scaled to the size of the picture
 
     Vec3d position() const { return T_world_cam.translation(); }
     Mat4d view() const { return T_world_cam.inverse().matrix(); }
@@ -34,11 +35,13 @@ struct Camera {
     /// Throws ArgumentError when position and target coincide.
     static Camera look_at(const Vec3d& position, const Vec3d& target, const Vec3d& up = Vec3d::UnitY());
 
-    /// From OpenCV's intrinsic matrix K (pixel centres at integers) for a picture of width x height, and a pose whose
-    /// axes are OpenCV's (x right, y down, z forward). Throws ArgumentError when K or the pose is not valid.
+    /// From OpenCV's intrinsic matrix K (pixel centres at integers) for a picture of width x height, and a
+    /// pose whose axes are OpenCV's (x right, y down, z forward). Throws ArgumentError when K or the pose is
+    /// not valid.
     static Camera from_opencv(const Mat3d& K, const Mat4d& T_world_cam, int width, int height);
 
-    /// From a 4x4 pose with OpenGL axes. Throws ArgumentError when it is not a rotation and a translation (1e-4).
+    /// From a 4x4 pose with OpenGL axes. Throws ArgumentError when it is not a rotation and a translation
+    /// (1e-4).
     static Camera from_opengl(const Mat4d& T_world_cam, double fov_y_deg = 30);
 
     /// OpenCV's K for a picture of the given size; the inverse of from_opencv.

@@ -11,8 +11,8 @@
 
 namespace easypbr {
 
-/// Direction of an equirectangular picture's point (u, v) in [0, 1]^2, v = 0 on top: +Y is up, u = 0.5 is -Z, u grows
-/// to the right (towards +X) for a viewer inside.
+/// Direction of an equirectangular picture's point (u, v) in [0, 1]^2, v = 0 on top: +Y is up, u = 0.5 is -Z,
+/// u grows to the right (towards +X) for a viewer inside.
 Vec3 equirect_direction(float u, float v);
 /// The inverse: (u, v) of a unit direction.
 Vec2 equirect_uv(const Vec3& direction);
@@ -21,8 +21,9 @@ Vec2 equirect_uv(const Vec3& direction);
 class Environment {
   public:
     Environment() = default;
-    /// Takes a linear f32 picture with 3 channels (others are converted); the first row is straight up. NaN, infinite
-    /// and negative values are replaced by 0 and reported to the log. Throws ArgumentError when it is empty.
+    /// Takes a linear f32 picture with 3 channels (others are converted); the first row is straight up. NaN,
+    /// infinite and negative values are replaced by 0 and reported to the log. Throws ArgumentError when it
+    /// is empty.
     explicit Environment(Image equirect, std::string name = {});
     /// Reads HDR, EXR, PNG or JPEG (defined in io). Throws FileError, FormatError.
     explicit Environment(const std::filesystem::path& path);

@@ -1,5 +1,5 @@
-// The one table of settings: name, documentation, unit, range and access for every field of every settings struct.
-// It feeds --set, Python's properties, the JSON file and the reference documentation.
+// The one table of settings: name, documentation, unit, range and access for every field of every settings
+// struct. It feeds --set, Python's properties, the JSON file and the reference documentation.
 #pragma once
 
 #include <functional>
@@ -57,7 +57,8 @@ Value get(const Settings& settings, std::string_view name);
 /// The value in the form in which `put` takes it. Throws ArgumentError that says what was expected.
 Value checked(const Field& field, const Value& value);
 
-/// The value written as on the command line: numbers separated by commas, '#rrggbb', true/false, 'auto', 'follow'.
+/// The value written as on the command line: numbers separated by commas, '#rrggbb', true/false, 'auto',
+/// 'follow'.
 Value parse_value(const Field& field, std::string_view text);
 std::string to_text(const Field& field, const Value& value);
 

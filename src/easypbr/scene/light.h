@@ -14,8 +14,8 @@ enum class LightType { point, directional, spot };
 struct Light {
     LightType type = LightType::point;
     bool enabled = true;
-    Vec3 position{0, 0, 0};     ///< point and spot
-    Vec3 direction{0, -1, 0};   ///< where the light goes; directional and spot; need not be of unit length
+    Vec3 position{0, 0, 0};    ///< point and spot
+    Vec3 direction{0, -1, 0};  ///< where the light goes; directional and spot; need not be of unit length
     Vec3 color{1, 1, 1};
     float intensity = 1;        ///< candela (point, spot), lux (directional)
     float inner_cone_deg = 0;   ///< spot: half angle of the full-intensity cone
@@ -23,7 +23,8 @@ struct Light {
     float range = 0;            ///< distance at which the light ends; 0: unlimited
 };
 
-/// One of the three-point lights (key, fill, rim): what is automatic is inferred from the scene and the camera.
+/// One of the three-point lights (key, fill, rim): what is automatic is inferred from the scene and the
+/// camera.
 struct StudioLight {
     Auto<bool> enabled;     ///< automatic: on when no environment was given
     Auto<Vec3> position;    ///< world; automatic: placed relative to the first camera, 3 scene radii away

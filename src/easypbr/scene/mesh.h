@@ -20,8 +20,9 @@ class Mesh;
 /// How an object is drawn. The table of its fields stands in scene/fields.h.
 struct Style {
     bool visible = true;
-    Auto<bool> flat;       ///< one normal per face; automatic: smooth
-    Auto<bool> two_sided;  ///< back faces are drawn, lit from their side; automatic: the material's double_sided
+    Auto<bool> flat;  ///< one normal per face; automatic: smooth
+    Auto<bool>
+        two_sided;  ///< back faces are drawn, lit from their side; automatic: the material's double_sided
 };
 
 /// A range of faces with one material.
@@ -49,7 +50,7 @@ struct MeshData {
     Array1f I;   ///< n x 1 intensities
 
     Array1i source_vertex;  ///< n x 1 index of the file's vertex that each vertex came from; empty: the same
-    Array1i source_face;    ///< m x 1 index of the file's polygon that each triangle came from; empty: the same
+    Array1i source_face;  ///< m x 1 index of the file's polygon that each triangle came from; empty: the same
 
     std::vector<Material> materials;  ///< at least one as soon as the mesh is drawn; a default one is added
     std::vector<MeshPart> parts;      ///< cover F without overlap; empty: all faces have material 0
@@ -59,8 +60,8 @@ struct MeshData {
     std::vector<Mesh> children;
 };
 
-/// Throws ArgumentError that names the array, the expected and the given shape, when arrays do not fit together, when a
-/// face or edge index is out of range, or when a position is not finite.
+/// Throws ArgumentError that names the array, the expected and the given shape, when arrays do not fit
+/// together, when a face or edge index is out of range, or when a position is not finite.
 void validate(const MeshData& data);
 /// The same, without reading arrays again that `data` shares with data known to be valid.
 void validate(const MeshData& data, const MeshData& valid);
@@ -88,9 +89,9 @@ class Mesh {
     /// The data as they are now; never changes afterwards.
     std::shared_ptr<const MeshData> snapshot() const;
 
-    /// Changes a copy of the data and puts it in place, whole or (when `change` throws or the result is not valid) not
-    /// at all. Readers that hold a snapshot keep theirs. No lock is held meanwhile: `change` may use this mesh, and is
-    /// called again with newer data when another thread's edit came first.
+    /// Changes a copy of the data and puts it in place, whole or (when `change` throws or the result is not
+    /// valid) not at all. Readers that hold a snapshot keep theirs. No lock is held meanwhile: `change` may
+    /// use this mesh, and is called again with newer data when another thread's edit came first.
     template <class Change>
     void edit(Change&& change) {
         for (;;) {
@@ -113,11 +114,25 @@ class Mesh {
     Array1i L() const { return snapshot()->L; }
     Array1f I() const { return snapshot()->I; }
 
-    void set_V(Array3f V) { edit([&](MeshData& d) { d.V = V; }); }
-    void set_N(Array3f N) { edit([&](MeshData& d) { d.N = N; }); }
-    void set_C(ArrayXf C) { edit([&](MeshData& d) { d.C = C; }); }
-    void set_UV(Array2f UV) { edit([&](MeshData& d) { d.UV = UV; }); }
-    void set_F(Array3i F) { edit([&](MeshData& d) { d.F = F; d.parts.clear(); d.source_face = {}; }); }
+    void set_V(Array3f V) {
+        edit([&](MeshData& d) { d.V = V; });
+    }
+    void set_N(Array3f N) {
+        edit([&](MeshData& d) { d.N = N; });
+    }
+    void set_C(ArrayXf C) {
+        edit([&](MeshData& d) { d.C = C; });
+    }
+    void set_UV(Array2f UV) {
+        edit([&](MeshData& d) { d.UV = UV; });
+    }
+    void set_F(Array3i F) {
+        edit([&](MeshData& d) {
+            d.F = F;
+            d.parts.clear();
+            d.source_face = {};
+        });
+    }
 
     std::string name() const { return snapshot()->name; }
 
@@ -127,10 +142,14 @@ class Mesh {
     void set_material(const Material& material, int index = 0);
 
     Style style() const { return snapshot()->style; }
-    void set_style(const Style& style) { edit([&](MeshData& d) { d.style = style; }); }
+    void set_style(const Style& style) {
+        edit([&](MeshData& d) { d.style = style; });
+    }
 
     Eigen::Affine3d T_parent_mesh() const { return snapshot()->T_parent_mesh; }
-    void set_T_parent_mesh(const Eigen::Affine3d& T) { edit([&](MeshData& d) { d.T_parent_mesh = T; }); }
+    void set_T_parent_mesh(const Eigen::Affine3d& T) {
+        edit([&](MeshData& d) { d.T_parent_mesh = T; });
+    }
 
     void add_child(const Mesh& child);
 
@@ -155,7 +174,8 @@ class Mesh {
 };
 
 /// Calls visit(data, T_world_mesh) for the mesh and all its descendants, parents first.
-void for_each_node(const Mesh& root,
-                   const std::function<void(const std::shared_ptr<const MeshData>&, const Eigen::Affine3d&)>& visit);
+void for_each_node(
+    const Mesh& root,
+    const std::function<void(const std::shared_ptr<const MeshData>&, const Eigen::Affine3d&)>& visit);
 
 }  // namespace easypbr

@@ -20,8 +20,8 @@ struct SceneSnapshot {
         std::shared_ptr<const MeshData> mesh;
         Eigen::Affine3d T_world_mesh;
     };
-    /// All visible nodes in the order of their names, parents before children ("car", "car/wheel"). What is hidden, or
-    /// invisible by its style, is left out with its descendants.
+    /// All visible nodes in the order of their names, parents before children ("car", "car/wheel"). What is
+    /// hidden, or invisible by its style, is left out with its descendants.
     std::vector<Object> objects;
     std::map<std::string, Light> lights;
     Environment environment;  ///< empty: none was given
@@ -29,8 +29,9 @@ struct SceneSnapshot {
     /// Bounding box of all vertices in world space (exact under rotation); empty when there are none.
     Box3d bounds() const;
 
-    /// The largest dot product of each of six world directions (rows) with the vertices' world positions: how far the
-    /// content reaches along them. Computed in double in parallel; minus infinity when there are no vertices.
+    /// The largest dot product of each of six world directions (rows) with the vertices' world positions: how
+    /// far the content reaches along them. Computed in double in parallel; minus infinity when there are no
+    /// vertices.
     using Directions = Eigen::Matrix<double, 6, 3>;
     using Support = Eigen::Matrix<double, 6, 1>;
     Support support(const Directions& directions) const;

@@ -53,11 +53,13 @@ Eigen::Vector2d integrate(Model model, double n_dot_v, double roughness) {
         const double rest = 1 - (i + 0.5) / samples, stratum = 3 * rest * rest;
         for (int j = 0; j < samples; ++j) {
             total += stratum;
-            const Eigen::Vector3d h = visible_normal(view, alpha, 1 - rest * rest * rest, (j + 0.5) / samples);
+            const Eigen::Vector3d h =
+                visible_normal(view, alpha, 1 - rest * rest * rest, (j + 0.5) / samples);
             const double v_dot_h = std::max(0.0, view.dot(h));
             const double n_dot_l = (2 * v_dot_h * h - view).z();
             if (n_dot_l <= 0) continue;
-            const double weight = masking_shadowing(model, n_dot_v, n_dot_l, alpha) * (1 + lambda(n_dot_v, alpha));
+            const double weight =
+                masking_shadowing(model, n_dot_v, n_dot_l, alpha) * (1 + lambda(n_dot_v, alpha));
             const double fresnel = std::pow(1 - v_dot_h, 5);
             sum += stratum * weight * Eigen::Vector2d(1 - fresnel, fresnel);
         }
