@@ -117,8 +117,9 @@ const Box3d& Renderer::bounds_of(const SceneSnapshot& scene) {
 }
 
 void Renderer::draw_geometry(const Frame& frame, const std::vector<DrawItem>& items) {
-    const bool software = gl::Context::current().info().software && SoftwareGeometryPass::handles(items);
-    if (!software || !software_geometry_.draw(frame, items, targets_)) geometry_.draw(frame, items, targets_);
+    const bool native =
+        native_geometry_ && gl::Context::current().info().software && SoftwareGeometryPass::handles(items);
+    if (!native || !software_geometry_.draw(frame, items, targets_)) geometry_.draw(frame, items, targets_);
 }
 
 void Renderer::draw_frame(Frame& frame, const std::vector<DrawItem>& items) {

@@ -56,6 +56,10 @@ class Renderer {
     Image read_picture(int width, int height) const;
     Image read_layer(Layer layer) const;
 
+    /// Without a GPU, plain triangles are rasterised natively; false leaves them to the driver: for comparing
+    /// the two.
+    void allow_native_geometry(bool allow) { native_geometry_ = allow; }
+
     /// From now on every pass is finished before the next begins, and timed.
     void measure_passes(bool measure) { measure_ = measure; }
     /// Milliseconds of each pass of the last picture, in pipeline order, summed over its frames.
@@ -84,6 +88,7 @@ class Renderer {
     /// Bounds of the last scene, and what they were computed from.
     std::vector<std::pair<uint64_t, Eigen::Affine3d>> bounded_;
     Box3d bounds_;
+    bool native_geometry_ = true;
     bool measure_ = false;
     std::vector<std::pair<std::string, double>> pass_times_;
 };

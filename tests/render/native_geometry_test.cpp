@@ -1,0 +1,169 @@
+// The two ways to fill the G-buffer must agree: the driver's rasteriser and the native one.
+#include <cmath>
+
+#include "easypbr/gl/context.h"
+#include "easypbr/render/renderer.h"
+#include "easypbr/render/visibility.h"
+#include "render_test.h"
+
+namespace easypbr::render {
+namespace {
+
+struct Comparison {
+    double covered = 0, one_sided = 0, depth_off = 0, normal_off = 0, albedo_off = 0;
+};
+
+/// Shares of pixels that differ, of all that either way covers.
+Comparison compare_both(const Scene& scene, const Settings& settings, Vec2i size = Vec2i(320, 240)) {
+    const auto context = gl::Context::create();
+    if (!context->info().software) return {};
+    const gl::ContextScope scope(*context);
+    const SceneSnapshot snapshot = scene.snapshot();
+    const ResolvedSettings resolved = resolve(snapshot, settings, size);
+    Renderer renderer;
+    std::map<Layer, Image> layers[2];
+    for (const bool native : {false, true}) {
+        renderer.allow_native_geometry(native);
+        renderer.draw(snapshot, resolved, {size, 1, Encoding::srgb8});
+        for (const Layer layer : {Layer::depth, Layer::normal, Layer::albedo})
+            layers[native][layer] = renderer.read_layer(layer);
+    }
+    Comparison result;
+    for (int y = 0; y < size.y(); ++y)
+        for (int x = 0; x < size.x(); ++x) {
+            const float a = layers[0][Layer::depth].at<float>(x, y)[0],
+                        b = layers[1][Layer::depth].at<float>(x, y)[0];
+            if (a == 0 && b == 0) continue;
+            ++result.covered;
+            if (a == 0 || b == 0) {
+                ++result.one_sided;
+                continue;
+            }
+            const Vec3 n(layers[0][Layer::normal].at<float>(x, y)),
+                m(layers[1][Layer::normal].at<float>(x, y));
+            const Vec3 c(layers[0][Layer::albedo].at<float>(x, y)),
+                d(layers[1][Layer::albedo].at<float>(x, y));
+            // The driver interpolates between vertices snapped to 1/256 of a pixel, the native way between
+            // exact ones.
+            result.depth_off += std::abs(a / b - 1) > 1e-4;
+            result.normal_off += n.dot(m) < std::cos(radians(1.0));
+            result.albedo_off += (c - d).cwiseAbs().maxCoeff() > 0.01f;
+        }
+    for (double* share : {&result.one_sided, &result.depth_off, &result.normal_off, &result.albedo_off})
+        *share /= result.covered;
+    return result;
+}
+
+void expect_agreement(const Scene& scene, const Settings& settings = {}) {
+    const Comparison c = compare_both(scene, settings);
+    if (c.covered == 0) GTEST_SKIP() << "this machine has a GPU: the native rasteriser is not used";
+    EXPECT_GT(c.covered, 5000);
+    // Both snap to 1/256 of a pixel by the same rules; vertices that fall on a rounding boundary may go
+    // either way.
+    EXPECT_LE(c.one_sided, 0.0005);
+    // Where a silhouette or crease runs through a pixel, one 1/256 decides which surface is seen.
+    EXPECT_LE(c.depth_off, 0.005);
+    EXPECT_LE(c.normal_off, 0.01);
+    EXPECT_LE(c.albedo_off, 0.01);
+}
+
+Mesh fine_teapot() {
+    return make_teapot(1, 20);
+}
+
+TEST(NativeGeometry, Teapot) {
+    Scene scene;
+    scene.show(fine_teapot(), "teapot");
+    expect_agreement(scene);
+}
+
+TEST(NativeGeometry, Orthographic) {
+    Scene scene;
+    scene.show(fine_teapot(), "teapot");
+    Settings settings;
+    settings.camera.projection = Projection::orthographic;
+    expect_agreement(scene, settings);
+}
+
+TEST(NativeGeometry, FlatAndOneSided) {
+    Scene scene;
+    scene.show(fine_teapot(), "teapot");
+    Settings settings;
+    settings.style.flat = true;
+    expect_agreement(scene, settings);
+    settings.style.two_sided = false;
+    expect_agreement(scene, settings);
+}
+
+TEST(NativeGeometry, VertexColorsAndParts) {
+    Mesh mesh = fine_teapot();
+    mesh.edit([](MeshData& data) {
+        const Array3f V = data.V;
+        data.C = ArrayXf(ArrayXf::Dense(((V.array() + 2) / 4).matrix()));
+        data.materials.resize(2);
+        data.materials[1].base_color = Vec3(0.2f, 0.9f, 0.4f);
+        const int half = int(data.F.rows() / 2);
+        data.parts = {{"a", 0, half, 0}, {"b", half, int(data.F.rows()) - half, 1}};
+    });
+    Scene scene;
+    scene.show(mesh, "teapot");
+    expect_agreement(scene);
+}
+
+TEST(NativeGeometry, MirroredAndScaledPoses) {
+    Mesh mesh = fine_teapot();
+    Eigen::Affine3d T = Eigen::Affine3d::Identity();
+    T.linear() = Vec3d(-1, 0.5, 2).asDiagonal();
+    mesh.set_T_parent_mesh(T);
+    Scene scene;
+    scene.show(mesh, "mirrored");
+    Mesh other = fine_teapot();
+    other.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0.5, 0.3, 0)));
+    scene.show(other, "other");
+    expect_agreement(scene);
+    Settings settings;
+    settings.style.two_sided = false;
+    expect_agreement(scene, settings);
+}
+
+TEST(NativeGeometry, WrongWinding) {
+    Mesh mesh = fine_teapot();
+    mesh.set_F(Array3i(Array3i::Dense(mesh.F().rowwise().reverse())));
+    Scene scene;
+    scene.show(mesh, "inside out");
+    expect_agreement(scene);
+}
+
+// What reaches before the near plane is left to the driver; the picture must be whole either way.
+TEST(NativeGeometry, FromInside) {
+    Scene scene;
+    scene.show(make_sphere(1, 128), "room");
+    Settings settings;
+    settings.camera.position = Vec3d(0, 0, 0.5);
+    settings.camera.target = Vec3d(0, 0, 0);
+    const Comparison c = compare_both(scene, settings);
+    if (c.covered == 0) GTEST_SKIP() << "this machine has a GPU: the native rasteriser is not used";
+    EXPECT_EQ(c.covered, 320 * 240);
+    EXPECT_EQ(c.one_sided, 0);
+}
+
+// Every pixel of a quad belongs to exactly one of its two triangles, and shared edges leave no gap.
+TEST(VisibilityBuffer, EdgesAreWatertight) {
+    Array3f::Dense V(4, 3);
+    V << -0.5f, -0.5f, 0.5f, 0.51f, -0.47f, 0.5f, 0.5f, 0.5f, 0.5f, -0.49f, 0.48f, 0.5f;
+    Array3i::Dense both(2, 3);
+    both << 0, 1, 2, 0, 2, 3;
+    const auto count = [&](const Array3i::Dense& F) {
+        VisibilityBuffer buffer;
+        buffer.clear(Vec2i(101, 77), {0, 0, 101, 77});
+        EXPECT_TRUE(buffer.draw(Array3f(V), Array3i(F), 0, int(F.rows()), Mat4::Identity(), 0, true, false));
+        return std::ranges::count_if(buffer.pixels(), [](uint64_t p) { return p != 0; });
+    };
+    const auto whole = count(both);
+    EXPECT_EQ(whole, count(both.topRows(1)) + count(both.bottomRows(1)));
+    // 101 x 77 pixels, the quad covers 0.99^2 / 4 of them; each edge may round by half a pixel.
+    EXPECT_NEAR(double(whole), 101 * 77 * 0.2450, 60);
+}
+
+}  // namespace
+}  // namespace easypbr::render
