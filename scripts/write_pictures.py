@@ -1,0 +1,151 @@
+#!/usr/bin/env python3
+"""Draws the pictures of the documentation, headless, from content that is made in code.
+
+usage: write_pictures.py [OUTPUT_FOLDER]      default: docs/images; the easypbr package must be importable
+"""
+import pathlib
+import sys
+
+import numpy as np
+
+import easypbr
+from easypbr import Material, Mesh, Scene, Viewer, shapes
+
+ROOT = pathlib.Path(__file__).resolve().parents[1]
+
+
+def sky(width: int = 512) -> np.ndarray:
+    """An equirectangular evening: blue above, orange at the horizon, a low sun, dark ground."""
+    height = width // 2
+    elevation = np.pi * (0.5 - (np.arange(height) + 0.5) / height)
+    azimuth = 2 * np.pi * (np.arange(width) + 0.5) / width
+    up = np.sin(elevation)[:, None, None]
+    horizon = np.exp(-8 * np.abs(up)) * np.array([1.3, 0.75, 0.4])
+    dome = np.where(up > 0, np.array([0.25, 0.45, 0.9]), np.array([0.12, 0.1, 0.08])) * (0.4 + 0.6 * np.abs(up))
+    # The sun: 3 degrees wide, to the left behind the viewer of the default camera.
+    toward_sun = np.sin(elevation)[:, None] * np.sin(0.35) + np.cos(elevation)[:, None] * np.cos(0.35) * np.cos(
+        azimuth[None, :] - 5.6
+    )
+    sun = (toward_sun > np.cos(np.radians(3)))[:, :, None] * np.array([600.0, 420.0, 250.0])
+    return (horizon + dome + sun).astype(np.float32)
+
+
+def row(pictures) -> np.ndarray:
+    """Pictures side by side with a white gap."""
+    pictures = [picture[:, :, :3] for picture in pictures]
+    gap = np.full((pictures[0].shape[0], 6, 3), 255, np.uint8)
+    parts = [part for picture in pictures for part in (picture, gap)][:-1]
+    return np.hstack(parts)
+
+
+def teapot(color: str = "#b03a2e", metallic: float = 0.0, roughness: float = 0.25) -> Mesh:
+    mesh = shapes.teapot(1.0)
+    mesh.material = Material(base_color=color, metallic=metallic, roughness=roughness)
+    return mesh
+
+
+def on_floor(mesh: Mesh) -> Scene:
+    scene = Scene()
+    scene.show(mesh, "object")
+    floor = shapes.plane(2.2)
+    floor.material = Material(base_color="#8a8a8a", roughness=0.6)
+    scene.show(floor, "floor")
+    return scene
+
+
+def demo() -> np.ndarray:
+    """The same as `easypbr demo`."""
+    return Viewer((1280, 720), scene=Scene.demo()).render()
+
+
+def materials() -> np.ndarray:
+    """Roughness from left to right, dielectric above, metal below."""
+    scene = Scene()
+    ball = shapes.sphere(0.46, 96)
+    for line, (color, metallic) in enumerate([("#c23b22", 0), ("#d9d9d9", 0), ("#ffe29b", 1), ("#f7a58c", 1)]):
+        for column, roughness in enumerate(np.linspace(0.05, 1, 7)):
+            mesh = ball.clone()
+            mesh.material = Material(base_color=color, metallic=metallic, roughness=roughness)
+            mesh.T_parent_mesh = [[1, 0, 0, column], [0, 1, 0, -line], [0, 0, 1, 0], [0, 0, 0, 1]]
+            scene.show(mesh, f"{line}-{column}")
+    values = {"camera": {"azimuth_deg": 0, "elevation_deg": 0, "fov_y_deg": 12}}
+    return Viewer((700, 400), values, scene).render()
+
+
+def lights() -> np.ndarray:
+    """Studio and three-point lights; the lights alone; an environment alone; one spot light."""
+    given = easypbr.Environment(sky())
+    views = [Viewer((280, 210), scene=on_floor(teapot())) for _ in range(4)]
+    views[1].settings.environment.enabled = False
+    views[2].load_environment_map(given)
+    views[3].settings.environment.enabled = False
+    for name in ("key", "fill", "rim"):
+        views[3].lights[name].enabled = False
+    views[3].add_light("spot", "spot", position=(1.5, 2.5, 1.5), direction=(-1.5, -2.1, -1.5), intensity=60,
+                       inner_cone_deg=10, outer_cone_deg=18)
+    return row(view.render() for view in views)
+
+
+def backgrounds() -> np.ndarray:
+    """Colour, environment, environment blurred."""
+    return row(
+        easypbr.render(teapot("#dddddd", 1, 0.1), size=(280, 210), environment=sky(1024), background=background)
+        for background in ("#404040", "environment", "blur")
+    )
+
+
+def tone_curves() -> np.ndarray:
+    """The five curves, two stops over: where they differ is in the lights."""
+    mesh = teapot("#1f4fd8", 0, 0.3)
+    return row(
+        easypbr.render(mesh, size=(200, 160), tonemap=operator, exposure_compensation=2)
+        for operator in ("aces", "reinhard", "agx", "neutral", "none")
+    )
+
+
+def antialiasing() -> np.ndarray:
+    """A tilted box, five times as large: one frame, one frame with FXAA, 16 frames."""
+    box = shapes.box()
+    cosine, sine = np.cos(0.3), np.sin(0.3)
+    box.T_parent_mesh = [[cosine, -sine, 0, 0], [sine, cosine, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+    pictures = []
+    for samples, antialias in ((1, "none"), (1, "fxaa"), (16, "fxaa")):
+        picture = easypbr.render(box, size=(56, 42), samples=samples, antialias=antialias)
+        pictures.append(picture.repeat(5, axis=0).repeat(5, axis=1))
+    return row(pictures)
+
+
+def layers() -> np.ndarray:
+    """Picture, albedo, normal, depth, roughness."""
+    view = Viewer((200, 150), scene=on_floor(teapot()))
+    found = view.layers(["albedo", "normal", "depth", "roughness"])
+    seen = found["depth"] > 0
+    depth = np.zeros_like(found["depth"])
+    depth[seen] = 1 - (found["depth"][seen] - found["depth"][seen].min()) / np.ptp(found["depth"][seen])
+    shown = [found["albedo"][:, :, :3] ** (1 / 2.2), (found["normal"] * 0.5 + 0.5) * seen[:, :, None]]
+    shown += [np.repeat(plane[:, :, None], 3, axis=2) for plane in (depth, found["roughness"])]
+    return row([view.render(), *((np.clip(plane, 0, 1) * 255).astype(np.uint8) for plane in shown)])
+
+
+def fits() -> np.ndarray:
+    """The automatic camera: default, from above, narrow margin, orthographic."""
+    choices = [{}, {"elevation_deg": 60}, {"margin": 0.4}, {"projection": "orthographic"}]
+    return row(easypbr.render(teapot(), size=(230, 170), settings={"camera": choice}) for choice in choices)
+
+
+def shading() -> np.ndarray:
+    """Smooth and flat."""
+    mesh = shapes.teapot(1.0, 4)
+    return row(easypbr.render(mesh, size=(280, 210), flat=flat) for flat in (False, True))
+
+
+PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading]
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 2:
+        sys.exit(__doc__)
+    folder = pathlib.Path(sys.argv[1]) if len(sys.argv) == 2 else ROOT / "docs/images"
+    folder.mkdir(parents=True, exist_ok=True)
+    for draw in PICTURES:
+        easypbr.save_image(draw(), folder / f"{draw.__name__}.png")
