@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(
-  g++ cmake ninja-build ccache pkg-config clang-format
+  g++ cmake ninja-build ccache pkg-config clang-format clang-tidy
   libeigen3-dev libfmt-dev libtbb-dev nlohmann-json3-dev libcli11-dev libxxhash-dev libfast-float-dev
   libepoxy-dev libegl1 libegl-mesa0 libopengl0 libgl1-mesa-dri
   libspng-dev libturbojpeg0-dev libtinyexr-dev libassimp-dev

@@ -55,7 +55,8 @@ def range_of(field) -> str:
 
 def default_of(field) -> str:
     value = field.default
-    if field.type == "color" and isinstance(value, tuple):
+    is_color = field.type == "color" and isinstance(value, tuple)
+    if is_color and all(abs(255 * c - round(255 * c)) < 1e-4 for c in value):
         return "#" + "".join(f"{round(255 * c):02x}" for c in value)
     if isinstance(value, tuple):
         return ",".join(f"{v:g}" for v in value) or "none"

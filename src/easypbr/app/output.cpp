@@ -49,7 +49,7 @@ std::vector<fs::path> layers_to_files(Session& session, const fs::path& path,
 void save_settings(const Session& session, const std::vector<fs::path>& files, const fs::path& path) {
     io::SettingsFile file;
     file.settings = session.settings();
-    const Scene scene = session.scene();
+    const Scene& scene = session.scene();
     for (const std::string& name : scene.light_names()) file.lights[name] = scene.light(name);
     for (const fs::path& source : files) file.files[source.string()] = io::hash_file(source);
     const Settings& s = file.settings;

@@ -40,6 +40,7 @@ class Array
         : Map(other.data(), other.rows(), other.cols()), owner_(other.owner_), revision_(other.revision_) {}
 
     Array& operator=(const Array& other) {
+        if (this == &other) return *this;
         owner_ = other.owner_;
         revision_ = other.revision_;
         // Eigen's documented way to let a Map point elsewhere.
