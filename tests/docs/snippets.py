@@ -1,0 +1,38 @@
+"""Code blocks of Markdown pages, and the files that they name."""
+import pathlib
+import re
+
+import numpy as np
+
+import easypbr
+from easypbr import shapes
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
+
+
+def blocks(page, language):
+    """The page's blocks of one language, in their order."""
+    return [text for name, text in FENCE.findall(page.read_text()) if name == language]
+
+
+def write_inputs(folder):
+    """Every file that a snippet names, small."""
+    model = shapes.teapot(0.4, 4)
+    for name in ("drone.ply", "drone.glb"):
+        model.save(folder / name)
+    write_stl(folder / "part.stl", model)
+    rows = np.linspace(1.5, 0.1, 16, dtype=np.float32)[:, None, None]
+    easypbr.save_image(np.broadcast_to(rows * np.array([0.6, 0.7, 1], np.float32), (16, 32, 3)), folder / "map.hdr")
+    grain = np.random.default_rng(0).integers(60, 200, (16, 16, 3)).astype(np.uint8)
+    easypbr.save_image(grain, folder / "wood.png")
+    easypbr.save_image(np.full((4, 4, 3), (128, 128, 255), np.uint8), folder / "normal.png")
+    (folder / "pose.txt").write_text("1 0 0 0\n0 -1 0 0.2\n0 0 -1 2\n0 0 0 1\n")
+
+
+def write_stl(path, mesh):
+    """Binary STL: 80 bytes, the number of facets, 50 bytes for each."""
+    facets = np.zeros(len(mesh.F), dtype=[("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    facets["corners"] = mesh.V[mesh.F]
+    path.write_bytes(bytes(80) + np.uint32(len(facets)).tobytes() + facets.tobytes())

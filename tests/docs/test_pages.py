@@ -1,0 +1,110 @@
+"""The pages are complete: every setting and every public name is in the reference, every link leads somewhere."""
+import os
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+
+import pytest
+
+import easypbr
+from easypbr import _easypbr
+from snippets import FENCE, PAGES, ROOT
+
+sys.path.insert(0, str(ROOT / "scripts"))
+import write_pictures  # noqa: E402
+import write_reference  # noqa: E402
+
+BINARY = pathlib.Path(os.environ.get("EASYPBR_BINARY", ROOT / "build/easypbr"))
+LINK = re.compile(r"!?\[[^\]]*\]\(([^)#\s]+)")
+
+
+@pytest.fixture(scope="module")
+def reference(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("reference")
+    write_reference.write_reference(folder)
+    return folder
+
+
+@pytest.mark.parametrize("field", _easypbr.fields(), ids=lambda field: field.name)
+def test_every_setting_is_in_the_reference(reference, field):
+    rows = [line for line in (reference / "settings.md").read_text().splitlines() if f"`{field.name}`" in line]
+    assert len(rows) == 1
+    name, default, values, meaning = rows[0].strip("| ").split(" | ")
+    assert meaning == field.doc
+    assert (default == "`auto`") == field.can_be_automatic
+    for choice in field.choices:
+        assert f"`{choice}`" in values
+    assert f"[{field.unit}]" in values or not field.unit
+
+
+def test_defaults_are_what_the_command_line_takes_and_has(reference, tmp_path):
+    """The picture with all defaults of the page written out is the picture without a word."""
+    rows = re.findall(r"^\| `([\w.]+)` \| `([^`]+)` \|", (reference / "settings.md").read_text(), re.MULTILINE)
+    assert len(rows) == len(_easypbr.fields())
+    # "none" stands for an empty text or list, unless it is one of the choices.
+    told = [(name, value) for name, value in rows if value != "none" or _easypbr.field(name).default == "none"]
+    assert all(_easypbr.field(name).default in ("", ()) for name, _ in set(rows) - set(told))
+    easypbr.shapes.teapot(1, 4).save(tmp_path / "mesh.ply")
+    written_out = [part for name, value in told for part in ("--set", f"{name}={value}")]
+    for output, values in (("plain.png", []), ("told.png", written_out)):
+        command = [BINARY, "render", "mesh.ply", "-o", output, *values]
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300)
+        assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "told.png").read_bytes() == (tmp_path / "plain.png").read_bytes()
+
+
+def test_every_public_name_is_in_the_reference(reference):
+    headings = re.findall(r"^### (\w+)$", (reference / "python.md").read_text(), re.MULTILINE)
+    public = [name for name in easypbr.__all__ if name not in ("errors", "shapes")]
+    assert set(public) | set(easypbr.shapes.__all__) == set(headings) - set(write_reference.HELPERS)
+    assert len(headings) == len(set(headings))
+
+
+@pytest.mark.parametrize("name, signature", [
+    ("render", "render(what, out=None, size=(800, 600)"),
+    ("overloads", "Mesh(path: str | os.PathLike)"),
+    ("attribute", "T_parent_mesh: numpy.ndarray"),
+    ("method without self", "clone() -> Mesh"),
+    ("property", "camera: Camera"),
+])
+def test_reference_shows_signatures(reference, name, signature):
+    assert f"- `{signature}" in (reference / "python.md").read_text()
+
+
+def links(page):
+    return LINK.findall(re.sub(r"`[^`\n]*`", "", FENCE.sub("", page.read_text())))
+
+
+@pytest.mark.parametrize("page", [*PAGES, ROOT / "CONTRIBUTING.md"], ids=lambda page: page.name)
+def test_links_lead_somewhere(page):
+    for target in links(page):
+        is_generated = target.startswith("reference/")
+        assert is_generated or "://" in target or (page.parent / target).exists(), f"{page.name}: {target}"
+
+
+def test_site_builds_without_a_warning(reference, tmp_path):
+    shutil.copytree(ROOT / "docs", tmp_path / "docs", ignore=shutil.ignore_patterns("reference"))
+    shutil.copytree(reference, tmp_path / "docs/reference")
+    shutil.copy(ROOT / "mkdocs.yml", tmp_path)
+    build = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet"]
+    done = subprocess.run(build, cwd=tmp_path, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert (tmp_path / "site/reference/settings/index.html").exists()
+
+
+def test_pictures_are_those_that_the_script_draws():
+    drawn = {f"{draw.__name__}.png" for draw in write_pictures.PICTURES}
+    assert drawn == {path.name for path in (ROOT / "docs/images").iterdir()}
+    shown = {pathlib.Path(target).name for page in PAGES for target in links(page)}
+    assert drawn <= shown, "a picture that no page shows"
+    for name in drawn:
+        assert (ROOT / "docs/images" / name).stat().st_size < 700_000
+
+
+@pytest.mark.parametrize("draw", [write_pictures.antialiasing, write_pictures.shading], ids=lambda draw: draw.__name__)
+def test_pictures_can_be_drawn_again(draw):
+    """The quickest ones, compared loosely: another driver rounds otherwise, another look is to be committed."""
+    committed = easypbr.load_image(ROOT / "docs/images" / f"{draw.__name__}.png")
+    assert easypbr.compare_images(draw(), committed)["mean"] < 2
