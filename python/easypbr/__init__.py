@@ -21,6 +21,7 @@ from ._easypbr import (
     compare_images,
     follow,
     load_image,
+    load_scene,
     save_image,
 )
 from .convert import as_mesh
@@ -54,6 +55,7 @@ __all__ = [
     "errors",
     "follow",
     "load_image",
+    "load_scene",
     "render",
     "save_image",
     "shapes",

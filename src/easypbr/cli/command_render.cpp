@@ -147,6 +147,7 @@ class RenderJob {
         lighting.get();
         watch.lap("load");
         for (size_t i = 0; i < loaded.size(); ++i) show(session_.scene(), loaded[i], picture.names[i]);
+        if (!options_.camera.empty()) session_.set_camera(find_camera(loaded, options_.camera));
         for (const auto& [name, light] : look_.lights) session_.scene().set_light(name, light);
     }
 

@@ -5,6 +5,7 @@
 #include <set>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/suggest.h"
 
 namespace easypbr::cli {
 
@@ -32,6 +33,18 @@ std::vector<std::string> unique_names(const std::vector<std::string>& files) {
         names.push_back(name);
     }
     return names;
+}
+
+Camera find_camera(const std::vector<io::LoadedScene>& loaded, const std::string& name_or_number) {
+    std::vector<std::string> names;
+    for (const io::LoadedScene& file : loaded)
+        for (const auto& [name, camera] : file.cameras) {
+            if (name == name_or_number || std::to_string(names.size()) == name_or_number) return camera;
+            names.push_back(name);
+        }
+    if (names.empty()) throw NameError("--camera: there is no camera in the files");
+    throw NameError(fmt::format("--camera: there is no camera '{}'{}: the files have {}", name_or_number,
+                                did_you_mean(name_or_number, names), fmt::join(names, ", ")));
 }
 
 void show(Scene& scene, const io::LoadedScene& loaded, const std::string& name) {

@@ -99,6 +99,9 @@ void declare_camera(CLI::App& command, RenderOptions& options) {
         .add_option("--camera-pose", options.camera_pose,
                     "Text file with the 16 numbers of T_world_cam, row by row")
         ->option_text("FILE");
+    command
+        .add_option("--camera", options.camera, "Camera of the file (glTF) by its name, or its number from 0")
+        ->option_text("NAME|NUMBER");
     command.add_option("--camera-axes", options.camera_axes, "Axes of the pose's camera: opengl or opencv")
         ->check(CLI::IsMember({"opengl", "opencv"}));
     command.add_option("--ortho", options.ortho, "Orthographic picture of this world height")
@@ -206,6 +209,8 @@ void check_usage(const RenderOptions& options) {
         for (const RenderOptions::Shorthand& shorthand : options.shorthands)
             if (shorthand.setting == "camera.position" || shorthand.setting == "camera.target")
                 throw UsageError("render: --camera-pose and " + shorthand.option + " exclude each other");
+    if (!options.camera.empty() && !options.camera_pose.empty())
+        throw UsageError("render: --camera and --camera-pose exclude each other");
     if (options.bit_depth == 16 && options.output != "-" && extension_of(options.output) != "png")
         throw UsageError("render: --bit-depth 16 needs a PNG file as output");
     if (options.output == "-" && (options.batch || !options.layers.empty()))

@@ -19,6 +19,7 @@ struct RenderOptions {
     int bit_depth = 8;
     double crease_deg = 30;
     std::string size, background, ortho;
+    std::string camera;  ///< name or number of a camera in the files
     std::string camera_pose, camera_axes = "opengl";
     std::string settings, save_settings;
     std::vector<std::string> layers;

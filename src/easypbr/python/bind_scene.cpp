@@ -1,7 +1,10 @@
 // Scene, as the Python class of the same name uses it.
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "easypbr/io/mesh_io.h"
 #include "easypbr/python/bindings.h"
 #include "easypbr/scene/primitives.h"
 #include "easypbr/scene/scene.h"
@@ -32,6 +35,14 @@ void bind_scene(nb::module_& module) {
         .def("light_names", &Scene::light_names)
         .def_prop_rw("environment", &Scene::environment,
                      [](Scene& s, const Environment& environment) { s.set_environment(environment); });
+    nb::class_<io::LoadedScene>(module, "LoadedScene", "All that a file holds: mesh, cameras and lights.")
+        .def_ro("mesh", &io::LoadedScene::mesh)
+        .def_ro("cameras", &io::LoadedScene::cameras, "Cameras by name, in world space (glTF).")
+        .def_ro("lights", &io::LoadedScene::lights, "Lights by name, in world space (glTF).");
+    module.def(
+        "load_scene",
+        [](const std::filesystem::path& path) { return released([&] { return io::load_scene(path); }); },
+        nb::arg("path"), "Reads a file with its cameras and lights; Mesh(path) reads the mesh alone.");
     module.def(
         "default_scene", [] { return default_scene(); }, "The scene that is there without being made.");
     module.def("demo_scene", [] { return released([] { return make_demo_scene(); }); });
