@@ -14,13 +14,14 @@ from easypbr import _easypbr
 #: Groups in the order of the page; every public name of the package is in one of them.
 PYTHON_GROUPS = {
     "Drawing": ["render", "Viewer", "Scene", "Settings", "auto", "follow", "Automatic", "Follow"],
-    "Content": ["Mesh", "Material", "Style", "as_mesh", "Light", "Environment", "Camera"],
+    "Content": ["Mesh", "load_scene", "as_mesh", "Material", "Style", "Light", "Environment", "Camera"],
     "Images": ["load_image", "save_image", "compare_images"],
     "Errors": ["Error", "FileError", "FormatError", "ArgumentError", "UnknownNameError", "ContextError"],
 }
 #: Modules with names of their own.
 MODULES = {"shapes": "Shapes"}
-HELPERS = ["Recorder", "Lights", "StudioLight"]
+#: What public functions and attributes return; described below the group of what returns them.
+HELPERS = {"Drawing": ["Recorder", "Lights", "StudioLight"], "Content": ["LoadedScene"]}
 
 SETTINGS_HEAD = """# Settings
 
@@ -145,10 +146,11 @@ def class_section(node) -> list:
     lines = ["", f"### {node.name}", "", doc(node)]
     if bases:
         lines += ["", f"Derives from {' and '.join(f'`{base}`' for base in bases)}."]
-    if made and node.name not in (*HELPERS, "Settings"):
+    if made and node.name not in (*sum(HELPERS.values(), []), "Settings"):
         lines += ["", *(item(node.name + signature(part, "__init__"), doc(part)) for part in made)]
     listed = members(node)
-    return [*lines, *([""] if listed else []), *listed]
+    # One list: a blank line would make some items paragraphs and others not.
+    return [*lines, *([] if lines[-1].startswith("- ") else [""]), *listed]
 
 
 def section(name: str, nodes: list) -> list:
@@ -165,11 +167,8 @@ def python_page(package: pathlib.Path) -> str:
     lines = [PYTHON_HEAD]
     for title, names in PYTHON_GROUPS.items():
         lines += ["", f"## {title}"]
-        for name in names:
+        for name in [*names, *HELPERS.get(title, [])]:
             lines += section(name, found[name])
-        if title == "Drawing":
-            for name in HELPERS:
-                lines += section(name, found[name])
     for module, title in MODULES.items():
         lines += ["", f"## {title}", "", doc(ast.parse((package / f"{module}.py").read_text()))]
         for name in getattr(easypbr, module).__all__:

@@ -1,4 +1,6 @@
 """Code blocks of Markdown pages, and the files that they name."""
+import base64
+import json
 import pathlib
 import re
 
@@ -28,7 +30,25 @@ def write_inputs(folder):
     grain = np.random.default_rng(0).integers(60, 200, (16, 16, 3)).astype(np.uint8)
     easypbr.save_image(grain, folder / "wood.png")
     easypbr.save_image(np.full((4, 4, 3), (128, 128, 255), np.uint8), folder / "normal.png")
+    write_gltf(folder / "scene.gltf")
     (folder / "pose.txt").write_text("1 0 0 0\n0 -1 0 0.2\n0 0 -1 2\n0 0 0 1\n")
+
+
+def write_gltf(path):
+    """A triangle, and a camera named front that looks at it."""
+    data = base64.b64encode(np.array([0, 0, 0, 1, 0, 0, 0, 1, 0], "<f4").tobytes()).decode()
+    positions = {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0] * 3, "max": [1, 1, 0]}
+    path.write_text(json.dumps({
+        "asset": {"version": "2.0"},
+        "scene": 0,
+        "scenes": [{"nodes": [0, 1]}],
+        "nodes": [{"mesh": 0}, {"name": "front", "camera": 0, "translation": [0.3, 0.3, 3]}],
+        "cameras": [{"name": "front", "type": "perspective", "perspective": {"yfov": 0.6, "znear": 0.1}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "accessors": [positions],
+        "bufferViews": [{"buffer": 0, "byteLength": 36}],
+        "buffers": [{"byteLength": 36, "uri": f"data:application/octet-stream;base64,{data}"}],
+    }))
 
 
 def write_stl(path, mesh):

@@ -58,8 +58,16 @@ def test_defaults_are_what_the_command_line_takes_and_has(reference, tmp_path):
 def test_every_public_name_is_in_the_reference(reference):
     headings = re.findall(r"^### (\w+)$", (reference / "python.md").read_text(), re.MULTILINE)
     public = [name for name in easypbr.__all__ if name not in ("errors", "shapes")]
-    assert set(public) | set(easypbr.shapes.__all__) == set(headings) - set(write_reference.HELPERS)
+    assert set(public) | set(easypbr.shapes.__all__) == set(headings) - set(sum(write_reference.HELPERS.values(), []))
     assert len(headings) == len(set(headings))
+
+
+def test_every_option_is_on_the_page_of_the_command_line():
+    text = subprocess.run([BINARY, "render", "--help"], capture_output=True, text=True, check=True).stdout
+    options = set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", text)) - {"--help"}
+    page = (ROOT / "docs/command_line.md").read_text()
+    assert len(options) > 30
+    assert not [option for option in sorted(options) if not re.search(rf"{option}(?![\w-])", page)]
 
 
 @pytest.mark.parametrize("name, signature", [
@@ -108,3 +116,31 @@ def test_pictures_can_be_drawn_again(draw):
     """The quickest ones, compared loosely: another driver rounds otherwise, another look is to be committed."""
     committed = easypbr.load_image(ROOT / "docs/images" / f"{draw.__name__}.png")
     assert easypbr.compare_images(draw(), committed)["mean"] < 2
+
+
+def table_of(page, heading):
+    """First column of the first table below a heading."""
+    section = page.read_text().split(f"\n## {heading}\n")[1].split("\n## ")[0]
+    rows = [line for line in section.splitlines() if line.startswith("|")]
+    return [row.strip("| ").split(" |")[0].strip("`") for row in rows[2:]]
+
+
+def test_architecture_names_every_room():
+    rooms = [room.strip("`") for row in table_of(ROOT / "docs/architecture.md", "Rooms") for room in row.split(", ")]
+    folders = {path.name for path in (ROOT / "src/easypbr").iterdir() if path.is_dir()}
+    assert set(rooms) == folders
+
+
+def test_architecture_gives_a_reason_for_every_dependency():
+    """What the build looks for, under the name that the project itself goes by."""
+    own_names = {"Eigen3": "Eigen", "TBB": "oneTBB", "nlohmann_json": "nlohmann-json", "epoxy": "libepoxy",
+                 "spng": "libspng", "libturbojpeg": "libjpeg-turbo", "ZLIB": "zlib", "GTest": "GoogleTest"}
+    is_tool = {"PkgConfig", "Python"}
+    found = set()
+    for path in [*(ROOT / "cmake").glob("*.cmake"), ROOT / "tests/CMakeLists.txt"]:
+        text = path.read_text()
+        found |= set(re.findall(r"find_package\((\w+)", text)) - is_tool
+        found |= set(re.findall(r"pkg_check_modules\(\w+ REQUIRED IMPORTED_TARGET (\w+)\)", text))
+    reasons = " ".join(table_of(ROOT / "docs/architecture.md", "Dependencies"))
+    assert len(found) >= 12
+    assert not [name for name in found if own_names.get(name, name) not in reasons]
