@@ -90,7 +90,7 @@ class SceneReader {
             document_.text(json, "name", data.name.empty() ? fmt::format("node {}", index) : data.name);
         data.T_parent_mesh = pose_of(json, index);
         const Eigen::Affine3d T_world_node = T_world_parent * data.T_parent_mesh;
-        add_camera(json, data.name, T_world_node);
+        add_camera(json, document_.text(json, "name", ""), data.name, T_world_node);
         add_light(json, data.name, T_world_node);
         for (const size_t child : document_.integers(json, "children"))
             if (auto below = read_node(child, T_world_node, depth + 1)) data.children.push_back(*below);
@@ -124,7 +124,9 @@ class SceneReader {
         return pose;
     }
 
-    void add_camera(const Json& node, const std::string& name, const Eigen::Affine3d& T_world_node) {
+    /// Named after its node, as viewers show it, else after the camera itself.
+    void add_camera(const Json& node, const std::string& node_name, const std::string& fallback,
+                    const Eigen::Affine3d& T_world_node) {
         const auto index = document_.optional_integer(node, "camera");
         if (!index) return;
         const Json& json = document_.item("cameras", *index);
@@ -140,6 +142,7 @@ class SceneReader {
             camera.near = document_.number(*box, "znear", camera.near);
             camera.far = document_.number(*box, "zfar", camera.far);
         }
+        const std::string name = node_name.empty() ? document_.text(json, "name", fallback) : node_name;
         out_.cameras.emplace(free_name(out_.cameras, name), camera);
     }
 
