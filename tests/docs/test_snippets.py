@@ -19,11 +19,6 @@ README = ROOT / "README.md"
 CPP_EXAMPLES = ROOT / "examples/cpp"
 
 
-@pytest.fixture(autouse=True)
-def own_cache(tmp_path_factory, monkeypatch):
-    monkeypatch.setenv("EASYPBR_CACHE_DIR", str(tmp_path_factory.getbasetemp() / "cache"))
-
-
 @pytest.fixture
 def work(tmp_path):
     folder = tmp_path / "work"

@@ -1,0 +1,7 @@
+"""A cache of our own, so that tests neither use nor fill the user's."""
+import pytest
+
+
+@pytest.fixture(autouse=True)
+def own_cache(tmp_path_factory, monkeypatch):
+    monkeypatch.setenv("EASYPBR_CACHE_DIR", str(tmp_path_factory.getbasetemp() / "cache"))
