@@ -24,6 +24,10 @@ layout(location = 3) out float o_depth;
 #ifdef EMISSION
 layout(location = 4) out vec4 o_emission;
 #endif
+#ifdef OBJECT_ID
+layout(location = 5) out uint o_id;
+uniform int u_object_id;
+#endif
 
 uniform vec4 u_base_color;  // linear, opacity in w
 uniform vec4 u_surface;     // metallic, roughness, occlusion strength, alpha cutoff
@@ -146,6 +150,9 @@ void main() {
     o_normal = oct_encode(shading_normal()) * 0.5 + 0.5;
     o_material = vec4(metallic, roughness, occlusion, u_emissive.w);
     o_depth = gl_FragCoord.z;
+#ifdef OBJECT_ID
+    o_id = uint(u_object_id);
+#endif
 #ifdef EMISSION
     vec3 emission = u_emissive.rgb;
 #ifdef EMISSIVE_TEXTURE

@@ -1,6 +1,7 @@
 """view.lights: the three-point lights, which are settings, and the scene's own lights, by name."""
 
 from . import _easypbr
+from .errors import ArgumentError
 
 _STUDIO = ("key", "fill", "rim")
 
@@ -30,7 +31,8 @@ class SceneLight:
 
 
 class StudioLight:
-    """The key, fill or rim light: the settings lights.<name>.*, with a linear colour as all lights have it."""
+    """The key, fill or rim light: the settings lights.<name>.*, with a linear colour as all lights have it. Reading an
+    automatic value gives what is inferred; assigning pins it."""
 
     def __init__(self, handle, name: str):
         object.__setattr__(self, "_handle", handle)
@@ -45,7 +47,18 @@ class StudioLight:
 
     def __getattr__(self, name: str):
         value = self._handle.get_setting(self._full(name))
+        if isinstance(value, (_easypbr.Automatic, _easypbr.Follow)):
+            # What was inferred, so that `intensity *= 2` means what it says.
+            known = getattr(value, "value", None)
+            value = known if known is not None else self._inferred(name, value)
         return tuple(map(_linear, value)) if name == "color" else value
+
+    def _inferred(self, name: str, automatic):
+        """What the next picture would have; the setting itself while there is nothing to infer it from."""
+        try:
+            return self._handle.resolved_setting(self._full(name))
+        except ArgumentError:
+            return automatic
 
     def __setattr__(self, name: str, value):
         if name == "color" and not isinstance(value, str):

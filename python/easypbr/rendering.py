@@ -23,8 +23,8 @@ _SHORT_NAMES = {
 def render(
     what,
     out=None,
-    size=(800, 600),
-    samples: int = 16,
+    size=None,
+    samples: int | None = None,
     environment=None,
     hdr: bool = False,
     camera: "_easypbr.Camera | None" = None,
@@ -34,7 +34,8 @@ def render(
 ) -> np.ndarray:
     """A picture of `what`: a path, a Mesh, a Scene, (V, F), a dict of arrays, or a trimesh, Open3D or PyVista object.
 
-    Returns height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`. `out` writes the picture to a
+    Returns height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`. `size` is (800, 600) and `samples`
+    16 unless they or `settings` say otherwise. `out` writes the picture to a
     file too. `environment`: a path, an array or an Environment. `background`: a colour, an image file, "environment",
     "blur" or "transparent". Other values are settings by the last part of their name (roughness=0.3, exposure=2) or,
     through `settings`, a dict or file of them.

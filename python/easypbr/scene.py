@@ -1,6 +1,7 @@
 """Scene: named meshes and lights and an environment."""
 
 import functools
+import os
 import types
 from collections.abc import Callable
 from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
@@ -47,9 +48,17 @@ class Scene:
 
     @_OnDefaultScene
     def show(self, what, name: str | None = None) -> "_easypbr.Mesh":
-        """Shows a mesh (or whatever as_mesh() takes) under a name; the same name again replaces it."""
+        """Shows a mesh (or whatever as_mesh() takes) under a name; the same name again replaces it. Of a path, the
+        file's lights are added as "name/light" too."""
+        lights = {}
+        if isinstance(what, (str, os.PathLike)):
+            loaded = _easypbr.load_scene(what)
+            what, lights = loaded.mesh, loaded.lights
         mesh = as_mesh(what)
-        self._handle.show(mesh, mesh.name or "mesh" if name is None else name)
+        name = mesh.name or "mesh" if name is None else name
+        self._handle.show(mesh, name)
+        for light_name, light in lights.items():
+            self._handle.set_light(f"{name}/{light_name}", light)
         return mesh
 
     @_OnDefaultScene

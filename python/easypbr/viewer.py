@@ -50,6 +50,10 @@ class Viewer:
     def settings(self, values):
         self._settings.update(values)
 
+    def object_names(self) -> list[str]:
+        """Names of what is visible; the layer "id" holds 1 + the place in this list."""
+        return self._handle.object_names()
+
     @property
     def lights(self) -> Lights:
         """view.lights["key" | "fill" | "rim"] and the lights that were added, by name."""

@@ -24,24 +24,37 @@ Encoding encoding_for(const fs::path& path, bool deep) {
     return deep && extension == "png" ? Encoding::srgb16 : Encoding::srgb8;
 }
 
+void check_picture(const fs::path& path, const Settings& settings) {
+    encoding_for(path);
+    const std::string extension = extension_of(path);
+    if (settings.background.mode == BackgroundMode::transparent &&
+        (extension == "jpg" || extension == "jpeg"))
+        throw ArgumentError(
+            fmt::format("cannot write {}: JPEG has no transparency; write a PNG or EXR, or choose another "
+                        "background",
+                        path.string()));
+    check_writable(path);
+}
+
+fs::path layer_path(const fs::path& picture, const std::string& layer) {
+    return picture.parent_path() / fmt::format("{}_{}.exr", picture.stem().string(), layer);
+}
+
 fs::path render_to_file(Session& session, const fs::path& path, const PictureOptions& options, bool deep) {
     PictureOptions picture = options;
     picture.encoding = encoding_for(path, deep);
-    check_writable(path);
+    check_picture(path, session.settings());
     io::save_image(session.render(picture), path);
     return path;
 }
 
 std::vector<fs::path> layers_to_files(Session& session, const fs::path& path,
                                       const std::vector<std::string>& layers, std::optional<Vec2i> size) {
-    const auto file_of = [&](const std::string& layer) {
-        return path.parent_path() / fmt::format("{}_{}.exr", path.stem().string(), layer);
-    };
-    for (const std::string& layer : layers) check_writable(file_of(layer));
+    for (const std::string& layer : layers) check_writable(layer_path(path, layer));
     std::vector<fs::path> written;
     for (const auto& [layer, image] : session.render_layers(layers, size)) {
-        io::save_image(image, file_of(layer));
-        written.push_back(file_of(layer));
+        io::save_image(image, layer_path(path, layer));
+        written.push_back(layer_path(path, layer));
     }
     return written;
 }
@@ -51,13 +64,17 @@ void save_settings(const Session& session, const std::vector<fs::path>& files, c
     file.settings = session.settings();
     const Scene& scene = session.scene();
     for (const std::string& name : scene.light_names()) file.lights[name] = scene.light(name);
-    for (const fs::path& source : files) file.files[source.string()] = io::hash_file(source);
-    const Settings& s = file.settings;
-    for (const std::string* named :
+    for (const fs::path& source : files) file.files[fs::absolute(source).string()] = io::hash_file(source);
+    // Absolute, so that the picture can be made again from any folder.
+    Settings& s = file.settings;
+    for (std::string* named :
          {&s.environment.file, &s.background.image, &s.material.base_color_texture,
           &s.material.metallic_texture, &s.material.roughness_texture, &s.material.normal_texture,
           &s.material.occlusion_texture, &s.material.emissive_texture, &s.material.opacity_texture})
-        if (!named->empty()) file.files[*named] = io::hash_file(*named);
+        if (!named->empty()) {
+            *named = fs::absolute(*named).string();
+            file.files[*named] = io::hash_file(*named);
+        }
     io::save_settings(file, path);
 }
 

@@ -13,6 +13,13 @@ namespace easypbr::app {
 /// Throws ArgumentError for an extension that cannot be written.
 Encoding encoding_for(const std::filesystem::path& path, bool deep = false);
 
+/// Throws, before anything is drawn, when the picture cannot be written there: FileError, or ArgumentError
+/// for an unknown extension and for a transparent JPEG.
+void check_picture(const std::filesystem::path& path, const Settings& settings);
+
+/// "OUT_depth.exr" next to "OUT.png".
+std::filesystem::path layer_path(const std::filesystem::path& picture, const std::string& layer);
+
 /// Draws and writes one picture. The target is checked before anything is drawn; it appears whole or not at
 /// all. Returns the path. Throws FileError, ArgumentError, ContextError.
 std::filesystem::path render_to_file(Session& session, const std::filesystem::path& path,

@@ -34,6 +34,20 @@ void check_size(Vec2i size) {
                                         size.y(), max_image_side));
 }
 
+/// A scene whose objects have vertices only would give an empty picture without a word.
+void require_faces(const SceneSnapshot& scene) {
+    Eigen::Index vertices = 0;
+    for (const auto& object : scene.objects) {
+        if (!object.mesh->F.empty()) return;
+        vertices += object.mesh->V.rows();
+    }
+    if (vertices > 0)
+        throw ArgumentError(
+            fmt::format("nothing to draw: the scene has {} vertices and no faces, and this version does not "
+                        "draw point clouds",
+                        vertices));
+}
+
 struct NamedTexture {
     std::string MaterialSettings::*path;
     Texture Material::*texture;
@@ -136,6 +150,7 @@ Session::Prepared Session::prepare(const PictureOptions& options) {
         const Stopwatch watch(timing_.images);
         prepared.scene = snapshot();
     }
+    require_faces(prepared.scene);
     const Stopwatch watch(timing_.draw);
     prepared.resolved = easypbr::resolve(prepared.scene, settings_, prepared.options.size);
     return prepared;
@@ -182,7 +197,8 @@ std::map<std::string, Image> Session::render_layers(const std::vector<std::strin
                                                     std::optional<Vec2i> size) {
     std::vector<render::Layer> layers;
     for (const std::string& name : names) layers.push_back(render::layer_named(name));
-    const Prepared prepared = prepare({size, 1, Encoding::scene_linear});
+    Prepared prepared = prepare({size, 1, Encoding::scene_linear});
+    prepared.options.ids = std::ranges::find(layers, render::Layer::id) != layers.end();
     render::Renderer& renderer = this->renderer();
     const gl::ContextScope scope(*context_);
     renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
@@ -204,6 +220,12 @@ void Session::latch_from(const Prepared& prepared) {
 void Session::load_environment(const std::filesystem::path& path) {
     environment_ = Environment(path);
     environment_file_ = settings_.environment.file = path.string();
+}
+
+std::vector<std::string> Session::object_names() const {
+    std::vector<std::string> names;
+    for (const auto& object : scene_.snapshot().objects) names.push_back(object.name);
+    return names;
 }
 
 void Session::set_camera(const Camera& camera) {

@@ -56,6 +56,9 @@ class Session {
     std::map<std::string, Image> render_layers(const std::vector<std::string>& names,
                                                std::optional<Vec2i> size = std::nullopt);
 
+    /// Names of what is visible; the layer "id" holds 1 + the place in this list.
+    std::vector<std::string> object_names() const;
+
     /// Draws one frame without reading the picture back, but for its first pixel, which makes the driver
     /// finish: for measuring.
     void draw_frame(const PictureOptions& options = {});

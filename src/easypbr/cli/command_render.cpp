@@ -61,11 +61,9 @@ Look look_of(const RenderOptions& options) {
 }
 
 /// Throws FileError, ArgumentError before anything is loaded or drawn.
-void check_files(const Picture& picture, const Settings& settings) {
-    if (picture.output != "-") {
-        app::encoding_for(picture.output);
-        check_writable(picture.output);
-    }
+void check_files(const Picture& picture, const Settings& settings, const std::vector<std::string>& layers) {
+    if (picture.output != "-") app::check_picture(picture.output, settings);
+    for (const std::string& layer : layers) check_writable(app::layer_path(picture.output, layer));
     if (!picture.save_settings.empty()) check_writable(picture.save_settings);
     for (const std::string& file : picture.files) MappedFile{file};
     const MaterialSettings& m = settings.material;
@@ -94,7 +92,7 @@ class RenderJob {
     int run() {
         const std::vector<Picture> pictures = pictures_of(options_);
         if (!options_.batch) {
-            check_files(pictures.front(), look_.settings);
+            check_files(pictures.front(), look_.settings, options_.layers);
             make(pictures.front());
             return 0;
         }
@@ -107,7 +105,7 @@ class RenderJob {
     /// One file that cannot be drawn must not keep the others from it.
     int try_to_make(const Picture& picture) {
         try {
-            check_files(picture, look_.settings);
+            check_files(picture, look_.settings, options_.layers);
             make(picture);
             return 0;
         } catch (const Error& error) {
@@ -138,7 +136,7 @@ class RenderJob {
 
     /// Reads the files while the GL context is made, for all of it takes long.
     void load(const Picture& picture, Stopwatch& watch) {
-        const io::LoadOptions load_options{.crease_angle_deg = float(options_.crease_deg)};
+        const io::LoadOptions load_options{.crease_angle_deg = look_.settings.style.crease_deg};
         auto loading = std::async(std::launch::async, load_all, picture.files, load_options);
         auto lighting = std::async(std::launch::async, [this] { load_environment(); });
         session_.context_info();

@@ -36,7 +36,8 @@ constexpr ShorthandOption shorthand_options[] = {{"--samples", "image.samples", 
                                                  {"--up", "camera.up", "AXIS"},
                                                  {"--color", "material.color", "COLOR"},
                                                  {"--metallic", "material.metallic", "X"},
-                                                 {"--roughness", "material.roughness", "X"}};
+                                                 {"--roughness", "material.roughness", "X"},
+                                                 {"--crease", "style.crease_deg", "DEG"}};
 
 const std::vector<std::string> texture_names{"base_color", "metallic", "roughness", "normal",
                                              "occlusion",  "emissive", "opacity"};
@@ -83,8 +84,6 @@ void declare_look(CLI::App& command, RenderOptions& options) {
         ->option_text("NAME=FILE");
     command.add_flag("--smooth", options.smooth, "One normal per vertex");
     command.add_flag("--flat", options.flat, "One normal per face");
-    command.add_option("--crease", options.crease_deg, "STL: edges sharper than this angle stay sharp")
-        ->option_text("DEG");
     command.add_option("--set", options.values, "Any setting, for example tonemap.exposure=2")
         ->allow_extra_args(false)
         ->option_text("KEY=VALUE");

@@ -17,7 +17,6 @@ struct RenderOptions {
     bool batch = false, quiet = false, timing = false;
     bool smooth = false, flat = false;
     int bit_depth = 8;
-    double crease_deg = 30;
     std::string size, background, ortho;
     std::string camera;  ///< name or number of a camera in the files
     std::string camera_pose, camera_axes = "opengl";

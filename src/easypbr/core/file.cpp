@@ -83,7 +83,19 @@ void MappedFile::release_until(size_t end) const {
     if (data_ && whole) ::madvise(data_, whole, MADV_DONTNEED);
 }
 
-void write_file(const fs::path& path, std::span<const std::byte> bytes) {
+namespace {
+
+/// Where a file is really written: a link stays a link.
+fs::path real_target(const fs::path& path) {
+    std::error_code ignored;
+    const fs::path real = fs::weakly_canonical(path, ignored);
+    return real.empty() ? path : real;
+}
+
+}  // namespace
+
+void write_file(const fs::path& given, std::span<const std::byte> bytes) {
+    const fs::path path = real_target(given);
     const fs::path beside = temporary_beside(path);
     try {
         const Descriptor file{::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
@@ -104,7 +116,9 @@ void write_file(const fs::path& path, std::string_view text) {
     write_file(path, std::as_bytes(std::span(text.data(), text.size())));
 }
 
-void check_writable(const fs::path& path) {
+void check_writable(const fs::path& given) {
+    const fs::path path = real_target(given);
+    if (fs::exists(path) && ::access(path.c_str(), W_OK) != 0) fail_write(path, errno);
     if (path.filename().empty() || fs::is_directory(path)) fail_write(path, EISDIR);
     const fs::path beside = temporary_beside(path);
     const Descriptor file{::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};

@@ -3,10 +3,20 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
+#include <unistd.h>
 
 #include <algorithm>
 
 namespace easypbr {
+namespace {
+
+/// The thread pool stays behind in the parent when a process is forked: the child works alone.
+bool has_threads() {
+    static const pid_t owner = getpid();
+    return owner == getpid();
+}
+
+}  // namespace
 
 void parallel_chunks(size_t count, size_t grain, const std::function<void(size_t, size_t)>& body) {
     grain = std::max<size_t>(grain, 1);
@@ -15,12 +25,19 @@ void parallel_chunks(size_t count, size_t grain, const std::function<void(size_t
         if (count) body(0, count);
         return;
     }
+    if (!has_threads()) {
+        for (size_t chunk = 0; chunk < chunks; ++chunk)
+            body(chunk * grain, std::min(count, (chunk + 1) * grain));
+        return;
+    }
     tbb::parallel_for(size_t(0), chunks,
                       [&](size_t chunk) { body(chunk * grain, std::min(count, (chunk + 1) * grain)); });
 }
 
 void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second) {
-    tbb::parallel_invoke(first, second);
+    if (has_threads()) return tbb::parallel_invoke(first, second);
+    first();
+    second();
 }
 
 int thread_count() {

@@ -128,6 +128,11 @@ std::string gl_string(GLenum name) {
 }  // namespace
 
 std::unique_ptr<Context> Context::create() {
+    // Drivers keep threads and locks of their own, which a forked child does not have.
+    static const pid_t first_process = getpid();
+    if (first_process != getpid())
+        throw ContextError(
+            "this process was forked from one that had already drawn: start workers with 'spawn' instead");
     require_libraries();
     std::unique_ptr<Context> made(new Context);
     made->deletions_ = std::make_shared<DeletionQueue>();

@@ -152,6 +152,11 @@ void Framebuffer::clear_color(unsigned index, const float (&rgba)[4]) const {
     glClearNamedFramebufferfv(object_.id(), GL_COLOR, GLint(index), rgba);
 }
 
+void Framebuffer::clear_integer(unsigned index, unsigned value) const {
+    const GLuint values[4] = {value, value, value, value};
+    glClearNamedFramebufferuiv(object_.id(), GL_COLOR, GLint(index), values);
+}
+
 void Framebuffer::clear_depth(float depth) const {
     glClearNamedFramebufferfv(object_.id(), GL_DEPTH, 0, &depth);
 }

@@ -114,7 +114,7 @@ void describe(MeshBuffers& buffers) {
 
 MeshBuffers make_buffers(const MeshData& mesh, bool with_tangents) {
     MeshBuffers buffers;
-    const Array3f N = mesh.N.empty() ? vertex_normals(mesh.V, mesh.F) : mesh.N;
+    const Array3f N = mesh.N.empty() ? smooth_normals(mesh) : mesh.N;
     buffers.normals_agree = mesh.N.empty() || normals_agree_with_winding(mesh.V, N, mesh.F);
     buffers.closed_outward = is_closed_outward(mesh.V, mesh.F);
     SplitMesh split;

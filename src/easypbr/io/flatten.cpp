@@ -47,7 +47,7 @@ A joined(const A& a, Eigen::Index a_rows, const A& b, Eigen::Index b_rows, typen
 }
 
 void fill_normals(MeshData& mesh) {
-    if (mesh.N.empty() && !mesh.V.empty()) mesh.N = vertex_normals(mesh.V, mesh.F);
+    if (mesh.N.empty() && !mesh.V.empty()) mesh.N = smooth_normals(mesh);
 }
 
 /// Parts that cover all faces also where the mesh has none.

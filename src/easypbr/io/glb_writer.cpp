@@ -8,6 +8,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/glb_textures.h"
+#include "easypbr/scene/normals.h"
 
 namespace easypbr::io {
 namespace {
@@ -93,7 +94,10 @@ class GlbBuilder {
         const Vec3 least = data.V.colwise().minCoeff(), most = data.V.colwise().maxCoeff();
         position["min"] = {least[0], least[1], least[2]};
         position["max"] = {most[0], most[1], most[2]};
-        if (!data.N.empty()) attributes["NORMAL"] = add_floats(data.N.data(), size_t(data.N.rows()), 3);
+        // A reader shades a file without normals flat.
+        const bool smooth = data.N.empty() && !data.F.empty() && !data.style.flat.value_or(false);
+        const Array3f N = smooth ? smooth_normals(data) : data.N;
+        if (!N.empty()) attributes["NORMAL"] = add_floats(N.data(), size_t(N.rows()), 3);
         if (!data.UV.empty()) {
             Array2f::Dense UV = data.UV;
             UV.col(1).array() = 1 - UV.col(1).array();

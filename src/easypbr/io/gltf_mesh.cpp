@@ -214,7 +214,11 @@ class MeshBuilder {
 
     void compute_missing_normals() {
         const auto has_normals = [](const Block& block) { return block.N.rows() > 0; };
-        if (std::none_of(blocks_.begin(), blocks_.end(), has_normals)) return;
+        if (std::none_of(blocks_.begin(), blocks_.end(), has_normals)) {
+            // Section 3.7.2.1 of the specification: without normals, flat ones.
+            out_.style.flat = true;
+            return;
+        }
         for (Block& block : blocks_)
             if (!has_normals(block))
                 block.N =

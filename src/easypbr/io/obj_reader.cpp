@@ -315,7 +315,7 @@ class ObjReader {
     void fill_missing_normals() {
         if (N_.size() == 0) return;
         if ((N_.rowwise().squaredNorm().array() == 0).any()) {
-            const Array3f computed = vertex_normals(mesh_.V, mesh_.F);
+            const Array3f computed = smooth_normals(mesh_);
             for (Eigen::Index i = 0; i < N_.rows(); ++i)
                 if (N_.row(i).isZero(0)) N_.row(i) = computed.row(i);
         }

@@ -132,6 +132,10 @@ void bind_pictures(ViewerClass& viewer) {
         .def("record", record, nb::arg("path"), nb::arg("size").none() = nb::none(),
              nb::arg("samples").none() = nb::none(), nb::arg("deep") = false)
         .def("layers", layers, nb::arg("names"), nb::arg("size").none() = nb::none())
+        .def("object_names",
+             [](SharedViewer& self) {
+                 return self.run([](Viewer& viewer) { return viewer.session().object_names(); });
+             })
         .def("timing", timing)
         .def("refit", [](SharedViewer& self) { self.run([](Viewer& viewer) { viewer.refit(); }); });
 }

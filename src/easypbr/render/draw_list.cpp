@@ -19,10 +19,11 @@ Material material_of(const MeshData& mesh, const MeshPart& part) {
 
 Material overridden(const Material& material, const MaterialSettings& settings, const Material& textures) {
     Material m = material;
-    if (settings.color.value()) m.base_color = linear_from_srgb(*settings.color);
-    if (settings.metallic.value()) m.metallic = *settings.metallic;
-    if (settings.roughness.value()) m.roughness = *settings.roughness;
-    if (settings.emissive.value()) m.emissive = linear_from_srgb(*settings.emissive);
+    // A value from outside stands for the whole: the material's own map would multiply it away.
+    if (settings.color.value()) m.base_color = linear_from_srgb(*settings.color), m.base_color_texture = {};
+    if (settings.metallic.value()) m.metallic = *settings.metallic, m.metallic_texture = {};
+    if (settings.roughness.value()) m.roughness = *settings.roughness, m.roughness_texture = {};
+    if (settings.emissive.value()) m.emissive = linear_from_srgb(*settings.emissive), m.emissive_texture = {};
     // A texture from outside stands for the whole value unless a factor is given beside it.
     const auto replace = [](Texture& own, const Texture& given, auto&& neutral_factor) {
         if (!given) return;

@@ -21,6 +21,7 @@ struct Frame {
     Vec2i size{0, 0};
     int sample_index = 0;
     int sample_count = 1;
+    bool with_ids = false;
     Mat4d clip_from_view = Mat4d::Identity();  ///< jittered
     PixelRect covered;                         ///< all geometry is inside
 

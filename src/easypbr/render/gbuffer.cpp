@@ -15,4 +15,10 @@ GBuffer::GBuffer(Vec2i size) {
     lit = gl::Framebuffer({&radiance}, &depth_test);
 }
 
+void GBuffer::add_ids() {
+    if (id) return;
+    id = gl::Texture(gl::Format::r32ui, albedo.width(), albedo.height());
+    surface_ids = gl::Framebuffer({&albedo, &normal, &material, &depth, &radiance, &id}, &depth_test);
+}
+
 }  // namespace easypbr::render

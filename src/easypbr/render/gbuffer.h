@@ -19,12 +19,18 @@ struct GBuffer {
     gl::Texture
         radiance;  ///< RGBA32F: linear radiance, premultiplied by a: coverage. Emission until it is lit
 
+    gl::Texture
+        id;  ///< R32UI, when asked for: 1 + place of the object in the snapshot, 0 where there is nothing
+
     gl::Framebuffer surface;           ///< albedo, normal, material, depth
     gl::Framebuffer surface_emission;  ///< the same and radiance
+    gl::Framebuffer surface_ids;       ///< the same and id; empty until add_ids()
     gl::Framebuffer lit;               ///< radiance with the depth test
 
     GBuffer() = default;
     explicit GBuffer(Vec2i size);
+    /// Makes the id target, if it is not there.
+    void add_ids();
     Vec2i size() const { return {albedo.width(), albedo.height()}; }
 };
 

@@ -66,9 +66,12 @@ void set_culling(bool cull, bool mirrored) {
 }  // namespace
 
 void GeometryPass::draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets) {
-    const bool emission = std::ranges::any_of(items, &DrawItem::emits);
-    const gl::Framebuffer& framebuffer = emission ? targets.surface_emission : targets.surface;
+    const bool emission = frame.with_ids || std::ranges::any_of(items, &DrawItem::emits);
+    const gl::Framebuffer& framebuffer = frame.with_ids ? targets.surface_ids
+                                         : emission     ? targets.surface_emission
+                                                        : targets.surface;
     framebuffer.bind();
+    if (frame.with_ids) framebuffer.clear_integer(5, 0);
     framebuffer.allow_depth_writes();
     const float zero[4] = {0, 0, 0, 0};
     framebuffer.clear_color(3, zero);
@@ -104,6 +107,7 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     if (item.flat) defines.emplace_back("FLAT");
     if (item.two_sided) defines.emplace_back("TWO_SIDED");
     if (emission) defines.emplace_back("EMISSION");
+    if (frame.with_ids) defines.emplace_back("OBJECT_ID");
     if (m.alpha_mode == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
     if (m.alpha_mode == AlphaMode::blend) defines.emplace_back("ALPHA_BLEND");
     if (with_uv)
@@ -125,6 +129,7 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     program.set("u_surface", Vec4(m.metallic, m.roughness, m.occlusion_strength, m.alpha_cutoff));
     program.set("u_emissive", Vec4(m.emissive.x(), m.emissive.y(), m.emissive.z(), m.unlit ? 1.0f : 0.0f));
     program.set("u_normal_scale", m.normal_scale);
+    program.set("u_object_id", int(item.object - frame.scene->objects.data()) + 1);
     program.set("u_sample_index", float(frame.sample_index));
     // Jittered frames see finer detail together than one alone: a level less of blur from four samples on.
     program.set("u_lod_bias", frame.sample_count >= 4 ? -1.0f : 0.0f);

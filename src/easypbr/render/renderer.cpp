@@ -40,8 +40,8 @@ Vec3 oct_decode(float x, float y) {
 }  // namespace
 
 const std::vector<std::string>& layer_names() {
-    static const std::vector<std::string> names = {"albedo",    "normal",   "depth",
-                                                   "roughness", "metallic", "occlusion"};
+    static const std::vector<std::string> names = {"albedo",   "normal",    "depth", "roughness",
+                                                   "metallic", "occlusion", "id"};
     return names;
 }
 
@@ -92,6 +92,8 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     frame.resolved = &resolved;
     frame.size = options.size;
     frame.sample_count = options.samples;
+    frame.with_ids = options.ids;
+    if (options.ids) targets_.add_ids();
     for (frame.sample_index = 0; frame.sample_index < options.samples; ++frame.sample_index) {
         draw_frame(frame, items);
         if (options.samples > 1) run("accumulate", [&] { output_.accumulate(frame, targets_); });
@@ -117,8 +119,8 @@ const Box3d& Renderer::bounds_of(const SceneSnapshot& scene) {
 }
 
 void Renderer::draw_geometry(const Frame& frame, const std::vector<DrawItem>& items) {
-    const bool native =
-        native_geometry_ && gl::Context::current().info().software && SoftwareGeometryPass::handles(items);
+    const bool native = native_geometry_ && !frame.with_ids && gl::Context::current().info().software &&
+                        SoftwareGeometryPass::handles(items);
     if (!native || !software_geometry_.draw(frame, items, targets_)) geometry_.draw(frame, items, targets_);
 }
 
@@ -185,6 +187,10 @@ Image Renderer::read_layer(Layer layer) const {
                 oct_decode(float(texels[2 * i]) / 32767.5f - 1, float(texels[2 * i + 1]) / 32767.5f - 1);
             std::copy_n(n.data(), 3, to + 3 * i);
         });
+    } else if (layer == Layer::id) {
+        if (!targets_.id) throw ArgumentError("layer id: the last picture was drawn without ids");
+        const auto texels = read<uint32_t>(targets_.surface_ids, 5, gl::Format::r32ui);
+        for_each_covered([&](size_t i) { to[i] = float(texels[i]); });
     } else {
         const size_t channel = layer == Layer::metallic ? 0 : layer == Layer::roughness ? 1 : 2;
         const auto texels = read<uint8_t>(targets_.surface, 2, gl::Format::rgba8);

@@ -22,7 +22,8 @@ enum class Layer {
     depth,      ///< one channel f32, distance along the optical axis, 0 where there is nothing
     roughness,  ///< one channel f32
     metallic,   ///< one channel f32
-    occlusion   ///< one channel f32, the material's
+    occlusion,  ///< one channel f32, the material's
+    id          ///< one channel f32, 1 + place of the object in the snapshot, 0 where there is nothing; exact
 };
 
 /// "albedo", "normal", ... Throws NameError with the nearest name.
@@ -33,6 +34,7 @@ struct DrawOptions {
     Vec2i size{800, 600};
     int samples = 1;
     Encoding encoding = Encoding::srgb8;
+    bool ids = false;  ///< fill the id target too
 };
 
 /// Images that the settings name, loaded by the caller.

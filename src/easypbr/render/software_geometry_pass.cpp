@@ -133,7 +133,7 @@ const SoftwareGeometryPass::Knowledge& SoftwareGeometryPass::knowledge_of(const 
     Knowledge& known = knowledge_[{mesh.V.revision(), mesh.N.revision(), mesh.F.revision()}];
     known.used = true;
     if (known.N.empty()) {
-        known.N = mesh.N.empty() ? vertex_normals(mesh.V, mesh.F) : mesh.N;
+        known.N = mesh.N.empty() ? smooth_normals(mesh) : mesh.N;
         known.normals_agree = mesh.N.empty() || gpu::normals_agree_with_winding(mesh.V, known.N, mesh.F);
     }
     // Finding out takes longer than drawing one frame and halves all later ones.

@@ -251,6 +251,10 @@ void add_overrides(Table& table) {
             "Image file for the opacity of every material.");
 
     const auto style = [](auto member) { return at(&Settings::style, member); };
+    table.push_back(
+        make("style.crease_deg", style(&StyleSettings::crease_deg),
+             "Angle between faces beyond which an STL file keeps an edge, when the command line reads it.",
+             "degrees", {0, 180}));
     table.push_back(make("style.flat", style(&StyleSettings::flat),
                          "One normal per face on every object; automatic: the object's own choice."));
     table.push_back(

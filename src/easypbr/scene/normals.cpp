@@ -12,6 +12,8 @@
 
 namespace easypbr {
 
+constexpr size_t normals_grain = 1 << 15;
+
 namespace {
 
 constexpr int lanes = 16;
@@ -207,6 +209,21 @@ Array3f face_normals(const Array3f& V, const Array3i& F) {
         const Vec3d origin = corner(0);
         N.row(Eigen::Index(f)) = direction_or_z((corner(1) - origin).cross(corner(2) - origin)).transpose();
     });
+    return N;
+}
+
+Array3f smooth_normals(const MeshData& mesh) {
+    const Array1i& source = mesh.source_vertex;
+    if (source.empty()) return vertex_normals(mesh.V, mesh.F);
+    const auto count = size_t(mesh.V.rows());
+    Array3f::Dense V = Array3f::Dense::Zero(source.maxCoeff() + 1, 3);
+    for (size_t i = 0; i < count; ++i) V.row(source[Eigen::Index(i)]) = mesh.V.row(Eigen::Index(i));
+    Array3i::Dense F(mesh.F.rows(), 3);
+    parallel_for(size_t(F.size()), normals_grain, [&](size_t i) { F.data()[i] = source[mesh.F.data()[i]]; });
+    const Array3f united = vertex_normals(Array3f(std::move(V)), Array3i(std::move(F)));
+    Array3f::Dense N(mesh.V.rows(), 3);
+    parallel_for(count, normals_grain,
+                 [&](size_t i) { N.row(Eigen::Index(i)) = united.row(source[Eigen::Index(i)]); });
     return N;
 }
 

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "easypbr/scene/array.h"
+#include "easypbr/scene/mesh.h"
 
 namespace easypbr {
 
@@ -11,6 +12,10 @@ namespace easypbr {
 /// angle. Faces without area count nothing; a vertex without any gets (0, 0, 1). The result does not depend
 /// on the number of threads, and scaling V by a power of two leaves it the same bit for bit.
 Array3f vertex_normals(const Array3f& V, const Array3i& F);
+
+/// vertex_normals() of a mesh: vertices that were split from one (source_vertex), as at seams of texture
+/// coordinates, count as one and get the same normal.
+Array3f smooth_normals(const MeshData& mesh);
 
 /// Unit normals of faces (m x 3); (0, 0, 1) where a face has no area.
 Array3f face_normals(const Array3f& V, const Array3i& F);

@@ -83,7 +83,8 @@ void release(Settings& settings) {
 
 Vec3d parse_up(const std::string& up) {
     const bool has_sign = !up.empty() && (up[0] == '+' || up[0] == '-');
-    const std::string axis = has_sign ? up.substr(1) : up;
+    std::string axis = has_sign ? up.substr(1) : up;
+    for (char& letter : axis) letter = char(std::tolower(static_cast<unsigned char>(letter)));
     const double sign = has_sign && up[0] == '-' ? -1 : 1;
     if (axis == "x") return Vec3d(sign, 0, 0);
     if (axis == "y") return Vec3d(0, sign, 0);

@@ -89,6 +89,7 @@ struct MaterialSettings {
 
 /// Overrides of every object's style; automatic: the object's own value.
 struct StyleSettings {
+    float crease_deg = 30;
     Auto<bool> flat;
     Auto<bool> two_sided;
 };
