@@ -1,6 +1,7 @@
 // Milliseconds per frame on an orbit, as peer_vtk.py measures them: 3 degrees a frame, each frame finished by
 // reading a pixel back. Prints one JSON line. usage: bench_frames MESH FRAMES ENVIRONMENT WIDTHxHEIGHT
-// [group.name=value]...
+// [--driver] [group.name=value]...
+// --driver: OpenGL's driver rasterises all triangles, also where there is no GPU.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -65,6 +66,7 @@ int measure(int argc, char** argv) {
     for (int i = 5; i < argc; ++i) {
         const std::string option = argv[i];
         const size_t equals = option.find('=');
+        if (option == "--driver") session.allow_native_geometry(false);
         if (equals != std::string::npos)
             set_from_text(settings, option.substr(0, equals), option.substr(equals + 1));
     }

@@ -69,7 +69,7 @@ const std::vector<BadFile> bad_files{
     {"nothing.obj", "# nothing\n", "no vertices"},
     {"short.obj", "v 0 0 0\nv 1 2\n", "short.obj:2"},
     {"zero.obj", square + "f 0 1 2\n", "index 0"},
-    {"range.obj", square + "f 1 2 5\n", "index 4"},
+    {"range.obj", square + "f 1 2 5\n", "index 5, expected 1 to 4"},
     {"before.obj", square + "f -5 1 2\n", "a face"},
     {"uv.obj", square + "vt 0 0\nf 1/1 2/2 3/1\n", "texture coordinates"},
     {"normal.obj", square + "vn 0 0 1\nf 1//1 2//-2 3//1\n", "normals"},

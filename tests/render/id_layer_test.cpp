@@ -28,7 +28,8 @@ TEST(IdLayer, NamesEveryPixel) {
     ASSERT_EQ(names.size(), 3u);
     std::map<std::string, int> pixels;
     for (const float id : ids.pixels<float>()) ++pixels[id == 0 ? "" : names.at(size_t(id) - 1)];
-    // 25 pixels to a unit; pixel centres are at halves, edges at multiples of 2.5: 25 x 25, and 10 x 10 of the child.
+    // 25 pixels to a unit; pixel centres are at halves, edges at multiples of 2.5: 25 x 25, and 10 x 10 of
+    // the child.
     EXPECT_EQ(pixels[names[0]], 625);
     EXPECT_EQ(pixels[names[2]], 100);
     EXPECT_EQ(pixels[names[1]], 525);

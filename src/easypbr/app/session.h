@@ -86,6 +86,9 @@ class Session {
 
     const Timing& timing() const { return timing_; }
 
+    /// See render::Renderer: false leaves all triangles to the driver.
+    void allow_native_geometry(bool allow) { renderer().allow_native_geometry(allow); }
+
     /// Milliseconds of each pass of a frame that draw_frame() draws now, each pass finished before the next
     /// begins.
     std::vector<std::pair<std::string, double>> measure_passes(const PictureOptions& options = {});

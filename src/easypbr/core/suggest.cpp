@@ -32,7 +32,9 @@ std::string nearest(std::string_view wrong, std::span<const std::string> candida
         const size_t distance = edit_distance(wrong, candidate);
         if (!best || distance < best_distance) best = &candidate, best_distance = distance;
     }
-    if (!best || best_distance > std::max<size_t>(1, best->size() / 3)) return {};
+    // A name of which no letter is right is no hint.
+    if (!best || best_distance > std::max<size_t>(1, best->size() / 3) || best_distance >= best->size())
+        return {};
     return *best;
 }
 

@@ -24,8 +24,20 @@ struct Candidate {
     EGLDisplay display = EGL_NO_DISPLAY;
 };
 
+/// The name of an EGL error code, for people who look it up.
+const char* egl_error_name(EGLint code) {
+    constexpr const char* names[] = {"EGL_SUCCESS",       "EGL_NOT_INITIALIZED",     "EGL_BAD_ACCESS",
+                                     "EGL_BAD_ALLOC",     "EGL_BAD_ATTRIBUTE",       "EGL_BAD_CONFIG",
+                                     "EGL_BAD_CONTEXT",   "EGL_BAD_CURRENT_SURFACE", "EGL_BAD_DISPLAY",
+                                     "EGL_BAD_MATCH",     "EGL_BAD_NATIVE_PIXMAP",   "EGL_BAD_NATIVE_WINDOW",
+                                     "EGL_BAD_PARAMETER", "EGL_BAD_SURFACE",         "EGL_CONTEXT_LOST"};
+    const int index = code - EGL_SUCCESS;
+    return index >= 0 && index < int(std::size(names)) ? names[index] : "an unknown error";
+}
+
 std::string egl_error(const char* call) {
-    return fmt::format("{} failed with EGL error 0x{:04x}", call, eglGetError());
+    const EGLint code = eglGetError();
+    return fmt::format("{} failed: {} (0x{:04x})", call, egl_error_name(code), code);
 }
 
 bool has_extension(const char* list, const char* name) {

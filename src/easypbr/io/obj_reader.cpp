@@ -226,8 +226,8 @@ class ObjReader {
     void check() {
         const size_t count = size_t(V_.rows());
         check_positions(source_, V_);
-        check_indices(source_, {faces_.values.data(), faces_.value_count()}, count, "a face");
-        check_indices(source_, {E_.data(), size_t(E_.size())}, count, "a line");
+        check_indices(source_, {faces_.values.data(), faces_.value_count()}, count, "a face", 1);
+        check_indices(source_, {E_.data(), size_t(E_.size())}, count, "a line", 1);
         check_attribute(obj_uv, size_t(uv_.rows()), "texture coordinates");
         check_attribute(obj_normal, size_t(normals_.rows()), "normals");
         tidy_colors(C_);

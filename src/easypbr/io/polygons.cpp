@@ -63,7 +63,7 @@ Array3i view_as_triangles(Polygons&& polygons) {
 }  // namespace
 
 void check_indices(const Source& source, std::span<const int32_t> indices, size_t count,
-                   std::string_view what) {
+                   std::string_view what, int base) {
     std::atomic<uint32_t> largest{0};
     parallel_chunks(indices.size(), grain * 4, [&](size_t begin, size_t end) {
         uint32_t maximum = 0;
@@ -75,8 +75,8 @@ void check_indices(const Source& source, std::span<const int32_t> indices, size_
     if (indices.empty() || largest < count) return;
     const auto bad =
         std::find_if(indices.begin(), indices.end(), [&](int32_t i) { return uint32_t(i) >= count; });
-    fail(source, fmt::format("{} has index {}, expected 0 to {} ({} vertices)", what, *bad,
-                             int64_t(count) - 1, count));
+    fail(source, fmt::format("{} has index {}, expected {} to {} ({} vertices)", what, int64_t(*bad) + base,
+                             base, int64_t(count) - 1 + base, count));
 }
 
 void check_positions(const Source& source, const Array3f::Dense& V) {

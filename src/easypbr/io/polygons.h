@@ -27,9 +27,9 @@ struct List {
 /// A row of vertex indices per polygon.
 using Polygons = List<int32_t>;
 
-/// Throws FormatError unless all indices are in [0, count).
+/// Throws FormatError unless all indices are in [0, count). The message counts from `base`, as the file does.
 void check_indices(const Source& source, std::span<const int32_t> indices, size_t count,
-                   std::string_view what);
+                   std::string_view what, int base = 0);
 
 /// Throws FormatError, naming the first one, unless all positions are finite.
 void check_positions(const Source& source, const Array3f::Dense& V);
