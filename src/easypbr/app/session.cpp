@@ -157,17 +157,10 @@ Session::Prepared Session::prepare(const PictureOptions& options) {
 }
 
 Image Session::render(const PictureOptions& options) {
-    const Prepared prepared = prepare(options);
-    render::Renderer& renderer = this->renderer();
+    draw_frame(options);
     const gl::ContextScope scope(*context_);
-    {
-        const Stopwatch watch(timing_.draw);
-        renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
-        renderer.read_picture(1, 1);
-    }
-    latch_from(prepared);
     const Stopwatch watch(timing_.read);
-    return renderer.read_picture();
+    return renderer_->read_picture();
 }
 
 void Session::draw_frame(const PictureOptions& options) {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <vector>
 
+#include "easypbr/core/octahedral.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/gpu/facing.h"
 #include "easypbr/scene/normals.h"
@@ -23,14 +24,8 @@ struct Oct16 {
     int16_t x, y;
 };
 
-/// Octahedral encoding, as oct_encode() in shaders/common_encoding.glsl.
-Oct16 oct_encode(const Vec3& n) {
-    const float sum = std::abs(n.x()) + std::abs(n.y()) + std::abs(n.z());
-    if (!(sum > 0)) return {0, 0};
-    Vec2 p(n.x() / sum, n.y() / sum);
-    if (n.z() < 0)
-        p = Vec2((1 - std::abs(p.y())) * (p.x() >= 0 ? 1.0f : -1.0f),
-                 (1 - std::abs(p.x())) * (p.y() >= 0 ? 1.0f : -1.0f));
+Oct16 oct16(const Vec3& n) {
+    const Vec2 p = oct_encode(n);
     return {snorm16(p.x()), snorm16(p.y())};
 }
 
@@ -132,7 +127,7 @@ MeshBuffers make_buffers(const MeshData& mesh, bool with_tangents) {
     else
         buffers.positions = gl::Buffer(std::as_bytes(std::span(mesh.V.data(), size_t(mesh.V.size()))));
     buffers.normals =
-        gather<Oct16>(N, split.vertex, [&](Eigen::Index i) { return oct_encode(N.row(i).transpose()); });
+        gather<Oct16>(N, split.vertex, [&](Eigen::Index i) { return oct16(N.row(i).transpose()); });
     if (!mesh.C.empty())
         buffers.colors =
             gather<Rgba8>(mesh.C, split.vertex, [&](Eigen::Index i) { return rgba8(mesh.C, i); });

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/octahedral.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/gl/context.h"
@@ -27,14 +28,6 @@ std::vector<T> read(const gl::Framebuffer& framebuffer, unsigned index, gl::Form
     framebuffer.read(index, format, 0, 0, framebuffer.width(), framebuffer.height(),
                      std::as_writable_bytes(std::span(values)));
     return values;
-}
-
-Vec3 oct_decode(float x, float y) {
-    Vec3 n(x, y, 1 - std::abs(x) - std::abs(y));
-    const float fold = std::max(-n.z(), 0.0f);
-    n.x() -= n.x() >= 0 ? fold : -fold;
-    n.y() -= n.y() >= 0 ? fold : -fold;
-    return n.normalized();
 }
 
 }  // namespace
@@ -183,8 +176,7 @@ Image Renderer::read_layer(Layer layer) const {
     } else if (layer == Layer::normal) {
         const auto texels = read<uint16_t>(targets_.surface, 1, gl::Format::rg16);
         for_each_covered([&](size_t i) {
-            const Vec3 n =
-                oct_decode(float(texels[2 * i]) / 32767.5f - 1, float(texels[2 * i + 1]) / 32767.5f - 1);
+            const Vec3 n = oct_decode(Vec2(texels[2 * i], texels[2 * i + 1]) / 32767.5f - Vec2(1, 1));
             std::copy_n(n.data(), 3, to + 3 * i);
         });
     } else if (layer == Layer::id) {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "easypbr/core/color.h"
+#include "easypbr/core/octahedral.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/gpu/facing.h"
 #include "easypbr/scene/normals.h"
@@ -19,15 +20,6 @@ uint16_t unorm16(float v) {
 }
 uint8_t unorm8(float v) {
     return uint8_t(std::lrintf(std::clamp(v, 0.0f, 1.0f) * 255.0f));
-}
-
-/// Octahedral encoding to [0, 1]^2, as oct_encode() in shaders/common_encoding.glsl.
-Vec2 oct_encode(const Vec3& n) {
-    Vec2 p = n.head<2>() / (std::abs(n.x()) + std::abs(n.y()) + std::abs(n.z()));
-    if (n.z() < 0)
-        p = Vec2((1 - std::abs(p.y())) * (p.x() >= 0 ? 1.0f : -1.0f),
-                 (1 - std::abs(p.x())) * (p.y() >= 0 ? 1.0f : -1.0f));
-    return p * 0.5f + Vec2(0.5f, 0.5f);
 }
 
 /// A pixel on a triangle: weights of the corners, right under perspective, and the depth.
@@ -189,7 +181,7 @@ void SoftwareGeometryPass::resolve(const Frame& frame, const std::vector<Surface
         const float* const corners[3] = {V + 3 * size_t(f[0]), V + 3 * size_t(f[1]), V + 3 * size_t(f[2])};
         const Hit hit = s.clip.intersect(corners, (x + 0.5) * step_x - 1, 1 - (y + 0.5) * step_y);
         const Vec3 albedo = s.albedo(f, hit);
-        const Vec2 normal = oct_encode(s.normal(f, hit));
+        const Vec2 normal = oct_encode(s.normal(f, hit)) * 0.5f + Vec2(0.5f, 0.5f);
         const Material& m = s.item->material;
         pixels_.depth[i] = hit.depth;
         for (size_t c = 0; c < 3; ++c) pixels_.albedo[4 * i + c] = unorm16(albedo[Eigen::Index(c)]);
