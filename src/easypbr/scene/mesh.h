@@ -67,7 +67,7 @@ void validate(const MeshData& data);
 void validate(const MeshData& data, const MeshData& valid);
 
 /// Deepest hierarchy of children that is followed.
-inline constexpr int max_mesh_depth = 1000;
+inline constexpr int max_mesh_depth = 250;
 /// Throws ArgumentError beyond max_mesh_depth: a mesh is its own descendant.
 void require_mesh_depth(int depth);
 
