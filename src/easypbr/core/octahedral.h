@@ -1,4 +1,5 @@
-// Octahedral unit vectors (Cigolle et al. 2014), as oct_encode() and oct_decode() in shaders/common_encoding.glsl.
+// Octahedral unit vectors (Cigolle et al. 2014), as oct_encode() and oct_decode() in
+// shaders/common_encoding.glsl.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +15,8 @@ inline Vec2 oct_encode(const Vec3& n) {
     if (!(sum > 0)) return Vec2(0, 0);
     const Vec2 p(n.x() / sum, n.y() / sum);
     if (n.z() >= 0) return p;
-    return {(1 - std::abs(p.y())) * (p.x() >= 0 ? 1.0f : -1.0f), (1 - std::abs(p.x())) * (p.y() >= 0 ? 1.0f : -1.0f)};
+    return {(1 - std::abs(p.y())) * (p.x() >= 0 ? 1.0f : -1.0f),
+            (1 - std::abs(p.x())) * (p.y() >= 0 ? 1.0f : -1.0f)};
 }
 
 /// The inverse; of unit length.

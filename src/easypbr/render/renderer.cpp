@@ -111,7 +111,7 @@ const Box3d& Renderer::bounds_of(const SceneSnapshot& scene) {
     return bounds_;
 }
 
-void Renderer::draw_geometry(const Frame& frame, const std::vector<DrawItem>& items) {
+void Renderer::draw_geometry(Frame& frame, const std::vector<DrawItem>& items) {
     const bool native = native_geometry_ && !frame.with_ids && gl::Context::current().info().software &&
                         SoftwareGeometryPass::handles(items);
     if (!native || !software_geometry_.draw(frame, items, targets_)) geometry_.draw(frame, items, targets_);

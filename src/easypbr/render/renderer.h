@@ -70,7 +70,7 @@ class Renderer {
   private:
     void draw_frame(Frame& frame, const std::vector<DrawItem>& items);
     /// Fills the G-buffer by the faster way that can draw these items.
-    void draw_geometry(const Frame& frame, const std::vector<DrawItem>& items);
+    void draw_geometry(Frame& frame, const std::vector<DrawItem>& items);
     const Box3d& bounds_of(const SceneSnapshot& scene);
     template <class Pass>
     void run(const char* name, Pass&& pass);

@@ -22,6 +22,15 @@ uint8_t unorm8(float v) {
     return uint8_t(std::lrintf(std::clamp(v, 0.0f, 1.0f) * 255.0f));
 }
 
+/// The frames of one picture are jittered by up to a pixel, and edges are smoothed one pixel beyond them.
+PixelRect with_margin(const PixelRect& r, Vec2i size) {
+    constexpr int margin = 2;
+    if (r.width == 0) return {};
+    const int x0 = std::max(0, r.x - margin), y0 = std::max(0, r.y - margin);
+    return {x0, y0, std::min(size.x(), r.x + r.width + margin) - x0,
+            std::min(size.y(), r.y + r.height + margin) - y0};
+}
+
 /// A pixel on a triangle: weights of the corners, right under perspective, and the depth.
 struct Hit {
     Vec3 weights;
@@ -138,8 +147,7 @@ void SoftwareGeometryPass::evict_unused() {
     for (auto& [key, known] : knowledge_) known.used = false;
 }
 
-bool SoftwareGeometryPass::draw(const Frame& frame, const std::vector<DrawItem>& items,
-                                const GBuffer& targets) {
+bool SoftwareGeometryPass::draw(Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets) {
     visibility_.clear(frame.size, frame.covered);
     std::vector<Surface> surfaces;
     uint32_t next_id = 0;
@@ -158,8 +166,10 @@ bool SoftwareGeometryPass::draw(const Frame& frame, const std::vector<DrawItem>&
             return false;
         next_id += uint32_t(item.part.face_count);
     }
+    visibility_.crop();
     resolve(frame, surfaces);
     upload(targets);
+    frame.covered = with_margin(visibility_.area(), frame.size);
     return true;
 }
 

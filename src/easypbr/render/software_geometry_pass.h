@@ -18,8 +18,9 @@ class SoftwareGeometryPass {
     /// Whether draw() can draw these items.
     static bool handles(const std::vector<DrawItem>& items);
 
-    /// Fills the G-buffer; false, with the targets unchanged, when something would have to be clipped.
-    bool draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets);
+    /// Fills the G-buffer and narrows the frame's covered rectangle; false, with both unchanged, when
+    /// something would have to be clipped.
+    bool draw(Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets);
 
     void evict_unused();
 

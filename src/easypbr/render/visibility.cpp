@@ -110,6 +110,28 @@ bool VisibilityBuffer::draw(const Array3f& V, const Array3i& F, int first_face, 
     return true;
 }
 
+void VisibilityBuffer::crop() {
+    int x0 = area_.width, x1 = -1, y0 = area_.height, y1 = -1;
+    for (int y = 0; y < area_.height; ++y) {
+        const auto row = pixels().subspan(size_t(y) * size_t(area_.width), size_t(area_.width));
+        const auto is_covered = [](uint64_t pixel) { return pixel != 0; };
+        const auto first = std::ranges::find_if(row, is_covered);
+        if (first == row.end()) continue;
+        const auto last = std::find_if(row.rbegin(), row.rend(), is_covered);
+        x0 = std::min(x0, int(first - row.begin()));
+        x1 = std::max(x1, area_.width - 1 - int(last - row.rbegin()));
+        y0 = std::min(y0, y);
+        y1 = y;
+    }
+    const PixelRect kept{area_.x + x0, area_.y + y0, std::max(0, x1 - x0 + 1), std::max(0, y1 - y0 + 1)};
+    for (int y = 0; y < kept.height; ++y) {
+        const auto from = pixels_.begin() + (long(y0 + y) * area_.width + x0);
+        std::copy(from, from + kept.width, pixels_.begin() + long(y) * kept.width);
+    }
+    area_ = kept.width > 0 ? kept : PixelRect{};
+    pixels_.resize(size_t(area_.width) * size_t(area_.height));
+}
+
 void VisibilityBuffer::draw_triangle(const ScreenVertex& a, const ScreenVertex& b, const ScreenVertex& c,
                                      uint32_t id, const PixelRect& box) {
     const int x0 = std::max(box.x, area_.x), x1 = std::min(box.x + box.width, area_.x + area_.width) - 1;

@@ -29,6 +29,9 @@ class VisibilityBuffer {
     /// Pixels of the area, row by row: 0 where there is nothing.
     std::span<const uint64_t> pixels() const { return {pixels_.data(), pixels_.size()}; }
 
+    /// Shrinks the area to what is covered.
+    void crop();
+
     static uint32_t id_of(uint64_t pixel) { return ~uint32_t(pixel); }
 
   private:
