@@ -1,7 +1,6 @@
 #include "easypbr/core/parallel.h"
 
 #include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
 
@@ -32,12 +31,6 @@ void parallel_chunks(size_t count, size_t grain, const std::function<void(size_t
     }
     tbb::parallel_for(size_t(0), chunks,
                       [&](size_t chunk) { body(chunk * grain, std::min(count, (chunk + 1) * grain)); });
-}
-
-void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second) {
-    if (has_threads()) return tbb::parallel_invoke(first, second);
-    first();
-    second();
 }
 
 int thread_count() {

@@ -18,9 +18,6 @@ void parallel_for(size_t count, size_t grain, Body&& body) {
     });
 }
 
-/// Runs two functions at the same time; both have ended when it returns.
-void parallel_invoke(const std::function<void()>& first, const std::function<void()>& second);
-
 /// Number of threads used by the loops.
 int thread_count();
 

@@ -24,9 +24,6 @@ void delete_name(ObjectKind kind, GLuint id) {
         case ObjectKind::program:
             glDeleteProgram(id);
             break;
-        case ObjectKind::query:
-            glDeleteQueries(1, &id);
-            break;
     }
 }
 
@@ -47,9 +44,6 @@ GLuint create_name(ObjectKind kind, GLenum target) {
             break;
         case ObjectKind::program:
             id = glCreateProgram();
-            break;
-        case ObjectKind::query:
-            glCreateQueries(target, 1, &id);
             break;
     }
     return id;
