@@ -4,7 +4,9 @@
 usage: write_pictures.py [OUTPUT_FOLDER]      default: docs/images; the easypbr package must be importable
 """
 import pathlib
+import subprocess
 import sys
+import tempfile
 
 import numpy as np
 
@@ -54,8 +56,11 @@ def on_floor(mesh: Mesh) -> Scene:
 
 
 def demo() -> np.ndarray:
-    """The same as `easypbr demo`."""
-    return Viewer((1280, 720), scene=Scene.demo()).render()
+    """What `easypbr demo` draws, its camera included."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = pathlib.Path(folder) / "demo.png"
+        subprocess.run([sys.executable, "-m", "easypbr", "demo", "-o", path], check=True, stdout=subprocess.DEVNULL)
+        return easypbr.load_image(path)
 
 
 def materials() -> np.ndarray:
