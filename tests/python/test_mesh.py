@@ -183,13 +183,13 @@ def test_textures_are_arrays_or_files(square, tmp_path):
 
 def test_style(square):
     mesh = Mesh(*square)
-    assert mesh.style.flat == auto and mesh.style.visible is True
+    assert mesh.style.flat == auto and mesh.style.visible == auto
     mesh.style.flat = True
     mesh.style.visible = False
     assert mesh.style.flat is True and mesh.style.visible is False
     mesh.style.flat = auto
     assert mesh.style.flat == auto
-    with pytest.raises(ValueError, match="style.flat: expected True, False, auto or follow, got 'yes'"):
+    with pytest.raises(ValueError, match="setting 'style.flat': expected true or false, or 'auto' or 'follow', got 'yes'"):
         mesh.style.flat = "yes"
 
 

@@ -136,7 +136,7 @@ class RenderJob {
 
     /// Reads the files while the GL context is made, for all of it takes long.
     void load(const Picture& picture, Stopwatch& watch) {
-        const io::LoadOptions load_options{.crease_angle_deg = look_.settings.style.crease_deg};
+        const io::LoadOptions load_options{.crease_angle_deg = look_.settings.load.crease_deg};
         auto loading = std::async(std::launch::async, load_all, picture.files, load_options);
         auto lighting = std::async(std::launch::async, [this] { load_environment(); });
         session_.context_info();

@@ -37,7 +37,7 @@ constexpr ShorthandOption shorthand_options[] = {{"--samples", "image.samples", 
                                                  {"--color", "material.color", "COLOR"},
                                                  {"--metallic", "material.metallic", "X"},
                                                  {"--roughness", "material.roughness", "X"},
-                                                 {"--crease", "style.crease_deg", "DEG"}};
+                                                 {"--crease", "load.crease_deg", "DEG"}};
 
 const std::vector<std::string> texture_names{"base_color", "metallic", "roughness", "normal",
                                              "occlusion",  "emissive", "opacity"};

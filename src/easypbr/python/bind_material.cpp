@@ -9,6 +9,7 @@
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
 #include "easypbr/python/settings_value.h"
+#include "easypbr/scene/fields.h"
 
 namespace easypbr::python {
 namespace {
@@ -113,25 +114,26 @@ void bind_textures(MaterialClass& material) {
 }
 
 void bind_style(nb::module_& module) {
-    nb::class_<StyleHandle>(module, "Style", "How a mesh is drawn.")
-        .def("__init__", construct<StyleHandle>, nb::sig("def __init__(self, **values: object) -> None"))
-        .def_prop_rw(
-            "visible", [](const StyleHandle& s) { return s.get().visible; },
-            [](StyleHandle& s, bool value) { s.change([&](Style& own) { own.visible = value; }); })
-        .def_prop_rw(
-            "flat", [](const StyleHandle& s) { return from_auto_flag(s.get().flat); },
-            [](StyleHandle& s, const nb::object& value) {
-                const Auto<bool> flag = to_auto_flag(value, "style.flat");
-                s.change([&](Style& own) { own.flat = flag; });
+    nb::class_<StyleHandle> style(module, "Style",
+                                  "How a mesh is drawn; `auto` where it follows from the data.");
+    style.def("__init__", construct<StyleHandle>, nb::sig("def __init__(self, **values: object) -> None"));
+    const std::string prefix = "style.";
+    for (const Field& field : fields()) {
+        if (!field.name.starts_with(prefix)) continue;
+        const std::string name = field.name.substr(prefix.size());
+        style.def_prop_rw(
+            name.c_str(),
+            [&field, name](const StyleHandle& s) {
+                return value_to_python(field, easypbr::get(s.get(), name));
             },
-            "One normal per face.")
-        .def_prop_rw(
-            "two_sided", [](const StyleHandle& s) { return from_auto_flag(s.get().two_sided); },
-            [](StyleHandle& s, const nb::object& value) {
-                const Auto<bool> flag = to_auto_flag(value, "style.two_sided");
-                s.change([&](Style& own) { own.two_sided = flag; });
+            [&field, name](StyleHandle& s, const nb::object& object) {
+                const Value value = checked(field, value_from_python(field, object));
+                s.change([&](Style& own) { set(own, name, value); });
             },
-            "Back faces are drawn, lit from their side.");
+            nb::for_getter(nb::sig(fmt::format("def {}(self) -> object", name).c_str())),
+            nb::for_setter(nb::sig(fmt::format("def {}(self, value: object) -> None", name).c_str())),
+            nb::for_setter(nb::arg("value").none()), field.doc.c_str());
+    }
 }
 
 }  // namespace

@@ -109,20 +109,6 @@ nb::object value_to_python(const Field& field, const Value& value) {
     return nb::cast(value.latched ? Automatic{value.data} : Automatic{});
 }
 
-Auto<bool> to_auto_flag(nb::handle object, const char* what) {
-    if (nb::isinstance<Automatic>(object)) return automatic;
-    if (nb::isinstance<Follow>(object)) return follow;
-    const nb::object flag = unboxed(object);
-    if (nb::isinstance<nb::bool_>(flag)) return nb::cast<bool>(flag);
-    throw ArgumentError(fmt::format("{}: expected True, False, auto or follow, got {}", what,
-                                    nb::cast<std::string>(nb::repr(object))));
-}
-
-nb::object from_auto_flag(const Auto<bool>& flag) {
-    if (flag.is_follow()) return nb::cast(Follow{});
-    return flag.is_pinned() ? nb::cast(*flag) : nb::cast(Automatic{});
-}
-
 void bind_settings(nb::module_& module) {
     bind_automatic(module);
     nb::class_<Field>(module, "Field", "One row of the table of settings.")

@@ -20,8 +20,4 @@ struct Follow {};
 Value value_from_python(const Field& field, nb::handle object);
 nb::object value_to_python(const Field& field, const Value& value);
 
-/// A flag that may be `auto`. Throws ArgumentError for other objects.
-Auto<bool> to_auto_flag(nb::handle object, const char* what);
-nb::object from_auto_flag(const Auto<bool>& flag);
-
 }  // namespace easypbr::python

@@ -55,7 +55,7 @@ std::vector<DrawItem> draw_list(const SceneSnapshot& scene, const Settings& sett
     std::vector<DrawItem> items;
     for (const auto& object : scene.objects) {
         const MeshData& mesh = *object.mesh;
-        if (!mesh.style.visible || mesh.F.empty()) continue;
+        if (!settings.style.visible.value_or(mesh.style.visible.value_or(true)) || mesh.F.empty()) continue;
         for (const MeshPart& part : parts_of(mesh)) {
             DrawItem item{&object, part, overridden(material_of(mesh, part), settings.material, textures)};
             item.flat = settings.style.flat.value_or(mesh.style.flat.value_or(false));

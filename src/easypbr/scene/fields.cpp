@@ -184,4 +184,21 @@ void set_from_text(Settings& settings, std::string_view name, std::string_view t
     set(settings, name, parse_value(field(name), text));
 }
 
+void set(Style& style, std::string_view name, const Value& value) {
+    Settings settings;
+    settings.style = style;
+    set(settings, "style." + std::string(name), value);
+    style = settings.style;
+}
+
+Value get(const Style& style, std::string_view name) {
+    Settings settings;
+    settings.style = style;
+    return get(settings, "style." + std::string(name));
+}
+
+void set_from_text(Style& style, std::string_view name, std::string_view text) {
+    set(style, name, parse_value(field("style." + std::string(name)), text));
+}
+
 }  // namespace easypbr

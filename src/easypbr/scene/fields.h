@@ -62,6 +62,11 @@ Value checked(const Field& field, const Value& value);
 Value parse_value(const Field& field, std::string_view text);
 std::string to_text(const Field& field, const Value& value);
 
+/// A field of an object's own style, by its name without "style.". Throws NameError or ArgumentError.
+void set(Style& style, std::string_view name, const Value& value);
+Value get(const Style& style, std::string_view name);
+void set_from_text(Style& style, std::string_view name, std::string_view text);
+
 /// Sets "group.name" from text as --set does.
 void set_from_text(Settings& settings, std::string_view name, std::string_view text);
 

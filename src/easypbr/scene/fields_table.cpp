@@ -32,6 +32,27 @@ const std::vector<std::string>& enum_names<ToneOperator>() {
     static const std::vector<std::string> names = {"aces", "reinhard", "agx", "neutral", "none"};
     return names;
 }
+template <>
+const std::vector<std::string>& enum_names<DrawMode>() {
+    static const std::vector<std::string> names = {"mesh", "points", "surfels", "lines", "voxels"};
+    return names;
+}
+template <>
+const std::vector<std::string>& enum_names<PointShape>() {
+    static const std::vector<std::string> names = {"round", "square"};
+    return names;
+}
+template <>
+const std::vector<std::string>& enum_names<SizeUnit>() {
+    static const std::vector<std::string> names = {"pixels", "world"};
+    return names;
+}
+template <>
+const std::vector<std::string>& enum_names<ColorBy>() {
+    static const std::vector<std::string> names = {"solid",  "vertex", "texture", "label",    "scalar",
+                                                   "height", "normal", "uv",      "intensity"};
+    return names;
+}
 
 }  // namespace detail
 
@@ -249,18 +270,60 @@ void add_overrides(Table& table) {
             "Image file for the glow (sRGB) of every material.");
     texture("opacity_texture", &MaterialSettings::opacity_texture,
             "Image file for the opacity of every material.");
+}
 
-    const auto style = [](auto member) { return at(&Settings::style, member); };
+/// Each is a row of every object's style and, as a setting, overrides them all.
+void add_style(Table& table) {
+    const auto add = [&](const std::string& name, auto member, const std::string& doc,
+                         const std::string& inferred, const std::string& unit = {}, Range range = {}) {
+        table.push_back(make("style." + name, at(&Settings::style, member),
+                             doc + " Automatic: the object's own choice, else " + inferred + ".", unit,
+                             range));
+    };
+    add("mode", &Style::mode, "What objects are drawn as.",
+        "faces as a mesh, voxels as cubes, normals with tangents as surfels, edges as lines, and vertices "
+        "alone "
+        "as points");
+    add("visible", &Style::visible, "Whether objects are drawn.", "yes");
+    add("point_size", &Style::point_size, "Diameter of points, in point_size_unit.",
+        "as large as the points' mean spacing", "", {positive, unlimited});
+    add("point_size_unit", &Style::point_size_unit,
+        "Whether point_size is in pixels, or in world units and so smaller far away.", "pixels");
+    add("point_shape", &Style::point_shape, "Round or square points.", "round");
+    add("surfel_scale", &Style::surfel_scale, "Factor on the size of surfels.", "1", "", {positive, 1e6});
+    add("voxel_size", &Style::voxel_size, "Edge of the cubes of voxels.",
+        "the data's, or the points' mean spacing", "world units", {positive, unlimited});
+    add("line_width", &Style::line_width, "Width of lines, edges and normals.", "1.5", "pixels", {0.1, 1000});
+    add("line_dash", &Style::line_dash, "Length of dashes and of the gaps between them; 0 for solid lines.",
+        "0", "pixels", {0, 10000});
     table.push_back(
-        make("style.crease_deg", style(&StyleSettings::crease_deg),
-             "Angle between faces beyond which an STL file keeps an edge, when the command line reads it.",
+        color("style.line_color", at(&Settings::style, &Style::line_color),
+              "Colour of edges, wireframes and normals. Automatic: the object's own choice, else the "
+              "vertices' colours for edges, dark for wireframes and blue for normals."));
+    add("show_wireframe", &Style::show_wireframe, "The edges of faces are drawn on top of them.", "no");
+    add("show_normals", &Style::show_normals, "A line along each vertex normal is drawn.", "no");
+    add("normal_length", &Style::normal_length, "Length of the lines of show_normals.",
+        "2 % of the object's diagonal", "world units", {positive, unlimited});
+    add("show_points", &Style::show_points, "The vertices are drawn as points on top.", "no");
+    add("two_sided", &Style::two_sided, "Back faces are drawn, lit from their side.",
+        "the material's choice");
+    add("flat", &Style::flat, "One normal per face.", "no");
+    add("lit", &Style::lit, "Whether light shades the colours; otherwise they are shown as they are.",
+        "yes for faces, surfels, voxels and points with normals, no for labels of points and for points "
+        "without "
+        "normals");
+    add("overlay", &Style::overlay, "Drawn over everything else, whatever is in front.", "no");
+    add("color_by", &Style::color_by, "What colours objects.",
+        "labels, else textures and vertex colours, else scalars, else intensities of points, else the "
+        "material");
+}
+
+void add_loading(Table& table) {
+    table.push_back(
+        make("load.crease_deg", at(&Settings::load, &LoadSettings::crease_deg),
+             "Angle between faces beyond which an STL file keeps an edge, when the command line reads "
+             "it.",
              "degrees", {0, 180}));
-    table.push_back(make("style.flat", style(&StyleSettings::flat),
-                         "One normal per face on every object; automatic: the object's own choice."));
-    table.push_back(
-        make("style.two_sided", style(&StyleSettings::two_sided),
-             "Back faces of every object are drawn, lit from their side; automatic: the object's own "
-             "choice."));
 }
 
 }  // namespace
@@ -274,6 +337,8 @@ const std::vector<Field>& fields() {
         add_lights(all);
         add_shading(all);
         add_overrides(all);
+        add_style(all);
+        add_loading(all);
         return all;
     }();
     return table;

@@ -10,20 +10,12 @@
 
 #include "easypbr/core/math.h"
 #include "easypbr/scene/array.h"
-#include "easypbr/scene/auto.h"
 #include "easypbr/scene/material.h"
+#include "easypbr/scene/style.h"
 
 namespace easypbr {
 
 class Mesh;
-
-/// How an object is drawn. The table of its fields stands in scene/fields.h.
-struct Style {
-    bool visible = true;
-    Auto<bool> flat;  ///< one normal per face; automatic: smooth
-    Auto<bool>
-        two_sided;  ///< back faces are drawn, lit from their side; automatic: the material's double_sided
-};
 
 /// A range of faces with one material.
 struct MeshPart {
@@ -38,16 +30,17 @@ struct MeshData {
     std::string name;
     std::filesystem::path source;  ///< the file it was read from; empty for a mesh made in memory
 
-    Array3f V;   ///< n x 3 positions
-    Array3f N;   ///< n x 3 unit normals, or empty: computed when it is drawn
-    ArrayXf C;   ///< n x 3 or n x 4 colours, sRGB-encoded, 0 .. 1 (alpha last), or empty
-    Array2f UV;  ///< n x 2 texture coordinates, v upwards, or empty
-    Array3f T;   ///< n x 3 tangent vectors (surfels), or empty
-    Array1f B;   ///< n x 1 bitangent lengths (surfels), or empty
-    Array3i F;   ///< m x 3 vertex indices of triangles, counter-clockwise seen from outside
-    Array2i E;   ///< k x 2 vertex indices of line segments
-    Array1i L;   ///< n x 1 labels
-    Array1f I;   ///< n x 1 intensities
+    Array3f V;             ///< n x 3 positions
+    Array3f N;             ///< n x 3 unit normals, or empty: computed when it is drawn
+    ArrayXf C;             ///< n x 3 or n x 4 colours, sRGB-encoded, 0 .. 1 (alpha last), or empty
+    Array2f UV;            ///< n x 2 texture coordinates, v upwards, or empty
+    Array3f T;             ///< n x 3 tangent vectors (surfels), or empty
+    Array1f B;             ///< n x 1 bitangent lengths (surfels), or empty
+    Array3i F;             ///< m x 3 vertex indices of triangles, counter-clockwise seen from outside
+    Array2i E;             ///< k x 2 vertex indices of line segments
+    Array1i L;             ///< n x 1 labels
+    Array1f I;             ///< n x 1 intensities
+    float voxel_size = 0;  ///< edge of the cubes that V are the centres of; 0: V are no voxels
 
     Array1i source_vertex;  ///< n x 1 index of the file's vertex that each vertex came from; empty: the same
     Array1i source_face;  ///< m x 1 index of the file's polygon that each triangle came from; empty: the same

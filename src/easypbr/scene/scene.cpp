@@ -34,7 +34,7 @@ void add_nodes(const Mesh& mesh, const std::string& name, const Eigen::Affine3d&
                std::vector<SceneSnapshot::Object>& objects) {
     require_mesh_depth(depth);
     const auto data = mesh.snapshot();
-    if (!data->style.visible) return;
+    if (!data->style.visible.value_or(true)) return;
     const Eigen::Affine3d T_world_mesh = T_world_parent * data->T_parent_mesh;
     objects.push_back({name, data, T_world_mesh});
     for (const Mesh& child : data->children)

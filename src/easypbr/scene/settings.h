@@ -9,6 +9,7 @@
 #include "easypbr/scene/auto.h"
 #include "easypbr/scene/camera.h"
 #include "easypbr/scene/light.h"
+#include "easypbr/scene/style.h"
 
 namespace easypbr {
 
@@ -87,11 +88,8 @@ struct MaterialSettings {
         emissive_texture, opacity_texture;
 };
 
-/// Overrides of every object's style; automatic: the object's own value.
-struct StyleSettings {
+struct LoadSettings {
     float crease_deg = 30;
-    Auto<bool> flat;
-    Auto<bool> two_sided;
 };
 
 struct Settings {
@@ -103,7 +101,8 @@ struct Settings {
     ShadingSettings shading;
     ToneSettings tone;
     MaterialSettings material;
-    StyleSettings style;
+    Style style;  ///< overrides of every object's style; automatic: the object's own value
+    LoadSettings load;
 };
 
 }  // namespace easypbr
