@@ -47,7 +47,7 @@ Vec2d jitter_of(int index, int count) {
 }
 
 void prepare_frame(Frame& frame, const Box3d& bounds) {
-    const Camera& camera = frame.resolved->camera;
+    const Camera& camera = frame.camera;
     frame.clip_from_view = camera.projection_matrix(double(frame.size.x()) / frame.size.y());
     frame.covered = covered_rect(bounds, frame.clip_from_view * camera.view(), frame.size);
     // Moving the picture by (dx, dy) pixels moves ndc by (2 dx / w, -2 dy / h): row 0 is the top.
@@ -61,7 +61,7 @@ void prepare_frame(Frame& frame, const Box3d& bounds) {
 
 void set_camera_uniforms(const gl::Program& program, const Frame& frame) {
     const Mat4d& p = frame.clip_from_view;
-    const Camera& camera = frame.resolved->camera;
+    const Camera& camera = frame.camera;
     const Vec2 shift =
         frame.orthographic() ? Vec2(float(-p(0, 3)), float(-p(1, 3))) : Vec2(float(p(0, 2)), float(p(1, 2)));
     program.set("u_size", Vec2(frame.size.cast<float>()));

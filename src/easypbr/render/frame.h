@@ -18,6 +18,7 @@ struct PixelRect {
 struct Frame {
     const SceneSnapshot* scene = nullptr;
     const ResolvedSettings* resolved = nullptr;
+    Camera camera;  ///< of this frame: the resolved one, moved where a still is sampled over lens or shutter
     Vec2i size{0, 0};
     int sample_index = 0;
     int sample_count = 1;
@@ -25,7 +26,7 @@ struct Frame {
     Mat4d clip_from_view = Mat4d::Identity();  ///< jittered
     PixelRect covered;                         ///< all geometry is inside
 
-    bool orthographic() const { return resolved->camera.projection == Projection::orthographic; }
+    bool orthographic() const { return camera.projection == Projection::orthographic; }
 };
 
 /// Sub-pixel offset of a sample in [-0.5, 0.5): points of the Halton sequence in bases 2 and 3, moved so that

@@ -119,10 +119,10 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
 
     const gl::Program& program = programs_.get(defines);
     program.use();
-    const Mat4d view_from_mesh = frame.resolved->camera.view() * mesh_matrix;
+    const Mat4d view_from_mesh = frame.camera.view() * mesh_matrix;
     program.set("u_clip_from_mesh", Mat4((frame.clip_from_view * view_from_mesh).cast<float>()));
     program.set("u_view_from_mesh", Mat4(view_from_mesh.cast<float>()));
-    program.set("u_world_from_view", Mat3(frame.resolved->camera.T_world_cam.linear().cast<float>()));
+    program.set("u_world_from_view", Mat3(frame.camera.T_world_cam.linear().cast<float>()));
     program.set("u_normal_from_mesh", Mat3(linear.inverse().transpose().cast<float>()));
     program.set("u_tangent_from_mesh", Mat3(linear.cast<float>()));
     program.set("u_base_color", Vec4(m.base_color.x(), m.base_color.y(), m.base_color.z(), m.opacity));

@@ -110,7 +110,7 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const gpu::E
         }
         LightBlock block{};
         for (size_t i = 0; i < count; ++i)
-            write_light(lights[first + i], frame.resolved->camera.position(), block, i);
+            write_light(lights[first + i], frame.camera.position(), block, i);
         lights_.update(0, gl::bytes_of(block));
         draw_screen_triangle();
         first += count;

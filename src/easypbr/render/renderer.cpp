@@ -118,6 +118,7 @@ void Renderer::draw_geometry(Frame& frame, const std::vector<DrawItem>& items) {
 }
 
 void Renderer::draw_frame(Frame& frame, const std::vector<DrawItem>& items) {
+    frame.camera = frame.resolved->camera;
     prepare_frame(frame, bounds_of(*frame.scene));
     run("geometry", [&] { draw_geometry(frame, items); });
     no_attributes_.bind();

@@ -155,7 +155,7 @@ bool SoftwareGeometryPass::draw(Frame& frame, const std::vector<DrawItem>& items
     for (const DrawItem& item : items) {
         const Mat4d mesh_matrix = item.object->T_world_mesh.matrix();
         const Mat3d linear = mesh_matrix.topLeftCorner<3, 3>();
-        const Mat4d clip_from_mesh = frame.clip_from_view * frame.resolved->camera.view() * mesh_matrix;
+        const Mat4d clip_from_mesh = frame.clip_from_view * frame.camera.view() * mesh_matrix;
         const Knowledge& known = knowledge_of(item.mesh());
         const Mat3 normal_from_mesh = linear.inverse().transpose().cast<float>();
         surfaces.push_back({&item, &known, ClipTransform(clip_from_mesh), normal_from_mesh,
