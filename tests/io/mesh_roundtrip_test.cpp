@@ -148,6 +148,43 @@ TEST(MeshFiles, ChildrenAreMergedInWorldSpace) {
     }
 }
 
+TEST(MeshFiles, ChildrenWithoutLabelsHaveNone) {
+    const TemporaryFolder folder;
+    MeshData labelled;
+    labelled.V = Array3f(Array3f::Dense::Zero(4, 3));
+    labelled.F = Array3i(Array3i::Dense::Zero(2, 3));
+    MeshData child = labelled;
+    labelled.L = Array1i(Array1i::Dense{{1}, {2}, {3}, {4}});
+    Mesh root(labelled);
+    root.add_child(Mesh(child));
+    child.L = Array1i(Array1i::Dense{{7}, {8}});  // of the faces: they cannot be joined with the vertices'
+    root.add_child(Mesh(child));
+    root.save(folder / "m.ply");
+    const Array1i L = Mesh(folder / "m.ply").L();
+    ASSERT_EQ(L.rows(), 12);
+    EXPECT_EQ(Eigen::Vector4i(L.head(4)), Eigen::Vector4i(1, 2, 3, 4));
+    EXPECT_EQ(L.tail(8).maxCoeff(), no_label);
+    EXPECT_EQ(L.tail(8).minCoeff(), no_label);
+}
+
+TEST(MeshFiles, PlyWritesLabelsOfFacesBesideThem) {
+    const TemporaryFolder folder;
+    MeshData mesh;
+    mesh.V = Array3f(Array3f::Dense::Zero(4, 3));
+    mesh.F = Array3i(Array3i::Dense{{0, 1, 2}, {0, 2, 3}});
+    mesh.L = Array1i(Array1i::Dense{{5}, {-1}});
+    Mesh(mesh).save(folder / "m.ply");
+    const MappedFile file(folder / "m.ply");
+    const std::string text(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size());
+    EXPECT_NE(text.find("element face 2\nproperty list uchar int vertex_indices\nproperty int label\n"),
+              text.npos);
+    // Two faces of 1 + 12 + 4 bytes end the file.
+    const std::string first = text.substr(text.size() - 34, 17), second = text.substr(text.size() - 17);
+    EXPECT_EQ(first.substr(13), std::string("\5\0\0\0", 4));
+    EXPECT_EQ(second.substr(13), "\xff\xff\xff\xff");
+    EXPECT_TRUE(same_bits(Mesh(folder / "m.ply").F(), mesh.F));
+}
+
 TEST(MeshFiles, AnUnwritableTargetIsAnErrorAndLeavesNothing) {
     const TemporaryFolder folder;
     const Mesh mesh(random_mesh(1, 5));

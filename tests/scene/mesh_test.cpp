@@ -73,6 +73,84 @@ TEST(Mesh, NamesTheArrayThatDoesNotFit) {
               std::string::npos);
 }
 
+TEST(Mesh, LabelsAndScalarsBelongToVerticesOrFaces) {
+    MeshData data = triangle();  // 3 vertices, 1 face
+    data.L = Array1i(Array1i::Dense{{4}, {5}, {-1}});
+    data.scalars = {{"area", Array1f(Array1f::Dense::Ones(1))}, {"height", Array1f(Array1f::Dense::Ones(3))}};
+    EXPECT_NO_THROW(validate(data));
+    EXPECT_EQ(element_of(data, data.L.rows()), PerElement::vertex);
+    EXPECT_EQ(element_of(data, data.scalars[0].values.rows()), PerElement::face);
+    data.L = Array1i(Array1i::Dense{{4}});
+    EXPECT_NO_THROW(validate(data));
+    EXPECT_EQ(element_of(data, data.L.rows()), PerElement::face);
+    data.F = Faces{{0, 1, 2}, {0, 2, 1}, {0, 1, 2}};  // as many faces as vertices
+    EXPECT_EQ(element_of(data, 3), PerElement::vertex);
+}
+
+TEST(Mesh, NamesLabelsAndScalarsThatDoNotFit) {
+    EXPECT_EQ(message_of([](MeshData& d) { d.L = Array1i(Array1i::Dense::Zero(2)); }),
+              "mesh array L: expected 3 rows, one per vertex, or 1, one per face, or none; got 2 x 1");
+    const Array1f three = Array1f::Dense::Ones(3), two = Array1f::Dense::Ones(2);
+    EXPECT_EQ(message_of([&](MeshData& d) {
+                  d.scalars = {{"heat", two}};
+              }),
+              "mesh array scalars['heat']: expected 3 rows, one per vertex, or 1, one per face, or none; got "
+              "2 x 1");
+    EXPECT_EQ(message_of([&](MeshData& d) {
+                  d.scalars = {{"heat", three}, {"", three}};
+              }),
+              "mesh scalars: expected a name for array 1, got none");
+    EXPECT_EQ(message_of([&](MeshData& d) {
+                  d.scalars = {{"heat", three}, {"heat", three}};
+              }),
+              "mesh scalars: expected different names, got 'heat' for arrays 0 and 1");
+}
+
+TEST(Mesh, RefusesLabelsThatTheMapDoesNotHave) {
+    const std::vector<LabelClass> classes{{0, "none", {}}, {10, "car", {}}};
+    const auto with = [&](int32_t label, UnknownLabels unknown) {
+        return message_of([&](MeshData& d) {
+            d.L = Array1i(Array1i::Dense{{0}, {10}, {label}});
+            d.label_map = std::make_shared<const LabelMap>("cars", classes, 0, unknown);
+        });
+    };
+    EXPECT_EQ(with(10, UnknownLabels::refused), "valid");
+    EXPECT_EQ(with(no_label, UnknownLabels::refused), "valid");
+    EXPECT_EQ(with(11, UnknownLabels::unlabelled), "valid");
+    EXPECT_EQ(
+        with(11, UnknownLabels::refused),
+        "mesh array L: label 11 in row 2 of 3 is not in the label map 'cars', which has 2 labels from 0 "
+        "to 10; add it, or let the map show unknown labels as unlabelled");
+    // Either can be assigned last: what does not fit then is refused.
+    Mesh mesh(triangle());
+    mesh.set_L(Array1i(Array1i::Dense{{0}, {1}, {2}}));
+    EXPECT_THROW(mesh.set_label_map(LabelMap("cars", classes)), ArgumentError);
+    EXPECT_FALSE(mesh.label_map());
+    mesh.set_labels(Array1i(Array1i::Dense{{0}, {0}, {10}}),
+                    std::make_shared<const LabelMap>("cars", classes));
+    EXPECT_THROW(mesh.set_L(Array1i(Array1i::Dense{{0}, {1}, {2}})), ArgumentError);
+    EXPECT_EQ(mesh.L()(2), 10);
+}
+
+TEST(Mesh, KeepsScalarsByName) {
+    Mesh mesh(triangle());
+    mesh.add_scalar("heat", Array1f(Array1f::Dense::Constant(3, 1)));
+    mesh.add_scalar("area", Array1f(Array1f::Dense::Constant(1, 2)));
+    mesh.add_scalar("heat", Array1f(Array1f::Dense::Constant(3, 5)));
+    EXPECT_EQ(mesh.snapshot()->scalars.size(), 2u);
+    EXPECT_EQ(mesh.scalar("heat")(0), 5);
+    try {
+        mesh.scalar("hat");
+        FAIL();
+    } catch (const NameError& error) {
+        EXPECT_STREQ(error.what(), "mesh '' has no scalars 'hat' (did you mean 'heat'?); it has heat, area");
+    }
+    mesh.remove_scalar("heat");
+    EXPECT_THROW(mesh.scalar("heat"), NameError);
+    EXPECT_THROW(mesh.remove_scalar("heat"), NameError);
+    EXPECT_EQ(mesh.scalar("area")(0), 2);
+}
+
 TEST(Mesh, FindsTheFirstBadRowOfMany) {
     // The scan runs in parallel chunks; the row reported is the first one all the same.
     Faces F = Faces::Zero(300000, 3);

@@ -1,5 +1,11 @@
 #include "easypbr/io/flatten.h"
 
+#include <fmt/format.h>
+
+#include <cmath>
+#include <set>
+
+#include "easypbr/core/log.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::io {
@@ -46,6 +52,51 @@ A joined(const A& a, Eigen::Index a_rows, const A& b, Eigen::Index b_rows, typen
     return result;
 }
 
+/// Labels or scalars of vertices or faces; `name` is what a warning calls them. Those of the faces and those
+/// of the vertices cannot become one array: the second ones are left out.
+template <class A>
+A joined_either(const MeshData& whole, const A& a, const MeshData& mesh, const A& b,
+                typename A::Scalar filler, const std::string& name) {
+    if (a.empty() && b.empty()) return {};
+    const PerElement element = a.empty() ? element_of(mesh, b.rows()) : element_of(whole, a.rows());
+    const auto rows_of = [&](const MeshData& data) {
+        return element == PerElement::vertex ? data.V.rows() : data.F.rows();
+    };
+    const bool fits = b.empty() || b.rows() == rows_of(mesh);
+    if (!fits)
+        log_warning(fmt::format("mesh '{}': {} of '{}' belong to its {} and others to the {}: left out",
+                                whole.name, name, mesh.name,
+                                element == PerElement::vertex ? "faces" : "vertices",
+                                element == PerElement::vertex ? "vertices" : "faces"));
+    return joined(a, rows_of(whole), fits ? b : A(), rows_of(mesh), filler);
+}
+
+Array1f scalar_or_none(const MeshData& mesh, const std::string& name) {
+    for (const ScalarArray& scalar : mesh.scalars)
+        if (scalar.name == name) return scalar.values;
+    return {};
+}
+
+std::vector<ScalarArray> joined_scalars(const MeshData& whole, const MeshData& mesh) {
+    std::set<std::string> names;
+    for (const auto* scalars : {&whole.scalars, &mesh.scalars})
+        for (const ScalarArray& scalar : *scalars) names.insert(scalar.name);
+    std::vector<ScalarArray> result;
+    for (const std::string& name : names)
+        result.push_back(
+            {name, joined_either(whole, scalar_or_none(whole, name), mesh, scalar_or_none(mesh, name),
+                                 std::nanf(""), "scalars '" + name + "'")});
+    return result;
+}
+
+void join_labels(MeshData& whole, const MeshData& mesh) {
+    whole.L = joined_either(whole, whole.L, mesh, mesh.L, no_label, "labels");
+    if (!whole.label_map) whole.label_map = mesh.label_map;
+    if (mesh.label_map && mesh.label_map != whole.label_map)
+        log_warning(fmt::format("mesh '{}': its parts have the label maps '{}' and '{}': the first is kept",
+                                whole.name, whole.label_map->name(), mesh.label_map->name()));
+}
+
 void fill_normals(MeshData& mesh) {
     if (mesh.N.empty() && !mesh.V.empty()) mesh.N = smooth_normals(mesh);
 }
@@ -70,6 +121,8 @@ void append(MeshData& whole, MeshData mesh) {
         whole.parts.push_back(part);
     }
     whole.materials.insert(whole.materials.end(), mesh.materials.begin(), mesh.materials.end());
+    join_labels(whole, mesh);
+    whole.scalars = joined_scalars(whole, mesh);
     const Array3i F = Array3i::Dense(mesh.F.array() + int32_t(n));
     const Array2i E = Array2i::Dense(mesh.E.array() + int32_t(n));
     whole.F = joined(whole.F, whole.F.rows(), F, F.rows(), 0);
@@ -77,7 +130,6 @@ void append(MeshData& whole, MeshData mesh) {
     whole.N = joined(whole.N, n, mesh.N, k, 0.0f);
     whole.C = joined(whole.C, n, mesh.C, k, 1.0f);
     whole.UV = joined(whole.UV, n, mesh.UV, k, 0.0f);
-    whole.L = joined(whole.L, n, mesh.L, k, 0);
     whole.I = joined(whole.I, n, mesh.I, k, 0.0f);
     whole.V = joined(whole.V, n, mesh.V, k, 0.0f);
 }

@@ -40,18 +40,33 @@ Part color_part(const ArrayXf& C) {
             }};
 }
 
+bool has_labels(const MeshData& mesh, PerElement element) {
+    return !mesh.L.empty() && element_of(mesh, mesh.L.rows()) == element;
+}
+
 std::vector<Part> vertex_parts(const MeshData& mesh) {
     std::vector<Part> parts{raw_part("property float x\nproperty float y\nproperty float z\n", mesh.V)};
     if (!mesh.N.empty())
         parts.push_back(raw_part("property float nx\nproperty float ny\nproperty float nz\n", mesh.N));
     if (!mesh.C.empty()) parts.push_back(color_part(mesh.C));
     if (!mesh.UV.empty()) parts.push_back(raw_part("property float s\nproperty float t\n", mesh.UV));
-    if (!mesh.L.empty()) parts.push_back(raw_part("property int label\n", mesh.L));
+    if (has_labels(mesh, PerElement::vertex)) parts.push_back(raw_part("property int label\n", mesh.L));
     if (!mesh.I.empty()) parts.push_back(raw_part("property float intensity\n", mesh.I));
     return parts;
 }
 
-void append_vertices(const std::vector<Part>& parts, size_t count, std::string& out) {
+std::vector<Part> face_parts(const MeshData& mesh) {
+    constexpr char corners = 3;
+    std::vector<Part> parts{
+        {"property list uchar int vertex_indices\n", 13, [&F = mesh.F](Eigen::Index row, char* out) {
+             *out = corners;
+             std::memcpy(out + 1, F.data() + row * corners, 12);
+         }}};
+    if (has_labels(mesh, PerElement::face)) parts.push_back(raw_part("property int label\n", mesh.L));
+    return parts;
+}
+
+void append_rows(const std::vector<Part>& parts, size_t count, std::string& out) {
     size_t stride = 0;
     for (const Part& part : parts) stride += part.size;
     const size_t begin = out.size();
@@ -65,33 +80,23 @@ void append_vertices(const std::vector<Part>& parts, size_t count, std::string& 
     });
 }
 
-void append_faces(const Array3i& F, std::string& out) {
-    constexpr size_t stride = 13;
-    const size_t begin = out.size();
-    out.resize(begin + size_t(F.rows()) * stride);
-    parallel_for(size_t(F.rows()), grain, [&](size_t row) {
-        char* target = out.data() + begin + row * stride;
-        *target = 3;
-        std::memcpy(target + 1, F.data() + row * 3, 12);
-    });
-}
-
 }  // namespace
 
 std::string encode_ply(const MeshData& mesh, const fs::path& folder) {
-    const std::vector<Part> parts = vertex_parts(mesh);
+    const std::vector<Part> vertices = vertex_parts(mesh), faces = face_parts(mesh);
     std::string out = "ply\nformat binary_little_endian 1.0\n";
     if (mesh.materials.size() == 1 && !mesh.materials[0].base_color_texture.path.empty())
         out += fmt::format("comment TextureFile {}\n",
                            path_from_folder(mesh.materials[0].base_color_texture.path, folder));
     out += fmt::format("element vertex {}\n", mesh.V.rows());
-    for (const Part& part : parts) out += part.header;
-    out += fmt::format("element face {}\nproperty list uchar int vertex_indices\n", mesh.F.rows());
+    for (const Part& part : vertices) out += part.header;
+    out += fmt::format("element face {}\n", mesh.F.rows());
+    for (const Part& part : faces) out += part.header;
     if (!mesh.E.empty())
         out += fmt::format("element edge {}\nproperty int vertex1\nproperty int vertex2\n", mesh.E.rows());
     out += "end_header\n";
-    append_vertices(parts, size_t(mesh.V.rows()), out);
-    append_faces(mesh.F, out);
+    append_rows(vertices, size_t(mesh.V.rows()), out);
+    append_rows(faces, size_t(mesh.F.rows()), out);
     out.append(reinterpret_cast<const char*>(mesh.E.data()), size_t(mesh.E.size()) * sizeof(int32_t));
     return out;
 }

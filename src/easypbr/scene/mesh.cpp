@@ -1,12 +1,15 @@
 #include "easypbr/scene/mesh.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <atomic>
 #include <limits>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/core/suggest.h"
 
 namespace easypbr {
 namespace {
@@ -38,6 +41,31 @@ void require_rows(const char* name, const Array& array, Eigen::Index rows, const
                                     rows, of, array.rows(), array.cols()));
 }
 
+/// Values that belong to the vertices or to the faces.
+template <class Array>
+void require_rows_of_either(const std::string& name, const Array& array, const MeshData& data) {
+    const Eigen::Index n = data.V.rows(), m = data.F.rows();
+    if (array.empty() || array.rows() == n || array.rows() == m) return;
+    throw ArgumentError(
+        fmt::format("mesh array {}: expected {} rows, one per vertex, or {}, one per face, or none; got {} "
+                    "x {}",
+                    name, n, m, array.rows(), array.cols()));
+}
+
+void require_scalars(const MeshData& data) {
+    for (size_t i = 0; i < data.scalars.size(); ++i) {
+        const ScalarArray& scalar = data.scalars[i];
+        if (scalar.name.empty())
+            throw ArgumentError(fmt::format("mesh scalars: expected a name for array {}, got none", i));
+        for (size_t k = 0; k < i; ++k)
+            if (data.scalars[k].name == scalar.name)
+                throw ArgumentError(
+                    fmt::format("mesh scalars: expected different names, got '{}' for arrays {} and {}",
+                                scalar.name, k, i));
+        require_rows_of_either("scalars['" + scalar.name + "']", scalar.values, data);
+    }
+}
+
 void require_shapes(const MeshData& data) {
     const Eigen::Index n = data.V.rows(), m = data.F.rows();
     require_rows("N", data.N, n, "vertex");
@@ -45,8 +73,9 @@ void require_shapes(const MeshData& data) {
     require_rows("UV", data.UV, n, "vertex");
     require_rows("T", data.T, n, "vertex");
     require_rows("B", data.B, n, "vertex");
-    require_rows("L", data.L, n, "vertex");
+    require_rows_of_either("L", data.L, data);
     require_rows("I", data.I, n, "vertex");
+    require_scalars(data);
     require_rows("source_vertex", data.source_vertex, n, "vertex");
     require_rows("source_face", data.source_face, m, "face");
     if (!data.C.empty() && data.C.cols() != 3 && data.C.cols() != 4)
@@ -77,6 +106,15 @@ void require_indices(const char* name, const Indices& indices, Eigen::Index vert
             throw ArgumentError(
                 fmt::format("mesh array {}: expected vertex indices from 0 to {}, got {} in row {} of {}",
                             name, vertices - 1, index, row, indices.rows()));
+}
+
+void require_labels(const Array1i& L, const LabelMap& map) {
+    const size_t row = first_bad_row(L.rows(), [&](size_t i) { return !map.accepts(L(Eigen::Index(i))); });
+    if (row == no_row) return;
+    throw ArgumentError(
+        fmt::format("mesh array L: label {} in row {} of {} is not in the label map '{}', which has {}; add "
+                    "it, or let the map show unknown labels as unlabelled",
+                    L(Eigen::Index(row)), row, L.rows(), map.name(), map.range_text()));
 }
 
 void require_parts(const MeshData& data) {
@@ -129,7 +167,20 @@ void validate(const MeshData& data, const MeshData& valid) {
     if (!same_V) require_finite(data.V);
     if (!same_count || !same_array(data.F, valid.F)) require_indices("F", data.F, data.V.rows());
     if (!same_count || !same_array(data.E, valid.E)) require_indices("E", data.E, data.V.rows());
+    const bool same_labels = same_array(data.L, valid.L) && data.label_map == valid.label_map;
+    if (data.label_map && !same_labels) require_labels(data.L, *data.label_map);
     require_parts(data);
+}
+
+const ScalarArray& scalar_named(const MeshData& data, const std::string& name) {
+    std::vector<std::string> names;
+    for (const ScalarArray& scalar : data.scalars) {
+        if (scalar.name == name) return scalar;
+        names.push_back(scalar.name);
+    }
+    throw NameError(fmt::format("mesh '{}' has no scalars '{}'{}; it has {}", data.name, name,
+                                did_you_mean(name, names),
+                                names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
 }
 
 void require_mesh_depth(int depth) {
@@ -181,6 +232,24 @@ void Mesh::set_material(const Material& material, int index) {
                                         data.name, data.materials.size(), index));
         if (size_t(index) == data.materials.size()) data.materials.emplace_back();
         data.materials[size_t(index)] = material;
+    });
+}
+
+void Mesh::add_scalar(const std::string& name, Array1f values) {
+    edit([&](MeshData& data) {
+        const auto same = [&](const ScalarArray& scalar) { return scalar.name == name; };
+        const auto found = std::find_if(data.scalars.begin(), data.scalars.end(), same);
+        if (found != data.scalars.end())
+            found->values = values;
+        else
+            data.scalars.push_back({name, values});
+    });
+}
+
+void Mesh::remove_scalar(const std::string& name) {
+    edit([&](MeshData& data) {
+        const ScalarArray& scalar = scalar_named(data, name);
+        data.scalars.erase(data.scalars.begin() + (&scalar - data.scalars.data()));
     });
 }
 

@@ -10,6 +10,7 @@
 
 #include "easypbr/core/math.h"
 #include "easypbr/scene/array.h"
+#include "easypbr/scene/label_map.h"
 #include "easypbr/scene/material.h"
 #include "easypbr/scene/style.h"
 
@@ -25,21 +26,29 @@ struct MeshPart {
     int material = 0;  ///< index into MeshData::materials
 };
 
+/// Named values, one for each vertex or one for each face: curvature, temperature, error. NaN: no value.
+struct ScalarArray {
+    std::string name;  ///< not empty, unique within a mesh
+    Array1f values;    ///< n x 1 or m x 1; with as many faces as vertices they belong to the vertices
+};
+
 /// The plain data of a mesh: n vertices, m faces, k edges. Copying is cheap (arrays are shared).
 struct MeshData {
     std::string name;
     std::filesystem::path source;  ///< the file it was read from; empty for a mesh made in memory
 
-    Array3f V;             ///< n x 3 positions
-    Array3f N;             ///< n x 3 unit normals, or empty: computed when it is drawn
-    ArrayXf C;             ///< n x 3 or n x 4 colours, sRGB-encoded, 0 .. 1 (alpha last), or empty
-    Array2f UV;            ///< n x 2 texture coordinates, v upwards, or empty
-    Array3f T;             ///< n x 3 tangent vectors (surfels), or empty
-    Array1f B;             ///< n x 1 bitangent lengths (surfels), or empty
-    Array3i F;             ///< m x 3 vertex indices of triangles, counter-clockwise seen from outside
-    Array2i E;             ///< k x 2 vertex indices of line segments
-    Array1i L;             ///< n x 1 labels
-    Array1f I;             ///< n x 1 intensities
+    Array3f V;   ///< n x 3 positions
+    Array3f N;   ///< n x 3 unit normals, or empty: computed when it is drawn
+    ArrayXf C;   ///< n x 3 or n x 4 colours, sRGB-encoded, 0 .. 1 (alpha last), or empty
+    Array2f UV;  ///< n x 2 texture coordinates, v upwards, or empty
+    Array3f T;   ///< n x 3 tangent vectors (surfels), or empty
+    Array1f B;   ///< n x 1 bitangent lengths (surfels), or empty
+    Array3i F;   ///< m x 3 vertex indices of triangles, counter-clockwise seen from outside
+    Array2i E;   ///< k x 2 vertex indices of line segments
+    Array1i L;   ///< n x 1 or m x 1 labels; with as many faces as vertices those of the vertices
+    Array1f I;   ///< n x 1 intensities
+    std::vector<ScalarArray> scalars;           ///< any number of named values
+    std::shared_ptr<const LabelMap> label_map;  ///< what the labels mean; none: generated colours
     float voxel_size = 0;  ///< edge of the cubes that V are the centres of; 0: V are no voxels
 
     Array1i source_vertex;  ///< n x 1 index of the file's vertex that each vertex came from; empty: the same
@@ -53,8 +62,19 @@ struct MeshData {
     std::vector<Mesh> children;
 };
 
+/// What the rows of labels or scalars belong to.
+enum class PerElement { vertex, face };
+/// Vertices when there are as many rows as vertices, else faces.
+inline PerElement element_of(const MeshData& data, Eigen::Index rows) {
+    return rows == data.V.rows() ? PerElement::vertex : PerElement::face;
+}
+
+/// The scalars of that name. Throws NameError with the nearest name.
+const ScalarArray& scalar_named(const MeshData& data, const std::string& name);
+
 /// Throws ArgumentError that names the array, the expected and the given shape, when arrays do not fit
-/// together, when a face or edge index is out of range, or when a position is not finite.
+/// together, when a face or edge index is out of range, when a position is not finite, or when a label is not
+/// in the label map (see LabelMap::accepts).
 void validate(const MeshData& data);
 /// The same, without reading arrays again that `data` shares with data known to be valid.
 void validate(const MeshData& data, const MeshData& valid);
@@ -126,6 +146,31 @@ class Mesh {
             d.source_face = {};
         });
     }
+
+    void set_L(Array1i L) {
+        edit([&](MeshData& d) { d.L = L; });
+    }
+    /// Both at once, when the labels are of another map than before.
+    void set_labels(Array1i L, std::shared_ptr<const LabelMap> label_map) {
+        edit([&](MeshData& d) {
+            d.L = L;
+            d.label_map = label_map;
+        });
+    }
+    std::shared_ptr<const LabelMap> label_map() const { return snapshot()->label_map; }
+    void set_label_map(std::shared_ptr<const LabelMap> label_map) {
+        edit([&](MeshData& d) { d.label_map = label_map; });
+    }
+    void set_label_map(LabelMap label_map) {
+        set_label_map(std::make_shared<const LabelMap>(std::move(label_map)));
+    }
+
+    /// The scalars of that name. Throws NameError with the nearest name.
+    Array1f scalar(const std::string& name) const { return scalar_named(*snapshot(), name).values; }
+    /// Adds scalars, or replaces those of the same name.
+    void add_scalar(const std::string& name, Array1f values);
+    /// Throws NameError with the nearest name.
+    void remove_scalar(const std::string& name);
 
     std::string name() const { return snapshot()->name; }
 

@@ -1,0 +1,66 @@
+#include "easypbr/scene/label_map.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "easypbr/core/error.h"
+
+using namespace easypbr;
+
+namespace {
+
+template <class Make>
+std::string message_of(Make&& make) {
+    try {
+        make();
+    } catch (const ArgumentError& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+}  // namespace
+
+TEST(LabelMap, FindsLabelsWithGaps) {
+    constexpr int32_t lowest = std::numeric_limits<int32_t>::min(),
+                      highest = std::numeric_limits<int32_t>::max();
+    // Labels within the table, beyond it, and so far apart that their difference does not fit in 32 bits.
+    const LabelMap map("sparse", {{259, "c", {3, 0, 0}},
+                                  {highest, "e", {5, 0, 0}},
+                                  {0, "b", {2, 0, 0}},
+                                  {lowest, "a", {1, 0, 0}},
+                                  {1000000, "d", {4, 0, 0}}});
+    for (const auto& [label, name] : std::vector<std::pair<int32_t, std::string>>{
+             {lowest, "a"}, {0, "b"}, {259, "c"}, {1000000, "d"}, {highest, "e"}}) {
+        ASSERT_TRUE(map.find(label)) << label;
+        EXPECT_EQ(map.find(label)->name, name);
+        EXPECT_EQ(map.color_of(label), (Rgb8{uint8_t(name[0] - 'a' + 1), 0, 0}));
+    }
+    for (const int32_t label : {lowest + 1, -1, 1, 258, 260, 999999, 1000001, highest - 1}) {
+        EXPECT_FALSE(map.find(label)) << label;
+        EXPECT_EQ(map.color_of(label), map.unlabelled_color());
+        EXPECT_EQ(map.accepts(label), label < 0);
+    }
+}
+
+TEST(LabelMap, ShowsWhatIsUnknownAsUnlabelled) {
+    const std::vector<LabelClass> classes{{0, "none", {9, 8, 7}}, {4, "car", {1, 2, 3}}};
+    const LabelMap map("cars", classes, 0, UnknownLabels::unlabelled);
+    EXPECT_TRUE(map.accepts(17));
+    EXPECT_EQ(map.color_of(17), (Rgb8{9, 8, 7}));
+    EXPECT_EQ(map.color_of(-3), (Rgb8{9, 8, 7}));
+    EXPECT_EQ(LabelMap("cars", classes).color_of(17), (Rgb8{128, 128, 128}));
+}
+
+TEST(LabelMap, SaysWhatIsWrong) {
+    EXPECT_EQ(message_of([] { LabelMap("cars", {}); }), "label map 'cars': expected classes, got none");
+    EXPECT_EQ(message_of([] {
+                  LabelMap("cars", {{1, "a", {}}, {0, "b", {}}, {1, "c", {}}});
+              }),
+              "label map 'cars': label 1 occurs twice, as 'a' and 'c'");
+    EXPECT_EQ(message_of([] {
+                  LabelMap("cars", {{1, "a", {}}, {3, "b", {}}}, 2);
+              }),
+              "label map 'cars': the unlabelled class 2 is not among the 2 labels from 1 to 3");
+}
