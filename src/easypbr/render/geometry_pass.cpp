@@ -154,9 +154,4 @@ void GeometryPass::bind_textures(const gl::Program& program, const Material& mat
     }
 }
 
-void GeometryPass::evict_unused() {
-    meshes_.evict_unused();
-    textures_.evict_unused();
-}
-
 }  // namespace easypbr::render

@@ -12,17 +12,19 @@ namespace easypbr::render {
 
 class GeometryPass {
   public:
+    /// The caches are shared with other passes, must outlive this one, and are emptied by their owner.
+    GeometryPass(gpu::MeshCache& meshes, gpu::TextureCache& textures)
+        : meshes_(meshes), textures_(textures) {}
+
     /// Clears the G-buffer and draws all items.
     void draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets);
-
-    void evict_unused();
 
   private:
     void draw_item(const Frame& frame, const DrawItem& item, const gpu::MeshBuffers& buffers, bool emission);
     void bind_textures(const gl::Program& program, const Material& material);
 
-    gpu::MeshCache meshes_;
-    gpu::TextureCache textures_;
+    gpu::MeshCache& meshes_;
+    gpu::TextureCache& textures_;
     ProgramVariants programs_{"geometry_mesh.vert", "geometry_mesh.frag"};
 };
 

@@ -92,7 +92,8 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
         if (options.samples > 1) run("accumulate", [&] { output_.accumulate(frame, targets_); });
     }
     run("output", [&] { output_.finish(frame, targets_, background_texture(frame, images)); });
-    geometry_.evict_unused();
+    meshes_.evict_unused();
+    textures_.evict_unused();
     software_geometry_.evict_unused();
     camera_ = resolved.camera;
     glFlush();

@@ -79,7 +79,9 @@ class Renderer {
     GBuffer targets_;
     gl::VertexArray no_attributes_;
     gpu::EnvironmentMaps environment_;
-    GeometryPass geometry_;
+    gpu::MeshCache meshes_;
+    gpu::TextureCache textures_;
+    GeometryPass geometry_{meshes_, textures_};
     SoftwareGeometryPass software_geometry_;
     LightingPass lighting_;
     BackgroundPass background_;
