@@ -11,13 +11,14 @@ MAY_USE = {
     "core": set(),
     "scene": {"core"},
     "gl": {"core"},
+    "geometry": {"core", "scene"},
     "io": {"core", "scene"},
     "gpu": {"core", "scene", "gl"},
     "render": {"core", "scene", "gl", "gpu"},
     "app": {"core", "scene", "gl", "io", "gpu", "render"},
     "viewer": {"core", "scene", "gl", "io", "gpu", "render", "app"},
-    "cli": {"core", "scene", "gl", "io", "gpu", "render", "app", "viewer"},
-    "python": {"core", "scene", "gl", "io", "gpu", "render", "app", "viewer", "cli"},
+    "cli": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "viewer"},
+    "python": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "viewer", "cli"},
 }
 INCLUDE = re.compile(r'#include\s+["<]easypbr/(\w+)/')
 

@@ -10,7 +10,7 @@
 #include "easypbr/app/output.h"
 #include "easypbr/core/compare.h"
 #include "easypbr/io/image_io.h"
-#include "easypbr/scene/primitives.h"
+#include "easypbr/geometry/primitives.h"
 
 namespace easypbr::app {
 namespace {

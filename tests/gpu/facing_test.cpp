@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "easypbr/scene/primitives.h"
+#include "easypbr/geometry/primitives.h"
 
 namespace easypbr::gpu {
 namespace {

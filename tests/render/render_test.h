@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "easypbr/app/session.h"
-#include "easypbr/scene/primitives.h"
+#include "easypbr/geometry/primitives.h"
 
 namespace easypbr {
 

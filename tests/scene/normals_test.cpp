@@ -7,7 +7,7 @@
 #include <random>
 
 #include "easypbr/core/math.h"
-#include "easypbr/scene/primitives.h"
+#include "easypbr/geometry/primitives.h"
 
 namespace easypbr {
 namespace {

@@ -6,7 +6,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/math.h"
 #include "easypbr/scene/normals.h"
-#include "easypbr/scene/primitives.h"
+#include "easypbr/geometry/primitives.h"
 
 namespace easypbr {
 namespace {

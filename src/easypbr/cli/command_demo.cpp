@@ -8,8 +8,8 @@
 #include "easypbr/cli/render_options.h"
 #include "easypbr/cli/stopwatch.h"
 #include "easypbr/core/file.h"
+#include "easypbr/geometry/primitives.h"
 #include "easypbr/io/image_io.h"
-#include "easypbr/scene/primitives.h"
 
 namespace easypbr::cli {
 namespace {

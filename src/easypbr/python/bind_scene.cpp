@@ -4,9 +4,9 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "easypbr/geometry/primitives.h"
 #include "easypbr/io/mesh_io.h"
 #include "easypbr/python/bindings.h"
-#include "easypbr/scene/primitives.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/viewer/viewer.h"
 

@@ -2,7 +2,7 @@
 #include <string>
 
 #include "easypbr/core/color.h"
-#include "easypbr/scene/primitives.h"
+#include "easypbr/geometry/primitives.h"
 
 namespace easypbr {
 

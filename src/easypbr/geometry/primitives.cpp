@@ -1,4 +1,4 @@
-#include "easypbr/scene/primitives.h"
+#include "easypbr/geometry/primitives.h"
 
 #include <fmt/format.h>
 

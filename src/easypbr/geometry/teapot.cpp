@@ -11,7 +11,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
-#include "easypbr/scene/primitives.h"
+#include "easypbr/geometry/primitives.h"
 
 namespace easypbr {
 
