@@ -8,10 +8,10 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/io/assimp_loader.h"
-#include "easypbr/io/flatten.h"
 #include "easypbr/io/glb_writer.h"
 #include "easypbr/io/gltf_reader.h"
 #include "easypbr/io/mesh_readers.h"
+#include "easypbr/scene/merge.h"
 
 namespace easypbr::io {
 namespace {

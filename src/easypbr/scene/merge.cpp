@@ -1,0 +1,223 @@
+#include "easypbr/scene/merge.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <string>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
+#include "easypbr/scene/normals.h"
+
+namespace easypbr {
+namespace {
+
+using Meshes = std::span<const MeshData>;
+
+Eigen::Index rows_for(const MeshData& mesh, PerElement element) {
+    return element == PerElement::vertex ? mesh.V.rows() : mesh.F.rows();
+}
+
+/// Total rows; throws when 32-bit indices cannot count them.
+Eigen::Index total(Meshes meshes, PerElement element) {
+    Eigen::Index sum = 0;
+    for (const MeshData& mesh : meshes) sum += rows_for(mesh, element);
+    if (sum > std::numeric_limits<int32_t>::max())
+        throw ArgumentError(fmt::format("merge: expected at most {} {}, got {}",
+                                        std::numeric_limits<int32_t>::max(),
+                                        element == PerElement::vertex ? "vertices" : "faces", sum));
+    return sum;
+}
+
+/// One array over the other: of(mesh) or, where that is empty, `filler` for each vertex or face of the mesh.
+template <class A, class Of>
+A joined(Meshes meshes, PerElement element, typename A::Scalar filler, Of&& of) {
+    std::vector<A> parts;
+    for (const MeshData& mesh : meshes) parts.push_back(of(mesh));
+    Eigen::Index cols = 0;
+    for (const A& part : parts)
+        if (!part.empty()) cols = std::max(cols, part.cols());
+    if (cols == 0) return {};
+    typename A::Dense result = A::Dense::Constant(total(meshes, element), cols, filler);
+    Eigen::Index row = 0;
+    for (size_t i = 0; i < parts.size(); ++i) {
+        if (!parts[i].empty()) result.block(row, 0, parts[i].rows(), parts[i].cols()) = parts[i];
+        row += rows_for(meshes[i], element);
+    }
+    return result;
+}
+
+template <class A>
+A joined(Meshes meshes, A MeshData::*member, typename A::Scalar filler) {
+    return joined<A>(meshes, PerElement::vertex, filler, [&](const MeshData& mesh) { return mesh.*member; });
+}
+
+/// Vertex indices of faces or edges, shifted by the vertices before.
+template <class A>
+A joined_indices(Meshes meshes, A MeshData::*member) {
+    Eigen::Index count = 0, row = 0, shift = 0;
+    for (const MeshData& mesh : meshes) count += (mesh.*member).rows();
+    if (count == 0) return {};
+    typename A::Dense result(count, A::ColsAtCompileTime);
+    for (const MeshData& mesh : meshes) {
+        const A& part = mesh.*member;
+        if (!part.empty()) result.middleRows(row, part.rows()) = part.array() + int32_t(shift);
+        row += part.rows();
+        shift += mesh.V.rows();
+    }
+    return result;
+}
+
+/// source_vertex or source_face, shifted so that those of different meshes stay different.
+Array1i joined_sources(Meshes meshes, Array1i MeshData::*member, PerElement element) {
+    const auto is_empty = [&](const MeshData& mesh) { return (mesh.*member).empty(); };
+    if (std::all_of(meshes.begin(), meshes.end(), is_empty)) return {};
+    Array1i::Dense result(total(meshes, element));
+    Eigen::Index row = 0;
+    int32_t shift = 0;
+    for (const MeshData& mesh : meshes) {
+        const Eigen::Index count = rows_for(mesh, element);
+        if (count == 0) continue;
+        auto block = result.segment(row, count);
+        if (is_empty(mesh))
+            std::iota(block.begin(), block.end(), shift);
+        else
+            block = (mesh.*member).array() + shift;
+        row += count;
+        shift = block.maxCoeff() + 1;
+    }
+    return result;
+}
+
+/// Labels or scalars: of the vertices or of the faces as in the first mesh that has them; `name` is for
+/// warnings.
+template <class A, class Of>
+A joined_either(Meshes meshes, const std::string& name, typename A::Scalar filler, Of&& of) {
+    const auto first =
+        std::find_if(meshes.begin(), meshes.end(), [&](const MeshData& mesh) { return !of(mesh).empty(); });
+    if (first == meshes.end()) return {};
+    const PerElement element = element_of(*first, of(*first).rows());
+    return joined<A>(meshes, element, filler, [&](const MeshData& mesh) -> A {
+        const A values = of(mesh);
+        if (values.empty() || values.rows() == rows_for(mesh, element)) return values;
+        const bool of_vertices = element == PerElement::vertex;
+        log_warning(fmt::format("mesh '{}': {} belong to its {} and those of '{}' to the {}: left out",
+                                mesh.name, name, of_vertices ? "faces" : "vertices", first->name,
+                                of_vertices ? "vertices" : "faces"));
+        return {};
+    });
+}
+
+std::vector<ScalarArray> joined_scalars(Meshes meshes) {
+    std::vector<std::string> names;
+    for (const MeshData& mesh : meshes)
+        for (const ScalarArray& scalar : mesh.scalars)
+            if (std::find(names.begin(), names.end(), scalar.name) == names.end())
+                names.push_back(scalar.name);
+    std::vector<ScalarArray> result;
+    for (const std::string& name : names)
+        result.push_back({name, joined_either<Array1f>(meshes, "scalars '" + name + "'", std::nanf(""),
+                                                       [&](const MeshData& mesh) -> Array1f {
+                                                           for (const ScalarArray& scalar : mesh.scalars)
+                                                               if (scalar.name == name) return scalar.values;
+                                                           return {};
+                                                       })});
+    return result;
+}
+
+std::shared_ptr<const LabelMap> first_label_map(Meshes meshes) {
+    std::shared_ptr<const LabelMap> found;
+    for (const MeshData& mesh : meshes) {
+        if (!found) found = mesh.label_map;
+        if (mesh.label_map && mesh.label_map != found)
+            log_warning(
+                fmt::format("mesh '{}': its parts have the label maps '{}' and '{}': the first is kept",
+                            meshes.front().name, found->name(), mesh.label_map->name()));
+    }
+    return found;
+}
+
+/// Each mesh's normals; computed where a mesh has faces only.
+Array3f joined_normals(Meshes meshes) {
+    const auto has_normals = [](const MeshData& mesh) { return !mesh.N.empty(); };
+    if (std::none_of(meshes.begin(), meshes.end(), has_normals)) return {};
+    return joined<Array3f>(meshes, PerElement::vertex, 0.0f, [&](const MeshData& mesh) {
+        return has_normals(mesh) || mesh.F.empty() ? mesh.N : smooth_normals(mesh);
+    });
+}
+
+void join_parts(MeshData& whole, Meshes meshes) {
+    int faces = 0;
+    for (const MeshData& mesh : meshes) {
+        const int materials = int(whole.materials.size());
+        std::vector<MeshPart> parts = mesh.parts;
+        if (parts.empty() && !mesh.F.empty()) parts = {{mesh.name, 0, int(mesh.F.rows()), 0}};
+        for (MeshPart& part : parts) {
+            part.first_face += faces;
+            part.material += materials;
+            whole.parts.push_back(part);
+        }
+        whole.materials.insert(whole.materials.end(), mesh.materials.begin(), mesh.materials.end());
+        if (mesh.materials.empty()) whole.materials.emplace_back();
+        faces += int(mesh.F.rows());
+    }
+}
+
+template <class Of>
+bool all_have(Meshes meshes, Of&& of) {
+    return std::all_of(meshes.begin(), meshes.end(),
+                       [&](const MeshData& mesh) { return mesh.V.empty() || of(mesh); });
+}
+
+}  // namespace
+
+MeshData merged(Meshes meshes) {
+    if (meshes.empty()) return {};
+    if (meshes.size() == 1) return meshes.front();
+    MeshData whole;
+    whole.name = meshes.front().name;
+    whole.source = meshes.front().source;
+    whole.style = meshes.front().style;
+    whole.T_parent_mesh = meshes.front().T_parent_mesh;
+    whole.V = joined(meshes, &MeshData::V, 0.0f);
+    whole.N = joined_normals(meshes);
+    whole.C = joined(meshes, &MeshData::C, 1.0f);
+    whole.UV = joined(meshes, &MeshData::UV, 0.0f);
+    if (all_have(meshes, [](const MeshData& mesh) { return !mesh.T.empty() && !mesh.B.empty(); })) {
+        whole.T = joined(meshes, &MeshData::T, 0.0f);
+        whole.B = joined(meshes, &MeshData::B, 0.0f);
+    }
+    whole.I = joined(meshes, &MeshData::I, 0.0f);
+    whole.L = joined_either<Array1i>(meshes, "labels", no_label, [](const MeshData& mesh) { return mesh.L; });
+    whole.label_map = first_label_map(meshes);
+    whole.scalars = joined_scalars(meshes);
+    const float voxel_size = meshes.front().voxel_size;
+    if (all_have(meshes, [&](const MeshData& mesh) { return mesh.voxel_size == voxel_size; }))
+        whole.voxel_size = voxel_size;
+    total(meshes, PerElement::face);
+    whole.F = joined_indices(meshes, &MeshData::F);
+    whole.E = joined_indices(meshes, &MeshData::E);
+    whole.source_vertex = joined_sources(meshes, &MeshData::source_vertex, PerElement::vertex);
+    whole.source_face = joined_sources(meshes, &MeshData::source_face, PerElement::face);
+    join_parts(whole, meshes);
+    return whole;
+}
+
+MeshData flatten(const Mesh& mesh) {
+    std::vector<MeshData> nodes;
+    for_each_node(mesh,
+                  [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d& T_parent_mesh) {
+                      if (data->V.empty()) return;
+                      nodes.push_back(transformed(*data, T_parent_mesh));
+                      nodes.back().T_parent_mesh.setIdentity();
+                      nodes.back().children.clear();
+                  });
+    MeshData whole = merged(nodes);
+    whole.name = nodes.size() == 1 ? nodes.front().name : mesh.name();
+    return whole;
+}
+
+}  // namespace easypbr

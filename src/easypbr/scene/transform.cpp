@@ -1,0 +1,90 @@
+#include <Eigen/Eigenvalues>
+#include <cmath>
+
+#include "easypbr/core/parallel.h"
+#include "easypbr/scene/merge.h"
+
+namespace easypbr {
+namespace {
+
+constexpr size_t grain = 1 << 14;
+
+Vec3d row(const Array3f& array, size_t i) {
+    return array.row(Eigen::Index(i)).transpose().cast<double>();
+}
+
+/// result.row(i) = of(i), in parallel.
+template <class Of>
+Array3f::Dense rows(Eigen::Index count, Of&& of) {
+    Array3f::Dense result(count, 3);
+    parallel_for(size_t(count), grain,
+                 [&](size_t i) { result.row(Eigen::Index(i)) = of(i).template cast<float>().transpose(); });
+    return result;
+}
+
+/// det(M) times the inverse transpose: it turns normals, and exists for every M.
+Mat3d cofactors(const Mat3d& M) {
+    Mat3d result;
+    result.col(0) = M.col(1).cross(M.col(2));
+    result.col(1) = M.col(2).cross(M.col(0));
+    result.col(2) = M.col(0).cross(M.col(1));
+    return result;
+}
+
+Vec3d direction_or_z(const Vec3d& vector) {
+    const double length = vector.norm();
+    return length > 0 ? Vec3d(vector / length) : Vec3d(Vec3d::UnitZ());
+}
+
+Array3f turned_normals(const Array3f& N, const Mat3d& M) {
+    const Mat3d turn = (M.determinant() < 0 ? -1.0 : 1.0) * cofactors(M);
+    // A zero vector says that there is no normal, and goes on saying so.
+    return rows(N.rows(), [&](size_t i) -> Vec3d {
+        const Vec3d normal = row(N, i);
+        return normal.isZero(0) ? normal : direction_or_z(turn * normal);
+    });
+}
+
+/// The two semi-axes of the ellipse t cos(x) + b sin(x). When t and b are perpendicular they are those
+/// already.
+std::pair<Vec3d, Vec3d> semi_axes(const Vec3d& t, const Vec3d& b) {
+    const double mixed = t.dot(b);
+    if (std::abs(mixed) <= 1e-6 * t.norm() * b.norm()) return {t, b};
+    Eigen::Matrix2d gram;
+    gram << t.squaredNorm(), mixed, mixed, b.squaredNorm();
+    const Eigen::Matrix2d v = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(gram).eigenvectors();
+    return {v(0, 1) * t + v(1, 1) * b, v(0, 0) * t + v(1, 0) * b};
+}
+
+void transform_surfels(MeshData& mesh, const MeshData& before, const Mat3d& M) {
+    Array1f::Dense B(before.B.rows());
+    const bool complete = !before.N.empty() && !before.B.empty();
+    mesh.T = rows(before.T.rows(), [&](size_t i) -> Vec3d {
+        const Vec3d tangent = row(before.T, i);
+        if (!complete) return M * tangent;
+        const double length = double(before.B[Eigen::Index(i)]);
+        const Vec3d bitangent = row(before.N, i).cross(tangent).stableNormalized() * length;
+        const auto [first, second] = semi_axes(M * tangent, M * bitangent);
+        B[Eigen::Index(i)] = float(second.norm());
+        return first;
+    });
+    if (complete) mesh.B = std::move(B);
+}
+
+}  // namespace
+
+MeshData transformed(const MeshData& mesh, const Eigen::Affine3d& T) {
+    if (T.matrix().isIdentity(0)) return mesh;
+    const Mat3d M = T.linear();
+    const double determinant = M.determinant();
+    MeshData result = mesh;
+    if (!mesh.V.empty())
+        result.V = rows(mesh.V.rows(), [&](size_t i) -> Vec3d { return T * row(mesh.V, i); });
+    if (!mesh.N.empty()) result.N = turned_normals(mesh.N, M);
+    if (!mesh.T.empty()) transform_surfels(result, mesh, M);
+    if (determinant < 0 && !mesh.F.empty()) result.F = Array3i::Dense(mesh.F.rowwise().reverse());
+    result.voxel_size = float(mesh.voxel_size * std::cbrt(std::abs(determinant)));
+    return result;
+}
+
+}  // namespace easypbr
