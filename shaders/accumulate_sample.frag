@@ -7,7 +7,15 @@ uniform float u_exposure;
 
 layout(location = 0) out vec4 o_sum;
 
+#ifdef OVERLAY
+uniform sampler2D u_overlay;  // linear display light, premultiplied
+#endif
+
 void main() {
     vec4 radiance = textureLod(u_radiance, gl_FragCoord.xy / u_size, 0.0);
     o_sum = vec4(tone_map(radiance.rgb * u_exposure) * radiance.a, radiance.a);
+#ifdef OVERLAY
+    vec4 over = textureLod(u_overlay, gl_FragCoord.xy / u_size, 0.0);
+    o_sum = o_sum * (1.0 - over.a) + over;
+#endif
 }

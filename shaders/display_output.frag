@@ -12,6 +12,10 @@ uniform sampler2D u_background_image;
 uniform vec4 u_background_uv;   // scale and offset that cover the picture without distortion
 #endif
 
+#ifdef OVERLAY
+uniform sampler2D u_overlay;    // linear display light, premultiplied
+#endif
+
 layout(location = 0) out vec4 o_color;
 
 void main() {
@@ -21,6 +25,10 @@ void main() {
     vec4 color = source * u_sample_scale;
 #else
     vec4 color = vec4(tone_map(source.rgb * u_exposure) * source.a, source.a);
+#ifdef OVERLAY
+    vec4 over = textureLod(u_overlay, uv, 0.0);
+    color = color * (1.0 - over.a) + over;
+#endif
 #endif
 #ifdef BACKGROUND_IMAGE
     vec4 behind = vec4(textureLod(u_background_image, uv * u_background_uv.xy + u_background_uv.zw, 0.0).rgb, 1.0);

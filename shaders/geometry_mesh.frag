@@ -26,12 +26,14 @@ layout(location = 4) out vec4 o_emission;
 #endif
 #ifdef OBJECT_ID
 layout(location = 5) out uint o_id;
+layout(location = 6) out uint o_element;
 uniform int u_object_id;
+uniform int u_first_face;
 #endif
 
 uniform vec4 u_base_color;  // linear, opacity in w
 uniform vec4 u_surface;     // metallic, roughness, occlusion strength, alpha cutoff
-uniform vec4 u_emissive;    // radiance; w: 1 for unlit
+uniform vec4 u_emissive;    // radiance; w: code of the surface's kind
 uniform float u_normal_scale;
 uniform float u_lod_bias;
 uniform float u_sample_index;
@@ -152,12 +154,13 @@ void main() {
     o_depth = gl_FragCoord.z;
 #ifdef OBJECT_ID
     o_id = uint(u_object_id);
+    o_element = uint(u_first_face + gl_PrimitiveID + 1);
 #endif
 #ifdef EMISSION
     vec3 emission = u_emissive.rgb;
 #ifdef EMISSIVE_TEXTURE
     emission *= texture(u_emissive_texture, uv_of(5), u_lod_bias).rgb;
 #endif
-    o_emission = vec4(u_emissive.w > 0.5 ? color.rgb : emission, 1.0);
+    o_emission = vec4(u_emissive.w > 0.9 ? color.rgb : emission, 1.0);
 #endif
 }

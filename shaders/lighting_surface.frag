@@ -3,6 +3,7 @@
 #include "common_camera.glsl"
 #include "common_environment.glsl"
 #include "common_brdf.glsl"
+#include "common_surface_kind.glsl"
 
 uniform sampler2D u_albedo;
 uniform sampler2D u_normal;
@@ -127,5 +128,5 @@ void main() {
     s.roughness = light_roughness;
     s.alpha = light_roughness * light_roughness;
     for (int i = 0; i < u_light_count; ++i) radiance += direct(u_lights[i], s);
-    o_radiance = vec4(material.w > 0.5 ? vec3(0.0) : radiance, 1.0);
+    o_radiance = vec4(is_lit(material.w) ? radiance : vec3(0.0), 1.0);
 }

@@ -34,20 +34,6 @@ void check_size(Vec2i size) {
                                         size.y(), max_image_side));
 }
 
-/// A scene whose objects have vertices only would give an empty picture without a word.
-void require_faces(const SceneSnapshot& scene) {
-    Eigen::Index vertices = 0;
-    for (const auto& object : scene.objects) {
-        if (!object.mesh->F.empty()) return;
-        vertices += object.mesh->V.rows();
-    }
-    if (vertices > 0)
-        throw ArgumentError(
-            fmt::format("nothing to draw: the scene has {} vertices and no faces, and this version does not "
-                        "draw point clouds",
-                        vertices));
-}
-
 struct NamedTexture {
     std::string MaterialSettings::*path;
     Texture Material::*texture;
@@ -150,7 +136,6 @@ Session::Prepared Session::prepare(const PictureOptions& options) {
         const Stopwatch watch(timing_.images);
         prepared.scene = snapshot();
     }
-    require_faces(prepared.scene);
     const Stopwatch watch(timing_.draw);
     prepared.resolved = easypbr::resolve(prepared.scene, settings_, prepared.options.size);
     return prepared;
@@ -191,7 +176,9 @@ std::map<std::string, Image> Session::render_layers(const std::vector<std::strin
     std::vector<render::Layer> layers;
     for (const std::string& name : names) layers.push_back(render::layer_named(name));
     Prepared prepared = prepare({size, 1, Encoding::scene_linear});
-    prepared.options.ids = std::ranges::find(layers, render::Layer::id) != layers.end();
+    prepared.options.ids = std::ranges::any_of(layers, [](render::Layer layer) {
+        return layer == render::Layer::id || layer == render::Layer::element;
+    });
     render::Renderer& renderer = this->renderer();
     const gl::ContextScope scope(*context_);
     renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);

@@ -11,15 +11,12 @@ namespace easypbr::cli {
 
 io::LoadedScene load_drawable(const std::filesystem::path& path, const io::LoadOptions& options) {
     io::LoadedScene loaded = io::load_scene(path, options);
-    Eigen::Index vertices = 0, faces = 0;
+    Eigen::Index vertices = 0;
     for_each_node(loaded.mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d&) {
         vertices += data->V.rows();
-        faces += data->F.rows();
     });
-    if (faces == 0)
-        throw FormatError(
-            fmt::format("{} has no faces, {} vertices only: this version does not draw point clouds",
-                        path.string(), vertices));
+    if (vertices == 0)
+        throw FormatError(fmt::format("{} has no vertices: there is nothing to draw", path.string()));
     return loaded;
 }
 

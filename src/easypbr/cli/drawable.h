@@ -11,7 +11,7 @@
 namespace easypbr::cli {
 
 /// Reads a file that has something to draw. Throws as io::load_scene() does; FormatError when it has no
-/// faces.
+/// vertices.
 io::LoadedScene load_drawable(const std::filesystem::path& path, const io::LoadOptions& options);
 
 /// The files' stems, made unique: "a", "b", "a-2".

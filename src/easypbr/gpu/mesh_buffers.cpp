@@ -6,28 +6,15 @@
 #include <cstring>
 #include <vector>
 
-#include "easypbr/core/octahedral.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/gpu/facing.h"
+#include "easypbr/gpu/packing.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::gpu {
 namespace {
 
 constexpr size_t grain = 1 << 15;
-
-int16_t snorm16(float v) {
-    return int16_t(std::lrint(std::clamp(v, -1.0f, 1.0f) * 32767.0f));
-}
-
-struct Oct16 {
-    int16_t x, y;
-};
-
-Oct16 oct16(const Vec3& n) {
-    const Vec2 p = oct_encode(n);
-    return {snorm16(p.x()), snorm16(p.y())};
-}
 
 struct Tangent16 {
     int16_t x, y, z, w;
@@ -72,11 +59,6 @@ SplitMesh split_by_tangent(const Array3f& V, const Array3f& N, const Array2f& UV
     return split;
 }
 
-template <class T>
-gl::Buffer upload(const std::vector<T>& values) {
-    return gl::Buffer(std::as_bytes(std::span(values)));
-}
-
 /// Rows of an array in the order of `vertex` (all of them in file order when it is empty) as values of type
 /// To.
 template <class To, class ArrayType, class Convert>
@@ -85,15 +67,6 @@ gl::Buffer gather(const ArrayType& array, const std::vector<int32_t>& vertex, Co
     parallel_for(values.size(), grain,
                  [&](size_t i) { values[i] = convert(vertex.empty() ? Eigen::Index(i) : vertex[i]); });
     return upload(values);
-}
-
-struct Rgba8 {
-    uint8_t r, g, b, a;
-};
-
-Rgba8 rgba8(const ArrayXf& C, Eigen::Index i) {
-    const auto code = [&](int c) { return uint8_t(std::lrint(std::clamp(C(i, c), 0.0f, 1.0f) * 255.0f)); };
-    return {code(0), code(1), code(2), C.cols() == 4 ? code(3) : uint8_t(255)};
 }
 
 void describe(MeshBuffers& buffers) {

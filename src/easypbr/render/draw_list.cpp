@@ -15,6 +15,45 @@ Material material_of(const MeshData& mesh, const MeshPart& part) {
     return size_t(part.material) < mesh.materials.size() ? mesh.materials[size_t(part.material)] : Material{};
 }
 
+/// An object and all that decides how it is drawn.
+struct Source {
+    const SceneSnapshot::Object& object;
+    const DrawStyle& style;
+    const Settings& settings;
+    const Material& textures;
+};
+
+DrawItem make_item(const Source& source, const MeshPart& part) {
+    const MeshData& mesh = *source.object.mesh;
+    DrawItem item;
+    item.object = &source.object;
+    item.part = part;
+    item.material = overridden(material_of(mesh, part), source.settings.material, source.textures);
+    item.style = source.style;
+    item.two_sided = source.style.two_sided.value_or(item.material.double_sided);
+    item.with_colors = !mesh.C.empty() && !source.settings.material.color.value();
+    return item;
+}
+
+void add_mesh(const Source& source, DrawList& list) {
+    if (source.object.mesh->F.empty()) return;
+    for (const MeshPart& part : parts_of(*source.object.mesh)) {
+        list.meshes.push_back(make_item(source, part));
+        if (!source.style.lit.value_or(true)) list.meshes.back().kind = SurfaceKind::display;
+    }
+}
+
+void add_points(const Source& source, DrawList& list) {
+    const MeshData& mesh = *source.object.mesh;
+    if (mesh.V.empty()) return;
+    DrawItem item = make_item(source, {});
+    if (!source.style.lit.value_or(!mesh.N.empty()))
+        item.kind = SurfaceKind::display;
+    else if (mesh.N.empty())
+        item.kind = source.settings.eye_dome.enabled ? SurfaceKind::eye_dome : SurfaceKind::display;
+    list.points.push_back(std::move(item));
+}
+
 }  // namespace
 
 Material overridden(const Material& material, const MaterialSettings& settings, const Material& textures) {
@@ -50,22 +89,23 @@ Material overridden(const Material& material, const MaterialSettings& settings, 
     return m;
 }
 
-std::vector<DrawItem> draw_list(const SceneSnapshot& scene, const Settings& settings,
-                                const Material& textures) {
-    std::vector<DrawItem> items;
+DrawList DrawList::without_exact() const {
+    DrawList rest = *this;
+    for (std::vector<DrawItem>* items : {&rest.meshes, &rest.points})
+        std::erase_if(*items, [](const DrawItem& item) { return item.kind == SurfaceKind::exact; });
+    return rest;
+}
+
+DrawList draw_list(const SceneSnapshot& scene, const Settings& settings, const Material& textures) {
+    DrawList list;
     for (const auto& object : scene.objects) {
-        const MeshData& mesh = *object.mesh;
-        if (!settings.style.visible.value_or(mesh.style.visible.value_or(true)) || mesh.F.empty()) continue;
-        for (const MeshPart& part : parts_of(mesh)) {
-            DrawItem item{&object, part, overridden(material_of(mesh, part), settings.material, textures)};
-            item.flat = settings.style.flat.value_or(mesh.style.flat.value_or(false));
-            item.two_sided =
-                settings.style.two_sided.value_or(mesh.style.two_sided.value_or(item.material.double_sided));
-            item.with_colors = !mesh.C.empty() && !settings.material.color.value();
-            items.push_back(std::move(item));
-        }
+        const DrawStyle style = resolve_style(*object.mesh, settings.style);
+        if (!style.visible) continue;
+        const Source source{object, style, settings, textures};
+        if (style.mode == DrawMode::mesh) add_mesh(source, list);
+        if (style.mode == DrawMode::points || style.show_points) add_points(source, list);
     }
-    return items;
+    return list;
 }
 
 }  // namespace easypbr::render

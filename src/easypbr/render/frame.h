@@ -23,6 +23,7 @@ struct Frame {
     int sample_index = 0;
     int sample_count = 1;
     bool with_ids = false;
+    bool with_overlay = false;                 ///< something is shown past light and tone curve
     Mat4d clip_from_view = Mat4d::Identity();  ///< jittered
     PixelRect covered;                         ///< all geometry is inside
 
@@ -33,8 +34,9 @@ struct Frame {
 /// the mean of the first `count` is the pixel's centre. One sample is the centre itself.
 Vec2d jitter_of(int index, int count);
 
-/// Fills in the jittered projection and, from the bounds of all geometry, the covered rectangle.
-void prepare_frame(Frame& frame, const Box3d& bounds);
+/// Fills in the jittered projection and, from the bounds of all geometry, the covered rectangle; the whole
+/// picture where there are splats, which reach beyond their centres.
+void prepare_frame(Frame& frame, const Box3d& bounds, bool has_splats);
 
 /// Sets the uniforms of shaders/common_camera.glsl.
 void set_camera_uniforms(const gl::Program& program, const Frame& frame);

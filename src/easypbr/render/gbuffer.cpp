@@ -18,7 +18,20 @@ GBuffer::GBuffer(Vec2i size) {
 void GBuffer::add_ids() {
     if (id) return;
     id = gl::Texture(gl::Format::r32ui, albedo.width(), albedo.height());
-    surface_ids = gl::Framebuffer({&albedo, &normal, &material, &depth, &radiance, &id}, &depth_test);
+    element = gl::Texture(gl::Format::r32ui, albedo.width(), albedo.height());
+    surface_ids =
+        gl::Framebuffer({&albedo, &normal, &material, &depth, &radiance, &id, &element}, &depth_test);
+}
+
+void GBuffer::add_overlay() {
+    if (overlay) return;
+    overlay = gl::Texture(gl::Format::rgba16f, albedo.width(), albedo.height());
+    display = gl::Framebuffer({&overlay}, &depth_test);
+}
+
+void GBuffer::clear_ids() const {
+    surface_ids.clear_integer(5, 0);
+    surface_ids.clear_integer(6, 0);
 }
 
 }  // namespace easypbr::render

@@ -12,7 +12,7 @@ namespace easypbr::render {
 struct GBuffer {
     gl::Texture albedo;  ///< RGBA16: linear base colour; a: weight of surfels, 1 for others
     gl::Texture normal;  ///< RG16: octahedral world normal, towards the viewer's side of a two-sided surface
-    gl::Texture material;  ///< RGBA8: metallic, roughness, ambient occlusion of the material, 1 for unlit
+    gl::Texture material;  ///< RGBA8: metallic, roughness, ambient occlusion of the material, SurfaceKind
     gl::Texture
         depth;  ///< R32F: reversed depth of the pixel, near / z for perspective, 0 where there is nothing
     gl::Texture depth_test;  ///< D32F: the same, for the depth test
@@ -21,16 +21,24 @@ struct GBuffer {
 
     gl::Texture
         id;  ///< R32UI, when asked for: 1 + place of the object in the snapshot, 0 where there is nothing
+    gl::Texture element;  ///< R32UI, with id: 1 + index of the face or point in its object
+
+    gl::Texture overlay;  ///< RGBA16F, when asked for: linear display light, premultiplied, over the
+                          ///< tone-mapped picture
 
     gl::Framebuffer surface;           ///< albedo, normal, material, depth
     gl::Framebuffer surface_emission;  ///< the same and radiance
-    gl::Framebuffer surface_ids;       ///< the same and id; empty until add_ids()
+    gl::Framebuffer surface_ids;       ///< the same, id and element; empty until add_ids()
     gl::Framebuffer lit;               ///< radiance with the depth test
+    gl::Framebuffer display;           ///< overlay with the depth test; empty until add_overlay()
 
     GBuffer() = default;
     explicit GBuffer(Vec2i size);
-    /// Makes the id target, if it is not there.
+    /// Makes the id and element targets, if they are not there.
     void add_ids();
+    void clear_ids() const;
+    /// Makes the overlay, if it is not there.
+    void add_overlay();
     Vec2i size() const { return {albedo.width(), albedo.height()}; }
 };
 

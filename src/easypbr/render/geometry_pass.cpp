@@ -71,7 +71,7 @@ void GeometryPass::draw(const Frame& frame, const std::vector<DrawItem>& items, 
                                          : emission     ? targets.surface_emission
                                                         : targets.surface;
     framebuffer.bind();
-    if (frame.with_ids) framebuffer.clear_integer(5, 0);
+    if (frame.with_ids) targets.clear_ids();
     framebuffer.allow_depth_writes();
     const float zero[4] = {0, 0, 0, 0};
     framebuffer.clear_color(3, zero);
@@ -95,7 +95,7 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
                              bool emission) {
     const Material& m = item.material;
     const bool with_uv = item.textured();
-    const bool face_normal = item.flat || (item.two_sided && !buffers.normals_agree);
+    const bool face_normal = item.style.flat || (item.two_sided && !buffers.normals_agree);
     const Mat4d mesh_matrix = item.object->T_world_mesh.matrix();
     const Mat3d linear = mesh_matrix.topLeftCorner<3, 3>();
     const bool mirrored = linear.determinant() < 0;
@@ -104,7 +104,7 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     if (item.with_colors) defines.emplace_back("VERTEX_COLOR");
     if (with_uv) defines.emplace_back("UV");
     if (face_normal) defines.emplace_back("FACE_NORMAL");
-    if (item.flat) defines.emplace_back("FLAT");
+    if (item.style.flat) defines.emplace_back("FLAT");
     if (item.two_sided) defines.emplace_back("TWO_SIDED");
     if (emission) defines.emplace_back("EMISSION");
     if (frame.with_ids) defines.emplace_back("OBJECT_ID");
@@ -112,7 +112,8 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     if (m.alpha_mode == AlphaMode::blend) defines.emplace_back("ALPHA_BLEND");
     if (with_uv)
         for (const TextureUse& use : texture_uses)
-            if ((m.*use.member) && !(use.slot == normal_slot && item.flat)) defines.emplace_back(use.define);
+            if ((m.*use.member) && !(use.slot == normal_slot && item.style.flat))
+                defines.emplace_back(use.define);
     if (with_uv && m.metallic_texture && m.roughness_texture &&
         same_texels(m.metallic_texture, m.roughness_texture))
         defines.emplace_back("ROUGHNESS_IN_METALLIC");
@@ -127,7 +128,9 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     program.set("u_tangent_from_mesh", Mat3(linear.cast<float>()));
     program.set("u_base_color", Vec4(m.base_color.x(), m.base_color.y(), m.base_color.z(), m.opacity));
     program.set("u_surface", Vec4(m.metallic, m.roughness, m.occlusion_strength, m.alpha_cutoff));
-    program.set("u_emissive", Vec4(m.emissive.x(), m.emissive.y(), m.emissive.z(), m.unlit ? 1.0f : 0.0f));
+    program.set("u_emissive", Vec4(m.emissive.x(), m.emissive.y(), m.emissive.z(),
+                                   m.unlit ? code_of(SurfaceKind::unlit) : code_of(item.kind)));
+    program.set("u_first_face", item.part.first_face);
     program.set("u_normal_scale", m.normal_scale);
     program.set("u_object_id", int(item.object - frame.scene->objects.data()) + 1);
     program.set("u_sample_index", float(frame.sample_index));
@@ -136,7 +139,7 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     if (with_uv) bind_textures(program, m);
 
     set_culling(
-        !item.two_sided || (buffers.closed_outward && m.alpha_mode == AlphaMode::opaque && !item.flat),
+        !item.two_sided || (buffers.closed_outward && m.alpha_mode == AlphaMode::opaque && !item.style.flat),
         mirrored);
     buffers.array.bind();
     glDrawElements(GL_TRIANGLES, item.part.face_count * 3, GL_UNSIGNED_INT,

@@ -56,6 +56,14 @@ Vec4 cover(const gl::Texture& image, Vec2i size) {
     return {scale.x(), scale.y(), (1 - scale.x()) / 2, (1 - scale.y()) / 2};
 }
 
+constexpr int overlay_unit = 2;
+
+void bind_overlay(const gl::Program& program, const Frame& frame, const GBuffer& targets) {
+    if (!frame.with_overlay) return;
+    program.set("u_overlay", overlay_unit);
+    targets.overlay.bind(overlay_unit);
+}
+
 /// Screen passes touch only where geometry may be, when nothing else was drawn.
 void limit_to_content(const Frame& frame) {
     if (sees_environment(frame)) return;
@@ -85,12 +93,15 @@ void OutputPass::accumulate(const Frame& frame, const GBuffer& targets) {
     const float zero[4] = {0, 0, 0, 0};
     if (frame.sample_index == 0) sum_framebuffer_.clear_color(0, zero);
     sum_framebuffer_.bind();
-    const gl::Program& program = accumulate_.get(tone_defines(frame, encoding_));
+    std::vector<std::string> defines = tone_defines(frame, encoding_);
+    if (frame.with_overlay) defines.emplace_back("OVERLAY");
+    const gl::Program& program = accumulate_.get(defines);
     program.use();
     program.set("u_size", Vec2(frame.size.cast<float>()));
     program.set("u_exposure", exposure_of(frame, encoding_));
     program.set("u_radiance", 0);
     targets.radiance.bind(0);
+    bind_overlay(program, frame, targets);
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
@@ -104,6 +115,7 @@ void OutputPass::finish(const Frame& frame, const GBuffer& targets, const gl::Te
     const bool sum = frame.sample_count > 1;
     std::vector<std::string> defines = tone_defines(frame, encoding_);
     if (sum) defines.emplace_back("SUM");
+    if (!sum && frame.with_overlay) defines.emplace_back("OVERLAY");
     if (background_image) defines.emplace_back("BACKGROUND_IMAGE");
     if (encoding_ == Encoding::scene_linear) defines.emplace_back("LINEAR_OUTPUT");
     const gl::Program& program = display_.get(defines);
@@ -124,6 +136,7 @@ void OutputPass::finish(const Frame& frame, const GBuffer& targets, const gl::Te
     program.set("u_background", background_color(frame));
     program.set("u_source", 0);
     (sum ? sum_ : targets.radiance).bind(0);
+    if (!sum) bind_overlay(program, frame, targets);
     if (background_image) {
         program.set("u_background_image", 1);
         program.set("u_background_uv", cover(*background_image, frame.size));
@@ -133,6 +146,21 @@ void OutputPass::finish(const Frame& frame, const GBuffer& targets, const gl::Te
     glDisable(GL_SCISSOR_TEST);
     const bool single = !sum && encoding_ != Encoding::scene_linear;
     if (single && frame.resolved->settings.image.antialias == Antialias::fxaa) blur_edges(frame);
+}
+
+void OutputPass::write_exact(const Frame& frame, const GBuffer& targets) {
+    std::vector<std::string> defines;
+    if (encoding_ == Encoding::scene_linear) defines.emplace_back("LINEAR_OUTPUT");
+    const gl::Program& program = exact_.get(defines);
+    picture_framebuffer_.bind();
+    program.use();
+    program.set("u_size", Vec2(frame.size.cast<float>()));
+    program.set("u_albedo", 0);
+    program.set("u_material", 1);
+    targets.albedo.bind(0);
+    targets.material.bind(1);
+    glDisable(GL_DEPTH_TEST);
+    draw_screen_triangle();
 }
 
 void OutputPass::blur_edges(const Frame& frame) {

@@ -24,6 +24,8 @@ class OutputPass {
     void accumulate(const Frame& frame, const GBuffer& targets);
     /// Writes the picture from the sum, or from the radiance of the only frame.
     void finish(const Frame& frame, const GBuffer& targets, const gl::Texture* background_image);
+    /// Puts the exact colours that the G-buffer holds into the finished picture.
+    void write_exact(const Frame& frame, const GBuffer& targets);
 
     /// Row 0 of the framebuffer is the top of the picture.
     const gl::Framebuffer& picture() const { return picture_framebuffer_; }
@@ -37,6 +39,7 @@ class OutputPass {
     gl::Framebuffer sum_framebuffer_, picture_framebuffer_, aliased_framebuffer_;
     ProgramVariants accumulate_{"screen_triangle.vert", "accumulate_sample.frag"};
     ProgramVariants display_{"screen_triangle.vert", "display_output.frag"};
+    ProgramVariants exact_{"screen_triangle.vert", "exact_surface.frag"};
     ProgramVariants fxaa_{"screen_triangle.vert", "antialias_fxaa.frag"};
 };
 

@@ -34,7 +34,7 @@ std::vector<T> read(const gl::Framebuffer& framebuffer, unsigned index, gl::Form
 
 const std::vector<std::string>& layer_names() {
     static const std::vector<std::string> names = {"albedo",   "normal",    "depth", "roughness",
-                                                   "metallic", "occlusion", "id"};
+                                                   "metallic", "occlusion", "id",    "element"};
     return names;
 }
 
@@ -79,7 +79,10 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     if (!resolved.environment.empty())
         run("environment", [&] { environment_.prepare(resolved.environment, sees_environment(resolved)); });
 
-    const std::vector<DrawItem> items = draw_list(scene, resolved.settings, images.textures);
+    const DrawList list = draw_list(scene, resolved.settings, images.textures);
+    // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
+    const bool has_exact = list.has([](const DrawItem& item) { return item.kind == SurfaceKind::exact; });
+    const DrawList averaged = options.samples > 1 && has_exact ? list.without_exact() : DrawList();
     Frame frame;
     frame.scene = &scene;
     frame.resolved = &resolved;
@@ -88,13 +91,15 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     frame.with_ids = options.ids;
     if (options.ids) targets_.add_ids();
     for (frame.sample_index = 0; frame.sample_index < options.samples; ++frame.sample_index) {
-        draw_frame(frame, items);
+        draw_frame(frame, options.samples > 1 && has_exact ? averaged : list);
         if (options.samples > 1) run("accumulate", [&] { output_.accumulate(frame, targets_); });
     }
     run("output", [&] { output_.finish(frame, targets_, background_texture(frame, images)); });
+    if (has_exact) run("exact", [&] { draw_exact(frame, list); });
     meshes_.evict_unused();
     textures_.evict_unused();
     software_geometry_.evict_unused();
+    points_.evict_unused();
     camera_ = resolved.camera;
     glFlush();
 }
@@ -112,21 +117,40 @@ const Box3d& Renderer::bounds_of(const SceneSnapshot& scene) {
     return bounds_;
 }
 
-void Renderer::draw_geometry(Frame& frame, const std::vector<DrawItem>& items) {
-    const bool native = native_geometry_ && !frame.with_ids && gl::Context::current().info().software &&
-                        SoftwareGeometryPass::handles(items);
-    if (!native || !software_geometry_.draw(frame, items, targets_)) geometry_.draw(frame, items, targets_);
+void Renderer::draw_geometry(Frame& frame, const DrawList& list) {
+    const bool native = native_geometry_ && gl::Context::current().info().software;
+    if (native && SoftwareGeometryPass::handles(list) && software_geometry_.draw(frame, list, targets_))
+        return;
+    geometry_.draw(frame, list.meshes, targets_);
+    if (native && !list.points.empty())
+        software_geometry_.draw_points_over(frame, list, targets_);
+    else
+        points_.draw(frame, list.points, targets_);
 }
 
-void Renderer::draw_frame(Frame& frame, const std::vector<DrawItem>& items) {
+void Renderer::draw_frame(Frame& frame, const DrawList& list) {
     frame.camera = frame.resolved->camera;
-    prepare_frame(frame, bounds_of(*frame.scene));
-    run("geometry", [&] { draw_geometry(frame, items); });
+    prepare_frame(frame, bounds_of(*frame.scene), !list.points.empty());
+    frame.with_overlay = list.has([](const DrawItem& item) { return is_display(item.kind); });
+    if (frame.with_overlay) targets_.add_overlay();
+    run("geometry", [&] { draw_geometry(frame, list); });
     no_attributes_.bind();
     const bool with_environment = !frame.resolved->environment.empty();
     run("lighting", [&] { lighting_.draw(frame, targets_, with_environment ? &environment_ : nullptr); });
+    if (frame.with_overlay) run("display", [&] { display_.draw(frame, targets_); });
     if (with_environment && sees_environment(*frame.resolved))
         run("background", [&] { background_.draw(frame, targets_, environment_); });
+}
+
+void Renderer::draw_exact(Frame& frame, const DrawList& list) {
+    if (frame.sample_count > 1) {
+        frame.sample_index = 0;
+        frame.sample_count = 1;
+        prepare_frame(frame, bounds_of(*frame.scene), !list.points.empty());
+        draw_geometry(frame, list);
+        no_attributes_.bind();
+    }
+    output_.write_exact(frame, targets_);
 }
 
 const gl::Texture* Renderer::background_texture(const Frame& frame, const SettingsImages& images) {
@@ -181,9 +205,12 @@ Image Renderer::read_layer(Layer layer) const {
             const Vec3 n = oct_decode(Vec2(texels[2 * i], texels[2 * i + 1]) / 32767.5f - Vec2(1, 1));
             std::copy_n(n.data(), 3, to + 3 * i);
         });
-    } else if (layer == Layer::id) {
-        if (!targets_.id) throw ArgumentError("layer id: the last picture was drawn without ids");
-        const auto texels = read<uint32_t>(targets_.surface_ids, 5, gl::Format::r32ui);
+    } else if (layer == Layer::id || layer == Layer::element) {
+        if (!targets_.id)
+            throw ArgumentError(fmt::format("layer {}: the last picture was drawn without ids",
+                                            layer_names()[size_t(layer)]));
+        const auto texels =
+            read<uint32_t>(targets_.surface_ids, layer == Layer::id ? 5 : 6, gl::Format::r32ui);
         for_each_covered([&](size_t i) { to[i] = float(texels[i]); });
     } else {
         const size_t channel = layer == Layer::metallic ? 0 : layer == Layer::roughness ? 1 : 2;

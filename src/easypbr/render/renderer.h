@@ -7,9 +7,11 @@
 
 #include "easypbr/core/image.h"
 #include "easypbr/render/background_pass.h"
+#include "easypbr/render/display_pass.h"
 #include "easypbr/render/geometry_pass.h"
 #include "easypbr/render/lighting_pass.h"
 #include "easypbr/render/output_pass.h"
+#include "easypbr/render/point_pass.h"
 #include "easypbr/render/software_geometry_pass.h"
 
 namespace easypbr::render {
@@ -23,7 +25,9 @@ enum class Layer {
     roughness,  ///< one channel f32
     metallic,   ///< one channel f32
     occlusion,  ///< one channel f32, the material's
-    id          ///< one channel f32, 1 + place of the object in the snapshot, 0 where there is nothing; exact
+    id,         ///< one channel f32, 1 + place of the object in the snapshot, 0 where there is nothing; exact
+    element     ///< one channel f32, 1 + index of the face or point in its object, 0 where there is nothing;
+                ///< exact up to 2^24
 };
 
 /// "albedo", "normal", ... Throws NameError with the nearest name.
@@ -68,9 +72,11 @@ class Renderer {
     const std::vector<std::pair<std::string, double>>& pass_times() const { return pass_times_; }
 
   private:
-    void draw_frame(Frame& frame, const std::vector<DrawItem>& items);
+    void draw_frame(Frame& frame, const DrawList& list);
     /// Fills the G-buffer by the faster way that can draw these items.
-    void draw_geometry(Frame& frame, const std::vector<DrawItem>& items);
+    void draw_geometry(Frame& frame, const DrawList& list);
+    /// Draws what must not be averaged or smoothed into the finished picture.
+    void draw_exact(Frame& frame, const DrawList& list);
     const Box3d& bounds_of(const SceneSnapshot& scene);
     template <class Pass>
     void run(const char* name, Pass&& pass);
@@ -83,7 +89,9 @@ class Renderer {
     gpu::TextureCache textures_;
     GeometryPass geometry_{meshes_, textures_};
     SoftwareGeometryPass software_geometry_;
+    PointPass points_;
     LightingPass lighting_;
+    DisplayPass display_;
     BackgroundPass background_;
     OutputPass output_;
     std::shared_ptr<const Image> background_image_;

@@ -1,4 +1,4 @@
-// Triangles into the G-buffer without the driver's rasteriser: for machines without a GPU.
+// Triangles and points into the G-buffer without the driver's rasteriser: for machines without a GPU.
 #pragma once
 
 #include <map>
@@ -6,48 +6,57 @@
 
 #include "easypbr/render/draw_list.h"
 #include "easypbr/render/gbuffer.h"
+#include "easypbr/render/mesh_surface.h"
+#include "easypbr/render/point_surface.h"
+#include "easypbr/render/programs.h"
 #include "easypbr/render/visibility.h"
 
 namespace easypbr::render {
 
-/// Draws what GeometryPass draws, into the same targets, several times faster than a CPU rasteriser behind
-/// OpenGL: the nearest triangle per pixel first, then the surface of each pixel once. Surfaces with textures,
-/// emission or alpha, and geometry that reaches before the near plane, are left to GeometryPass.
+/// Draws into the targets of GeometryPass, several times faster than a CPU rasteriser behind OpenGL: the
+/// nearest triangle or point per pixel first, then the surface of each pixel once.
 class SoftwareGeometryPass {
   public:
-    /// Whether draw() can draw these items.
-    static bool handles(const std::vector<DrawItem>& items);
+    /// Whether draw() can draw these meshes: plain ones, without textures, emission or alpha. Points always
+    /// can be drawn.
+    static bool handles(const DrawList& list);
 
-    /// Fills the G-buffer and narrows the frame's covered rectangle; false, with both unchanged, when
-    /// something would have to be clipped.
-    bool draw(Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets);
+    /// Fills the G-buffer with the list's meshes and points and narrows the frame's covered rectangle; false,
+    /// with both unchanged, when a mesh would have to be clipped.
+    bool draw(Frame& frame, const DrawList& list, const GBuffer& targets);
+
+    /// Adds the list's points to what the G-buffer holds.
+    void draw_points_over(const Frame& frame, const DrawList& list, const GBuffer& targets);
 
     void evict_unused();
 
   private:
-    /// What is known of a mesh beyond its data.
-    struct Knowledge {
-        Array3f N;
-        bool normals_agree = true;    ///< the winding tells the normals' side
-        bool closed_outward = false;  ///< back faces need not be drawn; found out when a mesh is drawn again
-        int frames = 0;
-        bool used = false;
-    };
     /// Pixels of the covered area in the targets' formats.
     struct Pixels {
         std::vector<uint16_t> albedo, normal;
         std::vector<uint8_t> material;
         std::vector<float> depth;
-        void resize(size_t count);
+        std::vector<uint32_t> id, element;
+        void resize(size_t count, bool with_ids);
     };
     struct Surface;
-    const Knowledge& knowledge_of(const MeshData& mesh);
+    struct Spacing {
+        double value = 0;
+        bool used = false;
+    };
+    const MeshKnowledge& knowledge_of(const MeshData& mesh);
+    double spacing_of(const MeshData& mesh);
+    bool add_meshes(const Frame& frame, const DrawList& list, std::vector<Surface>& surfaces);
+    void add_points(const Frame& frame, const DrawList& list, std::vector<Surface>& surfaces);
     void resolve(const Frame& frame, const std::vector<Surface>& surfaces);
-    void upload(const GBuffer& targets);
+    void upload(const Frame& frame, const GBuffer& targets) const;
 
-    std::map<std::tuple<uint64_t, uint64_t, uint64_t>, Knowledge> knowledge_;
+    std::map<std::tuple<uint64_t, uint64_t, uint64_t>, MeshKnowledge> knowledge_;
+    std::map<uint64_t, Spacing> spacings_;
     VisibilityBuffer visibility_;
     Pixels pixels_;
+    GBuffer staging_;  ///< what draw_points_over() adds
+    ProgramVariants composite_{"screen_triangle.vert", "composite_surface.frag"};
 };
 
 }  // namespace easypbr::render

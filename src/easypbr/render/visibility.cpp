@@ -53,6 +53,21 @@ void raise(uint64_t& pixel, uint64_t key) {
     }
 }
 
+/// The same for points: of equal depths the larger content, of equal contents the smaller id is kept.
+void raise_point(uint64_t& pixel, uint64_t key, const std::function<uint64_t(uint32_t)>& content) {
+    const std::atomic_ref<uint64_t> cell(pixel);
+    uint64_t seen = cell.load(std::memory_order_relaxed);
+    for (;;) {
+        if (seen >> 32 > key >> 32) return;
+        if (seen >> 32 == key >> 32) {
+            const uint64_t mine = content(VisibilityBuffer::id_of(key)),
+                           other = content(VisibilityBuffer::id_of(seen));
+            if (other > mine || (other == mine && seen >= key)) return;
+        }
+        if (cell.compare_exchange_weak(seen, key, std::memory_order_relaxed)) return;
+    }
+}
+
 }  // namespace
 
 void VisibilityBuffer::clear(Vec2i size, const PixelRect& area) {
@@ -108,6 +123,51 @@ bool VisibilityBuffer::draw(const Array3f& V, const Array3i& F, int first_face, 
         }
     });
     return true;
+}
+
+void VisibilityBuffer::draw_points(const Array3f& V, const PointSplats& splats, uint32_t first_id,
+                                   const std::function<uint64_t(uint32_t id)>& content) {
+    const float half_width = 0.5f * float(size_.x()), half_height = 0.5f * float(size_.y());
+    const float left = float(area_.x), right = float(area_.x + area_.width);
+    const float top = float(area_.y), bottom = float(area_.y + area_.height);
+    const Mat4& m = splats.clip_from_mesh;
+    parallel_chunks(size_t(V.rows()), vertex_grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const float* p = V.data() + 3 * i;
+            const auto row = [&](int r) {
+                return m(r, 0) * p[0] + m(r, 1) * p[1] + m(r, 2) * p[2] + m(r, 3);
+            };
+            const float w = row(3), scale = 1.0f / w;
+            const float depth = row(2) * scale;
+            if (!(w > 0 && depth > 0 && depth <= 1)) continue;
+            const float x = (row(0) * scale + 1) * half_width, y = (1 - row(1) * scale) * half_height;
+            const float diameter = splats.world_pixels > 0
+                                       ? std::max(splats.least_pixels, splats.world_pixels * scale)
+                                       : splats.pixels;
+            const float r = 0.5f * diameter;
+            if (!(x + r >= left && x - r < right && y + r >= top && y - r < bottom)) continue;
+            const uint64_t key = uint64_t(std::bit_cast<uint32_t>(depth)) << 32 | uint32_t(~(first_id + i));
+            const auto put = [&](int column, int line) {
+                if (column < area_.x || column >= area_.x + area_.width || line < area_.y ||
+                    line >= area_.y + area_.height)
+                    return;
+                raise_point(pixels_[size_t(line - area_.y) * size_t(area_.width) + size_t(column - area_.x)],
+                            key, content);
+            };
+            const int own_x = int(std::floor(x)), own_y = int(std::floor(y));
+            put(own_x, own_y);
+            if (diameter <= 1) continue;
+            const int x0 = std::max(int(std::ceil(x - r - 0.5f)), area_.x),
+                      x1 = std::min(int(std::floor(x + r - 0.5f)), area_.x + area_.width - 1);
+            const int y0 = std::max(int(std::ceil(y - r - 0.5f)), area_.y),
+                      y1 = std::min(int(std::floor(y + r - 0.5f)), area_.y + area_.height - 1);
+            for (int line = y0; line <= y1; ++line)
+                for (int column = x0; column <= x1; ++column) {
+                    const float dx = float(column) + 0.5f - x, dy = float(line) + 0.5f - y;
+                    if (!splats.round || dx * dx + dy * dy <= r * r) put(column, line);
+                }
+        }
+    });
 }
 
 void VisibilityBuffer::crop() {

@@ -228,6 +228,17 @@ void add_shading(Table& table) {
     table.push_back(make("shading.dielectric_f0", shading(&ShadingSettings::dielectric_f0),
                          "Reflectance of non-metals at normal incidence.", "", {0, 1}));
 
+    const auto eye_dome = [](auto member) { return at(&Settings::eye_dome, member); };
+    table.push_back(
+        make("edl.enabled", eye_dome(&EyeDomeSettings::enabled),
+             "Eye-dome lighting of points without normals: what lies behind an edge is darkened."));
+    table.push_back(make("edl.strength", eye_dome(&EyeDomeSettings::strength),
+                         "How much eye-dome lighting darkens.", "", {0, 100}));
+    table.push_back(
+        make("edl.radius", eye_dome(&EyeDomeSettings::radius),
+             "Distance at which eye-dome lighting looks for edges, in pixels of a picture 1080 high.",
+             "pixels", {0.1, 100}));
+
     const auto tone = [](auto member) { return at(&Settings::tone, member); };
     table.push_back(make("tonemap.operator", tone(&ToneSettings::tone_operator),
                          "Curve from scene light to the picture's range."));

@@ -72,6 +72,13 @@ struct ShadingSettings {
     float dielectric_f0 = 0.04f;
 };
 
+/// Of points without normals (Boucheny 2009).
+struct EyeDomeSettings {
+    bool enabled = true;
+    float strength = 0.4f;
+    float radius = 1.4f;
+};
+
 struct ToneSettings {
     ToneOperator tone_operator = ToneOperator::aces;
     Auto<float> exposure;
@@ -99,6 +106,7 @@ struct Settings {
     BackgroundSettings background;
     LightsSettings lights;
     ShadingSettings shading;
+    EyeDomeSettings eye_dome;
     ToneSettings tone;
     MaterialSettings material;
     Style style;  ///< overrides of every object's style; automatic: the object's own value

@@ -1,0 +1,20 @@
+// Colours of tables into the finished picture: neither averaged over samples nor smoothed at edges.
+#include "common_encoding.glsl"
+#include "common_surface_kind.glsl"
+
+uniform sampler2D u_albedo;
+uniform sampler2D u_material;
+uniform vec2 u_size;
+
+layout(location = 0) out vec4 o_color;
+
+void main() {
+    vec2 uv = gl_FragCoord.xy / u_size;
+    if (!is_exact(textureLod(u_material, uv, 0.0).w)) discard;
+    vec3 color = textureLod(u_albedo, uv, 0.0).rgb;
+#ifdef LINEAR_OUTPUT
+    o_color = vec4(color, 1.0);
+#else
+    o_color = vec4(srgb_encode(color), 1.0);
+#endif
+}

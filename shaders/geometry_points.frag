@@ -1,0 +1,37 @@
+// Points into the G-buffer. What each target holds is defined in render/gbuffer.h.
+#include "common_encoding.glsl"
+
+flat in vec3 v_normal;
+flat in vec3 v_color;
+flat in float v_diameter;
+
+layout(location = 0) out vec4 o_albedo;
+layout(location = 1) out vec2 o_normal;
+layout(location = 2) out vec4 o_material;
+layout(location = 3) out float o_depth;
+layout(location = 4) out vec4 o_emission;
+#ifdef OBJECT_ID
+layout(location = 5) out uint o_id;
+layout(location = 6) out uint o_element;
+flat in uint v_element;
+uniform int u_object_id;
+#endif
+
+uniform vec4 u_material;  // metallic, roughness, 1, code of the kind
+uniform float u_write;    // 0: the pixel is made empty, 1: it is filled
+
+void main() {
+#ifdef ROUND
+    // The smallest discs would miss the pixel that they lie in.
+    if (v_diameter >= 1.5 && length(gl_PointCoord - 0.5) > 0.5) discard;
+#endif
+    o_albedo = vec4(v_color, 1.0) * u_write;
+    o_normal = (oct_encode(v_normal) * 0.5 + 0.5) * u_write;
+    o_material = u_material * u_write;
+    o_depth = gl_FragCoord.z * u_write;
+    o_emission = vec4(0.0, 0.0, 0.0, u_write);
+#ifdef OBJECT_ID
+    o_id = uint(u_object_id);
+    o_element = v_element;
+#endif
+}

@@ -1,0 +1,49 @@
+// Points of a cloud as splats that face the viewer.
+#include "common_encoding.glsl"
+
+layout(location = 0) in vec3 a_position;
+#ifdef NORMAL
+layout(location = 1) in vec2 a_normal;
+uniform mat3 u_normal_from_mesh;
+uniform mat3 u_world_from_view;
+uniform mat4 u_view_from_mesh;
+#endif
+flat out vec3 v_normal;
+#ifdef VERTEX_COLOR
+layout(location = 2) in vec4 a_color;
+#endif
+flat out vec3 v_color;
+flat out float v_diameter;
+#ifdef OBJECT_ID
+flat out uint v_element;
+#endif
+
+uniform mat4 u_clip_from_mesh;
+uniform vec3 u_size_pixels;  // diameter; diameter times w, or 0; least diameter
+uniform vec3 u_base_color;
+uniform vec3 u_towards_viewer;  // world, of a point without a normal: orthographic direction
+invariant gl_Position;
+
+void main() {
+    gl_Position = u_clip_from_mesh * vec4(a_position, 1.0);
+    v_diameter = u_size_pixels.y > 0.0 ? max(u_size_pixels.z, u_size_pixels.y / gl_Position.w) : u_size_pixels.x;
+    gl_PointSize = max(v_diameter, 1.0);
+    v_color = u_base_color;
+#ifdef VERTEX_COLOR
+    v_color *= srgb_decode(a_color.rgb);
+#endif
+    v_normal = u_towards_viewer;
+#ifdef NORMAL
+    vec3 n = u_normal_from_mesh * oct_decode(a_normal);
+    vec3 view_p = (u_view_from_mesh * vec4(a_position, 1.0)).xyz;
+#ifdef ORTHOGRAPHIC
+    vec3 to_viewer = vec3(0.0, 0.0, 1.0);
+#else
+    vec3 to_viewer = -view_p;
+#endif
+    v_normal = normalize(dot(n, u_world_from_view * to_viewer) < 0.0 ? -n : n);
+#endif
+#ifdef OBJECT_ID
+    v_element = uint(gl_VertexID + 1);
+#endif
+}

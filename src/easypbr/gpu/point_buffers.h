@@ -1,0 +1,38 @@
+// Point clouds on the device: 20 bytes per point, 16 without normals.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <tuple>
+
+#include "easypbr/gl/buffer.h"
+#include "easypbr/scene/mesh.h"
+
+namespace easypbr::gpu {
+
+struct PointBuffers {
+    gl::Buffer positions;  ///< 3 floats
+    gl::Buffer normals;    ///< octahedral, 2 x 16 bits; absent without N
+    gl::Buffer colors;     ///< RGBA8, sRGB-encoded; absent without C
+    gl::VertexArray array;
+    double spacing = 0;  ///< see point_spacing()
+};
+
+/// Buffers by the revisions of the arrays they were made from.
+class PointCache {
+  public:
+    const PointBuffers& get(const MeshData& mesh);
+
+    /// Drops what was not asked for since the last call.
+    void evict_unused();
+
+  private:
+    using Key = std::tuple<uint64_t, uint64_t, uint64_t>;
+    struct Entry {
+        std::unique_ptr<PointBuffers> buffers;
+        bool used = false;
+    };
+    std::map<Key, Entry> entries_;
+};
+
+}  // namespace easypbr::gpu

@@ -1,0 +1,46 @@
+#include "easypbr/render/display_pass.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace easypbr::render {
+namespace {
+
+/// Depth of an orthographic picture in doublings of the distance, as if it were seen from where a perspective
+/// camera of 30 degrees sees the same height.
+double doublings_per_depth(const Camera& camera) {
+    const double distance = camera.ortho_height / (2 * std::tan(radians(15.0)));
+    return (camera.far - camera.near) / (distance * std::log(2.0));
+}
+
+}  // namespace
+
+void DisplayPass::draw(const Frame& frame, const GBuffer& targets) {
+    const float zero[4] = {0, 0, 0, 0};
+    targets.display.clear_color(0, zero);
+    targets.display.bind();
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+    glDepthFunc(GL_LESS);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(frame.covered.x, frame.covered.y, frame.covered.width, frame.covered.height);
+    const EyeDomeSettings& eye_dome = frame.resolved->settings.eye_dome;
+    const gl::Program& program = programs_.get(camera_defines(frame));
+    program.use();
+    program.set("u_size", Vec2(frame.size.cast<float>()));
+    program.set("u_eye_dome",
+                Vec2(eye_dome.strength, std::max(1.0f, eye_dome.radius * float(frame.size.y()) / 1080)));
+    program.set("u_depth_scale", Vec2(float(doublings_per_depth(frame.camera)), 0));
+    const gl::Texture* sources[] = {&targets.albedo, &targets.material, &targets.depth};
+    const char* samplers[] = {"u_albedo", "u_material", "u_depth_target"};
+    for (unsigned unit = 0; unit < 3; ++unit) {
+        sources[unit]->bind(unit);
+        program.set(samplers[unit], int(unit));
+    }
+    draw_screen_triangle();
+    glDisable(GL_SCISSOR_TEST);
+}
+
+}  // namespace easypbr::render

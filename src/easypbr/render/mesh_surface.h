@@ -1,0 +1,51 @@
+// The surface of a pixel that the native rasteriser found a triangle or a point in.
+#pragma once
+
+#include "easypbr/core/octahedral.h"
+#include "easypbr/render/draw_list.h"
+
+namespace easypbr::render {
+
+/// What the G-buffer holds of one pixel.
+struct SurfacePixel {
+    Vec3 albedo{0, 0, 0};
+    Vec3 normal{0, 0, 1};  ///< unit, world, on the side that is seen
+    float depth = 0;
+    uint32_t element = 0;  ///< of its object: the face or the point
+};
+
+/// What is known of a mesh beyond its data.
+struct MeshKnowledge {
+    Array3f N;
+    bool normals_agree = true;    ///< the winding tells the normals' side
+    bool closed_outward = false;  ///< back faces need not be drawn; found out when a mesh is drawn again
+    int frames = 0;
+    bool used = false;
+};
+
+/// A mesh item with all that its pixels need.
+class MeshSurface {
+  public:
+    MeshSurface(const DrawItem& item, const MeshKnowledge& knowledge, const Mat4d& clip_from_mesh);
+
+    /// The triangle `face` of the item's part at a point of the picture in normalised device coordinates.
+    SurfacePixel at(uint32_t face, double ndc_x, double ndc_y) const;
+
+    bool mirrored() const { return mirrored_; }
+
+  private:
+    struct Hit;
+    Hit intersect(const float* const (&corner)[3], double ndc_x, double ndc_y) const;
+    Vec3 face_normal(const int32_t* f) const;
+    Vec3 normal(const int32_t* f, const Hit& hit) const;
+    Vec3 albedo(const int32_t* f, const Hit& hit) const;
+    double clip(int row, const float* p) const;
+
+    const DrawItem* item_;
+    const MeshKnowledge* mesh_;
+    double clip_[4][4];
+    Mat3 normal_from_mesh_;
+    bool mirrored_;
+};
+
+}  // namespace easypbr::render

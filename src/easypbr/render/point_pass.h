@@ -1,0 +1,28 @@
+// Point clouds into the G-buffer by the driver.
+#pragma once
+
+#include "easypbr/gpu/point_buffers.h"
+#include "easypbr/render/draw_list.h"
+#include "easypbr/render/frame.h"
+#include "easypbr/render/gbuffer.h"
+#include "easypbr/render/programs.h"
+
+namespace easypbr::render {
+
+class PointPass {
+  public:
+    /// Adds the points to what the G-buffer holds, in two passes: the first finds the nearest depth and empties
+    /// its pixel, the second keeps, channel by channel, the largest of what lies at that depth. So coincident
+    /// points give the same picture in any order.
+    void draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets);
+
+    void evict_unused() { cache_.evict_unused(); }
+
+  private:
+    void draw_items(const Frame& frame, const std::vector<DrawItem>& items, bool write);
+
+    gpu::PointCache cache_;
+    ProgramVariants programs_{"geometry_points.vert", "geometry_points.frag"};
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,27 @@
+// What becomes of a pixel of the G-buffer after the geometry is drawn.
+#pragma once
+
+#include <cstdint>
+
+namespace easypbr::render {
+
+/// Stored in the fourth channel of GBuffer::material; the same numbers stand in
+/// shaders/common_surface_kind.glsl.
+enum class SurfaceKind : uint8_t {
+    lit = 0,
+    display = 51,    ///< the albedo is the picture's colour: neither light nor tone curve touch it
+    eye_dome = 102,  ///< the same, shaded by eye-dome lighting
+    exact = 153,     ///< the same, and not smoothed either: tables of labels and scalars
+    unlit = 255      ///< the emission is the radiance (KHR_materials_unlit)
+};
+
+constexpr float code_of(SurfaceKind kind) {
+    return float(kind) / 255.0f;
+}
+
+/// Whether the colour is shown past light and tone curve.
+constexpr bool is_display(SurfaceKind kind) {
+    return kind == SurfaceKind::display || kind == SurfaceKind::eye_dome || kind == SurfaceKind::exact;
+}
+
+}  // namespace easypbr::render

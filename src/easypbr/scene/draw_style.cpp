@@ -1,0 +1,60 @@
+#include "easypbr/scene/draw_style.h"
+
+namespace easypbr {
+namespace {
+
+/// Picks a field of the overrides, the object's own, or nothing.
+class Choice {
+  public:
+    Choice(const Style& overrides, const Style& own) : overrides_(overrides), own_(own) {}
+
+    template <class T>
+    std::optional<T> operator()(Auto<T> Style::*field) const {
+        const std::optional<T>& given = (overrides_.*field).value();
+        return given ? given : (own_.*field).value();
+    }
+
+    template <class T>
+    T operator()(Auto<T> Style::*field, T otherwise) const {
+        return (*this)(field).value_or(otherwise);
+    }
+
+  private:
+    const Style &overrides_, &own_;
+};
+
+}  // namespace
+
+DrawMode natural_mode(const MeshData& mesh) {
+    if (mesh.voxel_size > 0) return DrawMode::voxels;
+    if (!mesh.F.empty()) return DrawMode::mesh;
+    if (!mesh.N.empty() && !mesh.T.empty()) return DrawMode::surfels;
+    return mesh.E.empty() ? DrawMode::points : DrawMode::lines;
+}
+
+DrawStyle resolve_style(const MeshData& mesh, const Style& overrides) {
+    const Choice choice(overrides, mesh.style);
+    DrawStyle style;
+    style.mode = choice(&Style::mode, natural_mode(mesh));
+    style.visible = choice(&Style::visible, true);
+    style.point_size = choice(&Style::point_size);
+    style.point_size_unit = choice(&Style::point_size_unit, SizeUnit::pixels);
+    style.point_shape = choice(&Style::point_shape, PointShape::round);
+    style.surfel_scale = choice(&Style::surfel_scale, 1.0f);
+    style.voxel_size = choice(&Style::voxel_size);
+    if (!style.voxel_size && mesh.voxel_size > 0) style.voxel_size = mesh.voxel_size;
+    style.line_width = choice(&Style::line_width, style.line_width);
+    style.line_dash = choice(&Style::line_dash, 0.0f);
+    style.line_color = choice(&Style::line_color);
+    style.show_wireframe = choice(&Style::show_wireframe, false);
+    style.show_normals = choice(&Style::show_normals, false);
+    style.normal_length = choice(&Style::normal_length);
+    style.show_points = choice(&Style::show_points, false);
+    style.two_sided = choice(&Style::two_sided);
+    style.flat = choice(&Style::flat, false);
+    style.lit = choice(&Style::lit);
+    style.overlay = choice(&Style::overlay, false);
+    return style;
+}
+
+}  // namespace easypbr
