@@ -146,6 +146,7 @@ void Renderer::draw_exact(Frame& frame, const DrawList& list) {
     if (frame.sample_count > 1) {
         frame.sample_index = 0;
         frame.sample_count = 1;
+        frame.camera = frame.resolved->camera;
         prepare_frame(frame, bounds_of(*frame.scene), !list.points.empty());
         draw_geometry(frame, list);
         no_attributes_.bind();
