@@ -98,7 +98,7 @@ TEST(Glb, RoundTripsPartsAndMaterials) {
     EXPECT_EQ(a.metallic, 0.25f);
     EXPECT_EQ(b.name, "red");
     EXPECT_EQ(b.opacity, 0.25f);
-    EXPECT_EQ(b.alpha_mode, AlphaMode::blend);
+    EXPECT_EQ(*b.alpha_mode, AlphaMode::blend);
     EXPECT_EQ(b.normal_scale, 0.5f);
     EXPECT_EQ(b.base_color_texture.wrap_u, Wrap::mirror);
     EXPECT_EQ(b.base_color_texture.filter, Filter::nearest);

@@ -218,7 +218,7 @@ TEST(Gltf, ReadsMaterialExtensions) {
     LogCapture log;
     const Material material = node(decode(builder)).materials.at(0);
     EXPECT_EQ(material.emissive, Vec3(4, 2, 0));
-    EXPECT_EQ(material.alpha_mode, AlphaMode::mask);
+    EXPECT_EQ(*material.alpha_mode, AlphaMode::mask);
     EXPECT_EQ(material.alpha_cutoff, 0.25f);
     EXPECT_TRUE(material.double_sided && material.unlit);
     EXPECT_NE(log.text.find("VENDOR_unheard_of"), std::string::npos);

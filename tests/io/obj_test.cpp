@@ -113,7 +113,7 @@ TEST(Obj, ReadsMaterialFactors) {
     EXPECT_EQ(pbr.roughness, 0.3f);
     EXPECT_EQ(pbr.metallic, 0.7f);
     EXPECT_EQ(pbr.opacity, 0.5f);
-    EXPECT_EQ(pbr.alpha_mode, AlphaMode::blend);
+    EXPECT_EQ(*pbr.alpha_mode, AlphaMode::blend);
     EXPECT_EQ(read_material("Tr 0.25\n", folder).opacity, 0.75f);
     EXPECT_TRUE(read_material("illum 0\n", folder).unlit);
     EXPECT_FALSE(read_material("illum 2\n", folder).unlit);
@@ -143,7 +143,7 @@ TEST(Obj, ReadsMaps) {
     EXPECT_EQ(m.metallic, 1);
     EXPECT_EQ(m.metallic_texture.channel, 1);
     EXPECT_EQ(m.emissive, Vec3(1, 1, 1));
-    EXPECT_EQ(m.alpha_mode, AlphaMode::mask);
+    EXPECT_EQ(*m.alpha_mode, AlphaMode::mask);
     EXPECT_EQ(m.normal_scale, 0.5f);
     EXPECT_EQ(m.base_color_texture.image, m.normal_texture.image) << "an image is read once";
     EXPECT_TRUE(read_material("bump maps/a b.png\n", folder).normal_texture);

@@ -7,6 +7,7 @@
 #include "easypbr/cli/command.h"
 #include "easypbr/io/image_io.h"
 #include "easypbr/io/mesh_io.h"
+#include "easypbr/scene/material_table.h"
 
 namespace easypbr::cli {
 namespace {
@@ -59,18 +60,21 @@ void add_texture(const char* use, const Texture& texture, Json& textures) {
 
 Json describe(const Material& material) {
     Json textures = Json::array();
-    add_texture("base_color", material.base_color_texture, textures);
-    add_texture("metallic", material.metallic_texture, textures);
-    add_texture("roughness", material.roughness_texture, textures);
-    add_texture("normal", material.normal_texture, textures);
-    add_texture("occlusion", material.occlusion_texture, textures);
-    add_texture("emissive", material.emissive_texture, textures);
-    add_texture("opacity", material.opacity_texture, textures);
-    return {{"name", material.name},
-            {"base_color", describe(material.base_color.cast<double>())},
-            {"metallic", material.metallic},
-            {"roughness", material.roughness},
-            {"textures", textures}};
+    for (const MaterialTexture& use : material_textures())
+        add_texture(use.name, material.*use.texture, textures);
+    Json json{{"name", material.name},
+              {"base_color", describe(material.base_color.cast<double>())},
+              {"metallic", material.metallic},
+              {"roughness", material.roughness},
+              {"textures", textures}};
+    // Of the rest what is not as usual.
+    const Material usual;
+    for (const MaterialNumber& number : material_numbers())
+        if (material.*number.value != usual.*number.value) json[number.name] = material.*number.value;
+    for (const MaterialColor& color : material_colors())
+        if (material.*color.value != usual.*color.value)
+            json[color.name] = describe((material.*color.value).cast<double>());
+    return json;
 }
 
 /// Sums over all nodes of a file.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "easypbr/io/gltf_extensions.h"
 #include "easypbr/io/image_io.h"
 
 namespace easypbr::io {
@@ -67,10 +68,12 @@ Texture base_color(const Material& material) {
     return merged(color ? color : opacity, planes);
 }
 
-Texture occlusion(const Material& material) {
-    const Texture& texture = material.occlusion_texture;
-    if (!texture || texture.channel == 0) return texture;
-    return merged(texture, {plane_of(texture, texture.channel)});
+/// A texture whose values stand in the given channel.
+Texture in_channel(const Texture& texture, int channel) {
+    if (!texture || texture.channel == channel) return texture;
+    std::vector<Plane> planes(size_t(channel) + 1);
+    planes.back() = plane_of(texture, texture.channel);
+    return merged(texture, planes);
 }
 
 int wrap_code(Wrap wrap) {
@@ -151,7 +154,7 @@ void GlbMaterials::add_surface(const Material& material, OrderedJson& json) {
         json["normalTexture"] = texture_info(texture);
         json["normalTexture"]["scale"] = material.normal_scale;
     }
-    if (const Texture texture = occlusion(material)) {
+    if (const Texture texture = in_channel(material.occlusion_texture, 0)) {
         json["occlusionTexture"] = texture_info(texture);
         json["occlusionTexture"]["strength"] = material.occlusion_strength;
     }
@@ -162,7 +165,75 @@ void GlbMaterials::add_emission(const Material& material, OrderedJson& json) {
     // The factor ends at 1; what is brighter goes into the strength.
     const float strength = std::max(1.0f, material.emissive.maxCoeff());
     json["emissiveFactor"] = json_of(material.emissive / strength);
-    if (strength > 1) extend(json, "KHR_materials_emissive_strength")["emissiveStrength"] = strength;
+    if (strength > 1) extend(json, khr_emissive_strength)["emissiveStrength"] = strength;
+}
+
+void GlbMaterials::add_texture(OrderedJson& extension, const char* key, const Texture& texture) {
+    if (texture) extension[key] = texture_info(texture);
+}
+
+void GlbMaterials::add_channel(OrderedJson& extension, const char* key, const Texture& texture, int channel) {
+    add_texture(extension, key, in_channel(texture, channel));
+}
+
+void GlbMaterials::add_layers(const Material& material, OrderedJson& json) {
+    if (material.clearcoat > 0) {
+        OrderedJson e = {{"clearcoatFactor", material.clearcoat},
+                         {"clearcoatRoughnessFactor", material.clearcoat_roughness}};
+        add_channel(e, "clearcoatTexture", material.clearcoat_texture, 0);
+        add_channel(e, "clearcoatRoughnessTexture", material.clearcoat_roughness_texture, 1);
+        add_texture(e, "clearcoatNormalTexture", material.clearcoat_normal_texture);
+        if (material.clearcoat_normal_texture)
+            e["clearcoatNormalTexture"]["scale"] = material.clearcoat_normal_scale;
+        extend(json, khr_clearcoat) = std::move(e);
+    }
+    if (!material.sheen_color.isZero()) {
+        OrderedJson e = {{"sheenColorFactor", json_of(material.sheen_color)},
+                         {"sheenRoughnessFactor", material.sheen_roughness}};
+        add_texture(e, "sheenColorTexture", material.sheen_color_texture);
+        add_channel(e, "sheenRoughnessTexture", material.sheen_roughness_texture, 3);
+        extend(json, khr_sheen) = std::move(e);
+    }
+    if (material.iridescence > 0) {
+        OrderedJson e = {{"iridescenceFactor", material.iridescence},
+                         {"iridescenceIor", material.iridescence_ior},
+                         {"iridescenceThicknessMinimum", material.iridescence_thickness_min},
+                         {"iridescenceThicknessMaximum", material.iridescence_thickness_max}};
+        add_channel(e, "iridescenceTexture", material.iridescence_texture, 0);
+        add_channel(e, "iridescenceThicknessTexture", material.iridescence_thickness_texture, 1);
+        extend(json, khr_iridescence) = std::move(e);
+    }
+    if (material.anisotropy > 0) {
+        OrderedJson e = {{"anisotropyStrength", material.anisotropy},
+                         {"anisotropyRotation", radians(double(material.anisotropy_rotation_deg))}};
+        add_texture(e, "anisotropyTexture", material.anisotropy_texture);
+        extend(json, khr_anisotropy) = std::move(e);
+    }
+}
+
+void GlbMaterials::add_dielectric(const Material& material, OrderedJson& json) {
+    if (material.ior != Material().ior) extend(json, khr_ior) = {{"ior", material.ior}};
+    if (material.specular != 1 || material.specular_color != Vec3::Ones() || material.specular_texture ||
+        material.specular_color_texture) {
+        OrderedJson e = {{"specularFactor", material.specular},
+                         {"specularColorFactor", json_of(material.specular_color)}};
+        add_channel(e, "specularTexture", material.specular_texture, 3);
+        add_texture(e, "specularColorTexture", material.specular_color_texture);
+        extend(json, khr_specular) = std::move(e);
+    }
+    if (material.transmission > 0) {
+        OrderedJson e = {{"transmissionFactor", material.transmission}};
+        add_channel(e, "transmissionTexture", material.transmission_texture, 0);
+        extend(json, khr_transmission) = std::move(e);
+    }
+    if (material.thickness > 0) {
+        OrderedJson e = {{"thicknessFactor", material.thickness},
+                         {"attenuationColor", json_of(material.attenuation_color)}};
+        if (std::isfinite(material.attenuation_distance))
+            e["attenuationDistance"] = material.attenuation_distance;
+        add_channel(e, "thicknessTexture", material.thickness_texture, 1);
+        extend(json, khr_volume) = std::move(e);
+    }
 }
 
 OrderedJson& GlbMaterials::extend(OrderedJson& json, const char* extension) {
@@ -171,15 +242,18 @@ OrderedJson& GlbMaterials::extend(OrderedJson& json, const char* extension) {
     return json["extensions"][extension];
 }
 
-size_t GlbMaterials::add(const Material& material) {
+size_t GlbMaterials::add(const Material& material, bool transparent_vertices) {
     OrderedJson json;
     if (!material.name.empty()) json["name"] = material.name;
     add_surface(material, json);
     add_emission(material, json);
-    if (material.unlit) extend(json, "KHR_materials_unlit") = OrderedJson::object();
+    add_layers(material, json);
+    add_dielectric(material, json);
+    if (material.unlit) extend(json, khr_unlit) = OrderedJson::object();
     const char* modes[] = {"OPAQUE", "MASK", "BLEND"};
-    json["alphaMode"] = modes[int(material.alpha_mode)];
-    if (material.alpha_mode == AlphaMode::mask) json["alphaCutoff"] = material.alpha_cutoff;
+    const AlphaMode mode = material.alpha_mode_for(transparent_vertices);
+    json["alphaMode"] = modes[int(mode)];
+    if (mode == AlphaMode::mask) json["alphaCutoff"] = material.alpha_cutoff;
     json["doubleSided"] = material.double_sided;
     content_.json["materials"].push_back(std::move(json));
     return content_.json["materials"].size() - 1;

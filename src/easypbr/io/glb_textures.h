@@ -27,11 +27,17 @@ class GlbMaterials {
     explicit GlbMaterials(GlbContent& content) : content_(content) {}
 
     /// Index of the material in the file, appended with its textures.
-    size_t add(const Material& material);
+    /// `transparent_vertices`: what an automatic alpha mode depends on.
+    size_t add(const Material& material, bool transparent_vertices);
 
   private:
     void add_surface(const Material& material, OrderedJson& json);
     void add_emission(const Material& material, OrderedJson& json);
+    void add_layers(const Material& material, OrderedJson& json);
+    void add_dielectric(const Material& material, OrderedJson& json);
+    /// A texture that is read from one channel, which the format fixes.
+    void add_channel(OrderedJson& extension, const char* key, const Texture& texture, int channel);
+    void add_texture(OrderedJson& extension, const char* key, const Texture& texture);
     /// The object of an extension of `json`, which is noted as used.
     OrderedJson& extend(OrderedJson& json, const char* extension);
     OrderedJson texture_info(const Texture& texture);

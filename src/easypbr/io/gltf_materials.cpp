@@ -7,7 +7,9 @@
 
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/io/gltf_extensions.h"
 #include "easypbr/io/image_io.h"
+#include "easypbr/scene/material_table.h"
 
 namespace easypbr::io {
 namespace {
@@ -108,8 +110,8 @@ class MaterialReader {
 
     /// First pass: marks the images that the material needs.
     void mark(const Json& json) {
-        for (const auto& [parent, key] : places)
-            if (const Json* info = texture_info(json, parent, key))
+        for (const Place& place : places)
+            if (const Json* info = texture_info(json, place))
                 if (const auto source = source_of(*info)) images_.use(*source);
     }
 
@@ -119,14 +121,14 @@ class MaterialReader {
         read_metallic_roughness(
             member(json, "pbrMetallicRoughness") ? json.at("pbrMetallicRoughness") : Json::object(), out);
         read_rest(json, out);
+        read_gltf_extensions(document_, json, out);
         uv_set = uv_set_of(json);
-        out.base_color_texture = texture(json, places[0]);
-        out.metallic_texture = out.roughness_texture = texture(json, places[1]);
-        out.metallic_texture.channel = 2;
-        out.roughness_texture.channel = 1;
-        out.normal_texture = texture(json, places[2]);
-        out.occlusion_texture = texture(json, places[3]);
-        out.emissive_texture = texture(json, places[4]);
+        for (const Place& place : places) {
+            out.*place.texture = texture(json, place);
+            (out.*place.texture).channel = place.channel;
+        }
+        for (const std::string& change : clamp_to_ranges(out))
+            log_warning(fmt::format("{}, material '{}': {}", document_.path().string(), out.name, change));
         return out;
     }
 
@@ -141,19 +143,38 @@ class MaterialReader {
 
   private:
     struct Place {
-        const char* parent;
+        const char* extension;  ///< or null
+        const char* parent;     ///< or null
         const char* key;
+        Texture Material::*texture;
+        int channel;  ///< that is read; 0 for colours and normals
     };
-    static constexpr Place places[] = {{"pbrMetallicRoughness", "baseColorTexture"},
-                                       {"pbrMetallicRoughness", "metallicRoughnessTexture"},
-                                       {nullptr, "normalTexture"},
-                                       {nullptr, "occlusionTexture"},
-                                       {nullptr, "emissiveTexture"}};
+    static constexpr const char* core = "pbrMetallicRoughness";
+    static constexpr Place places[] = {
+        {nullptr, core, "baseColorTexture", &Material::base_color_texture, 0},
+        {nullptr, core, "metallicRoughnessTexture", &Material::metallic_texture, 2},
+        {nullptr, core, "metallicRoughnessTexture", &Material::roughness_texture, 1},
+        {nullptr, nullptr, "normalTexture", &Material::normal_texture, 0},
+        {nullptr, nullptr, "occlusionTexture", &Material::occlusion_texture, 0},
+        {nullptr, nullptr, "emissiveTexture", &Material::emissive_texture, 0},
+        {khr_clearcoat, nullptr, "clearcoatTexture", &Material::clearcoat_texture, 0},
+        {khr_clearcoat, nullptr, "clearcoatRoughnessTexture", &Material::clearcoat_roughness_texture, 1},
+        {khr_clearcoat, nullptr, "clearcoatNormalTexture", &Material::clearcoat_normal_texture, 0},
+        {khr_sheen, nullptr, "sheenColorTexture", &Material::sheen_color_texture, 0},
+        {khr_sheen, nullptr, "sheenRoughnessTexture", &Material::sheen_roughness_texture, 3},
+        {khr_specular, nullptr, "specularTexture", &Material::specular_texture, 3},
+        {khr_specular, nullptr, "specularColorTexture", &Material::specular_color_texture, 0},
+        {khr_transmission, nullptr, "transmissionTexture", &Material::transmission_texture, 0},
+        {khr_volume, nullptr, "thicknessTexture", &Material::thickness_texture, 1},
+        {khr_iridescence, nullptr, "iridescenceTexture", &Material::iridescence_texture, 0},
+        {khr_iridescence, nullptr, "iridescenceThicknessTexture", &Material::iridescence_thickness_texture,
+         1},
+        {khr_anisotropy, nullptr, "anisotropyTexture", &Material::anisotropy_texture, 0}};
 
     void read_rest(const Json& json, Material& out) const {
         out.emissive =
             vec3_of(document_.numbers(json, "emissiveFactor", 3).value_or(std::vector<double>{0, 0, 0}));
-        if (const Json* strength = extension(json, "KHR_materials_emissive_strength"))
+        if (const Json* strength = extension(json, khr_emissive_strength))
             out.emissive *= float(document_.number(*strength, "emissiveStrength", 1));
         if (const Json* normal = member(json, "normalTexture"))
             out.normal_scale = float(document_.number(*normal, "scale", 1));
@@ -165,12 +186,14 @@ class MaterialReader {
                                            : AlphaMode::opaque;
         out.alpha_cutoff = float(document_.number(json, "alphaCutoff", 0.5));
         out.double_sided = document_.boolean(json, "doubleSided", false);
-        out.unlit = extension(json, "KHR_materials_unlit") != nullptr;
+        out.unlit = extension(json, khr_unlit) != nullptr;
     }
 
-    static const Json* texture_info(const Json& json, const char* parent, const char* key) {
-        const Json* owner = parent ? member(json, parent) : &json;
-        return owner ? member(*owner, key) : nullptr;
+    static const Json* texture_info(const Json& json, const Place& place) {
+        const Json* owner = place.extension ? extension(json, place.extension)
+                            : place.parent  ? member(json, place.parent)
+                                            : &json;
+        return owner ? member(*owner, place.key) : nullptr;
     }
 
     std::optional<size_t> source_of(const Json& info) const {
@@ -192,13 +215,13 @@ class MaterialReader {
     /// A mesh has one set of coordinates: that of the first texture.
     int uv_set_of(const Json& json) const {
         std::optional<int> chosen;
-        for (const auto& [parent, key] : places)
-            if (const Json* info = texture_info(json, parent, key)) {
+        for (const Place& place : places)
+            if (const Json* info = texture_info(json, place)) {
                 const int set = uv_set_of_info(*info);
                 if (chosen && *chosen != set)
                     log_warning(
                         fmt::format("{}, {}: TEXCOORD_{} is drawn with TEXCOORD_{} (one set per material)",
-                                    document_.path().string(), key, set, *chosen));
+                                    document_.path().string(), place.key, set, *chosen));
                 chosen = chosen.value_or(set);
             }
         return chosen.value_or(0);
@@ -206,7 +229,7 @@ class MaterialReader {
 
     Texture texture(const Json& json, const Place& place) const {
         Texture out;
-        const Json* info = texture_info(json, place.parent, place.key);
+        const Json* info = texture_info(json, place);
         if (!info) return out;
         const Json& texture = document_.item("textures", document_.integer(*info, "index"));
         const auto source = document_.optional_integer(texture, "source");
@@ -241,6 +264,7 @@ GltfMaterials::GltfMaterials(GltfDocument& document)
         entries_[i].material = reader.read(document.item("materials", i), entries_[i].uv_set);
     reader.read_metallic_roughness(Json::object(), default_.material);
     default_.material.double_sided = false;
+    default_.material.alpha_mode = AlphaMode::opaque;
 }
 
 const GltfMaterials::Entry& GltfMaterials::entry(std::optional<size_t> index) const {

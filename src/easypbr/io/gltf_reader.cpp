@@ -9,14 +9,25 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
 #include "easypbr/io/gltf_document.h"
+#include "easypbr/io/gltf_extensions.h"
 #include "easypbr/io/gltf_materials.h"
 #include "easypbr/io/gltf_mesh.h"
 
 namespace easypbr::io {
 namespace {
 
-constexpr const char* known_extensions[] = {"KHR_materials_emissive_strength", "KHR_texture_transform",
-                                            "KHR_materials_unlit", "KHR_lights_punctual",
+constexpr const char* known_extensions[] = {khr_unlit,
+                                            khr_emissive_strength,
+                                            khr_clearcoat,
+                                            khr_sheen,
+                                            khr_specular,
+                                            khr_ior,
+                                            khr_transmission,
+                                            khr_volume,
+                                            khr_iridescence,
+                                            khr_anisotropy,
+                                            "KHR_texture_transform",
+                                            "KHR_lights_punctual",
                                             "KHR_mesh_quantization"};
 
 /// A name that the map does not have yet.

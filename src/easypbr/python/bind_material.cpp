@@ -10,25 +10,20 @@
 #include "easypbr/python/handles.h"
 #include "easypbr/python/settings_value.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/material_table.h"
 
 namespace easypbr::python {
 namespace {
 
 using MaterialClass = nb::class_<MaterialHandle>;
 
-template <class Member>
-void number_property(MaterialClass& material, const char* name, Member Material::*member, float max,
-                     const char* doc) {
+void number_property(MaterialClass& material, const MaterialNumber& number) {
     material.def_prop_rw(
-        name, [member](const MaterialHandle& m) { return m.get().*member; },
-        [member, max, name](MaterialHandle& m, float value) {
-            if (!(value >= 0 && value <= max))
-                throw ArgumentError(
-                    max < 1e30f ? fmt::format("material.{}: expected 0 to {}, got {}", name, max, value)
-                                : fmt::format("material.{}: expected at least 0, got {}", name, value));
-            m.change([&](Material& material) { material.*member = value; });
+        number.name, [&number](const MaterialHandle& m) { return m.get().*number.value; },
+        [&number](MaterialHandle& m, float value) {
+            m.change([&](Material& material) { material.*number.value = value; });
         },
-        doc);
+        number.doc);
 }
 
 void flag_property(MaterialClass& material, const char* name, bool Material::*member, const char* doc) {
@@ -38,14 +33,14 @@ void flag_property(MaterialClass& material, const char* name, bool Material::*me
         doc);
 }
 
-void color_property(MaterialClass& material, const char* name, Vec3 Material::*member, const char* doc) {
+void color_property(MaterialClass& material, const MaterialColor& color) {
     material.def_prop_rw(
-        name, [member](const MaterialHandle& m) { return vector_to_tuple(m.get().*member); },
-        [member, name](MaterialHandle& m, const ColorLike& value) {
-            const Vec3 color = to_linear_color(value, name);
-            m.change([&](Material& own) { own.*member = color; });
+        color.name, [&color](const MaterialHandle& m) { return vector_to_tuple(m.get().*color.value); },
+        [&color](MaterialHandle& m, const ColorLike& value) {
+            const Vec3 linear = to_linear_color(value, color.name);
+            m.change([&](Material& own) { own.*color.value = linear; });
         },
-        doc);
+        color.doc);
 }
 
 Texture texture_from_python(nb::handle object, const char* name) {
@@ -61,34 +56,40 @@ Texture texture_from_python(nb::handle object, const char* name) {
     return texture;
 }
 
-void texture_property(MaterialClass& material, const char* name, Texture Material::*member, const char* doc) {
+void texture_property(MaterialClass& material, const MaterialTexture& use) {
+    const std::string name = std::string(use.name) + "_texture";
     material.def_prop_rw(
-        name,
-        [member](const MaterialHandle& m) {
-            const Texture texture = m.get().*member;
+        name.c_str(),
+        [&use](const MaterialHandle& m) {
+            const Texture texture = m.get().*use.texture;
             return texture ? to_numpy(texture.image) : nb::none();
         },
-        [member, name](MaterialHandle& m, const PathOrArray& value) {
-            const Texture texture = texture_from_python(value, name);
-            m.change([&](Material& own) { own.*member = texture; });
+        [&use, name](MaterialHandle& m, const PathOrArray& value) {
+            const Texture texture = texture_from_python(value, name.c_str());
+            m.change([&](Material& own) { own.*use.texture = texture; });
         },
-        nb::for_setter(nb::arg("value").none()), doc);
+        nb::for_setter(nb::arg("value").none()),
+        fmt::format("Assign a path or an array; reads as an array, or None. {}", use.doc).c_str());
 }
 
 void set_alpha_mode(MaterialHandle& m, const std::string& mode) {
-    if (mode != "opaque" && mode != "mask" && mode != "blend")
+    if (mode != "auto" && mode != "opaque" && mode != "mask" && mode != "blend")
         throw ArgumentError(
-            fmt::format("material.alpha_mode: expected opaque, mask or blend, got '{}'", mode));
+            fmt::format("material.alpha_mode: expected auto, opaque, mask or blend, got '{}'", mode));
     m.change([&](Material& own) {
-        own.alpha_mode = mode == "opaque" ? AlphaMode::opaque
-                         : mode == "mask" ? AlphaMode::mask
-                                          : AlphaMode::blend;
+        own.alpha_mode = automatic;
+        if (mode == "opaque") own.alpha_mode = AlphaMode::opaque;
+        if (mode == "mask") own.alpha_mode = AlphaMode::mask;
+        if (mode == "blend") own.alpha_mode = AlphaMode::blend;
     });
 }
 
 const char* alpha_mode(const MaterialHandle& m) {
-    const AlphaMode mode = m.get().alpha_mode;
-    return mode == AlphaMode::opaque ? "opaque" : mode == AlphaMode::mask ? "mask" : "blend";
+    const std::optional<AlphaMode> mode = m.get().alpha_mode.value();
+    return !mode                        ? "auto"
+           : *mode == AlphaMode::opaque ? "opaque"
+           : *mode == AlphaMode::mask   ? "mask"
+                                        : "blend";
 }
 
 /// Keyword arguments are assignments to attributes; a misspelt one is an AttributeError.
@@ -98,19 +99,6 @@ void construct(Handle* self, const nb::kwargs& values) {
     nb::object object = nb::cast(Handle());
     for (auto [name, value] : values) nb::setattr(object, name, value);
     new (self) Handle(nb::cast<const Handle&>(object));
-}
-
-void bind_textures(MaterialClass& material) {
-    texture_property(material, "base_color_texture", &Material::base_color_texture,
-                     "Assign a path or an array; its alpha multiplies opacity. Reads as an array, or None.");
-    texture_property(material, "metallic_texture", &Material::metallic_texture, "Its first channel is read.");
-    texture_property(material, "roughness_texture", &Material::roughness_texture,
-                     "Its first channel is read.");
-    texture_property(material, "normal_texture", &Material::normal_texture, "Tangent space, +Y up.");
-    texture_property(material, "occlusion_texture", &Material::occlusion_texture,
-                     "Its first channel is read.");
-    texture_property(material, "emissive_texture", &Material::emissive_texture, "Colour of the glow.");
-    texture_property(material, "opacity_texture", &Material::opacity_texture, "Used by alpha mode mask.");
 }
 
 void bind_style(nb::module_& module) {
@@ -139,9 +127,9 @@ void bind_style(nb::module_& module) {
 }  // namespace
 
 void bind_material(nb::module_& module) {
-    MaterialClass material(
-        module, "Material",
-        "glTF 2.0's metallic-roughness model. Colours are linear numbers, or text ('#rrggbb', sRGB).");
+    MaterialClass material(module, "Material",
+                           "glTF 2.0's metallic-roughness model and its extensions. Colours are linear "
+                           "numbers, or text ('#rrggbb', sRGB).");
     material.def("__init__", construct<MaterialHandle>,
                  nb::sig("def __init__(self, **values: object) -> None"));
     material.def_prop_rw(
@@ -149,22 +137,14 @@ void bind_material(nb::module_& module) {
         [](MaterialHandle& m, const std::string& name) {
             m.change([&](Material& own) { own.name = name; });
         });
-    constexpr float unlimited = 3e38f;
-    color_property(material, "base_color", &Material::base_color, "Linear colour.");
-    color_property(material, "emissive", &Material::emissive, "Linear radiance that the surface glows in.");
-    number_property(material, "opacity", &Material::opacity, 1, "0 clear to 1 opaque.");
-    number_property(material, "metallic", &Material::metallic, 1, "0 dielectric to 1 metal.");
-    number_property(material, "roughness", &Material::roughness, 1, "Perceptual, 0 to 1.");
-    number_property(material, "normal_scale", &Material::normal_scale, unlimited,
-                    "Strength of the normal texture.");
-    number_property(material, "occlusion_strength", &Material::occlusion_strength, 1,
-                    "Strength of the occlusion texture.");
-    number_property(material, "alpha_cutoff", &Material::alpha_cutoff, 1,
-                    "Alpha mode mask: drawn from this alpha on.");
+    for (const MaterialColor& color : material_colors()) color_property(material, color);
+    for (const MaterialNumber& number : material_numbers()) number_property(material, number);
+    for (const MaterialTexture& use : material_textures()) texture_property(material, use);
     flag_property(material, "double_sided", &Material::double_sided, "Back faces are drawn too.");
     flag_property(material, "unlit", &Material::unlit, "The base colour is shown as it is.");
-    material.def_prop_rw("alpha_mode", alpha_mode, set_alpha_mode, "'opaque', 'mask' or 'blend'.");
-    bind_textures(material);
+    material.def_prop_rw(
+        "alpha_mode", alpha_mode, set_alpha_mode,
+        "'opaque', 'mask', 'blend', or 'auto': blend where the opacity or a vertex' alpha is below 1.");
     bind_style(module);
 }
 

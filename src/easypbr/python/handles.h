@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "easypbr/python/bindings.h"
+#include "easypbr/scene/material_table.h"
 #include "easypbr/scene/mesh.h"
 
 namespace easypbr::python {
@@ -17,7 +18,13 @@ struct MaterialHandle {
 
     template <class Change>
     void change(Change&& change) {
-        if (!mesh) return change(own);
+        if (!mesh) {
+            Material changed = own;
+            change(changed);
+            validate(changed);
+            own = std::move(changed);
+            return;
+        }
         released([&] {
             mesh->edit([&](MeshData& data) {
                 if (data.materials.empty()) data.materials.emplace_back();

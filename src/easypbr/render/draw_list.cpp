@@ -1,7 +1,5 @@
 #include "easypbr/render/draw_list.h"
 
-#include "easypbr/core/color.h"
-
 namespace easypbr::render {
 namespace {
 
@@ -21,6 +19,7 @@ struct Source {
     const DrawStyle& style;
     const Settings& settings;
     const Material& textures;
+    bool transparent_colors = has_transparent_colors(object.mesh->C);
 };
 
 DrawItem make_item(const Source& source, const MeshPart& part) {
@@ -32,6 +31,7 @@ DrawItem make_item(const Source& source, const MeshPart& part) {
     item.style = source.style;
     item.two_sided = source.style.two_sided.value_or(item.material.double_sided);
     item.with_colors = !mesh.C.empty() && !source.settings.material.color.value();
+    item.alpha = item.material.alpha_mode_for(item.with_colors && source.transparent_colors);
     return item;
 }
 
@@ -55,39 +55,6 @@ void add_points(const Source& source, DrawList& list) {
 }
 
 }  // namespace
-
-Material overridden(const Material& material, const MaterialSettings& settings, const Material& textures) {
-    Material m = material;
-    // A value from outside stands for the whole: the material's own map would multiply it away.
-    if (settings.color.value()) m.base_color = linear_from_srgb(*settings.color), m.base_color_texture = {};
-    if (settings.metallic.value()) m.metallic = *settings.metallic, m.metallic_texture = {};
-    if (settings.roughness.value()) m.roughness = *settings.roughness, m.roughness_texture = {};
-    if (settings.emissive.value()) m.emissive = linear_from_srgb(*settings.emissive), m.emissive_texture = {};
-    // A texture from outside stands for the whole value unless a factor is given beside it.
-    const auto replace = [](Texture& own, const Texture& given, auto&& neutral_factor) {
-        if (!given) return;
-        own = given;
-        neutral_factor();
-    };
-    replace(m.base_color_texture, textures.base_color_texture, [&] {
-        if (!settings.color.value()) m.base_color = Vec3::Ones();
-    });
-    replace(m.metallic_texture, textures.metallic_texture, [&] {
-        if (!settings.metallic.value()) m.metallic = 1;
-    });
-    replace(m.roughness_texture, textures.roughness_texture, [&] {
-        if (!settings.roughness.value()) m.roughness = 1;
-    });
-    replace(m.emissive_texture, textures.emissive_texture, [&] {
-        if (m.emissive.isZero()) m.emissive = Vec3::Ones();
-    });
-    replace(m.normal_texture, textures.normal_texture, [] {});
-    replace(m.occlusion_texture, textures.occlusion_texture, [] {});
-    replace(m.opacity_texture, textures.opacity_texture, [&] {
-        if (m.alpha_mode == AlphaMode::opaque) m.alpha_mode = AlphaMode::mask;
-    });
-    return m;
-}
 
 DrawList DrawList::without_exact() const {
     DrawList rest = *this;

@@ -12,8 +12,9 @@ namespace easypbr::render {
 
 struct DrawItem {
     const SceneSnapshot::Object* object = nullptr;
-    MeshPart part;      ///< of a mesh; others are drawn whole
-    Material material;  ///< with the settings' overrides
+    MeshPart part;                        ///< of a mesh; others are drawn whole
+    Material material;                    ///< with the settings' overrides
+    AlphaMode alpha = AlphaMode::opaque;  ///< what the material's alpha_mode stands for here
     DrawStyle style;
     bool two_sided = true;
     bool with_colors = false;  ///< vertex colours count

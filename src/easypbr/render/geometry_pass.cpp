@@ -108,8 +108,8 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     if (item.two_sided) defines.emplace_back("TWO_SIDED");
     if (emission) defines.emplace_back("EMISSION");
     if (frame.with_ids) defines.emplace_back("OBJECT_ID");
-    if (m.alpha_mode == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
-    if (m.alpha_mode == AlphaMode::blend) defines.emplace_back("ALPHA_BLEND");
+    if (item.alpha == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
+    if (item.alpha == AlphaMode::blend) defines.emplace_back("ALPHA_BLEND");
     if (with_uv)
         for (const TextureUse& use : texture_uses)
             if ((m.*use.member) && !(use.slot == normal_slot && item.style.flat))
@@ -139,7 +139,7 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     if (with_uv) bind_textures(program, m);
 
     set_culling(
-        !item.two_sided || (buffers.closed_outward && m.alpha_mode == AlphaMode::opaque && !item.style.flat),
+        !item.two_sided || (buffers.closed_outward && item.alpha == AlphaMode::opaque && !item.style.flat),
         mirrored);
     buffers.array.bind();
     glDrawElements(GL_TRIANGLES, item.part.face_count * 3, GL_UNSIGNED_INT,

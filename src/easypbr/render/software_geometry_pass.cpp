@@ -55,7 +55,7 @@ void SoftwareGeometryPass::Pixels::resize(size_t count, bool with_ids) {
 bool SoftwareGeometryPass::handles(const DrawList& list) {
     int64_t faces = 0, points = 0;
     for (const DrawItem& item : list.meshes) {
-        if (item.textured() || item.emits() || item.material.alpha_mode != AlphaMode::opaque) return false;
+        if (item.textured() || item.emits() || item.alpha != AlphaMode::opaque) return false;
         faces += item.part.face_count;
     }
     for (const DrawItem& item : list.points) points += item.mesh().V.rows();

@@ -33,6 +33,11 @@ const std::vector<std::string>& enum_names<ToneOperator>() {
     return names;
 }
 template <>
+const std::vector<std::string>& enum_names<AlphaMode>() {
+    static const std::vector<std::string> names = {"opaque", "mask", "blend"};
+    return names;
+}
+template <>
 const std::vector<std::string>& enum_names<DrawMode>() {
     static const std::vector<std::string> names = {"mesh", "points", "surfels", "lines", "voxels"};
     return names;
@@ -251,6 +256,44 @@ void add_shading(Table& table) {
                          "Makes the picture brighter or darker by this many doublings.", "stops", {-30, 30}));
 }
 
+void add_extended_overrides(Table& table) {
+    const auto material = [](auto member) { return at(&Settings::material, member); };
+    const std::string own = " of every material; automatic: the material's own.";
+    const auto number = [&](const std::string& name, auto member, const std::string& doc, Range range,
+                            const std::string& unit = {}) {
+        table.push_back(make("material." + name, material(member), doc + own, unit, range));
+    };
+    const auto tint = [&](const std::string& name, auto member, const std::string& doc) {
+        table.push_back(color("material." + name, material(member), doc + own));
+    };
+    using M = MaterialSettings;
+    table.push_back(make("material.alpha_mode", material(&M::alpha_mode),
+                         "Whether opacity is ignored, cuts holes, or blends, for every material; automatic: "
+                         "the material's own."));
+    number("opacity", &M::opacity, "Opacity, 0 clear to 1 opaque,", {0, 1});
+    number("clearcoat", &M::clearcoat, "Layer of clear varnish, 0 to 1,", {0, 1});
+    number("clearcoat_roughness", &M::clearcoat_roughness, "Roughness of the varnish", {0, 1});
+    tint("sheen_color", &M::sheen_color, "Colour of the sheen of cloth");
+    number("sheen_roughness", &M::sheen_roughness, "Roughness of the sheen", {0, 1});
+    number("ior", &M::ior, "Index of refraction, at least 1,", {1, 100});
+    number("specular", &M::specular, "Strength of a non-metal's reflection, 0 to 1,", {0, 1});
+    tint("specular_color", &M::specular_color, "Tint of a non-metal's reflection");
+    number("transmission", &M::transmission, "Part of the light that goes through, 0 to 1,", {0, 1});
+    number("thickness", &M::thickness, "Thickness of the volume, 0 for thin-walled,", {0, unlimited},
+           "mesh units");
+    tint("attenuation_color", &M::attenuation_color, "Colour of white light after attenuation_distance");
+    number("attenuation_distance", &M::attenuation_distance,
+           "Distance within the volume that gives light the attenuation colour", {positive, unlimited},
+           "world units");
+    number("iridescence", &M::iridescence, "Strength of a thin film's colours, 0 to 1,", {0, 1});
+    number("iridescence_ior", &M::iridescence_ior, "Index of refraction of the thin film", {1, 100});
+    number("iridescence_thickness", &M::iridescence_thickness, "Thickness of the thin film", {0, 1e6},
+           "nanometres");
+    number("anisotropy", &M::anisotropy, "How far reflections are drawn out, 0 to 1,", {0, 1});
+    number("anisotropy_rotation_deg", &M::anisotropy_rotation_deg,
+           "Direction of the anisotropy, from the tangent,", {-360, 360}, "degrees");
+}
+
 void add_overrides(Table& table) {
     const auto material = [](auto member) { return at(&Settings::material, member); };
     const auto texture = [&](const std::string& name, std::string MaterialSettings::*member,
@@ -267,6 +310,7 @@ void add_overrides(Table& table) {
                          {0, 1}));
     table.push_back(color("material.emissive", material(&MaterialSettings::emissive),
                           "Colour that every material glows in; automatic: the material's own."));
+    add_extended_overrides(table);
     texture("base_color_texture", &MaterialSettings::base_color_texture,
             "Image file for the base colour (sRGB) of every material.");
     texture("metallic_texture", &MaterialSettings::metallic_texture,

@@ -1,11 +1,14 @@
-// Material: glTF 2.0's metallic-roughness model.
+// Material: glTF 2.0's metallic-roughness model with the material extensions that the Khronos group ratified.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <string>
 
 #include "easypbr/core/image.h"
 #include "easypbr/core/math.h"
+#include "easypbr/scene/array.h"
+#include "easypbr/scene/auto.h"
 
 namespace easypbr {
 
@@ -21,12 +24,13 @@ struct Texture {
     Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
     Filter filter = Filter::linear;
     Mat3 uv_transform = Mat3::Identity();  ///< applied to (u, v, 1)
-    int channel = 0;  ///< the channel read by a one-channel use (metallic, roughness, occlusion)
+    int channel = 0;  ///< the channel read by a one-channel use (metallic, roughness, occlusion, ...)
 
     explicit operator bool() const { return image != nullptr; }
 };
 
-/// Factors multiply their textures. Colours are linear Rec.709.
+/// Factors multiply their textures. Colours are linear Rec.709. Ranges, and what each number and texture
+/// means, stand in scene/material_table.h.
 struct Material {
     std::string name;
     Vec3 base_color{0.6f, 0.6f, 0.6f};
@@ -36,10 +40,42 @@ struct Material {
     Vec3 emissive{0, 0, 0};  ///< radiance added to the picture, strength included
     float normal_scale = 1;
     float occlusion_strength = 1;
-    AlphaMode alpha_mode = AlphaMode::opaque;
+    /// Automatic: blend where the opacity or a vertex' alpha is below 1, mask where there is an opacity
+    /// texture alone, else opaque.
+    Auto<AlphaMode> alpha_mode;
     float alpha_cutoff = 0.5f;
     bool double_sided = true;
     bool unlit = false;  ///< base colour is shown as it is
+
+    // KHR_materials_clearcoat: a clear layer of varnish (index of refraction 1.5) on top.
+    float clearcoat = 0;
+    float clearcoat_roughness = 0;
+    float clearcoat_normal_scale = 1;
+
+    // KHR_materials_sheen: fibres that stand off a cloth.
+    Vec3 sheen_color{0, 0, 0};
+    float sheen_roughness = 0;
+
+    // KHR_materials_specular, KHR_materials_ior: the reflection of a dielectric.
+    float ior = 1.5f;  ///< index of refraction; 0: reflects all
+    float specular = 1;
+    Vec3 specular_color{1, 1, 1};
+
+    // KHR_materials_transmission, KHR_materials_volume: light goes through.
+    float transmission = 0;
+    float thickness = 0;  ///< of the volume below the surface, mesh units; 0: thin-walled
+    Vec3 attenuation_color{1, 1, 1};
+    float attenuation_distance = std::numeric_limits<float>::infinity();  ///< world units
+
+    // KHR_materials_iridescence: a thin film.
+    float iridescence = 0;
+    float iridescence_ior = 1.3f;
+    float iridescence_thickness_min = 100;  ///< nanometres, where its texture is 0
+    float iridescence_thickness_max = 400;  ///< nanometres, where its texture is 1 or absent
+
+    // KHR_materials_anisotropy: reflections are drawn out along a direction.
+    float anisotropy = 0;
+    float anisotropy_rotation_deg = 0;  ///< counter-clockwise from the tangent
 
     Texture base_color_texture;  ///< sRGB; its alpha multiplies opacity
     Texture metallic_texture;
@@ -47,12 +83,39 @@ struct Material {
     Texture normal_texture;  ///< tangent space, +Y up (OpenGL, glTF)
     Texture occlusion_texture;
     Texture emissive_texture;  ///< sRGB
-    Texture opacity_texture;   ///< used by alpha mode mask (and blend)
+    Texture opacity_texture;   ///< used by alpha modes mask and blend
 
-    bool has_textures() const {
-        return base_color_texture || metallic_texture || roughness_texture || normal_texture ||
-               occlusion_texture || emissive_texture || opacity_texture;
-    }
+    Texture clearcoat_texture;
+    Texture clearcoat_roughness_texture;
+    Texture clearcoat_normal_texture;
+    Texture sheen_color_texture;  ///< sRGB
+    Texture sheen_roughness_texture;
+    Texture specular_texture;
+    Texture specular_color_texture;  ///< sRGB
+    Texture transmission_texture;
+    Texture thickness_texture;
+    Texture iridescence_texture;
+    Texture iridescence_thickness_texture;
+    Texture anisotropy_texture;  ///< rg: direction, as in a normal map; b: strength
+
+    bool has_textures() const;
+
+    /// Whether the shading needs more than glTF's core model.
+    bool is_extended() const;
+    /// Whether light goes through the surface itself (not: around it, as with opacity).
+    bool transmits() const { return transmission > 0; }
+
+    /// What alpha_mode stands for on a mesh some of whose vertices are, or are not, transparent.
+    AlphaMode alpha_mode_for(bool transparent_vertices) const;
+
+    /// Part of white light that goes straight through, factors alone: for shadows. 0 for opaque and masked
+    /// materials, 1 - opacity for blended ones, and what a surface transmits, tinted by its base colour and
+    /// its volume.
+    Vec3 transmittance(AlphaMode mode) const;
 };
+
+/// Whether colours (n x 3 or n x 4) have an alpha below 1. All 0 counts as none: some programs write it and
+/// mean nothing by it.
+bool has_transparent_colors(const ArrayXf& C);
 
 }  // namespace easypbr

@@ -10,6 +10,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/scene/material_table.h"
 
 namespace easypbr {
 namespace {
@@ -170,6 +171,7 @@ void validate(const MeshData& data, const MeshData& valid) {
     const bool same_labels = same_array(data.L, valid.L) && data.label_map == valid.label_map;
     if (data.label_map && !same_labels) require_labels(data.L, *data.label_map);
     require_parts(data);
+    for (const Material& material : data.materials) validate(material);
 }
 
 const ScalarArray& scalar_named(const MeshData& data, const std::string& name) {

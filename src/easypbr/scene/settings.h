@@ -9,6 +9,7 @@
 #include "easypbr/scene/auto.h"
 #include "easypbr/scene/camera.h"
 #include "easypbr/scene/light.h"
+#include "easypbr/scene/material.h"
 #include "easypbr/scene/style.h"
 
 namespace easypbr {
@@ -91,6 +92,18 @@ struct MaterialSettings {
     Auto<float> metallic;
     Auto<float> roughness;
     Auto<Vec3> emissive;
+    Auto<AlphaMode> alpha_mode;
+    Auto<float> opacity;
+    Auto<float> clearcoat, clearcoat_roughness;
+    Auto<Vec3> sheen_color;
+    Auto<float> sheen_roughness;
+    Auto<float> ior, specular;
+    Auto<Vec3> specular_color;
+    Auto<float> transmission, thickness;
+    Auto<Vec3> attenuation_color;
+    Auto<float> attenuation_distance;
+    Auto<float> iridescence, iridescence_ior, iridescence_thickness;
+    Auto<float> anisotropy, anisotropy_rotation_deg;
     std::string base_color_texture, metallic_texture, roughness_texture, normal_texture, occlusion_texture,
         emissive_texture, opacity_texture;
 };

@@ -1,0 +1,176 @@
+#include "easypbr/scene/material_table.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "easypbr/core/error.h"
+
+namespace easypbr {
+namespace {
+
+constexpr float unlimited = 3e38f;
+constexpr float infinite = std::numeric_limits<float>::infinity();
+/// Below any length that occurs, above zero.
+constexpr float positive = 1e-30f;
+
+constexpr MaterialNumber numbers[] = {
+    {"opacity", &Material::opacity, 0, 1, "0 clear to 1 opaque."},
+    {"metallic", &Material::metallic, 0, 1, "0 dielectric to 1 metal."},
+    {"roughness", &Material::roughness, 0, 1, "Perceptual, 0 to 1."},
+    {"normal_scale", &Material::normal_scale, -unlimited, unlimited, "Strength of the normal texture."},
+    {"occlusion_strength", &Material::occlusion_strength, 0, 1, "Strength of the occlusion texture."},
+    {"alpha_cutoff", &Material::alpha_cutoff, 0, unlimited, "Alpha mode mask: drawn from this alpha on."},
+    {"clearcoat", &Material::clearcoat, 0, 1, "Layer of clear varnish, 0 none to 1 full."},
+    {"clearcoat_roughness", &Material::clearcoat_roughness, 0, 1, "Roughness of the varnish."},
+    {"clearcoat_normal_scale", &Material::clearcoat_normal_scale, -unlimited, unlimited,
+     "Strength of the varnish's normal texture."},
+    {"sheen_roughness", &Material::sheen_roughness, 0, 1, "Roughness of the sheen of cloth."},
+    {"ior", &Material::ior, 0, 100,
+     "Index of refraction of a dielectric: 1 or more, or 0, which reflects all."},
+    {"specular", &Material::specular, 0, 1, "Strength of a dielectric's reflection."},
+    {"transmission", &Material::transmission, 0, 1, "Part of the light that goes through a dielectric."},
+    {"thickness", &Material::thickness, 0, unlimited,
+     "Thickness of the volume below the surface, in mesh units; 0: thin-walled."},
+    {"attenuation_distance", &Material::attenuation_distance, positive, infinite,
+     "Distance, in world units, within a volume after which white light has the attenuation colour."},
+    {"iridescence", &Material::iridescence, 0, 1, "Strength of a thin film's colours."},
+    {"iridescence_ior", &Material::iridescence_ior, 1, 100, "Index of refraction of the thin film."},
+    {"iridescence_thickness_min", &Material::iridescence_thickness_min, 0, unlimited,
+     "Thickness of the film in nanometres where its texture is 0."},
+    {"iridescence_thickness_max", &Material::iridescence_thickness_max, 0, unlimited,
+     "Thickness of the film in nanometres where its texture is 1, or without one."},
+    {"anisotropy", &Material::anisotropy, 0, 1, "How far reflections are drawn out along the tangent."},
+    {"anisotropy_rotation_deg", &Material::anisotropy_rotation_deg, -unlimited, unlimited,
+     "Direction of the anisotropy in degrees, counter-clockwise from the tangent."}};
+
+constexpr MaterialColor colors[] = {
+    {"base_color", &Material::base_color, unlimited, "Linear colour."},
+    {"emissive", &Material::emissive, unlimited, "Linear radiance that the surface glows in."},
+    {"sheen_color", &Material::sheen_color, 1, "Linear colour of the sheen of cloth; black: none."},
+    {"specular_color", &Material::specular_color, unlimited,
+     "Linear tint of a dielectric's reflection at normal incidence."},
+    {"attenuation_color", &Material::attenuation_color, 1,
+     "Linear colour that white light has after the attenuation distance within a volume."}};
+
+constexpr MaterialTexture textures[] = {
+    {"base_color", &Material::base_color_texture, true, "Its alpha multiplies opacity."},
+    {"metallic", &Material::metallic_texture, false, "Its first channel is read."},
+    {"roughness", &Material::roughness_texture, false, "Its first channel is read."},
+    {"normal", &Material::normal_texture, false, "Tangent space, +Y up."},
+    {"occlusion", &Material::occlusion_texture, false, "Its first channel is read."},
+    {"emissive", &Material::emissive_texture, true, "Colour of the glow."},
+    {"opacity", &Material::opacity_texture, false, "Used by alpha modes mask and blend."},
+    {"clearcoat", &Material::clearcoat_texture, false, "Its first channel is read."},
+    {"clearcoat_roughness", &Material::clearcoat_roughness_texture, false, "Its first channel is read."},
+    {"clearcoat_normal", &Material::clearcoat_normal_texture, false,
+     "Normals of the varnish alone, tangent space, +Y up."},
+    {"sheen_color", &Material::sheen_color_texture, true, "Colour of the sheen."},
+    {"sheen_roughness", &Material::sheen_roughness_texture, false, "Its first channel is read."},
+    {"specular", &Material::specular_texture, false, "Its first channel is read."},
+    {"specular_color", &Material::specular_color_texture, true, "Tint of the reflection."},
+    {"transmission", &Material::transmission_texture, false, "Its first channel is read."},
+    {"thickness", &Material::thickness_texture, false, "Its first channel is read."},
+    {"iridescence", &Material::iridescence_texture, false, "Its first channel is read."},
+    {"iridescence_thickness", &Material::iridescence_thickness_texture, false,
+     "From the least to the greatest thickness; its first channel is read."},
+    {"anisotropy", &Material::anisotropy_texture, false,
+     "Red and green: direction in tangent space; blue: strength."}};
+
+std::string range_text(float min, float max) {
+    if (max >= unlimited && min <= -unlimited) return "a finite number";
+    if (max >= unlimited) return min > 0 ? "more than 0" : fmt::format("at least {}", min);
+    return fmt::format("{} to {}", min, max);
+}
+
+/// Calls problem(name, expected, given, fix) for every value outside of its range.
+template <class M, class Problem>
+void for_each_problem(M& material, Problem&& problem) {
+    for (const MaterialNumber& number : numbers) {
+        auto& value = material.*number.value;
+        if (value >= number.min && value <= number.max) continue;
+        const float nearest =
+            std::isnan(value) ? Material().*number.value : std::clamp(value, number.min, number.max);
+        problem(number.name, range_text(number.min, number.max), fmt::format("{}", value), value, nearest);
+    }
+    for (const MaterialColor& color : colors)
+        for (int c = 0; c < 3; ++c) {
+            auto& value = (material.*color.value)[c];
+            if (value >= 0 && value <= color.max) continue;
+            const float nearest =
+                std::isnan(value) ? (Material().*color.value)[c] : std::clamp<float>(value, 0, color.max);
+            const Vec3 given = material.*color.value;
+            problem(color.name, range_text(0, color.max),
+                    fmt::format("({}, {}, {})", given.x(), given.y(), given.z()), value, nearest);
+        }
+    // Between no refraction at all and the special value 0 nothing is meant.
+    if (material.ior > 0 && material.ior < 1)
+        problem("ior", "0, or 1 and more", fmt::format("{}", material.ior), material.ior, 1.0f);
+}
+
+}  // namespace
+
+std::span<const MaterialNumber> material_numbers() {
+    return numbers;
+}
+
+std::span<const MaterialColor> material_colors() {
+    return colors;
+}
+
+std::span<const MaterialTexture> material_textures() {
+    return textures;
+}
+
+void validate(const Material& material) {
+    for_each_problem(material, [&](const char* name, const std::string& expected, const std::string& given,
+                                   const float&, float) {
+        throw ArgumentError(fmt::format("material{}.{}: expected {}, got {}",
+                                        material.name.empty() ? "" : fmt::format(" '{}'", material.name),
+                                        name, expected, given));
+    });
+}
+
+std::vector<std::string> clamp_to_ranges(Material& material) {
+    std::vector<std::string> changes;
+    for_each_problem(material, [&](const char* name, const std::string& expected, const std::string& given,
+                                   float& value, float nearest) {
+        changes.push_back(
+            fmt::format("{}: expected {}, got {}; drawn with {}", name, expected, given, nearest));
+        value = nearest;
+    });
+    return changes;
+}
+
+bool Material::has_textures() const {
+    return std::ranges::any_of(textures, [&](const MaterialTexture& t) { return bool(this->*t.texture); });
+}
+
+bool Material::is_extended() const {
+    return clearcoat > 0 || !sheen_color.isZero() || ior != 1.5f || specular != 1 ||
+           specular_color != Vec3::Ones() || transmission > 0 || iridescence > 0 || anisotropy > 0 ||
+           specular_texture || specular_color_texture;
+}
+
+AlphaMode Material::alpha_mode_for(bool transparent_vertices) const {
+    if (alpha_mode.value()) return *alpha_mode;
+    if (opacity < 1 || transparent_vertices) return AlphaMode::blend;
+    return opacity_texture ? AlphaMode::mask : AlphaMode::opaque;
+}
+
+Vec3 Material::transmittance(AlphaMode mode) const {
+    const float coverage = mode == AlphaMode::blend ? opacity : 1;
+    const float f0 = ior > 0 ? std::pow((ior - 1) / (ior + 1), 2.0f) : 1.0f;
+    Vec3 through = base_color.cwiseMin(1.0f) * (transmission * (1 - metallic) * (1 - f0));
+    if (thickness > 0 && std::isfinite(attenuation_distance))
+        through.array() *= attenuation_color.array().pow(thickness / attenuation_distance);
+    return Vec3::Constant(1 - coverage) + coverage * through;
+}
+
+bool has_transparent_colors(const ArrayXf& C) {
+    if (C.cols() != 4 || C.empty()) return false;
+    const auto alpha = C.col(3);
+    return alpha.minCoeff() < 1 && alpha.maxCoeff() > 0;
+}
+
+}  // namespace easypbr
