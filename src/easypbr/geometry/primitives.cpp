@@ -1,15 +1,19 @@
+// Flat shapes and the icosphere.
 #include "easypbr/geometry/primitives.h"
 
-#include <fmt/format.h>
-
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
-#include "easypbr/core/error.h"
+#include "easypbr/geometry/require.h"
 
 namespace easypbr {
+
+using geometry::require_between;
+using geometry::require_positive;
 
 namespace {
 
@@ -24,58 +28,72 @@ MeshData with_shape(std::string name, Array3f::Dense V, Array3f::Dense N, Array2
     return data;
 }
 
-void require_positive(const char* what, float value) {
-    if (!(value > 0) || !std::isfinite(value))
-        throw ArgumentError(fmt::format("{}: expected a number > 0, got {}", what, value));
-}
+using Triangle = std::array<int32_t, 3>;
 
-/// Direction of a sphere's grid point; exact at the poles and at the seam, so that the surface is closed.
-Vec3 sphere_normal(int ring, int rings, int segment, int segments) {
-    if (ring == 0) return Vec3::UnitY();
-    if (ring == rings) return -Vec3::UnitY();
-    const double theta = pi * ring / rings, phi = 2 * pi * (segment % segments) / segments;
-    return Vec3d(std::sin(theta) * std::sin(phi), std::cos(theta), std::sin(theta) * std::cos(phi))
-        .cast<float>();
-}
-
-/// Two triangles per quad of the grid, one beside the poles. Columns run to the right, rows down, seen from
-/// outside.
-Array3i::Dense sphere_faces(int rings, int segments) {
-    Array3i::Dense F(2 * segments * (rings - 1), 3);
-    Eigen::Index face = 0;
-    for (int ring = 0; ring < rings; ++ring) {
-        for (int segment = 0; segment < segments; ++segment) {
-            const int a = ring * (segments + 1) + segment, b = a + 1, c = a + segments + 1, d = c + 1;
-            if (ring < rings - 1) F.row(face++) << a, c, d;
-            if (ring == rings - 1)
-                F.row(face++) << a, c, b;
-            else if (ring > 0)
-                F.row(face++) << a, d, b;
-        }
+/// Cuts every triangle in four, with a new vertex on the unit sphere above the middle of each edge.
+void cut_in_four(std::vector<Vec3d>& V, std::vector<Triangle>& F) {
+    std::unordered_map<uint64_t, int32_t> middles;
+    middles.reserve(F.size() * 3 / 2);
+    const auto middle = [&](int32_t a, int32_t b) {
+        const uint64_t edge = uint64_t(std::min(a, b)) << 32 | uint64_t(std::max(a, b));
+        const auto [found, is_new] = middles.try_emplace(edge, int32_t(V.size()));
+        if (is_new) V.push_back((V[size_t(a)] + V[size_t(b)]).normalized());
+        return found->second;
+    };
+    std::vector<Triangle> cut;
+    cut.reserve(4 * F.size());
+    for (const auto& [a, b, c] : F) {
+        const int32_t ab = middle(a, b), bc = middle(b, c), ca = middle(c, a);
+        cut.insert(cut.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
     }
-    return F;
+    F = std::move(cut);
+}
+
+std::vector<Vec3d> icosahedron_corners() {
+    const double golden = (1 + std::sqrt(5.0)) / 2;
+    std::vector<Vec3d> corners;
+    for (int axis = 0; axis < 3; ++axis)
+        for (const double a : {-1.0, 1.0})
+            for (const double b : {-golden, golden}) {
+                Vec3d corner = Vec3d::Zero();
+                corner[(axis + 1) % 3] = a;
+                corner[(axis + 2) % 3] = b;
+                corners.push_back(corner.normalized());
+            }
+    return corners;
+}
+
+/// The triples of corners at the distance of an edge from each other, counter-clockwise from outside.
+std::vector<Triangle> icosahedron_faces(const std::vector<Vec3d>& corners) {
+    // Neighbours on the unit sphere are 1.05 apart, the others at least 1.7.
+    const auto are_neighbors = [&](size_t a, size_t b) { return (corners[a] - corners[b]).norm() < 1.3; };
+    std::vector<Triangle> faces;
+    for (size_t a = 0; a < corners.size(); ++a)
+        for (size_t b = a + 1; b < corners.size(); ++b)
+            for (size_t c = b + 1; c < corners.size(); ++c) {
+                if (!are_neighbors(a, b) || !are_neighbors(b, c) || !are_neighbors(c, a)) continue;
+                const bool is_outwards = corners[a].dot(corners[b].cross(corners[c])) > 0;
+                faces.push_back({int32_t(a), int32_t(is_outwards ? b : c), int32_t(is_outwards ? c : b)});
+            }
+    return faces;
 }
 
 }  // namespace
 
-Mesh make_sphere(float radius, int segments) {
-    require_positive("sphere: radius", radius);
-    if (segments < 3)
-        throw ArgumentError(fmt::format("sphere: expected at least 3 segments, got {}", segments));
-    const int rings = std::max(2, segments / 2), count = (rings + 1) * (segments + 1);
-    Array3f::Dense V(count, 3), N(count, 3);
-    Array2f::Dense UV(count, 2);
-    for (int ring = 0, i = 0; ring <= rings; ++ring) {
-        // A pole's vertex belongs to one triangle: its u is that of the triangle's middle.
-        const float shift = ring == 0 || ring == rings ? 0.5f : 0.0f;
-        for (int segment = 0; segment <= segments; ++segment, ++i) {
-            N.row(i) = sphere_normal(ring, rings, segment, segments).transpose();
-            UV.row(i) << (float(segment) + shift) / float(segments), 1 - float(ring) / float(rings);
-        }
-    }
-    V = radius * N;
-    return Mesh(
-        with_shape("sphere", std::move(V), std::move(N), std::move(UV), sphere_faces(rings, segments)));
+Mesh make_icosphere(float radius, int subdivisions) {
+    require_positive("icosphere: radius", radius);
+    require_between("icosphere: subdivisions", subdivisions, 0, 10);
+    std::vector<Vec3d> V = icosahedron_corners();
+    std::vector<Triangle> F = icosahedron_faces(V);
+    for (int i = 0; i < subdivisions; ++i) cut_in_four(V, F);
+    MeshData data;
+    data.name = "icosphere";
+    const Eigen::Map<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>> unit(
+        V.data()->data(), Eigen::Index(V.size()), 3);
+    data.V = Array3f(unit * double(radius));
+    data.N = Array3f(unit);
+    data.F = Array3i::Dense(Eigen::Map<const Array3i::Dense>(F.data()->data(), Eigen::Index(F.size()), 3));
+    return Mesh(std::move(data));
 }
 
 Mesh make_box(const Vec3& size) {
@@ -102,17 +120,52 @@ Mesh make_box(const Vec3& size) {
     return Mesh(with_shape("box", std::move(V), std::move(N), std::move(UV), std::move(F)));
 }
 
-Mesh make_plane(float size) {
+Mesh make_plane(float size, int divisions) {
     require_positive("plane: size", size);
-    const float half = size / 2;
-    Array3f::Dense V(4, 3), N(4, 3);
-    Array2f::Dense UV(4, 2);
-    Array3i::Dense F(2, 3);
-    V << -half, 0, half, half, 0, half, half, 0, -half, -half, 0, -half;
+    require_between("plane: divisions", divisions, 1, 16384);
+    const int side = divisions + 1;
+    Array3f::Dense V(side * side, 3), N(side * side, 3);
+    Array2f::Dense UV(side * side, 2);
+    Array3i::Dense F(2 * divisions * divisions, 3);
     N.rowwise() = Vec3::UnitY().transpose();
-    UV << 0, 0, 1, 0, 1, 1, 0, 1;
-    F << 0, 1, 2, 0, 2, 3;
+    for (int j = 0, row = 0; j < side; ++j)
+        for (int i = 0; i < side; ++i, ++row) {
+            const float u = float(i) / float(divisions), v = float(j) / float(divisions);
+            V.row(row) << size * (u - 0.5f), 0, size * (0.5f - v);
+            UV.row(row) << u, v;
+        }
+    for (int j = 0, face = 0; j < divisions; ++j)
+        for (int i = 0; i < divisions; ++i, face += 2) {
+            const int a = j * side + i, b = a + 1, c = b + side, d = a + side;
+            F.row(face) << a, b, c;
+            F.row(face + 1) << a, c, d;
+        }
     return Mesh(with_shape("plane", std::move(V), std::move(N), std::move(UV), std::move(F)));
+}
+
+Mesh make_grid(float size, int divisions) {
+    require_positive("grid: size", size);
+    require_between("grid: divisions", divisions, 1, 1000000);
+    const int lines = 2 * (divisions + 1);
+    Array3f::Dense V(2 * lines, 3);
+    Array2i::Dense E(lines, 2);
+    const float half = size / 2;
+    for (int i = 0, line = 0; i <= divisions; ++i) {
+        const float at = size * (float(i) / float(divisions) - 0.5f);
+        for (const bool along_x : {true, false}) {
+            const Vec3 middle = along_x ? Vec3(0, 0, at) : Vec3(at, 0, 0);
+            const Vec3 arm = along_x ? Vec3(half, 0, 0) : Vec3(0, 0, half);
+            V.row(2 * line) = (middle - arm).transpose();
+            V.row(2 * line + 1) = (middle + arm).transpose();
+            E.row(line) << 2 * line, 2 * line + 1;
+            ++line;
+        }
+    }
+    MeshData data;
+    data.name = "grid";
+    data.V = std::move(V);
+    data.E = std::move(E);
+    return Mesh(std::move(data));
 }
 
 }  // namespace easypbr

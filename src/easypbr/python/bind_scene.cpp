@@ -46,22 +46,6 @@ void bind_scene(nb::module_& module) {
     module.def(
         "default_scene", [] { return default_scene(); }, "The scene that is there without being made.");
     module.def("demo_scene", [] { return released([] { return make_demo_scene(); }); });
-
-    module.def(
-        "sphere",
-        [](float radius, int segments) { return released([&] { return make_sphere(radius, segments); }); },
-        nb::arg("radius") = 1.0f, nb::arg("segments") = 64, "A UV sphere.");
-    module.def(
-        "box", [] { return make_box(); }, "A unit cube.");
-    module.def(
-        "plane", [](float size) { return make_plane(size); }, nb::arg("size") = 1.0f,
-        "A square in the xz plane, facing up.");
-    module.def(
-        "teapot",
-        [](float height, int subdivisions) {
-            return released([&] { return make_teapot(height, subdivisions); });
-        },
-        nb::arg("height") = 1.0f, nb::arg("subdivisions") = 16, "Newell's teapot, standing on y = 0.");
 }
 
 }  // namespace easypbr::python

@@ -15,6 +15,7 @@ void bind_settings(nb::module_& module);
 void bind_image(nb::module_& module);
 void bind_material(nb::module_& module);
 void bind_mesh(nb::module_& module);
+void bind_shapes(nb::module_& module);
 void bind_light(nb::module_& module);
 void bind_environment(nb::module_& module);
 void bind_scene(nb::module_& module);

@@ -1,0 +1,123 @@
+import numpy as np
+import pytest
+
+import easypbr
+from easypbr import Camera, Mesh, shapes
+
+NAN = float("nan")
+
+
+@pytest.mark.parametrize("make, bounds", [
+    (lambda: shapes.sphere(2), (2, 2, 2)),
+    (lambda: shapes.icosphere(2, 4), (2, 2, 2)),
+    (lambda: shapes.box(2), (1, 1, 1)),
+    (lambda: shapes.box((1, 2, 3)), (0.5, 1, 1.5)),
+    (lambda: shapes.plane(4, divisions=3), (2, 0, 2)),
+    (lambda: shapes.grid(4, 3), (2, 0, 2)),
+    (lambda: shapes.cylinder(1, 4), (1, 2, 1)),
+    (lambda: shapes.cone(1, 4), (1, 2, 1)),
+    (lambda: shapes.torus(2, 0.5), (2.5, 0.5, 2.5)),
+    (lambda: shapes.capsule(1, 4), (1, 3, 1)),
+])
+def test_shapes_have_their_size(make, bounds):
+    V = make().V
+    # Round ones touch their bounds in a vertex (64 segments are a multiple of four); an icosphere's vertices do to a
+    # hundredth of its radius.
+    np.testing.assert_allclose(V.max(axis=0), bounds, atol=0.01 * max(bounds))
+    np.testing.assert_allclose(V.min(axis=0), -np.array(bounds), atol=0.01 * max(bounds))
+
+
+def test_arrow_and_axes():
+    arrow = shapes.arrow((1, 0, 0), (1, 0, 3), radius=0.1)
+    np.testing.assert_allclose(arrow.V.max(axis=0), (1.25, 0.25, 3), atol=1e-6)
+    axes = shapes.axes(2)
+    for axis in range(3):
+        assert axes.C[axes.V[:, axis].argmax()].argmax() == axis
+
+
+@pytest.mark.parametrize("call", [
+    lambda: shapes.sphere(0),
+    lambda: shapes.icosphere(1, 11),
+    lambda: shapes.box((1, 2)),
+    lambda: shapes.box((1, 2, -1)),
+    lambda: shapes.cylinder(NAN),
+    lambda: shapes.cone(height=0),
+    lambda: shapes.torus(1, 2),
+    lambda: shapes.capsule(segments=1),
+    lambda: shapes.arrow((0, 0, 0), (0, 0, 0)),
+    lambda: shapes.arrow((0, 0, NAN), (0, 0, 1)),
+    lambda: shapes.axes(-1),
+    lambda: shapes.grid(divisions=0),
+])
+def test_impossible_shapes_raise(call):
+    with pytest.raises(easypbr.ArgumentError):
+        call()
+
+
+def test_camera_frustum_of_a_camera_or_of_opencv():
+    image = np.zeros((48, 64, 3), np.uint8)
+    camera = Camera.look_at((0, 0, 5), (0, 0, 0))
+    frustum = shapes.camera_frustum(camera, image, depth=2)
+    assert len(frustum.E) == 10 and len(frustum.F) == 0
+    np.testing.assert_allclose(frustum.T_parent_mesh, camera.T_world_cam)
+    np.testing.assert_array_equal(frustum.children[0].material.base_color_texture, image)
+    # Half of the full vertical angle of 30 degrees, two units away.
+    assert frustum.V[6, 1] == pytest.approx(2 * np.tan(np.radians(15)), abs=1e-6)
+    assert frustum.V[6, 0] == pytest.approx(frustum.V[6, 1] * 64 / 48, abs=1e-6)
+
+    K = np.array([[100, 0, 31.5], [0, 100, 23.5], [0, 0, 1.0]])
+    T_world_cam = np.eye(4)
+    T_world_cam[:3, 3] = 1, 2, 3
+    for given in (dict(image=image), dict(size=(64, 48))):
+        frustum = shapes.camera_frustum((K, T_world_cam), **given)
+        corner = frustum.T_parent_mesh @ [*frustum.V[5], 1]
+        # OpenCV's lower right corner: x = 32 / 100 to the right, 24 / 100 down, 1 forward.
+        np.testing.assert_allclose(corner[:3], (1.32, 2.24, 4), atol=1e-6)
+    assert len(shapes.camera_frustum(Camera.from_opencv(K, T_world_cam, (64, 48))).children) == 0
+
+
+def test_camera_frustum_says_what_is_missing():
+    with pytest.raises(easypbr.ArgumentError, match="expected a size"):
+        shapes.camera_frustum(Camera())
+    with pytest.raises(easypbr.ArgumentError, match="expected a size"):
+        shapes.camera_frustum((np.eye(3), np.eye(4)))
+    with pytest.raises(easypbr.ArgumentError, match="expected a Camera or"):
+        shapes.camera_frustum("camera")
+    with pytest.raises(easypbr.ArgumentError, match="depth"):
+        shapes.camera_frustum(Camera(), size=(4, 4), depth=NAN)
+
+
+def test_voxels_of_occupancy_labels_and_colors():
+    occupied = np.zeros((2, 3, 4), bool)
+    occupied[1, 2, 3] = occupied[0, 0, 0] = True
+    mesh = shapes.voxel_grid(occupied, origin=(10, 20, 30), cell_size=0.5)
+    np.testing.assert_array_equal(mesh.V, [[10.25, 20.25, 30.25], [10.75, 21.25, 31.75]])
+    labels = np.where(occupied, 40, 0).astype(np.int64)
+    np.testing.assert_array_equal(shapes.voxel_grid(labels).L, [40, 40])
+    assert len(shapes.voxel_grid(labels, empty=40).L) == 22
+    colors = np.zeros((2, 3, 4, 4), np.uint8)
+    colors[occupied] = (255, 51, 0, 255)
+    np.testing.assert_allclose(shapes.voxel_grid(colors).C, [[1, 0.2, 0, 1]] * 2, atol=1e-7)
+    # A transposed view is not contiguous.
+    np.testing.assert_array_equal(shapes.voxel_grid(occupied.T).V[1], [3.5, 2.5, 1.5])
+    assert isinstance(shapes.voxel_grid(np.zeros((0, 3, 4), bool)), Mesh)
+
+
+@pytest.mark.parametrize("array", [np.zeros((2, 3)), np.zeros((2, 2, 2)), np.zeros((2, 2, 2, 2)),
+                                   np.zeros((2, 2, 2, 3), int), np.full((1, 1, 1), 2**40), np.array("x")])
+def test_voxels_of_anything_else_are_refused(array):
+    with pytest.raises(easypbr.ArgumentError, match="voxel_grid: expected"):
+        shapes.voxel_grid(array)
+
+
+@pytest.mark.parametrize("arguments", [dict(cell_size=0), dict(cell_size=NAN), dict(origin=(0, 0)),
+                                       dict(origin=(0, NAN, 0))])
+def test_voxels_without_a_place_are_refused(arguments):
+    with pytest.raises(easypbr.ArgumentError):
+        shapes.voxel_grid(np.ones((1, 1, 1), bool), **arguments)
+
+
+def test_shapes_can_be_drawn(size):
+    for mesh in (shapes.torus(), shapes.axes(), shapes.capsule()):
+        picture = easypbr.render(mesh, size=size, samples=1)
+        assert 0.05 < (picture[:, :, :3] != 0x40).any(axis=2).mean() < 0.9
