@@ -26,10 +26,15 @@ float eye_dome(vec2 uv, float here) {
     const vec2 ring[8] = vec2[](vec2(1.0, 0.0), vec2(0.70710678, 0.70710678), vec2(0.0, 1.0), vec2(-0.70710678, 0.70710678),
                                 vec2(-1.0, 0.0), vec2(-0.70710678, -0.70710678), vec2(0.0, -1.0),
                                 vec2(0.70710678, -0.70710678));
-    vec2 step = u_eye_dome.y / u_size;
-    float sum = 0.0;
-    for (int i = 0; i < 8; ++i) sum += before(here, textureLod(u_depth_target, uv + ring[i] * step, 0.0).r);
-    return exp(-300.0 * u_eye_dome.x * sum / 8.0);
+    // Three scales: the small one draws edges, the large ones give round shapes their shade.
+    float shade = 0.0;
+    for (int k = 0; k < 3; ++k) {
+        vec2 radius = u_eye_dome.y * exp2(float(k)) / u_size;
+        float sum = 0.0;
+        for (int i = 0; i < 8; ++i) sum += before(here, textureLod(u_depth_target, uv + ring[i] * radius, 0.0).r);
+        shade += exp(-300.0 * u_eye_dome.x * sum / 8.0);
+    }
+    return shade / 3.0;
 }
 
 void main() {

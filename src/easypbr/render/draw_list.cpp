@@ -47,10 +47,11 @@ void add_points(const Source& source, DrawList& list) {
     const MeshData& mesh = *source.object.mesh;
     if (mesh.V.empty()) return;
     DrawItem item = make_item(source, {});
-    if (!source.style.lit.value_or(!mesh.N.empty()))
+    const bool eye_dome = mesh.N.empty() && source.settings.eye_dome.enabled;
+    if (!source.style.lit.value_or(true) || (mesh.N.empty() && !eye_dome))
         item.kind = SurfaceKind::display;
-    else if (mesh.N.empty())
-        item.kind = source.settings.eye_dome.enabled ? SurfaceKind::eye_dome : SurfaceKind::display;
+    else if (eye_dome)
+        item.kind = SurfaceKind::eye_dome;
     list.points.push_back(std::move(item));
 }
 
