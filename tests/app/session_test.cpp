@@ -9,8 +9,8 @@
 
 #include "easypbr/app/output.h"
 #include "easypbr/core/compare.h"
-#include "easypbr/io/image_io.h"
 #include "easypbr/geometry/primitives.h"
+#include "easypbr/io/image_io.h"
 
 namespace easypbr::app {
 namespace {

@@ -5,8 +5,8 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/math.h"
-#include "easypbr/scene/normals.h"
 #include "easypbr/geometry/primitives.h"
+#include "easypbr/scene/normals.h"
 
 namespace easypbr {
 namespace {

@@ -43,14 +43,15 @@ VertexArray VertexArray::make() {
 }
 
 void VertexArray::attribute(unsigned location, const Buffer& buffer, int components, AttributeType type,
-                            int stride) {
+                            int stride, int offset, int divisor) {
     const GLenum gl_type = type == AttributeType::f32       ? GL_FLOAT
                            : type == AttributeType::snorm16 ? GL_SHORT
                                                             : GL_UNSIGNED_BYTE;
     glEnableVertexArrayAttrib(object_.id(), location);
-    glVertexArrayVertexBuffer(object_.id(), location, buffer.id(), 0, stride);
+    glVertexArrayVertexBuffer(object_.id(), location, buffer.id(), offset, stride);
     glVertexArrayAttribFormat(object_.id(), location, components, gl_type, type != AttributeType::f32, 0);
     glVertexArrayAttribBinding(object_.id(), location, location);
+    glVertexArrayBindingDivisor(object_.id(), location, GLuint(divisor));
 }
 
 void VertexArray::indices(const Buffer& buffer) {

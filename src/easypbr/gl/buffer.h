@@ -38,7 +38,9 @@ class VertexArray {
     /// A vertex array without attributes, for shaders that need none.
     static VertexArray make();
 
-    void attribute(unsigned location, const Buffer& buffer, int components, AttributeType type, int stride);
+    /// From byte `offset` on, every `stride` bytes; with a divisor of 1 once per instance.
+    void attribute(unsigned location, const Buffer& buffer, int components, AttributeType type, int stride,
+                   int offset = 0, int divisor = 0);
     void indices(const Buffer& buffer);
     void bind() const;
 

@@ -24,13 +24,12 @@ PointBuffers make_buffers(const MeshData& mesh) {
     buffers.array = gl::VertexArray::make();
     buffers.array.attribute(position_location, buffers.positions, 3, gl::AttributeType::f32, 12);
     if (!mesh.N.empty()) {
-        buffers.normals = converted<Oct16>(
-            mesh.N.rows(), [&](Eigen::Index i) { return oct16(mesh.N.row(i).transpose()); });
+        buffers.normals =
+            converted<Oct16>(mesh.N.rows(), [&](Eigen::Index i) { return oct16(mesh.N.row(i).transpose()); });
         buffers.array.attribute(normal_location, buffers.normals, 2, gl::AttributeType::snorm16, 4);
     }
     if (!mesh.C.empty()) {
-        buffers.colors =
-            converted<Rgba8>(mesh.C.rows(), [&](Eigen::Index i) { return rgba8(mesh.C, i); });
+        buffers.colors = converted<Rgba8>(mesh.C.rows(), [&](Eigen::Index i) { return rgba8(mesh.C, i); });
         buffers.array.attribute(color_location, buffers.colors, 4, gl::AttributeType::unorm8, 4);
     }
     return buffers;

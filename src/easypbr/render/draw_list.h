@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "easypbr/gpu/line_segments.h"
 #include "easypbr/render/surface_kind.h"
 #include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/resolve.h"
@@ -26,14 +27,29 @@ struct DrawItem {
     bool normal_mapped() const { return bool(material.normal_texture) && !mesh().UV.empty() && !style.flat; }
 };
 
+/// Lines of an object, drawn over the picture.
+struct LineItem {
+    const SceneSnapshot::Object* object = nullptr;
+    DrawStyle style;
+    gpu::LineKind kind = gpu::LineKind::edges;
+    Vec3 color{1, 1, 1};  ///< linear, a factor on the vertices' colours
+    float length = 0;     ///< of normals, in the mesh's own units
+};
+
 struct DrawList {
     std::vector<DrawItem> meshes;  ///< one per part
     std::vector<DrawItem> points;
+    std::vector<LineItem> lines;
 
     template <class Predicate>
     bool has(Predicate&& predicate) const {
         return std::ranges::any_of(meshes, predicate) || std::ranges::any_of(points, predicate);
     }
+    /// Whether something is shown past light and tone curve.
+    bool needs_overlay() const {
+        return !lines.empty() || has([](const DrawItem& item) { return is_display(item.kind); });
+    }
+    bool reaches_beyond_vertices() const { return !points.empty() || !lines.empty(); }
     /// The items whose colours may be averaged.
     DrawList without_exact() const;
 };

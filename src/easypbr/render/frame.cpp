@@ -46,11 +46,11 @@ Vec2d jitter_of(int index, int count) {
     return Vec2d(halton(index + 1, 2), halton(index + 1, 3)) - mean;
 }
 
-void prepare_frame(Frame& frame, const Box3d& bounds, bool has_splats) {
+void prepare_frame(Frame& frame, const Box3d& bounds, bool reaches_beyond) {
     const Camera& camera = frame.camera;
     frame.clip_from_view = camera.projection_matrix(double(frame.size.x()) / frame.size.y());
-    frame.covered = has_splats ? PixelRect{0, 0, frame.size.x(), frame.size.y()}
-                               : covered_rect(bounds, frame.clip_from_view * camera.view(), frame.size);
+    frame.covered = reaches_beyond ? PixelRect{0, 0, frame.size.x(), frame.size.y()}
+                                   : covered_rect(bounds, frame.clip_from_view * camera.view(), frame.size);
     // Moving the picture by (dx, dy) pixels moves ndc by (2 dx / w, -2 dy / h): row 0 is the top.
     const Vec2d offset = jitter_of(frame.sample_index, frame.sample_count);
     const Vec2d ndc(2 * offset.x() / frame.size.x(), -2 * offset.y() / frame.size.y());

@@ -25,7 +25,7 @@ struct Frame {
     bool with_ids = false;
     bool with_overlay = false;                 ///< something is shown past light and tone curve
     Mat4d clip_from_view = Mat4d::Identity();  ///< jittered
-    PixelRect covered;                         ///< all geometry is inside
+    PixelRect covered;                         ///< all surfaces and lines are inside
 
     bool orthographic() const { return camera.projection == Projection::orthographic; }
 };
@@ -35,8 +35,8 @@ struct Frame {
 Vec2d jitter_of(int index, int count);
 
 /// Fills in the jittered projection and, from the bounds of all geometry, the covered rectangle; the whole
-/// picture where there are splats, which reach beyond their centres.
-void prepare_frame(Frame& frame, const Box3d& bounds, bool has_splats);
+/// picture where splats or lines reach beyond the vertices.
+void prepare_frame(Frame& frame, const Box3d& bounds, bool reaches_beyond);
 
 /// Sets the uniforms of shaders/common_camera.glsl.
 void set_camera_uniforms(const gl::Program& program, const Frame& frame);

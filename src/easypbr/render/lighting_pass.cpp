@@ -109,8 +109,7 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const gpu::E
             program.set("u_env_intensity", frame.resolved->settings.environment.intensity);
         }
         LightBlock block{};
-        for (size_t i = 0; i < count; ++i)
-            write_light(lights[first + i], frame.camera.position(), block, i);
+        for (size_t i = 0; i < count; ++i) write_light(lights[first + i], frame.camera.position(), block, i);
         lights_.update(0, gl::bytes_of(block));
         draw_screen_triangle();
         first += count;

@@ -11,9 +11,9 @@ namespace easypbr::render {
 
 class PointPass {
   public:
-    /// Adds the points to what the G-buffer holds, in two passes: the first finds the nearest depth and empties
-    /// its pixel, the second keeps, channel by channel, the largest of what lies at that depth. So coincident
-    /// points give the same picture in any order.
+    /// Adds the points to what the G-buffer holds, in two passes: the first finds the nearest depth and
+    /// empties its pixel, the second keeps, channel by channel, the largest of what lies at that depth. So
+    /// coincident points give the same picture in any order.
     void draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets);
 
     void evict_unused() { cache_.evict_unused(); }

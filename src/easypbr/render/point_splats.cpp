@@ -20,14 +20,14 @@ PointSplats splats_of(const DrawItem& item, const Frame& frame, double spacing) 
     // clip_from_view(1, 1) / w is the height in half pictures of one unit of length.
     const double pixels_per_unit = frame.clip_from_view(1, 1) * frame.size.y() / 2;
     PointSplats splats;
-    splats.clip_from_mesh =
-        (frame.clip_from_view * frame.camera.view() * T.matrix()).cast<float>();
+    splats.clip_from_mesh = (frame.clip_from_view * frame.camera.view() * T.matrix()).cast<float>();
     splats.round = style.point_shape == PointShape::round;
-    const double world = !style.point_size                              ? spacing * spacings_per_splat * scale
+    const double world = !style.point_size                          ? spacing * spacings_per_splat * scale
                          : style.point_size_unit == SizeUnit::world ? double(*style.point_size)
                                                                     : 0.0;
     splats.world_pixels = float(world * pixels_per_unit);
-    splats.least_pixels = style.point_size ? 1 : float(std::max(1.0, least_pixels_at_1080 * frame.size.y() / 1080));
+    splats.least_pixels =
+        style.point_size ? 1 : float(std::max(1.0, least_pixels_at_1080 * frame.size.y() / 1080));
     splats.pixels = style.point_size && world == 0 ? *style.point_size : splats.least_pixels;
     return splats;
 }

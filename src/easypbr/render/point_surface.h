@@ -21,8 +21,8 @@ class PointSurface {
 
     const DrawItem* item_;
     Mat3 normal_from_mesh_, world_from_mesh_;
-    Vec3 view_position_;     ///< of the eye, in the mesh's frame
-    Vec3 view_direction_;    ///< towards an orthographic viewer, in the mesh's frame
+    Vec3 view_position_;   ///< of the eye, in the mesh's frame
+    Vec3 view_direction_;  ///< towards an orthographic viewer, in the mesh's frame
     bool orthographic_;
 };
 

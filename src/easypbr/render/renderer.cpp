@@ -100,6 +100,7 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     textures_.evict_unused();
     software_geometry_.evict_unused();
     points_.evict_unused();
+    lines_.evict_unused();
     camera_ = resolved.camera;
     glFlush();
 }
@@ -130,14 +131,16 @@ void Renderer::draw_geometry(Frame& frame, const DrawList& list) {
 
 void Renderer::draw_frame(Frame& frame, const DrawList& list) {
     frame.camera = frame.resolved->camera;
-    prepare_frame(frame, bounds_of(*frame.scene), !list.points.empty());
-    frame.with_overlay = list.has([](const DrawItem& item) { return is_display(item.kind); });
+    prepare_frame(frame, bounds_of(*frame.scene), list.reaches_beyond_vertices());
+    frame.with_overlay = list.needs_overlay();
     if (frame.with_overlay) targets_.add_overlay();
     run("geometry", [&] { draw_geometry(frame, list); });
     no_attributes_.bind();
     const bool with_environment = !frame.resolved->environment.empty();
     run("lighting", [&] { lighting_.draw(frame, targets_, with_environment ? &environment_ : nullptr); });
     if (frame.with_overlay) run("display", [&] { display_.draw(frame, targets_); });
+    if (!list.lines.empty()) run("lines", [&] { lines_.draw(frame, list.lines, targets_); });
+    no_attributes_.bind();
     if (with_environment && sees_environment(*frame.resolved))
         run("background", [&] { background_.draw(frame, targets_, environment_); });
 }
@@ -147,7 +150,7 @@ void Renderer::draw_exact(Frame& frame, const DrawList& list) {
         frame.sample_index = 0;
         frame.sample_count = 1;
         frame.camera = frame.resolved->camera;
-        prepare_frame(frame, bounds_of(*frame.scene), !list.points.empty());
+        prepare_frame(frame, bounds_of(*frame.scene), list.reaches_beyond_vertices());
         draw_geometry(frame, list);
         no_attributes_.bind();
     }

@@ -10,6 +10,7 @@
 #include "easypbr/render/display_pass.h"
 #include "easypbr/render/geometry_pass.h"
 #include "easypbr/render/lighting_pass.h"
+#include "easypbr/render/line_pass.h"
 #include "easypbr/render/output_pass.h"
 #include "easypbr/render/point_pass.h"
 #include "easypbr/render/software_geometry_pass.h"
@@ -92,6 +93,7 @@ class Renderer {
     PointPass points_;
     LightingPass lighting_;
     DisplayPass display_;
+    LinePass lines_;
     BackgroundPass background_;
     OutputPass output_;
     std::shared_ptr<const Image> background_image_;

@@ -145,7 +145,7 @@ bool SoftwareGeometryPass::draw(Frame& frame, const DrawList& list, const GBuffe
     targets.lit.clear_color(0, zero);
     if (frame.with_ids) targets.clear_ids();
     upload(frame, targets);
-    frame.covered = with_margin(visibility_.area(), frame.size);
+    if (list.lines.empty()) frame.covered = with_margin(visibility_.area(), frame.size);
     return true;
 }
 

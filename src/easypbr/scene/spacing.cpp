@@ -94,7 +94,8 @@ double point_spacing(const Array3f& V) {
     const double points = double(V.rows());
     int cells = finest;
     size_t occupied = count_occupied(V, box, cells);
-    while (cells > 2 && points / double(occupied) < enough_per_cell) occupied = count_occupied(V, box, cells /= 2);
+    while (cells > 2 && points / double(occupied) < enough_per_cell)
+        occupied = count_occupied(V, box, cells /= 2);
     const size_t coarser = count_occupied(V, box, cells / 2);
     const double dimension = std::clamp(std::log2(double(occupied) / double(coarser)), 1.0, 3.0);
     return side / cells / std::pow(points / double(occupied), 1 / dimension);

@@ -1,0 +1,71 @@
+// Lines over the tone-mapped picture, hidden by the surfaces in the G-buffer.
+#include "common_encoding.glsl"
+#include "common_camera.glsl"
+
+uniform sampler2D u_depth_target;
+uniform sampler2D u_normal;
+uniform float u_half_width;   // pixels
+uniform float u_dash;         // pixels, 0: solid
+uniform float u_always;       // 1: whatever is in front
+
+noperspective in vec2 v_place;
+flat in float v_length;
+flat in vec2 v_depths;
+flat in vec4 v_start_color, v_end_color;
+
+layout(location = 0) out vec4 o_color;
+
+// Distance along the optical axis of a reversed depth.
+float axial(float depth) {
+#ifdef ORTHOGRAPHIC
+    return mix(u_depth.y, u_depth.x, depth);
+#else
+    return u_depth.x / depth;
+#endif
+}
+
+// How much the surface's distance changes over a pixel, by its plane: a line on it must not be cut by its slope.
+float change_per_pixel(vec2 pixel, float z) {
+    vec3 n = transpose(u_world_from_view) * oct_decode(textureLod(u_normal, pixel / u_size, 0.0).rg * 2.0 - 1.0);
+    vec2 scale = u_unproject.xy * 2.0 / u_size;
+#ifdef ORTHOGRAPHIC
+    float facing = max(abs(n.z), 0.05);
+    return (abs(n.x) * scale.x + abs(n.y) * scale.y) / facing;
+#else
+    vec3 ray = vec3((ndc_of_pixel(pixel) + u_unproject.zw) * u_unproject.xy, -1.0);
+    float facing = max(abs(dot(n, ray)), 0.05);
+    return z * (abs(n.x) * scale.x + abs(n.y) * scale.y) / facing;
+#endif
+}
+
+bool is_hidden(vec2 pixel, float depth) {
+    float surface = textureLod(u_depth_target, pixel / u_size, 0.0).r;
+    if (surface <= 0.0 || u_always > 0.5) return false;
+    float z = axial(surface);
+    float tolerance = change_per_pixel(pixel, z) * (u_half_width + 1.0) + 1e-5 * z;
+    return axial(depth) > z + tolerance;
+}
+
+void main() {
+    // Beyond its ends a segment goes on at their depth: where segments meet they agree.
+    float place = v_length > 0.0 ? clamp(v_place.x / v_length, 0.0, 1.0) : 0.0;
+    float depth = mix(v_depths.x, v_depths.y, place);
+    gl_FragDepth = depth;
+    // Round ends: joints of polylines have no gaps.
+    float past = max(max(-v_place.x, v_place.x - v_length), 0.0);
+    float distance = length(vec2(past, v_place.y));
+    float coverage = clamp(u_half_width + 0.5 - distance, 0.0, 1.0) * min(1.0, 2.0 * u_half_width);
+    if (u_dash > 0.0) {
+        float phase = mod(v_place.x, 2.0 * u_dash);
+        coverage *= clamp(min(phase, u_dash - phase) + 0.5, 0.0, 1.0) + clamp(phase - 2.0 * u_dash + 0.5, 0.0, 1.0);
+    }
+#ifdef DEPTH_ONLY
+    if (coverage < 0.5 || is_hidden(gl_FragCoord.xy, depth)) discard;
+    o_color = vec4(0.0);
+#else
+    if (coverage <= 0.0 || is_hidden(gl_FragCoord.xy, depth)) discard;
+    vec4 color = mix(v_start_color, v_end_color, place);
+    float alpha = coverage * color.a;
+    o_color = vec4(color.rgb * alpha, alpha);
+#endif
+}

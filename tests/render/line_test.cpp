@@ -1,0 +1,176 @@
+// Lines: their width, colour, dashes and what hides them.
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/gpu/line_segments.h"
+#include "render_test.h"
+
+namespace easypbr::render {
+namespace {
+
+Mesh segment(const Vec3& a, const Vec3& b) {
+    Array3f::Dense V(2, 3);
+    V << a.transpose(), b.transpose();
+    Array2i::Dense E(1, 2);
+    E << 0, 1;
+    MeshData data;
+    data.V = Array3f(V);
+    data.E = Array2i(E);
+    return Mesh(data);
+}
+
+app::Session looking_down(const Scene& scene, int size) {
+    app::Session session = plain_session(scene, size);
+    session.settings().camera.projection = Projection::orthographic;
+    session.settings().camera.ortho_height = 2.0;
+    look_from(session, Vec3d(0, 0, 4));
+    return session;
+}
+
+double sum_of_alpha(const Image& image) {
+    double sum = 0;
+    for (size_t i = 3; i < image.pixels<float>().size(); i += 4) sum += double(image.pixels<float>()[i]);
+    return sum;
+}
+
+// Coverage summed over the picture is width times length, and the two round ends together a disc. The edge falls
+// linearly over one pixel, so that the sum is exact up to the sampling of the ends.
+TEST(Lines, HaveTheirWidthAtAnyAngle) {
+    constexpr int size = 200;
+    for (const float width : {1.0f, 1.5f, 3.0f, 8.0f})
+        for (int degrees = 0; degrees < 180; degrees += 15) {
+            const float c = float(std::cos(radians(degrees))), s = float(std::sin(radians(degrees)));
+            Scene scene;
+            scene.show(segment(0.7f * Vec3(c, s, 0), -0.7f * Vec3(c, s, 0)), "line");
+            app::Session session = looking_down(scene, size);
+            session.settings().style.line_width = width;
+            const double length = 1.4 * size / 2;
+            const double measured = (sum_of_alpha(render_linear(session)) - pi * width * width / 4) / length;
+            // Pixel centres sample the edge's ramp: every 0.71 pixels at 45 degrees, which errs by an eighth.
+            EXPECT_NEAR(measured, width, 0.15) << width << " px, " << degrees << " degrees";
+        }
+}
+
+TEST(Lines, BlendTheColoursOfTheirEnds) {
+    Mesh mesh = segment(Vec3(-0.9f, 0, 0), Vec3(0.9f, 0, 0));
+    ArrayXf::Dense C(2, 3);
+    C << 1, 0, 0, 0, 0, 1;
+    mesh.set_C(ArrayXf(C));
+    Scene scene;
+    scene.show(mesh, "line");
+    app::Session session = looking_down(scene, 101);
+    session.settings().style.line_width = 5.0f;
+    const Image image = render_linear(session);
+    for (const float u : {0.1f, 0.5f, 0.8f}) {
+        const float* p = image.at<float>(int(50.5f + (u - 0.5f) * 0.9f * 101), 50);
+        EXPECT_NEAR(p[0], 1 - u, 0.02) << u;
+        EXPECT_NEAR(p[2], u, 0.02) << u;
+    }
+}
+
+TEST(Lines, DashesFillHalf) {
+    Scene scene;
+    scene.show(segment(Vec3(-0.9f, 0.1f, 0), Vec3(0.9f, 0.1f, 0)), "line");
+    app::Session session = looking_down(scene, 200);
+    session.settings().style.line_width = 4.0f;
+    const double solid = sum_of_alpha(render_linear(session));
+    session.settings().style.line_dash = 9.0f;
+    // 180 pixels are ten dashes and ten gaps.
+    EXPECT_NEAR(sum_of_alpha(render_linear(session)) / solid, 0.5, 0.03);
+}
+
+TEST(Lines, AreHiddenBySurfacesUnlessOverlaid) {
+    for (const float z : {-0.2f, 0.2f}) {
+        Scene scene;
+        scene.show(facing_square(0.5f), "square");
+        scene.show(segment(Vec3(-0.9f, 0, z), Vec3(0.9f, 0, z)), "line");
+        app::Session session = looking_down(scene, 101);
+        session.settings().style.line_width = 5.0f;
+        session.settings().style.line_color = Vec3(0, 1, 0);
+        const auto green_in_the_middle = [&] { return render_linear(session).at<float>(50, 50)[1] > 0.9f; };
+        EXPECT_EQ(green_in_the_middle(), z > 0);
+        EXPECT_GT(render_linear(session).at<float>(10, 50)[1], 0.9f);
+        session.settings().style.overlay = true;
+        EXPECT_TRUE(green_in_the_middle());
+    }
+}
+
+// The nearer of two crossing lines is seen, whichever is drawn first.
+TEST(Lines, HideEachOther) {
+    for (const float z : {-0.2f, 0.2f}) {
+        Scene scene;
+        Mesh a = segment(Vec3(-0.9f, 0, 0), Vec3(0.9f, 0, 0)), b = segment(Vec3(0, -0.9f, z), Vec3(0, 0.9f, z));
+        Style red, green;
+        red.line_color = Vec3(1, 0, 0);
+        green.line_color = Vec3(0, 1, 0);
+        a.set_style(red);
+        b.set_style(green);
+        scene.show(a, "a");
+        scene.show(b, "b");
+        app::Session session = looking_down(scene, 101);
+        session.settings().style.line_width = 9.0f;
+        const Image image = render_linear(session);
+        const float* p = image.at<float>(50, 50);
+        EXPECT_GT(p[z > 0 ? 1 : 0], 0.99f);
+        EXPECT_LT(p[z > 0 ? 0 : 1], 0.01f);
+    }
+}
+
+// A wireframe lies in its surface: no edge may be cut by the surface's slope, at any view angle.
+TEST(Lines, WireframesAreWholeOnSlopes) {
+    for (const double elevation : {5.0, 20.0, 45.0, 80.0}) {
+        Scene scene;
+        scene.show(facing_square(0.5f), "square");
+        app::Session session = plain_session(scene, 200);
+        session.settings().style.show_wireframe = true;
+        session.settings().style.line_color = Vec3(0, 1, 0);
+        session.settings().style.line_width = 3.0f;
+        const double e = radians(90 - elevation);
+        look_from(session, Vec3d(0, 4 * std::sin(e), 4 * std::cos(e)));
+        // Along the diagonal the middle pixel of the line is green, if only by the fringe of a nearer edge.
+        const Image image = render_linear(session);
+        const Camera camera = session.camera();
+        const Mat4d clip = camera.projection_matrix(1) * camera.view();
+        for (double t = -0.45; t <= 0.45; t += 0.01) {
+            const Eigen::Vector4d p = clip * Eigen::Vector4d(t, t, 0, 1);
+            const int x = int((p.x() / p.w() + 1) * 100), y = int((1 - p.y() / p.w()) * 100);
+            ASSERT_GT(image.at<float>(x, y)[1], 0.8f) << elevation << ' ' << t;
+        }
+    }
+}
+
+TEST(Lines, BehindTheCameraAreCut) {
+    Scene scene;
+    scene.show(segment(Vec3(0, -0.1f, -3), Vec3(0, -0.1f, 9)), "line");
+    app::Session session = plain_session(scene, 101);
+    look_from(session, Vec3d(0, 0, 4));
+    session.settings().camera.near = 0.01;
+    const Image image = render_linear(session);
+    // It runs from the vanishing point's neighbourhood straight down and out of the picture.
+    EXPECT_GT(image.at<float>(50, 95)[3], 0.5f);
+    EXPECT_EQ(image.at<float>(50, 5)[3], 0.0f);
+}
+
+TEST(Lines, OfAWireframeAreEachDrawnOnce) {
+    const Mesh box = make_box();
+    // The sides share no vertex, so each has four edges and a diagonal.
+    EXPECT_EQ(gpu::wireframe_segments(*box.snapshot()).size(), 6u * 5);
+    Mesh quads = box;
+    quads.edit([](MeshData& data) {
+        Array1i::Dense polygon(data.F.rows());
+        for (int i = 0; i < polygon.size(); ++i) polygon[i] = i / 2;
+        data.source_face = Array1i(polygon);
+    });
+    EXPECT_EQ(gpu::wireframe_segments(*quads.snapshot()).size(), 6u * 4);
+    // Two triangles of one quad with shared corners, of which the diagonal is inside once they are a polygon.
+    EXPECT_EQ(gpu::wireframe_segments(*facing_square().snapshot()).size(), 5u);
+}
+
+TEST(Lines, NormalsHaveTheirLength) {
+    const auto data = make_sphere(1, 16).snapshot();
+    for (const gpu::Segment& s : gpu::normal_segments(*data, 0.25f))
+        EXPECT_NEAR((Vec3(s.b) - Vec3(s.a)).norm(), 0.25f, 1e-5f);
+}
+
+}  // namespace
+}  // namespace easypbr::render
