@@ -4,6 +4,7 @@
 
 uniform sampler2D u_depth_target;
 uniform sampler2D u_normal;
+uniform sampler2D u_nearest_line;  // depth that the first pass found
 uniform float u_half_width;   // pixels
 uniform float u_dash;         // pixels, 0: solid
 uniform float u_always;       // 1: whatever is in front
@@ -46,11 +47,24 @@ bool is_hidden(vec2 pixel, float depth) {
     return axial(depth) > z + tolerance;
 }
 
+#ifndef DEPTH_ONLY
+// A line is as deep as half its width: what lies no further behind the nearest one is not hidden, so that the
+// segments of a curve do not cut notches into each other.
+bool is_behind_line(vec2 pixel, float depth) {
+    float nearest = textureLod(u_nearest_line, pixel / u_size, 0.0).r;
+    if (nearest <= 0.0) return false;
+    float z = axial(nearest), thickness = (u_half_width + 1.0) * 2.0 * u_unproject.y / u_size.y;
+#ifndef ORTHOGRAPHIC
+    thickness *= z;
+#endif
+    return axial(depth) > z + thickness;
+}
+#endif
+
 void main() {
     // Beyond its ends a segment goes on at their depth: where segments meet they agree.
     float place = v_length > 0.0 ? clamp(v_place.x / v_length, 0.0, 1.0) : 0.0;
     float depth = mix(v_depths.x, v_depths.y, place);
-    gl_FragDepth = depth;
     // Round ends: joints of polylines have no gaps.
     float past = max(max(-v_place.x, v_place.x - v_length), 0.0);
     float distance = length(vec2(past, v_place.y));
@@ -60,10 +74,11 @@ void main() {
         coverage *= clamp(min(phase, u_dash - phase) + 0.5, 0.0, 1.0) + clamp(phase - 2.0 * u_dash + 0.5, 0.0, 1.0);
     }
 #ifdef DEPTH_ONLY
+    gl_FragDepth = depth;
     if (coverage < 0.5 || is_hidden(gl_FragCoord.xy, depth)) discard;
     o_color = vec4(0.0);
 #else
-    if (coverage <= 0.0 || is_hidden(gl_FragCoord.xy, depth)) discard;
+    if (coverage <= 0.0 || is_hidden(gl_FragCoord.xy, depth) || is_behind_line(gl_FragCoord.xy, depth)) discard;
     vec4 color = mix(v_start_color, v_end_color, place);
     float alpha = coverage * color.a;
     o_color = vec4(color.rgb * alpha, alpha);

@@ -1,5 +1,7 @@
 #include "easypbr/render/draw_list.h"
 
+#include "easypbr/core/color.h"
+
 namespace easypbr::render {
 namespace {
 

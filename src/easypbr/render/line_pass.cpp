@@ -23,12 +23,13 @@ void LinePass::draw(const Frame& frame, const std::vector<LineItem>& items, cons
     glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     draw_items(frame, items, true);
     glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glDepthMask(GL_FALSE);
+    targets.display.bind();
+    glDisable(GL_DEPTH_TEST);
+    depth_.bind(2);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     draw_items(frame, items, false);
     glDisable(GL_BLEND);
-    glDepthMask(GL_TRUE);
 }
 
 void LinePass::draw_items(const Frame& frame, const std::vector<LineItem>& items, bool depth_only) {
@@ -39,6 +40,7 @@ void LinePass::draw_items(const Frame& frame, const std::vector<LineItem>& items
     set_camera_uniforms(program, frame);
     program.set("u_depth_target", 0);
     program.set("u_normal", 1);
+    program.set("u_nearest_line", 2);
     program.set("u_least_w", frame.orthographic() ? 0.5f : float(frame.camera.near));
     for (const LineItem& item : items) {
         const gpu::LineBuffers& buffers = cache_.get(*item.object->mesh, item.kind, item.length);
