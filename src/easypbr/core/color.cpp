@@ -75,6 +75,13 @@ Vec3 linear_from_srgb(const Vec3& c) {
     return c.unaryExpr([](float v) { return linear_from_srgb(v); });
 }
 
+Rgb8 to_rgb8(const Vec3& srgb) {
+    Rgb8 result;
+    for (int i = 0; i < 3; ++i)
+        result[size_t(i)] = uint8_t(std::lround(std::clamp(srgb[i], 0.0f, 1.0f) * 255));
+    return result;
+}
+
 Vec3 parse_color(std::string_view text) {
     if (!text.empty() && text[0] == '#') return parse_hex(text);
     if (const auto found = named_colors().find(text); found != named_colors().end())

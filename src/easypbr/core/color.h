@@ -1,13 +1,19 @@
 // Transfer functions between linear Rec.709 and sRGB (IEC 61966-2-1), and colours written as text.
 #pragma once
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <string>
 #include <string_view>
 
 #include "easypbr/core/math.h"
 
 namespace easypbr {
+
+/// sRGB as it is written into 8-bit pictures; alpha last.
+using Rgb8 = std::array<uint8_t, 3>;
+using Rgba8 = std::array<uint8_t, 4>;
 
 /// sRGB-encoded value in [0, 1] of a linear value in [0, 1], by the exact piecewise curve.
 inline float srgb_from_linear(float c) {
@@ -24,6 +30,12 @@ const float* srgb8_table();
 
 Vec3 srgb_from_linear(const Vec3& c);
 Vec3 linear_from_srgb(const Vec3& c);
+
+/// The nearest code of an sRGB colour, clamped to [0, 1].
+Rgb8 to_rgb8(const Vec3& srgb);
+inline Rgba8 opaque(const Rgb8& color) {
+    return {color[0], color[1], color[2], 255};
+}
 
 /// sRGB colour in [0, 1] from '#rgb', '#rrggbb', 'r,g,b' (numbers in 0..1) or a basic name such as 'white'.
 /// Throws ArgumentError for anything else.

@@ -58,6 +58,10 @@ const std::vector<std::string>& enum_names<ColorBy>() {
                                                    "height", "normal", "uv",      "intensity"};
     return names;
 }
+template <>
+const std::vector<std::string>& enum_names<Colormap>() {
+    return colormap_names();
+}
 
 }  // namespace detail
 
@@ -371,6 +375,19 @@ void add_style(Table& table) {
     add("color_by", &Style::color_by, "What colours objects.",
         "labels, else textures and vertex colours, else scalars, else intensities of points, else the "
         "material");
+    add("scalar", &Style::scalar, "Name of the scalars that colour objects; chooses color_by scalar.",
+        "the first that were added");
+    add("colormap", &Style::colormap, "Colours of scalars, heights and intensities.",
+        "grey for intensities, else viridis");
+    add("color_min", &Style::color_min, "Value that has the colormap's first colour; lower ones have it too.",
+        "the smallest, or the first percentile where outliers would take most of the colours", "",
+        {-1e38, 1e38});
+    add("color_max", &Style::color_max, "Value that has the colormap's last colour; higher ones have it too.",
+        "the largest, or the 99th percentile where outliers would take most of the colours", "",
+        {-1e38, 1e38});
+    table.push_back(color("style.nan_color", at(&Settings::style, &Style::nan_color),
+                          "Colour of what has no value (NaN). Automatic: the object's own choice, else grey, "
+                          "with the colormap grey magenta."));
 }
 
 void add_loading(Table& table) {

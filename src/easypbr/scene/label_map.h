@@ -1,16 +1,14 @@
 // LabelMap: what integer labels mean: a name and a colour for each class.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-namespace easypbr {
+#include "easypbr/core/color.h"
 
-/// sRGB, as it is written into 8-bit pictures.
-using Rgb8 = std::array<uint8_t, 3>;
+namespace easypbr {
 
 /// The label of what has none. Negative labels mean that in most data sets.
 inline constexpr int32_t no_label = -1;

@@ -28,8 +28,9 @@ struct MeshPart {
 
 /// Named values, one for each vertex or one for each face: curvature, temperature, error. NaN: no value.
 struct ScalarArray {
-    std::string name;  ///< not empty, unique within a mesh
-    Array1f values;    ///< n x 1 or m x 1; with as many faces as vertices they belong to the vertices
+    std::string name;        ///< not empty, unique within a mesh
+    Array1f values;          ///< n x 1 or m x 1; with as many faces as vertices they belong to the vertices
+    bool from_file = false;  ///< one of many that came with a file: colours the mesh only when asked for
 };
 
 /// The plain data of a mesh: n vertices, m faces, k edges. Copying is cheap (arrays are shared).

@@ -5,6 +5,7 @@
 
 #include "easypbr/core/math.h"
 #include "easypbr/scene/auto.h"
+#include "easypbr/scene/colormap.h"
 
 namespace easypbr {
 
@@ -36,6 +37,11 @@ struct Style {
     Auto<bool> lit;
     Auto<bool> overlay;
     Auto<ColorBy> color_by;
+    Auto<std::string> scalar;  ///< name of the scalars that colour
+    Auto<Colormap> colormap;
+    Auto<float> color_min;  ///< value of the colormap's first colour
+    Auto<float> color_max;  ///< value of its last one
+    Auto<Vec3> nan_color;   ///< sRGB
 };
 
 }  // namespace easypbr

@@ -1,0 +1,76 @@
+// What colours an object: the one place where Style::color_by becomes colours.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/color.h"
+#include "easypbr/scene/scene.h"
+
+namespace easypbr {
+
+enum class ColorSource {
+    material,  ///< the material's colour, with its textures and the vertex colours as ColorPlan says
+    colors,    ///< a colour for each element
+    values,    ///< a value for each vertex: to be interpolated before it is mapped to a colour
+};
+
+/// What colours an object, decided. Cheap to make: what is of the size of the data comes with
+/// element_colors().
+struct ColorPlan {
+    ColorBy by = ColorBy::solid;
+    ColorSource source = ColorSource::material;
+    bool textured = true;                     ///< the material's base colour texture counts
+    bool vertex_colors = true;                ///< MeshData::C counts
+    PerElement element = PerElement::vertex;  ///< what has the colours or values
+    /// The colours are those of a table and mean something: labels, scalars, heights, intensities. Where they
+    /// are not lit they reach the picture exactly.
+    bool exact = false;
+
+    std::string scalar;  ///< name of the scalars
+    Colormap colormap = Colormap::viridis;
+    std::optional<float> min, max;  ///< nothing: from the values
+    Vec3 nan_color{0.5f, 0.5f, 0.5f};
+    Eigen::Vector4d height = Eigen::Vector4d::Zero();  ///< product with (x, y, z, 1) of a vertex
+    Mat3d normal_to_world = Mat3d::Identity();
+
+    /// Equal keys, equal element_colors(): revisions of the arrays, choices, and the pose where it counts.
+    /// Empty for ColorSource::material.
+    std::string key;
+};
+
+/// Decides by the overrides, else the object's own style, else its data: labels, else textures and vertex
+/// colours, else scalars, else the intensities of what is drawn without faces, else the material. A style
+/// that names scalars chooses them. `T_world_mesh` and the world's `up` count for heights and normals.
+///
+/// Overrides stand for all objects: where the data lack what they ask for, the object's own style decides
+/// (see require_colors()). Throws ArgumentError where the data lack what the object's own style asks for,
+/// NameError when they have no scalars of that name.
+ColorPlan plan_colors(const MeshData& mesh, const Style& overrides, DrawMode mode,
+                      const Eigen::Affine3d& T_world_mesh, const Vec3d& up);
+
+/// Throws ArgumentError or NameError when overrides ask for labels, scalars or others that no object has.
+void require_colors(const SceneSnapshot& scene, const Style& overrides);
+
+/// One of these by ColorPlan::source; for `material` all are empty.
+struct ElementColors {
+    std::vector<Rgba8> colors;  ///< sRGB, one for each vertex or face
+    Array1f values;             ///< one for each vertex; NaN: no value
+    /// Of `values`, and of the colours made from values (for colour bars). A value has the colour
+    /// table[color_index(value, range)], NaN has nan_color.
+    ValueRange range;
+    std::array<Rgba8, 256> table{};
+    Rgba8 nan_color{};
+};
+
+/// Parallel, and the same for any number of threads. Labels of vertices on faces: a face has the label of
+/// most of its corners, the first one's when all differ, so that no colour is a mixture. Values of faces
+/// where vertices are drawn: a vertex has the mean of its faces' values, the label of its first face.
+ElementColors element_colors(const MeshData& mesh, const ColorPlan& plan);
+
+/// The values that a plan maps to colours (scalars, heights or intensities), one for each element of the
+/// array they come from.
+Array1f plan_values(const MeshData& mesh, const ColorPlan& plan);
+
+}  // namespace easypbr
