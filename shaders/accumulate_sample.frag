@@ -13,7 +13,7 @@ uniform sampler2D u_overlay;  // linear display light, premultiplied
 
 void main() {
     vec4 radiance = textureLod(u_radiance, gl_FragCoord.xy / u_size, 0.0);
-    o_sum = vec4(tone_map(radiance.rgb * u_exposure) * radiance.a, radiance.a);
+    o_sum = displayed(radiance, u_exposure);
 #ifdef OVERLAY
     vec4 over = textureLod(u_overlay, gl_FragCoord.xy / u_size, 0.0);
     o_sum = o_sum * (1.0 - over.a) + over;

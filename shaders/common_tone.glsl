@@ -46,3 +46,20 @@ vec3 tone_map(vec3 c) { return clamp(c, 0.0, 1.0); }
 // Scene-referred: for HDR files.
 vec3 tone_map(vec3 c) { return c; }
 #endif
+
+// Display light, premultiplied by its alpha, of premultiplied radiance.
+vec4 displayed(vec4 radiance, float exposure) {
+#ifdef PARTLY_COVERED
+    // The curve is for what a surface shows, not for what its opacity leaves of it. Light that is brighter than its
+    // coverage (a reflection on clear glass) covers more of what is behind: up to all.
+    vec3 c = radiance.rgb * exposure;
+#ifdef SCENE_LINEAR
+    return vec4(c, radiance.a);
+#else
+    float coverage = clamp(max(radiance.a, max(c.r, max(c.g, c.b))), 0.0, 1.0);
+    return vec4(coverage > 0.0 ? tone_map(c / coverage) * coverage : vec3(0.0), coverage);
+#endif
+#else
+    return vec4(tone_map(radiance.rgb * exposure) * radiance.a, radiance.a);
+#endif
+}

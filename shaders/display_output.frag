@@ -24,7 +24,7 @@ void main() {
 #ifdef SUM
     vec4 color = source * u_sample_scale;
 #else
-    vec4 color = vec4(tone_map(source.rgb * u_exposure) * source.a, source.a);
+    vec4 color = displayed(source, u_exposure);
 #ifdef OVERLAY
     vec4 over = textureLod(u_overlay, uv, 0.0);
     color = color * (1.0 - over.a) + over;

@@ -1,5 +1,11 @@
 // Triangles into the G-buffer. What each target holds is defined in render/gbuffer.h.
 #include "common_encoding.glsl"
+#ifdef PEEL
+#include "common_peel.glsl"
+#endif
+#ifdef ALPHA_STOCHASTIC
+#include "common_stochastic.glsl"
+#endif
 
 #ifdef VERTEX_COLOR
 in vec4 v_color;
@@ -36,7 +42,6 @@ uniform vec4 u_surface;     // metallic, roughness, occlusion strength, alpha cu
 uniform vec4 u_emissive;    // radiance; w: code of the surface's kind
 uniform float u_normal_scale;
 uniform float u_lod_bias;
-uniform float u_sample_index;
 
 #ifdef UV
 uniform mat3 u_uv_transform[7];
@@ -115,21 +120,15 @@ vec3 shading_normal() {
     return n;
 }
 
-#ifdef ALPHA_BLEND
-// Interleaved gradient noise (Jimenez 2014), shifted by the golden ratio from one accumulated frame to the next, so that
-// the frames' thresholds are spread evenly and their mean is the exact blend.
-float alpha_threshold() {
-    float noise = fract(52.9829189 * fract(dot(gl_FragCoord.xy, vec2(0.06711056, 0.00583715))));
-    return fract(noise + u_sample_index * 0.6180339887);
-}
-#endif
-
 void main() {
     vec4 color = base_color();
 #if defined(ALPHA_MASK)
     if (color.a < u_surface.w) discard;
-#elif defined(ALPHA_BLEND)
+#elif defined(ALPHA_STOCHASTIC)
     if (color.a <= alpha_threshold()) discard;
+#endif
+#ifdef PEEL
+    if (color.a <= 0.0 || is_peeled()) discard;
 #endif
 
     float metallic = u_surface.x, roughness = u_surface.y, occlusion = 1.0;
@@ -148,7 +147,11 @@ void main() {
     occlusion = mix(1.0, dot(texture(u_occlusion_texture, uv_of(3), u_lod_bias), u_occlusion_channel), u_surface.z);
 #endif
 
+#ifdef ALPHA_BLEND
+    o_albedo = color;
+#else
     o_albedo = vec4(color.rgb, 1.0);
+#endif
     o_normal = oct_encode(shading_normal()) * 0.5 + 0.5;
     o_material = vec4(metallic, roughness, occlusion, u_emissive.w);
     o_depth = gl_FragCoord.z;

@@ -1,8 +1,14 @@
 // Points into the G-buffer. What each target holds is defined in render/gbuffer.h.
 #include "common_encoding.glsl"
+#ifdef PEEL
+#include "common_peel.glsl"
+#endif
+#ifdef ALPHA_STOCHASTIC
+#include "common_stochastic.glsl"
+#endif
 
 flat in vec3 v_normal;
-flat in vec3 v_color;
+flat in vec4 v_color;
 flat in float v_diameter;
 
 layout(location = 0) out vec4 o_albedo;
@@ -18,6 +24,7 @@ uniform int u_object_id;
 #endif
 
 uniform vec4 u_material;  // metallic, roughness, 1, code of the kind
+uniform float u_alpha_cutoff;
 uniform float u_write;    // 0: the pixel is made empty, 1: it is filled
 
 void main() {
@@ -25,7 +32,20 @@ void main() {
     // The smallest discs would miss the pixel that they lie in.
     if (v_diameter >= 1.5 && length(gl_PointCoord - 0.5) > 0.5) discard;
 #endif
-    o_albedo = vec4(v_color, 1.0) * u_write;
+#ifdef ALPHA_MASK
+    if (v_color.a < u_alpha_cutoff) discard;
+#endif
+#ifdef ALPHA_STOCHASTIC
+    if (v_color.a <= alpha_threshold()) discard;
+#endif
+#ifdef PEEL
+    if (v_color.a <= 0.0 || is_peeled()) discard;
+#endif
+#ifdef ALPHA_BLEND
+    o_albedo = v_color * u_write;
+#else
+    o_albedo = vec4(v_color.rgb, 1.0) * u_write;
+#endif
     o_normal = (oct_encode(v_normal) * 0.5 + 0.5) * u_write;
     o_material = u_material * u_write;
     o_depth = gl_FragCoord.z * u_write;

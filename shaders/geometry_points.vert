@@ -12,7 +12,7 @@ flat out vec3 v_normal;
 #ifdef VERTEX_COLOR
 layout(location = 2) in vec4 a_color;
 #endif
-flat out vec3 v_color;
+flat out vec4 v_color;
 flat out float v_diameter;
 #ifdef OBJECT_ID
 flat out uint v_element;
@@ -20,7 +20,7 @@ flat out uint v_element;
 
 uniform mat4 u_clip_from_mesh;
 uniform vec3 u_size_pixels;  // diameter; diameter times w, or 0; least diameter
-uniform vec3 u_base_color;
+uniform vec4 u_base_color;  // linear, opacity in w
 uniform vec3 u_towards_viewer;  // world, of a point without a normal: orthographic direction
 invariant gl_Position;
 
@@ -30,7 +30,7 @@ void main() {
     gl_PointSize = max(v_diameter, 1.0);
     v_color = u_base_color;
 #ifdef VERTEX_COLOR
-    v_color *= srgb_decode(a_color.rgb);
+    v_color *= vec4(srgb_decode(a_color.rgb), a_color.a);
 #endif
     v_normal = u_towards_viewer;
 #ifdef NORMAL

@@ -200,29 +200,6 @@ TEST(Output, FxaaSmoothsEdgesOnly) {
     EXPECT_EQ(std::vector<int>(p, p + 4), std::vector<int>(q, q + 4));
 }
 
-// Blended surfaces by thresholds that differ from frame to frame: the mean is the blend. 64 frames leave
-// 1/64.
-TEST(Output, BlendAccumulates) {
-    Material m;
-    m.base_color = Vec3::Zero();
-    m.emissive = Vec3::Ones();
-    m.opacity = 0.3f;
-    m.alpha_mode = AlphaMode::blend;
-    Scene scene;
-    scene.show(facing_square(100, m), "square");
-    app::Session session = plain_session(scene, 32);
-    look_from(session, Vec3d(0, 0, 7));
-    const Image image = render_linear(session, 64);
-    double sum = 0;
-    for (int y = 0; y < 32; ++y)
-        for (int x = 0; x < 32; ++x) {
-            const float v = image.at<float>(x, y)[0];
-            EXPECT_NEAR(v, 0.3f, 2.0f / 64);
-            sum += v;
-        }
-    EXPECT_NEAR(sum / 1024, 0.3, 0.005);
-}
-
 TEST(Output, RefusesSizesThatCannotBe) {
     Scene scene;
     scene.show(make_sphere(), "sphere");

@@ -75,6 +75,7 @@ TEST(Fields, AreComplete) {
         {"lights", 1 + 3 * 4},
         {"shading", 3},
         {"edl", 3},
+        {"transparency", 2},
         {"tonemap", 3},
         {"material", 4 + 18 + 7},
         {"style", 24},

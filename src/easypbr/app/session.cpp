@@ -176,6 +176,7 @@ std::map<std::string, Image> Session::render_layers(const std::vector<std::strin
     std::vector<render::Layer> layers;
     for (const std::string& name : names) layers.push_back(render::layer_named(name));
     Prepared prepared = prepare({size, 1, Encoding::scene_linear});
+    prepared.options.layers = true;
     prepared.options.ids = std::ranges::any_of(layers, [](render::Layer layer) {
         return layer == render::Layer::id || layer == render::Layer::element;
     });

@@ -24,6 +24,9 @@ void delete_name(ObjectKind kind, GLuint id) {
         case ObjectKind::program:
             glDeleteProgram(id);
             break;
+        case ObjectKind::query:
+            glDeleteQueries(1, &id);
+            break;
     }
 }
 
@@ -44,6 +47,9 @@ GLuint create_name(ObjectKind kind, GLenum target) {
             break;
         case ObjectKind::program:
             id = glCreateProgram();
+            break;
+        case ObjectKind::query:
+            glCreateQueries(target, 1, &id);
             break;
     }
     return id;

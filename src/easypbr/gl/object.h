@@ -9,7 +9,7 @@
 
 namespace easypbr::gl {
 
-enum class ObjectKind { buffer, texture, framebuffer, vertex_array, program };
+enum class ObjectKind { buffer, texture, framebuffer, vertex_array, program, query };
 
 /// Names of objects whose handles died elsewhere; emptied whenever the context is current.
 class DeletionQueue {

@@ -94,10 +94,27 @@ void add_lines(const Source& source, DrawList& list) {
 }  // namespace
 
 DrawList DrawList::without_exact() const {
-    DrawList rest = *this;
-    for (std::vector<DrawItem>* items : {&rest.meshes, &rest.points})
-        std::erase_if(*items, [](const DrawItem& item) { return item.kind == SurfaceKind::exact; });
-    return rest;
+    return without([](const DrawItem& item) { return item.kind == SurfaceKind::exact; });
+}
+
+DrawList DrawList::layers() const {
+    return without([](const DrawItem& item) { return !item.layered; });
+}
+
+DrawList DrawList::without_layers() const {
+    return without([](const DrawItem& item) { return item.layered; });
+}
+
+DrawList DrawList::as_surfaces() const {
+    DrawList surfaces = *this;
+    for (std::vector<DrawItem>* items : {&surfaces.meshes, &surfaces.points})
+        for (DrawItem& item : *items) {
+            item.layered = false;
+            if (item.alpha != AlphaMode::blend) continue;
+            item.alpha = AlphaMode::mask;
+            item.material.alpha_cutoff = 0.5f;
+        }
+    return surfaces;
 }
 
 DrawList draw_list(const SceneSnapshot& scene, const Settings& settings, const Material& textures) {
@@ -110,6 +127,11 @@ DrawList draw_list(const SceneSnapshot& scene, const Settings& settings, const M
         add_lines(source, list);
         if (style.mode == DrawMode::points || style.show_points) add_points(source, list);
     }
+    const bool blend_in_layers = settings.transparency.mode == TransparencyMode::layers;
+    for (std::vector<DrawItem>* items : {&list.meshes, &list.points})
+        for (DrawItem& item : *items)
+            item.layered = (item.alpha == AlphaMode::blend && blend_in_layers) ||
+                           (item.kind == SurfaceKind::lit && item.material.transmits());
     return list;
 }
 

@@ -20,6 +20,7 @@ struct DrawItem {
     bool two_sided = true;
     bool with_colors = false;  ///< vertex colours count
     SurfaceKind kind = SurfaceKind::lit;
+    bool layered = false;  ///< other surfaces are seen behind: drawn in layers over the picture
 
     const MeshData& mesh() const { return *object->mesh; }
     bool emits() const { return material.unlit || !material.emissive.isZero(); }
@@ -50,8 +51,22 @@ struct DrawList {
         return !lines.empty() || has([](const DrawItem& item) { return is_display(item.kind); });
     }
     bool reaches_beyond_vertices() const { return !points.empty() || !lines.empty(); }
+    template <class Predicate>
+    DrawList without(Predicate&& predicate) const {
+        DrawList rest = *this;
+        std::erase_if(rest.meshes, predicate);
+        std::erase_if(rest.points, predicate);
+        return rest;
+    }
+    bool empty() const { return meshes.empty() && points.empty(); }
     /// The items whose colours may be averaged.
     DrawList without_exact() const;
+    /// The items that light passes, which are drawn in layers, and the others.
+    DrawList layers() const;
+    DrawList without_layers() const;
+    /// All items as surfaces that hide what is behind them: what depth, ids and labels are of. A blended
+    /// surface is one where its opacity is at least one half.
+    DrawList as_surfaces() const;
 };
 
 /// All items in the order of the scene. `textures` are the settings' own, which stand in for the materials'.

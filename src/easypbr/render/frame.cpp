@@ -75,6 +75,18 @@ std::vector<std::string> camera_defines(const Frame& frame) {
     return frame.orthographic() ? std::vector<std::string>{"ORTHOGRAPHIC"} : std::vector<std::string>{};
 }
 
+void test_geometry_depth(const Frame& frame) {
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(frame.peel && frame.peel->farthest ? GL_LESS : GL_GREATER);
+}
+
+void set_peel_uniforms(const gl::Program& program, const Peel& peel, unsigned unit) {
+    program.set("u_peel_limit", int(unit));
+    program.set("u_peel_first", peel.first ? 1.0f : 0.0f);
+    peel.limit->bind(unit);
+}
+
 void draw_screen_triangle() {
     glDrawArrays(GL_TRIANGLES, 0, 3);
 }

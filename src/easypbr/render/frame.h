@@ -5,6 +5,7 @@
 
 #include "easypbr/gl/buffer.h"
 #include "easypbr/gl/program.h"
+#include "easypbr/gl/texture.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
@@ -12,6 +13,13 @@ namespace easypbr::render {
 /// A rectangle of pixels, row 0 on top.
 struct PixelRect {
     int x = 0, y = 0, width = 0, height = 0;
+};
+
+/// One layer of depth peeling: of what is nearer than the limit the farthest, or else the nearest.
+struct Peel {
+    const gl::Texture* limit = nullptr;  ///< R32F, reversed depth
+    bool first = true;  ///< the limit is the opaque surfaces' depth; else a pixel with 0 takes no more
+    bool farthest = true;
 };
 
 /// One frame of an accumulated picture.
@@ -24,6 +32,8 @@ struct Frame {
     int sample_count = 1;
     bool with_ids = false;
     bool with_overlay = false;                 ///< something is shown past light and tone curve
+    bool partly_covered = false;               ///< the radiance may hold coverages between 0 and 1
+    const Peel* peel = nullptr;                ///< set while a layer is drawn
     Mat4d clip_from_view = Mat4d::Identity();  ///< jittered
     PixelRect covered;                         ///< all surfaces and lines are inside
 
@@ -43,6 +53,12 @@ void set_camera_uniforms(const gl::Program& program, const Frame& frame);
 
 /// Macros that shaders with the camera depend on.
 std::vector<std::string> camera_defines(const Frame& frame);
+
+/// Depth test of geometry: the nearest, or what the layer asks for.
+void test_geometry_depth(const Frame& frame);
+
+/// For a program with shaders/common_peel.glsl: sets its uniforms and binds the limit to a texture unit.
+void set_peel_uniforms(const gl::Program& program, const Peel& peel, unsigned unit);
 
 /// Draws shaders/screen_triangle.vert; the program is in use and the framebuffer bound.
 void draw_screen_triangle();

@@ -1,5 +1,7 @@
 #include "easypbr/render/gbuffer.h"
 
+#include <epoxy/gl.h>
+
 namespace easypbr::render {
 
 GBuffer::GBuffer(Vec2i size) {
@@ -29,9 +31,33 @@ void GBuffer::add_overlay() {
     display = gl::Framebuffer({&overlay}, &depth_test);
 }
 
-void GBuffer::clear_ids() const {
-    surface_ids.clear_integer(5, 0);
-    surface_ids.clear_integer(6, 0);
+void GBuffer::clear(bool with_ids) const {
+    const float zero[4] = {0, 0, 0, 0};
+    surface.allow_depth_writes();
+    if (with_ids) surface_ids.clear_integer(5, 0);
+    if (with_ids) surface_ids.clear_integer(6, 0);
+    surface.clear_color(3, zero);
+    surface.clear_depth(0);
+    lit.clear_color(0, zero);
+}
+
+void GBuffer::clear_layer() const {
+    const float zero[4] = {0, 0, 0, 0};
+    surface.allow_depth_writes();
+    surface.clear_color(3, zero);
+    surface.clear_depth(from_behind ? 1 : 0);
+    lit.clear_color(0, zero);
+}
+
+void GBuffer::test_covered() const {
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+    if (from_behind) glDepthRange(1, 1);
+    glDepthFunc(from_behind ? GL_GREATER : GL_LESS);
+}
+
+void GBuffer::reset_depth_range() {
+    glDepthRange(0, 1);
 }
 
 }  // namespace easypbr::render

@@ -26,6 +26,8 @@ struct GBuffer {
     gl::Texture overlay;  ///< RGBA16F, when asked for: linear display light, premultiplied, over the
                           ///< tone-mapped picture
 
+    bool from_behind = false;  ///< a layer: depth_test is 1 where there is nothing
+
     gl::Framebuffer surface;           ///< albedo, normal, material, depth
     gl::Framebuffer surface_emission;  ///< the same and radiance
     gl::Framebuffer surface_ids;       ///< the same, id and element; empty until add_ids()
@@ -36,7 +38,14 @@ struct GBuffer {
     explicit GBuffer(Vec2i size);
     /// Makes the id and element targets, if they are not there.
     void add_ids();
-    void clear_ids() const;
+    /// Empties all targets but the overlay. Nothing is drawn where nothing is: depth 0, radiance 0.
+    void clear(bool with_ids) const;
+    /// The same for a layer; when it is peeled from behind, the depth test begins at the near plane.
+    void clear_layer() const;
+    /// Sets the depth test so that the screen's triangle is drawn where there is geometry and nowhere else;
+    /// reset_depth_range() afterwards.
+    void test_covered() const;
+    static void reset_depth_range();
     /// Makes the overlay, if it is not there.
     void add_overlay();
     Vec2i size() const { return {albedo.width(), albedo.height()}; }

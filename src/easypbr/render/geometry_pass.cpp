@@ -19,6 +19,8 @@ enum Slot {
     opacity_slot
 };
 
+constexpr unsigned peel_unit = 15;
+
 struct TextureUse {
     Slot slot;
     const char* define;
@@ -66,19 +68,13 @@ void set_culling(bool cull, bool mirrored) {
 }  // namespace
 
 void GeometryPass::draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets) {
-    const bool emission = frame.with_ids || std::ranges::any_of(items, &DrawItem::emits);
+    const bool emission = frame.with_ids || frame.peel || std::ranges::any_of(items, &DrawItem::emits);
     const gl::Framebuffer& framebuffer = frame.with_ids ? targets.surface_ids
                                          : emission     ? targets.surface_emission
                                                         : targets.surface;
     framebuffer.bind();
-    if (frame.with_ids) targets.clear_ids();
-    framebuffer.allow_depth_writes();
-    const float zero[4] = {0, 0, 0, 0};
-    framebuffer.clear_color(3, zero);
-    framebuffer.clear_depth(0);
-    targets.lit.clear_color(0, zero);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GREATER);
+    if (!frame.peel) targets.clear(frame.with_ids);
+    test_geometry_depth(frame);
     for (size_t first = 0, last; first < items.size(); first = last) {
         // All parts of an object share its buffers.
         const auto same_object = [&](const DrawItem& item) { return item.object == items[first].object; };
@@ -109,7 +105,8 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     if (emission) defines.emplace_back("EMISSION");
     if (frame.with_ids) defines.emplace_back("OBJECT_ID");
     if (item.alpha == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
-    if (item.alpha == AlphaMode::blend) defines.emplace_back("ALPHA_BLEND");
+    if (item.alpha == AlphaMode::blend) defines.emplace_back(frame.peel ? "ALPHA_BLEND" : "ALPHA_STOCHASTIC");
+    if (frame.peel) defines.emplace_back("PEEL");
     if (with_uv)
         for (const TextureUse& use : texture_uses)
             if ((m.*use.member) && !(use.slot == normal_slot && item.style.flat))
@@ -137,6 +134,7 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     // Jittered frames see finer detail together than one alone: a level less of blur from four samples on.
     program.set("u_lod_bias", frame.sample_count >= 4 ? -1.0f : 0.0f);
     if (with_uv) bind_textures(program, m);
+    if (frame.peel) set_peel_uniforms(program, *frame.peel, peel_unit);
 
     set_culling(
         !item.two_sided || (buffers.closed_outward && item.alpha == AlphaMode::opaque && !item.style.flat),

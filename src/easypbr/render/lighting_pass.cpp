@@ -75,9 +75,7 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const gpu::E
     glScissor(frame.covered.x, frame.covered.y, frame.covered.width, frame.covered.height);
     // The triangle lies infinitely far: "less" draws it where there is geometry, and skips the rest before
     // shading.
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_FALSE);
-    glDepthFunc(GL_LESS);
+    targets.test_covered();
     glEnable(GL_BLEND);
     glBlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ZERO);
 
@@ -116,6 +114,7 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const gpu::E
     } while (first < lights.size());
     glDisable(GL_BLEND);
     glDisable(GL_SCISSOR_TEST);
+    targets.reset_depth_range();
 }
 
 }  // namespace easypbr::render

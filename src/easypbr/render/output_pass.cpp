@@ -9,8 +9,8 @@
 namespace easypbr::render {
 namespace {
 
-std::vector<std::string> tone_defines(const Frame& frame, Encoding encoding) {
-    if (encoding == Encoding::scene_linear) return {};
+std::vector<std::string> curve_defines(const Frame& frame, Encoding encoding) {
+    if (encoding == Encoding::scene_linear) return {"SCENE_LINEAR"};
     switch (frame.resolved->settings.tone.tone_operator) {
         case ToneOperator::reinhard:
             return {"TONE_REINHARD"};
@@ -23,6 +23,12 @@ std::vector<std::string> tone_defines(const Frame& frame, Encoding encoding) {
         default:
             return {"TONE_ACES"};
     }
+}
+
+std::vector<std::string> tone_defines(const Frame& frame, Encoding encoding) {
+    std::vector<std::string> defines = curve_defines(frame, encoding);
+    if (frame.partly_covered) defines.emplace_back("PARTLY_COVERED");
+    return defines;
 }
 
 gl::Format format_of(Encoding encoding) {

@@ -10,9 +10,7 @@ void PointPass::draw(const Frame& frame, const std::vector<DrawItem>& items, con
     if (items.empty()) return;
     (frame.with_ids ? targets.surface_ids : targets.surface_emission).bind();
     glEnable(GL_PROGRAM_POINT_SIZE);
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_TRUE);
-    glDepthFunc(GL_GREATER);
+    test_geometry_depth(frame);
     draw_items(frame, items, false);
     glDepthMask(GL_FALSE);
     glDepthFunc(GL_EQUAL);
@@ -35,6 +33,10 @@ void PointPass::draw_items(const Frame& frame, const std::vector<DrawItem>& item
         if (item.with_colors) defines.emplace_back("VERTEX_COLOR");
         if (splats.round) defines.emplace_back("ROUND");
         if (frame.with_ids) defines.emplace_back("OBJECT_ID");
+        if (item.alpha == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
+        if (item.alpha == AlphaMode::blend)
+            defines.emplace_back(frame.peel ? "ALPHA_BLEND" : "ALPHA_STOCHASTIC");
+        if (frame.peel) defines.emplace_back("PEEL");
         const gl::Program& program = programs_.get(defines);
         program.use();
         const Mat4d mesh_matrix = item.object->T_world_mesh.matrix();
@@ -45,10 +47,13 @@ void PointPass::draw_items(const Frame& frame, const std::vector<DrawItem>& item
         program.set("u_world_from_view", world_from_view);
         program.set("u_normal_from_mesh", Mat3(linear.inverse().transpose().cast<float>()));
         program.set("u_size_pixels", Vec3(splats.pixels, splats.world_pixels, splats.least_pixels));
-        program.set("u_base_color", m.base_color);
+        program.set("u_base_color", Vec4(m.base_color.x(), m.base_color.y(), m.base_color.z(), m.opacity));
+        program.set("u_alpha_cutoff", m.alpha_cutoff);
+        if (frame.peel) set_peel_uniforms(program, *frame.peel, 0);
         program.set("u_towards_viewer", Vec3(world_from_view.col(2)));
         program.set("u_material", Vec4(m.metallic, m.roughness, 1, code_of(item.kind)));
         program.set("u_object_id", int(item.object - frame.scene->objects.data()) + 1);
+        program.set("u_sample_index", float(frame.sample_index));
         program.set("u_write", write ? 1.0f : 0.0f);
         buffers.array.bind();
         glDrawArrays(GL_POINTS, 0, int(item.mesh().V.rows()));

@@ -79,7 +79,8 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     if (!resolved.environment.empty())
         run("environment", [&] { environment_.prepare(resolved.environment, sees_environment(resolved)); });
 
-    const DrawList list = draw_list(scene, resolved.settings, images.textures);
+    const DrawList all = draw_list(scene, resolved.settings, images.textures);
+    const DrawList list = options.layers || options.ids ? all.as_surfaces() : all;
     // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
     const bool has_exact = list.has([](const DrawItem& item) { return item.kind == SurfaceKind::exact; });
     const DrawList averaged = options.samples > 1 && has_exact ? list.without_exact() : DrawList();
@@ -123,7 +124,7 @@ void Renderer::draw_geometry(Frame& frame, const DrawList& list) {
     if (native && SoftwareGeometryPass::handles(list) && software_geometry_.draw(frame, list, targets_))
         return;
     geometry_.draw(frame, list.meshes, targets_);
-    if (native && !list.points.empty())
+    if (native && !list.points.empty() && SoftwareGeometryPass::handles_points(list))
         software_geometry_.draw_points_over(frame, list, targets_);
     else
         points_.draw(frame, list.points, targets_);
@@ -134,7 +135,9 @@ void Renderer::draw_frame(Frame& frame, const DrawList& list) {
     prepare_frame(frame, bounds_of(*frame.scene), list.reaches_beyond_vertices());
     frame.with_overlay = list.needs_overlay();
     if (frame.with_overlay) targets_.add_overlay();
-    run("geometry", [&] { draw_geometry(frame, list); });
+    const bool has_layers = list.has([](const DrawItem& item) { return item.layered; });
+    const PixelRect everything = frame.covered;
+    run("geometry", [&] { draw_geometry(frame, has_layers ? list.without_layers() : list); });
     no_attributes_.bind();
     const bool with_environment = !frame.resolved->environment.empty();
     run("lighting", [&] { lighting_.draw(frame, targets_, with_environment ? &environment_ : nullptr); });
@@ -143,6 +146,23 @@ void Renderer::draw_frame(Frame& frame, const DrawList& list) {
     no_attributes_.bind();
     if (with_environment && sees_environment(*frame.resolved))
         run("background", [&] { background_.draw(frame, targets_, environment_); });
+    if (!has_layers) return;
+    frame.covered = everything;
+    run("transparency", [&] { draw_layers(frame, list.layers()); });
+}
+
+void Renderer::draw_layers(Frame& frame, const DrawList& list) {
+    const bool with_environment = !frame.resolved->environment.empty();
+    transparency_.begin(frame, targets_);
+    while (transparency_.open_layer(frame)) {
+        geometry_.draw(frame, list.meshes, transparency_.layer());
+        points_.draw(frame, list.points, transparency_.layer());
+        if (!transparency_.close_layer(frame)) break;
+        no_attributes_.bind();
+        lighting_.draw(frame, transparency_.layer(), with_environment ? &environment_ : nullptr);
+        transparency_.blend(frame, targets_);
+    }
+    transparency_.end(frame);
 }
 
 void Renderer::draw_exact(Frame& frame, const DrawList& list) {
@@ -151,7 +171,7 @@ void Renderer::draw_exact(Frame& frame, const DrawList& list) {
         frame.sample_count = 1;
         frame.camera = frame.resolved->camera;
         prepare_frame(frame, bounds_of(*frame.scene), list.reaches_beyond_vertices());
-        draw_geometry(frame, list);
+        draw_geometry(frame, list.without_layers());
         no_attributes_.bind();
     }
     output_.write_exact(frame, targets_);

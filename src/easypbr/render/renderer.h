@@ -14,6 +14,7 @@
 #include "easypbr/render/output_pass.h"
 #include "easypbr/render/point_pass.h"
 #include "easypbr/render/software_geometry_pass.h"
+#include "easypbr/render/transparency_pass.h"
 
 namespace easypbr::render {
 
@@ -39,7 +40,9 @@ struct DrawOptions {
     Vec2i size{800, 600};
     int samples = 1;
     Encoding encoding = Encoding::srgb8;
-    bool ids = false;  ///< fill the id target too
+    bool ids = false;     ///< fill the id target too
+    bool layers = false;  ///< read_layer() will be called: blended surfaces stand in it where they are half
+                          ///< opaque or more, and there is no picture
 };
 
 /// Images that the settings name, loaded by the caller.
@@ -76,6 +79,8 @@ class Renderer {
     void draw_frame(Frame& frame, const DrawList& list);
     /// Fills the G-buffer by the faster way that can draw these items.
     void draw_geometry(Frame& frame, const DrawList& list);
+    /// Draws the layered items over the picture.
+    void draw_layers(Frame& frame, const DrawList& list);
     /// Draws what must not be averaged or smoothed into the finished picture.
     void draw_exact(Frame& frame, const DrawList& list);
     const Box3d& bounds_of(const SceneSnapshot& scene);
@@ -94,6 +99,7 @@ class Renderer {
     LightingPass lighting_;
     DisplayPass display_;
     LinePass lines_;
+    TransparencyPass transparency_;
     BackgroundPass background_;
     OutputPass output_;
     std::shared_ptr<const Image> background_image_;

@@ -58,8 +58,14 @@ bool SoftwareGeometryPass::handles(const DrawList& list) {
         if (item.textured() || item.emits() || item.alpha != AlphaMode::opaque) return false;
         faces += item.part.face_count;
     }
+    if (!handles_points(list)) return false;
     for (const DrawItem& item : list.points) points += item.mesh().V.rows();
     return (points > 0 || faces >= smallest_face_count) && faces + points < int64_t(UINT32_MAX);
+}
+
+bool SoftwareGeometryPass::handles_points(const DrawList& list) {
+    return std::ranges::all_of(list.points,
+                               [](const DrawItem& item) { return item.alpha == AlphaMode::opaque; });
 }
 
 const MeshKnowledge& SoftwareGeometryPass::knowledge_of(const MeshData& mesh) {
@@ -138,12 +144,7 @@ bool SoftwareGeometryPass::draw(Frame& frame, const DrawList& list, const GBuffe
     add_points(frame, list, surfaces);
     visibility_.crop();
     resolve(frame, surfaces);
-    const float zero[4] = {0, 0, 0, 0};
-    targets.surface.allow_depth_writes();
-    targets.surface.clear_color(3, zero);
-    targets.surface.clear_depth(0);
-    targets.lit.clear_color(0, zero);
-    if (frame.with_ids) targets.clear_ids();
+    targets.clear(frame.with_ids);
     upload(frame, targets);
     if (list.lines.empty()) frame.covered = with_margin(visibility_.area(), frame.size);
     return true;

@@ -17,9 +17,10 @@ namespace easypbr::render {
 /// nearest triangle or point per pixel first, then the surface of each pixel once.
 class SoftwareGeometryPass {
   public:
-    /// Whether draw() can draw these meshes: plain ones, without textures, emission or alpha. Points always
-    /// can be drawn.
+    /// Whether draw() can draw these meshes and points: plain ones, without textures, emission or alpha.
     static bool handles(const DrawList& list);
+    /// The same of the points alone.
+    static bool handles_points(const DrawList& list);
 
     /// Fills the G-buffer with the list's meshes and points and narrows the frame's covered rectangle; false,
     /// with both unchanged, when a mesh would have to be clipped.

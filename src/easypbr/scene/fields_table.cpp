@@ -28,6 +28,11 @@ const std::vector<std::string>& enum_names<Brdf>() {
     return names;
 }
 template <>
+const std::vector<std::string>& enum_names<TransparencyMode>() {
+    static const std::vector<std::string> names = {"layers", "stochastic"};
+    return names;
+}
+template <>
 const std::vector<std::string>& enum_names<ToneOperator>() {
     static const std::vector<std::string> names = {"aces", "reinhard", "agx", "neutral", "none"};
     return names;
@@ -247,6 +252,17 @@ void add_shading(Table& table) {
         make("edl.radius", eye_dome(&EyeDomeSettings::radius),
              "Distance at which eye-dome lighting looks for edges, in pixels of a picture 1080 high.",
              "pixels", {0.1, 100}));
+
+    const auto transparency = [](auto member) { return at(&Settings::transparency, member); };
+    table.push_back(
+        make("transparency.mode", transparency(&TransparencySettings::mode),
+             "How blended surfaces are drawn: in layers, exact at any number of samples, or stochastically, "
+             "in a part of the samples, which is quicker where very many lie behind each other."));
+    table.push_back(make(
+        "transparency.max_layers", transparency(&TransparencySettings::max_layers),
+        "How many surfaces behind each other are drawn apart, from the farthest on; of those beyond only "
+        "the nearest is drawn.",
+        "", {1, 10000}));
 
     const auto tone = [](auto member) { return at(&Settings::tone, member); };
     table.push_back(make("tonemap.operator", tone(&ToneSettings::tone_operator),

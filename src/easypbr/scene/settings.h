@@ -17,6 +17,7 @@ namespace easypbr {
 enum class Antialias { none, fxaa };
 enum class BackgroundMode { color, environment, blur, image, transparent };
 enum class Brdf { height_correlated, separable, ue4 };
+enum class TransparencyMode { layers, stochastic };
 enum class ToneOperator { aces, reinhard, agx, neutral, none };
 
 struct ImageSettings {
@@ -80,6 +81,11 @@ struct EyeDomeSettings {
     float radius = 1.4f;
 };
 
+struct TransparencySettings {
+    TransparencyMode mode = TransparencyMode::layers;
+    int max_layers = 64;
+};
+
 struct ToneSettings {
     ToneOperator tone_operator = ToneOperator::aces;
     Auto<float> exposure;
@@ -120,6 +126,7 @@ struct Settings {
     LightsSettings lights;
     ShadingSettings shading;
     EyeDomeSettings eye_dome;
+    TransparencySettings transparency;
     ToneSettings tone;
     MaterialSettings material;
     Style style;  ///< overrides of every object's style; automatic: the object's own value

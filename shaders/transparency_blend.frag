@@ -1,0 +1,38 @@
+// A lit layer over the picture: premultiplied by its opacity. The picture is tone(radiance) (1 - o) + overlay, where o is
+// the overlay's alpha, and each layer C with opacity a makes (1 - a) times that plus a times C of it:
+// - a display colour goes into the overlay;
+// - light goes into the radiance, with the weight a / (1 - o (1 - a)), while the overlay is weakened by 1 - a.
+#include "common_surface_kind.glsl"
+
+uniform sampler2D u_radiance;
+uniform sampler2D u_albedo;
+uniform sampler2D u_material;
+uniform vec2 u_size;
+#ifdef OVERLAY
+uniform sampler2D u_overlay;
+#endif
+
+layout(location = 0) out vec4 o_color;
+
+void main() {
+    vec2 uv = gl_FragCoord.xy / u_size;
+    vec4 albedo = textureLod(u_albedo, uv, 0.0);
+    float opacity = albedo.a;
+#if defined(OVERLAY) || defined(WEAKEN_OVERLAY) || defined(INTO_OVERLAY)
+    bool display = is_display(textureLod(u_material, uv, 0.0).w);
+#ifdef INTO_OVERLAY
+    if (!display) discard;
+#else
+    if (display) discard;
+#endif
+#endif
+#if defined(INTO_OVERLAY) || defined(WEAKEN_OVERLAY)
+    o_color = vec4(albedo.rgb * opacity, opacity);
+#else
+#ifdef OVERLAY
+    float overlay = textureLod(u_overlay, uv, 0.0).a;
+    opacity = opacity > 0.0 ? opacity / (1.0 - overlay * (1.0 - opacity)) : 0.0;
+#endif
+    o_color = vec4(textureLod(u_radiance, uv, 0.0).rgb * opacity, opacity);
+#endif
+}

@@ -1,0 +1,57 @@
+// Surfaces that light passes, over the lit picture: one layer after the other, from the farthest to the
+// nearest.
+#pragma once
+
+#include "easypbr/gl/query.h"
+#include "easypbr/render/frame.h"
+#include "easypbr/render/gbuffer.h"
+#include "easypbr/render/programs.h"
+
+namespace easypbr::render {
+
+/// Depth peeling (Everitt 2001) from behind. Each layer has a G-buffer of its own, which the geometry passes
+/// fill while frame.peel is set, and which is lit like any other:
+///
+///     begin(frame, targets);
+///     while (open_layer(frame)) {
+///         ... geometry passes draw the layered items into layer() ...
+///         if (!close_layer(frame)) break;
+///         ... lighting of layer() ...
+///         blend(frame, targets);
+///     }
+///     end(frame);
+///
+/// So the result depends neither on the order in which surfaces are drawn nor on how they intersect. Surfaces
+/// at exactly the same depth count as one.
+class TransparencyPass {
+  public:
+    /// The picture in `targets` is finished but for the layers.
+    void begin(Frame& frame, const GBuffer& targets);
+    /// Makes the next layer ready for drawing; false when the last allowed one has been drawn.
+    bool open_layer(Frame& frame);
+    /// Whether anything was drawn since open_layer().
+    bool close_layer(Frame& frame);
+    /// Puts the lit layer over the picture.
+    void blend(const Frame& frame, const GBuffer& targets);
+    void end(Frame& frame);
+
+    const GBuffer& layer() const { return layer_; }
+    /// Layers that the last frame had.
+    int layer_count() const { return count_; }
+
+  private:
+    void blend_radiance(const Frame& frame, const GBuffer& targets);
+    void blend_overlay(const Frame& frame);
+    void bind_layer(const gl::Program& program, const Frame& frame) const;
+
+    GBuffer layer_;
+    gl::Texture limit_;
+    gl::Framebuffer radiance_, overlay_;  ///< the picture's targets with the layer's depth test
+    uint32_t radiance_id_ = 0, overlay_id_ = 0;
+    gl::OcclusionQuery query_;
+    Peel peel_;
+    int count_ = 0;
+    ProgramVariants programs_{"screen_triangle.vert", "transparency_blend.frag"};
+};
+
+}  // namespace easypbr::render
