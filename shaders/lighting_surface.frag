@@ -31,7 +31,12 @@ struct Light {
     vec4 cone;       // scale and offset of the cosine
 };
 layout(std140, binding = 0) uniform Lights { Light u_lights[LIGHTS_PER_BLOCK]; };
-uniform int u_light_count;
+uniform int u_plain_lights;   // lights without shadows, the first ones
+#ifdef SHADOWS
+uniform int u_single_lights;  // end of those with one shadow map
+uniform int u_cube_lights;    // end of those with a cube
+#include "common_shadow.glsl"
+#endif
 
 struct Surface {
     vec3 position, normal, view, diffuse, f0;
@@ -98,6 +103,27 @@ vec3 indirect(Surface s, float occlusion) {
 }
 #endif
 
+#ifdef SHADOWS
+// Normal of the surface itself, in view space: from the depths of neighbours, of each two the one that is nearer.
+vec3 face_normal(vec2 pixel, vec3 center) {
+    float d = textureLod(u_depth_target, pixel / u_size, 0.0).r;
+    vec3 along[2];
+    for (int axis = 0; axis < 2; ++axis) {
+        vec2 step = axis == 0 ? vec2(1.0, 0.0) : vec2(0.0, 1.0);
+        float before = textureLod(u_depth_target, (pixel - step) / u_size, 0.0).r;
+        float after = textureLod(u_depth_target, (pixel + step) / u_size, 0.0).r;
+        // The picture's border has a neighbour on one side only.
+        bool first = pixel[axis] < 1.0, last = pixel[axis] > u_size[axis] - 1.0;
+        bool forwards = !last && (first || abs(after - d) < abs(before - d));
+        vec3 other = view_position(forwards ? pixel + step : pixel - step, forwards ? after : before);
+        along[axis] = forwards ? other - center : center - other;
+    }
+    // Rows run downwards.
+    vec3 n = normalize(cross(along[1], along[0]));
+    return n;
+}
+#endif
+
 void main() {
     vec2 uv = gl_FragCoord.xy / u_size;
     vec3 albedo = textureLod(u_albedo, uv, 0.0).rgb;
@@ -127,6 +153,20 @@ void main() {
 #endif
     s.roughness = light_roughness;
     s.alpha = light_roughness * light_roughness;
-    for (int i = 0; i < u_light_count; ++i) radiance += direct(u_lights[i], s);
+    for (int i = 0; i < u_plain_lights; ++i) radiance += direct(u_lights[i], s);
+#ifdef SHADOWS
+    vec3 face = u_world_from_view * face_normal(gl_FragCoord.xy, view_p);
+    face = dot(face, s.normal) < 0.3 ? s.normal : face;
+    for (int i = u_plain_lights; i < u_single_lights; ++i) {
+        vec3 light = direct(u_lights[i], s);
+        radiance += light * shadow_single(i - u_plain_lights, s.position, face, any(greaterThan(light, vec3(0.0))));
+    }
+#ifdef SHADOW_CUBES
+    for (int i = u_single_lights; i < u_cube_lights; ++i) {
+        vec3 light = direct(u_lights[i], s);
+        radiance += light * shadow_cube(i - u_plain_lights, s.position, face, any(greaterThan(light, vec3(0.0))));
+    }
+#endif
+#endif
     o_radiance = vec4(is_lit(material.w) ? radiance : vec3(0.0), 1.0);
 }

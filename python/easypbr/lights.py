@@ -4,6 +4,7 @@ from . import _easypbr
 from .errors import ArgumentError
 
 _STUDIO = ("key", "fill", "rim")
+_STUDIO_FIELDS = ("enabled", "position", "color", "intensity", "casts_shadows", "radius")
 
 
 class SceneLight:
@@ -41,8 +42,8 @@ class StudioLight:
     type = "point"
 
     def _full(self, name: str) -> str:
-        if name not in ("enabled", "position", "color", "intensity"):
-            raise AttributeError(f"a studio light has enabled, position, color and intensity, but no '{name}'")
+        if name not in _STUDIO_FIELDS:
+            raise AttributeError(f"a studio light has {', '.join(_STUDIO_FIELDS)}, but no '{name}'")
         return self._prefix + name
 
     def __getattr__(self, name: str):
@@ -66,7 +67,7 @@ class StudioLight:
         self._handle.set_setting(self._full(name), value)
 
     def __dir__(self):
-        return ["enabled", "position", "color", "intensity", "type"]
+        return [*_STUDIO_FIELDS, "type"]
 
 
 class Lights:

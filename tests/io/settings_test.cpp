@@ -71,8 +71,13 @@ TEST(SettingsFile, KeepsLightsAndFiles) {
     lamp.inner_cone_deg = 12;
     lamp.outer_cone_deg = 34;
     lamp.range = 56;
+    lamp.casts_shadows = false;
+    lamp.radius = 0.7f;
+    lamp.angular_radius_deg = 3;
+    Light inferred;
+    inferred.radius.latch(0.3f);
     const TemporaryFolder folder;
-    io::save_settings({{}, {{"lamp", lamp}}, {{"a/b.ply", "0123"}}}, folder / "look.json");
+    io::save_settings({{}, {{"lamp", lamp}, {"inferred", inferred}, {"plain", {}}}, {{"a/b.ply", "0123"}}}, folder / "look.json");
     const io::SettingsFile read = io::load_settings(folder / "look.json");
     const Light& back = read.lights.at("lamp");
     EXPECT_EQ(back.type, lamp.type);
@@ -84,6 +89,13 @@ TEST(SettingsFile, KeepsLightsAndFiles) {
     EXPECT_EQ(back.inner_cone_deg, lamp.inner_cone_deg);
     EXPECT_EQ(back.outer_cone_deg, lamp.outer_cone_deg);
     EXPECT_EQ(back.range, lamp.range);
+    EXPECT_EQ(back.casts_shadows, lamp.casts_shadows);
+    EXPECT_TRUE(back.radius.is_pinned());
+    EXPECT_EQ(back.radius.value(), lamp.radius.value());
+    EXPECT_EQ(back.angular_radius_deg, lamp.angular_radius_deg);
+    EXPECT_FALSE(read.lights.at("inferred").radius.is_pinned());
+    EXPECT_EQ(*read.lights.at("inferred").radius, 0.3f);
+    EXPECT_FALSE(read.lights.at("plain").radius.value().has_value());
     EXPECT_EQ(read.files.at("a/b.ply"), "0123");
 }
 
@@ -104,6 +116,7 @@ TEST(SettingsFile, SaysWhatIsWrong) {
         {"{\"easypbr\": 1, \"lights\": {\"a\": {\"type\": \"spott\"}}}", "did you mean 'spot'"},
         {"{\"easypbr\": 1, \"lights\": {\"a\": {\"colour\": [1, 1, 1]}}}", "colour"},
         {"{\"easypbr\": 1, \"lights\": {\"a\": {\"color\": [1, 1]}}}", "3 numbers"},
+        {"{\"easypbr\": 1, \"lights\": {\"a\": {\"radius\": -2}}}", "light 'a': radius: expected"},
         {"{\"easypbr\": 1, \"files\": {\"a\": 1}}", "files 'a'"},
     };
     for (const auto& [json, expected] : table) {

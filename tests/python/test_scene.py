@@ -78,10 +78,39 @@ def test_studio_lights_are_settings(size):
     assert view.settings.lights.key.color == pytest.approx((128 / 255, 0, 1), abs=1e-4)
     key.position = auto
     assert view.settings.lights.key.position == auto
-    with pytest.raises(AttributeError, match="no 'radius'"):
-        key.radius = 2
+    with pytest.raises(AttributeError, match="no 'range'"):
+        key.range = 2
+    key.radius = 0.5
+    key.casts_shadows = False
+    assert view.settings.lights.key.radius == 0.5 and view.settings.lights.key.casts_shadows is False
     with pytest.raises(ValueError, match="cannot be removed"):
         view.remove_light("key")
+
+
+def test_radius_of_a_light_is_inferred_and_latched(size):
+    own = Scene()
+    own.show(shapes.box(), "box")
+    view = Viewer(size, scene=own)
+    light = view.add_light("lamp", position=(1, 2, 3))
+    assert light.radius == auto and light.radius.value is None and light.casts_shadows
+    view.render(samples=1)
+    # A twentieth of half the diagonal of a unit cube.
+    assert light.radius.value == pytest.approx(3**0.5 / 2 / 20)
+    own.show(shapes.sphere(10, 8), "ball")
+    view.render(samples=1)
+    assert light.radius.value == pytest.approx(3**0.5 / 2 / 20)
+    view.refit()
+    view.render(samples=1)
+    assert light.radius.value == pytest.approx(0.5, rel=0.8) and light.radius.value > 0.4
+    light.radius = 0.25
+    assert light.radius == 0.25
+    light.radius = auto
+    assert light.radius == auto
+    with pytest.raises(ValueError, match="light.radius: expected a number of at least 0, got -1"):
+        light.radius = -1
+    with pytest.raises(ValueError, match="light.radius: expected a number of at least 0, auto or follow, got 'big'"):
+        light.radius = "big"
+    assert view.add_light("sun", "directional", direction=(0, -1, 0), angular_radius_deg=2).angular_radius_deg == 2
 
 
 def test_light_value():

@@ -195,7 +195,9 @@ void Session::replace_settings(const Settings& settings) {
 }
 
 void Session::latch_from(const Prepared& prepared) {
-    if (!prepared.scene.objects.empty()) latch(settings_, prepared.resolved.settings);
+    if (prepared.scene.objects.empty()) return;
+    latch(settings_, prepared.resolved.settings);
+    for (const auto& [name, radius] : prepared.resolved.light_radii) scene_.latch_light_radius(name, radius);
 }
 
 void Session::load_environment(const std::filesystem::path& path) {

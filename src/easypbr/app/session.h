@@ -79,7 +79,10 @@ class Session {
     Camera camera() { return resolve().camera; }
 
     /// Forgets what was inferred, so that the next picture infers it anew.
-    void refit() { release(settings_); }
+    void refit() {
+        release(settings_);
+        scene_.release_light_radii();
+    }
 
     /// What the GL context is; makes it when there is none yet.
     const gl::ContextInfo& context_info();
@@ -88,6 +91,9 @@ class Session {
 
     /// See render::Renderer: false leaves all triangles to the driver.
     void allow_native_geometry(bool allow) { renderer().allow_native_geometry(allow); }
+
+    /// See render::Renderer. 0 before the first picture.
+    uint64_t shadow_maps_drawn() const { return renderer_ ? renderer_->shadow_maps_drawn() : 0; }
 
     /// Milliseconds of each pass of a frame that draw_frame() draws now, each pass finished before the next
     /// begins.

@@ -76,6 +76,26 @@ Texture::Texture(Format format, int width, int height, int levels, TextureKind k
     sampling(Filtering::nearest);
 }
 
+Texture Texture::layered(Format format, int width, int height, int layers) {
+    const int limit = Context::current().info().max_texture_size;
+    GLint most_layers = 0;
+    glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &most_layers);
+    if (std::min({width, height, layers}) < 1 || std::max(width, height) > limit || layers > most_layers)
+        throw ContextError(fmt::format("{} layers of {}x{} are beyond this driver's limit of {} of {}x{}",
+                                       layers, width, height, most_layers, limit, limit));
+    Texture texture;
+    texture.format_ = format;
+    texture.kind_ = TextureKind::array;
+    texture.width_ = width;
+    texture.height_ = height;
+    texture.layers_ = layers;
+    texture.object_ = Object(ObjectKind::texture, GL_TEXTURE_2D_ARRAY);
+    glTextureStorage3D(texture.id(), 1, info(format).internal, width, height, layers);
+    glTextureParameteri(texture.id(), GL_TEXTURE_MAX_LEVEL, 0);
+    texture.sampling(Filtering::nearest);
+    return texture;
+}
+
 void Texture::upload(std::span<const std::byte> pixels, int level, int face) {
     const FormatInfo f = info(format_);
     const int w = std::max(1, width_ >> level), h = std::max(1, height_ >> level);
@@ -83,7 +103,7 @@ void Texture::upload(std::span<const std::byte> pixels, int level, int face) {
         throw ArgumentError(
             fmt::format("texture upload: expected {} bytes, got {}", size_t(w) * h * f.bytes, pixels.size()));
     glPixelStorei(GL_UNPACK_ALIGNMENT, 1);
-    if (kind_ == TextureKind::cube)
+    if (kind_ != TextureKind::flat)
         glTextureSubImage3D(id(), level, 0, 0, face, w, h, 1, f.layout, f.type, pixels.data());
     else
         glTextureSubImage2D(id(), level, 0, 0, w, h, f.layout, f.type, pixels.data());
@@ -137,6 +157,16 @@ Framebuffer::Framebuffer(std::initializer_list<const Texture*> colors, const Tex
     const Texture& first = colors.size() ? **colors.begin() : *depth;
     width_ = first.width();
     height_ = first.height();
+    require_complete();
+}
+
+Framebuffer::Framebuffer(const Texture& array, int layer)
+    : object_(ObjectKind::framebuffer), width_(array.width()), height_(array.height()) {
+    glNamedFramebufferTextureLayer(object_.id(), GL_COLOR_ATTACHMENT0, array.id(), 0, layer);
+    require_complete();
+}
+
+void Framebuffer::require_complete() const {
     const GLenum status = glCheckNamedFramebufferStatus(object_.id(), GL_FRAMEBUFFER);
     if (status != GL_FRAMEBUFFER_COMPLETE)
         throw ContextError(fmt::format(
@@ -174,6 +204,11 @@ void Framebuffer::read(unsigned index, Format format, int x, int y, int width, i
     glReadBuffer(GL_COLOR_ATTACHMENT0 + index);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
     glReadPixels(x, y, width, height, f.layout, f.type, pixels.data());
+}
+
+void copy_layers(const Texture& from, const Texture& to, int layers) {
+    glCopyImageSubData(from.id(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0, to.id(), GL_TEXTURE_2D_ARRAY, 0, 0, 0, 0,
+                       from.width(), from.height(), layers);
 }
 
 void copy(const Texture& from, const Texture& to) {

@@ -27,7 +27,7 @@ enum class Format {
 /// Bytes of one pixel as upload() and read() take it (16-bit floats are given as halves).
 size_t pixel_bytes(Format format);
 
-enum class TextureKind { flat, cube };
+enum class TextureKind { flat, cube, array };
 /// `linear_nearest_level` filters in the nearest mip level, `trilinear` between two.
 enum class Filtering { nearest, linear, linear_nearest_level, trilinear };
 enum class Wrapping { clamp, repeat, mirror };
@@ -37,8 +37,10 @@ class Texture {
     Texture() = default;
     /// Throws ContextError when the size is beyond the driver's limit.
     Texture(Format format, int width, int height, int levels = 1, TextureKind kind = TextureKind::flat);
+    /// `layers` textures of one level in one array. Throws ContextError beyond the driver's limits.
+    static Texture layered(Format format, int width, int height, int layers);
 
-    /// Pixels of one level (and cube face), row 0 first, tightly packed.
+    /// Pixels of one level (and cube face or layer), row 0 first, tightly packed.
     void upload(std::span<const std::byte> pixels, int level = 0, int face = 0);
     /// Bytes of one level of an 8-bit texture, 3 (opaque) or 4 channels.
     void upload_u8(std::span<const std::byte> pixels, int channels, int level);
@@ -52,13 +54,14 @@ class Texture {
     Format format() const { return format_; }
     int width() const { return width_; }
     int height() const { return height_; }
+    int layers() const { return layers_; }
     explicit operator bool() const { return bool(object_); }
 
   private:
     Object object_;
     Format format_ = Format::rgba8;
     TextureKind kind_ = TextureKind::flat;
-    int width_ = 0, height_ = 0;
+    int width_ = 0, height_ = 0, layers_ = 1;
 };
 
 /// Where a pass draws to. Keeps no texture alive.
@@ -67,6 +70,8 @@ class Framebuffer {
     Framebuffer() = default;
     /// Throws ContextError when the driver cannot draw to this set of textures.
     Framebuffer(std::initializer_list<const Texture*> colors, const Texture* depth = nullptr);
+    /// One layer of an array. Throws ContextError when the driver cannot draw to it.
+    Framebuffer(const Texture& array, int layer);
 
     /// Binds it for drawing with the viewport on all of it.
     void bind() const;
@@ -87,12 +92,17 @@ class Framebuffer {
     explicit operator bool() const { return bool(object_); }
 
   private:
+    void require_complete() const;
+
     Object object_;
     int width_ = 0, height_ = 0;
 };
 
 /// Number of levels down to 1x1.
 int full_levels(int width, int height);
+
+/// Copies the first `layers` layers of an array to another of the same format and size.
+void copy_layers(const Texture& from, const Texture& to, int layers);
 
 /// Copies a whole texture to another of the same format and size.
 void copy(const Texture& from, const Texture& to);

@@ -60,6 +60,12 @@ Json json_of(const Vec3& v) {
     return Json::array({json_of(v[0]), json_of(v[1]), json_of(v[2])});
 }
 
+Json json_of(const Auto<float>& setting) {
+    if (setting.is_follow()) return "follow";
+    if (setting.is_pinned()) return json_of(*setting);
+    return setting.value() ? Json{{"auto", json_of(*setting)}} : Json("auto");
+}
+
 Json json_of(const Light& light) {
     return {{"type", light_types[size_t(light.type)]},
             {"enabled", light.enabled},
@@ -69,7 +75,10 @@ Json json_of(const Light& light) {
             {"intensity", json_of(light.intensity)},
             {"inner_cone_deg", json_of(light.inner_cone_deg)},
             {"outer_cone_deg", json_of(light.outer_cone_deg)},
-            {"range", json_of(light.range)}};
+            {"range", json_of(light.range)},
+            {"casts_shadows", light.casts_shadows},
+            {"radius", json_of(light.radius)},
+            {"angular_radius_deg", json_of(light.angular_radius_deg)}};
 }
 
 class Parser {
@@ -204,8 +213,19 @@ class Parser {
                 light.outer_cone_deg = float_of(place, value);
             else if (key == "range")
                 light.range = float_of(place, value);
+            else if (key == "casts_shadows")
+                light.casts_shadows = flag_of(place, value);
+            else if (key == "radius")
+                light.radius = auto_float_of(place, value);
+            else if (key == "angular_radius_deg")
+                light.angular_radius_deg = float_of(place, value);
             else
                 fail(fmt::format("{}: unknown key", place));
+        }
+        try {
+            validate(light, name);
+        } catch (const ArgumentError& error) {
+            fail(error.what());
         }
         return light;
     }
@@ -228,6 +248,15 @@ class Parser {
         if (!(std::abs(number) <= std::numeric_limits<float>::max()))
             fail(fmt::format("{}: expected a number", place));
         return float(number);
+    }
+
+    Auto<float> auto_float_of(const std::string& place, const Json& json) const {
+        if (json == "follow") return follow;
+        if (json == "auto") return automatic;
+        if (!json.is_object() || json.size() != 1 || !json.contains("auto")) return float_of(place, json);
+        Auto<float> setting;
+        setting.latch(float_of(place, json["auto"]));
+        return setting;
     }
 
     Vec3 vec3_of(const std::string& place, const Json& json) const {

@@ -5,6 +5,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/settings_value.h"
 #include "easypbr/scene/light.h"
 
 namespace easypbr::python {
@@ -29,16 +30,41 @@ void vector_property(nb::class_<Light>& light, const char* name, Vec3 Light::*me
         doc);
 }
 
+void check_length(const char* name, float value) {
+    if (!(value >= 0 && std::isfinite(value)))
+        throw ArgumentError(fmt::format("light.{}: expected a number of at least 0, got {}", name, value));
+}
+
 void number_property(nb::class_<Light>& light, const char* name, float Light::*member, const char* doc) {
     light.def_prop_rw(
         name, [member](const Light& l) { return l.*member; },
         [member, name](Light& l, float value) {
-            if (!(value >= 0 && std::isfinite(value)))
-                throw ArgumentError(
-                    fmt::format("light.{}: expected a number of at least 0, got {}", name, value));
+            check_length(name, value);
             l.*member = value;
         },
         doc);
+}
+
+nb::object get_radius(const Light& light) {
+    if (light.radius.is_follow()) return nb::cast(Follow{});
+    if (light.radius.is_pinned()) return nb::cast(*light.radius);
+    return nb::cast(light.radius.value() ? Automatic{Value::Data(double(*light.radius))} : Automatic{});
+}
+
+void set_radius(Light& light, nb::handle value) {
+    if (nb::isinstance<Automatic>(value)) {
+        light.radius = automatic;
+    } else if (nb::isinstance<Follow>(value)) {
+        light.radius = follow;
+    } else {
+        float radius = 0;
+        if (!nb::try_cast(value, radius))
+            throw ArgumentError(
+                fmt::format("light.radius: expected a number of at least 0, auto or follow, got {}",
+                            nb::cast<std::string>(nb::repr(value))));
+        check_length("radius", radius);
+        light.radius = radius;
+    }
 }
 
 void construct(Light* self, const std::string& type, const nb::kwargs& values) {
@@ -72,6 +98,16 @@ void bind_light(nb::module_& module) {
     number_property(light, "inner_cone_deg", &Light::inner_cone_deg,
                     "Half angle of a spot's full-intensity cone.");
     number_property(light, "outer_cone_deg", &Light::outer_cone_deg, "Half angle at which a spot ends.");
+    light.def_rw("casts_shadows", &Light::casts_shadows, "Whether anything casts a shadow in this light.")
+        .def_prop_rw(
+            "radius", get_radius, [](Light& l, const nb::object& value) { set_radius(l, value); },
+            nb::for_getter(nb::sig("def radius(self) -> float | Automatic | Follow")),
+            nb::for_setter(nb::sig("def radius(self, value: float | Automatic | Follow) -> None")),
+            "Of the glowing sphere of a point or spot light, world units: what softens its shadows. "
+            "Automatic: a "
+            "twentieth of the content's radius.");
+    number_property(light, "angular_radius_deg", &Light::angular_radius_deg,
+                    "Directional: half the angle under which the light is seen; by default the sun's.");
     number_property(light, "range", &Light::range, "Distance at which the light ends; 0: unlimited.");
 }
 

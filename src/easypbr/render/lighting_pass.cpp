@@ -11,17 +11,20 @@
 namespace easypbr::render {
 namespace {
 
-/// As the block in shaders/lighting_surface.frag; any number of lights is drawn in blocks of this many.
-constexpr size_t lights_per_block = 64;
-
-struct LightBlock {
+/// As the blocks in shaders/lighting_surface.frag and common_shadow.glsl.
+struct LightUniforms {
     struct {
         Vec4 position, color, direction, cone;
     } lights[lights_per_block];
 };
+struct ShadowUniforms {
+    struct {
+        Vec4 x, y, z, window, depth, size;
+    } maps[lights_per_block];
+};
 
-void write_light(const Light& light, const Vec3d& camera, LightBlock& block, size_t index) {
-    auto& to = block.lights[index];
+void write_light(const Light& light, const Vec3d& camera, LightUniforms& uniforms, size_t index) {
+    auto& to = uniforms.lights[index];
     const float kind = light.type == LightType::directional ? 0.0f
                        : light.type == LightType::point     ? 1.0f
                                                             : 2.0f;
@@ -35,6 +38,29 @@ void write_light(const Light& light, const Vec3d& camera, LightBlock& block, siz
     to.cone << scale, -outer * scale, 0, 0;
 }
 
+Vec4 vec4(double x, double y, double z, double w) {
+    return Eigen::Vector4d(x, y, z, w).cast<float>();
+}
+
+void write_shadow(const LightShadow& shadow, const Vec3d& camera, int resolution, ShadowUniforms& uniforms,
+                  size_t index) {
+    auto& to = uniforms.maps[index];
+    const ShadowView& view = shadow.projection->views[0];
+    // A cube's faces turn the axes themselves.
+    const Mat3d R = shadow.projection->is_cube() ? Mat3d(Mat3d::Identity()) : view.R_light_world;
+    const Vec3d t = R * (camera - view.position);
+    to.x = vec4(R(0, 0), R(0, 1), R(0, 2), t.x());
+    to.y = vec4(R(1, 0), R(1, 1), R(1, 2), t.y());
+    to.z = vec4(R(2, 0), R(2, 1), R(2, 2), t.z());
+    to.window = vec4(view.scale.x(), view.scale.y(), view.offset.x(), view.offset.y());
+    const double range = view.far - view.near;
+    const double per_w = view.perspective ? view.near : 1 / range;  // depth per slope of a plane
+    to.depth = view.perspective ? vec4(0, view.near, 1, shadow.first_layer)
+                                : vec4(-1 / range, view.far / range, 0, shadow.first_layer);
+    const double texel = 1 / (std::min(view.scale.x(), view.scale.y()) * resolution);
+    to.size = vec4(shadow.radius / per_w, per_w, texel, shadow.projection->nearest_depth);
+}
+
 /// Slope of the facets that frame `index` of `count` reflects in, in units of alpha: quantiles of the slopes
 /// of GGX along one axis, whose distribution function is (1 + x / sqrt(1 + x^2)) / 2.
 float lobe_slope(int index, int count) {
@@ -42,11 +68,17 @@ float lobe_slope(int index, int count) {
     return float(u / std::sqrt(1 - u * u));
 }
 
-std::vector<std::string> defines_of(const Frame& frame, bool with_environment) {
+std::vector<std::string> defines_of(const Frame& frame, const LightBlock& block, bool with_environment) {
     const ShadingSettings& shading = frame.resolved->settings.shading;
     std::vector<std::string> defines = camera_defines(frame);
     defines.push_back(fmt::format("DFG_SIZE {}", gpu::dfg_size));
     defines.push_back(fmt::format("LIGHTS_PER_BLOCK {}", lights_per_block));
+    if (!block.shadows.empty()) {
+        constexpr const char* modes[] = {"SHADOWS_HARD", "SHADOWS_PCF", "SHADOWS_SOFT"};
+        defines.emplace_back("SHADOWS");
+        defines.emplace_back(modes[size_t(frame.resolved->settings.shadows.mode)]);
+    }
+    if (block.cubes > 0) defines.emplace_back("SHADOW_CUBES");
     if (with_environment) defines.emplace_back("ENVIRONMENT");
     if (with_environment && frame.sample_count > 1) defines.emplace_back("LOBE_SAMPLES");
     if (shading.multiple_scattering) defines.emplace_back("MULTIPLE_SCATTERING");
@@ -67,9 +99,8 @@ const gl::Texture& LightingPass::dfg(Brdf brdf) {
     return dfg_;
 }
 
-void LightingPass::draw(const Frame& frame, const GBuffer& targets, const gpu::EnvironmentMaps* maps) {
-    const std::vector<Light>& lights = frame.resolved->lights;
-    if (!lights_) lights_ = gl::Buffer(sizeof(LightBlock));
+void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightBlock& block,
+                        const gpu::EnvironmentMaps* maps) {
     targets.lit.bind();
     glEnable(GL_SCISSOR_TEST);
     glScissor(frame.covered.x, frame.covered.y, frame.covered.width, frame.covered.height);
@@ -82,39 +113,53 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const gpu::E
     const gl::Texture* sources[] = {&targets.albedo, &targets.normal, &targets.material, &targets.depth};
     for (unsigned unit = 0; unit < 4; ++unit) sources[unit]->bind(unit);
     dfg(frame.resolved->settings.shading.brdf).bind(4);
-    if (maps) {
-        maps->prefiltered().bind(5);
-        maps->irradiance().bind(6);
-    }
-    lights_.bind_uniform(0);
-    size_t first = 0;
-    do {
-        const bool with_environment = maps && first == 0;
-        const size_t count = std::min(lights.size() - first, lights_per_block);
-        const gl::Program& program = programs_.get(defines_of(frame, with_environment));
-        program.use();
-        set_camera_uniforms(program, frame);
-        const char* samplers[] = {"u_albedo", "u_normal",      "u_material",  "u_depth_target",
-                                  "u_dfg",    "u_prefiltered", "u_irradiance"};
-        for (int unit = 0; unit < 7; ++unit) program.set(samplers[unit], unit);
-        program.set("u_dielectric_f0", frame.resolved->settings.shading.dielectric_f0);
-        program.set("u_light_count", int(count));
-        if (with_environment) {
-            program.set("u_env_from_world", Mat3(frame.resolved->R_env_world.cast<float>()));
-            program.set("u_last_level", maps->last_level());
-            if (frame.sample_count > 1)
-                program.set("u_lobe_slope", lobe_slope(frame.sample_index, frame.sample_count));
-            program.set("u_env_intensity", frame.resolved->settings.environment.intensity);
-        }
-        LightBlock block{};
-        for (size_t i = 0; i < count; ++i) write_light(lights[first + i], frame.camera.position(), block, i);
-        lights_.update(0, gl::bytes_of(block));
-        draw_screen_triangle();
-        first += count;
-    } while (first < lights.size());
+    const gl::Program& program = programs_.get(defines_of(frame, block, maps != nullptr));
+    program.use();
+    set_camera_uniforms(program, frame);
+    const char* samplers[] = {"u_albedo", "u_normal",      "u_material",   "u_depth_target",
+                              "u_dfg",    "u_prefiltered", "u_irradiance", "u_shadow_maps"};
+    for (int unit = 0; unit < 8; ++unit) program.set(samplers[unit], unit);
+    program.set("u_dielectric_f0", frame.resolved->settings.shading.dielectric_f0);
+    if (maps) set_environment(program, frame, *maps);
+    set_lights(program, frame, block);
+    draw_screen_triangle();
     glDisable(GL_BLEND);
     glDisable(GL_SCISSOR_TEST);
     targets.reset_depth_range();
+}
+
+void LightingPass::set_environment(const gl::Program& program, const Frame& frame,
+                                   const gpu::EnvironmentMaps& maps) {
+    maps.prefiltered().bind(5);
+    maps.irradiance().bind(6);
+    program.set("u_env_from_world", Mat3(frame.resolved->R_env_world.cast<float>()));
+    program.set("u_last_level", maps.last_level());
+    if (frame.sample_count > 1)
+        program.set("u_lobe_slope", lobe_slope(frame.sample_index, frame.sample_count));
+    program.set("u_env_intensity", frame.resolved->settings.environment.intensity);
+}
+
+void LightingPass::set_lights(const gl::Program& program, const Frame& frame, const LightBlock& block) {
+    if (!lights_) lights_ = gl::Buffer(sizeof(LightUniforms));
+    LightUniforms lights{};
+    for (size_t i = 0; i < block.lights.size(); ++i)
+        write_light(*block.lights[i], frame.camera.position(), lights, i);
+    lights_.update(0, gl::bytes_of(lights));
+    lights_.bind_uniform(0);
+    program.set("u_plain_lights", int(block.plain()));
+    if (block.shadows.empty()) return;
+
+    if (!shadows_) shadows_ = gl::Buffer(sizeof(ShadowUniforms));
+    ShadowUniforms shadows{};
+    for (size_t i = 0; i < block.shadows.size(); ++i)
+        write_shadow(block.shadows[i], frame.camera.position(), block.maps->width(), shadows, i);
+    shadows_.update(0, gl::bytes_of(shadows));
+    shadows_.bind_uniform(1);
+    block.maps->bind(7);
+    program.set("u_single_lights", int(block.lights.size() - block.cubes));
+    program.set("u_cube_lights", int(block.lights.size()));
+    program.set("u_shadow_resolution", float(block.maps->width()));
+    program.set("u_sample_index", float(frame.sample_index));
 }
 
 }  // namespace easypbr::render

@@ -4,22 +4,27 @@
 #include "easypbr/gpu/environment_maps.h"
 #include "easypbr/render/frame.h"
 #include "easypbr/render/gbuffer.h"
+#include "easypbr/render/light_block.h"
 #include "easypbr/render/programs.h"
 
 namespace easypbr::render {
 
 class LightingPass {
   public:
-    /// Adds light to the radiance target where there is geometry. `maps` is null without an environment.
-    void draw(const Frame& frame, const GBuffer& targets, const gpu::EnvironmentMaps* maps);
+    /// Adds the light of a block to the radiance target where there is geometry, and that of an environment
+    /// unless `maps` is null.
+    void draw(const Frame& frame, const GBuffer& targets, const LightBlock& block,
+              const gpu::EnvironmentMaps* maps);
 
   private:
     const gl::Texture& dfg(Brdf brdf);
+    void set_environment(const gl::Program& program, const Frame& frame, const gpu::EnvironmentMaps& maps);
+    void set_lights(const gl::Program& program, const Frame& frame, const LightBlock& block);
 
     ProgramVariants programs_{"screen_triangle.vert", "lighting_surface.frag"};
     gl::Texture dfg_;
     Brdf dfg_brdf_ = Brdf::height_correlated;
-    gl::Buffer lights_;
+    gl::Buffer lights_, shadows_;
 };
 
 }  // namespace easypbr::render

@@ -49,10 +49,13 @@ Layer layer_named(const std::string& name) {
 
 template <class Pass>
 void Renderer::run(const char* name, Pass&& pass) {
-    if (!measure_) return pass();
+    // What a pass runs within itself counts as its own.
+    if (!measure_ || running_) return pass();
     glFinish();
     const auto start = std::chrono::steady_clock::now();
+    running_ = true;
     pass();
+    running_ = false;
     glFinish();
     const double ms =
         std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
@@ -76,6 +79,7 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     if (!targets_.albedo || targets_.size() != options.size) targets_ = GBuffer(options.size);
     output_.begin(options.size, options.encoding);
     pass_times_.clear();
+    running_ = false;
     if (!resolved.environment.empty())
         run("environment", [&] { environment_.prepare(resolved.environment, sees_environment(resolved)); });
 
@@ -92,7 +96,7 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     frame.with_ids = options.ids;
     if (options.ids) targets_.add_ids();
     for (frame.sample_index = 0; frame.sample_index < options.samples; ++frame.sample_index) {
-        draw_frame(frame, options.samples > 1 && has_exact ? averaged : list);
+        draw_frame(frame, options.samples > 1 && has_exact ? averaged : list, list);
         if (options.samples > 1) run("accumulate", [&] { output_.accumulate(frame, targets_); });
     }
     run("output", [&] { output_.finish(frame, targets_, background_texture(frame, images)); });
@@ -130,7 +134,7 @@ void Renderer::draw_geometry(Frame& frame, const DrawList& list) {
         points_.draw(frame, list.points, targets_);
 }
 
-void Renderer::draw_frame(Frame& frame, const DrawList& list) {
+void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& casters) {
     frame.camera = frame.resolved->camera;
     prepare_frame(frame, bounds_of(*frame.scene), list.reaches_beyond_vertices());
     frame.with_overlay = list.needs_overlay();
@@ -138,9 +142,9 @@ void Renderer::draw_frame(Frame& frame, const DrawList& list) {
     const bool has_layers = list.has([](const DrawItem& item) { return item.layered; });
     const PixelRect everything = frame.covered;
     run("geometry", [&] { draw_geometry(frame, has_layers ? list.without_layers() : list); });
-    no_attributes_.bind();
+    shadow_maps_.begin(frame, casters, bounds_of(*frame.scene));
+    draw_lights(frame, targets_);
     const bool with_environment = !frame.resolved->environment.empty();
-    run("lighting", [&] { lighting_.draw(frame, targets_, with_environment ? &environment_ : nullptr); });
     if (frame.with_overlay) run("display", [&] { display_.draw(frame, targets_); });
     if (!list.lines.empty()) run("lines", [&] { lines_.draw(frame, list.lines, targets_); });
     no_attributes_.bind();
@@ -152,17 +156,29 @@ void Renderer::draw_frame(Frame& frame, const DrawList& list) {
 }
 
 void Renderer::draw_layers(Frame& frame, const DrawList& list) {
-    const bool with_environment = !frame.resolved->environment.empty();
     transparency_.begin(frame, targets_);
     while (transparency_.open_layer(frame)) {
         geometry_.draw(frame, list.meshes, transparency_.layer());
         points_.draw(frame, list.points, transparency_.layer());
         if (!transparency_.close_layer(frame)) break;
-        no_attributes_.bind();
-        lighting_.draw(frame, transparency_.layer(), with_environment ? &environment_ : nullptr);
+        draw_lights(frame, transparency_.layer());
         transparency_.blend(frame, targets_);
     }
     transparency_.end(frame);
+}
+
+void Renderer::draw_lights(const Frame& frame, const GBuffer& targets) {
+    shadow_maps_.rewind();
+    LightBlock block;
+    bool first = true;
+    do {
+        run("shadows", [&] { block = shadow_maps_.next_block(); });
+        no_attributes_.bind();
+        const bool with_environment = first && !frame.resolved->environment.empty();
+        run("lighting",
+            [&] { lighting_.draw(frame, targets, block, with_environment ? &environment_ : nullptr); });
+        first = false;
+    } while (shadow_maps_.has_more());
 }
 
 void Renderer::draw_exact(Frame& frame, const DrawList& list) {

@@ -13,6 +13,7 @@
 #include "easypbr/render/line_pass.h"
 #include "easypbr/render/output_pass.h"
 #include "easypbr/render/point_pass.h"
+#include "easypbr/render/shadow_maps.h"
 #include "easypbr/render/software_geometry_pass.h"
 #include "easypbr/render/transparency_pass.h"
 
@@ -70,19 +71,25 @@ class Renderer {
     /// the two.
     void allow_native_geometry(bool allow) { native_geometry_ = allow; }
 
+    /// How often the shadow maps of a light have been drawn since the beginning: they are kept until the
+    /// light or what casts changes.
+    uint64_t shadow_maps_drawn() const { return shadow_maps_.drawn(); }
+
     /// From now on every pass is finished before the next begins, and timed.
     void measure_passes(bool measure) { measure_ = measure; }
     /// Milliseconds of each pass of the last picture, in pipeline order, summed over its frames.
     const std::vector<std::pair<std::string, double>>& pass_times() const { return pass_times_; }
 
   private:
-    void draw_frame(Frame& frame, const DrawList& list);
+    void draw_frame(Frame& frame, const DrawList& list, const DrawList& casters);
     /// Fills the G-buffer by the faster way that can draw these items.
     void draw_geometry(Frame& frame, const DrawList& list);
     /// Draws the layered items over the picture.
     void draw_layers(Frame& frame, const DrawList& list);
     /// Draws what must not be averaged or smoothed into the finished picture.
     void draw_exact(Frame& frame, const DrawList& list);
+    /// Lights a G-buffer, block by block of lights with their shadow maps.
+    void draw_lights(const Frame& frame, const GBuffer& targets);
     const Box3d& bounds_of(const SceneSnapshot& scene);
     template <class Pass>
     void run(const char* name, Pass&& pass);
@@ -96,6 +103,7 @@ class Renderer {
     GeometryPass geometry_{meshes_, textures_};
     SoftwareGeometryPass software_geometry_;
     PointPass points_;
+    ShadowMaps shadow_maps_{meshes_, textures_};
     LightingPass lighting_;
     DisplayPass display_;
     LinePass lines_;
@@ -109,7 +117,7 @@ class Renderer {
     std::vector<std::pair<uint64_t, Eigen::Affine3d>> bounded_;
     Box3d bounds_;
     bool native_geometry_ = true;
-    bool measure_ = false;
+    bool measure_ = false, running_ = false;
     std::vector<std::pair<std::string, double>> pass_times_;
 };
 

@@ -20,6 +20,8 @@ constexpr Placement fill_placement{45, 20, 0.5};
 constexpr Placement rim_placement{145, 45, 1.6};
 /// Distance of the lights in radii of the content.
 constexpr double light_distance = 3;
+/// Radius of the studio's lights and of a light that says nothing, in radii of the content.
+constexpr double studio_light_part = 0.3, plain_light_part = 0.05;
 
 constexpr int meter_directions = 64;
 const Vec3d luminance_weights(0.2126, 0.7152, 0.0722);
@@ -82,6 +84,10 @@ Vec3d meter_normal(int k) {
 
 }  // namespace
 
+float plain_light_radius(const Content& content) {
+    return float(plain_light_part * content.radius());
+}
+
 std::vector<Light> resolve_studio_lights(const Content& content, const Camera& camera, bool on_by_default,
                                          LightsSettings& settings, const Vec3d& up) {
     std::vector<Light> lights;
@@ -93,11 +99,14 @@ std::vector<Light> resolve_studio_lights(const Content& content, const Camera& c
             fill(studio.position, Vec3((content.centre() + direction * distance).cast<float>()));
             fill(studio.intensity, float(placement.irradiance * distance * distance));
         }
+        if (!studio.radius.value()) fill(studio.radius, float(studio_light_part * content.radius()));
         if (!*studio.enabled) return;
         Light light;
         light.position = *studio.position;
         light.color = linear_from_srgb(studio.color);
         light.intensity = *studio.intensity * settings.intensity;
+        light.casts_shadows = studio.casts_shadows;
+        light.radius = *studio.radius;
         lights.push_back(light);
     };
     add(settings.key, key_placement);

@@ -58,6 +58,9 @@ double fitted_height(const Content& content, const Eigen::Isometry3d& T_world_ca
 
 Camera resolve_camera(const Content& content, CameraSettings& settings, double aspect);
 
+/// The radius of a point or spot light of the scene that names none.
+float plain_light_radius(const Content& content);
+
 /// Key, fill and rim as far as they are on.
 std::vector<Light> resolve_studio_lights(const Content& content, const Camera& camera, bool on_by_default,
                                          LightsSettings& settings, const Vec3d& up);

@@ -28,6 +28,11 @@ const std::vector<std::string>& enum_names<Brdf>() {
     return names;
 }
 template <>
+const std::vector<std::string>& enum_names<ShadowMode>() {
+    static const std::vector<std::string> names = {"hard", "pcf", "soft"};
+    return names;
+}
+template <>
 const std::vector<std::string>& enum_names<TransparencyMode>() {
     static const std::vector<std::string> names = {"layers", "stochastic"};
     return names;
@@ -220,6 +225,13 @@ void add_studio_light(Table& table, const std::string& name, StudioLight LightsS
         make(prefix + "intensity", field(&StudioLight::intensity),
              "Luminous intensity of " + the + "; automatic: the same light on the content at any scale.",
              "candela", {0, unlimited}));
+    table.push_back(make(prefix + "casts_shadows", field(&StudioLight::casts_shadows),
+                         "Whether " + the + " casts shadows."));
+    table.push_back(make(prefix + "radius", field(&StudioLight::radius),
+                         "Radius of " + the +
+                             ", which softens its shadows; automatic: three tenths of the "
+                             "content's radius.",
+                         "world units", {0, unlimited}));
 }
 
 void add_lights(Table& table) {
@@ -228,6 +240,18 @@ void add_lights(Table& table) {
     add_studio_light(table, "key", &LightsSettings::key);
     add_studio_light(table, "fill", &LightsSettings::fill);
     add_studio_light(table, "rim", &LightsSettings::rim);
+}
+
+void add_shadows(Table& table) {
+    const auto shadows = [](auto member) { return at(&Settings::shadows, member); };
+    table.push_back(make("shadows.enabled", shadows(&ShadowSettings::enabled),
+                         "Whether lights that cast shadows do so."));
+    table.push_back(
+        make("shadows.mode", shadows(&ShadowSettings::mode),
+             "Soft: blurred by the light's radius the more the further the shadow falls; pcf: the "
+             "mean of 3x3 texels of the shadow map; hard: one texel."));
+    table.push_back(make("shadows.resolution", shadows(&ShadowSettings::resolution),
+                         "Side of a shadow map; more resolves finer shadows.", "texels", {16, 8192}));
 }
 
 void add_shading(Table& table) {
@@ -423,6 +447,7 @@ const std::vector<Field>& fields() {
         add_camera(all);
         add_surroundings(all);
         add_lights(all);
+        add_shadows(all);
         add_shading(all);
         add_overrides(all);
         add_style(all);

@@ -28,8 +28,14 @@ void resolve_environment(const SceneSnapshot& scene, ResolvedSettings& resolved)
 }
 
 void resolve_lights(const detail::Content& content, ResolvedSettings& resolved) {
-    for (const auto& [name, light] : content.scene().lights)
-        if (light.enabled) resolved.lights.push_back(light);
+    for (const auto& [name, light] : content.scene().lights) {
+        validate(light, name);
+        if (!light.enabled) continue;
+        resolved.lights.push_back(light);
+        if (light.type == LightType::directional || light.radius.value()) continue;
+        resolved.light_radii[name] = detail::plain_light_radius(content);
+        resolved.lights.back().radius = resolved.light_radii[name];
+    }
     const EnvironmentSettings& environment = resolved.settings.environment;
     const bool given =
         *environment.enabled && (!content.scene().environment.empty() || !environment.file.empty());

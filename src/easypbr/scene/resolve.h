@@ -1,6 +1,8 @@
 // Auto parameters: from a scene and the user's settings to every value that a picture needs.
 #pragma once
 
+#include <map>
+#include <string>
 #include <vector>
 
 #include "easypbr/scene/camera.h"
@@ -13,9 +15,10 @@ namespace easypbr {
 struct ResolvedSettings {
     Settings settings;  ///< every automatic field holds its value, but overrides of materials and styles
     Camera camera;
-    std::vector<Light> lights;            ///< enabled lights of the scene, then key, fill and rim
-    Environment environment;              ///< what lights the scene: the given one, the studio, or empty
-    Mat3 R_env_world = Mat3::Identity();  ///< turns a world direction into the environment's frame
+    std::vector<Light> lights;                 ///< enabled lights of the scene, then key, fill and rim
+    std::map<std::string, float> light_radii;  ///< those inferred for lights of the scene, by name
+    Environment environment;                   ///< what lights the scene: the given one, the studio, or empty
+    Mat3 R_env_world = Mat3::Identity();       ///< turns a world direction into the environment's frame
     float exposure = 1;  ///< factor from radiance to the tone curve's input, compensation included
 };
 

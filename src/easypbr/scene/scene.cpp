@@ -145,6 +145,17 @@ std::vector<std::string> Scene::light_names() const {
     return keys_of(shared_->lights);
 }
 
+void Scene::latch_light_radius(const std::string& name, float radius) {
+    std::lock_guard lock(shared_->mutex);
+    const auto found = shared_->lights.find(name);
+    if (found != shared_->lights.end() && !found->second.radius.value()) found->second.radius.latch(radius);
+}
+
+void Scene::release_light_radii() {
+    std::lock_guard lock(shared_->mutex);
+    for (auto& [name, light] : shared_->lights) light.radius.release();
+}
+
 void Scene::set_environment(const Environment& environment) {
     std::lock_guard lock(shared_->mutex);
     shared_->environment = environment;

@@ -62,6 +62,10 @@ class Scene {
     /// Throws NameError.
     void remove_light(const std::string& name);
     std::vector<std::string> light_names() const;
+    /// Keeps an inferred radius in a light whose own is automatic; does nothing when there is no such light.
+    void latch_light_radius(const std::string& name, float radius);
+    /// Forgets all latched radii.
+    void release_light_radii();
 
     void set_environment(const Environment& environment);
     Environment environment() const;

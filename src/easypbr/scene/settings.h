@@ -17,6 +17,7 @@ namespace easypbr {
 enum class Antialias { none, fxaa };
 enum class BackgroundMode { color, environment, blur, image, transparent };
 enum class Brdf { height_correlated, separable, ue4 };
+enum class ShadowMode { hard, pcf, soft };
 enum class TransparencyMode { layers, stochastic };
 enum class ToneOperator { aces, reinhard, agx, neutral, none };
 
@@ -66,6 +67,12 @@ struct LightsSettings {
     StudioLight fill = studio_light(230, 239, 255);  ///< a little cool
     StudioLight rim = studio_light(255, 255, 255);
     float intensity = 1;
+};
+
+struct ShadowSettings {
+    bool enabled = true;
+    ShadowMode mode = ShadowMode::soft;
+    int resolution = 1024;
 };
 
 struct ShadingSettings {
@@ -124,6 +131,7 @@ struct Settings {
     EnvironmentSettings environment;
     BackgroundSettings background;
     LightsSettings lights;
+    ShadowSettings shadows;
     ShadingSettings shading;
     EyeDomeSettings eye_dome;
     TransparencySettings transparency;

@@ -1,0 +1,33 @@
+// Lights that are drawn in one go, and the shadow maps they see.
+#pragma once
+
+#include <vector>
+
+#include "easypbr/gl/texture.h"
+#include "easypbr/render/shadow_view.h"
+
+namespace easypbr::render {
+
+/// The maps of one light.
+struct LightShadow {
+    const ShadowProjection* projection = nullptr;
+    int first_layer = 0;
+    /// Radius of the light that the maps do not account for: world units, or the tangent of an angle for
+    /// directional lights.
+    double radius = 0;
+};
+
+/// As the blocks in shaders/lighting_surface.frag.
+inline constexpr size_t lights_per_block = 64;
+
+struct LightBlock {
+    /// Those without shadows first, then those with one map, then those with a cube.
+    std::vector<const Light*> lights;
+    std::vector<LightShadow> shadows;  ///< of the last of the lights
+    size_t cubes = 0;                  ///< how many of the shadows are cubes
+    const gl::Texture* maps = nullptr;
+
+    size_t plain() const { return lights.size() - shadows.size(); }
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,95 @@
+// Which light gets which shadow maps, and which of them must be drawn anew.
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "easypbr/render/frame.h"
+#include "easypbr/render/light_block.h"
+#include "easypbr/render/shadow_pass.h"
+
+namespace easypbr::render {
+
+/// Keeps the maps of all lights in the layers of one texture, by what they show: a map is drawn when its
+/// light or what casts has changed, not when the camera has. Lights beyond its memory are drawn from maps
+/// made anew for every frame.
+class ShadowMaps {
+  public:
+    ShadowMaps(gpu::MeshCache& meshes, gpu::TextureCache& textures) : pass_(meshes, textures) {}
+
+    /// Takes note of a frame's lights and of what casts, within `bounds`. `casters` must live until its last
+    /// block.
+    void begin(const Frame& frame, const DrawList& casters, const Box3d& bounds);
+
+    /// Goes back to the first block.
+    void rewind() { next_ = 0; }
+
+    /// The next lights in the order of a block, with their maps drawn. Valid until the next call.
+    LightBlock next_block();
+    bool has_more() const { return next_ < requests_.size(); }
+
+    /// How often the maps of a light have been drawn since the beginning; a cube counts once.
+    uint64_t drawn() const { return drawn_; }
+
+  private:
+    /// All that decides about a light's maps, but what casts.
+    using LightKey = std::array<float, 9>;
+    struct Entry {
+        int first_layer = 0, layers = 0;
+        uint64_t casters = 0;     ///< generation of the casters that it shows
+        uint64_t last_frame = 0;  ///< that asked for it
+        uint64_t last_block = 0;
+    };
+    struct Request {
+        const Light* light = nullptr;
+        bool shadowed = false;
+        LightKey key{};
+        ShadowProjection projection;
+        double radius = 0;
+    };
+    /// A part of an object as far as its shadow is concerned.
+    struct Caster {
+        std::array<uint64_t, 5> revisions;
+        std::array<const void*, 2> images;
+        std::array<float, 3> alpha;
+        int first_face, face_count, frame;
+        Eigen::Matrix<double, 3, 4> T_world_mesh;
+        bool operator==(const Caster&) const = default;
+    };
+
+    static Caster caster_of(const DrawItem& item, int sample_index);
+    void note_casters(const DrawList& list, const Box3d& bounds, int sample_index);
+    static Request request_of(const Light& light, const Frame& frame, const Box3d& bounds);
+    /// Forgets all maps of another size; 0: no maps.
+    void set_resolution(int resolution);
+    /// The entry of a request, its maps drawn; null when there is no room beside the others of this block.
+    const Entry* acquire(const Request& request);
+    void draw(const Request& request, const Entry& entry);
+
+    /// First of so many free layers, made free if need be; -1 when there are none.
+    int allocate(int layers);
+    int free_run(int layers) const;
+    /// Gives back the layers of the entry that has not been asked for the longest, but for those asked for
+    /// since a frame and block.
+    bool evict_before(uint64_t frame, uint64_t block);
+    bool grow(int layers);
+    void take(int first, int layers, bool taken);
+
+    ShadowPass pass_;
+    gl::Texture maps_;
+    std::vector<gl::Framebuffer> framebuffers_;  ///< of each layer
+    std::vector<bool> taken_;                    ///< layers
+    std::map<LightKey, Entry> entries_;
+    std::vector<Caster> casters_;
+    Box3d bounds_;
+    uint64_t casters_generation_ = 0;  ///< changes with what casts and its bounds
+
+    const DrawList* list_ = nullptr;
+    int sample_index_ = 0, resolution_ = 0;
+    uint64_t frame_ = 0, block_ = 0, drawn_ = 0;
+    std::vector<Request> requests_;
+    size_t next_ = 0;
+};
+
+}  // namespace easypbr::render
