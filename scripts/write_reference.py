@@ -14,8 +14,8 @@ from easypbr import _easypbr
 #: Groups in the order of the page; every public name of the package is in one of them.
 PYTHON_GROUPS = {
     "Drawing": ["render", "Viewer", "Scene", "Settings", "auto", "follow", "Automatic", "Follow"],
-    "Content": ["Mesh", "load_scene", "as_mesh", "Material", "Style", "Light", "Environment", "Camera"],
-    "Images": ["load_image", "save_image", "compare_images"],
+    "Content": ["Mesh", "LabelMap", "load_scene", "as_mesh", "Material", "Style", "Light", "Environment", "Camera"],
+    "Images": ["load_image", "save_image", "compare_images", "colormap"],
     "Errors": ["Error", "FileError", "FormatError", "ArgumentError", "UnknownNameError", "ContextError"],
 }
 #: Modules with names of their own.

@@ -64,3 +64,39 @@ TEST(LabelMap, SaysWhatIsWrong) {
               }),
               "label map 'cars': the unlabelled class 2 is not among the 2 labels from 1 to 3");
 }
+
+// Some entries as their authors publish them; sizes: 34 labels, 19 + unlabelled; 35 with the licence plate,
+// 19 + ignored; 40 + unannotated, 20 + ignored.
+TEST(LabelMap, HasTheTablesOfPublicDataSets) {
+    const auto entry = [](const std::string& map, int32_t label) {
+        const LabelClass* c = built_in_label_map(map)->find(label);
+        return c ? fmt::format("{} {},{},{}", c->name, c->color[0], c->color[1], c->color[2]) : "none";
+    };
+    const auto size = [](const std::string& map) { return built_in_label_map(map)->classes().size(); };
+    EXPECT_EQ(size("semantic_kitti"), 34u);
+    EXPECT_EQ(entry("semantic_kitti", 10), "car 100,150,245");
+    EXPECT_EQ(entry("semantic_kitti", 40), "road 255,0,255");
+    EXPECT_EQ(entry("semantic_kitti", 259), "moving-other-vehicle 0,0,255");
+    EXPECT_EQ(entry("semantic_kitti", 12), "none");
+    EXPECT_EQ(size("semantic_kitti_train"), 20u);
+    EXPECT_EQ(entry("semantic_kitti_train", 1), "car 100,150,245");
+    EXPECT_EQ(entry("semantic_kitti_train", 19), "traffic-sign 255,0,0");
+    EXPECT_EQ(size("cityscapes"), 35u);
+    EXPECT_EQ(entry("cityscapes", 7), "road 128,64,128");
+    EXPECT_EQ(entry("cityscapes", -1), "license plate 0,0,142");
+    EXPECT_EQ(size("cityscapes_train"), 20u);
+    EXPECT_EQ(entry("cityscapes_train", 18), "bicycle 119,11,32");
+    EXPECT_EQ(built_in_label_map("cityscapes_train")->unlabelled(), 255);
+    EXPECT_EQ(size("scannet"), 41u);
+    EXPECT_EQ(entry("scannet", 39), "otherfurniture 82,84,163");
+    EXPECT_EQ(size("scannet_train"), 21u);
+    EXPECT_EQ(entry("scannet_train", 13), "curtain 219,219,141");
+    EXPECT_EQ(entry("scannet_train", 19), "otherfurniture 82,84,163");
+    EXPECT_THROW(built_in_label_map("kitti"), NameError);
+}
+
+TEST(LabelMap, GeneratesColoursForNames) {
+    const LabelMap map = LabelMap::generated({"road", "car"});
+    EXPECT_EQ(map.find(1)->name, "car");
+    EXPECT_EQ(map.color_of(1), (Rgb8{156, 210, 21}));
+}

@@ -121,6 +121,10 @@ TEST(Mesh, RefusesLabelsThatTheMapDoesNotHave) {
         with(11, UnknownLabels::refused),
         "mesh array L: label 11 in row 2 of 3 is not in the label map 'cars', which has 2 labels from 0 "
         "to 10; add it, or let the map show unknown labels as unlabelled");
+    EXPECT_EQ(
+        with((3 << 16) + 10, UnknownLabels::refused),
+        "mesh array L: label 196618 in row 2 of 3 is not in the label map 'cars', which has 2 labels from 0 "
+        "to 10; its lower 16 bits are 'car' (10): take labels & 0xFFFF");
     // Either can be assigned last: what does not fit then is refused.
     Mesh mesh(triangle());
     mesh.set_L(Array1i(Array1i::Dense{{0}, {1}, {2}}));

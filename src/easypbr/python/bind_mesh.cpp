@@ -10,6 +10,7 @@
 #include "easypbr/io/mesh_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
+#include "easypbr/python/mesh_fields.h"
 
 namespace easypbr::python {
 namespace {
@@ -84,10 +85,8 @@ const std::vector<MeshArray>& mesh_arrays() {
          [](nb::handle o) {
              return prepare<int32_t, 2, &MeshData::E>(o, {"E", 2, 2}, false);
          }},
-        {"L", "n int32 labels.", view<int32_t, 1, &MeshData::L>,
-         [](nb::handle o) {
-             return prepare<int32_t, 1, &MeshData::L>(o, {"L", 1, 1}, false);
-         }},
+        {"L", "int32 labels, one for each vertex or each face (of the vertices when there are as many).",
+         view<int32_t, 1, &MeshData::L>, prepare_labels},
         {"I", "n float32 intensities.", view<float, 1, &MeshData::I>, [](nb::handle o) {
              return prepare<float, 1, &MeshData::I>(o, {"I", 1, 1}, false);
          }}};
@@ -103,11 +102,16 @@ const MeshArray& mesh_array(const std::string& name) {
     throw NameError(fmt::format("a mesh has no array '{}'; it has {}", name, fmt::join(names, ", ")));
 }
 
+MeshChange prepare_member(const std::string& name, nb::handle value) {
+    if (name == "scalars") return prepare_scalars(value);
+    if (name == "label_map") return prepare_label_map(value);
+    return mesh_array(name).prepare(value);
+}
+
 /// Several arrays at once: they need to fit together only afterwards.
 void assign(Mesh& mesh, const nb::kwargs& values) {
     std::vector<std::function<void(MeshData&)>> changes;
-    for (auto [name, value] : values)
-        changes.push_back(mesh_array(nb::cast<std::string>(name)).prepare(value));
+    for (auto [name, value] : values) changes.push_back(prepare_member(nb::cast<std::string>(name), value));
     released([&] {
         mesh.edit([&](MeshData& data) {
             for (const auto& change : changes) change(data);
@@ -177,8 +181,8 @@ void bind_arrays(nb::class_<Mesh>& mesh) {
                 nb::sig(fmt::format("def {}(self, value: numpy.typing.ArrayLike | None) -> None", array.name)
                             .c_str())),
             array.doc);
-    mesh.def("assign", assign, nb::sig("def assign(self, **arrays: numpy.typing.ArrayLike | None) -> None"),
-             "Replaces several arrays at once, e.g. assign(V=v, F=f, N=None).");
+    mesh.def("assign", assign, nb::sig("def assign(self, **arrays: object) -> None"),
+             "Replaces several arrays at once, e.g. assign(V=v, F=f, N=None); also label_map and scalars.");
     mesh.def(
         "edit",
         [](const Mesh& m, const std::string& name) {
@@ -251,6 +255,7 @@ void bind_mesh(nb::module_& module) {
         .def("__init__", construct_from_arrays, nb::arg("V"), nb::arg("F"),
              "n x 3 positions and m x 3 vertex indices, of any numeric type.");
     bind_arrays(mesh);
+    bind_mesh_fields(mesh);
     bind_look(mesh);
     bind_hierarchy(mesh);
     mesh.def_prop_rw(

@@ -14,6 +14,7 @@ void bind_log();
 void bind_settings(nb::module_& module);
 void bind_image(nb::module_& module);
 void bind_material(nb::module_& module);
+void bind_label_map(nb::module_& module);
 void bind_mesh(nb::module_& module);
 void bind_shapes(nb::module_& module);
 void bind_light(nb::module_& module);

@@ -34,6 +34,14 @@ struct MaterialHandle {
     }
 };
 
+struct LabelMapHandle {
+    std::shared_ptr<const LabelMap> map;
+};
+
+/// A LabelMap, a built-in map's name or a path; null for None. Throws ArgumentError, NameError and what
+/// io::find_label_map() throws.
+std::shared_ptr<const LabelMap> to_label_map(nb::handle object);
+
 struct StyleHandle {
     std::optional<Mesh> mesh;
     Style own;

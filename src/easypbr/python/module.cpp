@@ -32,6 +32,7 @@ NB_MODULE(_easypbr, module) {
     bind_settings(module);
     bind_image(module);
     bind_material(module);
+    bind_label_map(module);
     bind_mesh(module);
     bind_light(module);
     bind_environment(module);

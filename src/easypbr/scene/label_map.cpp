@@ -6,6 +6,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/hash.h"
+#include "easypbr/scene/label_colors.h"
 
 namespace easypbr {
 namespace {
@@ -48,6 +49,16 @@ LabelMap::LabelMap(std::string name, std::vector<LabelClass> classes, std::optio
         throw ArgumentError(fmt::format("label map '{}': the unlabelled class {} is not among the {}", name_,
                                         *unlabelled_, range_text()));
     unlabelled_color_ = none->color;
+}
+
+LabelMap LabelMap::generated(const std::vector<std::string>& names, std::string name) {
+    const GeneratedColors colors(int32_t(names.size()));
+    std::vector<LabelClass> classes;
+    for (const std::string& own : names) {
+        const int32_t label = int32_t(classes.size());
+        classes.push_back({label, own, colors.color_of(label)});
+    }
+    return LabelMap(std::move(name), std::move(classes));
 }
 
 int32_t LabelMap::search(int32_t label) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -34,6 +35,9 @@ class LabelMap {
     LabelMap(std::string name, std::vector<LabelClass> classes,
              std::optional<int32_t> unlabelled = std::nullopt,
              UnknownLabels unknown = UnknownLabels::refused);
+
+    /// Labels 0, 1, 2, ... with these names, in generated colours (see scene/label_colors.h).
+    static LabelMap generated(const std::vector<std::string>& names, std::string name = "generated");
 
     const std::string& name() const { return name_; }
     /// By rising label.
@@ -79,5 +83,13 @@ class LabelMap {
     std::vector<int32_t> table_;
     uint64_t revision_;
 };
+
+/// The label maps of public data sets, by the labels that their files have, and with "_train" by those that
+/// networks are trained with and predict: semantic_kitti (Behley et al. 2019), cityscapes (Cordts et al.
+/// 2016), scannet (Dai et al. 2017: the 40 classes of NYU; the 20 of the benchmark).
+const std::vector<std::string>& built_in_label_map_names();
+
+/// Throws NameError with the nearest name.
+std::shared_ptr<const LabelMap> built_in_label_map(const std::string& name);
 
 }  // namespace easypbr

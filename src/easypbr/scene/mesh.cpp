@@ -109,13 +109,20 @@ void require_indices(const char* name, const Indices& indices, Eigen::Index vert
                             name, vertices - 1, index, row, indices.rows()));
 }
 
+/// Why a label may be unknown: SemanticKITTI's files hold an instance's number in the upper 16 bits.
+std::string advice_on(int32_t label, const LabelMap& map) {
+    const LabelClass* const lower = label > 0xffff ? map.find(label & 0xffff) : nullptr;
+    if (!lower) return "add it, or let the map show unknown labels as unlabelled";
+    return fmt::format("its lower 16 bits are '{}' ({}): take labels & 0xFFFF", lower->name, lower->label);
+}
+
 void require_labels(const Array1i& L, const LabelMap& map) {
     const size_t row = first_bad_row(L.rows(), [&](size_t i) { return !map.accepts(L(Eigen::Index(i))); });
     if (row == no_row) return;
+    const int32_t label = L(Eigen::Index(row));
     throw ArgumentError(
-        fmt::format("mesh array L: label {} in row {} of {} is not in the label map '{}', which has {}; add "
-                    "it, or let the map show unknown labels as unlabelled",
-                    L(Eigen::Index(row)), row, L.rows(), map.name(), map.range_text()));
+        fmt::format("mesh array L: label {} in row {} of {} is not in the label map '{}', which has {}; {}",
+                    label, row, L.rows(), map.name(), map.range_text(), advice_on(label, map)));
 }
 
 void require_parts(const MeshData& data) {

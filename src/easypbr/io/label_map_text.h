@@ -1,0 +1,23 @@
+// Label maps as lines of text. Used by label_map_io.cpp alone.
+#pragma once
+
+#include <string_view>
+
+#include "easypbr/scene/label_map.h"
+
+namespace easypbr::io {
+
+/// A class whose colour may be missing.
+struct ReadClass {
+    int32_t label = 0;
+    std::string name;
+    std::optional<Rgb8> color;
+};
+
+/// See load_label_map(). `file` names the text in messages. Throws FormatError with the line.
+std::vector<ReadClass> parse_label_text(std::string_view text, const std::string& file);
+
+/// "LABEL NAME R G B" for each class; names with blanks are quoted.
+std::string to_label_text(const LabelMap& map);
+
+}  // namespace easypbr::io

@@ -1,0 +1,130 @@
+#include "easypbr/python/mesh_fields.h"
+
+#include <fmt/format.h>
+#include <nanobind/stl/string.h>
+
+#include "easypbr/core/error.h"
+#include "easypbr/python/convert.h"
+#include "easypbr/python/handles.h"
+
+namespace easypbr::python {
+namespace {
+
+/// What Mesh.label_map takes.
+class LabelMapLike : public nb::object {
+    NB_OBJECT_DEFAULT(LabelMapLike, nb::object, "LabelMap | str | os.PathLike | None", is_anything)
+};
+class ScalarsLike : public nb::object {
+    NB_OBJECT_DEFAULT(ScalarsLike, nb::object, "Mapping[str, numpy.typing.ArrayLike] | None", is_anything)
+};
+
+const char* const advice =
+    "scores of classes, such as a network's logits, become labels by their argmax: scores.argmax(-1)";
+
+/// Told from the shape alone, so that no tensor needs to be converted first.
+void refuse_scores(nb::handle object) {
+    if (!nb::hasattr(object, "shape")) return;
+    const nb::object shape = object.attr("shape");
+    if (nb::len(shape) < 2) return;
+    const size_t last = nb::len(shape) - 1;
+    if (nb::len(shape) == 2 && nb::cast<int64_t>(nb::object(shape[last])) <= 1) return;
+    std::string text;
+    for (nb::handle side : shape)
+        text += fmt::format("{}{}", text.empty() ? "" : " x ", nb::cast<int64_t>(side));
+    throw ArgumentError(fmt::format("mesh array L: expected n labels, got {}; {}", text, advice));
+}
+
+nb::object flags_as_numbers(nb::handle object) {
+    if (!nb::hasattr(object, "dtype")) return nb::borrow(object);
+    const nb::object array = nb::module_::import_("numpy").attr("asarray")(object);
+    const bool flags = nb::cast<std::string>(array.attr("dtype").attr("kind")) == "b";
+    return flags ? array.attr("astype")("int32") : nb::borrow(object);
+}
+
+Array1f scalar_values(const std::string& name, nb::handle values) {
+    const std::string array = fmt::format("scalars['{}']", name);
+    return to_array<float, 1>(values, {array.c_str(), 1, 1});
+}
+
+nb::dict scalars_of(const Mesh& mesh) {
+    nb::dict scalars;
+    for (const ScalarArray& scalar : mesh.snapshot()->scalars)
+        scalars[nb::str(scalar.name.c_str())] = view_of(scalar.values);
+    return scalars;
+}
+
+nb::object label_map_of(const Mesh& mesh) {
+    const auto map = mesh.label_map();
+    return map ? nb::cast(LabelMapHandle{map}) : nb::none();
+}
+
+}  // namespace
+
+MeshChange prepare_labels(nb::handle object) {
+    Array1i labels;
+    if (!object.is_none()) {
+        refuse_scores(object);
+        const nb::object numbers = flags_as_numbers(object);
+        try {
+            labels = to_array<int32_t, 1>(numbers, {"L", 1, 1});
+        } catch (const ArgumentError& error) {
+            throw ArgumentError(fmt::format("{}; {}", error.what(), advice));
+        }
+    }
+    return [labels](MeshData& data) { data.L = labels; };
+}
+
+MeshChange prepare_scalars(nb::handle object) {
+    std::vector<ScalarArray> scalars;
+    if (!object.is_none()) {
+        if (!nb::hasattr(object, "items"))
+            throw ArgumentError(
+                "mesh scalars: expected a dict of name to values; add_scalar(name, values) adds one");
+        for (nb::handle item : object.attr("items")()) {
+            const std::string name = nb::cast<std::string>(nb::str(nb::object(item[0])));
+            scalars.push_back({name, scalar_values(name, nb::object(item[1]))});
+        }
+    }
+    return [scalars](MeshData& data) { data.scalars = scalars; };
+}
+
+MeshChange prepare_label_map(nb::handle object) {
+    const auto map = to_label_map(object);
+    return [map](MeshData& data) { data.label_map = map; };
+}
+
+void bind_mesh_fields(nb::class_<Mesh>& mesh) {
+    mesh.def_prop_rw(
+            "label_map", label_map_of,
+            [](Mesh& m, const LabelMapLike& value) {
+                const MeshChange change = prepare_label_map(value);
+                released([&] { m.edit(change); });
+            },
+            nb::for_getter(nb::sig("def label_map(self) -> LabelMap | None")),
+            nb::for_setter(nb::arg("value").none()),
+            "What the labels mean; None: generated colours. Assign a LabelMap, a built-in one's name or a "
+            "path.")
+        .def_prop_rw(
+            "scalars", scalars_of,
+            [](Mesh& m, const ScalarsLike& value) {
+                const MeshChange change = prepare_scalars(value);
+                released([&] { m.edit(change); });
+            },
+            nb::for_getter(nb::sig("def scalars(self) -> dict[str, numpy.ndarray]")),
+            nb::for_setter(nb::arg("value").none()),
+            "A copy of the named values, each for the vertices or the faces; assign a dict to replace all.")
+        .def(
+            "add_scalar",
+            [](Mesh& m, const std::string& name, const ArrayLike& values) {
+                const Array1f numbers = scalar_values(name, values);
+                released([&] { m.add_scalar(name, numbers); });
+            },
+            nb::arg("name"), nb::arg("values"),
+            "Adds named values, one for each vertex or each face (NaN: none), or replaces those of the name.")
+        .def(
+            "remove_scalar",
+            [](Mesh& m, const std::string& name) { released([&] { m.remove_scalar(name); }); },
+            nb::arg("name"));
+}
+
+}  // namespace easypbr::python
