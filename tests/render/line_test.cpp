@@ -33,8 +33,8 @@ double sum_of_alpha(const Image& image) {
     return sum;
 }
 
-// Coverage summed over the picture is width times length, and the two round ends together a disc. The edge falls
-// linearly over one pixel, so that the sum is exact up to the sampling of the ends.
+// Coverage summed over the picture is width times length, and the two round ends together a disc. The edge
+// falls linearly over one pixel, so that the sum is exact up to the sampling of the ends.
 TEST(Lines, HaveTheirWidthAtAnyAngle) {
     constexpr int size = 200;
     for (const float width : {1.0f, 1.5f, 3.0f, 8.0f})
@@ -99,7 +99,8 @@ TEST(Lines, AreHiddenBySurfacesUnlessOverlaid) {
 TEST(Lines, HideEachOther) {
     for (const float z : {-0.2f, 0.2f}) {
         Scene scene;
-        Mesh a = segment(Vec3(-0.9f, 0, 0), Vec3(0.9f, 0, 0)), b = segment(Vec3(0, -0.9f, z), Vec3(0, 0.9f, z));
+        Mesh a = segment(Vec3(-0.9f, 0, 0), Vec3(0.9f, 0, 0)),
+             b = segment(Vec3(0, -0.9f, z), Vec3(0, 0.9f, z));
         Style red, green;
         red.line_color = Vec3(1, 0, 0);
         green.line_color = Vec3(0, 1, 0);

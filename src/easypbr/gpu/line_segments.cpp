@@ -18,9 +18,7 @@ void put(float (&to)[3], const Array3f& V, Eigen::Index row) {
 struct Edge {
     uint64_t key;  ///< smaller index in the upper, larger in the lower half
     int32_t face;
-    bool operator<(const Edge& other) const {
-        return key != other.key ? key < other.key : face < other.face;
-    }
+    bool operator<(const Edge& other) const { return key != other.key ? key < other.key : face < other.face; }
 };
 
 std::vector<Edge> face_edges(const Array3i& F) {

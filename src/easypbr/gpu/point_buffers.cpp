@@ -3,7 +3,6 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/gpu/mesh_buffers.h"
 #include "easypbr/gpu/packing.h"
-#include "easypbr/scene/spacing.h"
 
 namespace easypbr::gpu {
 namespace {
@@ -19,7 +18,6 @@ gl::Buffer converted(Eigen::Index count, Convert&& convert) {
 
 PointBuffers make_buffers(const MeshData& mesh) {
     PointBuffers buffers;
-    buffers.spacing = point_spacing(mesh.V);
     buffers.positions = gl::Buffer(std::as_bytes(std::span(mesh.V.data(), size_t(mesh.V.size()))));
     buffers.array = gl::VertexArray::make();
     buffers.array.attribute(position_location, buffers.positions, 3, gl::AttributeType::f32, 12);

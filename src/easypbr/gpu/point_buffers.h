@@ -15,7 +15,6 @@ struct PointBuffers {
     gl::Buffer normals;    ///< octahedral, 2 x 16 bits; absent without N
     gl::Buffer colors;     ///< RGBA8, sRGB-encoded; absent without C
     gl::VertexArray array;
-    double spacing = 0;  ///< see point_spacing()
 };
 
 /// Buffers by the revisions of the arrays they were made from.

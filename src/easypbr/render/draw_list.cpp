@@ -57,6 +57,14 @@ void add_points(const Source& source, DrawList& list) {
     list.points.push_back(std::move(item));
 }
 
+void add_surfels(const Source& source, DrawList& list) {
+    // A surfel without a normal is a point.
+    if (source.object.mesh->N.empty()) return add_points(source, list);
+    DrawItem item = make_item(source, {});
+    if (!source.style.lit.value_or(true)) item.kind = SurfaceKind::display;
+    list.surfels.push_back(std::move(item));
+}
+
 /// sRGB colours that stand out on most surfaces.
 const Vec3 wireframe_color(0.1f, 0.1f, 0.12f), normals_color(0.16f, 0.35f, 0.9f);
 /// Length of normals, as a part of the object's diagonal.
@@ -125,6 +133,7 @@ DrawList draw_list(const SceneSnapshot& scene, const Settings& settings, const M
         const Source source{object, style, settings, textures};
         if (style.mode == DrawMode::mesh) add_mesh(source, list);
         add_lines(source, list);
+        if (style.mode == DrawMode::surfels) add_surfels(source, list);
         if (style.mode == DrawMode::points || style.show_points) add_points(source, list);
     }
     const bool blend_in_layers = settings.transparency.mode == TransparencyMode::layers;

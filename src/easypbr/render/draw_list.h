@@ -40,25 +40,28 @@ struct LineItem {
 struct DrawList {
     std::vector<DrawItem> meshes;  ///< one per part
     std::vector<DrawItem> points;
+    std::vector<DrawItem> surfels;  ///< with normals
     std::vector<LineItem> lines;
 
     template <class Predicate>
     bool has(Predicate&& predicate) const {
-        return std::ranges::any_of(meshes, predicate) || std::ranges::any_of(points, predicate);
+        return std::ranges::any_of(meshes, predicate) || std::ranges::any_of(points, predicate) ||
+               std::ranges::any_of(surfels, predicate);
     }
     /// Whether something is shown past light and tone curve.
     bool needs_overlay() const {
         return !lines.empty() || has([](const DrawItem& item) { return is_display(item.kind); });
     }
-    bool reaches_beyond_vertices() const { return !points.empty() || !lines.empty(); }
+    bool reaches_beyond_vertices() const { return !points.empty() || !surfels.empty() || !lines.empty(); }
     template <class Predicate>
     DrawList without(Predicate&& predicate) const {
         DrawList rest = *this;
         std::erase_if(rest.meshes, predicate);
         std::erase_if(rest.points, predicate);
+        std::erase_if(rest.surfels, predicate);
         return rest;
     }
-    bool empty() const { return meshes.empty() && points.empty(); }
+    bool empty() const { return meshes.empty() && points.empty() && surfels.empty(); }
     /// The items whose colours may be averaged.
     DrawList without_exact() const;
     /// The items that light passes, which are drawn in layers, and the others.

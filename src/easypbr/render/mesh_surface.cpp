@@ -85,7 +85,12 @@ SurfacePixel MeshSurface::at(uint32_t face, double ndc_x, double ndc_y) const {
     const float* V = mesh.V.data();
     const float* const corners[3] = {V + 3 * size_t(f[0]), V + 3 * size_t(f[1]), V + 3 * size_t(f[2])};
     const Hit hit = intersect(corners, ndc_x, ndc_y);
-    return {albedo(f, hit), normal(f, hit), hit.depth, element};
+    SurfacePixel pixel;
+    pixel.albedo = albedo(f, hit);
+    pixel.normal = normal(f, hit);
+    pixel.depth = hit.depth;
+    pixel.element = element;
+    return pixel;
 }
 
 }  // namespace easypbr::render

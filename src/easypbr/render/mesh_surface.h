@@ -1,18 +1,9 @@
-// The surface of a pixel that the native rasteriser found a triangle or a point in.
+// The surface of a pixel that the native rasteriser found a triangle in.
 #pragma once
 
-#include "easypbr/core/octahedral.h"
-#include "easypbr/render/draw_list.h"
+#include "easypbr/render/native_pixels.h"
 
 namespace easypbr::render {
-
-/// What the G-buffer holds of one pixel.
-struct SurfacePixel {
-    Vec3 albedo{0, 0, 0};
-    Vec3 normal{0, 0, 1};  ///< unit, world, on the side that is seen
-    float depth = 0;
-    uint32_t element = 0;  ///< of its object: the face or the point
-};
 
 /// What is known of a mesh beyond its data.
 struct MeshKnowledge {
@@ -28,7 +19,8 @@ class MeshSurface {
   public:
     MeshSurface(const DrawItem& item, const MeshKnowledge& knowledge, const Mat4d& clip_from_mesh);
 
-    /// The triangle `face` of the item's part at a point of the picture in normalised device coordinates.
+    /// The triangle `face` of the item's part at a point of the picture in normalised device coordinates:
+    /// albedo, normal, depth, element.
     SurfacePixel at(uint32_t face, double ndc_x, double ndc_y) const;
 
     bool mirrored() const { return mirrored_; }

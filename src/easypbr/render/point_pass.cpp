@@ -27,7 +27,8 @@ void PointPass::draw_items(const Frame& frame, const std::vector<DrawItem>& item
     const Mat3 world_from_view = frame.camera.T_world_cam.linear().cast<float>();
     for (const DrawItem& item : items) {
         const gpu::PointBuffers& buffers = cache_.get(item.mesh());
-        const PointSplats splats = splats_of(item, frame, item.style.point_size ? 0 : buffers.spacing);
+        const PointSplats splats =
+            splats_of(item, frame, item.style.point_size ? 0 : spacings_.get(item.mesh().V));
         std::vector<std::string> defines = camera_defines(frame);
         if (buffers.normals) defines.emplace_back("NORMAL");
         if (item.with_colors) defines.emplace_back("VERTEX_COLOR");

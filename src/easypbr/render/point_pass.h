@@ -6,11 +6,15 @@
 #include "easypbr/render/frame.h"
 #include "easypbr/render/gbuffer.h"
 #include "easypbr/render/programs.h"
+#include "easypbr/scene/spacing_cache.h"
 
 namespace easypbr::render {
 
 class PointPass {
   public:
+    /// The cache is shared with other passes, must outlive this one, and is emptied by its owner.
+    explicit PointPass(SpacingCache& spacings) : spacings_(spacings) {}
+
     /// Adds the points to what the G-buffer holds, in two passes: the first finds the nearest depth and
     /// empties its pixel, the second keeps, channel by channel, the largest of what lies at that depth. So
     /// coincident points give the same picture in any order.
@@ -21,6 +25,7 @@ class PointPass {
   private:
     void draw_items(const Frame& frame, const std::vector<DrawItem>& items, bool write);
 
+    SpacingCache& spacings_;
     gpu::PointCache cache_;
     ProgramVariants programs_{"geometry_points.vert", "geometry_points.frag"};
 };

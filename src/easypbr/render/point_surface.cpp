@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "easypbr/core/color.h"
+#include "easypbr/core/octahedral.h"
 
 namespace easypbr::render {
 PointSurface::PointSurface(const DrawItem& item, const Frame& frame) : item_(&item) {

@@ -105,6 +105,8 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     textures_.evict_unused();
     software_geometry_.evict_unused();
     points_.evict_unused();
+    surfels_.evict_unused();
+    spacings_.evict_unused();
     lines_.evict_unused();
     camera_ = resolved.camera;
     glFlush();
@@ -125,13 +127,14 @@ const Box3d& Renderer::bounds_of(const SceneSnapshot& scene) {
 
 void Renderer::draw_geometry(Frame& frame, const DrawList& list) {
     const bool native = native_geometry_ && gl::Context::current().info().software;
-    if (native && SoftwareGeometryPass::handles(list) && software_geometry_.draw(frame, list, targets_))
-        return;
-    geometry_.draw(frame, list.meshes, targets_);
-    if (native && !list.points.empty() && SoftwareGeometryPass::handles_points(list))
-        software_geometry_.draw_points_over(frame, list, targets_);
-    else
-        points_.draw(frame, list.points, targets_);
+    if (!native || !SoftwareGeometryPass::handles(list) || !software_geometry_.draw(frame, list, targets_)) {
+        geometry_.draw(frame, list.meshes, targets_);
+        if (native && !list.points.empty() && SoftwareGeometryPass::handles_points(list))
+            software_geometry_.draw_points_over(frame, list, targets_);
+        else
+            points_.draw(frame, list.points, targets_);
+    }
+    surfels_.draw(frame, list.surfels, targets_, native);
 }
 
 void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& casters) {

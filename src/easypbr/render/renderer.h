@@ -15,6 +15,7 @@
 #include "easypbr/render/point_pass.h"
 #include "easypbr/render/shadow_maps.h"
 #include "easypbr/render/software_geometry_pass.h"
+#include "easypbr/render/surfel_pass.h"
 #include "easypbr/render/transparency_pass.h"
 
 namespace easypbr::render {
@@ -101,8 +102,10 @@ class Renderer {
     gpu::MeshCache meshes_;
     gpu::TextureCache textures_;
     GeometryPass geometry_{meshes_, textures_};
-    SoftwareGeometryPass software_geometry_;
-    PointPass points_;
+    SpacingCache spacings_;
+    SoftwareGeometryPass software_geometry_{spacings_};
+    PointPass points_{spacings_};
+    SurfelPass surfels_{spacings_};
     ShadowMaps shadow_maps_{meshes_, textures_};
     LightingPass lighting_;
     DisplayPass display_;

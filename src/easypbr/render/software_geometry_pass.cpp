@@ -1,7 +1,5 @@
 #include "easypbr/render/software_geometry_pass.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -9,20 +7,12 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/gpu/facing.h"
 #include "easypbr/scene/normals.h"
-#include "easypbr/scene/spacing.h"
 
 namespace easypbr::render {
 namespace {
 
 /// Small meshes alone are left to the driver; where exactly the two break even has not been measured.
 constexpr int64_t smallest_face_count = 5000;
-
-uint16_t unorm16(float v) {
-    return uint16_t(std::lrintf(std::clamp(v, 0.0f, 1.0f) * 65535.0f));
-}
-uint8_t unorm8(float v) {
-    return uint8_t(std::lrintf(std::clamp(v, 0.0f, 1.0f) * 255.0f));
-}
 
 /// The frames of one picture are jittered by up to a pixel, and edges are smoothed one pixel beyond them.
 PixelRect with_margin(const PixelRect& r, Vec2i size) {
@@ -42,15 +32,6 @@ struct SoftwareGeometryPass::Surface {
     std::optional<MeshSurface> mesh;
     std::optional<PointSurface> points;
 };
-
-void SoftwareGeometryPass::Pixels::resize(size_t count, bool with_ids) {
-    albedo.resize(count * 4);
-    normal.resize(count * 2);
-    material.resize(count * 4);
-    depth.resize(count);
-    id.resize(with_ids ? count : 0);
-    element.resize(with_ids ? count : 0);
-}
 
 bool SoftwareGeometryPass::handles(const DrawList& list) {
     int64_t faces = 0, points = 0;
@@ -81,18 +62,9 @@ const MeshKnowledge& SoftwareGeometryPass::knowledge_of(const MeshData& mesh) {
     return known;
 }
 
-double SoftwareGeometryPass::spacing_of(const MeshData& mesh) {
-    const auto [entry, is_new] = spacings_.try_emplace(mesh.V.revision());
-    if (is_new) entry->second.value = point_spacing(mesh.V);
-    entry->second.used = true;
-    return entry->second.value;
-}
-
 void SoftwareGeometryPass::evict_unused() {
     std::erase_if(knowledge_, [](const auto& item) { return !item.second.used; });
     for (auto& [key, known] : knowledge_) known.used = false;
-    std::erase_if(spacings_, [](const auto& item) { return !item.second.used; });
-    for (auto& [key, spacing] : spacings_) spacing.used = false;
 }
 
 bool SoftwareGeometryPass::add_meshes(const Frame& frame, const DrawList& list,
@@ -131,7 +103,7 @@ void SoftwareGeometryPass::add_points(const Frame& frame, const DrawList& list,
     };
     for (size_t i = first_cloud; i < surfaces.size(); ++i) {
         const DrawItem& item = *surfaces[i].item;
-        const double spacing = item.style.point_size ? 0 : spacing_of(item.mesh());
+        const double spacing = item.style.point_size ? 0 : spacings_.get(item.mesh().V);
         visibility_.draw_points(item.mesh().V, splats_of(item, frame, spacing), surfaces[i].first_id,
                                 content);
     }
@@ -145,8 +117,9 @@ bool SoftwareGeometryPass::draw(Frame& frame, const DrawList& list, const GBuffe
     visibility_.crop();
     resolve(frame, surfaces);
     targets.clear(frame.with_ids);
-    upload(frame, targets);
-    if (list.lines.empty()) frame.covered = with_margin(visibility_.area(), frame.size);
+    pixels_.upload(targets);
+    if (list.lines.empty() && list.surfels.empty())
+        frame.covered = with_margin(visibility_.area(), frame.size);
     return true;
 }
 
@@ -156,84 +129,34 @@ void SoftwareGeometryPass::draw_points_over(const Frame& frame, const DrawList& 
     std::vector<Surface> surfaces;
     add_points(frame, list, surfaces);
     visibility_.crop();
-    const PixelRect& r = visibility_.area();
-    if (r.width == 0 || r.height == 0) return;
     resolve(frame, surfaces);
-    if (!staging_.albedo || staging_.size() != frame.size) staging_ = GBuffer(frame.size);
-    if (frame.with_ids) staging_.add_ids();
-    upload(frame, staging_);
-
-    std::vector<std::string> defines;
-    if (frame.with_ids) defines.emplace_back("OBJECT_ID");
-    const gl::Program& program = composite_.get(defines);
-    (frame.with_ids ? targets.surface_ids : targets.surface_emission).bind();
-    program.use();
-    program.set("u_size", Vec2(frame.size.cast<float>()));
-    const gl::Texture* sources[] = {&staging_.albedo, &staging_.normal, &staging_.material,
-                                    &staging_.depth,  &staging_.id,     &staging_.element};
-    const char* samplers[] = {"u_albedo", "u_normal", "u_material", "u_depth_target", "u_id", "u_element"};
-    for (unsigned unit = 0; unit < (frame.with_ids ? 6u : 4u); ++unit) {
-        sources[unit]->bind(unit);
-        program.set(samplers[unit], int(unit));
-    }
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_TRUE);
-    glDepthFunc(GL_GREATER);
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(r.x, r.y, r.width, r.height);
-    draw_screen_triangle();
-    glDisable(GL_SCISSOR_TEST);
+    composite_.draw(frame, pixels_, targets);
 }
 
 void SoftwareGeometryPass::resolve(const Frame& frame, const std::vector<Surface>& surfaces) {
     const PixelRect& area = visibility_.area();
-    pixels_.resize(visibility_.pixels().size(), frame.with_ids);
+    pixels_.resize(area, frame.with_ids);
     const double step_x = 2.0 / frame.size.x(), step_y = 2.0 / frame.size.y();
     const auto resolve_pixel = [&](size_t i, int x, int y) {
-        const uint64_t pixel = visibility_.pixels()[i];
-        pixels_.depth[i] = 0;
-        if (frame.with_ids) pixels_.id[i] = pixels_.element[i] = 0;
-        if (pixel == 0) return;
-        const uint32_t id = VisibilityBuffer::id_of(pixel);
+        const uint64_t found = visibility_.pixels()[i];
+        if (found == 0) return pixels_.put_nothing(i);
+        const uint32_t id = VisibilityBuffer::id_of(found);
         const Surface& s =
             *std::prev(std::upper_bound(surfaces.begin(), surfaces.end(), id,
                                         [](uint32_t v, const Surface& t) { return v < t.first_id; }));
-        const SurfacePixel p =
-            s.mesh ? s.mesh->at(id - s.first_id, (x + 0.5) * step_x - 1, 1 - (y + 0.5) * step_y)
-                   : s.points->at(id - s.first_id, VisibilityBuffer::depth_of(pixel));
-        const Vec2 normal = oct_encode(p.normal) * 0.5f + Vec2(0.5f, 0.5f);
-        const Material& m = s.item->material;
-        pixels_.depth[i] = p.depth;
-        for (size_t c = 0; c < 3; ++c) pixels_.albedo[4 * i + c] = unorm16(p.albedo[Eigen::Index(c)]);
-        pixels_.albedo[4 * i + 3] = 65535;
-        pixels_.normal[2 * i] = unorm16(normal.x());
-        pixels_.normal[2 * i + 1] = unorm16(normal.y());
-        const uint8_t material[4] = {unorm8(m.metallic), unorm8(m.roughness), 255, uint8_t(s.item->kind)};
-        std::copy_n(material, 4, &pixels_.material[4 * i]);
-        if (!frame.with_ids) return;
-        pixels_.id[i] = uint32_t(s.item->object - frame.scene->objects.data()) + 1;
-        pixels_.element[i] = p.element + 1;
+        SurfacePixel pixel = s.mesh
+                                 ? s.mesh->at(id - s.first_id, (x + 0.5) * step_x - 1, 1 - (y + 0.5) * step_y)
+                                 : s.points->at(id - s.first_id, VisibilityBuffer::depth_of(found));
+        pixel.metallic = s.item->material.metallic;
+        pixel.roughness = s.item->material.roughness;
+        pixel.kind = s.item->kind;
+        pixel.object = uint32_t(s.item->object - frame.scene->objects.data());
+        pixels_.put(i, pixel);
     };
     parallel_for(size_t(area.height), 4, [&](size_t row) {
         for (int x = 0; x < area.width; ++x)
             resolve_pixel(row * size_t(area.width) + size_t(x), area.x + x, area.y + int(row));
     });
-}
-
-void SoftwareGeometryPass::upload(const Frame& frame, const GBuffer& targets) const {
-    const PixelRect& r = visibility_.area();
-    if (r.width == 0 || r.height == 0) return;
-    const auto put = [&](const gl::Texture& texture, const auto& values) {
-        texture.upload_area(r.x, r.y, r.width, r.height, std::as_bytes(std::span(values)));
-    };
-    put(targets.albedo, pixels_.albedo);
-    put(targets.normal, pixels_.normal);
-    put(targets.material, pixels_.material);
-    put(targets.depth, pixels_.depth);
-    put(targets.depth_test, pixels_.depth);
-    if (!frame.with_ids) return;
-    put(targets.id, pixels_.id);
-    put(targets.element, pixels_.element);
 }
 
 }  // namespace easypbr::render

@@ -5,11 +5,10 @@
 #include <tuple>
 
 #include "easypbr/render/draw_list.h"
-#include "easypbr/render/gbuffer.h"
 #include "easypbr/render/mesh_surface.h"
 #include "easypbr/render/point_surface.h"
-#include "easypbr/render/programs.h"
 #include "easypbr/render/visibility.h"
+#include "easypbr/scene/spacing_cache.h"
 
 namespace easypbr::render {
 
@@ -17,6 +16,9 @@ namespace easypbr::render {
 /// nearest triangle or point per pixel first, then the surface of each pixel once.
 class SoftwareGeometryPass {
   public:
+    /// The cache is shared with other passes, must outlive this one, and is emptied by its owner.
+    explicit SoftwareGeometryPass(SpacingCache& spacings) : spacings_(spacings) {}
+
     /// Whether draw() can draw these meshes and points: plain ones, without textures, emission or alpha.
     static bool handles(const DrawList& list);
     /// The same of the points alone.
@@ -32,32 +34,17 @@ class SoftwareGeometryPass {
     void evict_unused();
 
   private:
-    /// Pixels of the covered area in the targets' formats.
-    struct Pixels {
-        std::vector<uint16_t> albedo, normal;
-        std::vector<uint8_t> material;
-        std::vector<float> depth;
-        std::vector<uint32_t> id, element;
-        void resize(size_t count, bool with_ids);
-    };
     struct Surface;
-    struct Spacing {
-        double value = 0;
-        bool used = false;
-    };
     const MeshKnowledge& knowledge_of(const MeshData& mesh);
-    double spacing_of(const MeshData& mesh);
     bool add_meshes(const Frame& frame, const DrawList& list, std::vector<Surface>& surfaces);
     void add_points(const Frame& frame, const DrawList& list, std::vector<Surface>& surfaces);
     void resolve(const Frame& frame, const std::vector<Surface>& surfaces);
-    void upload(const Frame& frame, const GBuffer& targets) const;
 
     std::map<std::tuple<uint64_t, uint64_t, uint64_t>, MeshKnowledge> knowledge_;
-    std::map<uint64_t, Spacing> spacings_;
+    SpacingCache& spacings_;
     VisibilityBuffer visibility_;
-    Pixels pixels_;
-    GBuffer staging_;  ///< what draw_points_over() adds
-    ProgramVariants composite_{"screen_triangle.vert", "composite_surface.frag"};
+    NativePixels pixels_;
+    SurfaceComposite composite_;
 };
 
 }  // namespace easypbr::render

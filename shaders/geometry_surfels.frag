@@ -1,0 +1,61 @@
+// Second step of surface splatting (Botsch et al. 2005). Without ACCUMULATE: the nearest distance of each pixel, pushed
+// back by the surfel's size. With it: weighted sums of what lies before that.
+uniform sampler2D u_depth_target;  // of what hides surfels
+uniform vec2 u_size;
+uniform vec3 u_depth;              // as in common_camera.glsl
+uniform vec3 u_material;           // metallic, roughness, code of the kind
+uniform float u_least_radius;
+
+flat in vec2 v_centre;
+flat in vec4 v_axes;
+flat in vec4 v_plane;
+flat in vec4 v_distance;
+flat in vec3 v_normal;
+flat in vec3 v_color;
+
+#ifdef ACCUMULATE
+layout(location = 0) out vec4 o_albedo;    // sums; a: of the weights
+layout(location = 1) out vec4 o_normal;    // sums; a: of the distances
+layout(location = 2) out vec4 o_material;  // sums of metallic, roughness, code of the kind
+#endif
+#ifdef OBJECT_ID
+layout(location = 0) out uint o_id;
+layout(location = 1) out uint o_element;
+flat in uint v_element;
+uniform int u_object_id;
+#endif
+
+float reversed(float z) {
+#ifdef ORTHOGRAPHIC
+    return (u_depth.y - z) / (u_depth.y - u_depth.x);
+#else
+    return u_depth.x / z;
+#endif
+}
+
+void main() {
+    vec2 d = gl_FragCoord.xy - v_centre;
+    float far = max(abs(d.x), abs(d.y)) / u_least_radius;
+    float screen = far * far;
+    float scale = v_plane.w / (dot(v_plane.xy, d) + v_plane.z);
+    vec2 uv = vec2(v_axes.w * d.x - v_axes.z * d.y, v_axes.x * d.y - v_axes.y * d.x) * scale;
+    float r2 = dot(uv, uv);
+    bool on_plane = r2 < screen;
+    float z = v_distance.z + (on_plane ? dot(uv, v_distance.xy) : 0.0);
+    r2 = on_plane ? r2 : screen;
+    float depth = reversed(z);
+    if (!(r2 <= 1.0) || depth < textureLod(u_depth_target, gl_FragCoord.xy / u_size, 0.0).r) discard;
+#ifdef ACCUMULATE
+    gl_FragDepth = depth;
+    float weight = max((1.0 - r2) * (1.0 - r2), 1e-4);
+    o_albedo = vec4(v_color, 1.0) * weight;
+    o_normal = vec4(v_normal, z) * weight;
+    o_material = vec4(u_material, 1.0) * weight;
+#else
+    gl_FragDepth = reversed(z + v_distance.w);
+#ifdef OBJECT_ID
+    o_id = uint(u_object_id);
+    o_element = v_element;
+#endif
+#endif
+}

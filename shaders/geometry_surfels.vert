@@ -1,0 +1,86 @@
+// Surfels as quads around their ellipses, one instance each: the first of three steps of surface splatting. The inverse
+// that takes a pixel to a place in the ellipse is explained in render/surfel_projection.h.
+#include "common_encoding.glsl"
+
+layout(location = 0) in vec3 a_position;
+layout(location = 1) in vec3 a_normal;
+#ifdef VERTEX_COLOR
+layout(location = 2) in vec4 a_color;
+#endif
+layout(location = 3) in vec4 a_axes;  // tangent, its length being the first semi-axis; length of the second
+
+uniform mat4 u_clip_from_mesh;
+uniform mat4 u_view_from_mesh;
+uniform mat3 u_normal_from_mesh;
+uniform vec2 u_size;
+uniform vec3 u_base_color;
+uniform vec3 u_eye;         // in the mesh's frame; ORTHOGRAPHIC: direction towards the viewer
+uniform vec4 u_surfel;      // factor on the size, radius without a tangent, near, scale of the pose
+uniform float u_least_radius;
+
+flat out vec2 v_centre;     // pixels
+flat out vec4 v_axes;       // tx, ty, bx, by
+flat out vec4 v_plane;      // t x b; wc
+flat out vec4 v_distance;   // axial distance along t and b and of the centre; band
+flat out vec3 v_normal;
+flat out vec3 v_color;
+#ifdef OBJECT_ID
+flat out uint v_element;
+#endif
+
+vec3 any_perpendicular(vec3 n) {
+    return normalize(abs(n.x) > abs(n.z) ? vec3(-n.y, n.x, 0.0) : vec3(0.0, -n.z, n.y));
+}
+
+vec2 extent(float t, float b, vec3 w, float q_ww) {
+    float q_kw = t * w.x + b * w.y;
+    float root = sqrt(max(0.0, q_kw * q_kw - q_ww * (t * t + b * b)));
+    return vec2(min((q_kw + root) / q_ww, -u_least_radius), max((q_kw - root) / q_ww, u_least_radius));
+}
+
+void main() {
+#ifdef ORTHOGRAPHIC
+    vec3 to_viewer = u_eye;
+#else
+    vec3 to_viewer = u_eye - a_position;
+#endif
+    vec3 n = dot(a_normal, a_normal) > 0.0 ? normalize(a_normal) : normalize(to_viewer);
+    float radius = length(a_axes.xyz);
+    vec3 direction = a_axes.xyz - n * dot(n, a_axes.xyz);
+    direction = dot(direction, direction) > 1e-12 * radius * radius ? normalize(direction) : any_perpendicular(n);
+    float first = u_surfel.y > 0.0 ? u_surfel.y : radius;
+    float second = u_surfel.y > 0.0 ? u_surfel.y : a_axes.w;
+    vec3 t = direction * (first * u_surfel.x), b = cross(n, direction) * (second * u_surfel.x);
+
+    vec4 c4 = u_clip_from_mesh * vec4(a_position, 1.0);
+    vec4 t4 = u_clip_from_mesh * vec4(t, 0.0), b4 = u_clip_from_mesh * vec4(b, 0.0);
+    vec3 w = vec3(t4.w, b4.w, c4.w);
+    vec3 z = -vec3((u_view_from_mesh * vec4(t, 0.0)).z, (u_view_from_mesh * vec4(b, 0.0)).z,
+                   (u_view_from_mesh * vec4(a_position, 1.0)).z);
+    float q_ww = w.x * w.x + w.y * w.y - w.z * w.z;
+    if (!(w.z > 0.0 && q_ww < 0.0 && z.z - length(z.xy) > u_surfel.z * 0.999)) {
+        gl_Position = vec4(2.0, 2.0, 0.0, 1.0);
+        return;
+    }
+    v_centre = (vec2(c4.x, -c4.y) / c4.w + 1.0) * 0.5 * u_size;
+    vec2 t2 = 0.5 * u_size * (vec2(t4.x, -t4.y) + w.x) - v_centre * w.x;
+    vec2 b2 = 0.5 * u_size * (vec2(b4.x, -b4.y) + w.y) - v_centre * w.y;
+    v_axes = vec4(t2, b2);
+    v_plane = vec4(cross(vec3(t2, w.x), vec3(b2, w.y)), w.z);
+    v_distance = vec4(z, max(length(t), length(b)) * u_surfel.w);
+    vec2 x = extent(t2.x, b2.x, w, q_ww), y = extent(t2.y, b2.y, w, q_ww);
+    // Half a pixel more: the centres of all pixels that count are inside whatever the driver rounds.
+    vec2 corner = v_centre + vec2((gl_VertexID & 1) == 0 ? x.x - 0.5 : x.y + 0.5,
+                                  (gl_VertexID & 2) == 0 ? y.x - 0.5 : y.y + 0.5);
+    vec2 ndc = corner / u_size * 2.0 - 1.0;
+    gl_Position = vec4(ndc.x, -ndc.y, 0.5, 1.0);
+
+    v_normal = normalize(u_normal_from_mesh * (dot(n, to_viewer) < 0.0 ? -n : n));
+    v_color = u_base_color;
+#ifdef VERTEX_COLOR
+    v_color *= srgb_decode(a_color.rgb);
+#endif
+#ifdef OBJECT_ID
+    v_element = uint(gl_InstanceID + 1);
+#endif
+}

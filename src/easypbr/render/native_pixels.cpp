@@ -1,0 +1,98 @@
+#include "easypbr/render/native_pixels.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+#include "easypbr/core/octahedral.h"
+
+namespace easypbr::render {
+namespace {
+
+uint16_t unorm16(float v) {
+    return uint16_t(std::lrintf(std::clamp(v, 0.0f, 1.0f) * 65535.0f));
+}
+uint8_t unorm8(float v) {
+    return uint8_t(std::lrintf(std::clamp(v, 0.0f, 1.0f) * 255.0f));
+}
+
+}  // namespace
+
+void NativePixels::resize(const PixelRect& area, bool with_ids) {
+    area_ = area;
+    with_ids_ = with_ids;
+    const size_t count = size_t(area.width) * size_t(area.height);
+    albedo_.resize(count * 4);
+    normal_.resize(count * 2);
+    material_.resize(count * 4);
+    depth_.resize(count);
+    id_.resize(with_ids ? count : 0);
+    element_.resize(with_ids ? count : 0);
+}
+
+void NativePixels::put(size_t i, const SurfacePixel& p) {
+    const Vec2 normal = oct_encode(p.normal) * 0.5f + Vec2(0.5f, 0.5f);
+    depth_[i] = p.depth;
+    for (size_t c = 0; c < 3; ++c) albedo_[4 * i + c] = unorm16(p.albedo[Eigen::Index(c)]);
+    albedo_[4 * i + 3] = 65535;
+    normal_[2 * i] = unorm16(normal.x());
+    normal_[2 * i + 1] = unorm16(normal.y());
+    const uint8_t material[4] = {unorm8(p.metallic), unorm8(p.roughness), 255, uint8_t(p.kind)};
+    std::copy_n(material, 4, &material_[4 * i]);
+    if (!with_ids_) return;
+    id_[i] = p.object + 1;
+    element_[i] = p.element + 1;
+}
+
+void NativePixels::put_nothing(size_t i) {
+    depth_[i] = 0;
+    if (with_ids_) id_[i] = element_[i] = 0;
+}
+
+void NativePixels::upload(const GBuffer& targets) const {
+    if (area_.width == 0 || area_.height == 0) return;
+    const auto put = [&](const gl::Texture& texture, const auto& values) {
+        texture.upload_area(area_.x, area_.y, area_.width, area_.height, std::as_bytes(std::span(values)));
+    };
+    put(targets.albedo, albedo_);
+    put(targets.normal, normal_);
+    put(targets.material, material_);
+    put(targets.depth, depth_);
+    put(targets.depth_test, depth_);
+    if (!with_ids_) return;
+    put(targets.id, id_);
+    put(targets.element, element_);
+}
+
+void SurfaceComposite::draw(const Frame& frame, const NativePixels& pixels, const GBuffer& targets) {
+    const PixelRect& r = pixels.area();
+    if (r.width == 0 || r.height == 0) return;
+    if (!staging_.albedo || staging_.size() != frame.size) staging_ = GBuffer(frame.size);
+    if (frame.with_ids) staging_.add_ids();
+    pixels.upload(staging_);
+
+    std::vector<std::string> defines;
+    if (frame.with_ids) defines.emplace_back("OBJECT_ID");
+    const gl::Program& program = programs_.get(defines);
+    (frame.with_ids ? targets.surface_ids : targets.surface_emission).bind();
+    program.use();
+    program.set("u_size", Vec2(frame.size.cast<float>()));
+    const gl::Texture* sources[] = {&staging_.albedo, &staging_.normal, &staging_.material,
+                                    &staging_.depth,  &staging_.id,     &staging_.element};
+    const char* samplers[] = {"u_albedo", "u_normal", "u_material", "u_depth_target", "u_id", "u_element"};
+    for (unsigned unit = 0; unit < (frame.with_ids ? 6u : 4u); ++unit) {
+        sources[unit]->bind(unit);
+        program.set(samplers[unit], int(unit));
+    }
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(GL_GREATER);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(r.x, r.y, r.width, r.height);
+    draw_screen_triangle();
+    glDisable(GL_SCISSOR_TEST);
+}
+
+}  // namespace easypbr::render
