@@ -5,6 +5,7 @@ find_package(fmt REQUIRED)
 find_package(TBB REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(meshoptimizer REQUIRED)
+find_package(nanoflann REQUIRED)
 pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET spng)
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
@@ -14,4 +15,4 @@ find_package(yaml-cpp REQUIRED)
 
 add_library(easypbr_dependencies INTERFACE)
 target_link_libraries(easypbr_dependencies INTERFACE Eigen3::Eigen fmt::fmt TBB::tbb nlohmann_json::nlohmann_json
-  meshoptimizer::meshoptimizer PkgConfig::EPOXY PkgConfig::SPNG PkgConfig::TURBOJPEG tinyexr::tinyexr ZLIB::ZLIB yaml-cpp ${CMAKE_DL_LIBS})
+  meshoptimizer::meshoptimizer nanoflann::nanoflann PkgConfig::EPOXY PkgConfig::SPNG PkgConfig::TURBOJPEG tinyexr::tinyexr ZLIB::ZLIB yaml-cpp ${CMAKE_DL_LIBS})

@@ -8,7 +8,7 @@ packages=(
   g++ cmake ninja-build ccache pkg-config clang-format clang-tidy
   libeigen3-dev libfmt-dev libtbb-dev nlohmann-json3-dev libcli11-dev libxxhash-dev libfast-float-dev
   libepoxy-dev libegl1 libegl-mesa0 libopengl0 libgl1-mesa-dri
-  libspng-dev libturbojpeg0-dev libtinyexr-dev zlib1g-dev libmeshoptimizer-dev libassimp-dev libyaml-cpp-dev
+  libspng-dev libturbojpeg0-dev libtinyexr-dev zlib1g-dev libmeshoptimizer-dev libnanoflann-dev libassimp-dev libyaml-cpp-dev
   libgtest-dev python3-dev python3-venv
 )
 missing=()

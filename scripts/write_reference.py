@@ -15,6 +15,7 @@ from easypbr import _easypbr
 PYTHON_GROUPS = {
     "Drawing": ["render", "Viewer", "Scene", "Settings", "auto", "follow", "Automatic", "Follow"],
     "Content": ["Mesh", "LabelMap", "load_scene", "as_mesh", "Material", "Style", "Light", "Environment", "Camera"],
+    "Geometry": ["KdTree"],
     "Images": ["load_image", "save_image", "compare_images", "colormap"],
     "Errors": ["Error", "FileError", "FormatError", "ArgumentError", "UnknownNameError", "ContextError"],
 }

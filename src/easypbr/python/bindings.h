@@ -17,6 +17,7 @@ void bind_material(nb::module_& module);
 void bind_label_map(nb::module_& module);
 void bind_mesh(nb::module_& module);
 void bind_shapes(nb::module_& module);
+void bind_neighbors(nb::module_& module);
 void bind_light(nb::module_& module);
 void bind_environment(nb::module_& module);
 void bind_scene(nb::module_& module);

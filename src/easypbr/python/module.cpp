@@ -39,6 +39,7 @@ NB_MODULE(_easypbr, module) {
     bind_scene(module);
     bind_camera(module);
     bind_shapes(module);
+    bind_neighbors(module);
     bind_viewer(module);
     module.attr("__version__") = EASYPBR_VERSION;
 #ifdef EASYPBR_HAS_CLI

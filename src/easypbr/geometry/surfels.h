@@ -1,0 +1,42 @@
+// Normals and surfels from points.
+#pragma once
+
+#include <optional>
+
+#include "easypbr/scene/mesh.h"
+
+namespace easypbr {
+
+struct NeighborhoodOptions {
+    /// Neighbours of a point that its surface is estimated from, 3 to 256; all others when there are fewer.
+    int k = 16;
+    /// Normals are turned towards this point (of the mesh's own frame), as where a scanner stood. Without
+    /// one, those of neighbours agree, and closed shapes face outwards, open ones the positive side of the
+    /// axis nearest to their mean normal, so that ground faces up.
+    std::optional<Vec3d> viewpoint;
+};
+
+/// The mesh with the normals of the planes that fit the k nearest neighbours of each vertex best, near ones
+/// counting more (Hoppe et al. 1992). Vertices at the same place count once and get the same normal. In
+/// parallel; does not depend on the number of threads. Throws ArgumentError for a k out of range, fewer than
+/// three different points, or a viewpoint that is not finite.
+Mesh estimate_normals(const Mesh& mesh, const NeighborhoodOptions& options = {});
+
+/// Surfels are this much larger than what covers a flat surface, so that no hole opens between neighbours
+/// that are tilted against each other by noise or sharp edges (1.1 is 1 / cos 25 degrees), and splats blend
+/// into each other.
+inline constexpr double surfel_overlap = 1.1;
+
+/// The vertices as surfels: oriented ellipses that cover the surface without holes. N are the normals of
+/// estimate_normals(), or those of the mesh when it has some and `keep_normals` is set; T is one semi-axis, B
+/// the length of the other one, along N x T (the paper's surfel). The ellipses follow the pattern of the
+/// points, longer where they are farther apart. Faces and edges are left out. Throws as estimate_normals()
+/// does.
+Mesh estimate_surfels(const Mesh& mesh, const NeighborhoodOptions& options = {}, bool keep_normals = false);
+
+/// One surfel for each vertex that a face uses, with the mesh's normals (computed when it has none) and
+/// ellipses that cover the vertex's share of the faces around it. Throws ArgumentError when there are no
+/// faces.
+Mesh surfels_from_mesh(const Mesh& mesh);
+
+}  // namespace easypbr

@@ -1,0 +1,112 @@
+// Neighbours, normals and surfels of points.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+
+#include "easypbr/geometry/kd_tree.h"
+#include "easypbr/geometry/surfels.h"
+#include "easypbr/python/convert.h"
+
+namespace easypbr::python {
+namespace {
+
+Array3f to_points(nb::handle object, const char* name) {
+    return to_array<float, 3>(object, {name, 3, 3});
+}
+
+/// A numpy array that owns the numbers moved into it.
+template <class Matrix>
+nb::object owning(Matrix matrix) {
+    auto* held = new Matrix(std::move(matrix));
+    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<Matrix*>(p); });
+    const size_t shape[2] = {size_t(held->rows()), size_t(held->cols())};
+    return nb::cast(nb::ndarray<nb::numpy, typename Matrix::Scalar>(held->data(), 2, shape, owner));
+}
+
+template <class Scalar>
+nb::object owning(std::vector<Scalar> values) {
+    auto* held = new std::vector<Scalar>(std::move(values));
+    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<std::vector<Scalar>*>(p); });
+    const size_t shape[1] = {held->size()};
+    return nb::cast(nb::ndarray<nb::numpy, Scalar>(held->data(), 1, shape, owner));
+}
+
+nb::tuple nearest(const KdTree& tree, const ArrayLike& queries, int k) {
+    const Array3f points = to_points(queries, "queries");
+    KdTree::Nearest found = released([&] { return tree.nearest(points, k); });
+    return nb::make_tuple(owning(std::move(found.distances)), owning(std::move(found.indices)));
+}
+
+nb::tuple within(const KdTree& tree, const ArrayLike& queries, float radius) {
+    const Array3f points = to_points(queries, "queries");
+    KdTree::Within found = released([&] { return tree.within(points, radius); });
+    return nb::make_tuple(owning(std::move(found.distances)), owning(std::move(found.indices)),
+                          owning(std::move(found.offsets)));
+}
+
+NeighborhoodOptions options(int k, const nb::object& viewpoint) {
+    NeighborhoodOptions result{k, {}};
+    if (!viewpoint.is_none()) result.viewpoint = to_vector3(viewpoint, "viewpoint");
+    return result;
+}
+
+void bind_kd_tree(nb::module_& module) {
+    nb::class_<KdTree>(module, "KdTree", "Nearest neighbours among the rows of an n x 3 array.")
+        .def(
+            "__init__",
+            [](KdTree* self, const ArrayLike& points) {
+                const Array3f rows = to_points(points, "points");
+                released([&] { new (self) KdTree(rows); });
+            },
+            nb::arg("points"))
+        .def("__len__", &KdTree::size)
+        .def("nearest", nearest, nb::arg("queries"), nb::arg("k") = 1,
+             nb::sig("def nearest(self, queries: numpy.typing.ArrayLike, k: int = 1) -> tuple[numpy.ndarray, "
+                     "numpy.ndarray]"),
+             "Distances and indices, both m x k, of the k points nearest to each query, the nearest first.")
+        .def("within", within, nb::arg("queries"), nb::arg("radius"),
+             nb::sig(
+                 "def within(self, queries: numpy.typing.ArrayLike, radius: float) -> tuple[numpy.ndarray, "
+                 "numpy.ndarray, numpy.ndarray]"),
+             "Distances, indices and m + 1 offsets: the points at a distance of at most `radius` from query "
+             "i are "
+             "indices[offsets[i]:offsets[i + 1]], the nearest first.");
+}
+
+}  // namespace
+
+void bind_neighbors(nb::module_& module) {
+    bind_kd_tree(module);
+    nb::borrow<nb::class_<Mesh>>(nb::type<Mesh>())
+        .def(
+            "estimate_normals",
+            [](const Mesh& mesh, int k, const nb::object& viewpoint) {
+                const NeighborhoodOptions chosen = options(k, viewpoint);
+                return released([&] { return estimate_normals(mesh, chosen); });
+            },
+            nb::arg("k") = 16, nb::arg("viewpoint").none() = nb::none(),
+            nb::sig(
+                "def estimate_normals(self, k: int = 16, viewpoint: numpy.typing.ArrayLike | None = None) -> "
+                "Mesh"),
+            "A new mesh with normals from the k nearest neighbours of each vertex. They face the viewpoint, "
+            "or agree "
+            "with each other: closed shapes face outwards, ground up.")
+        .def(
+            "estimate_surfels",
+            [](const Mesh& mesh, int k, const nb::object& viewpoint, bool keep_normals) {
+                const NeighborhoodOptions chosen = options(k, viewpoint);
+                return released([&] { return estimate_surfels(mesh, chosen, keep_normals); });
+            },
+            nb::arg("k") = 16, nb::arg("viewpoint").none() = nb::none(), nb::arg("keep_normals") = false,
+            nb::sig(
+                "def estimate_surfels(self, k: int = 16, viewpoint: numpy.typing.ArrayLike | None = None, "
+                "keep_normals: bool = False) -> Mesh"),
+            "The vertices as a new mesh of surfels that cover the surface: N as of estimate_normals(), or "
+            "the mesh's "
+            "own; T, one semi-axis; B, the length of the other.")
+        .def(
+            "to_surfels", [](const Mesh& mesh) { return released([&] { return surfels_from_mesh(mesh); }); },
+            "One surfel for each vertex, with the mesh's normals, as large as its share of the faces around "
+            "it.");
+}
+
+}  // namespace easypbr::python
