@@ -77,7 +77,8 @@ TEST(SettingsFile, KeepsLightsAndFiles) {
     Light inferred;
     inferred.radius.latch(0.3f);
     const TemporaryFolder folder;
-    io::save_settings({{}, {{"lamp", lamp}, {"inferred", inferred}, {"plain", {}}}, {{"a/b.ply", "0123"}}}, folder / "look.json");
+    io::save_settings({{}, {{"lamp", lamp}, {"inferred", inferred}, {"plain", {}}}, {{"a/b.ply", "0123"}}},
+                      folder / "look.json");
     const io::SettingsFile read = io::load_settings(folder / "look.json");
     const Light& back = read.lights.at("lamp");
     EXPECT_EQ(back.type, lamp.type);

@@ -73,8 +73,8 @@ double mean_error(const Scene& scene, const Light& light, ShadowMode mode, int s
     for (const double error : errors)
         if (error >= 0) sum += error, ++count;
     EXPECT_GT(count, 1000);
-    ::testing::Test::RecordProperty(
-        fmt::format("mean_error_mode{}_samples{}", int(mode), samples), fmt::format("{:.4f}", sum / count));
+    ::testing::Test::RecordProperty(fmt::format("mean_error_mode{}_samples{}", int(mode), samples),
+                                    fmt::format("{:.4f}", sum / count));
     return sum / count;
 }
 

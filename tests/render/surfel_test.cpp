@@ -10,8 +10,8 @@
 namespace easypbr::render {
 namespace {
 
-/// Surfels on the plane z = 0 within [-half, half]^2, spacing apart and jittered, with elliptic axes turned at
-/// random, large enough to overlap.
+/// Surfels on the plane z = 0 within [-half, half]^2, spacing apart and jittered, with elliptic axes turned
+/// at random, large enough to overlap.
 MeshData plane_of_surfels(int n, float half) {
     std::mt19937 random(1);
     std::uniform_real_distribution<float> uniform(-1, 1);
@@ -54,13 +54,16 @@ TEST(Surfels, OfAPlaneReproduceIt) {
             const double a = radians(tilt);
             const Vec3d eye = 3 * Vec3d(std::sin(a), 0, std::cos(a));
             look_from(session, eye, 20);
-            auto layers = session.render_layers({"albedo", "normal", "depth", "metallic", "roughness", "id", "element"});
+            auto layers = session.render_layers(
+                {"albedo", "normal", "depth", "metallic", "roughness", "id", "element"});
             const Vec3d forward = -eye.normalized();
-            const Mat4d unproject = (session.camera().projection_matrix(1) * session.camera().view()).inverse();
+            const Mat4d unproject =
+                (session.camera().projection_matrix(1) * session.camera().view()).inverse();
             int covered = 0;
             for (int y = 0; y < 100; ++y)
                 for (int x = 0; x < 100; ++x) {
-                    const Eigen::Vector4d p = unproject * Eigen::Vector4d((x + 0.5) / 50 - 1, 1 - (y + 0.5) / 50, 0.5, 1);
+                    const Eigen::Vector4d p =
+                        unproject * Eigen::Vector4d((x + 0.5) / 50 - 1, 1 - (y + 0.5) / 50, 0.5, 1);
                     const Vec3d direction = (p.head<3>() / p.w() - eye).normalized();
                     const double length = -eye.z() / direction.z();
                     const Vec3d hit = eye + length * direction;
@@ -70,7 +73,8 @@ TEST(Surfels, OfAPlaneReproduceIt) {
                     ASSERT_GT(depth, 0) << x << ' ' << y;
                     // Eight bits' step, as the issue asks; the target has sixteen.
                     for (int c = 0; c < 3; ++c)
-                        ASSERT_NEAR(layers.at("albedo").at<float>(x, y)[c], material.base_color[c], 1.0f / 255);
+                        ASSERT_NEAR(layers.at("albedo").at<float>(x, y)[c], material.base_color[c],
+                                    1.0f / 255);
                     const Vec3 n(layers.at("normal").at<float>(x, y));
                     ASSERT_LT(degrees(std::acos(std::min(1.0f, n.z()))), 0.2);
                     ASSERT_NEAR(depth, length * direction.dot(forward), 2e-5 * depth);
@@ -96,7 +100,8 @@ TEST(Surfels, BlendColoursBetweenTheirOwn) {
     app::Session session = plain_session(scene_of(data), 100);
     look_from(session, Vec3d(0, 0, 5));
     const Image albedo = session.render_layers({"albedo"}).at("albedo");
-    const float low = linear_from_srgb(Vec3(0.2f, 0.2f, 0.2f))[0], high = linear_from_srgb(Vec3(0.9f, 0.9f, 0.9f))[0];
+    const float low = linear_from_srgb(Vec3(0.2f, 0.2f, 0.2f))[0],
+                high = linear_from_srgb(Vec3(0.9f, 0.9f, 0.9f))[0];
     for (int x = 20; x < 80; ++x) {
         const float v = albedo.at<float>(x, 50)[0];
         EXPECT_GE(v, low - 1e-4f);
@@ -117,7 +122,8 @@ MeshData sphere_of_surfels(int n, unsigned seed, bool even = false) {
     Array3f::Dense V(n, 3), T(n, 3);
     ArrayXf::Dense C(n, 3);
     for (int i = 0; i < n; ++i) {
-        const float z = 1 - (2 * float(i) + 1) / float(n), s = std::sqrt(1 - z * z), a = 2.39996323f * float(i);
+        const float z = 1 - (2 * float(i) + 1) / float(n), s = std::sqrt(1 - z * z),
+                    a = 2.39996323f * float(i);
         const Vec3 p = even ? Vec3(s * std::cos(a), s * std::sin(a), z)
                             : Vec3(normal(random), normal(random), normal(random)).normalized();
         V.row(i) << p.x(), p.y(), p.z();
@@ -162,7 +168,8 @@ TEST(Surfels, AreDrawnAlikeByBothWays) {
         int differ = 0;
         for (size_t i = 0; i < a.pixels<uint8_t>().size(); ++i)
             differ += std::abs(int(a.pixels<uint8_t>()[i]) - int(b.pixels<uint8_t>()[i])) > 2;
-        // Where a rim or the end of the depth band runs through a pixel, rounding decides whether a splat counts.
+        // Where a rim or the end of the depth band runs through a pixel, rounding decides whether a splat
+        // counts.
         EXPECT_LT(differ, 200 * 150 * 4 / 200) << int(projection);
     }
 }

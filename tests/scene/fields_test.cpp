@@ -62,24 +62,15 @@ TEST(Fields, AreDocumentedOnce) {
     }
 }
 
-// Every member of every struct, counted in settings.h; one line per group, so that changes of different groups
-// do not meet.
+// Every member of every struct, counted in settings.h; one line per group, so that changes of different
+// groups do not meet.
 TEST(Fields, AreComplete) {
     std::map<std::string, int> counts;
     for (const Field& field : fields()) ++counts[field.name.substr(0, field.name.find('.'))];
     const std::map<std::string, int> expected = {
-        {"image", 3},
-        {"camera", 12},
-        {"environment", 4},
-        {"background", 4},
-        {"lights", 1 + 3 * 6},
-        {"shadows", 3},
-        {"shading", 3},
-        {"edl", 3},
-        {"transparency", 2},
-        {"tonemap", 3},
-        {"material", 4 + 18 + 7},
-        {"style", 24},
+        {"image", 3},          {"camera", 12}, {"environment", 4},       {"background", 4},
+        {"lights", 1 + 3 * 6}, {"shadows", 3}, {"shading", 3},           {"edl", 3},
+        {"transparency", 2},   {"tonemap", 3}, {"material", 4 + 18 + 7}, {"style", 24},
         {"load", 1},
     };
     EXPECT_EQ(counts, expected);

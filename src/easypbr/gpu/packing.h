@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "easypbr/core/color.h"
 #include "easypbr/core/octahedral.h"
 #include "easypbr/gl/buffer.h"
 #include "easypbr/scene/array.h"
@@ -26,10 +27,6 @@ inline Oct16 oct16(const Vec3& n) {
     const Vec2 p = oct_encode(n);
     return {snorm16(p.x()), snorm16(p.y())};
 }
-
-struct Rgba8 {
-    uint8_t r, g, b, a;
-};
 
 /// Row `i` of colours with 3 or 4 columns.
 inline Rgba8 rgba8(const ArrayXf& C, Eigen::Index i) {

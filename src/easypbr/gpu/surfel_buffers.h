@@ -11,10 +11,10 @@
 namespace easypbr::gpu {
 
 struct SurfelBuffers {
-    gl::Buffer positions;  ///< 3 floats
-    gl::Buffer normals;    ///< 3 floats: zero has a meaning
-    gl::Buffer axes;       ///< tangent, bitangent length
-    gl::Buffer colors;     ///< RGBA8, sRGB-encoded; absent without C
+    gl::Buffer positions;   ///< 3 floats
+    gl::Buffer normals;     ///< 3 floats: zero has a meaning
+    gl::Buffer axes;        ///< tangent, bitangent length
+    gl::Buffer colors;      ///< RGBA8, sRGB-encoded; absent without C
     gl::VertexArray array;  ///< one instance per surfel
 };
 

@@ -21,6 +21,7 @@ struct Source {
     const DrawStyle& style;
     const Settings& settings;
     const Material& textures;
+    const ColorMeaning& colors;
     bool transparent_colors = has_transparent_colors(object.mesh->C);
 };
 
@@ -32,16 +33,28 @@ DrawItem make_item(const Source& source, const MeshPart& part) {
     item.material = overridden(material_of(mesh, part), source.settings.material, source.textures);
     item.style = source.style;
     item.two_sided = source.style.two_sided.value_or(item.material.double_sided);
-    item.with_colors = !mesh.C.empty() && !source.settings.material.color.value();
+    const bool own_color = !source.settings.material.color.value();
+    item.with_colors =
+        !mesh.C.empty() && (source.colors.from_data || (own_color && source.colors.vertex_colors));
+    if (source.colors.from_data) item.material.base_color = Vec3(1, 1, 1);
+    if (!source.colors.textured || (source.colors.from_data && item.with_colors))
+        item.material.base_color_texture = {};
     item.alpha = item.material.alpha_mode_for(item.with_colors && source.transparent_colors);
     return item;
+}
+
+/// Lit unless the style says otherwise; then as they are, and those of a table exactly.
+SurfaceKind kind_of(const Source& source) {
+    if (source.style.lit.value_or(true)) return SurfaceKind::lit;
+    return source.colors.exact ? SurfaceKind::exact : SurfaceKind::display;
 }
 
 void add_mesh(const Source& source, DrawList& list) {
     if (source.object.mesh->F.empty()) return;
     for (const MeshPart& part : parts_of(*source.object.mesh)) {
         list.meshes.push_back(make_item(source, part));
-        if (!source.style.lit.value_or(true)) list.meshes.back().kind = SurfaceKind::display;
+        list.meshes.back().kind = kind_of(source);
+        if (source.style.mode == DrawMode::voxels) list.meshes.back().style.flat = true;
     }
 }
 
@@ -49,11 +62,13 @@ void add_points(const Source& source, DrawList& list) {
     const MeshData& mesh = *source.object.mesh;
     if (mesh.V.empty()) return;
     DrawItem item = make_item(source, {});
-    const bool eye_dome = mesh.N.empty() && source.settings.eye_dome.enabled;
-    if (!source.style.lit.value_or(true) || (mesh.N.empty() && !eye_dome))
-        item.kind = SurfaceKind::display;
-    else if (eye_dome)
-        item.kind = SurfaceKind::eye_dome;
+    // Labels of clouds are there to be read.
+    const bool lit = source.style.lit.value_or(!source.colors.labels);
+    item.kind = kind_of(source);
+    if (lit && mesh.N.empty())
+        item.kind = source.settings.eye_dome.enabled ? SurfaceKind::eye_dome : SurfaceKind::display;
+    else if (!lit && source.colors.exact)
+        item.kind = SurfaceKind::exact;
     list.points.push_back(std::move(item));
 }
 
@@ -61,7 +76,7 @@ void add_surfels(const Source& source, DrawList& list) {
     // A surfel without a normal is a point.
     if (source.object.mesh->N.empty()) return add_points(source, list);
     DrawItem item = make_item(source, {});
-    if (!source.style.lit.value_or(true)) item.kind = SurfaceKind::display;
+    item.kind = kind_of(source);
     list.surfels.push_back(std::move(item));
 }
 
@@ -125,13 +140,14 @@ DrawList DrawList::as_surfaces() const {
     return surfaces;
 }
 
-DrawList draw_list(const SceneSnapshot& scene, const Settings& settings, const Material& textures) {
+DrawList draw_list(const DrawableScene& drawable, const Settings& settings, const Material& textures) {
     DrawList list;
-    for (const auto& object : scene.objects) {
+    for (size_t i = 0; i < drawable.scene.objects.size(); ++i) {
+        const SceneSnapshot::Object& object = drawable.scene.objects[i];
         const DrawStyle style = resolve_style(*object.mesh, settings.style);
         if (!style.visible) continue;
-        const Source source{object, style, settings, textures};
-        if (style.mode == DrawMode::mesh) add_mesh(source, list);
+        const Source source{object, style, settings, textures, drawable.meanings[i]};
+        if (style.mode == DrawMode::mesh || style.mode == DrawMode::voxels) add_mesh(source, list);
         add_lines(source, list);
         if (style.mode == DrawMode::surfels) add_surfels(source, list);
         if (style.mode == DrawMode::points || style.show_points) add_points(source, list);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "easypbr/gpu/line_segments.h"
+#include "easypbr/render/drawable_scene.h"
 #include "easypbr/render/surface_kind.h"
 #include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/resolve.h"
@@ -73,7 +74,7 @@ struct DrawList {
 };
 
 /// All items in the order of the scene. `textures` are the settings' own, which stand in for the materials'.
-DrawList draw_list(const SceneSnapshot& scene, const Settings& settings, const Material& textures);
+DrawList draw_list(const DrawableScene& drawable, const Settings& settings, const Material& textures);
 
 /// A material with the settings' overrides applied.
 Material overridden(const Material& material, const MaterialSettings& settings, const Material& textures);

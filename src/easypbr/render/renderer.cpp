@@ -83,13 +83,14 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     if (!resolved.environment.empty())
         run("environment", [&] { environment_.prepare(resolved.environment, sees_environment(resolved)); });
 
-    const DrawList all = draw_list(scene, resolved.settings, images.textures);
+    const DrawableScene drawable = drawables_.apply(scene, resolved.settings);
+    const DrawList all = draw_list(drawable, resolved.settings, images.textures);
     const DrawList list = options.layers || options.ids ? all.as_surfaces() : all;
     // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
     const bool has_exact = list.has([](const DrawItem& item) { return item.kind == SurfaceKind::exact; });
     const DrawList averaged = options.samples > 1 && has_exact ? list.without_exact() : DrawList();
     Frame frame;
-    frame.scene = &scene;
+    frame.scene = &drawable.scene;
     frame.resolved = &resolved;
     frame.size = options.size;
     frame.sample_count = options.samples;
@@ -107,6 +108,7 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     points_.evict_unused();
     surfels_.evict_unused();
     spacings_.evict_unused();
+    drawables_.evict_unused();
     lines_.evict_unused();
     camera_ = resolved.camera;
     glFlush();

@@ -103,6 +103,7 @@ class Renderer {
     gpu::TextureCache textures_;
     GeometryPass geometry_{meshes_, textures_};
     SpacingCache spacings_;
+    DrawableCache drawables_{spacings_};
     SoftwareGeometryPass software_geometry_{spacings_};
     PointPass points_{spacings_};
     SurfelPass surfels_{spacings_};

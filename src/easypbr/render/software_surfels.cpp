@@ -17,7 +17,19 @@ constexpr size_t grain = 1 << 13;
 /// Sums are whole multiples of this. A pixel holds 2^31 surfels of full weight before one overflows.
 constexpr float quantum = 1.0f / (1 << 20);
 
-enum Channel { red, green, blue, normal_x, normal_y, normal_z, metallic, roughness, distance, weight, channels };
+enum Channel {
+    red,
+    green,
+    blue,
+    normal_x,
+    normal_y,
+    normal_z,
+    metallic,
+    roughness,
+    distance,
+    weight,
+    channels
+};
 
 int64_t quantised(float value) {
     return int64_t(std::lrintf(value * (1 / quantum)));
@@ -43,8 +55,8 @@ float axial_distance(const Frame& frame, float depth) {
 
 /// Sums and limits of a tile's pixels.
 struct SoftwareSurfels::Tile {
-    std::array<float, tile_pixels> limit;    ///< nearest distance pushed back
-    std::array<float, tile_pixels> opaque;   ///< distance of what hides surfels
+    std::array<float, tile_pixels> limit;   ///< nearest distance pushed back
+    std::array<float, tile_pixels> opaque;  ///< distance of what hides surfels
     std::array<uint64_t, tile_pixels> nearest;
     std::array<std::array<int64_t, channels>, tile_pixels> sums;
 };
@@ -84,7 +96,8 @@ void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<Source>& s
                                 std::span<const uint64_t> surfels, NativePixels& pixels) const {
     thread_local Tile t;
     const int left = tile.x() * tile_size, top = tile.y() * tile_size;
-    const int right = std::min(left + tile_size, frame.size.x()), bottom = std::min(top + tile_size, frame.size.y());
+    const int right = std::min(left + tile_size, frame.size.x()),
+              bottom = std::min(top + tile_size, frame.size.y());
     t.limit.fill(std::numeric_limits<float>::infinity());
     t.nearest.fill(std::numeric_limits<uint64_t>::max());
     for (auto& sum : t.sums) sum.fill(0);
@@ -126,9 +139,10 @@ void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<Source>& s
             if (hit.z > t.limit[i]) return;
             const float w = surfel_weight(hit.r2);
             // Relative to the limit: the sum of small numbers keeps the distance's precision.
-            const float values[channels] = {albedo[0], albedo[1],  albedo[2],   n[0],
-                                            n[1],      n[2],       m.metallic,  m.roughness,
-                                            (t.limit[i] - hit.z) / t.limit[i],  1};
+            const float values[channels] = {albedo[0],  albedo[1],   albedo[2],
+                                            n[0],       n[1],        n[2],
+                                            m.metallic, m.roughness, (t.limit[i] - hit.z) / t.limit[i],
+                                            1};
             for (size_t c = 0; c < channels; ++c) t.sums[i][c] += quantised(values[c] * w);
         });
     }
@@ -162,8 +176,10 @@ void SoftwareSurfels::draw(const Frame& frame, const std::vector<Source>& source
     pixels.resize({0, 0, frame.size.x(), frame.size.y()}, frame.with_ids);
     bin(sources, tiles);
     parallel_for(size_t(tiles.x()) * size_t(tiles.y()), 1, [&](size_t tile) {
-        const std::span<const uint64_t> surfels(entries_.data() + first_[tile], first_[tile + 1] - first_[tile]);
-        draw_tile(frame, sources, opaque, Vec2i(int(tile) % tiles.x(), int(tile) / tiles.x()), surfels, pixels);
+        const std::span<const uint64_t> surfels(entries_.data() + first_[tile],
+                                                first_[tile + 1] - first_[tile]);
+        draw_tile(frame, sources, opaque, Vec2i(int(tile) % tiles.x(), int(tile) / tiles.x()), surfels,
+                  pixels);
     });
 }
 

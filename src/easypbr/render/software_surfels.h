@@ -6,9 +6,10 @@
 
 namespace easypbr::render {
 
-/// Surface splatting in two passes and a normalisation (Botsch et al. 2005), tile by tile: the nearest distance
-/// of each pixel, pushed back by the splat's radius; then weighted sums of all that lies before it; then their
-/// quotients. Sums are of whole numbers, so that the picture does not depend on the order of the surfels.
+/// Surface splatting in two passes and a normalisation (Botsch et al. 2005), tile by tile: the nearest
+/// distance of each pixel, pushed back by the splat's radius; then weighted sums of all that lies before it;
+/// then their quotients. Sums are of whole numbers, so that the picture does not depend on the order of the
+/// surfels.
 class SoftwareSurfels {
   public:
     struct Source {

@@ -20,8 +20,8 @@ class SurfelPass {
     /// The cache is shared with other passes, must outlive this one, and is emptied by its owner.
     explicit SurfelPass(SpacingCache& spacings) : spacings_(spacings) {}
 
-    /// Adds the surfels to what the G-buffer holds; natively, which is faster where there is no GPU, or by the
-    /// driver.
+    /// Adds the surfels to what the G-buffer holds; natively, which is faster where there is no GPU, or by
+    /// the driver.
     void draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets, bool native);
 
     void evict_unused() { cache_.evict_unused(); }

@@ -14,17 +14,17 @@ namespace easypbr::render {
 /// filter of EWA splatting as Botsch et al. 2005 approximate it, made no larger than it has to be.
 constexpr float least_surfel_radius = 0.5f;
 
-/// A surfel at p with semi-axes t and b covers the points p + u t + v b with u^2 + v^2 <= 1. Homogeneous pixel
-/// coordinates relative to the centre's are linear in (u, v, 1), so that the inverse of a 3 x 3 matrix takes a
-/// pixel back to (u, v), right under perspective (Sigg et al. 2006, "GPU-Based Ray-Casting of Quadratic
-/// Surfaces").
+/// A surfel at p with semi-axes t and b covers the points p + u t + v b with u^2 + v^2 <= 1. Homogeneous
+/// pixel coordinates relative to the centre's are linear in (u, v, 1), so that the inverse of a 3 x 3 matrix
+/// takes a pixel back to (u, v), right under perspective (Sigg et al. 2006, "GPU-Based Ray-Casting of
+/// Quadratic Surfaces").
 struct SurfelProjection {
-    float centre_x, centre_y;      ///< pixels
-    float tx, ty, bx, by, wc;      ///< columns of the matrix; that of the centre is (0, 0, wc)
-    float qx, qy, qz;              ///< t x b
-    float z_t, z_b, z_c;           ///< axial distance is z_c + u z_t + v z_b
-    float x0, x1, y0, y1;          ///< box, pixels, relative to nothing
-    float band;                    ///< surfels that deep behind the nearest are blended with it
+    float centre_x, centre_y;  ///< pixels
+    float tx, ty, bx, by, wc;  ///< columns of the matrix; that of the centre is (0, 0, wc)
+    float qx, qy, qz;          ///< t x b
+    float z_t, z_b, z_c;       ///< axial distance is z_c + u z_t + v z_b
+    float x0, x1, y0, y1;      ///< box, pixels, relative to nothing
+    float band;                ///< surfels that deep behind the nearest are blended with it
 
     /// Of a pixel's centre: the squared radius in the ellipse, above 1 outside, and the axial distance.
     struct Hit {
@@ -69,8 +69,8 @@ class SurfelProjector {
     const DrawItem* item_;
     Mat4 clip_from_mesh_, view_from_mesh_;
     Mat3 normal_from_mesh_, world_from_mesh_;
-    Vec3 eye_;               ///< in the mesh's frame
-    Vec3 towards_viewer_;    ///< orthographic, in the mesh's frame
+    Vec3 eye_;             ///< in the mesh's frame
+    Vec3 towards_viewer_;  ///< orthographic, in the mesh's frame
     bool orthographic_;
     float width_, height_, near_, scale_, radius_;
 };
