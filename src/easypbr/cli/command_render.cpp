@@ -10,11 +10,13 @@
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/console.h"
 #include "easypbr/cli/drawable.h"
+#include "easypbr/cli/object_styles.h"
 #include "easypbr/cli/render_options.h"
 #include "easypbr/cli/stopwatch.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/image_io.h"
+#include "easypbr/io/label_map_io.h"
 
 namespace easypbr::cli {
 namespace {
@@ -87,7 +89,11 @@ void write_to_stdout(const Image& image) {
 
 class RenderJob {
   public:
-    explicit RenderJob(const RenderOptions& options) : options_(options), look_(look_of(options)) {}
+    explicit RenderJob(const RenderOptions& options)
+        : options_(options),
+          look_(look_of(options)),
+          styles_(parse_styles(options.styles, unique_names(options.files))),
+          label_map_(options.label_map.empty() ? nullptr : io::find_label_map(options.label_map)) {}
 
     int run() {
         const std::vector<Picture> pictures = pictures_of(options_);
@@ -144,7 +150,10 @@ class RenderJob {
         const std::vector<io::LoadedScene> loaded = loading.get();
         lighting.get();
         watch.lap("load");
-        for (size_t i = 0; i < loaded.size(); ++i) show(session_.scene(), loaded[i], picture.names[i]);
+        for (size_t i = 0; i < loaded.size(); ++i) {
+            style_object(picture.names[i], styles_, label_map_, loaded[i].mesh);
+            show(session_.scene(), loaded[i], picture.names[i]);
+        }
         if (!options_.camera.empty()) session_.set_camera(find_camera(loaded, options_.camera));
         for (const auto& [name, light] : look_.lights) session_.scene().set_light(name, light);
     }
@@ -172,6 +181,8 @@ class RenderJob {
 
     const RenderOptions& options_;
     Look look_;
+    std::vector<StyleOption> styles_;
+    std::shared_ptr<const LabelMap> label_map_;
     app::Session session_;
     bool environment_is_loaded_ = false;
 };

@@ -8,6 +8,8 @@
 #include <map>
 
 #include "easypbr/cli/command.h"
+#include "easypbr/cli/drawable.h"
+#include "easypbr/cli/object_styles.h"
 #include "easypbr/cli/pose_file.h"
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
@@ -84,6 +86,15 @@ void declare_look(CLI::App& command, RenderOptions& options) {
         ->option_text("NAME=FILE");
     command.add_flag("--smooth", options.smooth, "One normal per vertex");
     command.add_flag("--flat", options.flat, "One normal per face");
+    command
+        .add_option("--style", options.styles,
+                    "How objects are drawn, for example color_by=height; NAME.KEY=VALUE for one object")
+        ->allow_extra_args(false)
+        ->option_text("[NAME.]KEY=VALUE");
+    command
+        .add_option("--label-map", options.label_map,
+                    "Names and colours of labels: semantic_kitti, cityscapes, scannet or a file")
+        ->option_text("NAME|FILE");
     command.add_option("--set", options.values, "Any setting, for example tonemap.exposure=2")
         ->allow_extra_args(false)
         ->option_text("KEY=VALUE");
@@ -203,6 +214,7 @@ void declare_render_options(CLI::App& command, RenderOptions& options) {
 void check_usage(const RenderOptions& options) {
     require(!options.files.empty(), "render", "at least one FILE");
     require(!options.output.empty(), "render", "-o OUT.png");
+    parse_styles(options.styles, unique_names(options.files));
     if (options.smooth && options.flat) throw UsageError("render: --smooth and --flat exclude each other");
     if (!options.camera_pose.empty())
         for (const RenderOptions::Shorthand& shorthand : options.shorthands)
@@ -237,6 +249,8 @@ void apply(const RenderOptions& options, Settings& settings) {
         settings.camera.projection = Projection::orthographic;
         set_value(settings, "--ortho", "camera.ortho_height", options.ortho);
     }
+    for (const StyleOption& style : parse_styles(options.styles, unique_names(options.files)))
+        if (style.object.empty()) set_value(settings, "--style", "style." + style.key, style.value);
     for (const std::string& text : options.values) {
         const auto [name, value] = split("--set", text);
         set_value(settings, "--set", name, value);

@@ -24,6 +24,8 @@ struct RenderOptions {
     std::vector<std::string> layers;
     std::vector<std::string> textures;  ///< "base_color=FILE"
     std::vector<std::string> values;    ///< --set: "group.name=value"
+    std::vector<std::string> styles;    ///< "key=value" or "object.key=value"
+    std::string label_map;              ///< a built-in one's name or a file
 
     /// An option whose value is a setting's, as it was written.
     struct Shorthand {
