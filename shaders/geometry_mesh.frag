@@ -13,7 +13,7 @@ in vec4 v_color;
 #ifdef UV
 in vec2 v_uv;
 #endif
-#ifdef NORMAL_TEXTURE
+#ifdef TANGENT
 in vec4 v_tangent;
 #endif
 #ifndef FLAT
@@ -42,9 +42,12 @@ uniform vec4 u_surface;     // metallic, roughness, occlusion strength, alpha cu
 uniform vec4 u_emissive;    // radiance; w: code of the surface's kind
 uniform float u_normal_scale;
 uniform float u_lod_bias;
+#ifdef EXTENDED
+uniform vec3 u_up;  // world
+#endif
 
 #ifdef UV
-uniform mat3 u_uv_transform[7];
+uniform mat3 u_uv_transform[UV_TRANSFORMS];
 // Images have row 0 on top and texture coordinates have v upwards.
 vec2 uv_of(int slot) {
     vec2 uv = (u_uv_transform[slot] * vec3(v_uv, 1.0)).xy;
@@ -93,32 +96,59 @@ vec4 base_color() {
     return color;
 }
 
-vec3 shading_normal() {
+struct Normals {
+    vec3 shading, geometric;  // with and without the normal texture, towards the viewer's side
+    vec3 tangent, bitangent;  // of the texture coordinates; right-angled with the geometric normal
+};
+
+// A texel of a normal texture, in [0, 1].
+vec3 mapped_normal(Normals n, vec3 texel, float scale) {
+    vec3 m = texel * 2.0 - 1.0;
+    vec3 mapped = n.tangent * (m.x * scale) + n.bitangent * (m.y * scale) + n.geometric * max(m.z, 0.0);
+    return dot(mapped, mapped) > 1e-12 ? normalize(mapped) : n.geometric;
+}
+
+Normals read_normals() {
+    Normals n;
+    float side = 1.0;
 #ifdef FACE_NORMAL
     // Derivatives know which side is seen whatever the winding says. Rows run downwards, so dFdy points down.
     vec3 face = normalize(cross(dFdy(v_position), dFdx(v_position)));
     if (dot(face, v_position) > 0.0) face = -face;
 #endif
 #ifdef FLAT
-    vec3 n = face;
+    n.geometric = face;
 #else
-    vec3 n = normalize(v_normal);
-#ifdef NORMAL_TEXTURE
-    vec3 m = texture(u_normal_texture, uv_of(4), u_lod_bias).xyz * 2.0 - 1.0;
-    vec3 t = v_tangent.xyz - n * dot(n, v_tangent.xyz);
-    t *= inversesqrt(max(dot(t, t), 1e-20));
-    vec3 b = cross(n, t) * (v_tangent.w < 0.0 ? -1.0 : 1.0);
-    vec3 mapped = t * (m.x * u_normal_scale) + b * (m.y * u_normal_scale) + n * max(m.z, 0.0);
-    n = dot(mapped, mapped) > 1e-12 ? normalize(mapped) : n;
-#endif
+    n.geometric = normalize(v_normal);
 #ifdef FACE_NORMAL
-    if (dot(normalize(v_normal), face) < 0.0) n = -n;
+    if (dot(n.geometric, face) < 0.0) side = -1.0;
 #elif defined(TWO_SIDED)
-    if (!gl_FrontFacing) n = -n;
+    if (!gl_FrontFacing) side = -1.0;
 #endif
+#endif
+#ifdef TANGENT
+    vec3 t = v_tangent.xyz - n.geometric * dot(n.geometric, v_tangent.xyz);
+    n.tangent = t * inversesqrt(max(dot(t, t), 1e-20));
+    n.bitangent = cross(n.geometric, n.tangent) * (v_tangent.w < 0.0 ? -1.0 : 1.0);
+#elif defined(EXTENDED)
+    // Without texture coordinates the tangent runs around the upright axis, as on a lathe.
+    vec3 around = cross(u_up, n.geometric);
+    n.tangent = dot(around, around) > 1e-6 ? normalize(around) : normalize(cross(u_up.yzx, n.geometric));
+    n.bitangent = cross(n.geometric, n.tangent);
+#endif
+    n.geometric *= side;
+    n.tangent *= side;
+    n.bitangent *= side;
+    n.shading = n.geometric;
+#ifdef NORMAL_TEXTURE
+    n.shading = mapped_normal(n, texture(u_normal_texture, uv_of(4), u_lod_bias).xyz, u_normal_scale);
 #endif
     return n;
 }
+
+#ifdef EXTENDED
+#include "geometry_extension.glsl"
+#endif
 
 void main() {
     vec4 color = base_color();
@@ -152,7 +182,11 @@ void main() {
 #else
     o_albedo = vec4(color.rgb, 1.0);
 #endif
-    o_normal = oct_encode(shading_normal()) * 0.5 + 0.5;
+    Normals n = read_normals();
+    o_normal = oct_encode(n.shading) * 0.5 + 0.5;
+#ifdef EXTENDED
+    write_extension(n, oct_decode(round(o_normal * 65535.0) / 65535.0 * 2.0 - 1.0));
+#endif
     o_material = vec4(metallic, roughness, occlusion, u_emissive.w);
     o_depth = gl_FragCoord.z;
 #ifdef OBJECT_ID

@@ -11,7 +11,7 @@ out vec4 v_color;
 layout(location = 3) in vec2 a_uv;
 out vec2 v_uv;
 #endif
-#ifdef NORMAL_TEXTURE
+#ifdef TANGENT
 layout(location = 4) in vec4 a_tangent;
 out vec4 v_tangent;
 #endif
@@ -44,7 +44,7 @@ void main() {
 #ifdef UV
     v_uv = a_uv;
 #endif
-#ifdef NORMAL_TEXTURE
+#ifdef TANGENT
     v_tangent = vec4(u_tangent_from_mesh * a_tangent.xyz, a_tangent.w);
 #endif
 }

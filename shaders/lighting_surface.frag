@@ -4,6 +4,10 @@
 #include "common_environment.glsl"
 #include "common_brdf.glsl"
 #include "common_surface_kind.glsl"
+#ifdef EXTENDED
+#include "common_extension.glsl"
+#include "common_lobes.glsl"
+#endif
 
 uniform sampler2D u_albedo;
 uniform sampler2D u_normal;
@@ -12,13 +16,21 @@ uniform sampler2D u_depth_target;
 uniform sampler2D u_dfg;
 uniform float u_dielectric_f0;
 
+#ifdef EXTENDED
+layout(location = 0, index = 0) out vec4 o_radiance;
+layout(location = 0, index = 1) out vec4 o_keep;  // of the emission that stands in the target
+uniform float u_first_block;
+#else
 layout(location = 0) out vec4 o_radiance;
+#endif
 
 #ifdef ENVIRONMENT
 uniform samplerCube u_prefiltered;
 uniform samplerCube u_irradiance;
 uniform float u_last_level;
 uniform float u_env_intensity;
+uniform float u_tap_offset;  // in [0, 1), another one in each frame
+uniform float u_tap_gap;     // between the offsets of all frames
 #ifdef LOBE_SAMPLES
 uniform float u_lobe_slope;  // of the facet that this frame reflects in, in units of alpha
 #endif
@@ -42,9 +54,67 @@ struct Surface {
     vec3 position, normal, view, diffuse, f0;
     float n_dot_v, roughness, alpha;
     Energy energy;
+#ifdef EXTENDED
+    Extension extension;
+    vec3 f90, film;
+    float keep;  // of what is below all layers
+    float sheen_albedo, sheen_keep, coat_albedo, coat_n_dot_v;
+#endif
 };
 
-// Radiance from one light. Compensation of multiple scattering as Turquin 2019.
+vec2 dfg_at(float n_dot_v, float roughness) {
+    const float nodes = float(DFG_SIZE);
+    return textureLod(u_dfg, (vec2(sqrt(min(n_dot_v, 1.0)), roughness) * (nodes - 1.0) + 0.5) / nodes, 0.0).rg;
+}
+
+#ifdef ENVIRONMENT
+vec3 prefiltered(vec3 direction, float roughness) {
+    return textureLod(u_prefiltered, u_env_from_world * direction, prefiltered_level(roughness, u_last_level)).rgb;
+}
+
+// Average radiance in the specular lobe.
+vec3 lobe_radiance(vec3 normal, vec3 view, float n_dot_v, float roughness, float alpha) {
+    // The lobe leans towards the normal the more the rougher the surface is.
+    vec3 dominant = normalize(mix(reflect(-view, normal), normal, alpha * alpha));
+#ifdef LOBE_SAMPLES
+    // Seen from the side a lobe is NoV times as wide across the plane of incidence as within it, whereas the
+    // environment is prefiltered for NoV = 1. The frames of an accumulated picture take it narrower, side by side
+    // within the plane.
+    float narrowed = mix(min(n_dot_v, 1.0), 1.0, alpha);
+    float slope = u_lobe_slope * alpha * sqrt(1.0 - narrowed * narrowed);
+    vec3 facet = normalize(view + dominant);
+    vec3 within = view - facet * dot(facet, view);
+    vec3 h = normalize(facet + within * (slope * inversesqrt(max(dot(within, within), 1e-12))));
+    return prefiltered(reflect(-view, h), roughness * sqrt(narrowed));
+#else
+    return prefiltered(dominant, roughness);
+#endif
+}
+
+// From ambient occlusion (Lagarde and de Rousiers 2014).
+float specular_occlusion(float n_dot_v, float roughness, float occlusion) {
+    return clamp(pow(n_dot_v + occlusion, exp2(-16.0 * roughness - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
+}
+#endif
+
+#ifdef EXTENDED
+#include "lighting_extended.glsl"
+#else
+// Light from one direction into the view: the BRDF times the cosine. Compensation of multiple scattering as Turquin 2019.
+vec3 scattered(vec3 l, Surface s) {
+    vec3 h = normalize(l + s.view);
+    float n_dot_l = clamp(dot(s.normal, l), 0.0, 1.0);
+    float n_dot_h = clamp(dot(s.normal, h), 0.0, 1.0);
+    float v_dot_h = clamp(dot(s.view, h), 0.0, 1.0);
+    vec3 specular = D_ggx(n_dot_h, s.alpha) * V_smith(s.n_dot_v, max(n_dot_l, 1e-5), s.roughness) * F_schlick(v_dot_h, s.f0);
+#ifdef MULTIPLE_SCATTERING
+    specular *= 1.0 + s.f0 * (1.0 / s.energy.e - 1.0);
+#endif
+    return n_dot_l * (s.diffuse / pi + specular);
+}
+#endif
+
+// Radiance from one light.
 vec3 direct(Light light, Surface s) {
     vec3 to_light = light.position.w > 0.5 ? light.position.xyz - s.position : -light.direction.xyz;
     float d2 = dot(to_light, to_light);
@@ -58,47 +128,14 @@ vec3 direct(Light light, Surface s) {
         float cone = clamp(-dot(l, light.direction.xyz) * light.cone.x + light.cone.y, 0.0, 1.0);
         falloff *= cone * cone;
     }
-    vec3 h = normalize(l + s.view);
-    float n_dot_l = clamp(dot(s.normal, l), 0.0, 1.0);
-    float n_dot_h = clamp(dot(s.normal, h), 0.0, 1.0);
-    float v_dot_h = clamp(dot(s.view, h), 0.0, 1.0);
-    vec3 specular = D_ggx(n_dot_h, s.alpha) * V_smith(s.n_dot_v, max(n_dot_l, 1e-5), s.roughness) * F_schlick(v_dot_h, s.f0);
-#ifdef MULTIPLE_SCATTERING
-    specular *= 1.0 + s.f0 * (1.0 / s.energy.e - 1.0);
-#endif
-    return light.color.rgb * (falloff * n_dot_l) * (s.diffuse / pi + specular);
+    return light.color.rgb * falloff * scattered(l, s);
 }
 
-#ifdef ENVIRONMENT
-vec3 prefiltered(vec3 direction, float roughness) {
-    return textureLod(u_prefiltered, u_env_from_world * direction, prefiltered_level(roughness, u_last_level)).rgb;
-}
-
-// Average radiance in the specular lobe.
-vec3 lobe_radiance(Surface s) {
-    // The lobe leans towards the normal the more the rougher the surface is.
-    vec3 dominant = normalize(mix(reflect(-s.view, s.normal), s.normal, s.alpha * s.alpha));
-#ifdef LOBE_SAMPLES
-    // Seen from the side a lobe is NoV times as wide across the plane of incidence as within it, whereas the
-    // environment is prefiltered for NoV = 1. The frames of an accumulated picture take it narrower, side by side
-    // within the plane.
-    float narrowed = mix(min(s.n_dot_v, 1.0), 1.0, s.alpha);
-    float slope = u_lobe_slope * s.alpha * sqrt(1.0 - narrowed * narrowed);
-    vec3 facet = normalize(s.view + dominant);
-    vec3 within = s.view - facet * dot(facet, s.view);
-    vec3 h = normalize(facet + within * (slope * inversesqrt(max(dot(within, within), 1e-12))));
-    return prefiltered(reflect(-s.view, h), s.roughness * sqrt(narrowed));
-#else
-    return prefiltered(dominant, s.roughness);
-#endif
-}
-
+#if defined(ENVIRONMENT) && !defined(EXTENDED)
 vec3 indirect(Surface s, float occlusion) {
     vec3 irradiance = textureLod(u_irradiance, u_env_from_world * s.normal, 0.0).rgb;
-    // Specular occlusion from ambient occlusion (Lagarde and de Rousiers 2014).
-    float specular_occlusion =
-        clamp(pow(s.n_dot_v + occlusion, exp2(-16.0 * s.roughness - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
-    return u_env_intensity * (s.energy.single * lobe_radiance(s) * specular_occlusion +
+    return u_env_intensity * (s.energy.single * lobe_radiance(s.normal, s.view, s.n_dot_v, s.roughness, s.alpha) *
+                                  specular_occlusion(s.n_dot_v, s.roughness, occlusion) +
                               (s.energy.multiple + s.diffuse) * irradiance * occlusion);
 }
 #endif
@@ -141,11 +178,13 @@ void main() {
     // Below 0.045 the peak of D leaves the range where 32-bit floats resolve NoH (Lagarde and de Rousiers 2014).
     float light_roughness = max(s.roughness, 0.045);
     s.alpha = s.roughness * s.roughness;
+#ifdef EXTENDED
+    prepare_extended(s, albedo, metallic, is_extended(material.w), ivec2(gl_FragCoord.xy));
+#else
     s.f0 = mix(vec3(u_dielectric_f0), albedo, metallic);
-    const float nodes = float(DFG_SIZE);
-    vec2 dfg = textureLod(u_dfg, (vec2(sqrt(min(s.n_dot_v, 1.0)), s.roughness) * (nodes - 1.0) + 0.5) / nodes, 0.0).rg;
-    s.energy = surface_energy(s.f0, dfg);
+    s.energy = surface_energy(s.f0, dfg_at(s.n_dot_v, s.roughness));
     s.diffuse = albedo * (1.0 - metallic) * (1.0 - s.energy.single - s.energy.multiple);
+#endif
 
     vec3 radiance = vec3(0.0);
 #ifdef ENVIRONMENT
@@ -169,4 +208,7 @@ void main() {
 #endif
 #endif
     o_radiance = vec4(is_lit(material.w) ? radiance : vec3(0.0), 1.0);
+#ifdef EXTENDED
+    o_keep = vec4(is_lit(material.w) && u_first_block > 0.5 ? s.keep : 1.0);
+#endif
 }

@@ -34,6 +34,8 @@ FormatInfo info(Format format) {
             return {GL_RGBA16, GL_RGBA, GL_UNSIGNED_SHORT, 8};
         case Format::r32f:
             return {GL_R32F, GL_RED, GL_FLOAT, 4};
+        case Format::r16f:
+            return {GL_R16F, GL_RED, GL_HALF_FLOAT, 2};
         case Format::rgba16f:
             return {GL_RGBA16F, GL_RGBA, GL_HALF_FLOAT, 8};
         case Format::rgba32f:
@@ -42,6 +44,8 @@ FormatInfo info(Format format) {
             return {GL_RG16F, GL_RG, GL_HALF_FLOAT, 4};
         case Format::r32ui:
             return {GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, 4};
+        case Format::rgba32ui:
+            return {GL_RGBA32UI, GL_RGBA_INTEGER, GL_UNSIGNED_INT, 16};
         case Format::depth32f:
             return {GL_DEPTH_COMPONENT32F, GL_DEPTH_COMPONENT, GL_FLOAT, 4};
     }

@@ -17,10 +17,12 @@ enum class Format {
     rg16,
     rgba16,
     r32f,
+    r16f,
     rgba16f,
     rgba32f,
     rg16f,
     r32ui,
+    rgba32ui,
     depth32f
 };
 

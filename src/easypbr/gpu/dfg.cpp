@@ -18,4 +18,8 @@ std::span<const uint16_t> dfg_table(Brdf brdf) {
     }
 }
 
+std::span<const uint16_t> sheen_albedo_table() {
+    return sheen_albedo;
+}
+
 }  // namespace easypbr::gpu

@@ -14,4 +14,8 @@ inline constexpr int dfg_size = 64;
 /// A and B of one node's geometry term as halves: 2 dfg_size^2 values, computed when the library was built.
 std::span<const uint16_t> dfg_table(Brdf brdf);
 
+/// What the sheen of KHR_materials_sheen with colour 1 reflects of a uniform environment (Estevez and Kulla
+/// 2017), at the same nodes, as halves.
+std::span<const uint16_t> sheen_albedo_table();
+
 }  // namespace easypbr::gpu

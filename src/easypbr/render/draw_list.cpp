@@ -128,6 +128,18 @@ DrawList DrawList::without_layers() const {
     return without([](const DrawItem& item) { return item.layered; });
 }
 
+bool DrawItem::needs_tangents() const {
+    if (mesh().UV.empty()) return false;
+    const bool mapped = material.normal_texture || material.clearcoat_normal_texture;
+    return (mapped && !style.flat) || material.anisotropy > 0;
+}
+
+ExtensionSet DrawList::extensions() const {
+    ExtensionSet set = 0;
+    for (const DrawItem& item : meshes) set |= item.extensions();
+    return set;
+}
+
 DrawList DrawList::as_surfaces() const {
     DrawList surfaces = *this;
     for (std::vector<DrawItem>* items : {&surfaces.meshes, &surfaces.points})

@@ -6,6 +6,7 @@
 
 #include "easypbr/gpu/line_segments.h"
 #include "easypbr/render/drawable_scene.h"
+#include "easypbr/render/extensions.h"
 #include "easypbr/render/surface_kind.h"
 #include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/resolve.h"
@@ -26,7 +27,9 @@ struct DrawItem {
     const MeshData& mesh() const { return *object->mesh; }
     bool emits() const { return material.unlit || !material.emissive.isZero(); }
     bool textured() const { return material.has_textures() && !mesh().UV.empty(); }
-    bool normal_mapped() const { return bool(material.normal_texture) && !mesh().UV.empty() && !style.flat; }
+    bool needs_tangents() const;
+    /// What its shading needs beyond glTF's core model.
+    ExtensionSet extensions() const { return kind == SurfaceKind::lit ? extensions_of(material) : 0; }
 };
 
 /// Lines of an object, drawn over the picture.
@@ -68,6 +71,8 @@ struct DrawList {
     /// The items that light passes, which are drawn in layers, and the others.
     DrawList layers() const;
     DrawList without_layers() const;
+    /// Of all meshes together.
+    ExtensionSet extensions() const;
     /// All items as surfaces that hide what is behind them: what depth, ids and labels are of. A blended
     /// surface is one where its opacity is at least one half.
     DrawList as_surfaces() const;

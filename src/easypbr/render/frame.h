@@ -6,6 +6,7 @@
 #include "easypbr/gl/buffer.h"
 #include "easypbr/gl/program.h"
 #include "easypbr/gl/texture.h"
+#include "easypbr/render/extensions.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
@@ -32,6 +33,7 @@ struct Frame {
     int sample_count = 1;
     bool with_ids = false;
     bool with_overlay = false;                 ///< something is shown past light and tone curve
+    ExtensionSet extensions = 0;               ///< of the surfaces that are drawn and lit now
     bool partly_covered = false;               ///< the radiance may hold coverages between 0 and 1
     const Peel* peel = nullptr;                ///< set while a layer is drawn
     Mat4d clip_from_view = Mat4d::Identity();  ///< jittered

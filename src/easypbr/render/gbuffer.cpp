@@ -25,6 +25,14 @@ void GBuffer::add_ids() {
         gl::Framebuffer({&albedo, &normal, &material, &depth, &radiance, &id, &element}, &depth_test);
 }
 
+void GBuffer::add_extensions() {
+    if (extension[0]) return;
+    for (gl::Texture& texture : extension)
+        texture = gl::Texture(gl::Format::rgba32ui, albedo.width(), albedo.height());
+    surface_extended = gl::Framebuffer(
+        {&albedo, &normal, &material, &depth, &radiance, &extension[0], &extension[1]}, &depth_test);
+}
+
 void GBuffer::add_overlay() {
     if (overlay) return;
     overlay = gl::Texture(gl::Format::rgba16f, albedo.width(), albedo.height());

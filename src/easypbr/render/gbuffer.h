@@ -23,6 +23,9 @@ struct GBuffer {
         id;  ///< R32UI, when asked for: 1 + place of the object in the snapshot, 0 where there is nothing
     gl::Texture element;  ///< R32UI, with id: 1 + index of the face or point in its object
 
+    gl::Texture extension[2];  ///< RGBA32UI, when asked for: values of glTF's material extensions, as
+                               ///< shaders/common_extension.glsl packs them, where the kind is extended
+
     gl::Texture overlay;  ///< RGBA16F, when asked for: linear display light, premultiplied, over the
                           ///< tone-mapped picture
 
@@ -30,6 +33,7 @@ struct GBuffer {
 
     gl::Framebuffer surface;           ///< albedo, normal, material, depth
     gl::Framebuffer surface_emission;  ///< the same and radiance
+    gl::Framebuffer surface_extended;  ///< the same and extension; empty until add_extensions()
     gl::Framebuffer surface_ids;       ///< the same, id and element; empty until add_ids()
     gl::Framebuffer lit;               ///< radiance with the depth test
     gl::Framebuffer display;           ///< overlay with the depth test; empty until add_overlay()
@@ -46,6 +50,8 @@ struct GBuffer {
     /// reset_depth_range() afterwards.
     void test_covered() const;
     static void reset_depth_range();
+    /// Makes the targets of material extensions, if they are not there.
+    void add_extensions();
     /// Makes the overlay, if it is not there.
     void add_overlay();
     Vec2i size() const { return {albedo.width(), albedo.height()}; }

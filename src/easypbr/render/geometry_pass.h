@@ -21,7 +21,6 @@ class GeometryPass {
 
   private:
     void draw_item(const Frame& frame, const DrawItem& item, const gpu::MeshBuffers& buffers, bool emission);
-    void bind_textures(const gl::Program& program, const Material& material);
 
     gpu::MeshCache& meshes_;
     gpu::TextureCache& textures_;

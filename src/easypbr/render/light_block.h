@@ -26,6 +26,7 @@ struct LightBlock {
     std::vector<LightShadow> shadows;  ///< of the last of the lights
     size_t cubes = 0;                  ///< how many of the shadows are cubes
     const gl::Texture* maps = nullptr;
+    bool first = true;  ///< of the frame's blocks
 
     size_t plain() const { return lights.size() - shadows.size(); }
 };

@@ -11,6 +11,8 @@
 namespace easypbr::render {
 namespace {
 
+constexpr int extension_unit = 12;
+
 /// As the blocks in shaders/lighting_surface.frag and common_shadow.glsl.
 struct LightUniforms {
     struct {
@@ -84,6 +86,7 @@ std::vector<std::string> defines_of(const Frame& frame, const LightBlock& block,
     if (shading.multiple_scattering) defines.emplace_back("MULTIPLE_SCATTERING");
     if (shading.brdf == Brdf::ue4) defines.emplace_back("BRDF_UE4");
     if (shading.brdf == Brdf::separable) defines.emplace_back("BRDF_SEPARABLE");
+    add_extension_defines(frame.extensions, defines);
     return defines;
 }
 
@@ -99,6 +102,21 @@ const gl::Texture& LightingPass::dfg(Brdf brdf) {
     return dfg_;
 }
 
+void LightingPass::set_extensions(const gl::Program& program, const GBuffer& targets, bool first) {
+    if (!sheen_albedo_) {
+        sheen_albedo_ = gl::Texture(gl::Format::r16f, gpu::dfg_size, gpu::dfg_size);
+        sheen_albedo_.upload(std::as_bytes(gpu::sheen_albedo_table()));
+        sheen_albedo_.sampling(gl::Filtering::linear);
+    }
+    const gl::Texture* sources[] = {&targets.extension[0], &targets.extension[1], &sheen_albedo_};
+    const char* samplers[] = {"u_extension0", "u_extension1", "u_sheen_albedo"};
+    for (int i = 0; i < 3; ++i) {
+        sources[i]->bind(unsigned(extension_unit + i));
+        program.set(samplers[i], extension_unit + i);
+    }
+    program.set("u_first_block", first ? 1.0f : 0.0f);
+}
+
 void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightBlock& block,
                         const gpu::EnvironmentMaps* maps) {
     targets.lit.bind();
@@ -108,7 +126,8 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightB
     // shading.
     targets.test_covered();
     glEnable(GL_BLEND);
-    glBlendFuncSeparate(GL_ONE, GL_ONE, GL_ONE, GL_ZERO);
+    // Layers of extended surfaces leave only a part of the emission that stands in the target.
+    glBlendFuncSeparate(GL_ONE, frame.extensions ? GL_SRC1_COLOR : GL_ONE, GL_ONE, GL_ZERO);
 
     const gl::Texture* sources[] = {&targets.albedo, &targets.normal, &targets.material, &targets.depth};
     for (unsigned unit = 0; unit < 4; ++unit) sources[unit]->bind(unit);
@@ -120,6 +139,7 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightB
                               "u_dfg",    "u_prefiltered", "u_irradiance", "u_shadow_maps"};
     for (int unit = 0; unit < 8; ++unit) program.set(samplers[unit], unit);
     program.set("u_dielectric_f0", frame.resolved->settings.shading.dielectric_f0);
+    if (frame.extensions) set_extensions(program, targets, block.first);
     if (maps) set_environment(program, frame, *maps);
     set_lights(program, frame, block);
     draw_screen_triangle();
@@ -136,6 +156,8 @@ void LightingPass::set_environment(const gl::Program& program, const Frame& fram
     program.set("u_last_level", maps.last_level());
     if (frame.sample_count > 1)
         program.set("u_lobe_slope", lobe_slope(frame.sample_index, frame.sample_count));
+    program.set("u_tap_gap", 1.0f / float(frame.sample_count));
+    program.set("u_tap_offset", (float(frame.sample_index) + 0.5f) / float(frame.sample_count));
     program.set("u_env_intensity", frame.resolved->settings.environment.intensity);
 }
 

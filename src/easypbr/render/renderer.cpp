@@ -146,7 +146,12 @@ void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& ca
     if (frame.with_overlay) targets_.add_overlay();
     const bool has_layers = list.has([](const DrawItem& item) { return item.layered; });
     const PixelRect everything = frame.covered;
-    run("geometry", [&] { draw_geometry(frame, has_layers ? list.without_layers() : list); });
+    const DrawList solid = has_layers ? list.without_layers() : DrawList();
+    // What is asked for beside the picture is of the core model.
+    const bool extensible = !frame.with_ids;
+    frame.extensions = extensible ? (has_layers ? solid : list).extensions() : 0;
+    if (frame.extensions) targets_.add_extensions();
+    run("geometry", [&] { draw_geometry(frame, has_layers ? solid : list); });
     shadow_maps_.begin(frame, casters, bounds_of(*frame.scene));
     draw_lights(frame, targets_);
     const bool with_environment = !frame.resolved->environment.empty();
@@ -161,6 +166,7 @@ void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& ca
 }
 
 void Renderer::draw_layers(Frame& frame, const DrawList& list) {
+    frame.extensions = list.extensions();
     transparency_.begin(frame, targets_);
     while (transparency_.open_layer(frame)) {
         geometry_.draw(frame, list.meshes, transparency_.layer());
@@ -178,6 +184,7 @@ void Renderer::draw_lights(const Frame& frame, const GBuffer& targets) {
     bool first = true;
     do {
         run("shadows", [&] { block = shadow_maps_.next_block(); });
+        block.first = first;
         no_attributes_.bind();
         const bool with_environment = first && !frame.resolved->environment.empty();
         run("lighting",

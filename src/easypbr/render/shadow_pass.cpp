@@ -31,7 +31,7 @@ void ShadowPass::draw(const ShadowView& view, const DrawList& casters, int sampl
         // The buffers that the geometry pass draws an object from serve here too.
         bool tangents = false;
         for (last = first; last < items.size() && items[last].object == items[first].object; ++last)
-            tangents |= items[last].normal_mapped();
+            tangents |= items[last].needs_tangents();
         meshes_.get(items[first].mesh(), tangents).array.bind();
         for (size_t i = first; i < last; ++i) draw_item(view, items[i], sample_index);
     }

@@ -36,7 +36,8 @@ struct SoftwareGeometryPass::Surface {
 bool SoftwareGeometryPass::handles(const DrawList& list) {
     int64_t faces = 0, points = 0;
     for (const DrawItem& item : list.meshes) {
-        if (item.textured() || item.emits() || item.alpha != AlphaMode::opaque) return false;
+        if (item.textured() || item.emits() || item.extensions() || item.alpha != AlphaMode::opaque)
+            return false;
         faces += item.part.face_count;
     }
     if (!handles_points(list)) return false;

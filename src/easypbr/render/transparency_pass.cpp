@@ -12,6 +12,7 @@ void TransparencyPass::begin(Frame& frame, const GBuffer& targets) {
         limit_ = gl::Texture(gl::Format::r32f, frame.size.x(), frame.size.y());
         radiance_id_ = overlay_id_ = 0;
     }
+    if (frame.extensions) layer_.add_extensions();
     // The identity of a texture may be given again once it is deleted, but then the targets' size has
     // changed, and the layer with it.
     if (radiance_id_ != targets.radiance.id()) {

@@ -84,6 +84,60 @@ std::vector<uint16_t> table(Model model) {
     return halves;
 }
 
+/// Fit of the sheen's shadowing by Estevez and Kulla 2017, in the words of shaders/common_lobes.glsl.
+double charlie_fit(double x, double smooth2) {
+    const auto mix = [&](double rough, double smooth) { return rough + (smooth - rough) * smooth2; };
+    return mix(21.5473, 25.3245) / (1 + mix(3.82987, 3.32435) * std::pow(x, mix(0.19823, 0.16801))) +
+           mix(-1.97760, -1.27393) * x + mix(-4.32054, -4.85967);
+}
+
+double charlie_lambda(double cosine, double roughness) {
+    const double smooth2 = std::pow(1 - roughness * roughness, 2);
+    return cosine < 0.5 ? std::exp(charlie_fit(cosine, smooth2))
+                        : std::exp(2 * charlie_fit(0.5, smooth2) - charlie_fit(1 - cosine, smooth2));
+}
+
+/// Integral of the sheen's lobe times the cosine; steps are finest towards the horizon, where the lobe is.
+double sheen_albedo(double n_dot_v, double roughness) {
+    constexpr int steps = 96;
+    const double inverse = 1 / (roughness * roughness), lambda_v = charlie_lambda(n_dot_v, roughness);
+    const double sine_v = std::sqrt(1 - n_dot_v * n_dot_v);
+    double sum = 0;
+    for (int i = 0; i < steps; ++i) {
+        const double u = (i + 0.5) / steps, n_dot_l = u * u, sine_l = std::sqrt(1 - n_dot_l * n_dot_l);
+        const double visibility =
+            1 / ((1 + lambda_v + charlie_lambda(n_dot_l, roughness)) * 4 * n_dot_v * n_dot_l);
+        for (int j = 0; j < steps; ++j) {
+            const double phi = pi * (j + 0.5) / steps;
+            const Eigen::Vector3d h(sine_l * std::cos(phi) + sine_v, sine_l * std::sin(phi),
+                                    n_dot_l + n_dot_v);
+            const double sine2 = std::max(1 - h.z() * h.z() / h.squaredNorm(), 1e-8);
+            const double d = (2 + inverse) * std::pow(sine2, 0.5 * inverse) / (2 * pi);
+            // dcos = 2 u du, and the half circle stands for the whole.
+            sum += d * visibility * n_dot_l * 2 * u * 2 * pi;
+        }
+    }
+    return sum / (double(steps) * steps);
+}
+
+std::vector<uint16_t> sheen_table() {
+    std::vector<uint16_t> halves(size * size);
+    const auto rows = [&](int first) {
+        for (int j = first; j < size; j += 2)
+            for (int i = 0; i < size; ++i) {
+                const double root = std::max(double(i), 0.25) / (size - 1);
+                // Smoother than this the fit does not hold.
+                const double roughness = std::max(0.07, double(j) / (size - 1));
+                halves[j * size + i] =
+                    Eigen::half_impl::float_to_half_rtne(float(sheen_albedo(root * root, roughness))).x;
+            }
+    };
+    std::thread odd(rows, 1);
+    rows(0);
+    odd.join();
+    return halves;
+}
+
 void write(std::FILE* out, const char* name, const std::vector<uint16_t>& halves) {
     std::fprintf(out, "constexpr uint16_t %s[%zu] = {", name, halves.size());
     for (size_t i = 0; i < halves.size(); ++i)
@@ -100,5 +154,6 @@ int main(int argc, char** argv) {
     write(out, "dfg_height_correlated", table(Model::height_correlated));
     write(out, "dfg_separable", table(Model::separable));
     write(out, "dfg_ue4", table(Model::ue4));
+    write(out, "sheen_albedo", sheen_table());
     return std::fclose(out);
 }

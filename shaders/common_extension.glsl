@@ -1,0 +1,101 @@
+// What glTF's material extensions add to a pixel of the G-buffer, in 2 x 128 bits (GBuffer::extension).
+
+struct Extension {
+    vec3 f0;         // of the dielectric: KHR_materials_ior and _specular
+    float f90;
+    vec3 coat_normal;  // world
+    float clearcoat, coat_roughness;
+    vec3 sheen_color;
+    float sheen_roughness;
+    float iridescence, film_ior, film_thickness;  // thickness in nanometres
+    float anisotropy;
+    vec3 tangent;                        // world: where reflections are drawn out; at a right angle to the normal
+    float transmission, ior, thickness;  // thickness in world units, 0: thin-walled
+    vec3 transmittance;                  // of the volume below the surface
+};
+
+// Any two unit vectors at right angles to n and to each other (Duff et al. 2017).
+void frame_around(vec3 n, out vec3 b1, out vec3 b2) {
+    float s = n.z >= 0.0 ? 1.0 : -1.0;
+    float a = -1.0 / (s + n.z);
+    float b = n.x * n.y * a;
+    b1 = vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x);
+    b2 = vec3(b, s + n.y * n.y * a, -n.y);
+}
+
+// Square roots keep the relative steps of a few bits below what is seen.
+uint pack_reflectance(vec3 f0) {
+    uvec3 steps = uvec3(round(sqrt(clamp(f0, 0.0, 1.0)) * vec3(2047.0, 2047.0, 1023.0)));
+    return steps.r | steps.g << 11u | steps.b << 22u;
+}
+
+vec3 unpack_reflectance(uint bits) {
+    vec3 root = vec3(bits & 2047u, bits >> 11u & 2047u, bits >> 22u) / vec3(2047.0, 2047.0, 1023.0);
+    return root * root;
+}
+
+const float turn = 6.28318530717958648;
+
+// `normal` is the one that a reader of the G-buffer decodes.
+void pack_extension(Extension e, vec3 normal, out uvec4 first, out uvec4 second) {
+    vec3 b1, b2;
+    frame_around(normal, b1, b2);
+    float angle = atan(dot(e.tangent, b2), dot(e.tangent, b1)) / turn + 0.5;
+    first.x = packUnorm2x16(oct_encode(e.coat_normal) * 0.5 + 0.5);
+    first.y = packUnorm4x8(vec4(e.clearcoat, e.coat_roughness, e.sheen_roughness, e.iridescence));
+    first.z = packUnorm4x8(vec4(sqrt(e.sheen_color), e.anisotropy));
+    first.w = packUnorm2x16(vec2(angle, 0.0)) | packUnorm4x8(vec4(0.0, 0.0, 0.0, e.f90));
+    second.x = pack_reflectance(e.f0);
+    second.y = packHalf2x16(vec2(e.film_thickness, 0.0)) |
+               packUnorm4x8(vec4(0.0, 0.0, (e.film_ior - 1.0) * 0.5, (e.ior - 1.0) * 0.5));
+    second.z = floatBitsToUint(e.thickness);
+    second.w = packUnorm4x8(vec4(sqrt(e.transmittance), e.transmission));
+}
+
+Extension unpack_extension(uvec4 first, uvec4 second, vec3 normal) {
+    Extension e;
+    vec4 v = unpackUnorm4x8(first.y);
+    e.clearcoat = v.x;
+    e.coat_roughness = v.y;
+    e.sheen_roughness = v.z;
+    e.iridescence = v.w;
+    e.coat_normal = oct_decode(unpackUnorm2x16(first.x) * 2.0 - 1.0);
+    v = unpackUnorm4x8(first.z);
+    e.sheen_color = v.rgb * v.rgb;
+    e.anisotropy = v.a;
+    float angle = (unpackUnorm2x16(first.w).x - 0.5) * turn;
+    vec3 b1, b2;
+    frame_around(normal, b1, b2);
+    e.tangent = b1 * cos(angle) + b2 * sin(angle);
+    e.f90 = unpackUnorm4x8(first.w).w;
+    e.f0 = unpack_reflectance(second.x);
+    e.film_thickness = unpackHalf2x16(second.y).x;
+    v = unpackUnorm4x8(second.y);
+    e.film_ior = v.z * 2.0 + 1.0;
+    e.ior = v.w * 2.0 + 1.0;
+    e.thickness = uintBitsToFloat(second.z);
+    v = unpackUnorm4x8(second.w);
+    e.transmittance = v.rgb * v.rgb;
+    e.transmission = v.a;
+    return e;
+}
+
+// Of a surface without extensions.
+Extension plain_extension(vec3 normal, vec3 f0) {
+    Extension e;
+    e.f0 = f0;
+    e.f90 = 1.0;
+    e.coat_normal = normal;
+    e.clearcoat = e.coat_roughness = 0.0;
+    e.sheen_color = vec3(0.0);
+    e.sheen_roughness = 1.0;
+    e.iridescence = e.film_thickness = 0.0;
+    e.film_ior = 1.3;
+    e.anisotropy = 0.0;
+    vec3 bitangent;
+    frame_around(normal, e.tangent, bitangent);
+    e.transmission = e.thickness = 0.0;
+    e.ior = 1.5;
+    e.transmittance = vec3(1.0);
+    return e;
+}
