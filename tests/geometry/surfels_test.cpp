@@ -77,7 +77,7 @@ double share_outwards(const Mesh& mesh, const Array3f& outwards) {
 TEST(EstimateSurfels, OfASquareGridAreCirclesThroughTheCellsCorners) {
     const auto surfels = estimate_surfels(cloud(pattern(1, 1))).snapshot();
     // The cell is the unit square, whose corners are sqrt(1/2) away.
-    const double radius = surfel_overlap * std::sqrt(0.5);
+    const double radius = std::sqrt(0.5);
     EXPECT_EQ(Vec3(surfels->N.row(middle)), Vec3(0, 0, 1)) << "the plane faces the positive side";
     EXPECT_NEAR(surfels->T.row(middle).norm(), radius, 1e-6);
     EXPECT_NEAR(surfels->B[middle], radius, 1e-6);
@@ -88,8 +88,8 @@ TEST(EstimateSurfels, FollowThePatternOfThePoints) {
     const auto surfels = estimate_surfels(cloud(pattern(2, 1)), {24, {}}).snapshot();
     // The smallest ellipse through the corners of a rectangle a x b has the semi-axes a / sqrt(2) and b /
     // sqrt(2).
-    EXPECT_NEAR(surfels->T.row(middle).norm(), surfel_overlap * 2 * std::sqrt(0.5), 1e-4);
-    EXPECT_NEAR(surfels->B[middle], surfel_overlap * std::sqrt(0.5), 1e-4);
+    EXPECT_NEAR(surfels->T.row(middle).norm(), 2 * std::sqrt(0.5), 1e-4);
+    EXPECT_NEAR(surfels->B[middle], std::sqrt(0.5), 1e-4);
     EXPECT_NEAR(std::abs(surfels->T(middle, 0)), surfels->T.row(middle).norm(), 1e-4) << "longer along x";
 }
 
@@ -99,7 +99,7 @@ TEST(EstimateSurfels, EndNearTheBorder) {
     // sqrt(1/2). The circle of that radius contains such a cell; the smallest ellipse has less area, and is a
     // few percent longer.
     const float most = std::max(surfels->T.rowwise().norm().maxCoeff(), surfels->B.maxCoeff());
-    EXPECT_LT(most, 1.1 * surfel_overlap * std::sqrt(0.5));
+    EXPECT_LT(most, 1.1 * std::sqrt(0.5));
 }
 
 TEST(EstimateSurfels, CoverAPlaneOfAnyPatternWithoutHoles) {
@@ -111,8 +111,8 @@ TEST(EstimateSurfels, CoverAPlaneOfAnyPatternWithoutHoles) {
         probes.row(i) << 0.05f + 0.9f * uniform(random), 0, 0.05f + 0.9f * uniform(random);
     const auto surfels = estimate_surfels(cloud(V), {24, {}}).snapshot();
     EXPECT_EQ(Vec3(surfels->N.row(0)), Vec3(0, 1, 0)) << "ground faces up";
-    // Without the overlap: the ellipses alone contain the cells, which fill the plane.
-    EXPECT_EQ(coverage(*surfels, probes, 1 / surfel_overlap + 1e-5), 1);
+    // The ellipses contain the cells, which fill the plane.
+    EXPECT_EQ(coverage(*surfels, probes, 1 + 1e-5), 1);
     EXPECT_LT(coverage(*surfels, probes, 0.5), 0.95) << "half as large they do not";
 }
 
@@ -252,8 +252,8 @@ TEST(SurfelsFromMesh, OfAGridAreCirclesThroughTheCellsCorners) {
     // Each quad is cut along one diagonal, so the cell within the ring of neighbours is the square all the
     // same.
     const auto surfels = surfels_from_mesh(make_plane(20, 20)).snapshot();
-    EXPECT_NEAR(surfels->B[middle], surfel_overlap * std::sqrt(0.5), 1e-5);
-    EXPECT_NEAR(surfels->T.row(middle).norm(), surfel_overlap * std::sqrt(0.5), 1e-5);
+    EXPECT_NEAR(surfels->B[middle], std::sqrt(0.5), 1e-5);
+    EXPECT_NEAR(surfels->T.row(middle).norm(), std::sqrt(0.5), 1e-5);
 }
 
 TEST(SurfelsFromMesh, LeaveOutWhatNoFaceUses) {

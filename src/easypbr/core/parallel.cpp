@@ -1,6 +1,7 @@
 #include "easypbr/core/parallel.h"
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 #include <tbb/task_arena.h>
 #include <unistd.h>
 
@@ -31,6 +32,16 @@ void parallel_chunks(size_t count, size_t grain, const std::function<void(size_t
     }
     tbb::parallel_for(size_t(0), chunks,
                       [&](size_t chunk) { body(chunk * grain, std::min(count, (chunk + 1) * grain)); });
+}
+
+void parallel_sort(std::vector<KeyedIndex>& items) {
+    const auto before = [](const KeyedIndex& a, const KeyedIndex& b) {
+        return a.key < b.key || (a.key == b.key && a.index < b.index);
+    };
+    if (has_threads())
+        tbb::parallel_sort(items.begin(), items.end(), before);
+    else
+        std::sort(items.begin(), items.end(), before);
 }
 
 int thread_count() {

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
+#include <vector>
 
 namespace easypbr {
 
@@ -17,6 +19,15 @@ void parallel_for(size_t count, size_t grain, Body&& body) {
         for (size_t i = begin; i < end; ++i) body(i);
     });
 }
+
+/// An index under the key that it is sorted by.
+struct KeyedIndex {
+    uint64_t key;
+    uint32_t index;
+};
+
+/// Sorts by key, equal keys by index, on all cores.
+void parallel_sort(std::vector<KeyedIndex>& items);
 
 /// Number of threads used by the loops.
 int thread_count();

@@ -89,8 +89,8 @@ void set_axes(MeshData& mesh, Of&& of) {
     Array1f::Dense B(mesh.V.rows());
     parallel_for(size_t(mesh.V.rows()), grain, [&](size_t i) {
         const geometry::SurfelAxes axes = of(i);
-        T.row(Eigen::Index(i)) = (surfel_overlap * axes.first).cast<float>().transpose();
-        B[Eigen::Index(i)] = float(surfel_overlap * axes.second);
+        T.row(Eigen::Index(i)) = axes.first.cast<float>().transpose();
+        B[Eigen::Index(i)] = float(axes.second);
     });
     mesh.T = std::move(T);
     mesh.B = std::move(B);

@@ -22,11 +22,6 @@ struct NeighborhoodOptions {
 /// three different points, or a viewpoint that is not finite.
 Mesh estimate_normals(const Mesh& mesh, const NeighborhoodOptions& options = {});
 
-/// Surfels are this much larger than what covers a flat surface, so that no hole opens between neighbours
-/// that are tilted against each other by noise or sharp edges (1.1 is 1 / cos 25 degrees), and splats blend
-/// into each other.
-inline constexpr double surfel_overlap = 1.1;
-
 /// The vertices as surfels: oriented ellipses that cover the surface without holes. N are the normals of
 /// estimate_normals(), or those of the mesh when it has some and `keep_normals` is set; T is one semi-axis, B
 /// the length of the other one, along N x T (the paper's surfel). The ellipses follow the pattern of the

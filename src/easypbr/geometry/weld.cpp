@@ -24,4 +24,13 @@ Weld weld_positions(const Array3f& V) {
     return weld;
 }
 
+void remember_seams(MeshData& mesh) {
+    const Weld weld = weld_positions(mesh.V);
+    if (weld.count() == weld.place.size())
+        mesh.source_vertex = {};
+    else
+        mesh.source_vertex = Array1i::Dense(
+            Eigen::Map<const Array1i::Dense>(weld.place.data(), Eigen::Index(weld.place.size())));
+}
+
 }  // namespace easypbr::geometry

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "easypbr/scene/array.h"
+#include "easypbr/scene/mesh.h"
 
 namespace easypbr::geometry {
 
@@ -17,5 +17,9 @@ struct Weld {
 
 /// Vertices with equal coordinates (-0 is 0) are one position.
 Weld weld_positions(const Array3f& V);
+
+/// Sets source_vertex so that vertices at one place count as one for smooth normals; clears it when no two
+/// are. For meshes whose vertices have come to be others than those of the file.
+void remember_seams(MeshData& mesh);
 
 }  // namespace easypbr::geometry

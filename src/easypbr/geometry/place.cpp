@@ -1,0 +1,65 @@
+#include "easypbr/geometry/place.h"
+
+#include "easypbr/geometry/gather.h"
+#include "easypbr/geometry/require.h"
+#include "easypbr/scene/merge.h"
+
+namespace easypbr {
+namespace {
+
+/// The mesh after T in its own frame, children moved along.
+Mesh moved(const Mesh& mesh, const Eigen::Affine3d& T) {
+    MeshData data = transformed(*mesh.snapshot(), T);
+    for (Mesh& child : data.children) {
+        child = child.clone();
+        child.set_T_parent_mesh(T * child.T_parent_mesh());
+    }
+    return Mesh(std::move(data));
+}
+
+Box3d box_in_own_frame(const Mesh& mesh) {
+    return bounding_box(mesh, Eigen::Affine3d::Identity());
+}
+
+}  // namespace
+
+Mesh transformed(const Mesh& mesh, const Eigen::Affine3d& T) {
+    if (!T.matrix().allFinite()) throw ArgumentError("transform: expected finite numbers");
+    if (T.linear().determinant() == 0)
+        throw ArgumentError("transform: expected a matrix that can be inverted, got one of determinant 0");
+    return moved(mesh, T);
+}
+
+Mesh merged(std::span<const Mesh> meshes) {
+    if (meshes.empty()) throw ArgumentError("merge: expected at least one mesh, got none");
+    std::vector<MeshData> parts;
+    for (const Mesh& mesh : meshes) parts.push_back(flatten(mesh));
+    return Mesh(merged(std::span<const MeshData>(parts)));
+}
+
+Box3d bounding_box(const Mesh& mesh, const Eigen::Affine3d& T_world_mesh) {
+    Mesh placed = mesh.clone();
+    placed.set_T_parent_mesh(T_world_mesh);
+    const MeshData flat = flatten(placed);
+    geometry::require_vertices("bounding box", flat);
+    return {flat.V.colwise().minCoeff().transpose().cast<double>(),
+            flat.V.colwise().maxCoeff().transpose().cast<double>()};
+}
+
+Box3d bounding_box(const Mesh& mesh) {
+    return bounding_box(mesh, mesh.T_parent_mesh());
+}
+
+Mesh centered(const Mesh& mesh) {
+    return moved(mesh, Eigen::Affine3d(Eigen::Translation3d(-box_in_own_frame(mesh).center())));
+}
+
+Mesh with_size(const Mesh& mesh, double size) {
+    geometry::require_positive("normalize_size: size", size);
+    const double longest = box_in_own_frame(mesh).sizes().maxCoeff();
+    if (!(longest > 0))
+        throw ArgumentError("normalize_size: expected vertices at different places, got all at one");
+    return moved(mesh, Eigen::Affine3d(Eigen::Scaling(size / longest)));
+}
+
+}  // namespace easypbr

@@ -1,0 +1,31 @@
+// Meshes of more faces, and smoother ones.
+#pragma once
+
+#include "easypbr/scene/mesh.h"
+
+namespace easypbr {
+
+enum class Subdivision {
+    midpoint,  ///< new vertices in the middle of the edges: the surface stays where it is
+    loop,      ///< Loop 1987: the surface becomes smooth; borders become smooth curves
+};
+
+/// Every face cut in four, `iterations` times (0 to 12). What vertices have becomes the mean of both ends of
+/// an edge at the new ones (of labels the first end's), what faces have is handed down, parts stay. Vertices
+/// at the same place move together, so that seams of texture coordinates stay closed; with Loop's rules hard
+/// edges are rounded, and normals are computed anew where there were some. Edges (E) stay. Throws
+/// ArgumentError when there are no faces or iterations are out of range, or the faces would be too many for
+/// 32-bit indices.
+Mesh upsample(const Mesh& mesh, int iterations = 1, Subdivision subdivision = Subdivision::midpoint);
+
+enum class Smoothing {
+    taubin,     ///< Taubin 1995: steps of 0.5 and -0.53 in turn, which keep the size
+    laplacian,  ///< steps of 0.5 towards the mean of the neighbours, which shrink
+};
+
+/// Vertices moved towards the mean of their neighbours, `iterations` times (0 to 100000), a Taubin iteration
+/// being both steps. Vertices at the same place move together; those of borders stay. Normals are computed
+/// anew where there were some. Throws ArgumentError when there are no faces or iterations are out of range.
+Mesh smooth(const Mesh& mesh, int iterations = 10, Smoothing smoothing = Smoothing::taubin);
+
+}  // namespace easypbr
