@@ -4,6 +4,9 @@ uniform sampler2D u_normal;
 uniform sampler2D u_material;
 uniform sampler2D u_depth_target;
 uniform vec2 u_size;
+#ifdef WITH_EMISSION
+uniform sampler2D u_emission;
+#endif
 
 layout(location = 0) out vec4 o_albedo;
 layout(location = 1) out vec2 o_normal;
@@ -26,6 +29,10 @@ void main() {
     o_depth = depth;
     o_emission = vec4(0.0, 0.0, 0.0, 1.0);
     gl_FragDepth = depth;
+#ifdef WITH_EMISSION
+    if (depth <= 0.0) discard;
+    o_emission = textureLod(u_emission, uv, 0.0);
+#endif
 #ifdef OBJECT_ID
     ivec2 p = ivec2(gl_FragCoord.xy);
     o_id = texelFetch(u_id, p, 0).r;

@@ -1,11 +1,13 @@
 #include "easypbr/render/drawable_scene.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
 #include "easypbr/core/parallel.h"
+#include "easypbr/scene/cut.h"
 #include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/resolve.h"
 #include "easypbr/scene/voxels.h"
@@ -14,8 +16,8 @@ namespace easypbr::render {
 namespace {
 
 constexpr size_t grain = 1 << 15;
-/// Beyond this many faces triangles are about as small as pixels, where it does not matter whether a value or its
-/// colour is interpolated.
+/// Beyond this many faces triangles are about as small as pixels, where it does not matter whether a value or
+/// its colour is interpolated.
 constexpr Eigen::Index many_faces = 500000;
 
 ArrayXf colors_of(const std::vector<Rgba8>& colors) {
@@ -82,8 +84,8 @@ Texture table_texture(const ElementColors& values) {
     return texture;
 }
 
-/// Values as texture coordinates of their table: interpolated before they become colours. A face with a corner
-/// that is not a number has no values at all.
+/// Values as texture coordinates of their table: interpolated before they become colours. A face with a
+/// corner that is not a number has no values at all.
 MeshData with_values(const MeshData& mesh, const ElementColors& values) {
     const bool has_nan = !values.values.array().isFinite().all();
     MeshData out = has_nan ? with_own_corners(mesh) : mesh;
@@ -151,13 +153,38 @@ MeshData with_colors(const MeshData& mesh, const ColorPlan& plan, Texture& table
     return out;
 }
 
+/// The clip planes and the sides of the crop box in the mesh's frame.
+std::vector<Eigen::Vector4d> planes_of(const ClipSettings& clip, const Eigen::Affine3d& T_world_mesh) {
+    std::vector<Eigen::Vector4d> planes;
+    for (size_t i = 0; i + 3 < clip.planes.size(); i += 4) planes.emplace_back(&clip.planes[i]);
+    for (size_t axis = 0; axis < 3 && clip.box.size() == 6; ++axis)
+        for (const double side : {1.0, -1.0}) {
+            Eigen::Vector4d plane(0, 0, 0, side > 0 ? -clip.box[axis] : clip.box[axis + 3]);
+            plane[Eigen::Index(axis)] = side;
+            planes.push_back(plane);
+        }
+    const Mat4d transposed = T_world_mesh.matrix().transpose();
+    for (Eigen::Vector4d& plane : planes) plane = transposed * plane;
+    return planes;
+}
+
+/// Where `second` says what `first` came from.
+Array1i composed(const Array1i& second, const Array1i& first) {
+    if (first.empty()) return second;
+    Array1i::Dense both(second.rows());
+    for (Eigen::Index i = 0; i < both.size(); ++i) both[i] = first(second(i));
+    return Array1i(std::move(both));
+}
+
 }  // namespace
 
 template <class Make>
-std::shared_ptr<const MeshData> DrawableCache::get(const std::string& key, const MeshData& current, Make&& make) {
+std::shared_ptr<const MeshData> DrawableCache::get(const std::string& key, const MeshData& current,
+                                                   Array1i& source, Make&& make) {
     Entry& entry = entries_[key];
-    if (!entry.arrays) entry.arrays = std::make_shared<const MeshData>(make(entry.table));
+    if (!entry.arrays) entry.arrays = std::make_shared<const MeshData>(make(entry));
     entry.used = true;
+    if (!entry.source.empty()) source = composed(entry.source, source);
     auto mesh = std::make_shared<MeshData>(current);
     replace_arrays(*mesh, *entry.arrays);
     if (!entry.table) return mesh;
@@ -168,31 +195,56 @@ std::shared_ptr<const MeshData> DrawableCache::get(const std::string& key, const
 
 DrawableScene DrawableCache::apply(const SceneSnapshot& scene, const Settings& settings) {
     require_colors(scene, settings.style);
-    const Vec3d up = parse_up(settings.camera.up);
-    DrawableScene drawable{scene, {}};
-    for (auto& object : drawable.scene.objects) {
-        const DrawStyle style = resolve_style(*object.mesh, settings.style);
-        ColorMeaning meaning;
-        const ColorPlan plan = plan_colors(*object.mesh, settings.style, style.mode, object.T_world_mesh, up);
-        meaning.from_data = plan.source != ColorSource::material;
-        meaning.exact = plan.exact;
-        meaning.labels = plan.by == ColorBy::label;
-        meaning.textured = plan.textured || plan.source == ColorSource::values;
-        meaning.vertex_colors = plan.vertex_colors;
-        const MeshData& own = *object.mesh;
-        if (meaning.from_data && style.visible)
-            object.mesh = get(fmt::format("{} {} {} {}", own.V.revision(), own.F.revision(), own.N.revision(), plan.key),
-                              own, [&](Texture& table) { return with_colors(own, plan, table); });
-        if (style.mode == DrawMode::voxels && style.visible && !own.V.empty()) {
-            const MeshData& colored = *object.mesh;
-            const double spacing = style.voxel_size ? 0 : spacings_.get(own.V);
-            const double size = style.voxel_size ? double(*style.voxel_size) : spacing > 0 ? spacing : 1;
-            object.mesh = get(fmt::format("voxels {} {} {}", own.V.revision(), colored.C.revision(), size), own,
-                              [&](Texture&) { return voxel_mesh(colored, size); });
-        }
-        drawable.meanings.push_back(meaning);
-    }
+    DrawableScene drawable{scene, std::vector<ColorMeaning>(scene.objects.size()),
+                           std::vector<Array1i>(scene.objects.size())};
+    for (size_t i = 0; i < scene.objects.size(); ++i)
+        apply(drawable.scene.objects[i], settings, drawable.meanings[i], drawable.sources[i]);
     return drawable;
+}
+
+void DrawableCache::apply(SceneSnapshot::Object& object, const Settings& settings, ColorMeaning& meaning,
+                          Array1i& source) {
+    const MeshData own = *object.mesh;
+    const DrawStyle style = resolve_style(own, settings.style);
+    const ColorPlan plan =
+        plan_colors(own, settings.style, style.mode, object.T_world_mesh, parse_up(settings.camera.up));
+    meaning.from_data = plan.source != ColorSource::material;
+    meaning.exact = plan.exact;
+    meaning.labels = plan.by == ColorBy::label;
+    meaning.textured = plan.textured || plan.source == ColorSource::values;
+    meaning.vertex_colors = plan.vertex_colors;
+    if (!style.visible || own.V.empty()) return;
+    if (meaning.from_data)
+        object.mesh =
+            get(fmt::format("{} {} {} {}", own.V.revision(), own.F.revision(), own.N.revision(), plan.key),
+                own, source, [&](Entry& entry) { return with_colors(own, plan, entry.table); });
+    // Materials of the object as it is drawn so far: a table of values has replaced them.
+    const auto key = [&](const char* what, const auto&... values) {
+        const MeshData& m = *object.mesh;
+        std::string text = fmt::format("{} {} {} {} {} {}", what, m.V.revision(), m.F.revision(),
+                                       m.C.revision(), m.UV.revision(), m.E.revision());
+        ((text += fmt::format(" {}", values)), ...);
+        return text;
+    };
+    const std::vector<Eigen::Vector4d> planes = planes_of(settings.clip, object.T_world_mesh);
+    if (!planes.empty()) {
+        std::string numbers;
+        for (const Eigen::Vector4d& plane : planes) numbers += fmt::format("{}", fmt::join(plane, " ")) + " ";
+        const std::shared_ptr<const MeshData> whole = object.mesh;
+        const bool by_vertex = style.mode != DrawMode::mesh && style.mode != DrawMode::lines;
+        object.mesh = get(key("cut", by_vertex, numbers), *whole, source,
+                          [&](Entry& entry) { return cut(*whole, planes, by_vertex, entry.source); });
+    }
+    if (style.mode == DrawMode::voxels && !object.mesh->V.empty()) {
+        const std::shared_ptr<const MeshData> centres = object.mesh;
+        const double spacing = style.voxel_size ? 0 : spacings_.get(own.V);
+        const double size = style.voxel_size ? double(*style.voxel_size) : spacing > 0 ? spacing : 1;
+        object.mesh = get(key("voxels", size), *centres, source, [&](Entry& entry) {
+            MeshData cubes = voxel_mesh(*centres, size);
+            entry.source = cubes.source_face;
+            return cubes;
+        });
+    }
 }
 
 void DrawableCache::evict_unused() {

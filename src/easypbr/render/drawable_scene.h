@@ -1,4 +1,5 @@
-// A scene as it is drawn: what colours an object and what its voxels look like, as plain vertices, faces and colours.
+// A scene as it is drawn: what colours an object and what its voxels look like, as plain vertices, faces and
+// colours.
 #pragma once
 
 #include <map>
@@ -25,6 +26,9 @@ struct ColorMeaning {
 struct DrawableScene {
     SceneSnapshot scene;  ///< the same objects in the same order, their data replaced where that is needed
     std::vector<ColorMeaning> meanings;  ///< one for each object
+    /// For each object and each of its faces or points as they are drawn, the face, point or voxel of its own
+    /// data; empty: the same.
+    std::vector<Array1i> sources;
 };
 
 /// Makes and keeps what is as large as the data.
@@ -42,11 +46,16 @@ class DrawableCache {
   private:
     struct Entry {
         std::shared_ptr<const MeshData> arrays;
-        Texture table;  ///< of values; empty for colours
+        Array1i source;  ///< see DrawableScene::sources
+        Texture table;   ///< of values; empty for colours
         bool used = false;
     };
+    /// The entry's arrays as the current object's; made by make(entry) when there are none.
     template <class Make>
-    std::shared_ptr<const MeshData> get(const std::string& key, const MeshData& current, Make&& make);
+    std::shared_ptr<const MeshData> get(const std::string& key, const MeshData& current, Array1i& source,
+                                        Make&& make);
+    void apply(SceneSnapshot::Object& object, const Settings& settings, ColorMeaning& meaning,
+               Array1i& source);
 
     SpacingCache& spacings_;
     std::map<std::string, Entry> entries_;

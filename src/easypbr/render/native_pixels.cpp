@@ -66,33 +66,75 @@ void NativePixels::upload(const GBuffer& targets) const {
     put(targets.element, element_);
 }
 
-void SurfaceComposite::draw(const Frame& frame, const NativePixels& pixels, const GBuffer& targets) {
-    const PixelRect& r = pixels.area();
-    if (r.width == 0 || r.height == 0) return;
+void SurfaceComposite::make_staging(const Frame& frame) {
     if (!staging_.albedo || staging_.size() != frame.size) staging_ = GBuffer(frame.size);
     if (frame.with_ids) staging_.add_ids();
-    pixels.upload(staging_);
+}
 
-    std::vector<std::string> defines;
-    if (frame.with_ids) defines.emplace_back("OBJECT_ID");
-    const gl::Program& program = programs_.get(defines);
-    (frame.with_ids ? targets.surface_ids : targets.surface_emission).bind();
-    program.use();
+void SurfaceComposite::draw(const Frame& frame, const NativePixels& pixels, const GBuffer& targets) {
+    make_staging(frame);
+    pixels.upload(staging_);
+    copy(frame, staging_, pixels.area(), targets, false);
+}
+
+void SurfaceComposite::draw_over(const Frame& frame, const GBuffer& source, const GBuffer& targets) {
+    copy(frame, source, {0, 0, frame.size.x(), frame.size.y()}, targets, true);
+}
+
+namespace {
+
+/// Binds what a G-buffer holds to the units and samplers of shaders that read surfaces.
+void bind_surface(const gl::Program& program, const Frame& frame, const GBuffer& source) {
     program.set("u_size", Vec2(frame.size.cast<float>()));
-    const gl::Texture* sources[] = {&staging_.albedo, &staging_.normal, &staging_.material,
-                                    &staging_.depth,  &staging_.id,     &staging_.element};
-    const char* samplers[] = {"u_albedo", "u_normal", "u_material", "u_depth_target", "u_id", "u_element"};
-    for (unsigned unit = 0; unit < (frame.with_ids ? 6u : 4u); ++unit) {
+    const gl::Texture* sources[] = {&source.albedo,   &source.normal, &source.material, &source.depth,
+                                    &source.radiance, &source.id,     &source.element};
+    const char* samplers[] = {"u_albedo",   "u_normal", "u_material", "u_depth_target",
+                              "u_emission", "u_id",     "u_element"};
+    for (unsigned unit = 0; unit < (frame.with_ids ? 7u : 5u); ++unit) {
         sources[unit]->bind(unit);
         program.set(samplers[unit], int(unit));
     }
+}
+
+}  // namespace
+
+void SurfaceComposite::copy(const Frame& frame, const GBuffer& source, const PixelRect& r,
+                            const GBuffer& targets, bool always) {
+    if (r.width == 0 || r.height == 0) return;
+    std::vector<std::string> defines;
+    if (frame.with_ids) defines.emplace_back("OBJECT_ID");
+    if (always) defines.emplace_back("WITH_EMISSION");
+    const gl::Program& program = programs_.get(defines);
+    (frame.with_ids ? targets.surface_ids : targets.surface_emission).bind();
+    program.use();
+    bind_surface(program, frame, source);
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
-    glDepthFunc(GL_GREATER);
+    glDepthFunc(always ? GL_ALWAYS : GL_GREATER);
     glEnable(GL_SCISSOR_TEST);
     glScissor(r.x, r.y, r.width, r.height);
     draw_screen_triangle();
     glDisable(GL_SCISSOR_TEST);
+}
+
+void SurfaceComposite::fill_holes(const Frame& frame, const GBuffer& targets, int times) {
+    make_staging(frame);
+    std::vector<std::string> defines;
+    if (frame.orthographic()) defines.emplace_back("ORTHOGRAPHIC");
+    if (frame.with_ids) defines.emplace_back("OBJECT_ID");
+    for (int i = 0; i < times; ++i) {
+        staging_.clear(frame.with_ids);
+        const gl::Program& program = fill_.get(defines);
+        (frame.with_ids ? staging_.surface_ids : staging_.surface).bind();
+        program.use();
+        bind_surface(program, frame, targets);
+        program.set("u_depth", Vec3(float(frame.camera.near), float(frame.camera.far), 0));
+        glEnable(GL_DEPTH_TEST);
+        glDepthMask(GL_TRUE);
+        glDepthFunc(GL_ALWAYS);
+        draw_screen_triangle();
+        copy(frame, staging_, {0, 0, frame.size.x(), frame.size.y()}, targets, false);
+    }
 }
 
 }  // namespace easypbr::render

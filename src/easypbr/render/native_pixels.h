@@ -45,14 +45,26 @@ class NativePixels {
     std::vector<uint32_t> id_, element_;
 };
 
-/// Adds pixels to what the G-buffer holds, where they are nearer.
+/// Adds surfaces that were drawn elsewhere to what the G-buffer holds.
 class SurfaceComposite {
   public:
+    /// Native pixels, where they are nearer.
     void draw(const Frame& frame, const NativePixels& pixels, const GBuffer& targets);
 
+    /// What another G-buffer holds, whatever is in front.
+    void draw_over(const Frame& frame, const GBuffer& source, const GBuffer& targets);
+
+    /// Closes gaps of a pixel between points, `times` over.
+    void fill_holes(const Frame& frame, const GBuffer& targets, int times);
+
   private:
+    void copy(const Frame& frame, const GBuffer& source, const PixelRect& area, const GBuffer& targets,
+              bool always);
+    void make_staging(const Frame& frame);
+
     GBuffer staging_;
     ProgramVariants programs_{"screen_triangle.vert", "composite_surface.frag"};
+    ProgramVariants fill_{"screen_triangle.vert", "fill_holes.frag"};
 };
 
 }  // namespace easypbr::render

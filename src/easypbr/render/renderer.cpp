@@ -91,6 +91,7 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     const DrawList averaged = options.samples > 1 && has_exact ? list.without_exact() : DrawList();
     Frame frame;
     frame.scene = &drawable.scene;
+    element_sources_ = drawable.sources;
     frame.resolved = &resolved;
     frame.size = options.size;
     frame.sample_count = options.samples;
@@ -127,16 +128,32 @@ const Box3d& Renderer::bounds_of(const SceneSnapshot& scene) {
     return bounds_;
 }
 
-void Renderer::draw_geometry(Frame& frame, const DrawList& list) {
+void Renderer::draw_geometry(Frame& frame, const DrawList& list, const GBuffer& targets) {
     const bool native = native_geometry_ && gl::Context::current().info().software;
-    if (!native || !SoftwareGeometryPass::handles(list) || !software_geometry_.draw(frame, list, targets_)) {
-        geometry_.draw(frame, list.meshes, targets_);
+    if (!native || !SoftwareGeometryPass::handles(list) || !software_geometry_.draw(frame, list, targets)) {
+        geometry_.draw(frame, list.meshes, targets);
         if (native && !list.points.empty() && SoftwareGeometryPass::handles_points(list))
-            software_geometry_.draw_points_over(frame, list, targets_);
+            software_geometry_.draw_points_over(frame, list, targets);
         else
-            points_.draw(frame, list.points, targets_);
+            points_.draw(frame, list.points, targets);
     }
-    surfels_.draw(frame, list.surfels, targets_, native);
+    surfels_.draw(frame, list.surfels, targets, native);
+    const int fillings = frame.resolved->settings.points.hole_filling;
+    no_attributes_.bind();
+    if (fillings > 0 && !list.points.empty()) composite_.fill_holes(frame, targets, fillings);
+}
+
+void Renderer::draw_geometry(Frame& frame, const DrawList& list) {
+    const auto is_over = [](const DrawItem& item) { return item.style.overlay; };
+    if (!list.has(is_over)) return draw_geometry(frame, list, targets_);
+    const PixelRect everything = frame.covered;
+    draw_geometry(frame, list.without(is_over), targets_);
+    frame.covered = everything;
+    if (!over_.albedo || over_.size() != frame.size) over_ = GBuffer(frame.size);
+    if (frame.with_ids) over_.add_ids();
+    draw_geometry(frame, list.without([&](const DrawItem& item) { return !is_over(item); }), over_);
+    frame.covered = everything;
+    composite_.draw_over(frame, over_, targets_);
 }
 
 void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& casters) {
@@ -263,7 +280,16 @@ Image Renderer::read_layer(Layer layer) const {
                                             layer_names()[size_t(layer)]));
         const auto texels =
             read<uint32_t>(targets_.surface_ids, layer == Layer::id ? 5 : 6, gl::Format::r32ui);
-        for_each_covered([&](size_t i) { to[i] = float(texels[i]); });
+        if (layer == Layer::id) {
+            for_each_covered([&](size_t i) { to[i] = float(texels[i]); });
+        } else {
+            // Elements of the user's own data, not of what was made of them to be drawn.
+            const auto objects = read<uint32_t>(targets_.surface_ids, 5, gl::Format::r32ui);
+            for_each_covered([&](size_t i) {
+                const Array1i& source = element_sources_[objects[i] - 1];
+                to[i] = source.empty() ? float(texels[i]) : float(source(Eigen::Index(texels[i]) - 1) + 1);
+            });
+        }
     } else {
         const size_t channel = layer == Layer::metallic ? 0 : layer == Layer::roughness ? 1 : 2;
         const auto texels = read<uint8_t>(targets_.surface, 2, gl::Format::rgba8);

@@ -85,6 +85,7 @@ class Renderer {
     void draw_frame(Frame& frame, const DrawList& list, const DrawList& casters);
     /// Fills the G-buffer by the faster way that can draw these items.
     void draw_geometry(Frame& frame, const DrawList& list);
+    void draw_geometry(Frame& frame, const DrawList& list, const GBuffer& targets);
     /// Draws the layered items over the picture.
     void draw_layers(Frame& frame, const DrawList& list);
     /// Draws what must not be averaged or smoothed into the finished picture.
@@ -116,7 +117,10 @@ class Renderer {
     OutputPass output_;
     std::shared_ptr<const Image> background_image_;
     gl::Texture background_texture_;
+    GBuffer over_;  ///< what is drawn over everything else
+    SurfaceComposite composite_;
     Camera camera_;
+    std::vector<Array1i> element_sources_;  ///< DrawableScene::sources of the last picture
     /// Bounds of the last scene, and what they were computed from.
     std::vector<std::pair<uint64_t, Eigen::Affine3d>> bounded_;
     Box3d bounds_;

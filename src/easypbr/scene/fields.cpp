@@ -56,6 +56,8 @@ std::string describe_range(const Field& field) {
 
 std::string describe_vector(const Field& field) {
     const auto [shortest, longest] = std::minmax_element(field.sizes.begin(), field.sizes.end());
+    if (field.sizes.size() > 2)
+        return fmt::format("a multiple of {} numbers, up to {}", field.sizes[1] - field.sizes[0], *longest);
     const std::string count =
         *shortest == *longest ? fmt::format("{}", *longest) : fmt::format("none or {}", *longest);
     const bool free = field.min <= -FLT_MAX && field.max >= FLT_MAX;

@@ -82,6 +82,7 @@ using detail::at;
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 /// Below any length that occurs, above zero.
 constexpr double positive = 1e-30;
+constexpr size_t max_clip_planes = 16;
 
 struct Range {
     double min = -unlimited, max = unlimited;
@@ -430,6 +431,22 @@ void add_style(Table& table) {
                           "with the colormap grey magenta."));
 }
 
+void add_clipping(Table& table) {
+    table.push_back(make("points.hole_filling", at(&Settings::points, &PointsSettings::hole_filling),
+                         "Times that gaps of a pixel between points are closed with what surrounds them.", "",
+                         {0, 32}));
+    std::vector<size_t> lengths;
+    for (size_t planes = 0; planes <= max_clip_planes; ++planes) lengths.push_back(4 * planes);
+    table.push_back(with_sizes(make("clip.planes", at(&Settings::clip, &ClipSettings::planes),
+                                    "Planes that cut every object, four numbers nx, ny, nz, d each, in world "
+                                    "space: what lies at n . p + d >= 0 is kept."),
+                               lengths));
+    table.push_back(with_sizes(
+        make("clip.box", at(&Settings::clip, &ClipSettings::box),
+             "Box that every object is cut to: least x, y, z, then largest x, y, z.", "world units"),
+        {0, 6}));
+}
+
 void add_loading(Table& table) {
     table.push_back(
         make("load.crease_deg", at(&Settings::load, &LoadSettings::crease_deg),
@@ -451,6 +468,7 @@ const std::vector<Field>& fields() {
         add_shading(all);
         add_overrides(all);
         add_style(all);
+        add_clipping(all);
         add_loading(all);
         return all;
     }();

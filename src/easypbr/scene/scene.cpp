@@ -3,13 +3,18 @@
 #include <fmt/format.h>
 
 #include <limits>
+#include <optional>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/scene/spacing.h"
 
 namespace easypbr {
 namespace {
+
+/// In fewer points none is an outlier.
+constexpr Eigen::Index least_cloud = 100;
 
 constexpr size_t vertex_grain = 1 << 15;
 
@@ -43,18 +48,33 @@ void add_nodes(const Mesh& mesh, const std::string& name, const Eigen::Affine3d&
 
 }  // namespace
 
+namespace {
+
+using Box3f = Eigen::AlignedBox3f;
+
+/// Scans have points far away that nobody wants to see the rest shrink for. Nothing: all vertices count.
+std::optional<Box3f> without_outliers(const MeshData& mesh) {
+    if (!mesh.F.empty() || !mesh.E.empty() || mesh.V.rows() < least_cloud) return {};
+    const Box3d box = trimmed_bounds(mesh.V);
+    return Box3f(Vec3(box.min().cast<float>()), Vec3(box.max().cast<float>()));
+}
+
+}  // namespace
+
 SceneSnapshot::Support SceneSnapshot::support(const Directions& directions) const {
     Support result = Support::Constant(-std::numeric_limits<double>::infinity());
     std::mutex mutex;
     for (const Object& object : objects) {
         const Array3f& V = object.mesh->V;
+        const std::optional<Box3f> kept = without_outliers(*object.mesh);
         const Directions local = directions * object.T_world_mesh.linear();
         const Support offset = directions * object.T_world_mesh.translation();
         parallel_chunks(size_t(V.rows()), vertex_grain, [&](size_t begin, size_t end) {
             Support best = Support::Constant(-std::numeric_limits<double>::infinity());
             for (Eigen::Index i = Eigen::Index(begin); i < Eigen::Index(end); ++i)
-                best = best.cwiseMax(local.col(0) * double(V(i, 0)) + local.col(1) * double(V(i, 1)) +
-                                     local.col(2) * double(V(i, 2)));
+                if (!kept || kept->contains(Vec3(V.row(i))))
+                    best = best.cwiseMax(local.col(0) * double(V(i, 0)) + local.col(1) * double(V(i, 1)) +
+                                         local.col(2) * double(V(i, 2)));
             best += offset;
             // A maximum is the same in any order, so the result does not depend on which thread comes first.
             std::lock_guard lock(mutex);

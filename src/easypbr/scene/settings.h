@@ -121,6 +121,16 @@ struct MaterialSettings {
         emissive_texture, opacity_texture;
 };
 
+/// What is cut away of every object, in world space.
+struct ClipSettings {
+    std::vector<double> planes;  ///< four numbers each: what lies at n . p + d >= 0 is kept
+    std::vector<double> box;     ///< empty, or the least and the largest x, y, z that are kept
+};
+
+struct PointsSettings {
+    int hole_filling = 0;
+};
+
 struct LoadSettings {
     float crease_deg = 30;
 };
@@ -138,6 +148,8 @@ struct Settings {
     ToneSettings tone;
     MaterialSettings material;
     Style style;  ///< overrides of every object's style; automatic: the object's own value
+    PointsSettings points;
+    ClipSettings clip;
     LoadSettings load;
 };
 

@@ -26,7 +26,7 @@ struct Side {
     int axis, step;
     int corners[4];
 };
-constexpr Side sides[] = {{0, -1, {0, 4, 6, 2}}, {0, 1, {1, 3, 7, 5}}, {1, -1, {0, 1, 5, 4}},
+constexpr Side sides[] = {{0, -1, {0, 4, 6, 2}}, {0, 1, {1, 3, 7, 5}},  {1, -1, {0, 1, 5, 4}},
                           {1, 1, {2, 6, 7, 3}},  {2, -1, {0, 2, 3, 1}}, {2, 1, {4, 5, 7, 6}}};
 
 int64_t key_step(int axis) {
@@ -46,8 +46,9 @@ std::vector<Cell> cells_of(const Array3f& V, double size) {
     const Vec3d origin = V.row(0).transpose().cast<double>();
     const double reach = (V.cast<double>().rowwise() - origin.transpose()).cwiseAbs().maxCoeff() / size;
     if (!(reach < double(cell_limit - 2)))
-        throw ArgumentError(fmt::format("voxel size {}: the vertices span {:.3g} cells, more than {} can be counted",
-                                        size, reach, cell_limit));
+        throw ArgumentError(
+            fmt::format("voxel size {}: the vertices span {:.3g} cells, more than {} can be counted", size,
+                        reach, cell_limit));
     parallel_for(cells.size(), grain, [&](size_t i) {
         int64_t key = 0;
         for (int axis = 0; axis < 3; ++axis) {
@@ -107,7 +108,8 @@ MeshData voxel_mesh(const MeshData& mesh, double size) {
         first_side[i + 1] = first_side[i] + size_t(std::popcount(open[i]));
     const auto side_count = Eigen::Index(first_side.back());
     if (side_count > std::numeric_limits<int32_t>::max() / 4)
-        throw ArgumentError(fmt::format("voxels: {} cells have too many sides to be drawn at once", cells.size()));
+        throw ArgumentError(
+            fmt::format("voxels: {} cells have too many sides to be drawn at once", cells.size()));
     Array3f::Dense V(4 * side_count, 3);
     Array3i::Dense F(2 * side_count, 3);
     ArrayXf::Dense C(mesh.C.empty() ? 0 : 4 * side_count, mesh.C.empty() ? 0 : 4);
