@@ -1,0 +1,266 @@
+// Colours of labels and scalars in the picture, and what is cut away or drawn over everything.
+#include <algorithm>
+#include <random>
+
+#include "easypbr/core/color.h"
+#include "easypbr/scene/element_colors.h"
+#include "render_test.h"
+
+namespace easypbr::render {
+namespace {
+
+MeshData labelled_cloud(int n) {
+    std::mt19937 random(3);
+    std::normal_distribution<float> normal;
+    Array3f::Dense V(n, 3);
+    Array1i::Dense L(n);
+    for (int i = 0; i < n; ++i) {
+        const Vec3 p = Vec3(normal(random), normal(random), normal(random)).normalized();
+        V.row(i) << p.x(), p.y(), p.z();
+        L[i] = int(random() % 20);
+    }
+    MeshData data;
+    data.V = Array3f(V);
+    data.L = Array1i(L);
+    return data;
+}
+
+std::vector<Rgba8> table_of(const MeshData& data) {
+    const ColorPlan plan =
+        plan_colors(data, {}, DrawMode::points, Eigen::Affine3d::Identity(), Vec3d::UnitY());
+    return element_colors(data, plan).colors;
+}
+
+// At every pixel that has a point, the picture is its label's colour, whatever the samples, tone curve, light
+// and anti-aliasing are.
+TEST(Colors, OfLabelsAreExact) {
+    const MeshData data = labelled_cloud(5000);
+    const std::vector<Rgba8> colors = table_of(data);
+    Scene scene;
+    scene.show(Mesh(data), "cloud");
+    for (const bool native : {true, false})
+        for (const int samples : {1, 8}) {
+            app::Session session(scene);
+            session.allow_native_geometry(native);
+            session.settings().image.size = Vec2i(160, 120);
+            session.settings().tone.exposure_compensation = 1.5f;
+            const Image picture = session.render({std::nullopt, samples, app::Encoding::srgb8});
+            const Image element = session.render_layers({"element"}).at("element");
+            int covered = 0;
+            for (int y = 0; y < 120; ++y)
+                for (int x = 0; x < 160; ++x) {
+                    const auto i = size_t(*element.at<float>(x, y));
+                    if (i == 0) continue;
+                    ++covered;
+                    for (size_t c = 0; c < 3; ++c)
+                        ASSERT_EQ(int(picture.at<uint8_t>(x, y)[c]), int(colors[i - 1][c]))
+                            << native << ' ' << samples << ' ' << x << ' ' << y;
+                }
+            EXPECT_GT(covered, 4000);
+        }
+}
+
+// Pixels beside an exact surface hold no trace of it: its edges are not smoothed.
+TEST(Colors, OfLabelsLeaveTheBackgroundAlone) {
+    MeshData data = labelled_cloud(3000);
+    Scene scene;
+    scene.show(Mesh(data), "cloud");
+    app::Session session(scene);
+    session.settings().image.size = Vec2i(160, 120);
+    session.settings().background.color = Vec3(0, 0, 0);
+    const Image picture = session.render({std::nullopt, 8, app::Encoding::srgb8});
+    const Image element = session.render_layers({"element"}).at("element");
+    for (int y = 0; y < 120; ++y)
+        for (int x = 0; x < 160; ++x) {
+            if (*element.at<float>(x, y) > 0) continue;
+            for (int c = 0; c < 3; ++c) ASSERT_EQ(int(picture.at<uint8_t>(x, y)[c]), 0);
+        }
+}
+
+// Unlit scalars on a coarse mesh: the value is interpolated, then mapped, so that a pixel shows the colour of
+// its own value.
+TEST(Colors, OfValuesAreThoseOfTheTable) {
+    Mesh mesh = facing_square(1);
+    mesh.edit([](MeshData& d) {
+        Array1f::Dense values(4);
+        for (int i = 0; i < 4; ++i) values[i] = d.V(i, 0);
+        d.scalars = {{"x", Array1f(values)}};
+        d.style.lit = false;
+        d.style.color_by = ColorBy::scalar;
+    });
+    Scene scene;
+    scene.show(mesh, "square");
+    app::Session session = plain_session(scene, 128);
+    look_from(session, Vec3d(0, 0, 4));
+    const Image picture = session.render({std::nullopt, 1, app::Encoding::srgb8});
+    const auto data = mesh.snapshot();
+    const ColorPlan plan =
+        plan_colors(*data, {}, DrawMode::mesh, Eigen::Affine3d::Identity(), Vec3d::UnitY());
+    const ElementColors colors = element_colors(*data, plan);
+    ASSERT_EQ(plan.source, ColorSource::values);
+    // The square is 119.4 pixels wide, so that a pixel spans two of the 256 steps: either neighbour may be
+    // hit.
+    const double pixels_per_unit = 64 / (4 * std::tan(radians(15.0)));
+    for (int x = 10; x < 118; ++x) {
+        const auto value = float((x + 0.5 - 64) / pixels_per_unit);
+        const int step = color_index(value, colors.range);
+        int nearest = 255;
+        for (int s = std::max(0, step - 1); s <= std::min(255, step + 1); ++s) {
+            int most = 0;
+            for (size_t c = 0; c < 3; ++c)
+                most = std::max(
+                    most, std::abs(int(picture.at<uint8_t>(x, 64)[c]) - int(colors.table[size_t(s)][c])));
+            nearest = std::min(nearest, most);
+        }
+        EXPECT_LE(nearest, 1) << x;
+    }
+}
+
+TEST(Colors, OfANanValueAreThoseOfNothing) {
+    Mesh mesh = facing_square(1);
+    mesh.edit([](MeshData& d) {
+        Array1f::Dense values(4);
+        values << 0, 1, 2, std::numeric_limits<float>::quiet_NaN();
+        d.scalars = {{"x", Array1f(values)}};
+        d.style.lit = false;
+        d.style.color_by = ColorBy::scalar;
+        d.style.nan_color = Vec3(1, 0, 1);
+    });
+    Scene scene;
+    scene.show(mesh, "square");
+    app::Session session = plain_session(scene, 64);
+    look_from(session, Vec3d(0, 0, 4));
+    const Image picture = session.render({std::nullopt, 1, app::Encoding::srgb8});
+    // The upper left triangle has the corner without a value, the lower right has none.
+    const uint8_t* p = picture.at<uint8_t>(16, 16);
+    EXPECT_EQ(int(p[0]), 255);
+    EXPECT_EQ(int(p[1]), 0);
+    EXPECT_EQ(int(p[2]), 255);
+    EXPECT_FALSE(picture.at<uint8_t>(48, 48)[0] == 255 && picture.at<uint8_t>(48, 48)[2] == 255);
+}
+
+TEST(Colors, OfVoxelsNameTheirOwnElements) {
+    Array3f::Dense V(2, 3);
+    V << -1, 0, 0, 1, 0, 0;
+    MeshData data;
+    data.V = Array3f(V);
+    data.voxel_size = 1.5f;
+    Scene scene;
+    scene.show(Mesh(data), "voxels");
+    app::Session session = plain_session(scene, 64);
+    look_from(session, Vec3d(0, 0, 10));
+    const Image element = session.render_layers({"element"}).at("element");
+    EXPECT_EQ(*element.at<float>(20, 32), 1.0f);
+    EXPECT_EQ(*element.at<float>(44, 32), 2.0f);
+}
+
+// Half of a square is cut away, in every way to draw it.
+TEST(Clip, CutsEveryKind) {
+    for (const DrawMode mode :
+         {DrawMode::mesh, DrawMode::points, DrawMode::surfels, DrawMode::lines, DrawMode::voxels}) {
+        MeshData data;
+        constexpr int n = 41;
+        Array3f::Dense V(n * n, 3), N(n * n, 3);
+        for (int i = 0; i < n * n; ++i) {
+            V.row(i) << float(i % n) / 20 - 1, float(i / n) / 20 - 1, 0;
+            N.row(i) << 0, 0, 1;
+        }
+        Array3i::Dense F(2 * (n - 1) * (n - 1), 3);
+        for (int y = 0, k = 0; y < n - 1; ++y)
+            for (int x = 0; x < n - 1; ++x) {
+                const int a = y * n + x;
+                F.row(k++) << a, a + 1, a + n + 1;
+                F.row(k++) << a, a + n + 1, a + n;
+            }
+        data.V = Array3f(V);
+        data.N = Array3f(N);
+        data.F = Array3i(F);
+        data.style.mode = mode;
+        data.style.voxel_size = 0.05f;
+        Scene scene;
+        scene.show(Mesh(data), "square");
+        app::Session session = plain_session(scene, 100);
+        look_from(session, Vec3d(0, 0, 5));
+        const auto covered = [&] {
+            const Image image = render_linear(session, 4);
+            double left = 0, right = 0;
+            for (int y = 0; y < 100; ++y)
+                for (int x = 0; x < 100; ++x)
+                    (x < 47 ? left : right) += x < 47 || x > 53 ? image.at<float>(x, y)[3] : 0;
+            return std::pair(left, right);
+        };
+        const auto [left, right] = covered();
+        EXPECT_GT(left, 500) << int(mode);
+        session.settings().clip.planes = {1, 0, 0, 0};
+        const auto [cut_left, cut_right] = covered();
+        EXPECT_EQ(cut_left, 0) << int(mode);
+        EXPECT_NEAR(cut_right, right, 0.02 * right) << int(mode);
+        session.settings().clip.planes.clear();
+        session.settings().clip.box = {-2, -2, -2, 0, 2, 2};
+        const auto [box_left, box_right] = covered();
+        EXPECT_NEAR(box_left, left, 0.02 * left) << int(mode);
+        EXPECT_EQ(box_right, 0) << int(mode);
+    }
+}
+
+TEST(Overlay, IsInFrontOfEverything) {
+    for (const bool with_points : {false, true}) {
+        Scene scene;
+        scene.show(facing_square(1), "front");
+        Mesh behind;
+        if (with_points) {
+            behind.set_V(Array3f(Array3f::Dense(Array3f::Dense::Zero(1, 3))));
+        } else {
+            behind = facing_square(0.3f);
+        }
+        behind.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, -1)));
+        Style style;
+        style.overlay = true;
+        style.point_size = 12.0f;
+        behind.set_style(style);
+        scene.show(behind, "behind");
+        app::Session session = plain_session(scene, 64);
+        look_from(session, Vec3d(0, 0, 5));
+        const Image id = session.render_layers({"id"}).at("id");
+        EXPECT_EQ(*id.at<float>(32, 32), 1.0f) << with_points;
+        EXPECT_EQ(*id.at<float>(10, 32), 2.0f) << with_points;
+    }
+}
+
+// Every other column of a sheet of points is missing: filling closes the gaps and leaves the outline.
+TEST(HoleFilling, ClosesGapsBetweenPoints) {
+    constexpr int n = 60;
+    Array3f::Dense V(n * n, 3);
+    for (int i = 0; i < n * n; ++i) V.row(i) << float(i % n) / 30 - 1, float(i / n) / 30 - 1, 0;
+    std::mt19937 random(5);
+    std::vector<int> kept;
+    for (int i = 0; i < n * n; ++i)
+        if (random() % 4 != 0) kept.push_back(i);
+    MeshData data;
+    data.V = Array3f(Array3f::Dense(V(kept, Eigen::all)));
+    Scene scene;
+    scene.show(Mesh(data), "sheet");
+    app::Session session = plain_session(scene, 64);
+    session.settings().camera.projection = Projection::orthographic;
+    session.settings().camera.ortho_height = 64.0 / 30;
+    session.settings().style.point_size = 1.0f;
+    look_from(session, Vec3d(0, 0, 5));
+    const auto holes_and_outside = [&](int times) {
+        session.settings().points.hole_filling = times;
+        const Image depth = session.render_layers({"depth"}).at("depth");
+        int holes = 0, outside = 0;
+        for (int y = 0; y < 64; ++y)
+            for (int x = 0; x < 64; ++x) {
+                const bool inside = x >= 4 && x < 60 && y >= 4 && y < 60;
+                holes += inside && *depth.at<float>(x, y) == 0;
+                outside += (x < 1 || x > 62 || y < 1 || y > 62) && *depth.at<float>(x, y) > 0;
+            }
+        return std::pair(holes, outside);
+    };
+    EXPECT_GT(holes_and_outside(0).first, 500);
+    EXPECT_LE(holes_and_outside(6).first, 5);
+    EXPECT_EQ(holes_and_outside(6).second, 0);
+}
+
+}  // namespace
+}  // namespace easypbr::render
