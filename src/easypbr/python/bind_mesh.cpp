@@ -147,13 +147,6 @@ struct ArrayEdit {
     }
 };
 
-Eigen::Affine3d to_affine(nb::handle object) {
-    const Mat4d matrix = to_matrix4(object, "T_parent_mesh");
-    if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-        throw ArgumentError("T_parent_mesh: expected a last row of (0, 0, 0, 1)");
-    return Eigen::Affine3d(matrix);
-}
-
 std::vector<MaterialHandle> materials(const Mesh& mesh) {
     std::vector<MaterialHandle> handles;
     const size_t count = std::max<size_t>(1, mesh.snapshot()->materials.size());
@@ -221,7 +214,7 @@ void bind_look(nb::class_<Mesh>& mesh) {
 void bind_hierarchy(nb::class_<Mesh>& mesh) {
     mesh.def_prop_rw(
             "T_parent_mesh", [](const Mesh& m) { return matrix_to_numpy(m.T_parent_mesh().matrix()); },
-            [](Mesh& m, const ArrayLike& T) { m.set_T_parent_mesh(to_affine(T)); },
+            [](Mesh& m, const ArrayLike& T) { m.set_T_parent_mesh(to_affine(T, "T_parent_mesh")); },
             nb::for_getter(nb::sig("def T_parent_mesh(self) -> numpy.ndarray")),
             "4 x 4 pose in the parent, or in the world.")
         .def(

@@ -13,34 +13,17 @@ Array3f to_points(nb::handle object, const char* name) {
     return to_array<float, 3>(object, {name, 3, 3});
 }
 
-/// A numpy array that owns the numbers moved into it.
-template <class Matrix>
-nb::object owning(Matrix matrix) {
-    auto* held = new Matrix(std::move(matrix));
-    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<Matrix*>(p); });
-    const size_t shape[2] = {size_t(held->rows()), size_t(held->cols())};
-    return nb::cast(nb::ndarray<nb::numpy, typename Matrix::Scalar>(held->data(), 2, shape, owner));
-}
-
-template <class Scalar>
-nb::object owning(std::vector<Scalar> values) {
-    auto* held = new std::vector<Scalar>(std::move(values));
-    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<std::vector<Scalar>*>(p); });
-    const size_t shape[1] = {held->size()};
-    return nb::cast(nb::ndarray<nb::numpy, Scalar>(held->data(), 1, shape, owner));
-}
-
 nb::tuple nearest(const KdTree& tree, const ArrayLike& queries, int k) {
     const Array3f points = to_points(queries, "queries");
     KdTree::Nearest found = released([&] { return tree.nearest(points, k); });
-    return nb::make_tuple(owning(std::move(found.distances)), owning(std::move(found.indices)));
+    return nb::make_tuple(owning_array(std::move(found.distances)), owning_array(std::move(found.indices)));
 }
 
 nb::tuple within(const KdTree& tree, const ArrayLike& queries, float radius) {
     const Array3f points = to_points(queries, "queries");
     KdTree::Within found = released([&] { return tree.within(points, radius); });
-    return nb::make_tuple(owning(std::move(found.distances)), owning(std::move(found.indices)),
-                          owning(std::move(found.offsets)));
+    return nb::make_tuple(owning_array(std::move(found.distances)), owning_array(std::move(found.indices)),
+                          owning_array(std::move(found.offsets)));
 }
 
 NeighborhoodOptions options(int k, const nb::object& viewpoint) {

@@ -18,6 +18,8 @@ void bind_label_map(nb::module_& module);
 void bind_mesh(nb::module_& module);
 void bind_shapes(nb::module_& module);
 void bind_neighbors(nb::module_& module);
+void bind_geometry(nb::module_& module);
+void bind_surfaces(nb::module_& module);
 void bind_light(nb::module_& module);
 void bind_environment(nb::module_& module);
 void bind_scene(nb::module_& module);

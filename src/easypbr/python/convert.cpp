@@ -195,6 +195,13 @@ Mat4d to_matrix4(nb::handle object, const char* what) {
     return exact_matrix(object, 4, 4, what);
 }
 
+Eigen::Affine3d to_affine(nb::handle object, const char* what) {
+    const Mat4d matrix = to_matrix4(object, what);
+    if (matrix.row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+        throw ArgumentError(fmt::format("{}: expected a last row of (0, 0, 0, 1)", what));
+    return Eigen::Affine3d(matrix);
+}
+
 Vec3 to_linear_color(nb::handle object, const char* what) {
     if (nb::isinstance<nb::str>(object)) return linear_from_srgb(parse_color(nb::cast<std::string>(object)));
     const Vec3d color = to_vector3(object, what);

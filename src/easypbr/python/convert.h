@@ -5,6 +5,8 @@
 #include <nanobind/ndarray.h>
 
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "easypbr/core/image.h"
 #include "easypbr/core/math.h"
@@ -49,6 +51,8 @@ Vec2i to_size(nb::handle object, const char* what);
 Vec3d to_vector3(nb::handle object, const char* what);
 Mat3d to_matrix3(nb::handle object, const char* what);
 Mat4d to_matrix4(nb::handle object, const char* what);
+/// A 4 x 4 matrix with the last row (0, 0, 0, 1).
+Eigen::Affine3d to_affine(nb::handle object, const char* what);
 /// Linear colour; a text is sRGB, numbers are linear.
 Vec3 to_linear_color(nb::handle object, const char* what);
 
@@ -79,6 +83,23 @@ nb::object view_of(const Array<Scalar, Cols>& array) {
     const size_t shape[2] = {size_t(array.rows()), size_t(array.cols())};
     return nb::cast(nb::ndarray<nb::numpy, const Scalar>(array.empty() ? &nothing : array.data(),
                                                          Cols == 1 ? 1 : 2, shape, capsule));
+}
+
+/// A numpy array that owns the numbers moved into it: rows x cols, or one dimension of a vector.
+template <class Matrix>
+nb::object owning_array(Matrix matrix) {
+    auto* held = new Matrix(std::move(matrix));
+    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<Matrix*>(p); });
+    const size_t shape[2] = {size_t(held->rows()), size_t(held->cols())};
+    return nb::cast(nb::ndarray<nb::numpy, typename Matrix::Scalar>(held->data(), 2, shape, owner));
+}
+
+template <class Scalar>
+nb::object owning_array(std::vector<Scalar> values) {
+    auto* held = new std::vector<Scalar>(std::move(values));
+    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<std::vector<Scalar>*>(p); });
+    const size_t shape[1] = {held->size()};
+    return nb::cast(nb::ndarray<nb::numpy, Scalar>(held->data(), 1, shape, owner));
 }
 
 /// The picture as H x W x channels (H x W for one channel), without a copy.

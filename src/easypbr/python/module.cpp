@@ -40,6 +40,8 @@ NB_MODULE(_easypbr, module) {
     bind_camera(module);
     bind_shapes(module);
     bind_neighbors(module);
+    bind_geometry(module);
+    bind_surfaces(module);
     bind_viewer(module);
     module.attr("__version__") = EASYPBR_VERSION;
 #ifdef EASYPBR_HAS_CLI

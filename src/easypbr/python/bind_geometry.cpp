@@ -1,0 +1,198 @@
+// Methods of Mesh that make new meshes: placed, repaired, coarser, finer.
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <cmath>
+#include <optional>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/suggest.h"
+#include "easypbr/geometry/components.h"
+#include "easypbr/geometry/place.h"
+#include "easypbr/geometry/refine.h"
+#include "easypbr/geometry/repair.h"
+#include "easypbr/geometry/simplify.h"
+#include "easypbr/geometry/subsample.h"
+#include "easypbr/python/convert.h"
+
+namespace easypbr::python {
+namespace {
+
+using MeshClass = nb::class_<Mesh>;
+
+Mesh merge(const Mesh& first, const nb::args& others) {
+    std::vector<Mesh> meshes{first};
+    for (const nb::handle other : others) {
+        if (!nb::isinstance<Mesh>(other)) throw ArgumentError("merge: expected meshes, got something else");
+        meshes.push_back(nb::cast<Mesh>(other));
+    }
+    return released([&] { return merged(std::span<const Mesh>(meshes)); });
+}
+
+nb::object box_array(const Mesh& mesh, const nb::object& T) {
+    const Eigen::Affine3d T_world_mesh = T.is_none() ? mesh.T_parent_mesh() : to_affine(T, "T_world_mesh");
+    const Box3d box = released([&] { return bounding_box(mesh, T_world_mesh); });
+    Eigen::MatrixXd corners(2, 3);
+    corners << box.min().transpose(), box.max().transpose();
+    return matrix_to_numpy(corners);
+}
+
+nb::tuple oriented_box(const Mesh& mesh) {
+    const OrientedBox box = released([&] { return oriented_bounding_box(mesh); });
+    return nb::make_tuple(matrix_to_numpy(box.T_world_box.matrix()), matrix_to_numpy(box.size.transpose()));
+}
+
+Mesh subsample(const Mesh& mesh, std::optional<int64_t> count, std::optional<double> fraction,
+               std::optional<double> cell_size, uint64_t seed) {
+    if (count.has_value() + fraction.has_value() + cell_size.has_value() != 1)
+        throw ArgumentError("subsample: expected one of count, fraction and cell_size");
+    if (fraction && !(*fraction >= 0 && *fraction <= 1))
+        throw ArgumentError("subsample: fraction: expected a number from 0 to 1");
+    return released([&] {
+        if (cell_size) return subsample_voxels(mesh, *cell_size);
+        const double share = fraction.value_or(0) * double(mesh.V().rows());
+        return subsample_random(mesh, count ? *count : std::llround(share), seed);
+    });
+}
+
+template <class Choice>
+Choice chosen(const char* what, const std::string& name,
+              const std::vector<std::pair<std::string, Choice>>& choices) {
+    std::vector<std::string> names;
+    for (const auto& [known, choice] : choices) {
+        if (known == name) return choice;
+        names.push_back(known);
+    }
+    throw ArgumentError(std::string(what) + ": expected '" + names[0] + "' or '" + names[1] + "', got '" +
+                        name + "'" + did_you_mean(name, names));
+}
+
+void bind_placing(MeshClass& mesh) {
+    mesh.def(
+            "transform",
+            [](const Mesh& m, const ArrayLike& T) {
+                const Eigen::Affine3d affine = to_affine(T, "transform");
+                return released([&] { return transformed(m, affine); });
+            },
+            nb::arg("T"),
+            "A new mesh whose vertices are at T x (4 x 4); normals, winding, surfels and children follow. "
+            "T_parent_mesh stays.")
+        .def(
+            "center", [](const Mesh& m) { return released([&] { return centered(m); }); },
+            "A new mesh with the middle of its bounding box at its origin.")
+        .def(
+            "normalize_size",
+            [](const Mesh& m, double size) { return released([&] { return with_size(m, size); }); },
+            nb::arg("size") = 1.0,
+            "A new mesh, scaled about its origin, whose bounding box's longest side is `size`.")
+        .def("merge", merge, nb::sig("def merge(self, *others: Mesh) -> Mesh"),
+             "One new mesh of this and the others, children included, with their poses applied. Materials "
+             "and parts are "
+             "kept; what only some have is filled in: normals computed, white, labels -1, scalars NaN, else "
+             "0.")
+        .def("bounding_box", box_array, nb::arg("T_world_mesh").none() = nb::none(),
+             nb::sig("def bounding_box(self, T_world_mesh: numpy.typing.ArrayLike | None = None) -> "
+                     "numpy.ndarray"),
+             "2 x 3: lowest and highest corner of all vertices, children included, after T_world_mesh "
+             "(default: "
+             "T_parent_mesh).")
+        .def("oriented_bounding_box", oriented_box,
+             nb::sig("def oriented_bounding_box(self) -> tuple[numpy.ndarray, numpy.ndarray]"),
+             "A small box at any angle: its 4 x 4 pose (centre and axes) and its size along the axes, "
+             "falling.");
+}
+
+void bind_repair(MeshClass& mesh) {
+    mesh.def(
+            "remove_unreferenced_vertices",
+            [](const Mesh& m) { return released([&] { return remove_unreferenced_vertices(m); }); },
+            "A new mesh without the vertices that no face and no edge uses. A cloud stays as it is.")
+        .def(
+            "remove_duplicate_vertices",
+            [](const Mesh& m, double tolerance, bool keep_seams) {
+                return released([&] { return remove_duplicate_vertices(m, {tolerance, keep_seams}); });
+            },
+            nb::arg("tolerance") = 0.0, nb::arg("keep_seams") = true,
+            "A new mesh in which vertices at one place (within the tolerance) with the same attributes are "
+            "one; with "
+            "keep_seams=False whatever their attributes.")
+        .def(
+            "remove_degenerate_faces",
+            [](const Mesh& m) { return released([&] { return remove_degenerate_faces(m); }); },
+            "A new mesh without the faces that have no area.")
+        .def(
+            "flip_winding", [](const Mesh& m) { return released([&] { return flip_winding(m); }); },
+            "A new mesh with its faces turned around.")
+        .def(
+            "flip_normals", [](const Mesh& m) { return released([&] { return flip_normals(m); }); },
+            "A new mesh with its normals turned around.")
+        .def(
+            "split", [](const Mesh& m) { return released([&] { return split(m); }); },
+            "The connected pieces as new meshes.")
+        .def(
+            "vertex_components",
+            [](const Mesh& m) { return view_of(released([&] { return vertex_components(m); })); },
+            nb::sig("def vertex_components(self) -> numpy.ndarray"),
+            "n int32: the number of the connected piece that each vertex belongs to.")
+        .def(
+            "face_components",
+            [](const Mesh& m) { return view_of(released([&] { return face_components(m); })); },
+            nb::sig("def face_components(self) -> numpy.ndarray"),
+            "m int32: the number of the connected piece that each face belongs to.");
+}
+
+void bind_resolution(MeshClass& mesh) {
+    mesh.def("subsample", subsample, nb::arg("count") = nb::none(), nb::arg("fraction") = nb::none(),
+             nb::arg("cell_size") = nb::none(), nb::arg("seed") = 0,
+             "Fewer vertices as a new cloud: `count` or a `fraction` of them at random, or the mean of those "
+             "in each cube "
+             "of edge `cell_size`.")
+        .def(
+            "voxelize",
+            [](const Mesh& m, double cell_size) { return released([&] { return voxelize(m, cell_size); }); },
+            nb::arg("cell_size"),
+            "The cubes of a grid that have vertices in them, as a new mesh that is drawn as cubes.")
+        .def(
+            "decimate",
+            [](const Mesh& m, std::optional<int> faces, std::optional<double> error) {
+                return released([&] { return decimate(m, {faces, error}); });
+            },
+            nb::arg("faces") = nb::none(), nb::arg("error") = nb::none(),
+            "A new mesh of at most so many `faces`, or of as few as move the surface by no more than "
+            "`error`. Vertices keep "
+            "what they have.")
+        .def(
+            "upsample",
+            [](const Mesh& m, int iterations, const std::string& method) {
+                const Subdivision rule =
+                    chosen<Subdivision>("upsample: method", method,
+                                        {{"midpoint", Subdivision::midpoint}, {"loop", Subdivision::loop}});
+                return released([&] { return upsample(m, iterations, rule); });
+            },
+            nb::arg("iterations") = 1, nb::arg("method") = "midpoint",
+            "A new mesh with every face cut in four; with method 'loop' the surface becomes smooth.")
+        .def(
+            "smooth",
+            [](const Mesh& m, int iterations, const std::string& method) {
+                const Smoothing rule =
+                    chosen<Smoothing>("smooth: method", method,
+                                      {{"taubin", Smoothing::taubin}, {"laplacian", Smoothing::laplacian}});
+                return released([&] { return smooth(m, iterations, rule); });
+            },
+            nb::arg("iterations") = 10, nb::arg("method") = "taubin",
+            "A new mesh with vertices moved towards their neighbours' mean; 'taubin' keeps the size, "
+            "'laplacian' shrinks. "
+            "Borders stay.");
+}
+
+}  // namespace
+
+void bind_geometry(nb::module_&) {
+    auto mesh = nb::borrow<MeshClass>(nb::type<Mesh>());
+    bind_placing(mesh);
+    bind_repair(mesh);
+    bind_resolution(mesh);
+}
+
+}  // namespace easypbr::python
