@@ -1,6 +1,8 @@
 """--style and --label-map."""
 import pytest
 
+import png
+
 
 @pytest.mark.parametrize("text, hint", [
     ("color_by", "--style: expected KEY=VALUE or NAME.KEY=VALUE, got 'color_by'"),
@@ -25,3 +27,49 @@ def test_label_maps_are_found_before_anything_is_drawn(render, box, tmp_path):
 
 def test_a_label_map_without_labels_is_a_warning(render, box):
     assert "'box' has no labels" in render(box, "-o", "out.png", "--label-map", "cityscapes").stderr
+
+
+def write_labelled(path):
+    """Three points: with the labels of a car, a road and a pole."""
+    path.write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
+                    "property int label\nend_header\n0 0 0 10\n1 0 0 40\n2 0 0 80\n")
+    return path
+
+
+def colors(path):
+    return {tuple(color) for color in png.read(path)[:, :, :3].reshape(-1, 3)}
+
+
+def test_label_maps_colour_labels(render, tmp_path):
+    cloud = write_labelled(tmp_path / "cloud.ply")
+    render(cloud, "-o", "out.png", "--label-map", "semantic_kitti", "--style", "point_size=9")
+    assert colors(tmp_path / "out.png") == {(100, 150, 245), (255, 0, 255), (255, 240, 150), (64, 64, 64)}
+    assert "label 40 in row 1 of 3" in render(cloud, "-o", "out.png", "--label-map", "cityscapes", code=1).stderr
+
+
+def test_styles_are_of_all_objects_or_of_one(render, box, sphere, tmp_path):
+    def drawn(*styles):
+        render(box, sphere, "-o", "out.png", *(part for style in styles for part in ("--style", style)))
+        return png.read(tmp_path / "out.png").astype(int)
+
+    plain, normals, one = drawn(), drawn("color_by=normal"), drawn("box.color_by=normal")
+    changed = (normals != plain).any(axis=2)
+    changed_by_one = (one != plain).any(axis=2)
+    assert changed.sum() > changed_by_one.sum() > 0
+    # What both colour alike is the same.
+    assert (one == normals).all(axis=2)[changed_by_one].mean() > 0.95
+
+
+def test_legends_and_colour_bars_are_written(render, tmp_path):
+    cloud = write_labelled(tmp_path / "cloud.ply")
+    render(cloud, "-o", "plain.png", "--label-map", "semantic_kitti", "--size", "200x150")
+    render(cloud, "-o", "legend.png", "--label-map", "semantic_kitti", "--size", "200x150", "--legend")
+    render(cloud, "-o", "height.png", "--style", "color_by=height", "--size", "200x150", "--colorbar")
+    plain, legend = png.read(tmp_path / "plain.png"), png.read(tmp_path / "legend.png")
+    assert (plain != legend).any()
+    assert len(colors(tmp_path / "height.png")) > 60  # the bar's entries
+
+
+def test_unknown_scalars_are_an_error(render, box):
+    done = render(box, "-o", "out.png", "--style", "scalar=curvature", code=1)
+    assert "no object has scalars 'curvature'" in done.stderr

@@ -71,7 +71,9 @@ TEST(Fields, AreComplete) {
         {"image", 3},          {"camera", 12}, {"environment", 4},       {"background", 4},
         {"lights", 1 + 3 * 6}, {"shadows", 3}, {"shading", 3},           {"edl", 3},
         {"transparency", 2},   {"tonemap", 3}, {"material", 4 + 18 + 7}, {"style", 24},
-        {"points", 1},         {"clip", 2},    {"load", 1},
+        {"points", 1},         {"clip", 2},
+        {"annotation", 5},
+        {"load", 1},
     };
     EXPECT_EQ(counts, expected);
 }

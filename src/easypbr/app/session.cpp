@@ -145,7 +145,13 @@ Image Session::render(const PictureOptions& options) {
     draw_frame(options);
     const gl::ContextScope scope(*context_);
     const Stopwatch watch(timing_.read);
-    return renderer_->read_picture();
+    return read_annotated();
+}
+
+Image Session::read_annotated() {
+    Image picture = renderer_->read_picture();
+    draw_annotation(annotation_, annotation_settings_, picture);
+    return picture;
 }
 
 void Session::draw_frame(const PictureOptions& options) {
@@ -155,13 +161,15 @@ void Session::draw_frame(const PictureOptions& options) {
     const Stopwatch watch(timing_.draw);
     renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
     renderer.read_picture(1, 1);
+    annotation_ = annotation_of(prepared.scene, prepared.resolved.settings);
+    annotation_settings_ = prepared.resolved.settings.annotation;
     latch_from(prepared);
 }
 
 Image Session::last_picture() {
     if (!renderer_) throw ArgumentError("nothing has been drawn yet");
     const gl::ContextScope scope(*context_);
-    return renderer_->read_picture();
+    return read_annotated();
 }
 
 std::vector<std::pair<std::string, double>> Session::measure_passes(const PictureOptions& options) {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "easypbr/app/annotation.h"
 #include "easypbr/core/image.h"
 #include "easypbr/gl/context.h"
 #include "easypbr/render/renderer.h"
@@ -113,6 +114,8 @@ class Session {
     void read_images(const std::vector<std::string>& paths);
     std::shared_ptr<const Image> image(const std::string& path);
     SceneSnapshot snapshot();
+    /// The renderer's picture with its annotation.
+    Image read_annotated();
     /// Keeps what was inferred, unless there was nothing to infer it from.
     void latch_from(const Prepared& prepared);
     Vec2i size_or(std::optional<Vec2i> size) const { return size.value_or(settings_.image.size); }
@@ -120,6 +123,9 @@ class Session {
     Scene scene_;
     Settings settings_;
     Timing timing_;
+
+    Annotation annotation_;  ///< of the picture that was drawn last
+    AnnotationSettings annotation_settings_;
 
     std::unique_ptr<gl::Context> context_;
     std::unique_ptr<render::Renderer> renderer_;

@@ -95,6 +95,8 @@ void declare_look(CLI::App& command, RenderOptions& options) {
         .add_option("--label-map", options.label_map,
                     "Names and colours of labels: semantic_kitti, cityscapes, scannet or a file")
         ->option_text("NAME|FILE");
+    command.add_flag("--legend", options.legend, "Write the labels' names and colours into the picture");
+    command.add_flag("--colorbar", options.colorbar, "Write the values' colours into the picture");
     command.add_option("--set", options.values, "Any setting, for example tonemap.exposure=2")
         ->allow_extra_args(false)
         ->option_text("KEY=VALUE");
@@ -241,6 +243,8 @@ void apply(const RenderOptions& options, Settings& settings) {
     if (!options.background.empty()) apply_background(options.background, settings.background);
     for (const std::string& text : options.textures) apply_texture(text, settings);
     if (options.smooth || options.flat) settings.style.flat = options.flat;
+    if (options.legend) settings.annotation.legend = true;
+    if (options.colorbar) settings.annotation.colorbar = true;
     drop_replaced(options, settings.camera);
     apply_camera(options, settings.camera);
     for (const RenderOptions::Shorthand& shorthand : options.shorthands)

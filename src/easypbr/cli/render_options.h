@@ -16,6 +16,7 @@ struct RenderOptions {
     std::string output;
     bool batch = false, quiet = false, timing = false;
     bool smooth = false, flat = false;
+    bool legend = false, colorbar = false;
     int bit_depth = 8;
     std::string size, background, ortho;
     std::string camera;  ///< name or number of a camera in the files

@@ -69,6 +69,11 @@ const std::vector<std::string>& enum_names<ColorBy>() {
     return names;
 }
 template <>
+const std::vector<std::string>& enum_names<Corner>() {
+    static const std::vector<std::string> names = {"top_left", "top_right", "bottom_left", "bottom_right"};
+    return names;
+}
+template <>
 const std::vector<std::string>& enum_names<Colormap>() {
     return colormap_names();
 }
@@ -447,6 +452,22 @@ void add_clipping(Table& table) {
         {0, 6}));
 }
 
+void add_annotation(Table& table) {
+    const auto annotation = [](auto member) { return at(&Settings::annotation, member); };
+    table.push_back(
+        make("annotation.legend", annotation(&AnnotationSettings::legend),
+             "Whether the picture has a legend of the labels that colour objects; automatic: no."));
+    table.push_back(
+        make("annotation.colorbar", annotation(&AnnotationSettings::colorbar),
+             "Whether the picture has a colour bar of the values that colour objects; automatic: no."));
+    table.push_back(make("annotation.title", annotation(&AnnotationSettings::title),
+                         "Title of legends and colour bars; automatic: the values' name, none for legends."));
+    table.push_back(make("annotation.corner", annotation(&AnnotationSettings::corner),
+                         "Corner of the picture that they stand in."));
+    table.push_back(make("annotation.text_size", annotation(&AnnotationSettings::text_size),
+                         "Size of the text, as a part of the picture's height.", "", {0.005, 0.2}));
+}
+
 void add_loading(Table& table) {
     table.push_back(
         make("load.crease_deg", at(&Settings::load, &LoadSettings::crease_deg),
@@ -469,6 +490,7 @@ const std::vector<Field>& fields() {
         add_overrides(all);
         add_style(all);
         add_clipping(all);
+        add_annotation(all);
         add_loading(all);
         return all;
     }();

@@ -65,6 +65,8 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, V
     resolve_environment(scene, resolved);
     resolve_lights(content, resolved);
     resolve_exposure(content, resolved);
+    detail::fill(resolved.settings.annotation.legend, false);
+    detail::fill(resolved.settings.annotation.colorbar, false);
     return resolved;
 }
 

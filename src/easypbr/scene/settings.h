@@ -19,6 +19,7 @@ enum class BackgroundMode { color, environment, blur, image, transparent };
 enum class Brdf { height_correlated, separable, ue4 };
 enum class ShadowMode { hard, pcf, soft };
 enum class TransparencyMode { layers, stochastic };
+enum class Corner { top_left, top_right, bottom_left, bottom_right };
 enum class ToneOperator { aces, reinhard, agx, neutral, none };
 
 struct ImageSettings {
@@ -131,6 +132,15 @@ struct PointsSettings {
     int hole_filling = 0;
 };
 
+/// What is written into the picture. Never into layers.
+struct AnnotationSettings {
+    Auto<bool> legend;
+    Auto<bool> colorbar;
+    Auto<std::string> title;
+    Corner corner = Corner::top_right;
+    float text_size = 0.03f;
+};
+
 struct LoadSettings {
     float crease_deg = 30;
 };
@@ -150,6 +160,7 @@ struct Settings {
     Style style;  ///< overrides of every object's style; automatic: the object's own value
     PointsSettings points;
     ClipSettings clip;
+    AnnotationSettings annotation;
     LoadSettings load;
 };
 

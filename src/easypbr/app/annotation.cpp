@@ -1,0 +1,182 @@
+// What is written; how it is drawn stands in annotation_drawing.cpp.
+#include "easypbr/app/annotation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "easypbr/core/log.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/scene/draw_style.h"
+#include "easypbr/scene/label_colors.h"
+#include "easypbr/scene/resolve.h"
+
+namespace easypbr::app {
+namespace {
+
+constexpr size_t grain = 1 << 16;
+
+std::set<int32_t> labels_in(const Array1i& labels) {
+    const size_t count = size_t(labels.rows());
+    std::vector<std::set<int32_t>> parts((count + grain - 1) / grain);
+    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
+        std::set<int32_t>& part = parts[begin / grain];
+        for (size_t i = begin; i < end; ++i) {
+            const int32_t label = labels(Eigen::Index(i));
+            if (i == begin || label != labels(Eigen::Index(i - 1))) part.insert(label);
+        }
+    });
+    std::set<int32_t> all;
+    for (std::set<int32_t>& part : parts) all.merge(part);
+    return all;
+}
+
+LegendEntry unlabelled_entry(const LabelMap& map) {
+    const LabelClass* own = map.unlabelled() ? map.find(*map.unlabelled()) : nullptr;
+    return {own ? own->name : "unlabelled", map.unlabelled_color()};
+}
+
+std::vector<LegendEntry> entries_of(const std::set<int32_t>& labels, const LabelMap* map) {
+    std::vector<LegendEntry> entries;
+    const auto add = [&](const LegendEntry& entry) {
+        if (std::ranges::find(entries, entry) == entries.end()) entries.push_back(entry);
+    };
+    const GeneratedColors generated(map || labels.empty() ? 0 : *labels.rbegin());
+    for (const int32_t label : labels) {
+        if (!map)
+            add({label < 0 ? "unlabelled" : std::to_string(label), generated.color_of(label)});
+        else if (const LabelClass* own = map->find(label))
+            add({own->name.empty() ? std::to_string(label) : own->name, own->color});
+        else
+            add(unlabelled_entry(*map));
+    }
+    return entries;
+}
+
+/// Gathers what the objects of a scene have in common.
+class Collector {
+  public:
+    Collector(const SceneSnapshot& scene, const Settings& settings) : settings_(settings) {
+        const Vec3d up = parse_up(settings.camera.up);
+        for (const SceneSnapshot::Object& object : scene.objects) {
+            const DrawStyle style = resolve_style(*object.mesh, settings.style);
+            if (!style.visible || object.mesh->V.empty()) continue;
+            add(*object.mesh, plan_colors(*object.mesh, settings.style, style.mode, object.T_world_mesh, up));
+        }
+    }
+
+    std::vector<Legend> legends() const {
+        std::vector<Legend> result;
+        for (const auto& [map, labels] : labels_)
+            result.push_back({settings_.annotation.title.value_or(""), entries_of(labels, map)});
+        return result;
+    }
+
+    const std::vector<ColorBar>& bars() const { return bars_; }
+
+  private:
+    void add(const MeshData& mesh, const ColorPlan& plan) {
+        if (plan.by == ColorBy::label && settings_.annotation.legend.value_or(false)) add_labels(mesh);
+        const bool has_values =
+            plan.by == ColorBy::scalar || plan.by == ColorBy::height || plan.by == ColorBy::intensity;
+        if (has_values && settings_.annotation.colorbar.value_or(false)) add_bar(mesh, plan);
+    }
+
+    void add_labels(const MeshData& mesh) {
+        const LabelMap* const map = mesh.label_map.get();
+        auto known = std::ranges::find(labels_, map, &std::pair<const LabelMap*, std::set<int32_t>>::first);
+        if (known == labels_.end()) known = labels_.insert(known, {map, {}});
+        known->second.merge(labels_in(mesh.L));
+    }
+
+    void add_bar(const MeshData& mesh, const ColorPlan& plan) {
+        const Array1f values = plan_values(mesh, plan);
+        ColorBar bar;
+        bar.title = settings_.annotation.title.value_or(title_of(plan));
+        bar.range = value_range(values, plan.min, plan.max, plan.colormap == Colormap::coolwarm);
+        std::ranges::transform(color_table(plan.colormap), bar.table.begin(), opaque);
+        if (values.array().isNaN().any()) bar.nan_color = opaque(to_rgb8(plan.nan_color));
+        const auto same = [&](const ColorBar& other) {
+            return other.title == bar.title && other.range.min == bar.range.min &&
+                   other.range.max == bar.range.max && other.table == bar.table;
+        };
+        const auto known = std::ranges::find_if(bars_, same);
+        if (known == bars_.end())
+            bars_.push_back(bar);
+        else
+            join(*known, bar);
+    }
+
+    static void join(ColorBar& bar, const ColorBar& other) {
+        bar.range.data_min = std::min(bar.range.data_min, other.range.data_min);
+        bar.range.data_max = std::max(bar.range.data_max, other.range.data_max);
+        if (!bar.nan_color) bar.nan_color = other.nan_color;
+    }
+
+    static std::string title_of(const ColorPlan& plan) {
+        return plan.by == ColorBy::scalar ? plan.scalar : plan.by == ColorBy::height ? "height" : "intensity";
+    }
+
+    const Settings& settings_;
+    std::vector<std::pair<const LabelMap*, std::set<int32_t>>> labels_;  ///< in the order of the scene
+    std::vector<ColorBar> bars_;
+};
+
+/// The least of 1, 2, 5 times a power of ten that is at least this.
+double round_step(double least) {
+    const double power = std::pow(10.0, std::floor(std::log10(least)));
+    for (const double factor : {1.0, 2.0, 5.0})
+        if (factor * power >= least * (1 - 1e-9)) return factor * power;
+    return 10 * power;
+}
+
+/// Digits after the point that tell multiples of a step apart.
+int digits_of(double step) {
+    return std::max(0, int(-std::floor(std::log10(step) + 1e-9)));
+}
+
+/// All ticks of a bar have the same power of ten: "0.5e6", "1.0e6".
+std::string tick_text(double value, double step, double magnitude) {
+    if (value == 0 && (magnitude >= 1e6 || magnitude < 1e-3)) return "0";
+    std::string text;
+    if (magnitude >= 1e6 || magnitude < 1e-3) {
+        const double exponent = std::floor(std::log10(magnitude) + 1e-9), power = std::pow(10.0, exponent);
+        text = fmt::format("{:.{}f}e{}", value / power, digits_of(step / power), int(exponent));
+    } else {
+        text = fmt::format("{:.{}f}", value, digits_of(step));
+    }
+    if (text.starts_with('-')) text.replace(0, 1, "\u2212");
+    return text;
+}
+
+}  // namespace
+
+std::vector<Tick> ticks_of(double min, double max, int most) {
+    most = std::max(1, most);
+    double step = round_step((max - min) / most);
+    const auto first = [&] { return std::ceil(min / step - 1e-6); };
+    const auto last = [&] { return std::floor(max / step + 1e-6); };
+    while (last() - first() + 1 > most) step = round_step(step * 1.5);
+    const double magnitude = std::max(std::abs(min), std::abs(max));
+    std::vector<Tick> ticks;
+    for (double k = first(); k <= last(); ++k)
+        ticks.push_back({k * step, tick_text(k == 0 ? 0 : k * step, step, magnitude)});  // no negative zero
+    return ticks;
+}
+
+Annotation annotation_of(const SceneSnapshot& scene, const Settings& settings) {
+    const bool legend = settings.annotation.legend.value_or(false),
+               colorbar = settings.annotation.colorbar.value_or(false);
+    if (!legend && !colorbar) return {};
+    const Collector found(scene, settings);
+    Annotation annotation{found.legends(), found.bars()};
+    if (legend && annotation.legends.empty())
+        log_warning("annotation.legend: nothing is coloured by labels, there is no legend");
+    if (colorbar && annotation.bars.empty())
+        log_warning("annotation.colorbar: nothing is coloured by values, there is no colour bar");
+    return annotation;
+}
+
+}  // namespace easypbr::app

@@ -1,0 +1,57 @@
+// What a picture's colours mean, written into it: legends of labels, colour bars of values.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "easypbr/app/canvas.h"
+#include "easypbr/scene/element_colors.h"
+#include "easypbr/scene/settings.h"
+
+namespace easypbr::app {
+
+struct LegendEntry {
+    std::string name;
+    Rgb8 color{};
+
+    bool operator==(const LegendEntry&) const = default;
+};
+
+/// The classes that occur in the data of what is coloured by labels, by rising label.
+struct Legend {
+    std::string title;
+    std::vector<LegendEntry> entries;
+};
+
+/// A colormap with the values that it stands for.
+struct ColorBar {
+    std::string title;
+    ValueRange range;
+    std::array<Rgba8, 256> table{};
+    std::optional<Rgba8> nan_color;  ///< given where values are missing
+};
+
+struct Annotation {
+    std::vector<Legend> legends;
+    std::vector<ColorBar> bars;
+
+    bool empty() const { return legends.empty() && bars.empty(); }
+};
+
+/// What the settings ask for of the visible objects: a legend for each label map, a colour bar for each name,
+/// range and colormap. Logs a warning when they ask for something that there is nothing for.
+Annotation annotation_of(const SceneSnapshot& scene, const Settings& settings);
+
+/// Draws it from the settings' corner inwards, next to each other. Sizes are parts of the picture's height.
+void draw_annotation(const Annotation& annotation, const AnnotationSettings& settings, Image& picture);
+
+struct Tick {
+    double value = 0;
+    std::string text;  ///< with as many digits as the distance to the next one needs
+};
+/// Values from `min` to `max` (larger) at a round distance: 1, 2 or 5 times a power of ten, at most `most` of
+/// them.
+std::vector<Tick> ticks_of(double min, double max, int most);
+
+}  // namespace easypbr::app

@@ -1,0 +1,242 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+
+#include "easypbr/app/annotation.h"
+#include "easypbr/app/font.h"
+
+namespace easypbr::app {
+namespace {
+
+// Lengths in units of the text's size.
+constexpr float margin = 0.8f, padding = 0.6f, gap = 0.6f;
+constexpr float row_height = 1.4f, swatch_size = 0.95f, swatch_gap = 0.5f, column_gap = 1.2f;
+constexpr float bar_width = 1.1f, longest_bar = 14, tick_length = 0.35f, tick_width = 0.07f, tick_gap = 0.3f,
+                arrow_height = 0.7f;
+/// Nothing is readable below.
+constexpr float smallest_text = 7;
+
+const Rgb8 dark_ink{16, 16, 16}, light_ink{245, 245, 245}, dark_panel{0, 0, 0}, light_panel{255, 255, 255};
+/// How much of what is behind is covered.
+constexpr float panel_alpha = 0.75f;
+
+/// Writes on a canvas in one size and colour.
+class Pen {
+  public:
+    Pen(Canvas& canvas, float em) : canvas_(canvas), em_(em), font_(em) {}
+
+    Canvas& canvas() { return canvas_; }
+    void set_ink(const Rgb8& ink) { ink_ = ink; }
+    const Rgb8& ink() const { return ink_; }
+
+    /// Whole pixels of a length in units of the text's size.
+    int px(float length) const { return int(std::lround(length * em_)); }
+    int width(const std::string& text) const { return int(std::ceil(font_.width(text))); }
+
+    /// Text whose capitals are centred on the row from `y` on, `height` pixels high.
+    void write(const std::string& text, int x, int y, int height) {
+        const int baseline = y + int(std::lround((float(height) + font_.cap_height()) / 2));
+        font_.draw(text, float(x), baseline,
+                   [&](int px, int py, float coverage) { canvas_.blend(px, py, ink_, coverage); });
+    }
+
+  private:
+    Canvas& canvas_;
+    float em_;
+    Font font_;
+    Rgb8 ink_{};
+};
+
+/// Something of known size that is drawn at a place.
+struct Block {
+    int width = 0, height = 0;
+    std::function<void(Pen&, int x, int y)> draw;
+};
+
+Block titled(Pen& pen, const std::string& title, Block block) {
+    if (title.empty()) return block;
+    const int row = pen.px(row_height);
+    return {std::max(block.width, pen.width(title)), block.height + row,
+            [title, row, inner = block.draw](Pen& p, int x, int y) {
+                p.write(title, x, y, row);
+                inner(p, x, y + row);
+            }};
+}
+
+/// Columns of swatches with names.
+class LegendLayout {
+  public:
+    LegendLayout(Pen& pen, const Legend& legend, int room_x, int room_y)
+        : row_(pen.px(row_height)),
+          swatch_(pen.px(swatch_size)),
+          text_x_(swatch_ + pen.px(swatch_gap)),
+          column_gap_(pen.px(column_gap)),
+          entries_(legend.entries) {
+        const int most_rows = std::max(1, (room_y - (legend.title.empty() ? 0 : row_)) / row_);
+        int columns = (int(entries_.size()) + most_rows - 1) / most_rows;
+        for (set_columns(pen, columns); columns > 1 && width() > room_x; set_columns(pen, columns)) --columns;
+        if (rows_ <= most_rows) return;
+        // They do not fit: the last row says so.
+        const size_t most = size_t(columns) * size_t(most_rows);
+        rest_ = fmt::format("+ {} more", entries_.size() - (most - 1));
+        entries_.resize(most - 1);
+        rows_ = most_rows;
+        measure(pen);
+    }
+
+    int width() const { return x_.back() - column_gap_; }
+    int height() const { return rows_ * row_; }
+
+    void draw(Pen& pen, int x, int y) const {
+        for (size_t i = 0; i < entries_.size(); ++i) {
+            const int at_x = x + x_[i / size_t(rows_)], at_y = y + int(i % size_t(rows_)) * row_;
+            pen.canvas().fill({at_x, at_y + (row_ - swatch_) / 2, swatch_, swatch_}, entries_[i].color);
+            pen.write(entries_[i].name, at_x + text_x_, at_y, row_);
+        }
+        if (!rest_.empty()) pen.write(rest_, x + x_[x_.size() - 2], y + (rows_ - 1) * row_, row_);
+    }
+
+  private:
+    void set_columns(const Pen& pen, int columns) {
+        rows_ = std::max(1, (int(entries_.size()) + columns - 1) / std::max(1, columns));
+        measure(pen);
+    }
+
+    /// Where each column begins, and where the next one would.
+    void measure(const Pen& pen) {
+        x_ = {0};
+        for (size_t first = 0; first < entries_.size() || x_.size() == 1; first += size_t(rows_)) {
+            int widest = pen.width(rest_);
+            for (size_t i = first; i < std::min(entries_.size(), first + size_t(rows_)); ++i)
+                widest = std::max(widest, text_x_ + pen.width(entries_[i].name));
+            x_.push_back(x_.back() + widest + column_gap_);
+        }
+    }
+
+    int row_, swatch_, text_x_, column_gap_, rows_ = 1;
+    std::vector<LegendEntry> entries_;
+    std::string rest_;
+    std::vector<int> x_;
+};
+
+Block legend_block(Pen& pen, const Legend& legend, int room_x, int room_y) {
+    const LegendLayout layout(pen, legend, room_x, room_y);
+    return titled(pen, legend.title, {layout.width(), layout.height(), [layout](Pen& p, int x, int y) {
+                                          layout.draw(p, x, y);
+                                      }});
+}
+
+Rgb8 rgb(const Rgba8& color) {
+    return {color[0], color[1], color[2]};
+}
+
+/// A triangle that points away from the bar's end: values go on beyond it.
+void draw_arrow(Pen& pen, int x, int y, int width, int height, const Rgb8& color, bool up) {
+    for (int row = 0; row < height; ++row) {
+        const int from_tip = up ? row : height - 1 - row;
+        const int half = std::max(1, width * (from_tip + 1) / (2 * height));
+        pen.canvas().fill({x + width / 2 - half, y + row, 2 * half, 1}, color);
+    }
+}
+
+/// The bar with its ticks, the largest value on top.
+struct BarLayout {
+    int bar = 0, height = 0, arrow = 0, top = 0, tick = 0, text_x = 0;
+    std::vector<Tick> ticks;
+};
+
+int tick_row(const BarLayout& layout, const ValueRange& range, double value) {
+    const double t = (value - range.min) / (double(range.max) - range.min);
+    const int row = int(std::lround((1 - t) * layout.height - 0.5));
+    return layout.top + std::clamp(row, 0, layout.height - 1);
+}
+
+void draw_bar(Pen& pen, const ColorBar& bar, const BarLayout& layout, int x, int y) {
+    for (int row = 0; row < layout.height; ++row) {
+        const float t = (float(layout.height - 1 - row) + 0.5f) / float(layout.height);
+        const Rgba8& color = bar.table[size_t(std::min(255, int(t * 256)))];
+        pen.canvas().fill({x, y + layout.top + row, layout.bar, 1}, rgb(color));
+    }
+    if (bar.range.clips_above()) draw_arrow(pen, x, y, layout.bar, layout.arrow, rgb(bar.table[255]), true);
+    if (bar.range.clips_below())
+        draw_arrow(pen, x, y + layout.top + layout.height, layout.bar, layout.arrow, rgb(bar.table[0]),
+                   false);
+    const int row_pixels = pen.px(row_height);
+    for (const Tick& tick : layout.ticks) {
+        const int at = y + tick_row(layout, bar.range, tick.value);
+        pen.canvas().fill({x + layout.bar, at, layout.tick, std::max(1, pen.px(tick_width))}, pen.ink());
+        pen.write(tick.text, x + layout.text_x, at - row_pixels / 2, row_pixels);
+    }
+}
+
+Block bar_block(Pen& pen, const ColorBar& bar, int room_y) {
+    const int row = pen.px(row_height), half_row = row / 2;
+    BarLayout layout;
+    layout.bar = pen.px(bar_width);
+    layout.arrow = pen.px(arrow_height);
+    layout.tick = pen.px(tick_length);
+    layout.text_x = layout.bar + layout.tick + pen.px(tick_gap);
+    // The texts of the ends reach beyond the bar by half a row.
+    layout.top = bar.range.clips_above() ? std::max(layout.arrow, half_row) : half_row;
+    const int below = bar.range.clips_below() ? std::max(layout.arrow, half_row) : half_row;
+    const int others = layout.top + below + (bar.nan_color ? row : 0) + (bar.title.empty() ? 0 : row);
+    layout.height = std::max(2, std::min(pen.px(longest_bar), room_y - others));
+    layout.ticks = ticks_of(bar.range.min, bar.range.max, std::max(2, layout.height / (2 * row)));
+    int widest = 0;
+    for (const Tick& tick : layout.ticks) widest = std::max(widest, pen.width(tick.text));
+    const std::string missing = "no value";
+    const int nan_y = layout.top + layout.height + below, swatch = pen.px(swatch_size);
+    if (bar.nan_color) widest = std::max(widest, pen.width(missing));
+    const auto draw = [=](Pen& p, int x, int y) {
+        // An arrow stands right above its bar.
+        const int arrow_y = layout.top - layout.arrow;
+        BarLayout placed = layout;
+        placed.top = layout.arrow;
+        draw_bar(p, bar, placed, x, y + arrow_y);
+        if (!bar.nan_color) return;
+        p.canvas().fill({x + (layout.bar - swatch) / 2, y + nan_y + (row - swatch) / 2, swatch, swatch},
+                        rgb(*bar.nan_color));
+        p.write(missing, x + layout.text_x, y + nan_y, row);
+    };
+    return titled(pen, bar.title, {layout.text_x + widest, nan_y + (bar.nan_color ? row : 0), draw});
+}
+
+bool at_right(Corner corner) {
+    return corner == Corner::top_right || corner == Corner::bottom_right;
+}
+bool at_bottom(Corner corner) {
+    return corner == Corner::bottom_left || corner == Corner::bottom_right;
+}
+
+/// A panel that text stands out from, dark on dark and light on light pictures, and the block on it.
+void draw_block(Pen& pen, const Block& block, const PixelRect& panel) {
+    const bool dark = pen.canvas().brightness(panel) < 0.5f;
+    pen.canvas().fill(panel, dark ? dark_panel : light_panel, panel_alpha);
+    pen.set_ink(dark ? light_ink : dark_ink);
+    block.draw(pen, panel.x + pen.px(padding), panel.y + pen.px(padding));
+}
+
+}  // namespace
+
+void draw_annotation(const Annotation& annotation, const AnnotationSettings& settings, Image& picture) {
+    if (annotation.empty()) return;
+    Canvas canvas(picture);
+    Pen pen(canvas, std::max(smallest_text, settings.text_size * float(picture.height())));
+    const int border = pen.px(margin), pad = pen.px(padding);
+    const int room_y = picture.height() - 2 * (border + pad);
+    int used = border;  // of the picture's width, from the corner inwards
+    const auto place = [&](const Block& block) {
+        const int width = block.width + 2 * pad, height = block.height + 2 * pad;
+        const int x = at_right(settings.corner) ? picture.width() - used - width : used;
+        const int y = at_bottom(settings.corner) ? picture.height() - border - height : border;
+        draw_block(pen, block, {x, y, width, height});
+        used += width + pen.px(gap);
+    };
+    for (const Legend& legend : annotation.legends)
+        place(legend_block(pen, legend, picture.width() - used - border - 2 * pad, room_y));
+    for (const ColorBar& bar : annotation.bars) place(bar_block(pen, bar, room_y));
+}
+
+}  // namespace easypbr::app

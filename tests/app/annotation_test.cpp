@@ -1,0 +1,324 @@
+#include "easypbr/app/annotation.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "easypbr/app/font.h"
+#include "easypbr/core/log.h"
+#include "easypbr/scene/label_colors.h"
+
+using namespace easypbr;
+using namespace easypbr::app;
+
+namespace {
+
+/// An opaque picture of one grey.
+Image plain(PixelType type, int width = 400, int height = 300, uint8_t grey = 64) {
+    Image picture(width, height, 4, type);
+    Canvas(picture).fill({0, 0, width, height}, {grey, grey, grey});
+    return picture;
+}
+
+Rgb8 pixel(const Image& picture, int x, int y) {
+    const uint8_t* p = picture.at<uint8_t>(x, y);
+    return {p[0], p[1], p[2]};
+}
+
+ColorBar bar_of(Colormap map, ValueRange range) {
+    ColorBar bar;
+    bar.title = "t";
+    bar.range = range;
+    std::ranges::transform(color_table(map), bar.table.begin(), opaque);
+    return bar;
+}
+
+/// How many rows of a column have a colour of the table, from the first such row on.
+struct Found {
+    int x = 0, top = 0, height = 0;
+};
+Found find_bar(const Image& picture, const ColorBar& bar) {
+    Found best;
+    for (int x = 0; x < picture.width(); ++x) {
+        Found here{x, 0, 0};
+        for (int y = 0; y < picture.height(); ++y) {
+            const Rgb8 color = pixel(picture, x, y);
+            if (std::ranges::find(bar.table, opaque(color)) == bar.table.end()) continue;
+            if (here.height++ == 0) here.top = y;
+        }
+        if (here.height > best.height) best = here;
+    }
+    return best;
+}
+
+/// The rectangle of pixels that differ.
+PixelRect difference(const Image& a, const Image& b) {
+    int left = a.width(), top = a.height(), right = -1, bottom = -1;
+    for (int y = 0; y < a.height(); ++y)
+        for (int x = 0; x < a.width(); ++x)
+            if (!std::equal(a.at<uint8_t>(x, y), a.at<uint8_t>(x, y) + 4, b.at<uint8_t>(x, y))) {
+                left = std::min(left, x), right = std::max(right, x);
+                top = std::min(top, y), bottom = std::max(bottom, y);
+            }
+    return {left, top, right - left + 1, bottom - top + 1};
+}
+
+std::vector<std::string> texts(double min, double max, int most) {
+    std::vector<std::string> result;
+    for (const Tick& tick : ticks_of(min, max, most)) result.push_back(tick.text);
+    return result;
+}
+
+Legend legend_of(int count) {
+    Legend legend;
+    const GeneratedColors colors(count);
+    for (int i = 0; i < count; ++i)
+        legend.entries.push_back({fmt::format("class {}", i), colors.color_of(i)});
+    return legend;
+}
+
+/// The places of pixels of exactly this colour.
+std::vector<Vec2i> places(const Image& picture, const Rgb8& color) {
+    std::vector<Vec2i> found;
+    for (int y = 0; y < picture.height(); ++y)
+        for (int x = 0; x < picture.width(); ++x)
+            if (pixel(picture, x, y) == color) found.emplace_back(x, y);
+    return found;
+}
+
+}  // namespace
+
+TEST(Ticks, AreRound) {
+    using Texts = std::vector<std::string>;
+    EXPECT_EQ(texts(0, 1, 6), (Texts{"0.0", "0.2", "0.4", "0.6", "0.8", "1.0"}));
+    EXPECT_EQ(texts(-1, 2, 5), (Texts{"\u22121", "0", "1", "2"}));
+    EXPECT_EQ(texts(312.4, 347.1, 4), (Texts{"320", "330", "340"}));
+    EXPECT_EQ(texts(0, 5e6, 6), (Texts{"0", "1e6", "2e6", "3e6", "4e6", "5e6"}));
+    EXPECT_EQ(texts(0, 2e-5, 5), (Texts{"0", "0.5e-5", "1.0e-5", "1.5e-5", "2.0e-5"}));
+    EXPECT_EQ(texts(-2e6, 1e6, 4), (Texts{"\u22122e6", "\u22121e6", "0", "1e6"}));
+    EXPECT_EQ(texts(1000.0001, 1000.0004, 4), (Texts{"1000.0001", "1000.0002", "1000.0003", "1000.0004"}));
+    EXPECT_EQ(texts(0.3, 0.4, 1).size(), 1u);
+}
+
+TEST(Ticks, AreInTheRangeAndNotTooMany) {
+    for (double min : {-1e37, -3.7, 0.0, 1e-30, 12.0})
+        for (double span : {1e-6, 0.7, 33.0, 1e9, 1e38}) {
+            const double max = min + span * (1 + std::abs(min) * 1e-3);
+            if (!(max > min)) continue;
+            for (int most : {2, 3, 7}) {
+                const auto ticks = ticks_of(min, max, most);
+                EXPECT_LE(int(ticks.size()), most);
+                for (const Tick& tick : ticks) {
+                    EXPECT_GE(tick.value, min - 1e-5 * (max - min));
+                    EXPECT_LE(tick.value, max + 1e-5 * (max - min));
+                }
+            }
+        }
+}
+
+// Row r of H rows from the top is the part of the range around (H - r - 1/2) / H: that entry of 256.
+TEST(Annotation, TheBarIsTheTable) {
+    for (const Colormap map : {Colormap::viridis, Colormap::turbo}) {
+        const ColorBar bar = bar_of(map, {0, 1, 0, 1});
+        Image picture = plain(PixelType::u8);
+        draw_annotation({{}, {bar}}, {}, picture);
+        const Found found = find_bar(picture, bar);
+        ASSERT_GT(found.height, 100);
+        for (int row = 0; row < found.height; ++row) {
+            const size_t entry = size_t(256 * (found.height - row - 0.5) / found.height);
+            EXPECT_EQ(opaque(pixel(picture, found.x, found.top + row)), bar.table[entry]) << row;
+        }
+    }
+}
+
+TEST(Annotation, IsTheSameInEveryPixelType) {
+    const Annotation annotation{{legend_of(3)}, {bar_of(Colormap::magma, {0, 1, 0, 1})}};
+    Image eight = plain(PixelType::u8), sixteen = plain(PixelType::u16), linear = plain(PixelType::f32);
+    for (Image* picture : {&eight, &sixteen, &linear}) draw_annotation(annotation, {}, *picture);
+    // Opaque colours: the code, the code times 257, its linear value.
+    const Rgb8 swatch = annotation.legends[0].entries[1].color;
+    const std::vector<Vec2i> found = places(eight, swatch);
+    ASSERT_GT(found.size(), 50u);
+    for (const Vec2i& at : found)
+        for (size_t c = 0; c < 3; ++c) {
+            EXPECT_EQ(sixteen.at<uint16_t>(at.x(), at.y())[c], swatch[c] * 257);
+            EXPECT_EQ(linear.at<float>(at.x(), at.y())[c], srgb8_table()[swatch[c]]);
+        }
+    for (int y = 0; y < eight.height(); ++y)
+        for (int x = 0; x < eight.width(); ++x)
+            for (int c = 0; c < 4; ++c)
+                ASSERT_NEAR(sixteen.at<uint16_t>(x, y)[c] / 257.0, eight.at<uint8_t>(x, y)[c], 1.01);
+}
+
+TEST(Annotation, SwatchesStandInOrderWithTheirNames) {
+    const Legend legend = legend_of(4);
+    Image picture = plain(PixelType::u8);
+    AnnotationSettings settings;
+    settings.text_size = 0.1f;
+    draw_annotation({{legend}, {}}, settings, picture);
+    int last = -1;
+    for (const LegendEntry& entry : legend.entries) {
+        const auto found = places(picture, entry.color);
+        // A square: as wide as high.
+        const int side = found.back().x() - found.front().x() + 1;
+        EXPECT_EQ(int(found.size()), side * side);
+        EXPECT_GT(found.front().y(), last);
+        last = found.back().y();
+        // Beside it is light text on the darkened background.
+        int ink = 0;
+        for (int y = found.front().y(); y <= found.back().y(); ++y)
+            for (int x = found.back().x() + 1; x < picture.width(); ++x) ink += pixel(picture, x, y)[0] > 200;
+        EXPECT_GT(ink, 100);
+    }
+}
+
+TEST(Annotation, StandsInItsCornerAndLeavesTheRest) {
+    const Image before = plain(PixelType::u8);
+    for (const Corner corner :
+         {Corner::top_left, Corner::top_right, Corner::bottom_left, Corner::bottom_right}) {
+        AnnotationSettings settings;
+        settings.corner = corner;
+        Image picture = before;
+        draw_annotation({{legend_of(3)}, {}}, settings, picture);
+        const PixelRect touched = difference(before, picture);
+        const bool right = corner == Corner::top_right || corner == Corner::bottom_right;
+        const bool bottom = corner == Corner::bottom_left || corner == Corner::bottom_right;
+        EXPECT_EQ(touched.x > 200, right);
+        EXPECT_EQ(touched.y > 150, bottom);
+        EXPECT_LT(touched.width, 120);
+        EXPECT_LT(touched.height, 80);
+    }
+}
+
+TEST(Annotation, GrowsWithThePicture) {
+    const auto size = [](int scale) {
+        const Image before = plain(PixelType::u8, 400 * scale, 300 * scale);
+        Image picture = before;
+        draw_annotation({{legend_of(5)}, {}}, {}, picture);
+        const PixelRect touched = difference(before, picture);
+        return Vec2(float(touched.width), float(touched.height));
+    };
+    // Whole pixels: each of about ten lengths is rounded.
+    EXPECT_LT((size(3) - 3 * size(1)).cwiseAbs().maxCoeff(), 15);
+}
+
+TEST(Annotation, TextIsDarkOnLightAndLightOnDark) {
+    const Legend legend{"", {{"MMMM", {128, 128, 128}}}};
+    AnnotationSettings settings;
+    settings.text_size = 0.1f;
+    for (const uint8_t grey : {0, 255}) {
+        const Image before = plain(PixelType::u8, 400, 300, grey);
+        Image picture = before;
+        draw_annotation({{legend}, {}}, settings, picture);
+        const PixelRect touched = difference(before, picture);
+        int light = 0, dark = 0;
+        for (int y = touched.y; y < touched.y + touched.height; ++y)
+            for (int x = touched.x; x < touched.x + touched.width; ++x) {
+                light += pixel(picture, x, y)[0] > 220;
+                dark += pixel(picture, x, y)[0] < 40;
+            }
+        EXPECT_GT(grey ? dark : light, 200) << "strokes of the letters";
+        EXPECT_GT(grey ? light : dark, 2000) << "what they are written on";
+    }
+}
+
+TEST(Annotation, IsReadableOnNothing) {
+    Image picture(400, 300, 4, PixelType::u8);  // transparent
+    AnnotationSettings settings;
+    settings.text_size = 0.1f;
+    draw_annotation({{legend_of(3)}, {}}, settings, picture);
+    EXPECT_GT(places(picture, {16, 16, 16}).size(), 200u) << "paper is white, so the text is dark";
+    EXPECT_EQ(picture.at<uint8_t>(0, 299)[3], 0) << "the rest stays transparent";
+    const Vec2i swatch = places(picture, legend_of(3).entries[0].color).front();
+    EXPECT_EQ(picture.at<uint8_t>(swatch.x(), swatch.y())[3], 255);
+}
+
+TEST(Annotation, ManyClassesTakeColumnsAndThenSayHowManyAreMissing) {
+    const Legend many = legend_of(60), more = legend_of(4000);
+    Image picture = plain(PixelType::u8, 800, 300);
+    draw_annotation({{many}, {}}, {}, picture);
+    std::set<int> columns;
+    for (const LegendEntry& entry : many.entries) {
+        const auto found = places(picture, entry.color);
+        ASSERT_FALSE(found.empty()) << entry.name;
+        columns.insert(found.front().x());
+    }
+    EXPECT_EQ(columns.size(), 3u);  // 60 rows of 12.6 pixels in 300 less margins
+    Image full = plain(PixelType::u8, 800, 300);
+    draw_annotation({{more}, {}}, {}, full);
+    EXPECT_FALSE(places(full, more.entries[0].color).empty());
+    EXPECT_TRUE(places(full, more.entries[3999].color).empty());
+    // Nothing hangs over the borders: the margin is as it was.
+    for (int y = 0; y < 300; ++y) EXPECT_EQ(pixel(full, 0, y), (Rgb8{64, 64, 64}));
+}
+
+TEST(Annotation, FitsIntoNoPictureWithoutHarm) {
+    const Annotation annotation{{legend_of(30)}, {bar_of(Colormap::viridis, {0, 1, -1, 2})}};
+    for (const auto& [width, height] : {std::pair(1, 1), {3, 200}, {200, 3}, {64, 48}}) {
+        Image picture = plain(PixelType::u8, width, height);
+        EXPECT_NO_THROW(draw_annotation(annotation, {}, picture));
+    }
+}
+
+TEST(Annotation, ArrowsSayThatValuesGoOn) {
+    ColorBar bar = bar_of(Colormap::viridis, {0, 1, 0, 1});
+    Image closed = plain(PixelType::u8), open = plain(PixelType::u8);
+    draw_annotation({{}, {bar}}, {}, closed);
+    bar.range.data_max = 2;
+    bar.range.data_min = -1;
+    draw_annotation({{}, {bar}}, {}, open);
+    const auto count = [&](const Image& picture, size_t entry) {
+        return places(picture, {bar.table[entry][0], bar.table[entry][1], bar.table[entry][2]}).size();
+    };
+    EXPECT_GT(count(open, 255), count(closed, 255) + 20);
+    EXPECT_GT(count(open, 0), count(closed, 0) + 20);
+}
+
+TEST(Annotation, NamesWhatOccurs) {
+    SceneSnapshot scene;
+    MeshData cloud;
+    cloud.V = Array3f(Array3f::Dense::Zero(4, 3));
+    cloud.L = Array1i(Array1i::Dense{{50}, {10}, {-7}, {10}});
+    cloud.label_map = built_in_label_map("semantic_kitti");
+    MeshData values;
+    values.V = Array3f(Array3f::Dense::Zero(3, 3));
+    values.scalars = {
+        {"t", Array1f(Array1f::Dense{{0.0f}, {3.0f}, {std::numeric_limits<float>::quiet_NaN()}})}};
+    for (const MeshData& mesh : {cloud, values, values})
+        scene.objects.push_back({"m", std::make_shared<const MeshData>(mesh), Eigen::Affine3d::Identity()});
+    Settings settings;
+    EXPECT_TRUE(annotation_of(scene, settings).empty()) << "nobody asked";
+    settings.annotation.legend = true;
+    settings.annotation.colorbar = true;
+    const Annotation found = annotation_of(scene, settings);
+    ASSERT_EQ(found.legends.size(), 1u);
+    EXPECT_EQ(found.legends[0].entries,
+              (std::vector<LegendEntry>{
+                  {"unlabeled", {0, 0, 0}}, {"car", {100, 150, 245}}, {"building", {255, 200, 0}}}));
+    ASSERT_EQ(found.bars.size(), 1u) << "equal bars are one";
+    EXPECT_EQ(found.bars[0].title, "t");
+    EXPECT_EQ(found.bars[0].range.max, 3);
+    EXPECT_TRUE(found.bars[0].nan_color);
+    settings.style.visible = false;
+    EXPECT_TRUE(annotation_of(scene, settings).empty());
+}
+
+TEST(Font, HasWidthsAndAlphabets) {
+    const Font font(20);
+    EXPECT_EQ(font.width(""), 0);
+    EXPECT_NEAR(font.width("HHHH"), 4 * font.width("H"), 1e-3);
+    EXPECT_LT(font.width("AV"), font.width("A") + font.width("V")) << "kerning";
+    // DejaVu Sans: capitals are 1493 of 2048 units high.
+    EXPECT_NEAR(font.cap_height(), 20 * 1493.0 / 2048, 0.01);
+    for (const char* text : {"\u00e4\u00df\u0394\u0416\u2212", "\xff\xfe", "\xe2\x82", "\xf0\x9f\x9a\x97"}) {
+        int touched = 0;
+        font.draw(text, 0, 20, [&](int, int, float coverage) {
+            EXPECT_GT(coverage, 0);
+            EXPECT_LE(coverage, 1);
+            ++touched;
+        });
+        EXPECT_GT(touched, 10) << text;
+    }
+}
