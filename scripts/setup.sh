@@ -11,6 +11,7 @@ packages=(
   libspng-dev libturbojpeg0-dev libtinyexr-dev zlib1g-dev libmeshoptimizer-dev libnanoflann-dev libassimp-dev libyaml-cpp-dev
   libstb-dev fonts-dejavu-core
   libgtest-dev python3-dev python3-venv
+  libembree-dev
 )
 missing=()
 for package in "${packages[@]}"; do

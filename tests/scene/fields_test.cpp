@@ -77,6 +77,7 @@ TEST(Fields, AreComplete) {
         {"shadows", 3},
         {"shading", 3},
         {"edl", 3},
+        {"ssao", 9},
         {"transparency", 2},
         {"tonemap", 3},
         {"material", 4 + 18 + 7},
