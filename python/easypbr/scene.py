@@ -112,6 +112,17 @@ class Scene:
         return self._handle.light_names()
 
     @property
+    def origin(self):
+        """Where the scene's frame has its origin, in the coordinates that meshes were given (mesh.offset + mesh.V):
+        cameras, lights and poses are relative to it. It is the offset of the mesh that was shown first, taken when
+        something is drawn for the first time; so it is zero unless that mesh lies far from zero."""
+        return self._handle.origin
+
+    @origin.setter
+    def origin(self, origin):
+        self._handle.origin = origin
+
+    @property
     def environment(self) -> "_easypbr.Environment":
         """What lights the scene from infinitely far; empty: none was given."""
         return self._handle.environment

@@ -46,8 +46,15 @@ const std::vector<BadFile> bad_files{
     {"cut.ply", ply_head + "element vertex 2\n" + xyz + "end_header\n0 0 0\n1 1\n", "cut.ply:9"},
     {"word.ply", ply_head + "element vertex 1\n" + xyz + "end_header\n0 zero 0\n", "'zero'"},
     {"lying.ply", ply_head + "element vertex 2000000000\n" + xyz + "end_header\n0 0 0\n", "2000000000"},
-    {"nan.ply", ply_head + "element vertex 1\n" + xyz + "end_header\n0 nan 0\n", "vertex 0"},
-    {"inf.ply", ply_head + "element vertex 2\n" + xyz + "end_header\n0 0 0\n1e99 0 0\n", "vertex 1"},
+    {"nan.ply",
+     ply_head + "element vertex 1\n" + xyz + "element face 1\n" + faces + "end_header\n0 nan 0\n3 0 0 0\n",
+     "vertex 0"},
+    {"inf.ply",
+     ply_head + "element vertex 2\n" + xyz + "element face 1\n" + faces +
+         "end_header\n0 0 0\n1e99 0 0\n3 0 0 1\n",
+     "vertex 1"},
+    {"nancloud.ply", ply_head + "element vertex 2\n" + xyz + "end_header\n0 nan 0\n1e99 0 0\n",
+     "no point of 2"},
     {"range.ply",
      ply_head + "element vertex 3\n" + xyz + "element face 1\n" + faces +
          "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n",

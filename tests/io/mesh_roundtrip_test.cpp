@@ -41,6 +41,10 @@ MeshData random_mesh(unsigned seed, int n) {
     mesh.UV = Array2f::Dense::NullaryExpr(n, 2, any_float);
     mesh.L = Array1i::Dense::NullaryExpr(n, [&] { return int32_t(random()); });
     mesh.I = Array1f::Dense::NullaryExpr(n, any_float);
+    mesh.T = Array3f::Dense::NullaryExpr(n, 3, any_float);
+    mesh.B = Array1f::Dense::NullaryExpr(n, any_float);
+    mesh.scalars = {{"curvature", Array1f::Dense::NullaryExpr(n, any_float)},
+                    {"area", Array1f::Dense::NullaryExpr(2 * n, any_float)}};
     mesh.F = Array3i::Dense::NullaryExpr(2 * n, 3, [&] { return int32_t(random() % unsigned(n)); });
     mesh.E = Array2i::Dense::NullaryExpr(n, 2, [&] { return int32_t(random() % unsigned(n)); });
     return mesh;
@@ -59,6 +63,13 @@ TEST(MeshFiles, PlyKeepsEveryBit) {
         EXPECT_TRUE(same_bits(mesh.UV, back->UV));
         EXPECT_TRUE(same_bits(mesh.L, back->L));
         EXPECT_TRUE(same_bits(mesh.I, back->I));
+        EXPECT_TRUE(same_bits(mesh.T, back->T));
+        EXPECT_TRUE(same_bits(mesh.B, back->B));
+        ASSERT_EQ(back->scalars.size(), 2u);
+        for (size_t i = 0; i < 2; ++i) {
+            EXPECT_EQ(mesh.scalars[i].name, back->scalars[i].name);
+            EXPECT_TRUE(same_bits(mesh.scalars[i].values, back->scalars[i].values));
+        }
         EXPECT_TRUE(same_bits(mesh.F, back->F));
         EXPECT_TRUE(same_bits(mesh.E, back->E));
         // Colours are codes of 8 bits in the file; reading multiplies instead of dividing by 255.

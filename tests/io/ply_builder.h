@@ -25,7 +25,7 @@ class PlyBuilder {
     PlyBuilder& value(std::string_view type, double v) {
         if (format_ == "ascii") {
             char digits[32];
-            std::snprintf(digits, sizeof digits, "%.9g ", v);
+            std::snprintf(digits, sizeof digits, "%.17g ", v);
             text_ += digits;
         } else if (type == "char" || type == "int8") {
             append(int8_t(v));

@@ -193,6 +193,57 @@ TEST(Ply, ReadsAttributesUnderTheirOtherNames) {
     }
 }
 
+TEST(Ply, KeepsOtherPropertiesAsScalars) {
+    for (const std::string& format : formats) {
+        PlyBuilder ply(format);
+        ply.header("element vertex 4\nproperty float x\nproperty float y\nproperty float z");
+        ply.header("property uchar quality\nproperty double scalar_Height\nproperty int Scalar_Label");
+        ply.header("element face 2\nproperty list uchar int vertex_indices\nproperty int class");
+        ply.header("property float area").end_header();
+        int i = 0;
+        for (const auto& corner : corners) {
+            ply.values("float", corner).value("uchar", 10 + i).value("double", -0.5 * i).value("int", 3 * i);
+            ply.end_row(), ++i;
+        }
+        ply.value("uchar", 4).values("int", {0, 1, 2, 3}).value("int", 7).value("float", 1.5).end_row();
+        ply.value("uchar", 3).values("int", {0, 1, 3}).value("int", 9).value("float", 2.5).end_row();
+        const MeshData mesh = read(ply.text());
+        ASSERT_EQ(mesh.scalars.size(), 3u) << format;
+        EXPECT_EQ(scalar_named(mesh, "quality").values[3], 13);
+        EXPECT_EQ(scalar_named(mesh, "Height").values[3], -1.5f) << "without CloudCompare's prefix";
+        EXPECT_EQ(mesh.L[3], 9) << "labels of the vertices win over those of the faces";
+        const Array1f area = scalar_named(mesh, "area").values;
+        ASSERT_EQ(area.rows(), 3);
+        EXPECT_EQ(Vec3(area), Vec3(1.5f, 1.5f, 2.5f)) << "both triangles of the quad have its value";
+    }
+}
+
+TEST(Ply, ReadsLabelsOfFaces) {
+    PlyBuilder ply = with_vertices("ascii", "element face 2\n" + face_header + "\nproperty uchar label");
+    ply.values("uchar", {3}).values("int", {0, 1, 2}).value("uchar", 4).end_row();
+    ply.values("uchar", {3}).values("int", {0, 1, 3}).value("uchar", 5).end_row();
+    const MeshData mesh = read(ply.text());
+    ASSERT_EQ(mesh.L.rows(), 2);
+    EXPECT_EQ(mesh.L[1], 5);
+}
+
+TEST(Ply, LeavesOutPointsOfCloudsWithoutPosition) {
+    std::vector<std::string> warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });
+    const MeshData mesh = read(
+        "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+        "property float z\nproperty int label\nproperty float heat\nend_header\n"
+        "nan 0 0 1 5\n1 2 3 2 6\n0 0 inf 3 7\n4 5 6 4 8\n");
+    set_log_sink({});
+    ASSERT_EQ(mesh.V.rows(), 2);
+    EXPECT_EQ(Vec3(mesh.V.row(1)), Vec3(4, 5, 6));
+    EXPECT_EQ(mesh.L[1], 4);
+    EXPECT_EQ(scalar_named(mesh, "heat").values[0], 6);
+    EXPECT_EQ(mesh.source_vertex[1], 3);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("2 of 4 points"), std::string::npos) << warnings[0];
+}
+
 TEST(Ply, SplitsVerticesByCornerTexcoords) {
     for (const std::string& format : formats) {
         // Two triangles share vertices 1 and 2; vertex 1 has one uv in both, vertex 2 has two.

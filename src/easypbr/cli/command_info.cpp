@@ -91,7 +91,7 @@ struct Summary {
         faces += data.F.rows();
         parts += data.parts.empty() && !data.F.empty() ? 1 : data.parts.size();
         for (Eigen::Index i = 0; i < data.V.rows(); ++i)
-            bounds.extend(T_world_mesh * Vec3d(data.V.row(i).transpose().cast<double>()));
+            bounds.extend(T_world_mesh * Vec3d(data.V.row(i).transpose().cast<double>() + data.offset));
         for (const std::string& name : attributes_of(data)) attributes.insert(name);
         for (const Material& material : data.materials) {
             Json entry = describe(material);

@@ -2,16 +2,32 @@
 
 #include <algorithm>
 #include <atomic>
+#include <cmath>
 #include <cstring>
+#include <utility>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/element_table.h"
+#include "easypbr/scene/offset.h"
 
 namespace easypbr::io {
 namespace {
 
 constexpr size_t grain = 1 << 15;
 constexpr size_t slab = grain * 64;  ///< rows after which the memory of the rows before is given back
+
+/// IEEE 754 half precision, as it lies in memory.
+struct Half {
+    uint16_t bits;
+
+    operator float() const {
+        const int exponent = bits >> 10 & 31, mantissa = bits & 1023;
+        const float magnitude = exponent == 31  ? (mantissa ? NAN : INFINITY)
+                                : exponent == 0 ? std::ldexp(float(mantissa), -24)
+                                                : std::ldexp(float(mantissa + 1024), exponent - 25);
+        return bits >> 15 ? -magnitude : magnitude;
+    }
+};
 
 template <class T, bool swap>
 T load(const char* p) {
@@ -24,10 +40,13 @@ T load(const char* p) {
 /// Conversion to an index or label; what does not fit becomes -1, which no index check lets pass.
 template <class To, class From>
 To convert(From value) {
-    if constexpr (std::is_same_v<To, float> || std::is_integral_v<From>) {
+    if constexpr (std::is_floating_point_v<To> || (std::is_integral_v<From> && sizeof(From) <= 4)) {
         return To(value);
+    } else if constexpr (std::is_integral_v<From>) {
+        return std::in_range<To>(value) ? To(value) : To(-1);
     } else {
-        return value >= From(-2147483648.0) && value < From(2147483648.0) ? To(value) : To(-1);
+        const double real = double(value);
+        return real >= -2147483648.0 && real < 2147483648.0 ? To(real) : To(-1);
     }
 }
 
@@ -36,20 +55,26 @@ To convert(From value) {
 struct Block {
     const char* in;
     size_t in_stride, rows, width, out_stride;
-    float scale;
+    double scale = 1, shift = 0;
 };
 
-template <class From, bool swap, class To>
-void copy_block(const Block& block, To* out) {
+template <class From, bool swap, class To, class Convert>
+void copy_values(const Block& block, To* out, Convert&& convert_value) {
     for (size_t row = 0; row < block.rows; ++row) {
         const char* in = block.in + row * block.in_stride;
         To* target = out + row * block.out_stride;
-        for (size_t k = 0; k < block.width; ++k) {
-            To value = convert<To>(load<From, swap>(in + k * sizeof(From)));
-            if constexpr (std::is_same_v<To, float>) value *= block.scale;
-            target[k] = value;
-        }
+        for (size_t k = 0; k < block.width; ++k)
+            target[k] = convert_value(load<From, swap>(in + k * sizeof(From)));
     }
+}
+
+template <class From, bool swap, class To>
+void copy_block(const Block& block, To* out) {
+    if (std::is_floating_point_v<To> && (block.scale != 1 || block.shift != 0))
+        return copy_values<From, swap>(block, out, [scale = block.scale, shift = block.shift](From value) {
+            return To(double(value) * scale + shift);
+        });
+    copy_values<From, swap>(block, out, [](From value) { return convert<To>(value); });
 }
 
 /// The triangle's case of copy_block with its loop unrolled.
@@ -61,8 +86,8 @@ void copy_triples(const Block& block, To* out) {
 
 template <class From, class To>
 void copy_block_swapped(const Block& block, bool swap, To* out) {
-    if (!swap && std::is_same_v<From, To> && block.width == 3 && block.scale == 1)
-        return copy_triples(block, out);
+    const bool same = std::is_same_v<From, To> && block.scale == 1 && block.shift == 0;
+    if (same && !swap && block.width == 3) return copy_triples(block, out);
     swap ? copy_block<From, true>(block, out) : copy_block<From, false>(block, out);
 }
 
@@ -81,6 +106,12 @@ void copy_typed(const Block& block, ScalarType type, bool swap, To* out) {
             return copy_block_swapped<int32_t>(block, swap, out);
         case ScalarType::uint32:
             return copy_block_swapped<uint32_t>(block, swap, out);
+        case ScalarType::int64:
+            return copy_block_swapped<int64_t>(block, swap, out);
+        case ScalarType::uint64:
+            return copy_block_swapped<uint64_t>(block, swap, out);
+        case ScalarType::float16:
+            return copy_block_swapped<Half>(block, swap, out);
         case ScalarType::float32:
             return copy_block_swapped<float>(block, swap, out);
         case ScalarType::float64:
@@ -114,7 +145,7 @@ class ElementReader {
   private:
     int64_t list_length(const Property& property, const char* p) const {
         int32_t length = 0;
-        copy_typed(Block{p, 0, 1, 1, 1, 1}, *property.count_type, swap_, &length);
+        copy_typed(Block{p, 0, 1, 1, 1}, *property.count_type, swap_, &length);
         return *property.count_type == ScalarType::uint32 ? int64_t(uint32_t(length)) : int64_t(length);
     }
 
@@ -189,12 +220,16 @@ class ElementReader {
             const Property& property = element_.properties[i];
             const Column& column = plan_.columns[i];
             if (property.count_type) {
-                if (!has_lengths(property, {in, stride, end - begin, widths[i], 0, 1})) return false;
+                if (!has_lengths(property, {in, stride, end - begin, widths[i], 0})) return false;
                 in += size_of(*property.count_type);
             }
-            const Block block{
-                in,          stride, end - begin, widths[i], property.count_type ? widths[i] : column.stride,
-                column.scale};
+            const Block block{in,
+                              stride,
+                              end - begin,
+                              widths[i],
+                              property.count_type ? widths[i] : column.stride,
+                              column.scale,
+                              column.shift};
             if (column.floats) copy_typed(block, property.type, swap_, column.floats + begin * column.stride);
             if (column.integers)
                 copy_typed(block, property.type, swap_, column.integers + begin * column.stride);
@@ -288,7 +323,7 @@ class ElementReader {
                 width = size_t(list_length(property, in));
                 in += size_of(*property.count_type);
             }
-            const Block block{in, 0, 1, width, 0, column.scale};
+            const Block block{in, 0, 1, width, 0, column.scale, column.shift};
             if (column.floats) copy_typed(block, property.type, swap_, column.floats + row * column.stride);
             if (column.integers)
                 copy_typed(block, property.type, swap_, column.integers + row * column.stride);
@@ -317,6 +352,35 @@ size_t smallest_row(const Element& element) {
     for (const Property& property : element.properties)
         size += size_of(property.count_type.value_or(property.type));
     return size;
+}
+
+std::vector<Vec3d> sample_binary_rows(const Source& source, const char* body, std::endian endian,
+                                      const std::vector<Element>& elements, size_t which,
+                                      const std::array<size_t, 3>& properties) {
+    const auto has_list = [](const Element& element) {
+        return std::ranges::any_of(element.properties, [](const Property& p) { return bool(p.count_type); });
+    };
+    if (std::any_of(elements.begin(), elements.begin() + long(which) + 1, has_list)) return {};
+    for (size_t i = 0; i < which; ++i) {
+        const size_t stride = smallest_row(elements[i]);
+        if (stride && elements[i].count > size_t(source.end() - body) / stride) return {};
+        body += elements[i].count * stride;
+    }
+    const Element& element = elements[which];
+    const size_t stride = smallest_row(element);
+    const size_t rows = std::min(element.count, size_t(source.end() - body) / stride);
+    std::vector<Vec3d> samples(std::min(rows, offset_sample_count));
+    for (size_t i = 0; i < samples.size(); ++i) {
+        const char* row = body + (samples.size() > 1 ? i * (rows - 1) / (samples.size() - 1) : 0) * stride;
+        for (size_t axis = 0; axis < 3; ++axis) {
+            const auto property = element.properties.begin() + long(properties[axis]);
+            size_t at = 0;
+            for (auto p = element.properties.begin(); p != property; ++p) at += size_of(p->type);
+            copy_typed(Block{row + at, 0, 1, 1, 1}, property->type, endian != std::endian::native,
+                       &samples[i][Eigen::Index(axis)]);
+        }
+    }
+    return samples;
 }
 
 void read_binary_elements(const Source& source, const char* body, std::endian endian,

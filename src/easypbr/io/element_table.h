@@ -1,7 +1,8 @@
 // Tables of a file: elements (vertex, face...) with rows of scalar and list properties, in text or binary
-// form, read into columns. PLY is made of them; OFF is read as if it were.
+// form, read into columns. PLY is made of them; OFF and the formats of point clouds are read as if they were.
 #pragma once
 
+#include <array>
 #include <bit>
 #include <optional>
 #include <string>
@@ -12,15 +13,15 @@
 
 namespace easypbr::io {
 
-enum class ScalarType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+enum class ScalarType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float16, float32, float64 };
 
 constexpr size_t size_of(ScalarType type) {
-    constexpr size_t sizes[] = {1, 1, 2, 2, 4, 4, 4, 8};
+    constexpr size_t sizes[] = {1, 1, 2, 2, 4, 4, 8, 8, 2, 4, 8};
     return sizes[size_t(type)];
 }
 
 constexpr bool is_integer(ScalarType type) {
-    return type < ScalarType::float32;
+    return type < ScalarType::float16;
 }
 
 struct Property {
@@ -37,13 +38,16 @@ struct Element {
 
 /// Where the values of a property go; a column without any target is skipped.
 struct Column {
-    float* floats = nullptr;  ///< scalar target: row i goes to floats[i * stride], multiplied by `scale`
-    int32_t* integers = nullptr;
+    /// Scalar target: row i goes to floats[i * stride] as value * scale + shift, computed in double
+    /// precision.
+    float* floats = nullptr;
+    int32_t* integers = nullptr;  ///< scalar target without scale: what does not fit becomes -1
     size_t stride = 1;
-    float scale = 1;
+    double scale = 1, shift = 0;
     List<int32_t>* indices = nullptr;  ///< list targets
     List<float>* values = nullptr;
 
+    bool is_scaled() const { return scale != 1 || shift != 0; }
     bool is_skipped() const { return !floats && !integers && !indices && !values; }
 };
 
@@ -61,13 +65,46 @@ size_t smallest_row(const Element& element);
 void read_binary_elements(const Source& source, const char* body, std::endian endian,
                           std::vector<ElementPlan>& plans);
 
-/// Reads rows of text, one per line; empty lines are skipped, what follows `comment` (unless 0) and what
-/// stands behind the last property is ignored. Throws FormatError with the line.
-void read_text_elements(const Source& source, const char* body, char comment,
-                        std::vector<ElementPlan>& plans);
+/// How rows of text are written: one per line, numbers between blanks.
+struct TextStyle {
+    char comment = 0;    ///< what follows it up to the line's end is ignored; 0: there are no comments
+    char delimiter = 0;  ///< between numbers, beside blanks (',' or ';'); nothing between two is NaN; 0: none
+};
 
-/// Throws FormatError when a text file that begins its rows at `body` has less lines than the elements have
-/// rows.
+/// A piece of a text.
+struct TextChunk {
+    const char* begin;
+    const char* end;
+    size_t row_count;
+    size_t first_row;
+};
+
+/// The rows of a text from `body` on, counted; empty lines and comments are none.
+struct TextRows {
+    TextRows(const Source& source, const char* body, TextStyle style);
+
+    size_t count() const { return chunks.empty() ? 0 : chunks.back().first_row + chunks.back().row_count; }
+
+    const char* body;
+    TextStyle style;
+    std::vector<TextChunk> chunks;
+};
+
+/// Reads the elements' rows one after the other; what stands behind a row's last property is ignored. Throws
+/// FormatError with the line.
+void read_text_elements(const Source& source, const TextRows& rows, std::vector<ElementPlan>& plans);
+
+/// Throws FormatError when a text file that begins its rows at `body` has less bytes than the elements' rows
+/// take.
 void check_text_rows(const Source& source, const char* body, const std::vector<Element>& elements);
+
+/// The properties x, y, z in rows spread evenly over elements[which] (what an offset is chosen by, see
+/// scene/offset.h). What is damaged is left out, and all of it where the rows cannot be found without reading
+/// all before them (lists in binary form).
+std::vector<Vec3d> sample_binary_rows(const Source& source, const char* body, std::endian endian,
+                                      const std::vector<Element>& elements, size_t which,
+                                      const std::array<size_t, 3>& properties);
+std::vector<Vec3d> sample_text_rows(const TextRows& rows, const std::vector<Element>& elements, size_t which,
+                                    const std::array<size_t, 3>& properties);
 
 }  // namespace easypbr::io

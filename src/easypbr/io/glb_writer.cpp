@@ -8,6 +8,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/glb_textures.h"
+#include "easypbr/scene/merge.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::io {
@@ -22,13 +23,23 @@ class GlbBuilder {
     std::string build(const Mesh& mesh) {
         content_.json["asset"] = {{"version", "2.0"}, {"generator", "EasyPBR"}};
         content_.json["scene"] = 0;
-        content_.json["scenes"] = OrderedJson::array({{{"nodes", root_nodes(mesh)}}});
+        origin_ = offset_of_tree(mesh);
+        content_.json["scenes"] = OrderedJson::array({{{"nodes", placed_nodes(mesh)}}});
         if (!content_.json.contains("meshes"))
             throw ArgumentError("cannot write GLB: the mesh has no vertices");
         return packed();
     }
 
   private:
+    /// The tree's offset is the translation of a node around all others: JSON holds it in double precision.
+    OrderedJson placed_nodes(const Mesh& mesh) {
+        OrderedJson nodes = root_nodes(mesh);
+        if (origin_.isZero(0)) return nodes;
+        OrderedJson around{{"name", mesh.name()}, {"translation", {origin_.x(), origin_.y(), origin_.z()}}};
+        around["children"] = std::move(nodes);
+        return OrderedJson::array({add(std::move(around))});
+    }
+
     /// What a reader put around a file's nodes is left out again.
     OrderedJson root_nodes(const Mesh& mesh) {
         const auto data = mesh.snapshot();
@@ -47,10 +58,23 @@ class GlbBuilder {
         node["name"] = data->name;
         const Mat4d pose = data->T_parent_mesh.matrix();
         if (pose != Mat4d::Identity()) node["matrix"] = std::vector<double>(pose.data(), pose.data() + 16);
-        if (!data->V.empty()) node["mesh"] = add_mesh(*data);
         OrderedJson children = OrderedJson::array();
+        if (!data->V.empty()) {
+            const Vec3d shift = data->offset - origin_;
+            // The shift is that of the node's own vertices, not of its children.
+            if (shift.isZero(0))
+                node["mesh"] = add_mesh(*data);
+            else
+                children.push_back(add({{"name", data->name},
+                                        {"translation", {shift.x(), shift.y(), shift.z()}},
+                                        {"mesh", add_mesh(*data)}}));
+        }
         for (const Mesh& child : data->children) children.push_back(add_node(child, depth + 1));
         if (!children.empty()) node["children"] = std::move(children);
+        return add(std::move(node));
+    }
+
+    size_t add(OrderedJson node) {
         content_.json["nodes"].push_back(std::move(node));
         return content_.json["nodes"].size() - 1;
     }
@@ -154,6 +178,7 @@ class GlbBuilder {
         return out + content_.binary;
     }
 
+    Vec3d origin_ = Vec3d::Zero();
     GlbContent content_;
     GlbMaterials materials_{content_};
 };

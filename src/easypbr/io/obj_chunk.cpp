@@ -2,15 +2,18 @@
 
 #include <fmt/format.h>
 
+#include <limits>
+
 #include "easypbr/io/text_scanner.h"
+#include "easypbr/scene/offset.h"
 
 namespace easypbr::io {
 namespace {
 
 class ChunkParser {
   public:
-    ChunkParser(const Source& source, std::string_view text)
-        : source_(source), p_(text.data()), end_(text.data() + text.size()) {}
+    ChunkParser(const Source& source, std::string_view text, const Vec3d& offset)
+        : source_(source), offset_(offset), p_(text.data()), end_(text.data() + text.size()) {}
 
     ObjChunk parse() {
         while (p_ != end_) {
@@ -39,7 +42,8 @@ class ChunkParser {
         if (at_line_end()) return;
         const char* line = p_;
         const std::string_view keyword = read_word(p_, end_);
-        if (keyword == "v") return parse_position(line);
+        if (keyword == "v")
+            return offset_.isZero(0) ? parse_position<float>(line) : parse_position<double>(line);
         if (keyword == "f") return parse_face(line);
         if (keyword == "vt") return parse_numbers(line, 1, 2, chunk_.uv);
         if (keyword == "vn") return parse_numbers(line, 3, 3, chunk_.normals);
@@ -62,22 +66,25 @@ class ChunkParser {
         }
     }
 
-    size_t read_numbers(float* values, size_t most) {
+    template <class Number>
+    size_t read_numbers(Number* values, size_t most) {
         size_t count = 0;
         for (skip(); count < most && read_number(p_, end_, values[count]); skip()) ++count;
         return count;
     }
 
     /// x y z, or x y z w, or x y z r g b with perhaps more behind.
+    template <class Number>
     void parse_position(const char* line) {
-        std::array<float, 6> value;
+        std::array<Number, 6> value;
         const size_t count = read_numbers(value.data(), value.size());
         if (count < 3)
             fail_at_line(source_, line, fmt::format("'v' has {} numbers, expected at least 3", count));
-        chunk_.positions.insert(chunk_.positions.end(), value.begin(), value.begin() + 3);
+        for (size_t i = 0; i < 3; ++i)
+            chunk_.positions.push_back(float(value[i] - Number(offset_[Eigen::Index(i)])));
         if (count < 6 && chunk_.colors.empty()) return;
         chunk_.colors.resize(chunk_.positions.size() - 3, 1.0f);
-        for (size_t i = 3; i < 6; ++i) chunk_.colors.push_back(count == 6 ? value[i] : 1.0f);
+        for (size_t i = 3; i < 6; ++i) chunk_.colors.push_back(count == 6 ? float(value[i]) : 1.0f);
     }
 
     /// At least `least` numbers; those up to `width` that are missing are 0.
@@ -163,6 +170,7 @@ class ChunkParser {
     }
 
     const Source& source_;
+    const Vec3d offset_;
     const char* p_;
     const char* end_;
     ObjChunk chunk_;
@@ -170,8 +178,26 @@ class ChunkParser {
 
 }  // namespace
 
-ObjChunk parse_obj_chunk(const Source& source, std::string_view text) {
-    return ChunkParser(source, text).parse();
+ObjChunk parse_obj_chunk(const Source& source, std::string_view text, const Vec3d& offset) {
+    return ChunkParser(source, text, offset).parse();
+}
+
+Vec3d choose_obj_offset(const Source& source) {
+    constexpr size_t lines_per_place = 64;
+    std::vector<Vec3d> samples;
+    const char* end = source.end();
+    for (size_t i = 0; i < offset_sample_count; ++i) {
+        const char* p = source.begin() + source.bytes.size() / offset_sample_count * i;
+        if (i > 0) p = next_line(p, end);
+        for (size_t line = 0; line < lines_per_place && p != end; ++line, p = next_line(p, end)) {
+            if (read_word(p, end) != "v") continue;
+            Vec3d position = Vec3d::Constant(std::numeric_limits<double>::quiet_NaN());
+            for (double& value : position) read_number(p, end, value);
+            samples.push_back(position);
+            break;
+        }
+    }
+    return offset_of_samples(std::move(samples));
 }
 
 }  // namespace easypbr::io

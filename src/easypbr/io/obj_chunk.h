@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "easypbr/core/math.h"
 #include "easypbr/io/source.h"
 
 namespace easypbr::io {
@@ -42,7 +43,10 @@ struct ObjChunk {
 };
 
 /// Throws FormatError with the line of what is not understood. `text` is a part of `source` that ends at a
-/// line's end.
-ObjChunk parse_obj_chunk(const Source& source, std::string_view text);
+/// line's end; `offset` is subtracted from positions.
+ObjChunk parse_obj_chunk(const Source& source, std::string_view text, const Vec3d& offset);
+
+/// The offset of a file's positions (see scene/offset.h), from vertices spread over the text.
+Vec3d choose_obj_offset(const Source& source);
 
 }  // namespace easypbr::io

@@ -40,14 +40,15 @@ std::vector<size_t> obj_chunk_starts(std::string_view text) {
     return starts;
 }
 
-std::vector<ObjChunk> parse_chunks(const Source& source) {
+std::vector<ObjChunk> parse_chunks(const Source& source, const Vec3d& offset) {
     const std::vector<size_t> starts = obj_chunk_starts(source.bytes);
     std::vector<ObjChunk> chunks(starts.size() - 1);
     Progress progress(source, source.bytes.size());
     for (size_t first = 0; first < chunks.size(); first += slab) {
         parallel_for(std::min(slab, chunks.size() - first), 1, [&](size_t k) {
             const size_t i = first + k;
-            chunks[i] = parse_obj_chunk(source, source.bytes.substr(starts[i], starts[i + 1] - starts[i]));
+            chunks[i] =
+                parse_obj_chunk(source, source.bytes.substr(starts[i], starts[i + 1] - starts[i]), offset);
             progress.advance(starts[i + 1] - starts[i]);
         });
         source.release_until(source.begin() + starts[first]);
@@ -66,7 +67,8 @@ std::vector<size_t> offsets(const std::vector<ObjChunk>& chunks, Count count) {
 /// Joins the chunks of one file.
 class ObjReader {
   public:
-    explicit ObjReader(const Source& source) : source_(source), chunks_(parse_chunks(source)) {}
+    explicit ObjReader(const Source& source)
+        : source_(source), offset_(choose_obj_offset(source)), chunks_(parse_chunks(source, offset_)) {}
 
     MeshData read() {
         join_vertices();
@@ -252,6 +254,7 @@ class ObjReader {
     /// repeated.
     void attach_attributes() {
         mesh_.V = std::move(V_);
+        mesh_.offset = offset_;
         if (C_.size()) mesh_.C = std::move(C_);
         if (attribute_[obj_uv].empty() && attribute_[obj_normal].empty()) return;
         CornerSplit split;
@@ -323,6 +326,7 @@ class ObjReader {
     }
 
     const Source& source_;
+    const Vec3d offset_;
     std::vector<ObjChunk> chunks_;
     std::array<std::vector<size_t>, 3> vertex_begin_;
     std::vector<size_t> face_begin_;

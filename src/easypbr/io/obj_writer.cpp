@@ -29,10 +29,18 @@ void append_numbers(const Row& row, std::string& line) {
         fmt::format_to(std::back_inserter(line), " {}", float(row(k)));
 }
 
+/// The same for double precision.
+void append_position(const Eigen::RowVector3d& position, std::string& line) {
+    for (const double value : position) fmt::format_to(std::back_inserter(line), " {}", value);
+}
+
 void append_vertices(const MeshData& mesh, std::string& out) {
     append_lines(size_t(mesh.V.rows()), out, [&](Eigen::Index row, std::string& text) {
         text += "v";
-        append_numbers(mesh.V.row(row), text);
+        if (mesh.offset.isZero(0))
+            append_numbers(mesh.V.row(row), text);
+        else
+            append_position(mesh.V.row(row).cast<double>() + mesh.offset.transpose(), text);
         if (!mesh.C.empty()) append_numbers(mesh.C.row(row).template head<3>(), text);
         text += '\n';
     });

@@ -97,7 +97,7 @@ class OffReader {
         elements_[1] = {"face", header_.faces, {{"vertex_indices", ScalarType::int32, ScalarType::int32}}};
         check_text_rows(source_, header_.body, elements_);
         std::vector<ElementPlan> plans = plan();
-        read_text_elements(source_, header_.body, '#', plans);
+        read_text_elements(source_, TextRows(source_, header_.body, {.comment = '#'}), plans);
         return make_mesh();
     }
 

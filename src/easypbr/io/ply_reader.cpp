@@ -9,6 +9,7 @@
 #include "easypbr/io/mesh_readers.h"
 #include "easypbr/io/ply_header.h"
 #include "easypbr/io/texture_loader.h"
+#include "easypbr/io/vertex_arrays.h"
 
 namespace easypbr::io {
 namespace {
@@ -27,30 +28,6 @@ std::vector<size_t> find_scalars(const Element& element, const Names& names) {
     return found;
 }
 
-/// The first of several spellings of which all properties are there.
-std::vector<size_t> find_spelling(const Element& element, const std::vector<Names>& spellings) {
-    for (const Names& names : spellings)
-        if (auto found = find_scalars(element, names); !found.empty()) return found;
-    return {};
-}
-
-/// Colours stored as integers span the range of their type; int and uint are used for 0 .. 255.
-float color_scale(ScalarType type) {
-    switch (type) {
-        case ScalarType::int8:
-            return 1 / 127.0f;
-        case ScalarType::int16:
-            return 1 / 32767.0f;
-        case ScalarType::uint16:
-            return 1 / 65535.0f;
-        case ScalarType::float32:
-        case ScalarType::float64:
-            return 1;
-        default:
-            return 1 / 255.0f;
-    }
-}
-
 /// Reads one file.
 class PlyReader {
   public:
@@ -60,16 +37,21 @@ class PlyReader {
         check_counts();
         plan_elements();
         if (header_.format == PlyFormat::ascii) {
-            read_text_elements(source_, header_.body, 0, plans_);
+            const TextRows rows(source_, header_.body, {});
+            vertices_.recentre(sample_text_rows(rows, header_.elements, vertex_element_, position_));
+            read_text_elements(source_, rows, plans_);
         } else {
-            const bool little = header_.format == PlyFormat::binary_little_endian;
-            read_binary_elements(source_, header_.body, little ? std::endian::little : std::endian::big,
-                                 plans_);
+            const auto endian =
+                header_.format == PlyFormat::binary_little_endian ? std::endian::little : std::endian::big;
+            vertices_.recentre(sample_binary_rows(source_, header_.body, endian, header_.elements,
+                                                  vertex_element_, position_));
+            read_binary_elements(source_, header_.body, endian, plans_);
         }
         check();
         split_vertices();
         make_mesh();
         add_materials();
+        if (strip_triangles_.empty()) face_values_.move_into(mesh_);
         return std::move(mesh_);
     }
 
@@ -104,44 +86,25 @@ class PlyReader {
                 plan_list(plan, {"vertex_indices", "vertex_index"}, strips_);
             if (is_first("edge", has_edges)) plan_edges(plan);
         }
-        if (V_.rows() == 0) fail(source_, "no vertices: an element 'vertex' with x, y, z expected");
+        if (vertices_.count() == 0) fail(source_, "no vertices: an element 'vertex' with x, y, z expected");
     }
 
     void plan_vertices(ElementPlan& plan) {
         const Element& element = *plan.element;
         if (element.count == 0) return;
-        const auto position = find_scalars(element, Names{"x", "y", "z"});
-        if (position.empty()) fail(source_, "element 'vertex' has no properties x, y, z");
-        plan_matrix(plan, position, V_);
-        plan_matrix(plan, find_scalars(element, Names{"nx", "ny", "nz"}), N_);
-        plan_matrix(plan, find_spelling(element, {{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}}), UV_);
-        plan_colors(plan);
-        if (const auto label = find_scalars(element, Names{"label"}); !label.empty()) {
-            L_.resize(Eigen::Index(element.count));
-            plan.columns[label[0]].integers = L_.data();
+        std::vector<VertexField> fields;
+        std::vector<size_t> places;
+        for (size_t i = 0; i < element.properties.size(); ++i) {
+            const Property& property = element.properties[i];
+            if (property.count_type) continue;
+            fields.push_back({property.name, property.type, &plan.columns[i]});
+            places.push_back(i);
         }
-        plan_matrix(plan, find_scalars(element, Names{"intensity"}), I_);
-    }
-
-    template <class Matrix>
-    void plan_matrix(ElementPlan& plan, const std::vector<size_t>& properties, Matrix& matrix) {
-        if (properties.empty()) return;
-        matrix.resize(Eigen::Index(plan.element->count), Eigen::Index(properties.size()));
-        for (size_t i = 0; i < properties.size(); ++i) {
-            plan.columns[properties[i]].floats = matrix.data() + i;
-            plan.columns[properties[i]].stride = properties.size();
-        }
-    }
-
-    void plan_colors(ElementPlan& plan) {
-        const auto color =
-            find_spelling(*plan.element, {{"red", "green", "blue", "alpha"},
-                                          {"red", "green", "blue"},
-                                          {"diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha"},
-                                          {"diffuse_red", "diffuse_green", "diffuse_blue"},
-                                          {"r", "g", "b"}});
-        plan_matrix(plan, color, C_);
-        for (const size_t i : color) plan.columns[i].scale = color_scale(plan.element->properties[i].type);
+        vertices_ = VertexArrays(fields, element.count);
+        if (!vertices_.position()) fail(source_, "element 'vertex' has no properties x, y, z");
+        std::ranges::transform(*vertices_.position(), position_.begin(),
+                               [&](size_t field) { return places[field]; });
+        vertex_element_ = size_t(&element - header_.elements.data());
     }
 
     /// Plans the first list property with one of the names.
@@ -166,9 +129,11 @@ class PlyReader {
         plan_list(plan, {"vertex_indices", "vertex_index"}, faces_);
         plan_list(plan, {"texcoord"}, corner_uv_);
         const auto number = find_scalars(*plan.element, Names{"texnumber"});
-        if (number.empty() || header_.textures.size() < 2) return;
-        texture_number_.resize(plan.element->count);
-        plan.columns[number[0]].integers = texture_number_.data();
+        if (!number.empty() && header_.textures.size() > 1) {
+            texture_number_.resize(plan.element->count);
+            plan.columns[number[0]].integers = texture_number_.data();
+        }
+        face_values_ = FaceArrays(plan);
     }
 
     void plan_edges(ElementPlan& plan) {
@@ -181,20 +146,22 @@ class PlyReader {
         }
     }
 
+    bool is_cloud() const { return faces_.rows == 0 && strips_.rows == 0 && E_.size() == 0; }
+
     void check() {
-        const size_t count = size_t(V_.rows());
-        check_positions(source_, V_);
+        const size_t count = size_t(vertices_.count());
+        if (!is_cloud()) vertices_.check(source_);
         check_indices(source_, {faces_.values.data(), faces_.value_count()}, count, "a face");
         check_indices(source_, {E_.data(), size_t(E_.size())}, count, "an edge");
         strip_triangles_ = triangles_of_strips(strips_);
         check_indices(source_, strip_triangles_, count, "a triangle strip");
-        tidy_normals(N_);
-        tidy_colors(C_);
     }
 
     /// Where faces carry texture coordinates, makes one vertex of each different (vertex, uv).
     void split_vertices() {
-        move_vertices();
+        const bool cloud = is_cloud();
+        vertices_.move_into(mesh_);
+        if (cloud) drop_points_without_position(source_, mesh_);
         if (corner_uv_.value_count() == 0) return;
         std::vector<uint64_t> keys(faces_.value_count(), no_key);
         parallel_for(faces_.rows, 1 << 13, [&](size_t face) {
@@ -207,28 +174,20 @@ class PlyReader {
         });
         const auto split =
             split_corners({faces_.values.data(), faces_.value_count()}, keys, size_t(mesh_.V.rows()));
-        UV_.setZero(Eigen::Index(split.key.size()), 2);
+        Array2f::Dense UV = Array2f::Dense::Zero(Eigen::Index(split.key.size()), 2);
         parallel_for(split.key.size(), 1 << 14, [&](size_t i) {
             if (split.key[i] == no_key) return;
             const auto uv = std::bit_cast<std::array<float, 2>>(split.key[i]);
-            UV_.row(Eigen::Index(i)) << uv[0], uv[1];
+            UV.row(Eigen::Index(i)) << uv[0], uv[1];
         });
+        tidy_uv(UV);
         gather_vertices(split, mesh_);
+        mesh_.UV = std::move(UV);
         follow_split(split, {E_.data(), size_t(E_.size())});
         follow_split(split, strip_triangles_);
     }
 
-    void move_vertices() {
-        mesh_.V = std::move(V_);
-        if (N_.size()) mesh_.N = std::move(N_);
-        if (C_.size()) mesh_.C = std::move(C_);
-        if (L_.size()) mesh_.L = std::move(L_);
-        if (I_.size()) mesh_.I = std::move(I_);
-    }
-
     void make_mesh() {
-        tidy_uv(UV_);
-        if (UV_.size()) mesh_.UV = std::move(UV_);
         if (E_.size()) mesh_.E = std::move(E_);
         triangulate(std::move(faces_), mesh_);
         if (strip_triangles_.empty()) return;
@@ -258,13 +217,12 @@ class PlyReader {
     const PlyHeader header_;
     std::vector<ElementPlan> plans_;
 
-    Array3f::Dense V_, N_;
-    ArrayXf::Dense C_;
-    Array2f::Dense UV_;
-    Array1i::Dense L_;
-    Array1f::Dense I_;
+    VertexArrays vertices_;
+    size_t vertex_element_ = 0;         ///< place in the header
+    std::array<size_t, 3> position_{};  ///< places of x, y, z among the element's properties
     Array2i::Dense E_;
     Polygons faces_, strips_;
+    FaceArrays face_values_;
     List<float> corner_uv_;
     std::vector<int32_t> texture_number_, strip_triangles_;
     MeshData mesh_;

@@ -190,8 +190,11 @@ void gather_vertices(const CornerSplit& split, MeshData& mesh) {
     gather_rows(mesh.N, source);
     gather_rows(mesh.C, source);
     gather_rows(mesh.UV, source);
+    gather_rows(mesh.T, source);
+    gather_rows(mesh.B, source);
     gather_rows(mesh.L, source);
     gather_rows(mesh.I, source);
+    for (ScalarArray& scalar : mesh.scalars) gather_rows(scalar.values, source);
     mesh.source_vertex =
         Array1i::Dense(Eigen::Map<const Eigen::VectorXi>(source.data(), Eigen::Index(source.size())));
 }

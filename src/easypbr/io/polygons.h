@@ -55,7 +55,7 @@ inline constexpr uint64_t no_key = ~uint64_t(0);
 CornerSplit split_corners(std::span<int32_t> corner_vertices, std::span<const uint64_t> keys,
                           size_t vertex_count);
 
-/// Repeats the rows of V, N, C, UV, L, I by the sources of the new vertices, and sets source_vertex.
+/// Repeats the rows of all arrays of the vertices by the sources of the new vertices, and sets source_vertex.
 void gather_vertices(const CornerSplit& split, MeshData& mesh);
 
 /// Sorts the triangles by material (stable) and fills `parts`: one for each material that is used.

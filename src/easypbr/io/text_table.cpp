@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/element_table.h"
 #include "easypbr/io/text_scanner.h"
+#include "easypbr/scene/offset.h"
 
 namespace easypbr::io {
 namespace {
@@ -21,14 +21,8 @@ struct ListPart {
     std::vector<float> values;
 };
 
-/// A piece of the text: its first row, and the lists that it holds per plan and column.
-struct Chunk {
-    const char* begin;
-    const char* end;
-    size_t row_count = 0;
-    size_t first_row = 0;
-    std::vector<std::vector<ListPart>> lists;
-};
+/// The lists of a chunk, per plan and column.
+using ChunkLists = std::vector<std::vector<ListPart>>;
 
 /// The first character of a row at or after `p`, or null when only empty lines and comments are left.
 const char* next_row(const char* p, const char* end, char comment) {
@@ -46,35 +40,39 @@ size_t count_rows(const char* p, const char* end, char comment) {
     return rows;
 }
 
-std::vector<Chunk> split_rows(const Source& source, const char* body, char comment) {
-    const std::vector<size_t> starts = line_chunks({body, size_t(source.end() - body)}, chunk_bytes);
-    std::vector<Chunk> chunks;
-    for (size_t i = 0; i + 1 < starts.size(); ++i)
-        chunks.push_back({body + starts[i], body + starts[i + 1], 0, 0, {}});
-    parallel_for(chunks.size(), 1, [&](size_t i) {
-        chunks[i].row_count = count_rows(chunks[i].begin, chunks[i].end, comment);
-    });
-    for (size_t i = 1; i < chunks.size(); ++i)
-        chunks[i].first_row = chunks[i - 1].first_row + chunks[i - 1].row_count;
-    return chunks;
+/// Passes over the delimiter before every number but the first of a row. True when no number follows.
+bool at_empty_cell(const char*& p, const char* end, const TextStyle& style, bool is_first) {
+    if (!style.delimiter) return false;
+    p = skip_blanks(p, end);
+    if (!is_first && p != end && *p == style.delimiter) p = skip_blanks(p + 1, end);
+    return p == end || *p == '\n' || *p == style.delimiter;
+}
+
+/// Passes over what stands in a column that nobody wants. False when nothing does.
+bool skip_word(const char*& p, const char* end, const TextStyle& style) {
+    const char* first = p = skip_blanks(p, end);
+    while (p != end && *p != '\n' && (style.delimiter ? *p != style.delimiter : !is_blank(*p))) ++p;
+    return p != first;
 }
 
 class ChunkReader {
   public:
-    ChunkReader(const Source& source, const std::vector<ElementPlan>& plans, Chunk& chunk)
-        : source_(source), plans_(plans), chunk_(chunk) {
-        for (const ElementPlan& plan : plans) chunk.lists.emplace_back(plan.columns.size());
+    ChunkReader(const Source& source, const TextChunk& chunk, const TextStyle& style,
+                const std::vector<ElementPlan>& plans)
+        : source_(source), chunk_(chunk), style_(style), plans_(plans) {
+        for (const ElementPlan& plan : plans) lists_.emplace_back(plan.columns.size());
     }
 
-    void read(char comment) {
+    ChunkLists read() {
         size_t plan = 0, row = chunk_.first_row;
-        for (const char* p = chunk_.begin; (p = next_row(p, chunk_.end, comment));
+        for (const char* p = chunk_.begin; (p = next_row(p, chunk_.end, style_.comment));
              p = next_line(p, chunk_.end)) {
             while (plan < plans_.size() && row >= plans_[plan].element->count)
                 row -= plans_[plan++].element->count;
-            if (plan == plans_.size()) return;
+            if (plan == plans_.size()) break;
             p = read_row(p, plan, row++);
         }
+        return std::move(lists_);
     }
 
   private:
@@ -83,17 +81,37 @@ class ChunkReader {
         for (size_t i = 0; i < element.properties.size(); ++i) {
             const Property& property = element.properties[i];
             const Column& column = plans_[plan].columns[i];
-            if (property.count_type) {
-                read_list(p, column, property, chunk_.lists[plan][i]);
+            if (at_empty_cell(p, chunk_.end, style_, i == 0)) {
+                fill_empty(p, column, property, row);
+            } else if (property.count_type) {
+                read_list(p, column, property, lists_[plan][i]);
             } else if (column.floats) {
-                column.floats[row * column.stride] = number<float>(p, property) * column.scale;
+                column.floats[row * column.stride] =
+                    column.is_scaled() ? float(number<double>(p, property) * column.scale + column.shift)
+                                       : number<float>(p, property);
             } else if (column.integers) {
                 column.integers[row * column.stride] = integer(p, property);
-            } else if (read_word(p, chunk_.end).empty()) {
+            } else if (!skip_word(p, chunk_.end, style_)) {
                 fail_missing(p, property);
             }
         }
         return p;
+    }
+
+    /// What a row ends without is missing; what is left out between delimiters has no value.
+    void fill_empty(const char* p, const Column& column, const Property& property, size_t row) const {
+        if (p == chunk_.end || *p != style_.delimiter) {
+            const bool is_last = p != chunk_.begin && has_delimiter_before(p);
+            if (!is_last) fail_missing(p, property);
+        }
+        if (column.floats) column.floats[row * column.stride] = NAN;
+        if (column.integers) column.integers[row * column.stride] = -1;
+    }
+
+    /// Whether a delimiter stands before `p`, blanks aside: the row's last cell is there and empty.
+    bool has_delimiter_before(const char* p) const {
+        while (p != chunk_.begin && is_blank(p[-1])) --p;
+        return p != chunk_.begin && p[-1] == style_.delimiter;
     }
 
     void read_list(const char*& p, const Column& column, const Property& property, ListPart& part) {
@@ -126,7 +144,8 @@ class ChunkReader {
         p = skip_blanks(p, chunk_.end);
         const char* start = p;
         int32_t value = 0;
-        if (read_integer(p, chunk_.end, value) && (p == chunk_.end || is_blank(*p) || *p == '\n'))
+        if (read_integer(p, chunk_.end, value) &&
+            (p == chunk_.end || is_blank(*p) || *p == '\n' || *p == style_.delimiter))
             return value;
         p = start;
         const double real = number<double>(p, property);
@@ -141,18 +160,20 @@ class ChunkReader {
     }
 
     const Source& source_;
+    const TextChunk& chunk_;
+    const TextStyle style_;
     const std::vector<ElementPlan>& plans_;
-    Chunk& chunk_;
+    ChunkLists lists_;
 };
 
 /// Joins one column's lists of all chunks.
 template <class T>
-void join_lists(const Source& source, const std::vector<Chunk>& chunks, size_t plan, size_t column,
+void join_lists(const Source& source, const std::vector<ChunkLists>& chunks, size_t plan, size_t column,
                 List<T>& list, std::vector<T> ListPart::*values) {
     std::vector<size_t> row_begin{0}, value_begin{0};
-    for (const Chunk& chunk : chunks) {
-        row_begin.push_back(row_begin.back() + chunk.lists[plan][column].lengths.size());
-        value_begin.push_back(value_begin.back() + (chunk.lists[plan][column].*values).size());
+    for (const ChunkLists& lists : chunks) {
+        row_begin.push_back(row_begin.back() + lists[plan][column].lengths.size());
+        value_begin.push_back(value_begin.back() + (lists[plan][column].*values).size());
     }
     if (value_begin.back() > UINT32_MAX)
         fail(source, fmt::format("more than {} list entries are not supported", UINT32_MAX));
@@ -160,7 +181,7 @@ void join_lists(const Source& source, const std::vector<Chunk>& chunks, size_t p
     list.first.assign(list.rows + 1, 0);
     list.values.resize(Eigen::Index(value_begin.back()));
     parallel_for(chunks.size(), 1, [&](size_t i) {
-        const ListPart& part = chunks[i].lists[plan][column];
+        const ListPart& part = chunks[i][plan][column];
         std::copy((part.*values).begin(), (part.*values).end(), list.values.data() + value_begin[i]);
         size_t end = value_begin[i];
         for (size_t row = 0; row < part.lengths.size(); ++row)
@@ -186,21 +207,31 @@ void check_text_rows(const Source& source, const char* body, const std::vector<E
     }
 }
 
-void read_text_elements(const Source& source, const char* body, char comment,
-                        std::vector<ElementPlan>& plans) {
-    std::vector<Chunk> chunks = split_rows(source, body, comment);
-    const size_t rows = chunks.empty() ? 0 : chunks.back().first_row + chunks.back().row_count;
+TextRows::TextRows(const Source& source, const char* body, TextStyle style) : body(body), style(style) {
+    const std::vector<size_t> starts = line_chunks({body, size_t(source.end() - body)}, chunk_bytes);
+    for (size_t i = 0; i + 1 < starts.size(); ++i)
+        chunks.push_back({body + starts[i], body + starts[i + 1], 0, 0});
+    parallel_for(chunks.size(), 1, [&](size_t i) {
+        chunks[i].row_count = count_rows(chunks[i].begin, chunks[i].end, style.comment);
+    });
+    for (size_t i = 1; i < chunks.size(); ++i)
+        chunks[i].first_row = chunks[i - 1].first_row + chunks[i - 1].row_count;
+}
+
+void read_text_elements(const Source& source, const TextRows& rows, std::vector<ElementPlan>& plans) {
+    const std::vector<TextChunk>& chunks = rows.chunks;
     size_t expected = 0;
     for (const ElementPlan& plan : plans) expected += plan.element->count;
-    if (rows < expected)
+    if (rows.count() < expected)
         fail_at_line(source, source.end(),
-                     fmt::format("{} rows expected, but the file ends after {}", expected, rows));
+                     fmt::format("{} rows expected, but the file ends after {}", expected, rows.count()));
 
-    Progress progress(source, size_t(source.end() - body));
+    std::vector<ChunkLists> lists(chunks.size());
+    Progress progress(source, size_t(source.end() - rows.body));
     for (size_t first = 0; first < chunks.size(); first += slab) {
         parallel_for(std::min(slab, chunks.size() - first), 1, [&](size_t i) {
-            Chunk& chunk = chunks[first + i];
-            ChunkReader(source, plans, chunk).read(comment);
+            const TextChunk& chunk = chunks[first + i];
+            lists[first + i] = ChunkReader(source, chunk, rows.style, plans).read();
             progress.advance(size_t(chunk.end - chunk.begin));
         });
         source.release_until(chunks[first].begin);
@@ -208,10 +239,52 @@ void read_text_elements(const Source& source, const char* body, char comment,
     for (size_t plan = 0; plan < plans.size(); ++plan) {
         for (size_t i = 0; i < plans[plan].columns.size(); ++i) {
             const Column& column = plans[plan].columns[i];
-            if (column.indices) join_lists(source, chunks, plan, i, *column.indices, &ListPart::indices);
-            if (column.values) join_lists(source, chunks, plan, i, *column.values, &ListPart::values);
+            if (column.indices) join_lists(source, lists, plan, i, *column.indices, &ListPart::indices);
+            if (column.values) join_lists(source, lists, plan, i, *column.values, &ListPart::values);
         }
     }
+}
+
+namespace {
+
+/// The three properties of the row at `p`; NaN for what is no number.
+Vec3d position_in_row(const char* p, const char* end, const TextStyle& style, const Element& element,
+                      const std::array<size_t, 3>& properties) {
+    Vec3d position = Vec3d::Constant(NAN);
+    for (size_t i = 0; i < element.properties.size() && !element.properties[i].count_type; ++i) {
+        if (at_empty_cell(p, end, style, i == 0)) continue;
+        const auto axis = std::find(properties.begin(), properties.end(), i);
+        if (axis == properties.end())
+            skip_word(p, end, style);
+        else
+            read_number(p, end, position[axis - properties.begin()]);
+    }
+    return position;
+}
+
+}  // namespace
+
+std::vector<Vec3d> sample_text_rows(const TextRows& rows, const std::vector<Element>& elements, size_t which,
+                                    const std::array<size_t, 3>& properties) {
+    size_t before = 0;
+    for (size_t i = 0; i < which; ++i) before += elements[i].count;
+    const size_t count = std::min(elements[which].count, rows.count() - std::min(rows.count(), before));
+    std::vector<Vec3d> samples(std::min(count, offset_sample_count), Vec3d::Constant(NAN));
+    std::vector<size_t> wanted(samples.size());
+    for (size_t i = 0; i < wanted.size(); ++i)
+        wanted[i] = before + (wanted.size() > 1 ? i * (count - 1) / (wanted.size() - 1) : 0);
+    parallel_for(rows.chunks.size(), 1, [&](size_t c) {
+        const TextChunk& chunk = rows.chunks[c];
+        size_t row = chunk.first_row;
+        auto next = std::lower_bound(wanted.begin(), wanted.end(), row);
+        for (const char* p = chunk.begin; next != wanted.end(); p = next_line(p, chunk.end), ++row) {
+            if (!(p = next_row(p, chunk.end, rows.style.comment))) return;
+            if (row != *next) continue;
+            samples[size_t(next++ - wanted.begin())] =
+                position_in_row(p, chunk.end, rows.style, elements[which], properties);
+        }
+    });
+    return samples;
 }
 
 }  // namespace easypbr::io

@@ -36,12 +36,14 @@ nb::object view(const MeshData& data) {
     return view_of(data.*member);
 }
 
+/// What is subtracted from positions far from zero is added to the offset: offset + V does not move.
 std::function<void(MeshData&)> prepare_V(nb::handle object) {
-    const auto assign = prepare<float, 3, &MeshData::V>(object, {"V", 3, 3}, false);
-    return [assign](MeshData& data) {
-        const Eigen::Index before = data.V.rows();
-        assign(data);
-        if (data.V.rows() != before) data.source_vertex = {};
+    LocalPositions positions;
+    if (!object.is_none()) positions = to_positions(object, {"V", 3, 3});
+    return [positions](MeshData& data) {
+        if (data.V.rows() != positions.V.rows()) data.source_vertex = {};
+        data.V = positions.V;
+        data.offset += positions.offset;
     };
 }
 
@@ -56,7 +58,11 @@ std::function<void(MeshData&)> prepare_F(nb::handle object) {
 
 const std::vector<MeshArray>& mesh_arrays() {
     static const std::vector<MeshArray> arrays = {
-        {"V", "n x 3 float32 positions.", view<float, 3, &MeshData::V>, prepare_V},
+        {"V",
+         "n x 3 float32 positions, local: offset + V are the coordinates given. A float64 array far from "
+         "zero, as of UTM coordinates, is recentred when assigned: what is subtracted from it is added to "
+         "the offset.",
+         view<float, 3, &MeshData::V>, prepare_V},
         {"N", "n x 3 float32 unit normals; empty: computed when the mesh is drawn.",
          view<float, 3, &MeshData::N>,
          [](nb::handle o) {
@@ -111,7 +117,12 @@ MeshChange prepare_member(const std::string& name, nb::handle value) {
 /// Several arrays at once: they need to fit together only afterwards.
 void assign(Mesh& mesh, const nb::kwargs& values) {
     std::vector<std::function<void(MeshData&)>> changes;
-    for (auto [name, value] : values) changes.push_back(prepare_member(nb::cast<std::string>(name), value));
+    if (values.contains("offset"))
+        changes.push_back(
+            [offset = to_vector3(values["offset"], "offset")](MeshData& data) { data.offset = offset; });
+    for (auto [name, value] : values)
+        if (const std::string text = nb::cast<std::string>(name); text != "offset")
+            changes.push_back(prepare_member(text, value));
     released([&] {
         mesh.edit([&](MeshData& data) {
             for (const auto& change : changes) change(data);
@@ -175,7 +186,8 @@ void bind_arrays(nb::class_<Mesh>& mesh) {
                             .c_str())),
             array.doc);
     mesh.def("assign", assign, nb::sig("def assign(self, **arrays: object) -> None"),
-             "Replaces several arrays at once, e.g. assign(V=v, F=f, N=None); also label_map and scalars.");
+             "Replaces several arrays at once, e.g. assign(V=v, F=f, N=None); also label_map and scalars. With "
+             "offset=(0, 0, 0), V is taken as world coordinates whatever the offset was.");
     mesh.def(
         "edit",
         [](const Mesh& m, const std::string& name) {
@@ -217,6 +229,15 @@ void bind_hierarchy(nb::class_<Mesh>& mesh) {
             [](Mesh& m, const ArrayLike& T) { m.set_T_parent_mesh(to_affine(T, "T_parent_mesh")); },
             nb::for_getter(nb::sig("def T_parent_mesh(self) -> numpy.ndarray")),
             "4 x 4 pose in the parent, or in the world.")
+        .def_prop_rw(
+            "offset", [](const Mesh& m) { return matrix_to_numpy(m.offset().transpose()); },
+            [](Mesh& m, const ArrayLike& offset) {
+                const Vec3d value = to_vector3(offset, "offset");
+                released([&] { m.set_offset(value); });
+            },
+            nb::for_getter(nb::sig("def offset(self) -> numpy.ndarray")),
+            "3 float64: offset + V are the coordinates that the mesh was given. Not zero for data far from "
+            "zero, which float32 would not hold. Meshes of one scene are placed by it, see Scene.origin.")
         .def(
             "add_child", [](Mesh& m, const Mesh& child) { released([&] { m.add_child(child); }); },
             nb::arg("child"))

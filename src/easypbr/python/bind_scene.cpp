@@ -7,6 +7,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/mesh_io.h"
 #include "easypbr/python/bindings.h"
+#include "easypbr/python/convert.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/viewer/viewer.h"
 
@@ -33,6 +34,11 @@ void bind_scene(nb::module_& module) {
         .def("light", &Scene::light, nb::arg("name"))
         .def("remove_light", &Scene::remove_light, nb::arg("name"))
         .def("light_names", &Scene::light_names)
+        .def_prop_rw(
+            "origin",
+            [](const Scene& s) { return matrix_to_numpy(released([&] { return s.origin(); }).transpose()); },
+            [](Scene& s, const ArrayLike& origin) { s.set_origin(to_vector3(origin, "origin")); },
+            nb::for_getter(nb::sig("def origin(self) -> numpy.ndarray")))
         .def_prop_rw("environment", &Scene::environment,
                      [](Scene& s, const Environment& environment) { s.set_environment(environment); });
     nb::class_<io::LoadedScene>(module, "LoadedScene", "All that a file holds: mesh, cameras and lights.")

@@ -68,14 +68,23 @@ Layout layout_of(const AnyArray& array, const ArrayShape& shape) {
     return {Eigen::Index(array.shape(0)), Eigen::Index(array.shape(1)), array.stride(0), array.stride(1)};
 }
 
-/// result(row, col) = convert(element), in parallel.
+template <class Element>
+Vec3d offset_for(const Element* data, const Layout& layout) {
+    return choose_offset(size_t(layout.rows), [&](size_t row) {
+        const Element* first = data + int64_t(row) * layout.row_stride;
+        return Vec3d(double(first[0]), double(first[layout.col_stride]),
+                     double(first[2 * layout.col_stride]));
+    });
+}
+
+/// result(row, col) = convert(element, col), in parallel.
 template <class Dense, class Element, class Convert>
 void copy_rows(Dense& result, const Element* data, const Layout& layout, const Convert& convert) {
     parallel_chunks(size_t(layout.rows), copy_grain, [&](size_t begin, size_t end) {
         for (size_t row = begin; row < end; ++row)
             for (Eigen::Index col = 0; col < layout.cols; ++col)
                 result(Eigen::Index(row), col) =
-                    convert(data[int64_t(row) * layout.row_stride + col * layout.col_stride]);
+                    convert(data[int64_t(row) * layout.row_stride + col * layout.col_stride], col);
     });
 }
 
@@ -91,14 +100,14 @@ template <class Dense, class Element>
 void copy_floats(Dense& result, const Element* data, const Layout& layout, bool normalize) {
     const bool scaled = normalize && std::is_integral_v<Element>;
     const float scale = scaled ? 1.0f / float(std::numeric_limits<Element>::max()) : 1.0f;
-    copy_rows(result, data, layout, [scale](Element value) { return float(value) * scale; });
+    copy_rows(result, data, layout, [scale](Element value, Eigen::Index) { return float(value) * scale; });
 }
 
 template <class Dense, class Element>
 void copy_integers(Dense& result, const Element* data, const Layout& layout, const AnyArray& array,
                    const ArrayShape& shape) {
     std::atomic<bool> all_fit{true};
-    copy_rows(result, data, layout, [&](Element value) {
+    copy_rows(result, data, layout, [&](Element value, Eigen::Index) {
         if (fits_int32(value)) return int32_t(value);
         all_fit = false;
         return int32_t(0);
@@ -237,6 +246,25 @@ typename Array<Scalar, Cols>::Dense to_array(nb::handle object, const ArrayShape
                 copy_floats(result, data, layout, normalize);
         });
     });
+    return result;
+}
+
+LocalPositions to_positions(nb::handle object, const ArrayShape& shape) {
+    const AnyArray array = numeric_array(object, fmt::format("mesh array {}", shape.name).c_str());
+    const Layout layout = layout_of(array, shape);
+    Array3f::Dense V(layout.rows, layout.cols);
+    LocalPositions result;
+    released([&] {
+        visit_elements(array, [&](const auto* data) {
+            using Element = std::remove_cvref_t<decltype(*data)>;
+            if (!std::is_same_v<Element, float>) result.offset = offset_for(data, layout);
+            if (result.offset.isZero(0)) return copy_floats(V, data, layout, false);
+            copy_rows(V, data, layout, [&](Element value, Eigen::Index col) {
+                return float(double(value) - result.offset[col]);
+            });
+        });
+    });
+    result.V = std::move(V);
     return result;
 }
 

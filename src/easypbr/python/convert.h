@@ -12,6 +12,7 @@
 #include "easypbr/core/math.h"
 #include "easypbr/python/bindings.h"
 #include "easypbr/scene/array.h"
+#include "easypbr/scene/offset.h"
 
 namespace easypbr::python {
 
@@ -73,6 +74,10 @@ struct ArrayShape {
 template <class Scalar, int Cols>
 typename Array<Scalar, Cols>::Dense to_array(nb::handle object, const ArrayShape& shape,
                                              bool normalize = false);
+
+/// The object's numbers as positions. Those of a type with more than float32 holds are recentred where
+/// float32 would lose what matters (scene/offset.h); the offset is what was subtracted. Throws as to_array().
+LocalPositions to_positions(nb::handle object, const ArrayShape& shape);
 
 /// A read-only numpy view that keeps the data alive; one column gives one dimension.
 template <class Scalar, int Cols>

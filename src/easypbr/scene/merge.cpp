@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <string>
 
 #include "easypbr/core/error.h"
@@ -140,6 +141,13 @@ std::shared_ptr<const LabelMap> first_label_map(Meshes meshes) {
     return found;
 }
 
+/// The mesh's positions relative to another offset than its own.
+Array3f positions_from(const MeshData& mesh, const Vec3d& offset) {
+    if (mesh.V.empty() || mesh.offset == offset) return mesh.V;
+    const Eigen::RowVector3d shift = (mesh.offset - offset).transpose();
+    return Array3f::Dense((mesh.V.cast<double>().rowwise() + shift).cast<float>());
+}
+
 /// Each mesh's normals; computed where a mesh has faces only.
 Array3f joined_normals(Meshes meshes) {
     const auto has_normals = [](const MeshData& mesh) { return !mesh.N.empty(); };
@@ -182,7 +190,9 @@ MeshData merged(Meshes meshes) {
     whole.source = meshes.front().source;
     whole.style = meshes.front().style;
     whole.T_parent_mesh = meshes.front().T_parent_mesh;
-    whole.V = joined(meshes, &MeshData::V, 0.0f);
+    whole.offset = meshes.front().offset;
+    whole.V = joined<Array3f>(meshes, PerElement::vertex, 0.0f,
+                              [&](const MeshData& mesh) { return positions_from(mesh, whole.offset); });
     whole.N = joined_normals(meshes);
     whole.C = joined(meshes, &MeshData::C, 1.0f);
     whole.UV = joined(meshes, &MeshData::UV, 0.0f);
@@ -206,12 +216,23 @@ MeshData merged(Meshes meshes) {
     return whole;
 }
 
+Vec3d offset_of_tree(const Mesh& mesh) {
+    std::optional<Vec3d> first;
+    for_each_node(mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d&) {
+        if (!first && !data->V.empty()) first = data->offset;
+    });
+    return first.value_or(Vec3d::Zero());
+}
+
 MeshData flatten(const Mesh& mesh) {
     std::vector<MeshData> nodes;
+    const Vec3d offset = offset_of_tree(mesh);
     for_each_node(mesh,
                   [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d& T_parent_mesh) {
                       if (data->V.empty()) return;
-                      nodes.push_back(transformed(*data, T_parent_mesh));
+                      const Eigen::Translation3d shift(data->offset - offset);
+                      nodes.push_back(transformed(*data, T_parent_mesh * shift));
+                      nodes.back().offset = offset;
                       nodes.back().T_parent_mesh.setIdentity();
                       nodes.back().children.clear();
                   });

@@ -11,6 +11,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/scene/material_table.h"
+#include "easypbr/scene/offset.h"
 
 namespace easypbr {
 namespace {
@@ -170,6 +171,9 @@ void validate(const MeshData& data) {
 
 void validate(const MeshData& data, const MeshData& valid) {
     require_shapes(data);
+    if (!data.offset.allFinite())
+        throw ArgumentError(fmt::format("mesh offset: expected finite numbers, got ({}, {}, {})",
+                                        data.offset.x(), data.offset.y(), data.offset.z()));
     const bool same_V = same_array(data.V, valid.V);
     const bool same_count = data.V.rows() == valid.V.rows();
     if (!same_V) require_finite(data.V);
@@ -223,6 +227,15 @@ bool Mesh::replace(const std::shared_ptr<const MeshData>& expected, std::shared_
     if (shared_->data != expected) return false;
     shared_->data = std::move(next);
     return true;
+}
+
+void Mesh::set_positions(
+    const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>& positions) {
+    const LocalPositions local = local_positions(positions);
+    edit([&](MeshData& data) {
+        data.V = local.V;
+        data.offset += local.offset;
+    });
 }
 
 Material Mesh::material(int index) const {

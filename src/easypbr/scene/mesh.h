@@ -38,7 +38,7 @@ struct MeshData {
     std::string name;
     std::filesystem::path source;  ///< the file it was read from; empty for a mesh made in memory
 
-    Array3f V;   ///< n x 3 positions
+    Array3f V;   ///< n x 3 positions, local: offset + V are the coordinates that the mesh was given
     Array3f N;   ///< n x 3 unit normals, or empty: computed when it is drawn
     ArrayXf C;   ///< n x 3 or n x 4 colours, sRGB-encoded, 0 .. 1 (alpha last), or empty
     Array2f UV;  ///< n x 2 texture coordinates, v upwards, or empty
@@ -50,6 +50,10 @@ struct MeshData {
     Array1f I;   ///< n x 1 intensities
     std::vector<ScalarArray> scalars;           ///< any number of named values
     std::shared_ptr<const LabelMap> label_map;  ///< what the labels mean; none: generated colours
+    /// What was subtracted from positions far from zero, so that float32 holds them (scene/offset.h). Meshes
+    /// of one scene are placed by it: the scene's own frame has an origin (Scene::origin), and a vertex
+    /// stands at T_world_mesh * (V + offset - origin).
+    Vec3d offset = Vec3d::Zero();
     float voxel_size = 0;  ///< edge of the cubes that V are the centres of; 0: V are no voxels
 
     Array1i source_vertex;  ///< n x 1 index of the file's vertex that each vertex came from; empty: the same
@@ -74,8 +78,8 @@ inline PerElement element_of(const MeshData& data, Eigen::Index rows) {
 const ScalarArray& scalar_named(const MeshData& data, const std::string& name);
 
 /// Throws ArgumentError that names the array, the expected and the given shape, when arrays do not fit
-/// together, when a face or edge index is out of range, when a position is not finite, or when a label is not
-/// in the label map (see LabelMap::accepts).
+/// together, when a face or edge index is out of range, when a position or the offset is not finite, or when
+/// a label is not in the label map (see LabelMap::accepts).
 void validate(const MeshData& data);
 /// The same, without reading arrays again that `data` shares with data known to be valid.
 void validate(const MeshData& data, const MeshData& valid);
@@ -128,8 +132,17 @@ class Mesh {
     Array1i L() const { return snapshot()->L; }
     Array1f I() const { return snapshot()->I; }
 
+    /// Local positions; the offset stays.
     void set_V(Array3f V) {
         edit([&](MeshData& d) { d.V = V; });
+    }
+    /// Local positions in double precision. Where float32 would lose what matters (scene/offset.h) they are
+    /// recentred: what is subtracted from them is added to the offset, so that offset + V does not move.
+    void set_positions(
+        const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>& positions);
+    Vec3d offset() const { return snapshot()->offset; }
+    void set_offset(const Vec3d& offset) {
+        edit([&](MeshData& d) { d.offset = offset; });
     }
     void set_N(Array3f N) {
         edit([&](MeshData& d) { d.N = N; });
@@ -212,7 +225,8 @@ class Mesh {
     std::shared_ptr<Shared> shared_;
 };
 
-/// Calls visit(data, T_world_mesh) for the mesh and all its descendants, parents first.
+/// Calls visit(data, T_world_mesh) for the mesh and all its descendants, parents first. The poses are those
+/// of V + offset.
 void for_each_node(
     const Mesh& root,
     const std::function<void(const std::shared_ptr<const MeshData>&, const Eigen::Affine3d&)>& visit);

@@ -34,7 +34,8 @@ auto& require_entry(Map& map, const std::string& name, const char* kind) {
     return found->second;
 }
 
-/// Adds the node and its descendants; what is invisible takes its descendants along.
+/// Adds the node and its descendants, with the poses of V + offset; what is invisible takes its descendants
+/// along.
 void add_nodes(const Mesh& mesh, const std::string& name, const Eigen::Affine3d& T_world_parent, int depth,
                std::vector<SceneSnapshot::Object>& objects) {
     require_mesh_depth(depth);
@@ -44,6 +45,14 @@ void add_nodes(const Mesh& mesh, const std::string& name, const Eigen::Affine3d&
     objects.push_back({name, data, T_world_mesh});
     for (const Mesh& child : data->children)
         add_nodes(child, name + "/" + child.name(), T_world_mesh, depth + 1, objects);
+}
+
+/// The offset of the first node with vertices among objects[first..end).
+std::optional<Vec3d> first_offset(const std::vector<SceneSnapshot::Object>& objects, size_t first,
+                                  size_t end) {
+    for (size_t i = first; i < end; ++i)
+        if (!objects[i].mesh->V.empty()) return objects[i].mesh->offset;
+    return {};
 }
 
 }  // namespace
@@ -95,6 +104,7 @@ Box3d SceneSnapshot::bounds() const {
 struct Scene::Shared {
     struct Entry {
         Mesh mesh;
+        uint64_t order;  ///< rises with the time when the name was first shown
         bool hidden = false;
     };
 
@@ -102,13 +112,17 @@ struct Scene::Shared {
     std::map<std::string, Entry> meshes;
     std::map<std::string, Light> lights;
     Environment environment;
+    uint64_t next_order = 0;
+    std::optional<Vec3d> origin;  ///< none: nothing has been drawn yet
 };
 
 Scene::Scene() : shared_(std::make_shared<Shared>()) {}
 
 void Scene::show(const Mesh& mesh, const std::string& name) {
     std::lock_guard lock(shared_->mutex);
-    shared_->meshes.insert_or_assign(name, Shared::Entry{mesh});
+    const auto known = shared_->meshes.find(name);
+    const uint64_t order = known == shared_->meshes.end() ? shared_->next_order++ : known->second.order;
+    shared_->meshes.insert_or_assign(name, Shared::Entry{mesh, order});
 }
 
 Mesh Scene::get(const std::string& name) const {
@@ -132,6 +146,7 @@ void Scene::clear() {
     shared_->meshes.clear();
     shared_->lights.clear();
     shared_->environment = {};
+    shared_->origin.reset();
 }
 
 std::vector<std::string> Scene::names() const {
@@ -186,11 +201,34 @@ Environment Scene::environment() const {
     return shared_->environment;
 }
 
+Vec3d Scene::origin() const {
+    return snapshot().origin;
+}
+
+void Scene::set_origin(const Vec3d& origin) {
+    if (!origin.allFinite())
+        throw ArgumentError(fmt::format("scene origin: expected finite numbers, got ({}, {}, {})", origin.x(),
+                                        origin.y(), origin.z()));
+    std::lock_guard lock(shared_->mutex);
+    shared_->origin = origin;
+}
+
 SceneSnapshot Scene::snapshot() const {
     SceneSnapshot result;
     std::lock_guard lock(shared_->mutex);
-    for (const auto& [name, entry] : shared_->meshes)
-        if (!entry.hidden) add_nodes(entry.mesh, name, Eigen::Affine3d::Identity(), 0, result.objects);
+    uint64_t earliest = std::numeric_limits<uint64_t>::max();
+    std::optional<Vec3d> origin;
+    for (const auto& [name, entry] : shared_->meshes) {
+        if (entry.hidden) continue;
+        const size_t first = result.objects.size();
+        add_nodes(entry.mesh, name, Eigen::Affine3d::Identity(), 0, result.objects);
+        const auto offset = first_offset(result.objects, first, result.objects.size());
+        if (offset && entry.order < earliest) origin = offset, earliest = entry.order;
+    }
+    if (!shared_->origin) shared_->origin = origin;
+    result.origin = shared_->origin.value_or(Vec3d::Zero());
+    for (SceneSnapshot::Object& object : result.objects)
+        object.T_world_mesh.translate(object.mesh->offset - result.origin);
     result.lights = shared_->lights;
     result.environment = shared_->environment;
     return result;

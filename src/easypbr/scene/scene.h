@@ -18,13 +18,14 @@ struct SceneSnapshot {
     struct Object {
         std::string name;
         std::shared_ptr<const MeshData> mesh;
-        Eigen::Affine3d T_world_mesh;
+        Eigen::Affine3d T_world_mesh;  ///< pose of V in the scene's frame: the mesh's offset is in it
     };
     /// All visible nodes in the order of their names, parents before children ("car", "car/wheel"). What is
     /// hidden, or invisible by its style, is left out with its descendants.
     std::vector<Object> objects;
     std::map<std::string, Light> lights;
-    Environment environment;  ///< empty: none was given
+    Environment environment;       ///< empty: none was given
+    Vec3d origin = Vec3d::Zero();  ///< see Scene::origin()
 
     /// Bounding box of all vertices in world space (exact under rotation); empty when there are none.
     Box3d bounds() const;
@@ -50,7 +51,7 @@ class Scene {
     void remove(const std::string& name);
     /// Hides (or shows again) without removing. Throws NameError.
     void hide(const std::string& name, bool hidden = true);
-    /// Removes all meshes and lights and the environment.
+    /// Removes all meshes and lights and the environment, and forgets the origin.
     void clear();
     std::vector<std::string> names() const;
     bool contains(const std::string& name) const;
@@ -69,6 +70,14 @@ class Scene {
 
     void set_environment(const Environment& environment);
     Environment environment() const;
+
+    /// Where the scene's frame has its origin, in the coordinates that meshes were given (offset + V):
+    /// cameras, lights, poses and pictures are relative to it. It is the offset of the mesh that was shown
+    /// first, taken when something is drawn for the first time; so it is zero unless that mesh lies far from
+    /// zero.
+    Vec3d origin() const;
+    /// Throws ArgumentError when it is not finite.
+    void set_origin(const Vec3d& origin);
 
     SceneSnapshot snapshot() const;
 
