@@ -354,30 +354,50 @@ size_t smallest_row(const Element& element) {
     return size;
 }
 
-std::vector<Vec3d> sample_binary_rows(const Source& source, const char* body, std::endian endian,
-                                      const std::vector<Element>& elements, size_t which,
-                                      const std::array<size_t, 3>& properties) {
+namespace {
+
+/// Where a property lies in the file: the value of row i at begin + i * stride. Null when lists stand before.
+struct PropertyLayout {
+    const char* begin = nullptr;
+    size_t stride = 0, rows = 0;
+};
+
+PropertyLayout layout_of(const Source& source, const char* body, const std::vector<Element>& elements,
+                         PropertyPlace place) {
     const auto has_list = [](const Element& element) {
         return std::ranges::any_of(element.properties, [](const Property& p) { return bool(p.count_type); });
     };
-    if (std::any_of(elements.begin(), elements.begin() + long(which) + 1, has_list)) return {};
-    for (size_t i = 0; i < which; ++i) {
+    if (std::any_of(elements.begin(), elements.begin() + long(place.element) + 1, has_list)) return {};
+    size_t left = size_t(source.end() - body);
+    for (size_t i = 0; i < place.element; ++i) {
         const size_t stride = smallest_row(elements[i]);
-        if (stride && elements[i].count > size_t(source.end() - body) / stride) return {};
+        if (stride && elements[i].count > left / stride) return {};
         body += elements[i].count * stride;
+        left -= elements[i].count * stride;
     }
-    const Element& element = elements[which];
-    const size_t stride = smallest_row(element);
-    const size_t rows = std::min(element.count, size_t(source.end() - body) / stride);
+    const Element& element = elements[place.element];
+    PropertyLayout layout{body, smallest_row(element), 0};
+    layout.rows = std::min(element.count, left / layout.stride);
+    for (size_t i = 0; i < place.property; ++i) layout.begin += size_of(element.properties[i].type);
+    return layout;
+}
+
+}  // namespace
+
+std::vector<Vec3d> sample_binary_rows(const Source& source, const char* body, std::endian endian,
+                                      const std::vector<Element>& elements,
+                                      const std::array<PropertyPlace, 3>& position) {
+    std::array<PropertyLayout, 3> layouts;
+    for (size_t axis = 0; axis < 3; ++axis) layouts[axis] = layout_of(source, body, elements, position[axis]);
+    const size_t rows = std::min({layouts[0].rows, layouts[1].rows, layouts[2].rows});
     std::vector<Vec3d> samples(std::min(rows, offset_sample_count));
     for (size_t i = 0; i < samples.size(); ++i) {
-        const char* row = body + (samples.size() > 1 ? i * (rows - 1) / (samples.size() - 1) : 0) * stride;
+        const size_t row = spread_row(i, samples.size(), rows);
         for (size_t axis = 0; axis < 3; ++axis) {
-            const auto property = element.properties.begin() + long(properties[axis]);
-            size_t at = 0;
-            for (auto p = element.properties.begin(); p != property; ++p) at += size_of(p->type);
-            copy_typed(Block{row + at, 0, 1, 1, 1}, property->type, endian != std::endian::native,
-                       &samples[i][Eigen::Index(axis)]);
+            const Property& property = elements[position[axis].element].properties[position[axis].property];
+            copy_typed(Block{layouts[axis].begin + row * layouts[axis].stride, 0, 1, 1, 1, property.scale,
+                             property.shift},
+                       property.type, endian != std::endian::native, &samples[i][Eigen::Index(axis)]);
         }
     }
     return samples;

@@ -28,6 +28,7 @@ struct Property {
     std::string name;
     ScalarType type = ScalarType::float32;
     std::optional<ScalarType> count_type;  ///< given for a list
+    double scale = 1, shift = 0;           ///< a number stands for value * scale + shift
 };
 
 struct Element {
@@ -42,13 +43,15 @@ struct Column {
     /// precision.
     float* floats = nullptr;
     int32_t* integers = nullptr;  ///< scalar target without scale: what does not fit becomes -1
+    /// Text only: the number's 32 bits, those of an integer or (where it is written as such) of a float.
+    uint32_t* bits = nullptr;
     size_t stride = 1;
     double scale = 1, shift = 0;
     List<int32_t>* indices = nullptr;  ///< list targets
     List<float>* values = nullptr;
 
     bool is_scaled() const { return scale != 1 || shift != 0; }
-    bool is_skipped() const { return !floats && !integers && !indices && !values; }
+    bool is_skipped() const { return !floats && !integers && !bits && !indices && !values; }
 };
 
 /// An element and one column per property.
@@ -87,7 +90,7 @@ struct TextRows {
 
     const char* body;
     TextStyle style;
-    std::vector<TextChunk> chunks;
+    std::vector<TextChunk> chunks;  ///< pieces of about 1 MB that end at line ends
 };
 
 /// Reads the elements' rows one after the other; what stands behind a row's last property is ignored. Throws
@@ -98,13 +101,19 @@ void read_text_elements(const Source& source, const TextRows& rows, std::vector<
 /// take.
 void check_text_rows(const Source& source, const char* body, const std::vector<Element>& elements);
 
-/// The properties x, y, z in rows spread evenly over elements[which] (what an offset is chosen by, see
-/// scene/offset.h). What is damaged is left out, and all of it where the rows cannot be found without reading
-/// all before them (lists in binary form).
+/// A property among several elements.
+struct PropertyPlace {
+    size_t element = 0, property = 0;
+};
+
+/// The properties x, y, z, which may be of different elements with as many rows, in rows spread evenly (what
+/// an offset is chosen by, see scene/offset.h). What is damaged is left out, and all of it where the rows
+/// cannot be found without reading all before them (lists in binary form).
 std::vector<Vec3d> sample_binary_rows(const Source& source, const char* body, std::endian endian,
-                                      const std::vector<Element>& elements, size_t which,
-                                      const std::array<size_t, 3>& properties);
-std::vector<Vec3d> sample_text_rows(const TextRows& rows, const std::vector<Element>& elements, size_t which,
-                                    const std::array<size_t, 3>& properties);
+                                      const std::vector<Element>& elements,
+                                      const std::array<PropertyPlace, 3>& position);
+/// The same for text, where the three are of one element.
+std::vector<Vec3d> sample_text_rows(const TextRows& rows, const std::vector<Element>& elements,
+                                    const std::array<PropertyPlace, 3>& position);
 
 }  // namespace easypbr::io

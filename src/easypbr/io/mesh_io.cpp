@@ -16,7 +16,7 @@
 namespace easypbr::io {
 namespace {
 
-const std::vector<std::string> own_extensions{"ply", "obj", "stl", "off", "gltf", "glb"};
+const std::vector<std::string> own_extensions{"ply", "obj", "stl", "off", "gltf", "glb", "pcd"};
 const std::vector<std::string> writable_extensions{"ply", "obj", "glb"};
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
@@ -35,6 +35,7 @@ MeshData read(const Source& source, const std::string& extension, const LoadOpti
     if (extension == "ply") return read_ply(source);
     if (extension == "obj") return read_obj(source);
     if (extension == "stl") return read_stl(source, options);
+    if (extension == "pcd") return read_pcd(source);
     return read_off(source);
 }
 

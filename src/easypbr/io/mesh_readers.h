@@ -14,6 +14,9 @@ MeshData read_obj(const Source& source);
 MeshData read_stl(const Source& source, const LoadOptions& options);
 MeshData read_off(const Source& source);
 
+/// The same for point clouds. Points whose positions are not finite are left out with a warning.
+MeshData read_pcd(const Source& source);
+
 /// Binary little-endian PLY: V, N, C (as uchar), UV (as s, t), L, I, F, E, and the base colour texture of a
 /// mesh with one material, by its path relative to `folder`.
 std::string encode_ply(const MeshData& mesh, const fs::path& folder);

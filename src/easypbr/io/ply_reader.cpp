@@ -38,13 +38,13 @@ class PlyReader {
         plan_elements();
         if (header_.format == PlyFormat::ascii) {
             const TextRows rows(source_, header_.body, {});
-            vertices_.recentre(sample_text_rows(rows, header_.elements, vertex_element_, position_));
+            vertices_.recentre(sample_text_rows(rows, header_.elements, position_));
             read_text_elements(source_, rows, plans_);
         } else {
             const auto endian =
                 header_.format == PlyFormat::binary_little_endian ? std::endian::little : std::endian::big;
-            vertices_.recentre(sample_binary_rows(source_, header_.body, endian, header_.elements,
-                                                  vertex_element_, position_));
+            vertices_.recentre(
+                sample_binary_rows(source_, header_.body, endian, header_.elements, position_));
             read_binary_elements(source_, header_.body, endian, plans_);
         }
         check();
@@ -93,18 +93,17 @@ class PlyReader {
         const Element& element = *plan.element;
         if (element.count == 0) return;
         std::vector<VertexField> fields;
-        std::vector<size_t> places;
+        std::vector<PropertyPlace> places;
         for (size_t i = 0; i < element.properties.size(); ++i) {
             const Property& property = element.properties[i];
             if (property.count_type) continue;
-            fields.push_back({property.name, property.type, &plan.columns[i]});
-            places.push_back(i);
+            fields.push_back({property, &plan.columns[i]});
+            places.push_back({size_t(&element - header_.elements.data()), i});
         }
         vertices_ = VertexArrays(fields, element.count);
         if (!vertices_.position()) fail(source_, "element 'vertex' has no properties x, y, z");
         std::ranges::transform(*vertices_.position(), position_.begin(),
                                [&](size_t field) { return places[field]; });
-        vertex_element_ = size_t(&element - header_.elements.data());
     }
 
     /// Plans the first list property with one of the names.
@@ -218,8 +217,7 @@ class PlyReader {
     std::vector<ElementPlan> plans_;
 
     VertexArrays vertices_;
-    size_t vertex_element_ = 0;         ///< place in the header
-    std::array<size_t, 3> position_{};  ///< places of x, y, z among the element's properties
+    std::array<PropertyPlace, 3> position_{};  ///< of x, y, z
     Array2i::Dense E_;
     Polygons faces_, strips_;
     FaceArrays face_values_;

@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 
 #include "easypbr/core/parallel.h"
@@ -91,6 +92,8 @@ class ChunkReader {
                                        : number<float>(p, property);
             } else if (column.integers) {
                 column.integers[row * column.stride] = integer(p, property);
+            } else if (column.bits) {
+                column.bits[row * column.stride] = bits(p, property);
             } else if (!skip_word(p, chunk_.end, style_)) {
                 fail_missing(p, property);
             }
@@ -150,6 +153,16 @@ class ChunkReader {
         p = start;
         const double real = number<double>(p, property);
         return real >= INT32_MIN && real <= INT32_MAX ? int32_t(real) : -1;
+    }
+
+    uint32_t bits(const char*& p, const Property& property) const {
+        const char* first = p = skip_blanks(p, chunk_.end);
+        uint32_t value = 0;
+        const auto result = std::from_chars(p, chunk_.end, value);
+        p = result.ptr;
+        const bool is_integer = result.ec == std::errc() &&
+                                (p == chunk_.end || is_blank(*p) || *p == '\n' || *p == style_.delimiter);
+        return is_integer ? value : std::bit_cast<uint32_t>(number<float>(p = first, property));
     }
 
     [[noreturn]] void fail_missing(const char* p, const Property& property) const {
@@ -264,15 +277,16 @@ Vec3d position_in_row(const char* p, const char* end, const TextStyle& style, co
 
 }  // namespace
 
-std::vector<Vec3d> sample_text_rows(const TextRows& rows, const std::vector<Element>& elements, size_t which,
-                                    const std::array<size_t, 3>& properties) {
+std::vector<Vec3d> sample_text_rows(const TextRows& rows, const std::vector<Element>& elements,
+                                    const std::array<PropertyPlace, 3>& position) {
+    const size_t which = position[0].element;
+    const std::array properties{position[0].property, position[1].property, position[2].property};
     size_t before = 0;
     for (size_t i = 0; i < which; ++i) before += elements[i].count;
     const size_t count = std::min(elements[which].count, rows.count() - std::min(rows.count(), before));
     std::vector<Vec3d> samples(std::min(count, offset_sample_count), Vec3d::Constant(NAN));
     std::vector<size_t> wanted(samples.size());
-    for (size_t i = 0; i < wanted.size(); ++i)
-        wanted[i] = before + (wanted.size() > 1 ? i * (count - 1) / (wanted.size() - 1) : 0);
+    for (size_t i = 0; i < wanted.size(); ++i) wanted[i] = before + spread_row(i, wanted.size(), count);
     parallel_for(rows.chunks.size(), 1, [&](size_t c) {
         const TextChunk& chunk = rows.chunks[c];
         size_t row = chunk.first_row;

@@ -59,7 +59,7 @@ std::vector<size_t> find_spelling(const std::vector<VertexField>& fields, const 
         std::vector<size_t> found;
         for (const std::string_view name : names) {
             const auto it = std::ranges::find_if(fields, [&](const VertexField& field) {
-                return field.column->is_skipped() && lower(plain_name(field.name)) == name;
+                return field.column->is_skipped() && lower(plain_name(field.property.name)) == name;
             });
             if (it != fields.end()) found.push_back(size_t(it - fields.begin()));
         }
@@ -108,6 +108,10 @@ void keep_rows(A& array, const Array1i::Dense& kept) {
 VertexArrays::VertexArrays(const std::vector<VertexField>& fields, size_t count) {
     const auto position = find_spelling(fields, position_names);
     if (position.empty()) return;
+    for (const VertexField& field : fields) {
+        field.column->scale = field.property.scale;
+        field.column->shift = field.property.shift;
+    }
     position_ = {position[0], position[1], position[2]};
     plan_floats(fields, position, count, V_);
     for (size_t i = 0; i < 3; ++i) position_columns_[i] = fields[position[i]].column;
@@ -128,8 +132,8 @@ void VertexArrays::plan_colors(const std::vector<VertexField>& fields, size_t co
     const auto color = find_spelling(fields, color_names);
     plan_floats(fields, color, count, C_);
     for (const size_t i : color) {
-        fields[i].column->scale = color_scale(fields[i].type);
-        real_colors_ = !is_integer(fields[i].type);
+        fields[i].column->scale = color_scale(fields[i].property.type);
+        real_colors_ = !is_integer(fields[i].property.type);
     }
 }
 
@@ -137,8 +141,9 @@ void VertexArrays::plan_scalars(const std::vector<VertexField>& fields, size_t c
     std::vector<Column*> columns;
     std::set<std::string> taken;
     for (const VertexField& field : fields) {
-        if (!field.column->is_skipped() || field.name.empty() || field.name == "_") continue;
-        const std::string plain = plain_name(field.name);
+        if (!field.column->is_skipped() || field.property.name.empty() || field.property.name == "_")
+            continue;
+        const std::string plain = plain_name(field.property.name);
         std::string name = plain;
         for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}_{}", plain, number);
         scalars_.push_back({name, Array1f::Dense(Eigen::Index(count))});
@@ -194,8 +199,10 @@ FaceArrays::FaceArrays(ElementPlan& plan) {
         fields[label[0]].column->integers = L_.data();
     }
     for (const VertexField& field : fields) {
-        if (!field.column->is_skipped() || is_known_field(field.name) || field.name == "texnumber") continue;
-        scalars_.emplace_back(plain_name(field.name), Array1f::Dense(rows));
+        if (!field.column->is_skipped() || is_known_field(field.property.name) ||
+            field.property.name == "texnumber")
+            continue;
+        scalars_.emplace_back(plain_name(field.property.name), Array1f::Dense(rows));
         field.column->floats = scalars_.back().second.data();
     }
 }

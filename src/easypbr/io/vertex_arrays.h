@@ -14,8 +14,7 @@ namespace easypbr::io {
 
 /// A scalar property of a file's vertices and where its values will go.
 struct VertexField {
-    std::string name;
-    ScalarType type;
+    Property property;
     Column* column;
 };
 

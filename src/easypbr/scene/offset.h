@@ -21,13 +21,16 @@ Vec3d offset_of_samples(std::vector<Vec3d> samples);
 /// Number of positions that are looked at for a decision.
 inline constexpr size_t offset_sample_count = 1024;
 
-/// offset_of_samples() of positions spread evenly over the rows; at(i) gives row i as Vec3d.
+/// The row of sample `i` of `count` that are spread evenly over rows, the first and the last among them.
+constexpr size_t spread_row(size_t i, size_t count, size_t rows) {
+    return count > 1 ? i * (rows - 1) / (count - 1) : 0;
+}
+
+/// offset_of_samples() of positions spread over the rows; at(i) gives row i as Vec3d.
 template <class At>
 Vec3d choose_offset(size_t rows, At&& at) {
-    const size_t count = std::min(rows, offset_sample_count);
-    std::vector<Vec3d> samples(count);
-    // The first and the last row are among them.
-    for (size_t i = 0; i < count; ++i) samples[i] = at(count > 1 ? i * (rows - 1) / (count - 1) : 0);
+    std::vector<Vec3d> samples(std::min(rows, offset_sample_count));
+    for (size_t i = 0; i < samples.size(); ++i) samples[i] = at(spread_row(i, samples.size(), rows));
     return offset_of_samples(std::move(samples));
 }
 

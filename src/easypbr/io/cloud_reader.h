@@ -1,0 +1,32 @@
+// Point clouds out of tables: what the formats of clouds have in common.
+#pragma once
+
+#include <bit>
+#include <optional>
+#include <vector>
+
+#include "easypbr/io/element_table.h"
+#include "easypbr/io/vertex_arrays.h"
+#include "easypbr/scene/mesh.h"
+
+namespace easypbr::io {
+
+/// Reads the points of binary elements that lie one after the other from `body` on: one element with all
+/// properties (a point after the other), or several with some of them and as many rows (a field after the
+/// other). Fields get their meaning by their names (see VertexArrays); positions are recentred. Throws
+/// FormatError when there are no points, no positions, or less bytes than the elements take. Points without
+/// finite positions are still there.
+MeshData read_binary_cloud(const Source& source, const char* body, std::endian endian,
+                           const std::vector<Element>& elements);
+
+/// A property of text that is read as the 32 bits it stands for (see Column::bits), one for each row.
+struct TextBits {
+    std::optional<size_t> property;
+    std::vector<uint32_t> bits;
+};
+
+/// The same for text, with one element. The property that `bits` names has no other meaning.
+MeshData read_text_cloud(const Source& source, const TextRows& rows, const Element& element,
+                         TextBits* bits = nullptr);
+
+}  // namespace easypbr::io

@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "easypbr/core/parallel.h"
+#include "easypbr/io/cloud_reader.h"
+#include "easypbr/io/lzf.h"
+#include "easypbr/io/mesh_readers.h"
+#include "easypbr/io/pcd_header.h"
+
+namespace easypbr::io {
+namespace {
+
+/// The properties that a field is read as. A packed colour is four bytes, from the lowest on blue, green, red
+/// and alpha, which "rgb" has no meaning for.
+std::vector<Property> binary_properties(const PcdField& field) {
+    if (field.is_packed_color())
+        return {{"blue", ScalarType::uint8, {}},
+                {"green", ScalarType::uint8, {}},
+                {"red", ScalarType::uint8, {}},
+                {field.name == "rgba" ? "alpha" : "_", ScalarType::uint8, {}}};
+    if (field.count == 1) return {{field.name, field.type, {}}};
+    std::vector<Property> properties;
+    for (size_t i = 0; i < field.count; ++i)
+        properties.push_back(
+            {field.name == "_" ? field.name : fmt::format("{}_{}", field.name, i), field.type, {}});
+    return properties;
+}
+
+/// One element: a point's fields stand together.
+std::vector<Element> elements_by_point(const PcdHeader& header) {
+    Element points{"point", header.points, {}};
+    for (const PcdField& field : header.fields)
+        for (Property& property : binary_properties(field)) points.properties.push_back(std::move(property));
+    return {points};
+}
+
+/// An element for each field: its values of all points stand together.
+std::vector<Element> elements_by_field(const PcdHeader& header) {
+    std::vector<Element> elements;
+    for (const PcdField& field : header.fields)
+        if (field.count > 0) elements.push_back({"point", header.points, binary_properties(field)});
+    return elements;
+}
+
+uint32_t read_size(const char* p) {
+    uint32_t size;
+    std::memcpy(&size, p, sizeof size);
+    return size;
+}
+
+MeshData read_compressed(const Source& source, const PcdHeader& header) {
+    constexpr size_t sizes = 8;
+    const size_t left = size_t(source.end() - header.body);
+    if (left < sizes) fail(source, "truncated: the sizes of the compressed data are missing");
+    const size_t compressed = read_size(header.body), full = read_size(header.body + 4);
+    size_t row = 0;
+    for (const PcdField& field : header.fields) row += field.size();
+    if (compressed > left - sizes)
+        fail_at_byte(source, header.body,
+                     fmt::format("truncated: {} bytes of compressed data expected, {} are left", compressed,
+                                 left - sizes));
+    if (full != header.points * row || full > lzf_largest_size(compressed))
+        fail_at_byte(source, header.body + 4,
+                     fmt::format("{} points of {} bytes expected, but {} bytes were compressed to {}",
+                                 header.points, row, full, compressed));
+    const auto bytes = std::make_unique_for_overwrite<char[]>(full);
+    if (!lzf_decompress({header.body + sizes, compressed}, {bytes.get(), full}))
+        fail_at_byte(source, header.body + sizes, "the compressed data are damaged");
+    source.release_until(source.end());
+    return read_binary_cloud(Source(std::string_view(bytes.get(), full), source.path), bytes.get(),
+                             std::endian::little, elements_by_field(header));
+}
+
+void set_packed_colors(const std::vector<uint32_t>& bits, bool alpha, MeshData& mesh) {
+    ArrayXf::Dense C(Eigen::Index(bits.size()), alpha ? 4 : 3);
+    parallel_for(bits.size(), 1 << 15, [&](size_t i) {
+        for (Eigen::Index k = 0; k < C.cols(); ++k)
+            C(Eigen::Index(i), k) = float((bits[i] >> (k == 3 ? 24 : 16 - 8 * k) & 255) * (1 / 255.0));
+    });
+    mesh.C = std::move(C);
+}
+
+MeshData read_ascii(const Source& source, const PcdHeader& header) {
+    Element points{"point", header.points, {}};
+    TextBits color;
+    bool alpha = false;
+    for (const PcdField& field : header.fields) {
+        if (field.is_packed_color() && !color.property) {
+            color.property = points.properties.size();
+            alpha = field.name == "rgba";
+            points.properties.push_back({"_", field.type, {}});
+            continue;
+        }
+        PcdField whole = field;
+        if (field.is_packed_color()) whole.name = "_";
+        for (Property& property : binary_properties(whole)) points.properties.push_back(std::move(property));
+    }
+    MeshData mesh = read_text_cloud(source, TextRows(source, header.body, {.comment = '#'}), points, &color);
+    if (color.property) set_packed_colors(color.bits, alpha, mesh);
+    return mesh;
+}
+
+MeshData read_points(const Source& source, const PcdHeader& header) {
+    switch (header.data) {
+        case PcdData::ascii:
+            return read_ascii(source, header);
+        case PcdData::binary:
+            return read_binary_cloud(source, header.body, std::endian::little, elements_by_point(header));
+        case PcdData::binary_compressed:
+            break;
+    }
+    return read_compressed(source, header);
+}
+
+}  // namespace
+
+MeshData read_pcd(const Source& source) {
+    if (source.bytes.empty()) fail(source, "the file is empty");
+    MeshData mesh = read_points(source, parse_pcd_header(source));
+    drop_points_without_position(source, mesh);
+    return mesh;
+}
+
+}  // namespace easypbr::io
