@@ -130,6 +130,50 @@ TEST(Fuzz, PlyTriangles) {
     fuzz(ply.text(), read_valid_ply);
 }
 
+namespace {
+
+/// A header for nine points; `body` makes what follows it.
+std::string pcd_file(const std::string& data, const std::string& body) {
+    return "# .PCD v0.7\nVERSION 0.7\nFIELDS x y z rgb label heat\nSIZE 4 4 8 4 2 4\nTYPE F F F F U F\n"
+           "COUNT 1 1 1 1 1 2\nWIDTH 9\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 9\nDATA " +
+           data + "\n" + body;
+}
+
+/// Nine times 30 bytes of numbers that are finite, whatever they are read as.
+std::string pcd_numbers() {
+    std::string bytes(270, '\0');
+    for (size_t i = 0; i < bytes.size(); ++i) bytes[i] = char(i % 4 == 3 ? 0x3f : i);
+    return bytes;
+}
+
+void read_valid_pcd(const io::Source& source) {
+    validate(io::read_pcd(source));
+}
+
+}  // namespace
+
+TEST(Fuzz, PcdAscii) {
+    std::string body;
+    for (int i = 0; i < 9; ++i) body += fmt::format("{} {}.5 -{} 1671168 {} 0.5 nan\n", i, i, i, i * 7);
+    fuzz(pcd_file("ascii", body), read_valid_pcd);
+}
+
+TEST(Fuzz, PcdBinary) {
+    fuzz(pcd_file("binary", pcd_numbers()), read_valid_pcd);
+}
+
+TEST(Fuzz, PcdCompressed) {
+    const std::string numbers = pcd_numbers();
+    std::string data;
+    // The first 238 bytes as literals, the last 32 as a match of 4 bytes before.
+    for (size_t i = 0; i < 238; i += 17) data += char(16) + numbers.substr(i, 17);
+    data += std::string("\xe0\x17\x03", 3);
+    const uint32_t sizes[] = {uint32_t(data.size()), 270};
+    std::string body(8, '\0');
+    std::memcpy(body.data(), sizes, 8);
+    fuzz(pcd_file("binary_compressed", body + data), read_valid_pcd);
+}
+
 TEST(Fuzz, Obj) {
     fuzz(
         "mtllib gone.mtl\nv 0 0 0 1 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 1\nvn 0 0 1\nusemtl a\nf "

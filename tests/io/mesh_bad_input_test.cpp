@@ -30,6 +30,21 @@ std::string stl(uint32_t facets, size_t bytes) {
     return text;
 }
 
+/// Two points x y z of float32, and a header that may lie about them.
+std::string pcd(const std::string& data, const std::string& body, const std::string& points = "2",
+                const std::string& types = "F F F", const std::string& sizes = "4 4 4") {
+    return "VERSION 0.7\nFIELDS x y z\nSIZE " + sizes + "\nTYPE " + types + "\nCOUNT 1 1 1\nPOINTS " +
+           points + "\nDATA " + data + "\n" + body;
+}
+
+/// What stands before compressed data, and the data.
+std::string lzf(uint32_t compressed, uint32_t full, const std::string& data) {
+    std::string text(8, '\0');
+    std::memcpy(text.data(), &compressed, 4);
+    std::memcpy(text.data() + 4, &full, 4);
+    return text + data;
+}
+
 const std::vector<BadFile> bad_files{
     {"empty.ply", "", "empty"},
     {"magic.ply", "obj\n", "'ply' expected"},
@@ -105,6 +120,33 @@ const std::vector<BadFile> bad_files{
     {"lying.off", "OFF\n2000000000 0 0\n0 0 0\n", "2000000000"},
     {"range.off", "OFF\n1 1 0\n0 0 0\n3 0 0 1\n", "index 1"},
     {"color.off", "COFF\n1 0 0\n0 0 0\n", "colours"},
+    {"empty.pcd", "", "empty"},
+    {"nodata.pcd", "VERSION 0.7\nFIELDS x y z\n", "'DATA'"},
+    {"form.pcd", pcd("binary_squashed", ""), "binary_squashed"},
+    {"keyword.pcd", "ELEPHANTS 3\n", "ELEPHANTS"},
+    {"fields.pcd", "VERSION 0.7\nPOINTS 0\nDATA ascii\n", "FIELDS"},
+    {"sizes.pcd", "FIELDS x y z\nSIZE 4 4\nTYPE F F F\nPOINTS 1\nDATA ascii\n1 2 3\n", "SIZE has 2 entries"},
+    {"type.pcd", pcd("ascii", "1 2 3\n", "1", "F F Q"), "'Q'"},
+    {"width.pcd", pcd("ascii", "1 2 3\n", "1", "F F F", "4 4 3"), "'3'"},
+    {"contradiction.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nWIDTH 3\nHEIGHT 2\nPOINTS 5\nDATA ascii\n",
+     "WIDTH 3 x HEIGHT 2"},
+    {"uncounted.pcd", "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nDATA ascii\n1 2 3\n", "POINTS"},
+    {"negative.pcd", pcd("ascii", "", "-2"), "'-2'"},
+    {"manyvalues.pcd",
+     "FIELDS x y z h\nSIZE 4 4 4 4\nTYPE F F F F\nCOUNT 1 1 1 2000000000\nPOINTS 1\nDATA binary\n", "values"},
+    {"zero.pcd", pcd("binary", "", "0"), "no points"},
+    {"noxyz.pcd", "FIELDS u v\nSIZE 4 4\nTYPE F F\nPOINTS 1\nDATA ascii\n1 2\n", "x, y, z"},
+    {"lying.pcd", pcd("ascii", "1 2 3\n", "2000000000"), "2000000000 points expected"},
+    {"word.pcd", pcd("ascii", "1 2 3\n4 five 6\n"), "word.pcd:9"},
+    {"cut.pcd", pcd("ascii", "1 2 3\n4 5\n"), "the line's end"},
+    {"bincut.pcd", pcd("binary", std::string(23, '\0')), "truncated"},
+    {"binlying.pcd", pcd("binary", std::string(24, '\0'), "2147483647"), "truncated"},
+    {"nan.pcd", pcd("ascii", "nan nan nan\n1 inf 2\n"), "no point of 2"},
+    {"lzfhead.pcd", pcd("binary_compressed", "1234"), "sizes"},
+    {"lzfcut.pcd", pcd("binary_compressed", lzf(100, 24, "123")), "truncated"},
+    {"lzfsize.pcd", pcd("binary_compressed", lzf(3, 25, "123")), "2 points of 12 bytes"},
+    {"lzfbomb.pcd", pcd("binary_compressed", lzf(3, 1'200'000'000, "123"), "100000000"), "compressed"},
+    {"lzfdamaged.pcd", pcd("binary_compressed", lzf(3, 24, "\x02zz")), "damaged"},
     {"unknown.xyzzy", "hello", "xyzzy"},
     {"unknown.plyy", "hello", "did you mean 'ply'"},
     {"noextension", "hello", "expected one of"},

@@ -15,16 +15,20 @@ namespace {
 /// The properties that a field is read as. A packed colour is four bytes, from the lowest on blue, green, red
 /// and alpha, which "rgb" has no meaning for.
 std::vector<Property> binary_properties(const PcdField& field) {
-    if (field.is_packed_color())
-        return {{"blue", ScalarType::uint8, {}},
-                {"green", ScalarType::uint8, {}},
-                {"red", ScalarType::uint8, {}},
-                {field.name == "rgba" ? "alpha" : "_", ScalarType::uint8, {}}};
-    if (field.count == 1) return {{field.name, field.type, {}}};
-    std::vector<Property> properties;
-    for (size_t i = 0; i < field.count; ++i)
-        properties.push_back(
-            {field.name == "_" ? field.name : fmt::format("{}_{}", field.name, i), field.type, {}});
+    std::vector<Property> properties(field.is_packed_color() ? 4 : field.count);
+    if (field.is_packed_color()) {
+        const std::array names{"blue", "green", "red", field.name == "rgba" ? "alpha" : "_"};
+        for (size_t i = 0; i < names.size(); ++i) {
+            properties[i].name = names[i];
+            properties[i].type = ScalarType::uint8;
+        }
+        return properties;
+    }
+    for (size_t i = 0; i < field.count; ++i) {
+        properties[i].name =
+            field.count == 1 || field.name == "_" ? field.name : fmt::format("{}_{}", field.name, i);
+        properties[i].type = field.type;
+    }
     return properties;
 }
 
@@ -90,7 +94,7 @@ MeshData read_ascii(const Source& source, const PcdHeader& header) {
         if (field.is_packed_color() && !color.property) {
             color.property = points.properties.size();
             alpha = field.name == "rgba";
-            points.properties.push_back({"_", field.type, {}});
+            points.properties.push_back({"_", field.type, {}, 1, 0});
             continue;
         }
         PcdField whole = field;

@@ -191,8 +191,7 @@ FaceArrays::FaceArrays(ElementPlan& plan) {
     std::vector<VertexField> fields;
     for (size_t i = 0; i < plan.columns.size(); ++i)
         if (!plan.element->properties[i].count_type)
-            fields.push_back(
-                {plan.element->properties[i].name, plan.element->properties[i].type, &plan.columns[i]});
+            fields.push_back({plan.element->properties[i], &plan.columns[i]});
     const auto rows = Eigen::Index(plan.element->count);
     if (const auto label = find_spelling(fields, label_names); !label.empty()) {
         L_.resize(rows);
