@@ -94,6 +94,7 @@ def test_nan_and_ranges_have_their_colours():
     cloud.style.color_min, cloud.style.color_max, cloud.style.nan_color = 0, 1, "#ff00ff"
     cloud.style.colormap = "turbo"
     cloud.style.point_size = 15
+    cloud.style.lit = False
     view = viewer(cloud)
     element = view.layers(["element"])["element"].astype(int)
     picture = view.render(samples=1)
@@ -146,8 +147,8 @@ def test_render_takes_legend_and_colorbar(tmp_path):
     assert linear.dtype == np.float32 and linear.max() <= 50
 
 
-def test_asking_for_what_there_is_nothing_for_is_a_warning(recwarn):
+def test_asking_for_what_there_is_nothing_for_is_a_warning(caplog):
     easypbr.render(shapes.box(), size=(32, 24), samples=1, legend=True, colorbar=True)
-    messages = [str(warning.message) for warning in recwarn]
+    messages = [record.getMessage() for record in caplog.records]
     assert any("there is no legend" in message for message in messages)
     assert any("there is no colour bar" in message for message in messages)

@@ -507,7 +507,10 @@ TEST(AmbientOcclusion, SaysWhatItExpected) {
     scene.show(make_sphere(), "sphere");
     app::Session session = plain_session(scene);
     session.settings().ssao.enabled = false;
-    EXPECT_THROW(session.render_layers({"ambient_occlusion"}), ArgumentError);
+    // Switched off, nothing occludes anything.
+    const Image layer = session.render_layers({"ambient_occlusion"}).at("ambient_occlusion");
+    EXPECT_EQ(*layer.at<float>(32, 32), 1.0f);
+    EXPECT_EQ(*layer.at<float>(0, 0), 0.0f);
 }
 
 }  // namespace

@@ -299,8 +299,10 @@ Image Renderer::read_layer(Layer layer) const {
             });
         }
     } else if (layer == Layer::ambient_occlusion) {
-        if (!targets_.ambient_occlusion)
-            throw ArgumentError("layer ambient_occlusion: the setting ssao.enabled is off");
+        if (!targets_.ambient_occlusion) {  // Nothing occludes anything.
+            for_each_covered([&](size_t i) { to[i] = 1; });
+            return image;
+        }
         const auto texels = read<uint16_t>(targets_.occluded, 0, gl::Format::r16);
         for_each_covered([&](size_t i) { to[i] = float(texels[i]) / 65535.0f; });
     } else {
