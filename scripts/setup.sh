@@ -10,6 +10,7 @@ packages=(
   libepoxy-dev libegl1 libegl-mesa0 libopengl0 libgl1-mesa-dri
   libspng-dev libturbojpeg0-dev libtinyexr-dev zlib1g-dev libmeshoptimizer-dev libnanoflann-dev libassimp-dev libyaml-cpp-dev
   libgtest-dev python3-dev python3-venv
+  libembree-dev
 )
 missing=()
 for package in "${packages[@]}"; do

@@ -144,7 +144,18 @@ def shading() -> np.ndarray:
     return row(easypbr.render(mesh, size=(280, 210), flat=flat) for flat in (False, True))
 
 
-PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading]
+def ambient_occlusion() -> np.ndarray:
+    """Without, with, and the visibility."""
+    view = Viewer((290, 220), scene=on_floor(teapot("#d8d2c4", 0, 0.6)))
+    view.load_environment_map(np.full((16, 32, 3), 1.0, np.float32))
+    visibility = view.layers(["ambient_occlusion"])["ambient_occlusion"]
+    with_occlusion = view.render()
+    view.settings.ssao.enabled = False
+    grey = np.where(view.layers(["depth"])["depth"] > 0, visibility, 0.25) * 255
+    return row([view.render(), with_occlusion, np.repeat(grey.astype(np.uint8)[:, :, None], 3, axis=2)])
+
+
+PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion]
 
 
 if __name__ == "__main__":

@@ -7,6 +7,9 @@ uniform sampler2D u_material;
 uniform sampler2D u_depth_target;
 uniform vec2 u_size;
 uniform vec2 u_eye_dome;     // strength, radius in pixels
+#ifdef AMBIENT_OCCLUSION
+uniform sampler2D u_ambient_occlusion;
+#endif
 uniform vec2 u_depth_scale;  // ORTHOGRAPHIC: log2 units per unit of depth
 
 layout(location = 0) out vec4 o_color;
@@ -42,6 +45,11 @@ void main() {
     float code = textureLod(u_material, uv, 0.0).w;
     if (!is_display(code)) discard;
     vec3 color = textureLod(u_albedo, uv, 0.0).rgb;
-    if (is_eye_dome(code)) color *= eye_dome(uv, textureLod(u_depth_target, uv, 0.0).r);
+    if (is_eye_dome(code)) {
+        color *= eye_dome(uv, textureLod(u_depth_target, uv, 0.0).r);
+#ifdef AMBIENT_OCCLUSION
+        color *= textureLod(u_ambient_occlusion, uv, 0.0).r;
+#endif
+    }
     o_color = vec4(color, 1.0);
 }

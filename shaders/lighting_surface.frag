@@ -31,6 +31,9 @@ uniform float u_last_level;
 uniform float u_env_intensity;
 uniform float u_tap_offset;  // in [0, 1), another one in each frame
 uniform float u_tap_gap;     // between the offsets of all frames
+#ifdef AMBIENT_OCCLUSION
+uniform sampler2D u_ambient_occlusion;
+#endif
 #ifdef LOBE_SAMPLES
 uniform float u_lobe_slope;  // of the facet that this frame reflects in, in units of alpha
 #endif
@@ -91,9 +94,20 @@ vec3 lobe_radiance(vec3 normal, vec3 view, float n_dot_v, float roughness, float
 #endif
 }
 
-// From ambient occlusion (Lagarde and de Rousiers 2014).
-float specular_occlusion(float n_dot_v, float roughness, float occlusion) {
-    return clamp(pow(n_dot_v + occlusion, exp2(-16.0 * roughness - 1.0)) - 1.0 + occlusion, 0.0, 1.0);
+// Visibility with what surfaces of this albedo reflect into each other's recesses (Jimenez et al. 2016, a fit).
+vec3 diffuse_visibility(float visibility, vec3 albedo) {
+#ifdef MULTI_BOUNCE
+    vec3 a = 2.0404 * albedo - 0.3324, b = -4.7951 * albedo + 0.6417, c = 2.7552 * albedo + 0.6903;
+    return max(vec3(visibility), ((visibility * a + b) * visibility + c) * visibility);
+#else
+    return vec3(visibility);
+#endif
+}
+
+// Part of the specular lobe that a surface sees (Lagarde and de Rousiers 2014).
+vec3 specular_visibility(float n_dot_v, float alpha, float visibility, vec3 f0) {
+    float part = clamp(pow(n_dot_v + visibility, exp2(-16.0 * alpha - 1.0)) - 1.0 + visibility, 0.0, 1.0);
+    return diffuse_visibility(part, f0);
 }
 #endif
 
@@ -132,11 +146,12 @@ vec3 direct(Light light, Surface s) {
 }
 
 #if defined(ENVIRONMENT) && !defined(EXTENDED)
-vec3 indirect(Surface s, float occlusion) {
+// Light of the environment on a surface that sees a part of it.
+vec3 indirect(Surface s, float visibility) {
     vec3 irradiance = textureLod(u_irradiance, u_env_from_world * s.normal, 0.0).rgb;
     return u_env_intensity * (s.energy.single * lobe_radiance(s.normal, s.view, s.n_dot_v, s.roughness, s.alpha) *
-                                  specular_occlusion(s.n_dot_v, s.roughness, occlusion) +
-                              (s.energy.multiple + s.diffuse) * irradiance * occlusion);
+                                  specular_visibility(s.n_dot_v, s.alpha, visibility, s.f0) +
+                              (s.energy.multiple + s.diffuse) * irradiance * diffuse_visibility(visibility, s.diffuse));
 }
 #endif
 
@@ -188,7 +203,12 @@ void main() {
 
     vec3 radiance = vec3(0.0);
 #ifdef ENVIRONMENT
-    radiance = indirect(s, material.z);
+    float visibility = material.z;
+#ifdef AMBIENT_OCCLUSION
+    // What the material's own occlusion says of recesses and what the depth buffer says overlap: the darker counts.
+    visibility = min(visibility, textureLod(u_ambient_occlusion, uv, 0.0).r);
+#endif
+    radiance = indirect(s, visibility);
 #endif
     s.roughness = light_roughness;
     s.alpha = light_roughness * light_roughness;

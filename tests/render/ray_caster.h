@@ -1,111 +1,78 @@
-// An independent oracle for shadows: visibility by casting rays through a hierarchy of boxes.
+// An independent oracle for shadows and occlusion: rays cast by Embree against the triangles of a snapshot.
 #pragma once
 
-#include <algorithm>
+#include <embree3/rtcore.h>
+
 #include <cmath>
-#include <numeric>
+#include <limits>
 #include <vector>
 
+#include "easypbr/core/error.h"
 #include "easypbr/scene/scene.h"
 
 namespace easypbr {
 
-/// Triangles of a snapshot in world space.
 class RayCaster {
   public:
-    explicit RayCaster(const SceneSnapshot& scene) {
-        for (const auto& object : scene.objects) {
-            const MeshData& mesh = *object.mesh;
-            for (Eigen::Index f = 0; f < mesh.F.rows(); ++f) {
-                Triangle t;
-                for (int k = 0; k < 3; ++k)
-                    t.corner[k] =
-                        object.T_world_mesh * Vec3d(mesh.V.row(mesh.F(f, k)).transpose().cast<double>());
-                triangles_.push_back(t);
-            }
-        }
-        if (!triangles_.empty()) build(0, triangles_.size());
+    explicit RayCaster(const SceneSnapshot& snapshot) : device_(rtcNewDevice(nullptr)) {
+        if (!device_) throw Error("Embree gives no device");
+        scene_ = rtcNewScene(device_);
+        rtcSetSceneFlags(scene_, RTC_SCENE_FLAG_ROBUST);
+        for (const auto& object : snapshot.objects) add(object);
+        rtcCommitScene(scene_);
+    }
+    ~RayCaster() {
+        rtcReleaseScene(scene_);
+        rtcReleaseDevice(device_);
+    }
+    RayCaster(const RayCaster&) = delete;
+    RayCaster& operator=(const RayCaster&) = delete;
+
+    /// Distance to the first surface, in lengths of `direction`; infinity when nothing is met.
+    float distance(const Vec3& from, const Vec3& direction, float nearest = 0) const {
+        RTCRayHit hit{};
+        hit.ray.org_x = from.x();
+        hit.ray.org_y = from.y();
+        hit.ray.org_z = from.z();
+        hit.ray.dir_x = direction.x();
+        hit.ray.dir_y = direction.y();
+        hit.ray.dir_z = direction.z();
+        hit.ray.tnear = nearest;
+        hit.ray.tfar = std::numeric_limits<float>::infinity();
+        hit.ray.mask = ~0u;
+        hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+        RTCIntersectContext context;
+        rtcInitIntersectContext(&context);
+        rtcIntersect1(scene_, &context, &hit);
+        return hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<float>::infinity()
+                                                         : hit.ray.tfar;
     }
 
     /// Whether anything lies between two points, their neighbourhoods (a part `margin` of the way) left out.
-    bool blocked(const Vec3d& from, const Vec3d& to, double margin = 1e-6) const {
-        const Ray ray{from, to - from, (to - from).cwiseInverse(), margin, 1 - margin};
-        return !nodes_.empty() && hit(0, ray);
+    bool blocked(const Vec3d& from, const Vec3d& to, float margin = 1e-4f) const {
+        return distance(from.cast<float>(), (to - from).cast<float>(), margin) < 1 - margin;
     }
 
   private:
-    struct Triangle {
-        Vec3d corner[3];
-        Vec3d middle() const { return (corner[0] + corner[1] + corner[2]) / 3; }
-    };
-    struct Node {
-        Box3d box;
-        size_t first = 0, count = 0;  ///< of a leaf
-        size_t children[2] = {0, 0};
-    };
-    struct Ray {
-        Vec3d origin, direction, inverse;
-        double from, to;
-    };
-
-    size_t build(size_t begin, size_t end) {
-        const size_t index = nodes_.size();
-        nodes_.emplace_back();
-        Box3d box;
-        for (size_t i = begin; i < end; ++i)
-            for (const Vec3d& c : triangles_[i].corner) box.extend(c);
-        nodes_[index].box = box;
-        if (end - begin <= 4) {
-            nodes_[index].first = begin;
-            nodes_[index].count = end - begin;
-            return index;
+    void add(const SceneSnapshot::Object& object) {
+        const MeshData& mesh = *object.mesh;
+        RTCGeometry geometry = rtcNewGeometry(device_, RTC_GEOMETRY_TYPE_TRIANGLE);
+        auto* V = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0,
+                                                              RTC_FORMAT_FLOAT3, 12, size_t(mesh.V.rows())));
+        for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) {
+            const Vec3d p = object.T_world_mesh * Vec3d(mesh.V.row(i).transpose().cast<double>());
+            for (int c = 0; c < 3; ++c) V[3 * i + c] = float(p[c]);
         }
-        Eigen::Index axis = 0;
-        box.sizes().maxCoeff(&axis);
-        const size_t middle = (begin + end) / 2;
-        std::nth_element(triangles_.begin() + long(begin), triangles_.begin() + long(middle),
-                         triangles_.begin() + long(end), [axis](const Triangle& a, const Triangle& b) {
-                             return a.middle()[axis] < b.middle()[axis];
-                         });
-        const size_t left = build(begin, middle), right = build(middle, end);
-        nodes_[index].children[0] = left;
-        nodes_[index].children[1] = right;
-        return index;
+        auto* F = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(
+            geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 12, size_t(mesh.F.rows())));
+        for (Eigen::Index i = 0; i < mesh.F.size(); ++i) F[i] = uint32_t(mesh.F.data()[i]);
+        rtcCommitGeometry(geometry);
+        rtcAttachGeometry(scene_, geometry);
+        rtcReleaseGeometry(geometry);
     }
 
-    static bool meets(const Box3d& box, const Ray& ray) {
-        double from = ray.from, to = ray.to;
-        for (int axis = 0; axis < 3; ++axis) {
-            const double a = (box.min()[axis] - ray.origin[axis]) * ray.inverse[axis],
-                         b = (box.max()[axis] - ray.origin[axis]) * ray.inverse[axis];
-            // A ray within a plane of the box divides 0 by 0: the comparison keeps the old bound.
-            from = std::max(from, std::min(a, b));
-            to = std::min(to, std::max(a, b));
-        }
-        return from <= to * (1 + 1e-12);
-    }
-
-    /// Moeller and Trumbore 1997.
-    static bool meets(const Triangle& t, const Ray& ray) {
-        const Vec3d e1 = t.corner[1] - t.corner[0], e2 = t.corner[2] - t.corner[0];
-        const Vec3d p = ray.direction.cross(e2);
-        const double det = e1.dot(p);
-        if (det == 0) return false;
-        const Vec3d s = ray.origin - t.corner[0], q = s.cross(e1);
-        const double u = s.dot(p) / det, v = ray.direction.dot(q) / det, at = e2.dot(q) / det;
-        return u >= 0 && v >= 0 && u + v <= 1 && at > ray.from && at < ray.to;
-    }
-
-    bool hit(size_t index, const Ray& ray) const {
-        const Node& node = nodes_[index];
-        if (!meets(node.box, ray)) return false;
-        for (size_t i = node.first; i < node.first + node.count; ++i)
-            if (meets(triangles_[i], ray)) return true;
-        return node.count == 0 && (hit(node.children[0], ray) || hit(node.children[1], ray));
-    }
-
-    std::vector<Triangle> triangles_;
-    std::vector<Node> nodes_;
+    RTCDevice device_;
+    RTCScene scene_ = nullptr;
 };
 
 }  // namespace easypbr

@@ -16,6 +16,7 @@ inline app::Session plain_session(const Scene& scene, int size = 64) {
     s.image.antialias = Antialias::none;
     s.environment.enabled = false;
     s.shadows.enabled = false;
+    s.ssao.enabled = false;
     for (StudioLight* light : {&s.lights.key, &s.lights.fill, &s.lights.rim}) light->enabled = false;
     s.tone.tone_operator = ToneOperator::none;
     s.tone.exposure = 1.0f;

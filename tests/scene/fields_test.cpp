@@ -67,12 +67,26 @@ TEST(Fields, AreDocumentedOnce) {
 TEST(Fields, AreComplete) {
     std::map<std::string, int> counts;
     for (const Field& field : fields()) ++counts[field.name.substr(0, field.name.find('.'))];
+    // clang-format off
     const std::map<std::string, int> expected = {
-        {"image", 3},          {"camera", 12}, {"environment", 4},       {"background", 4},
-        {"lights", 1 + 3 * 6}, {"shadows", 3}, {"shading", 3},           {"edl", 3},
-        {"transparency", 2},   {"tonemap", 3}, {"material", 4 + 18 + 7}, {"style", 24},
-        {"points", 1},         {"clip", 2},    {"load", 1},
+        {"image", 3},
+        {"camera", 12},
+        {"environment", 4},
+        {"background", 4},
+        {"lights", 1 + 3 * 6},
+        {"shadows", 3},
+        {"shading", 3},
+        {"edl", 3},
+        {"ssao", 9},
+        {"transparency", 2},
+        {"tonemap", 3},
+        {"material", 4 + 18 + 7},
+        {"style", 24},
+        {"points", 1},
+        {"clip", 2},
+        {"load", 1},
     };
+    // clang-format on
     EXPECT_EQ(counts, expected);
 }
 

@@ -30,6 +30,8 @@ FormatInfo info(Format format) {
             return {GL_SRGB8_ALPHA8, GL_RGBA, GL_UNSIGNED_BYTE, 4};
         case Format::rg16:
             return {GL_RG16, GL_RG, GL_UNSIGNED_SHORT, 4};
+        case Format::r16:
+            return {GL_R16, GL_RED, GL_UNSIGNED_SHORT, 2};
         case Format::rgba16:
             return {GL_RGBA16, GL_RGBA, GL_UNSIGNED_SHORT, 8};
         case Format::r32f:

@@ -15,6 +15,7 @@ enum class Format {
     rgba8,
     srgb8_alpha8,
     rg16,
+    r16,
     rgba16,
     r32f,
     r16f,

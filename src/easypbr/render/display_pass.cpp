@@ -27,7 +27,9 @@ void DisplayPass::draw(const Frame& frame, const GBuffer& targets) {
     glEnable(GL_SCISSOR_TEST);
     glScissor(frame.covered.x, frame.covered.y, frame.covered.width, frame.covered.height);
     const EyeDomeSettings& eye_dome = frame.resolved->settings.eye_dome;
-    const gl::Program& program = programs_.get(camera_defines(frame));
+    std::vector<std::string> defines = camera_defines(frame);
+    if (targets.ambient_occlusion) defines.emplace_back("AMBIENT_OCCLUSION");
+    const gl::Program& program = programs_.get(defines);
     program.use();
     program.set("u_size", Vec2(frame.size.cast<float>()));
     program.set("u_eye_dome",
@@ -39,6 +41,8 @@ void DisplayPass::draw(const Frame& frame, const GBuffer& targets) {
         sources[unit]->bind(unit);
         program.set(samplers[unit], int(unit));
     }
+    if (targets.ambient_occlusion) targets.ambient_occlusion.bind(3);
+    program.set("u_ambient_occlusion", 3);
     draw_screen_triangle();
     glDisable(GL_SCISSOR_TEST);
 }

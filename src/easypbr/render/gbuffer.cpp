@@ -68,4 +68,15 @@ void GBuffer::reset_depth_range() {
     glDepthRange(0, 1);
 }
 
+void GBuffer::add_ambient_occlusion() {
+    if (ambient_occlusion) return;
+    ambient_occlusion = gl::Texture(gl::Format::r16, albedo.width(), albedo.height());
+    occluded = gl::Framebuffer({&ambient_occlusion}, &depth_test);
+}
+
+void GBuffer::remove_ambient_occlusion() {
+    ambient_occlusion = gl::Texture();
+    occluded = gl::Framebuffer();
+}
+
 }  // namespace easypbr::render

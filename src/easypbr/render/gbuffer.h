@@ -29,7 +29,9 @@ struct GBuffer {
     gl::Texture overlay;  ///< RGBA16F, when asked for: linear display light, premultiplied, over the
                           ///< tone-mapped picture
 
-    bool from_behind = false;  ///< a layer: depth_test is 1 where there is nothing
+    bool from_behind = false;       ///< a layer: depth_test is 1 where there is nothing
+    gl::Texture ambient_occlusion;  ///< R16, there only when it counts: the part of the surroundings that is
+                                    ///< seen, 1 where there is nothing
 
     gl::Framebuffer surface;           ///< albedo, normal, material, depth
     gl::Framebuffer surface_emission;  ///< the same and radiance
@@ -37,6 +39,7 @@ struct GBuffer {
     gl::Framebuffer surface_ids;       ///< the same, id and element; empty until add_ids()
     gl::Framebuffer lit;               ///< radiance with the depth test
     gl::Framebuffer display;           ///< overlay with the depth test; empty until add_overlay()
+    gl::Framebuffer occluded;          ///< ambient occlusion with the depth test; empty until it is added
 
     GBuffer() = default;
     explicit GBuffer(Vec2i size);
@@ -54,6 +57,8 @@ struct GBuffer {
     void add_extensions();
     /// Makes the overlay, if it is not there.
     void add_overlay();
+    void add_ambient_occlusion();
+    void remove_ambient_occlusion();
     Vec2i size() const { return {albedo.width(), albedo.height()}; }
 };
 

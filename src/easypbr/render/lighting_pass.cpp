@@ -70,7 +70,8 @@ float lobe_slope(int index, int count) {
     return float(u / std::sqrt(1 - u * u));
 }
 
-std::vector<std::string> defines_of(const Frame& frame, const LightBlock& block, bool with_environment) {
+std::vector<std::string> defines_of(const Frame& frame, const GBuffer& targets, const LightBlock& block,
+                                    bool with_environment) {
     const ShadingSettings& shading = frame.resolved->settings.shading;
     std::vector<std::string> defines = camera_defines(frame);
     defines.push_back(fmt::format("DFG_SIZE {}", gpu::dfg_size));
@@ -83,6 +84,10 @@ std::vector<std::string> defines_of(const Frame& frame, const LightBlock& block,
     if (block.cubes > 0) defines.emplace_back("SHADOW_CUBES");
     if (with_environment) defines.emplace_back("ENVIRONMENT");
     if (with_environment && frame.sample_count > 1) defines.emplace_back("LOBE_SAMPLES");
+    if (with_environment && targets.ambient_occlusion) {
+        defines.emplace_back("AMBIENT_OCCLUSION");
+        if (frame.resolved->settings.ssao.multi_bounce) defines.emplace_back("MULTI_BOUNCE");
+    }
     if (shading.multiple_scattering) defines.emplace_back("MULTIPLE_SCATTERING");
     if (shading.brdf == Brdf::ue4) defines.emplace_back("BRDF_UE4");
     if (shading.brdf == Brdf::separable) defines.emplace_back("BRDF_SEPARABLE");
@@ -132,12 +137,13 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightB
     const gl::Texture* sources[] = {&targets.albedo, &targets.normal, &targets.material, &targets.depth};
     for (unsigned unit = 0; unit < 4; ++unit) sources[unit]->bind(unit);
     dfg(frame.resolved->settings.shading.brdf).bind(4);
-    const gl::Program& program = programs_.get(defines_of(frame, block, maps != nullptr));
+    const gl::Program& program = programs_.get(defines_of(frame, targets, block, maps != nullptr));
     program.use();
     set_camera_uniforms(program, frame);
-    const char* samplers[] = {"u_albedo", "u_normal",      "u_material",   "u_depth_target",
-                              "u_dfg",    "u_prefiltered", "u_irradiance", "u_shadow_maps"};
-    for (int unit = 0; unit < 8; ++unit) program.set(samplers[unit], unit);
+    const char* samplers[] = {"u_albedo",      "u_normal",     "u_material",    "u_depth_target",     "u_dfg",
+                              "u_prefiltered", "u_irradiance", "u_shadow_maps", "u_ambient_occlusion"};
+    if (targets.ambient_occlusion) targets.ambient_occlusion.bind(8);
+    for (int unit = 0; unit < 9; ++unit) program.set(samplers[unit], unit);
     program.set("u_dielectric_f0", frame.resolved->settings.shading.dielectric_f0);
     if (frame.extensions) set_extensions(program, targets, block.first);
     if (maps) set_environment(program, frame, *maps);

@@ -33,8 +33,9 @@ std::vector<T> read(const gl::Framebuffer& framebuffer, unsigned index, gl::Form
 }  // namespace
 
 const std::vector<std::string>& layer_names() {
-    static const std::vector<std::string> names = {"albedo",   "normal",    "depth", "roughness",
-                                                   "metallic", "occlusion", "id",    "element"};
+    static const std::vector<std::string> names = {
+        "albedo", "normal", "depth", "roughness", "metallic", "occlusion", "ambient_occlusion",
+        "id",     "element"};
     return names;
 }
 
@@ -77,6 +78,7 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
     glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
     if (!targets_.albedo || targets_.size() != options.size) targets_ = GBuffer(options.size);
+    if (!*resolved.settings.ssao.enabled) targets_.remove_ambient_occlusion();
     output_.begin(options.size, options.encoding);
     pass_times_.clear();
     running_ = false;
@@ -169,6 +171,9 @@ void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& ca
     frame.extensions = extensible ? (has_layers ? solid : list).extensions() : 0;
     if (frame.extensions) targets_.add_extensions();
     run("geometry", [&] { draw_geometry(frame, has_layers ? solid : list); });
+    no_attributes_.bind();
+    if (*frame.resolved->settings.ssao.enabled)
+        run("ambient occlusion", [&] { ambient_occlusion_.draw(frame, targets_); });
     shadow_maps_.begin(frame, casters, bounds_of(*frame.scene));
     draw_lights(frame, targets_);
     const bool with_environment = !frame.resolved->environment.empty();
@@ -290,6 +295,11 @@ Image Renderer::read_layer(Layer layer) const {
                 to[i] = source.empty() ? float(texels[i]) : float(source(Eigen::Index(texels[i]) - 1) + 1);
             });
         }
+    } else if (layer == Layer::ambient_occlusion) {
+        if (!targets_.ambient_occlusion)
+            throw ArgumentError("layer ambient_occlusion: the setting ssao.enabled is off");
+        const auto texels = read<uint16_t>(targets_.occluded, 0, gl::Format::r16);
+        for_each_covered([&](size_t i) { to[i] = float(texels[i]) / 65535.0f; });
     } else {
         const size_t channel = layer == Layer::metallic ? 0 : layer == Layer::roughness ? 1 : 2;
         const auto texels = read<uint8_t>(targets_.surface, 2, gl::Format::rgba8);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "easypbr/core/image.h"
+#include "easypbr/render/ambient_occlusion_pass.h"
 #include "easypbr/render/background_pass.h"
 #include "easypbr/render/display_pass.h"
 #include "easypbr/render/geometry_pass.h"
@@ -23,15 +24,16 @@ namespace easypbr::render {
 /// Pictures beside the final one, read from the frame drawn last: of a picture of one sample, through the
 /// pixels' centres.
 enum class Layer {
-    albedo,     ///< RGBA f32, linear base colour, alpha 1 where there is geometry
-    normal,     ///< RGB f32, unit world normal, 0 where there is nothing
-    depth,      ///< one channel f32, distance along the optical axis, 0 where there is nothing
-    roughness,  ///< one channel f32
-    metallic,   ///< one channel f32
-    occlusion,  ///< one channel f32, the material's
-    id,         ///< one channel f32, 1 + place of the object in the snapshot, 0 where there is nothing; exact
-    element     ///< one channel f32, 1 + index of the face or point in its object, 0 where there is nothing;
-                ///< exact up to 2^24
+    albedo,             ///< RGBA f32, linear base colour, alpha 1 where there is geometry
+    normal,             ///< RGB f32, unit world normal, 0 where there is nothing
+    depth,              ///< one channel f32, distance along the optical axis, 0 where there is nothing
+    roughness,          ///< one channel f32
+    metallic,           ///< one channel f32
+    occlusion,          ///< one channel f32, the material's
+    ambient_occlusion,  ///< one channel f32, part of the surroundings that is seen; needs ssao.enabled
+    id,      ///< one channel f32, 1 + place of the object in the snapshot, 0 where there is nothing; exact
+    element  ///< one channel f32, 1 + index of the face or point in its object, 0 where there is nothing;
+             ///< exact up to 2^24
 };
 
 /// "albedo", "normal", ... Throws NameError with the nearest name.
@@ -109,6 +111,7 @@ class Renderer {
     PointPass points_{spacings_};
     SurfelPass surfels_{spacings_};
     ShadowMaps shadow_maps_{meshes_, textures_};
+    AmbientOcclusionPass ambient_occlusion_;
     LightingPass lighting_;
     DisplayPass display_;
     LinePass lines_;

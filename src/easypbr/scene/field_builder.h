@@ -1,4 +1,4 @@
-// How a member of a settings struct becomes a row of the table of fields. Used by fields_table.cpp alone.
+// How a member of a settings struct becomes a row of the table of fields. Used by fields_*.cpp alone.
 #pragma once
 
 #include <algorithm>
@@ -162,5 +162,52 @@ auto at(Members... members) {
         return (settings.*....*members);
     };
 }
+
+inline constexpr double unlimited = std::numeric_limits<double>::infinity();
+/// Below any length that occurs, above zero.
+inline constexpr double positive = 1e-30;
+
+struct Range {
+    double min = -unlimited, max = unlimited;
+};
+
+template <class Access>
+Field make(std::string name, Access access, std::string doc, std::string unit = {}, Range range = {}) {
+    using Member = std::remove_cvref_t<decltype(access(std::declval<Settings&>()))>;
+    Field field;
+    field.name = std::move(name);
+    field.doc = std::move(doc);
+    field.unit = std::move(unit);
+    describe<typename Unwrapped<Member>::type>(field);
+    field.can_be_automatic = Unwrapped<Member>::is_auto;
+    field.min = std::max(field.min, range.min);
+    field.max = std::min(field.max, range.max);
+    field.get = [access](const Settings& settings) { return to_value(access(settings)); };
+    field.put = [access](Settings& settings, const Value& value) { from_value(value, access(settings)); };
+    return field;
+}
+
+template <class Access>
+Field color(std::string name, Access access, std::string doc) {
+    Field field = make(std::move(name), access, std::move(doc), "sRGB", {0, 1});
+    field.type = FieldType::color;
+    return field;
+}
+
+inline Field with_choices(Field field, std::vector<std::string> choices) {
+    field.type = FieldType::choice;
+    field.choices = std::move(choices);
+    return field;
+}
+
+inline Field with_sizes(Field field, std::vector<size_t> sizes) {
+    field.sizes = std::move(sizes);
+    return field;
+}
+
+using Table = std::vector<Field>;
+
+/// Rows of the effects: ambient occlusion.
+void add_effects(Table& table);
 
 }  // namespace easypbr::detail

@@ -77,54 +77,9 @@ const std::vector<std::string>& enum_names<Colormap>() {
 
 namespace {
 
-using detail::at;
+using namespace detail;
 
-constexpr double unlimited = std::numeric_limits<double>::infinity();
-/// Below any length that occurs, above zero.
-constexpr double positive = 1e-30;
 constexpr size_t max_clip_planes = 16;
-
-struct Range {
-    double min = -unlimited, max = unlimited;
-};
-
-template <class Access>
-Field make(std::string name, Access access, std::string doc, std::string unit = {}, Range range = {}) {
-    using Member = std::remove_cvref_t<decltype(access(std::declval<Settings&>()))>;
-    Field field;
-    field.name = std::move(name);
-    field.doc = std::move(doc);
-    field.unit = std::move(unit);
-    detail::describe<typename detail::Unwrapped<Member>::type>(field);
-    field.can_be_automatic = detail::Unwrapped<Member>::is_auto;
-    field.min = std::max(field.min, range.min);
-    field.max = std::min(field.max, range.max);
-    field.get = [access](const Settings& settings) { return detail::to_value(access(settings)); };
-    field.put = [access](Settings& settings, const Value& value) {
-        detail::from_value(value, access(settings));
-    };
-    return field;
-}
-
-template <class Access>
-Field color(std::string name, Access access, std::string doc) {
-    Field field = make(std::move(name), access, std::move(doc), "sRGB", {0, 1});
-    field.type = FieldType::color;
-    return field;
-}
-
-Field with_choices(Field field, std::vector<std::string> choices) {
-    field.type = FieldType::choice;
-    field.choices = std::move(choices);
-    return field;
-}
-
-Field with_sizes(Field field, std::vector<size_t> sizes) {
-    field.sizes = std::move(sizes);
-    return field;
-}
-
-using Table = std::vector<Field>;
 
 void add_image(Table& table) {
     const auto image = [](auto member) { return at(&Settings::image, member); };
@@ -466,6 +421,7 @@ const std::vector<Field>& fields() {
         add_lights(all);
         add_shadows(all);
         add_shading(all);
+        detail::add_effects(all);
         add_overrides(all);
         add_style(all);
         add_clipping(all);

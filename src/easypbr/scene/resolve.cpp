@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "easypbr/core/error.h"
@@ -51,6 +52,22 @@ void resolve_exposure(const detail::Content& content, ResolvedSettings& resolved
     resolved.exposure = *tone.exposure * std::exp2(tone.exposure_compensation);
 }
 
+/// The paper's radius.
+constexpr double occlusion_radius = 0.05;
+
+bool has_surfaces(const SceneSnapshot& scene) {
+    return std::ranges::any_of(scene.objects, [](const SceneSnapshot::Object& object) {
+        return !object.mesh->F.empty() || !object.mesh->N.empty();
+    });
+}
+
+void resolve_effects(const detail::Content& content, ResolvedSettings& resolved) {
+    SsaoSettings& ssao = resolved.settings.ssao;
+    if (!ssao.enabled.value()) detail::fill(ssao.enabled, has_surfaces(content.scene()));
+    if (!ssao.radius.value())
+        detail::fill(ssao.radius, float(std::max(occlusion_radius * 2 * content.radius(), 1e-30)));
+}
+
 }  // namespace
 
 ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, Vec2i size) {
@@ -65,6 +82,7 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, V
     resolve_environment(scene, resolved);
     resolve_lights(content, resolved);
     resolve_exposure(content, resolved);
+    resolve_effects(content, resolved);
     return resolved;
 }
 

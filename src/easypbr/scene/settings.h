@@ -19,6 +19,8 @@ enum class BackgroundMode { color, environment, blur, image, transparent };
 enum class Brdf { height_correlated, separable, ue4 };
 enum class ShadowMode { hard, pcf, soft };
 enum class TransparencyMode { layers, stochastic };
+enum class OcclusionMethod { horizon, hemisphere };
+enum class OcclusionResolution { adaptive, half, full };
 enum class ToneOperator { aces, reinhard, agx, neutral, none };
 
 struct ImageSettings {
@@ -93,6 +95,19 @@ struct TransparencySettings {
     int max_layers = 64;
 };
 
+/// Screen-space ambient occlusion.
+struct SsaoSettings {
+    Auto<bool> enabled;
+    OcclusionMethod method = OcclusionMethod::horizon;
+    OcclusionResolution resolution = OcclusionResolution::adaptive;
+    Auto<float> radius;
+    float falloff = 0.6f;
+    float power = 1;
+    int directions = 1;
+    int steps = 6;
+    bool multi_bounce = true;
+};
+
 struct ToneSettings {
     ToneOperator tone_operator = ToneOperator::aces;
     Auto<float> exposure;
@@ -145,6 +160,7 @@ struct Settings {
     ShadingSettings shading;
     EyeDomeSettings eye_dome;
     TransparencySettings transparency;
+    SsaoSettings ssao;
     ToneSettings tone;
     MaterialSettings material;
     Style style;  ///< overrides of every object's style; automatic: the object's own value

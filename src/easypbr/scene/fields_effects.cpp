@@ -1,0 +1,55 @@
+// Rows of the table of settings for effects in screen space.
+#include "easypbr/scene/field_builder.h"
+
+namespace easypbr::detail {
+
+template <>
+const std::vector<std::string>& enum_names<OcclusionMethod>() {
+    static const std::vector<std::string> names = {"horizon", "hemisphere"};
+    return names;
+}
+template <>
+const std::vector<std::string>& enum_names<OcclusionResolution>() {
+    static const std::vector<std::string> names = {"adaptive", "half", "full"};
+    return names;
+}
+namespace {
+
+void add_ssao(Table& table) {
+    const auto ssao = [](auto member) { return at(&Settings::ssao, member); };
+    table.push_back(
+        make("ssao.enabled", ssao(&SsaoSettings::enabled),
+             "Whether surfaces shade each other from the environment's light where they are close "
+             "together; automatic: where there are surfaces."));
+    table.push_back(make("ssao.method", ssao(&SsaoSettings::method),
+                         "Horizons (ground-truth ambient occlusion), or points in the hemisphere above a "
+                         "surface."));
+    table.push_back(make("ssao.resolution", ssao(&SsaoSettings::resolution),
+                         "Half or full resolution; adaptive: half, but full where 8 or more frames are "
+                         "averaged."));
+    table.push_back(
+        make("ssao.radius", ssao(&SsaoSettings::radius),
+             "Distance within which surfaces occlude each other; automatic: 5 % of the diagonal of "
+             "the content's bounding box.",
+             "world units", {positive, unlimited}));
+    table.push_back(make("ssao.falloff", ssao(&SsaoSettings::falloff),
+                         "Outer part of the radius in which occlusion fades.", "", {0.01, 1}));
+    table.push_back(make("ssao.power", ssao(&SsaoSettings::power),
+                         "Exponent of the visibility: above 1 darker, below 1 lighter.", "", {0, 16}));
+    table.push_back(make("ssao.directions", ssao(&SsaoSettings::directions),
+                         "Directions that each frame looks in from a pixel.", "", {1, 64}));
+    table.push_back(make("ssao.steps", ssao(&SsaoSettings::steps),
+                         "Places looked at in each direction, and opposite to it.", "", {1, 64}));
+    table.push_back(
+        make("ssao.multi_bounce", ssao(&SsaoSettings::multi_bounce),
+             "Lightens and tints the occlusion of bright surfaces, which reflect light into their "
+             "own recesses."));
+}
+
+}  // namespace
+
+void add_effects(Table& table) {
+    add_ssao(table);
+}
+
+}  // namespace easypbr::detail
