@@ -1,7 +1,6 @@
 // The depth of a caster, larger towards the light; holes where a surface is cut out or, in this frame, seen through.
 #ifdef ALPHA_BLEND
-#include "common_noise.glsl"
-uniform float u_sample_index;
+#include "common_stochastic.glsl"
 #endif
 #ifdef VERTEX_COLOR
 in float v_alpha;
@@ -45,7 +44,7 @@ void main() {
 #if defined(ALPHA_MASK)
     if (alpha < u_alpha_cutoff) discard;
 #elif defined(ALPHA_BLEND)
-    if (alpha <= frame_noise(gl_FragCoord.xy, u_sample_index)) discard;
+    if (alpha <= alpha_threshold()) discard;
 #endif
     o_depth = gl_FragCoord.z;
 }

@@ -72,7 +72,10 @@ class Renderer {
 
     /// Without a GPU, plain triangles are rasterised natively; false leaves them to the driver: for comparing
     /// the two.
-    void allow_native_geometry(bool allow) { native_geometry_ = allow; }
+    void allow_native_geometry(bool allow) {
+        native_geometry_ = allow;
+        shadow_maps_.allow_native(allow);
+    }
 
     /// How often the shadow maps of a light have been drawn since the beginning: they are kept until the
     /// light or what casts changes.

@@ -144,7 +144,7 @@ const ShadowMaps::Entry* ShadowMaps::acquire(const Request& request) {
 
 void ShadowMaps::draw(const Request& request, const Entry& entry) {
     for (int i = 0; i < entry.layers; ++i)
-        pass_.draw(request.projection.views[size_t(i)], *list_, sample_index_,
+        pass_.draw(request.projection.views[size_t(i)], *list_, sample_index_, maps_, entry.first_layer + i,
                    framebuffers_[size_t(entry.first_layer + i)]);
     ++drawn_;
 }

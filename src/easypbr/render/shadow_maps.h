@@ -29,6 +29,9 @@ class ShadowMaps {
     LightBlock next_block();
     bool has_more() const { return next_ < requests_.size(); }
 
+    /// See ShadowPass.
+    void allow_native(bool allow) { pass_.allow_native(allow); }
+
     /// How often the maps of a light have been drawn since the beginning; a cube counts once.
     uint64_t drawn() const { return drawn_; }
 

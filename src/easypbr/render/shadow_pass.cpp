@@ -4,6 +4,9 @@
 
 #include <algorithm>
 
+#include "easypbr/core/parallel.h"
+#include "easypbr/gl/context.h"
+
 namespace easypbr::render {
 namespace {
 
@@ -14,29 +17,77 @@ bool reads_uv(const DrawItem& item) {
     return item.alpha != AlphaMode::opaque && item.textured() && (m.base_color_texture || m.opacity_texture);
 }
 
+/// Smaller objects are left to the driver, which fills large triangles in parallel; where exactly the two
+/// break even has not been measured.
+constexpr Eigen::Index smallest_face_count = 5000;
+
+bool suits_native(std::span<const DrawItem> items) {
+    const auto solid = [](const DrawItem& item) { return item.alpha == AlphaMode::opaque; };
+    return items.front().mesh().F.rows() >= smallest_face_count && std::ranges::all_of(items, solid);
+}
+
+/// The items of each object, which follow each other.
+std::vector<std::span<const DrawItem>> objects_of(std::span<const DrawItem> items) {
+    std::vector<std::span<const DrawItem>> objects;
+    for (size_t first = 0, last; first < items.size(); first = last) {
+        for (last = first; last < items.size() && items[last].object == items[first].object;) ++last;
+        objects.push_back(items.subspan(first, last - first));
+    }
+    return objects;
+}
+
 }  // namespace
 
-void ShadowPass::draw(const ShadowView& view, const DrawList& casters, int sample_index,
-                      const gl::Framebuffer& map) {
-    map.bind();
-    const float nothing[4] = {no_shadow_depth, 0, 0, 0};
-    map.clear_color(0, nothing);
+void ShadowPass::draw(const ShadowView& view, const DrawList& casters, int sample_index, gl::Texture& maps,
+                      int layer, const gl::Framebuffer& framebuffer) {
+    std::vector<Items> objects = objects_of(casters.meshes);
+    const bool native = native_ && gl::Context::current().info().software;
+    if (native && std::ranges::any_of(objects, suits_native)) {
+        objects = draw_native(view, objects, maps, layer);
+    } else {
+        const float nothing[4] = {no_shadow_depth, 0, 0, 0};
+        framebuffer.clear_color(0, nothing);
+    }
+    if (objects.empty()) return;
+    framebuffer.bind();
     // The largest depth stays, whatever the order: no depth buffer is needed.
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glEnable(GL_BLEND);
     glBlendEquation(GL_MAX);
-    const std::vector<DrawItem>& items = casters.meshes;
-    for (size_t first = 0, last; first < items.size(); first = last) {
-        // The buffers that the geometry pass draws an object from serve here too.
-        bool tangents = false;
-        for (last = first; last < items.size() && items[last].object == items[first].object; ++last)
-            tangents |= items[last].needs_tangents();
-        meshes_.get(items[first].mesh(), tangents).array.bind();
-        for (size_t i = first; i < last; ++i) draw_item(view, items[i], sample_index);
-    }
+    for (const Items& items : objects) draw_object(view, items, sample_index);
     glBlendEquation(GL_FUNC_ADD);
     glDisable(GL_BLEND);
+}
+
+std::vector<ShadowPass::Items> ShadowPass::draw_native(const ShadowView& view,
+                                                       const std::vector<Items>& objects, gl::Texture& maps,
+                                                       int layer) {
+    const int size = maps.width();
+    visibility_.clear(Vec2i(size, size), {0, 0, size, size});
+    std::vector<Items> left;
+    for (const Items& items : objects) {
+        const MeshData& mesh = items.front().mesh();
+        const Mat4 clip_from_mesh =
+            (view.clip_from_world() * items.front().object->T_world_mesh.matrix()).cast<float>();
+        if (!suits_native(items) ||
+            !visibility_.draw(mesh.V, mesh.F, 0, int(mesh.F.rows()), clip_from_mesh, 0, true, false))
+            left.push_back(items);
+    }
+    depths_.resize(visibility_.pixels().size());
+    parallel_for(depths_.size(), 1 << 14, [&](size_t i) {
+        const uint64_t pixel = visibility_.pixels()[i];
+        depths_[i] = pixel == 0 ? no_shadow_depth : VisibilityBuffer::depth_of(pixel);
+    });
+    maps.upload(std::as_bytes(std::span(depths_)), 0, layer);
+    return left;
+}
+
+void ShadowPass::draw_object(const ShadowView& view, Items items, int sample_index) {
+    // The buffers that the geometry pass draws an object from serve here too.
+    const bool tangents = std::ranges::any_of(items, &DrawItem::needs_tangents);
+    meshes_.get(items.front().mesh(), tangents).array.bind();
+    for (const DrawItem& item : items) draw_item(view, item, sample_index);
 }
 
 void ShadowPass::draw_item(const ShadowView& view, const DrawItem& item, int sample_index) {

@@ -1,12 +1,16 @@
 // Draws what a light sees: the depth of the caster that is nearest to it.
 #pragma once
 
+#include <span>
+#include <vector>
+
 #include "easypbr/gl/texture.h"
 #include "easypbr/gpu/mesh_buffers.h"
 #include "easypbr/gpu/texture_cache.h"
 #include "easypbr/render/draw_list.h"
 #include "easypbr/render/programs.h"
 #include "easypbr/render/shadow_view.h"
+#include "easypbr/render/visibility.h"
 
 namespace easypbr::render {
 
@@ -18,16 +22,28 @@ class ShadowPass {
     /// The caches are shared with other passes and must outlive this one.
     ShadowPass(gpu::MeshCache& meshes, gpu::TextureCache& textures) : meshes_(meshes), textures_(textures) {}
 
-    /// Fills one map. Surfaces cast from both sides, masked ones with their holes, blended ones where
+    /// Fills one layer. Surfaces cast from both sides, masked ones with their holes, blended ones where
     /// frame `sample_index` of a still draws them.
-    void draw(const ShadowView& view, const DrawList& casters, int sample_index, const gl::Framebuffer& map);
+    void draw(const ShadowView& view, const DrawList& casters, int sample_index, gl::Texture& maps, int layer,
+              const gl::Framebuffer& framebuffer);
+
+    /// Without a GPU, large opaque meshes are rasterised natively; false leaves them to the driver.
+    void allow_native(bool allow) { native_ = allow; }
 
   private:
+    using Items = std::span<const DrawItem>;
+    /// Draws what can be drawn natively and uploads the layer; the objects that are left.
+    std::vector<Items> draw_native(const ShadowView& view, const std::vector<Items>& objects,
+                                   gl::Texture& maps, int layer);
+    void draw_object(const ShadowView& view, Items items, int sample_index);
     void draw_item(const ShadowView& view, const DrawItem& item, int sample_index);
 
     gpu::MeshCache& meshes_;
     gpu::TextureCache& textures_;
     ProgramVariants programs_{"shadow_depth.vert", "shadow_depth.frag"};
+    bool native_ = true;
+    VisibilityBuffer visibility_;
+    std::vector<float> depths_;
 };
 
 }  // namespace easypbr::render
