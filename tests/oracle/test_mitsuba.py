@@ -89,7 +89,7 @@ def ours(tmp_path_factory):
     def draw(picture):
         camera, path = picture["camera"], folder / f"{picture['name']}.exr"
         settings = {"shading.brdf": "separable", "shading.multiple_scattering": "false", "shading.dielectric_f0": 0,
-                    "shadows.enabled": "false", "ssao.enabled": "false"}
+                    "shadows.enabled": "false", "ssao.enabled": "false", "environment.sun": "false"}
         options = [f"--camera-{end}={','.join(map(str, camera[end]))}" for end in ("position", "target")]
         options += ["--fov-y", camera["fov_y_deg"], "--size", f"{picture['size']}x{picture['size']}"]
         options += ["--samples", 16, "--env", pathlib.Path(DATA) / picture["environment"], *material(picture)]

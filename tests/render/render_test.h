@@ -15,6 +15,7 @@ inline app::Session plain_session(const Scene& scene, int size = 64) {
     s.image.samples = 1;
     s.image.antialias = Antialias::none;
     s.environment.enabled = false;
+    s.environment.sun = false;
     s.shadows.enabled = false;
     s.ssao.enabled = false;
     for (StudioLight* light : {&s.lights.key, &s.lights.fill, &s.lights.rim}) light->enabled = false;

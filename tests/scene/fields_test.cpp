@@ -71,7 +71,7 @@ TEST(Fields, AreComplete) {
     const std::map<std::string, int> expected = {
         {"image", 3},
         {"camera", 12},
-        {"environment", 4},
+        {"environment", 5},
         {"background", 4},
         {"lights", 1 + 3 * 6},
         {"shadows", 3},

@@ -115,6 +115,7 @@ SceneSnapshot Session::snapshot() {
         // anew.
         for (StudioLight* light : {&settings_.lights.key, &settings_.lights.fill, &settings_.lights.rim})
             light->enabled.release();
+        settings_.environment.sun.release();
         settings_.tone.exposure.release();
     }
     environment_hash_ = hash;

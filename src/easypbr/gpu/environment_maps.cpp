@@ -48,7 +48,7 @@ gl::Texture equirect_texture(const Image& image) {
 
 }  // namespace
 
-void EnvironmentMaps::prepare(const Environment& environment, bool with_background) {
+void EnvironmentMaps::prepare(const Environment& environment, const Environment& seen) {
     if (environment.hash() != hash_) {
         const PrefilteredEnvironment maps = prefilter_cached(environment);
         std::vector<const std::vector<uint16_t>*> levels;
@@ -57,9 +57,9 @@ void EnvironmentMaps::prepare(const Environment& environment, bool with_backgrou
         irradiance_ = cube_texture({&maps.irradiance}, PrefilteredEnvironment::irradiance_size);
         hash_ = environment.hash();
     }
-    if (with_background && equirect_hash_ != hash_) {
-        equirect_ = equirect_texture(environment.image());
-        equirect_hash_ = hash_;
+    if (!seen.empty() && equirect_hash_ != seen.hash()) {
+        equirect_ = equirect_texture(seen.image());
+        equirect_hash_ = seen.hash();
     }
 }
 

@@ -11,12 +11,13 @@ namespace easypbr::gpu {
 /// Keeps the textures of the environment used last.
 class EnvironmentMaps {
   public:
-    /// Makes the textures for this environment unless they are those already there.
-    void prepare(const Environment& environment, bool with_background);
+    /// Makes the textures for this environment unless they are those already there, and, unless it is empty,
+    /// the picture of the one that is seen.
+    void prepare(const Environment& environment, const Environment& seen);
 
     const gl::Texture& prefiltered() const { return prefiltered_; }
     const gl::Texture& irradiance() const { return irradiance_; }
-    /// The picture itself with all mip levels; there once prepare() was called with background.
+    /// The picture itself with all mip levels; there once prepare() was given one.
     const gl::Texture& equirect() const { return equirect_; }
     float last_level() const;
 

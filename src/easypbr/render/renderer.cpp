@@ -83,7 +83,10 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     pass_times_.clear();
     running_ = false;
     if (!resolved.environment.empty())
-        run("environment", [&] { environment_.prepare(resolved.environment, sees_environment(resolved)); });
+        run("environment", [&] {
+            const bool seen = sees_environment(resolved);
+            environment_.prepare(resolved.environment, seen ? resolved.seen_environment : Environment());
+        });
 
     const DrawableScene drawable = drawables_.apply(scene, resolved.settings);
     const DrawList all = draw_list(drawable, resolved.settings, images.textures);

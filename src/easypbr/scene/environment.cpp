@@ -1,10 +1,12 @@
 #include "easypbr/scene/environment.h"
 
 #include <fmt/format.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <mutex>
 #include <numeric>
 #include <span>
 #include <vector>
@@ -143,6 +145,13 @@ Vec2 equirect_uv(const Vec3& direction) {
     return {0.5f + phi * float(0.5 / pi), theta * float(1 / pi)};
 }
 
+/// Sun and rest, found when they are first asked for.
+struct Environment::Split {
+    std::once_flag once;
+    std::optional<Sun> sun;
+    Environment rest;  ///< empty without a sun
+};
+
 Environment::Environment(Image equirect, std::string name) {
     if (equirect.empty())
         throw ArgumentError(fmt::format("environment '{}': expected a picture, got an empty image", name));
@@ -155,7 +164,30 @@ Environment::Environment(Image equirect, std::string name) {
                         data->name, replaced));
     data->hash = hash_of(data->image);
     data->sh = project(data->image);
+    data->split = std::make_shared<Split>();
     data_ = std::move(data);
+}
+
+const Environment::Split& Environment::split() const {
+    Split& split = *data_->split;
+    // Isolated: while the loops inside wait, this thread must not take up a task that asks for the same.
+    tbb::this_task_arena::isolate([&] {
+        std::call_once(split.once, [&] {
+            auto found = split_sun(data_->image);
+            if (!found) return;
+            split.sun = found->sun;
+            split.rest = Environment(std::move(found->rest), data_->name + " without its sun");
+        });
+    });
+    return split;
+}
+
+const std::optional<Sun>& Environment::sun() const {
+    return split().sun;
+}
+
+Environment Environment::without_sun() const {
+    return split().sun ? split().rest : *this;
 }
 
 Vec3 Environment::irradiance_over_pi(const Vec3& n) const {

@@ -8,6 +8,7 @@
 
 #include "easypbr/core/image.h"
 #include "easypbr/core/math.h"
+#include "easypbr/scene/sun.h"
 
 namespace easypbr {
 
@@ -38,12 +39,20 @@ class Environment {
     /// (Ramamoorthi and Hanrahan 2001), never negative. Good to a few percent: for exposure, not for shading.
     Vec3 irradiance_over_pi(const Vec3& normal) const;
 
+    /// Its sun, if it has one; looked for at the first call.
+    const std::optional<Sun>& sun() const;
+    /// What is left without the sun's light; the same environment when there is none.
+    Environment without_sun() const;
+
   private:
+    struct Split;
     struct Data {
         Image image;
         std::string name, hash;
         std::array<Vec3, 9> sh;
+        std::shared_ptr<Split> split;
     };
+    const Split& split() const;
     std::shared_ptr<const Data> data_;
 };
 

@@ -153,6 +153,10 @@ void add_surroundings(Table& table) {
                          "degrees", {-360, 360}));
     table.push_back(make("environment.intensity", environment(&EnvironmentSettings::intensity),
                          "Factor on the environment's light.", "", {0, 1e6}));
+    table.push_back(
+        make("environment.sun", environment(&EnvironmentSettings::sun),
+             "Whether the environment's sun is a light of its own, which casts shadows; automatic: where "
+             "a given environment has a sun."));
 
     const auto background = [](auto member) { return at(&Settings::background, member); };
     table.push_back(

@@ -25,7 +25,26 @@ void resolve_environment(const SceneSnapshot& scene, ResolvedSettings& resolved)
     detail::fill(settings.enabled, true);
     if (*settings.enabled)
         resolved.environment = scene.environment.empty() ? studio_environment() : scene.environment;
+    resolved.seen_environment = resolved.environment;
     resolved.R_env_world = environment_rotation(parse_up(resolved.settings.camera.up), settings.rotation_deg);
+}
+
+/// Makes the environment's sun a light.
+void resolve_sun(const SceneSnapshot& scene, ResolvedSettings& resolved) {
+    EnvironmentSettings& settings = resolved.settings.environment;
+    const Environment whole = resolved.environment;
+    if (!settings.sun.value())
+        detail::fill(settings.sun, !whole.empty() && !scene.environment.empty() && whole.sun());
+    if (!*settings.sun || whole.empty() || !whole.sun()) return;
+    const Sun& sun = *whole.sun();
+    resolved.environment = whole.without_sun();
+    Light light;
+    light.type = LightType::directional;
+    light.direction = -(resolved.R_env_world.transpose() * sun.towards);
+    light.color = sun.irradiance / sun.irradiance.maxCoeff();
+    light.intensity = sun.irradiance.maxCoeff() * settings.intensity;
+    light.angular_radius_deg = sun.angular_radius_deg;
+    resolved.lights.push_back(light);
 }
 
 void resolve_lights(const detail::Content& content, ResolvedSettings& resolved) {
@@ -81,6 +100,7 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, V
     resolved.camera = detail::resolve_camera(content, resolved.settings.camera, double(size.x()) / size.y());
     resolve_environment(scene, resolved);
     resolve_lights(content, resolved);
+    resolve_sun(scene, resolved);
     resolve_exposure(content, resolved);
     resolve_effects(content, resolved);
     return resolved;

@@ -15,10 +15,11 @@ namespace easypbr {
 struct ResolvedSettings {
     Settings settings;  ///< every automatic field holds its value, but overrides of materials and styles
     Camera camera;
-    std::vector<Light> lights;                 ///< enabled lights of the scene, then key, fill and rim
+    std::vector<Light> lights;                 ///< enabled lights of the scene, then key, fill, rim and sun
     std::map<std::string, float> light_radii;  ///< those inferred for lights of the scene, by name
-    Environment environment;                   ///< what lights the scene: the given one, the studio, or empty
-    Mat3 R_env_world = Mat3::Identity();       ///< turns a world direction into the environment's frame
+    Environment environment;  ///< what lights the scene: the given one, less its sun, the studio, or empty
+    Environment seen_environment;         ///< the same with its sun, as it is seen in the background
+    Mat3 R_env_world = Mat3::Identity();  ///< turns a world direction into the environment's frame
     float exposure = 1;  ///< factor from radiance to the tone curve's input, compensation included
 };
 

@@ -49,6 +49,7 @@ struct EnvironmentSettings {
     Auto<bool> enabled;
     float rotation_deg = 0;
     float intensity = 1;
+    Auto<bool> sun;
 };
 
 struct BackgroundSettings {
