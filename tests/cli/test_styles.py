@@ -52,12 +52,14 @@ def test_styles_are_of_all_objects_or_of_one(render, box, sphere, tmp_path):
         render(box, sphere, "-o", "out.png", *(part for style in styles for part in ("--style", style)))
         return png.read(tmp_path / "out.png").astype(int)
 
-    plain, normals, one = drawn(), drawn("color_by=normal"), drawn("box.color_by=normal")
+    # The sphere is seen within the box's edges.
+    plain, normals = drawn("box.mode=points"), drawn("box.mode=points", "color_by=normal")
+    one = drawn("box.mode=points", "box.color_by=normal")
     changed = (normals != plain).any(axis=2)
     changed_by_one = (one != plain).any(axis=2)
     assert changed.sum() > changed_by_one.sum() > 0
-    # What both colour alike is the same.
-    assert (one == normals).all(axis=2)[changed_by_one].mean() > 0.95
+    # What both colour alike is the same, but where the splats' edges mix with the sphere behind them.
+    assert (one == normals).all(axis=2)[changed_by_one].mean() > 0.9
 
 
 def test_legends_and_colour_bars_are_written(render, tmp_path):

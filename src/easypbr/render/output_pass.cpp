@@ -150,7 +150,7 @@ void OutputPass::finish(const Frame& frame, const GBuffer& targets, const gl::Te
     }
     draw_screen_triangle();
     glDisable(GL_SCISSOR_TEST);
-    const bool single = !sum && encoding_ != Encoding::scene_linear;
+    const bool single = !sum && encoding_ != Encoding::scene_linear && !frame.has_exact;
     if (single && frame.resolved->settings.image.antialias == Antialias::fxaa) blur_edges(frame);
 }
 

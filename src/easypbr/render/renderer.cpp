@@ -101,6 +101,7 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     frame.size = options.size;
     frame.sample_count = options.samples;
     frame.with_ids = options.ids;
+    frame.has_exact = has_exact;
     if (options.ids) targets_.add_ids();
     for (frame.sample_index = 0; frame.sample_index < options.samples; ++frame.sample_index) {
         draw_frame(frame, options.samples > 1 && has_exact ? averaged : list, list);
