@@ -9,6 +9,8 @@
 #include "easypbr/core/error.h"
 #include "easypbr/io/mesh_readers.h"
 #include "easypbr/io/mtl_reader.h"
+#include "io/las_builder.h"
+#include "io/npy_builder.h"
 #include "io/ply_builder.h"
 
 using namespace easypbr;
@@ -172,6 +174,77 @@ TEST(Fuzz, PcdCompressed) {
     std::string body(8, '\0');
     std::memcpy(body.data(), sizes, 8);
     fuzz(pcd_file("binary_compressed", body + data), read_valid_pcd);
+}
+
+namespace {
+
+void read_valid_xyz(const io::Source& source) {
+    validate(io::read_xyz(source));
+}
+
+/// A structured array of 20 points.
+std::string npy_file() {
+    std::string data;
+    for (int i = 0; i < 20 * 21; ++i) data += char(i % 4 == 3 ? 0x3f : i);
+    return npy("[('xyz', '<f4', (3,)), ('rgb', '|u1', (3,)), ('', '|V2'), ('label', '<i4')]", "(20,)", data);
+}
+
+}  // namespace
+
+TEST(Fuzz, Xyz) {
+    std::string text = "# x y z red green blue heat\n";
+    for (int i = 0; i < 20; ++i) text += fmt::format("{} {}.5 -{}e1 {} 7 8 nan\n", i, i * i, i, i * 12);
+    fuzz(text, read_valid_xyz);
+}
+
+TEST(Fuzz, CsvWithoutNames) {
+    std::string text;
+    for (int i = 0; i < 20; ++i) text += fmt::format("{}, {}.5,,{},7,8\n", i, i * i, i * 12);
+    for (int i = 0; i < 20; ++i) text += fmt::format("{}, {}.5,1,{},7,8\n", i, i * i, i * 12);
+    fuzz(text, read_valid_xyz);
+}
+
+TEST(Fuzz, Npy) {
+    fuzz(npy_file(), [](const io::Source& source) { validate(io::read_npy(source)); });
+}
+
+TEST(Fuzz, NpyInColumns) {
+    std::string data;
+    for (int i = 0; i < 20 * 7; ++i) data += Bytes().add(float(i)).str();
+    fuzz(npy("'<f4'", "(20, 7)", data, true),
+         [](const io::Source& source) { validate(io::read_npy(source)); });
+}
+
+TEST(Fuzz, Npz) {
+    // Checksums would refuse nearly every mutation within the arrays: the arrays are mutated before they are
+    // packed.
+    const std::string faces =
+        npy("'<i8'", "(2, 4)", Bytes().add_all<int64_t>({0, 1, 2, 3, 4, 5, 6, 7}).str());
+    fuzz(npy_file() + faces, [](const io::Source& source) {
+        const std::string text(source.bytes);
+        const size_t half = std::min(text.size(), npy_file().size());
+        const std::string archive = npz({{"V.npy", text.substr(0, half)}, {"F.npy", text.substr(half)}});
+        validate(io::read_npz(io::Source(std::string_view(archive), source.path)));
+    });
+}
+
+TEST(Fuzz, Zip) {
+    fuzz(npz({{"V.npy", npy_file()}, {"readme.txt", "hello"}}),
+         [](const io::Source& source) { validate(io::read_npz(source)); });
+}
+
+TEST(Fuzz, Kitti) {
+    std::string data;
+    for (int i = 0; i < 20 * 4; ++i) data += Bytes().add(float(i)).str();
+    fuzz(data, [](const io::Source& source) { validate(io::read_kitti(source)); });
+}
+
+TEST(Fuzz, Las) {
+    LasBuilder las{.minor_version = 4, .format = 7, .points = 5};
+    las.extra_record = las_extra(4, "height", 0.01, 100) + las_extra(21, "wave");
+    las.extra_bytes = std::string(5, '\1');
+    fuzz(las.text(), [](const io::Source& source) { validate(io::read_las(source)); });
+    fuzz(LasBuilder{.format = 3}.text(), [](const io::Source& source) { validate(io::read_las(source)); });
 }
 
 TEST(Fuzz, Obj) {

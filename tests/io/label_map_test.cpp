@@ -135,6 +135,6 @@ TEST(LabelMapFiles, AreFoundByNameOrPath) {
         EXPECT_STREQ(
             error.what(),
             "there is no label map 'cityscape' (did you mean 'cityscapes'?): expected semantic_kitti, "
-            "semantic_kitti_train, cityscapes, cityscapes_train, scannet, scannet_train");
+            "semantic_kitti_train, cityscapes, cityscapes_train, scannet, scannet_train, asprs");
     }
 }

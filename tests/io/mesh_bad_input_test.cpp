@@ -4,6 +4,9 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/mesh_io.h"
+#include "io/bytes.h"
+#include "io/las_builder.h"
+#include "io/npy_builder.h"
 #include "io/ply_builder.h"
 #include "io/temporary_folder.h"
 
@@ -43,6 +46,31 @@ std::string lzf(uint32_t compressed, uint32_t full, const std::string& data) {
     std::memcpy(text.data(), &compressed, 4);
     std::memcpy(text.data() + 4, &full, 4);
     return text + data;
+}
+
+/// Four thousand rows, and one that is none: not among those that are looked at before reading.
+std::string late_word() {
+    std::string text;
+    for (int i = 0; i < 4000; ++i) text += "1 2 3\n";
+    text += "1 two 3\n";
+    for (int i = 0; i < 3000; ++i) text += "1 2 3\n";
+    return text;
+}
+
+std::string npy_of(const std::string& descr, const std::string& shape, size_t bytes) {
+    return npy(descr, shape, std::string(bytes, '\0'));
+}
+
+std::string las_with(size_t place, const std::string& bytes) {
+    std::string text = LasBuilder().text();
+    return text.replace(place, bytes.size(), bytes);
+}
+
+/// An archive with bytes of its end or of an entry changed.
+std::string damaged_npz(size_t back, char byte) {
+    std::string text = npz({{"V.npy", npy_of("'<f4'", "(3, 3)", 36)}});
+    text[text.size() - back] = byte;
+    return text;
 }
 
 const std::vector<BadFile> bad_files{
@@ -147,6 +175,72 @@ const std::vector<BadFile> bad_files{
     {"lzfsize.pcd", pcd("binary_compressed", lzf(3, 25, "123")), "2 points of 12 bytes"},
     {"lzfbomb.pcd", pcd("binary_compressed", lzf(3, 1'200'000'000, "123"), "100000000"), "compressed"},
     {"lzfdamaged.pcd", pcd("binary_compressed", lzf(3, 24, "\x02zz")), "damaged"},
+    {"empty.xyz", "", "empty"},
+    {"blank.xyz", "\n\n  \n", "no points"},
+    {"comments.xyz", "# nothing\n# x y z\n", "no points"},
+    {"words.xyz", "once upon a time\n", "found once, upon"},
+    {"two.xyz", "1 2\n3 4\n", "x, y, z"},
+    {"short.xyz", "1 2 3\n4 5\n", "short.xyz:2"},
+    {"word.xyz", "1 2 3\n4 5 six\n", "no positions"},
+    {"lateword.xyz", late_word(), "lateword.xyz:4001"},
+    {"comma.csv", "x;y;z\n1,5;2,5;3,5\n", "comma.csv:2"},
+    {"names.csv", "x,y,z,heat\n1,2,3\n", "4 columns expected"},
+    {"nopos.csv", "red,green,blue\n1,2,3\n", "found red, green, blue"},
+    {"nan.csv", "x,y,z\nnan,1,2\n,,\n", "no point of 2"},
+    {"lying.pts", "3\n1 2 3\n4 5 6\n", "3 points expected"},
+    {"huge.pts", "99999999999\n1 2 3\n", "99999999999"},
+    {"binary.xyz", std::string("\x7f\x45\x4c\x46\0\1\2\3", 8), "binary.xyz:1"},
+    {"empty.npy", "", "empty"},
+    {"magic.npy", "hello, world", "NumPy's mark"},
+    {"cut.npy", npy_of("'<f4'", "(3, 3)", 36).substr(0, 40), "truncated"},
+    {"short.npy", npy_of("'<f4'", "(3, 3)", 35), "truncated"},
+    {"lying.npy", npy_of("'<f4'", "(4611686018427387905, 3)", 36), "truncated"},
+    {"dict.npy", npy("'<f4', 'descr'", "(3, 3)", ""), "descr"},
+    {"objects.npy", npy_of("'|O'", "(3, 3)", 72), "Python objects"},
+    {"complex.npy", npy_of("'<c8'", "(3, 3)", 72), "numbers"},
+    {"words.npy", npy_of("'<U4'", "(3, 3)", 144), "numbers"},
+    {"nested.npy", npy_of("[('a', [('x', '<f4')])]", "(3,)", 12), "type"},
+    {"orders.npy", npy_of("[('x', '<f4'), ('y', '>f4'), ('z', '<f4')]", "(3,)", 36), "byte orders"},
+    {"flat.npy", npy_of("'<f4'", "(9,)", 36), "n x 3"},
+    {"two.npy", npy_of("'<f4'", "(3, 2)", 24), "(3, 2)"},
+    {"none.npy", npy_of("'<f4'", "(0, 3)", 0), "no points"},
+    {"fields.npy", npy_of("[('a', '<f4'), ('b', '<f4')]", "(3,)", 24), "found a, b"},
+    {"void.npy", npy_of("[('a', '|V0')]", "(1000000000000,)", 0), "numbers"},
+    {"empty.npz", "", "empty"},
+    {"text.npz", "hello", "no ZIP archive"},
+    {"noarray.npz", npz({{"readme.txt", "hello"}}), "no array of positions"},
+    {"entry.npz", npz({{"V.npy", "hello"}}), "NumPy's mark"},
+    {"checksum.npz", damaged_npz(150, 1), "checksum"},
+    {"count.npz", damaged_npz(12, 9), "directory"},
+    {"place.npz", damaged_npz(4, 9), "a header is cut off"},
+    {"rows.npz", npz({{"V.npy", npy_of("'<f4'", "(3, 3)", 36)}, {"C.npy", npy_of("'|u1'", "(2, 3)", 6)}}),
+     "array 'C': expected 3 rows of 3 numbers, one for each point, got shape (2, 3)"},
+    {"cols.npz", npz({{"V.npy", npy_of("'<f4'", "(3, 3)", 36)}, {"N.npy", npy_of("'<f4'", "(3, 2)", 24)}}),
+     "array 'N'"},
+    {"range.npz",
+     npz({{"V.npy", npy_of("'<f4'", "(3, 3)", 36)},
+          {"F.npy", npy("'<i4'", "(1, 3)", Bytes().add_all({0, 1, 3}).str())}}),
+     "index 3"},
+    {"real.npz", npz({{"V.npy", npy_of("'<f4'", "(3, 3)", 36)}, {"F.npy", npy_of("'<f4'", "(1, 3)", 12)}}),
+     "array 'F': expected integers"},
+    {"offset.npz",
+     npz({{"V.npy", npy_of("'<f4'", "(3, 3)", 36)}, {"offset.npy", npy_of("'<f8'", "(2,)", 16)}}),
+     "array 'offset'"},
+    {"empty.bin", "", "empty"},
+    {"size.bin", std::string(33, '\0'), "not a multiple of 16"},
+    {"nan.bin", std::string(32, '\xff'), "no point of 2"},
+    {"empty.las", "", "empty"},
+    {"magic.las", std::string(400, 'x'), "LASF"},
+    {"cut.las", LasBuilder().text().substr(0, 100), "truncated"},
+    {"version.las", las_with(25, "\x05"), "LAS 1.5"},
+    {"format.las", las_with(104, "\x0b"), "point format 11"},
+    {"record.las", las_with(105, "\x13"), "take 20 bytes, the file says 19"},
+    {"body.las", las_with(96, "\xff\xff\xff\x7f"), "points begin at byte"},
+    {"scale.las", las_with(131, std::string(8, '\0')), "scale"},
+    {"nanoffset.las", las_with(155, std::string(8, '\xff')), "finite"},
+    {"lying.las", las_with(107, "\xff\xff\xff\x7f"), "truncated: 2147483647 points"},
+    {"many.las", las_with(107, "\xff\xff\xff\xff"), "4294967295 points"},
+    {"none.las", las_with(107, std::string(4, '\0')), "no points"},
     {"unknown.xyzzy", "hello", "xyzzy"},
     {"unknown.plyy", "hello", "did you mean 'ply'"},
     {"noextension", "hello", "expected one of"},
@@ -172,7 +266,8 @@ TEST(BadMeshes, AreRefusedWithTheReason) {
 TEST(BadMeshes, MissingFilesAndFoldersAreFileErrors) {
     const TemporaryFolder folder;
     fs::create_directory(folder / "folder.obj");
-    for (const char* name : {"gone.ply", "gone.obj", "gone.stl", "gone.off", "folder.obj"})
+    for (const char* name : {"gone.ply", "gone.obj", "gone.stl", "gone.off", "gone.pcd", "gone.npz",
+                             "gone.las", "gone.bin", "gone.csv", "folder.obj"})
         EXPECT_THROW(io::load_mesh(folder / name), FileError) << name;
 }
 

@@ -11,13 +11,20 @@
 
 namespace easypbr::io {
 
-/// Reads the points of binary elements that lie one after the other from `body` on: one element with all
-/// properties (a point after the other), or several with some of them and as many rows (a field after the
-/// other). Fields get their meaning by their names (see VertexArrays); positions are recentred. Throws
-/// FormatError when there are no points, no positions, or less bytes than the elements take. Points without
-/// finite positions are still there.
-MeshData read_binary_cloud(const Source& source, const char* body, std::endian endian,
-                           const std::vector<Element>& elements);
+/// Binary elements that lie one after the other from `body` on: one element with all properties (a point
+/// after the other), or several with some of them and as many rows (a field after the other).
+struct BinaryTable {
+    Source source;
+    const char* body;
+    std::endian endian;
+    std::vector<Element> elements;
+};
+
+/// Reads the points of tables that have as many rows. Fields get their meaning by their names (see
+/// VertexArrays), those of the first table before others; positions are recentred. Throws FormatError when
+/// there are no points, no positions, or less bytes than the elements take. Points without finite positions
+/// are still there.
+MeshData read_binary_cloud(const Source& source, const std::vector<BinaryTable>& tables);
 
 /// A property of text that is read as the 32 bits it stands for (see Column::bits), one for each row.
 struct TextBits {

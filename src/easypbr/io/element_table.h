@@ -42,6 +42,7 @@ struct Column {
     /// Scalar target: row i goes to floats[i * stride] as value * scale + shift, computed in double
     /// precision.
     float* floats = nullptr;
+    double* doubles = nullptr;    ///< the same; binary only
     int32_t* integers = nullptr;  ///< scalar target without scale: what does not fit becomes -1
     /// Text only: the number's 32 bits, those of an integer or (where it is written as such) of a float.
     uint32_t* bits = nullptr;
@@ -51,7 +52,7 @@ struct Column {
     List<float>* values = nullptr;
 
     bool is_scaled() const { return scale != 1 || shift != 0; }
-    bool is_skipped() const { return !floats && !integers && !bits && !indices && !values; }
+    bool is_skipped() const { return !floats && !doubles && !integers && !bits && !indices && !values; }
 };
 
 /// An element and one column per property.
@@ -93,6 +94,9 @@ struct TextRows {
     std::vector<TextChunk> chunks;  ///< pieces of about 1 MB that end at line ends
 };
 
+/// Where rows begin that are spread evenly over [first, first + count), at most offset_sample_count of them.
+std::vector<const char*> sample_rows(const TextRows& rows, size_t first, size_t count);
+
 /// Reads the elements' rows one after the other; what stands behind a row's last property is ignored. Throws
 /// FormatError with the line.
 void read_text_elements(const Source& source, const TextRows& rows, std::vector<ElementPlan>& plans);
@@ -106,14 +110,18 @@ struct PropertyPlace {
     size_t element = 0, property = 0;
 };
 
-/// The properties x, y, z, which may be of different elements with as many rows, in rows spread evenly (what
-/// an offset is chosen by, see scene/offset.h). What is damaged is left out, and all of it where the rows
-/// cannot be found without reading all before them (lists in binary form).
-std::vector<Vec3d> sample_binary_rows(const Source& source, const char* body, std::endian endian,
-                                      const std::vector<Element>& elements,
-                                      const std::array<PropertyPlace, 3>& position);
+/// The values of properties, which may be of different elements with as many rows, in rows spread evenly, at
+/// most offset_sample_count of them; a vector for each row. What is damaged is left out, and all of it where
+/// the rows cannot be found without reading all before them (lists).
+std::vector<std::vector<double>> sample_binary_rows(const Source& source, const char* body,
+                                                    std::endian endian, const std::vector<Element>& elements,
+                                                    const std::vector<PropertyPlace>& places);
+/// The same for x, y, z (what an offset is chosen by, see scene/offset.h).
+std::vector<Vec3d> sample_binary_positions(const Source& source, const char* body, std::endian endian,
+                                           const std::vector<Element>& elements,
+                                           const std::array<PropertyPlace, 3>& position);
 /// The same for text, where the three are of one element.
-std::vector<Vec3d> sample_text_rows(const TextRows& rows, const std::vector<Element>& elements,
-                                    const std::array<PropertyPlace, 3>& position);
+std::vector<Vec3d> sample_text_positions(const TextRows& rows, const std::vector<Element>& elements,
+                                         const std::array<PropertyPlace, 3>& position);
 
 }  // namespace easypbr::io

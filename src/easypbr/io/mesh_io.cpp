@@ -6,8 +6,10 @@
 #include <algorithm>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/io/assimp_loader.h"
+#include "easypbr/io/cloud_writers.h"
 #include "easypbr/io/glb_writer.h"
 #include "easypbr/io/gltf_reader.h"
 #include "easypbr/io/mesh_readers.h"
@@ -16,8 +18,8 @@
 namespace easypbr::io {
 namespace {
 
-const std::vector<std::string> own_extensions{"ply", "obj", "stl", "off", "gltf", "glb", "pcd"};
-const std::vector<std::string> writable_extensions{"ply", "obj", "glb"};
+const std::vector<std::string> writable_extensions{"ply", "obj", "glb", "pcd", "xyz",
+                                                   "txt", "asc", "csv", "npy", "npz"};
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
@@ -31,20 +33,53 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
                                   fmt::join(known, ", ")));
 }
 
-MeshData read(const Source& source, const std::string& extension, const LoadOptions& options) {
-    if (extension == "ply") return read_ply(source);
-    if (extension == "obj") return read_obj(source);
-    if (extension == "stl") return read_stl(source, options);
-    if (extension == "pcd") return read_pcd(source);
-    return read_off(source);
+using Reader = std::function<MeshData(const Source&, const LoadOptions&)>;
+
+Reader without_options(MeshData (*read)(const Source&)) {
+    return [read](const Source& source, const LoadOptions&) { return read(source); };
+}
+
+/// The readers of formats that hold a single mesh.
+const std::map<std::string, Reader>& readers() {
+    static const std::map<std::string, Reader> all{{"ply", without_options(read_ply)},
+                                                   {"obj", without_options(read_obj)},
+                                                   {"stl", read_stl},
+                                                   {"off", without_options(read_off)},
+                                                   {"pcd", without_options(read_pcd)},
+                                                   {"xyz", without_options(read_xyz)},
+                                                   {"pts", without_options(read_xyz)},
+                                                   {"csv", without_options(read_xyz)},
+                                                   {"txt", without_options(read_xyz)},
+                                                   {"asc", without_options(read_xyz)},
+                                                   {"npy", without_options(read_npy)},
+                                                   {"npz", without_options(read_npz)},
+                                                   {"bin", without_options(read_kitti)},
+                                                   {"las", without_options(read_las)}};
+    return all;
 }
 
 LoadedScene load_by_reader(const fs::path& path, const std::string& extension, const LoadOptions& options) {
     const MappedFile file(path);
-    MeshData data = read(Source(file, path), extension, options);
+    MeshData data = readers().at(extension)(Source(file, path), options);
     data.name = path.stem().string();
     data.source = path;
     return {Mesh(std::move(data)), {}, {}};
+}
+
+/// Formats that have points only leave out faces, and say so.
+void warn_of_faces(const MeshData& mesh, const fs::path& path) {
+    if (!mesh.F.empty() || !mesh.E.empty())
+        log_warning(fmt::format("{}: the format has points only: {} faces and {} edges are left out",
+                                path.string(), mesh.F.rows(), mesh.E.rows()));
+}
+
+std::string encode(const MeshData& mesh, const fs::path& path, const std::string& extension) {
+    if (extension == "ply") return encode_ply(mesh, fs::absolute(path).parent_path());
+    if (extension == "npz") return encode_npz(mesh);
+    warn_of_faces(mesh, path);
+    if (extension == "pcd") return encode_pcd(mesh);
+    if (extension == "npy") return encode_npy(mesh);
+    return encode_xyz(mesh, extension == "csv" ? ',' : ' ');
 }
 
 void save_obj(const Mesh& mesh, const fs::path& path) {
@@ -60,7 +95,7 @@ void save_obj(const Mesh& mesh, const fs::path& path) {
 LoadedScene load_scene(const fs::path& path, const LoadOptions& options) {
     const std::string extension = extension_of(path);
     if (extension == "gltf" || extension == "glb") return load_gltf(path);
-    if (contains(own_extensions, extension)) return load_by_reader(path, extension, options);
+    if (readers().contains(extension)) return load_by_reader(path, extension, options);
     if (contains(assimp_extensions(), extension)) return load_assimp(path);
     fail_extension(path, "read", readable_extensions());
 }
@@ -74,13 +109,13 @@ void save_mesh(const Mesh& mesh, const fs::path& path) {
     if (!contains(writable_extensions, extension)) fail_extension(path, "written", writable_extensions);
     check_writable(path);
     if (extension == "glb") return save_glb(mesh, path);
-    if (extension == "ply")
-        return write_file(path, encode_ply(flatten(mesh), fs::absolute(path).parent_path()));
-    save_obj(mesh, path);
+    if (extension == "obj") return save_obj(mesh, path);
+    write_file(path, encode(flatten(mesh), path, extension));
 }
 
 std::vector<std::string> readable_extensions() {
-    std::vector<std::string> all = own_extensions;
+    std::vector<std::string> all{"gltf", "glb"};
+    for (const auto& [extension, reader] : readers()) all.push_back(extension);
     for (const std::string& extension : assimp_extensions())
         if (!contains(all, extension)) all.push_back(extension);
     return all;

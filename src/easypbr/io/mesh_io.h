@@ -24,18 +24,20 @@ struct LoadOptions {
         30;  ///< STL: welded corners whose faces meet at a larger angle keep separate normals
 };
 
-/// Reads PLY, OBJ (+ MTL), STL, OFF, glTF, GLB, and by way of assimp what that library reads.
-/// What is missing or unknown beside the geometry (a texture file, an element) is logged as a warning and
-/// left out. Throws FileError when the file cannot be read; FormatError, with line or byte, when it is empty,
-/// damaged, lies about its counts, has indices out of range or positions that are not finite, or when its
-/// extension is unknown.
+/// Reads PLY, OBJ (+ MTL), STL, OFF, glTF, GLB, the point clouds PCD, XYZ, PTS, CSV (also txt, asc), NPY,
+/// NPZ, LAS and KITTI's BIN, and by way of assimp what that library reads. Points of clouds whose positions
+/// are not finite are left out with a warning that counts them. What is missing or unknown beside the
+/// geometry (a texture file, an element) is logged as a warning and left out. Throws FileError when the file
+/// cannot be read; FormatError, with line or byte, when it is empty, damaged, lies about its counts, has
+/// indices out of range or positions that are not finite, or when its extension is unknown.
 LoadedScene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// The mesh of load_scene().
 Mesh load_mesh(const std::filesystem::path& path, const LoadOptions& options = {});
 
-/// Writes PLY (binary), OBJ (+ MTL) or GLB, by the extension; children are merged in world space for PLY and
-/// OBJ. Throws FileError, or FormatError for an unknown extension. Never leaves half a file.
+/// Writes PLY (binary), OBJ (+ MTL), GLB, NPZ, or the points as PCD (binary), XYZ (also txt, asc), CSV or
+/// NPY, by the extension; children are merged in world space for all but GLB. Throws FileError, or
+/// FormatError for an unknown extension. Never leaves half a file.
 void save_mesh(const Mesh& mesh, const std::filesystem::path& path);
 
 /// Extensions that load_scene() reads without and with assimp's module.

@@ -16,6 +16,14 @@ MeshData read_off(const Source& source);
 
 /// The same for point clouds. Points whose positions are not finite are left out with a warning.
 MeshData read_pcd(const Source& source);
+/// XYZ, PTS, CSV: the extension of the source's path tells PTS.
+MeshData read_xyz(const Source& source);
+/// One array; an archive of named arrays, which may have faces.
+MeshData read_npy(const Source& source);
+MeshData read_npz(const Source& source);
+/// A scan of KITTI; the labels of SemanticKITTI are looked for beside the source's path and in ../labels.
+MeshData read_kitti(const Source& source);
+MeshData read_las(const Source& source);
 
 /// Binary little-endian PLY: V, N, C (as uchar), UV (as s, t), L, I, F, E, and the base colour texture of a
 /// mesh with one material, by its path relative to `folder`.

@@ -15,20 +15,15 @@ namespace {
 /// The properties that a field is read as. A packed colour is four bytes, from the lowest on blue, green, red
 /// and alpha, which "rgb" has no meaning for.
 std::vector<Property> binary_properties(const PcdField& field) {
-    std::vector<Property> properties(field.is_packed_color() ? 4 : field.count);
-    if (field.is_packed_color()) {
-        const std::array names{"blue", "green", "red", field.name == "rgba" ? "alpha" : "_"};
-        for (size_t i = 0; i < names.size(); ++i) {
-            properties[i].name = names[i];
-            properties[i].type = ScalarType::uint8;
-        }
-        return properties;
+    const bool packed = field.is_packed_color();
+    std::vector<std::string> names = names_of_parts(field.name, field.count);
+    if (packed) {
+        const std::array colors{"blue", "green", "red", field.name == "rgba" ? "alpha" : "_"};
+        names.assign(colors.begin(), colors.end());
     }
-    for (size_t i = 0; i < field.count; ++i) {
-        properties[i].name =
-            field.count == 1 || field.name == "_" ? field.name : fmt::format("{}_{}", field.name, i);
-        properties[i].type = field.type;
-    }
+    std::vector<Property> properties;
+    for (std::string& name : names)
+        properties.push_back({std::move(name), packed ? ScalarType::uint8 : field.type, {}, 1, 0});
     return properties;
 }
 
@@ -73,8 +68,8 @@ MeshData read_compressed(const Source& source, const PcdHeader& header) {
     if (!lzf_decompress({header.body + sizes, compressed}, {bytes.get(), full}))
         fail_at_byte(source, header.body + sizes, "the compressed data are damaged");
     source.release_until(source.end());
-    return read_binary_cloud(Source(std::string_view(bytes.get(), full), source.path), bytes.get(),
-                             std::endian::little, elements_by_field(header));
+    return read_binary_cloud(source, {{Source(std::string_view(bytes.get(), full), source.path), bytes.get(),
+                                       std::endian::little, elements_by_field(header)}});
 }
 
 void set_packed_colors(const std::vector<uint32_t>& bits, bool alpha, MeshData& mesh) {
@@ -111,7 +106,8 @@ MeshData read_points(const Source& source, const PcdHeader& header) {
         case PcdData::ascii:
             return read_ascii(source, header);
         case PcdData::binary:
-            return read_binary_cloud(source, header.body, std::endian::little, elements_by_point(header));
+            return read_binary_cloud(source,
+                                     {{source, header.body, std::endian::little, elements_by_point(header)}});
         case PcdData::binary_compressed:
             break;
     }

@@ -38,13 +38,13 @@ class PlyReader {
         plan_elements();
         if (header_.format == PlyFormat::ascii) {
             const TextRows rows(source_, header_.body, {});
-            vertices_.recentre(sample_text_rows(rows, header_.elements, position_));
+            vertices_.recentre(sample_text_positions(rows, header_.elements, position_));
             read_text_elements(source_, rows, plans_);
         } else {
             const auto endian =
                 header_.format == PlyFormat::binary_little_endian ? std::endian::little : std::endian::big;
             vertices_.recentre(
-                sample_binary_rows(source_, header_.body, endian, header_.elements, position_));
+                sample_binary_positions(source_, header_.body, endian, header_.elements, position_));
             read_binary_elements(source_, header_.body, endian, plans_);
         }
         check();

@@ -21,6 +21,9 @@ struct Source {
         : bytes(mapped.text()), path(std::move(from)), file(&mapped) {}
     Source(std::string_view text, fs::path from) : bytes(text), path(std::move(from)) {}
 
+    /// The bytes from a place on.
+    Source from(size_t place) const { return {bytes.substr(place), path}; }
+
     const char* begin() const { return bytes.data(); }
     const char* end() const { return bytes.data() + bytes.size(); }
 

@@ -277,27 +277,35 @@ Vec3d position_in_row(const char* p, const char* end, const TextStyle& style, co
 
 }  // namespace
 
-std::vector<Vec3d> sample_text_rows(const TextRows& rows, const std::vector<Element>& elements,
-                                    const std::array<PropertyPlace, 3>& position) {
-    const size_t which = position[0].element;
-    const std::array properties{position[0].property, position[1].property, position[2].property};
-    size_t before = 0;
-    for (size_t i = 0; i < which; ++i) before += elements[i].count;
-    const size_t count = std::min(elements[which].count, rows.count() - std::min(rows.count(), before));
-    std::vector<Vec3d> samples(std::min(count, offset_sample_count), Vec3d::Constant(NAN));
-    std::vector<size_t> wanted(samples.size());
-    for (size_t i = 0; i < wanted.size(); ++i) wanted[i] = before + spread_row(i, wanted.size(), count);
+std::vector<const char*> sample_rows(const TextRows& rows, size_t first, size_t count) {
+    first = std::min(first, rows.count());
+    count = std::min(count, rows.count() - first);
+    std::vector<size_t> wanted(std::min(count, offset_sample_count));
+    for (size_t i = 0; i < wanted.size(); ++i) wanted[i] = first + spread_row(i, wanted.size(), count);
+    std::vector<const char*> starts(wanted.size());
     parallel_for(rows.chunks.size(), 1, [&](size_t c) {
         const TextChunk& chunk = rows.chunks[c];
         size_t row = chunk.first_row;
         auto next = std::lower_bound(wanted.begin(), wanted.end(), row);
         for (const char* p = chunk.begin; next != wanted.end(); p = next_line(p, chunk.end), ++row) {
             if (!(p = next_row(p, chunk.end, rows.style.comment))) return;
-            if (row != *next) continue;
-            samples[size_t(next++ - wanted.begin())] =
-                position_in_row(p, chunk.end, rows.style, elements[which], properties);
+            if (row == *next) starts[size_t(next++ - wanted.begin())] = p;
         }
     });
+    return starts;
+}
+
+std::vector<Vec3d> sample_text_positions(const TextRows& rows, const std::vector<Element>& elements,
+                                         const std::array<PropertyPlace, 3>& position) {
+    const size_t which = position[0].element;
+    const std::array properties{position[0].property, position[1].property, position[2].property};
+    size_t before = 0;
+    for (size_t i = 0; i < which; ++i) before += elements[i].count;
+    if (rows.chunks.empty()) return {};
+    const char* end = rows.chunks.back().end;
+    std::vector<Vec3d> samples;
+    for (const char* row : sample_rows(rows, before, elements[which].count))
+        samples.push_back(position_in_row(row, end, rows.style, elements[which], properties));
     return samples;
 }
 

@@ -230,6 +230,26 @@ bool is_known_field(std::string_view name) {
     return false;
 }
 
+std::vector<std::string> names_of_parts(const std::string& name, size_t count) {
+    static const struct {
+        Names whole;
+        Names parts;
+    } known[] = {
+        {{"xyz", "pos", "position", "positions", "point", "points", "coord", "coords"}, {"x", "y", "z"}},
+        {{"normal", "normals", "n"}, {"nx", "ny", "nz"}},
+        {{"rgb", "color", "colors", "c"}, {"red", "green", "blue"}},
+        {{"rgb", "rgba", "color", "colors", "c"}, {"red", "green", "blue", "alpha"}},
+        {{"uv", "uvs", "texcoord", "texcoords"}, {"u", "v"}}};
+    if (count == 1 || name == "_") return std::vector<std::string>(count, name);
+    const std::string plain = lower(name);
+    for (const auto& entry : known)
+        if (entry.parts.size() == count && std::ranges::find(entry.whole, plain) != entry.whole.end())
+            return {entry.parts.begin(), entry.parts.end()};
+    std::vector<std::string> names;
+    for (size_t i = 0; i < count; ++i) names.push_back(fmt::format("{}_{}", name, i));
+    return names;
+}
+
 void drop_points_without_position(const Source& source, MeshData& mesh) {
     const size_t count = size_t(mesh.V.rows());
     std::vector<size_t> first((count + grain - 1) / grain + 1, 0);

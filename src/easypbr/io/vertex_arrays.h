@@ -85,6 +85,10 @@ class FaceArrays {
 /// Whether a field of this name is recognised, not just kept as scalars.
 bool is_known_field(std::string_view name);
 
+/// Names for a field of several values: those of the parts of a position, normal, colour or texture
+/// coordinate when it is called so and has as many, else NAME_0, NAME_1, ...
+std::vector<std::string> names_of_parts(const std::string& name, size_t count);
+
 /// Leaves out the points of a cloud (a mesh without faces and edges) whose positions are not finite, with a
 /// warning that counts them; source_vertex leads back to the file's points. Throws FormatError when none is
 /// left.

@@ -56,12 +56,6 @@ RowPart packed_color_part(const ArrayXf& C) {
             }};
 }
 
-std::string plain_name(std::string name) {
-    for (char& c : name)
-        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-') c = '_';
-    return name;
-}
-
 void add_labels_and_scalars(const MeshData& mesh, PerElement element, std::vector<RowPart>& parts) {
     const auto is_of = [&](const auto& array) {
         return !array.empty() && element_of(mesh, array.rows()) == element;
@@ -96,6 +90,12 @@ void append_number(ScalarType type, const char* at, std::string& out) {
 }
 
 }  // namespace
+
+std::string plain_name(std::string name) {
+    for (char& c : name)
+        if (!std::isalnum(static_cast<unsigned char>(c)) && c != '.' && c != '-') c = '_';
+    return name;
+}
 
 std::vector<RowPart> vertex_row_parts(const MeshData& mesh, const RowStyle& style) {
     std::vector<RowPart> parts{position_part(mesh)};

@@ -28,8 +28,11 @@ struct RowStyle {
 
 /// All that a mesh has for its vertices: positions (float64, with the offset added, unless that is zero),
 /// normals, colours as bytes, texture coordinates, tangents, bitangent lengths, labels, intensities, scalars.
-/// Names of scalars have '_' for what is no letter or digit. The parts refer to the mesh.
+/// Names of scalars are plain_name()s.
 std::vector<RowPart> vertex_row_parts(const MeshData& mesh, const RowStyle& style = {});
+
+/// A name with '_' for what is no letter, digit, '.' or '-'.
+std::string plain_name(std::string name);
 
 /// What the faces have beside their corners: labels and scalars.
 std::vector<RowPart> face_row_parts(const MeshData& mesh);

@@ -87,6 +87,7 @@ class LabelMap {
 /// The label maps of public data sets, by the labels that their files have, and with "_train" by those that
 /// networks are trained with and predict: semantic_kitti (Behley et al. 2019), cityscapes (Cordts et al.
 /// 2016), scannet (Dai et al. 2017: the 40 classes of NYU; the 20 of the benchmark).
+/// And asprs, the classes of LAS files, which shows other labels as unlabelled.
 const std::vector<std::string>& built_in_label_map_names();
 
 /// Throws NameError with the nearest name.

@@ -149,6 +149,33 @@ constexpr Entry scannet_classes[] = {
 /// "VALID_CLASS_IDS" of the benchmark, in their order.
 constexpr int32_t scannet_train[] = {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 14, 16, 24, 28, 33, 34, 36, 39};
 
+/// ASPRS, "LAS Specification 1.4 - R15", table 17; it names no colours: these are ours.
+constexpr Entry asprs_classes[] = {
+    {0, "never classified", {128, 128, 128}},
+    {1, "unclassified", {170, 170, 170}},
+    {2, "ground", {161, 110, 60}},
+    {3, "low vegetation", {170, 220, 110}},
+    {4, "medium vegetation", {90, 180, 70}},
+    {5, "high vegetation", {20, 120, 45}},
+    {6, "building", {215, 70, 50}},
+    {7, "low point (noise)", {255, 0, 255}},
+    {8, "model key-point", {255, 255, 255}},
+    {9, "water", {40, 110, 220}},
+    {10, "rail", {90, 90, 160}},
+    {11, "road surface", {90, 90, 95}},
+    {12, "overlap", {230, 220, 180}},
+    {13, "wire - guard", {255, 230, 90}},
+    {14, "wire - conductor", {255, 190, 0}},
+    {15, "transmission tower", {255, 130, 0}},
+    {16, "wire-structure connector", {200, 110, 40}},
+    {17, "bridge deck", {180, 150, 200}},
+    {18, "high noise", {190, 0, 190}},
+    {19, "overhead structure", {130, 100, 220}},
+    {20, "ignored ground", {120, 85, 50}},
+    {21, "snow", {235, 245, 255}},
+    {22, "temporal exclusion", {60, 60, 60}},
+};
+
 /// What networks are told to ignore.
 constexpr int32_t ignored = 255;
 
@@ -189,6 +216,9 @@ const Maps& built_in_maps() {
         add("scannet", classes_of(scannet_classes), 0);
         add("scannet_train", with_ignored(renumbered(scannet_classes, scannet_train), "unannotated"),
             ignored);
+        // Labels from 64 on are the user's.
+        all.emplace_back("asprs", std::make_shared<const LabelMap>("asprs", classes_of(asprs_classes),
+                                                                   std::nullopt, UnknownLabels::unlabelled));
         return all;
     }();
     return maps;

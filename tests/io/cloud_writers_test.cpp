@@ -1,0 +1,125 @@
+// What is written for clouds comes back as it was.
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/core/log.h"
+#include "easypbr/io/mesh_io.h"
+#include "io/temporary_folder.h"
+
+using namespace easypbr;
+
+namespace {
+
+/// A cloud with every attribute; text has to hold any bits.
+MeshData cloud(int n) {
+    MeshData mesh;
+    const auto wave = [](int i) { return float(std::sin(i * 12.9898) * 0.7); };
+    mesh.V = Array3f::Dense::NullaryExpr(n, 3, [&](auto i, auto k) { return wave(int(3 * i + k)); });
+    mesh.N = Array3f::Dense(mesh.V.rowwise().normalized());
+    mesh.C = ArrayXf::Dense(ArrayXf::Dense::NullaryExpr(
+        n, 4, [](auto i, auto k) { return float((i * 7 + k * 50) % 256 * (1 / 255.0)); }));
+    mesh.UV = Array2f::Dense::NullaryExpr(n, 2, [&](auto i, auto k) { return wave(int(i + 100 * k)); });
+    mesh.T = Array3f::Dense::NullaryExpr(n, 3, [&](auto i, auto k) { return wave(int(i - k)) * 1e-7f; });
+    mesh.B = Array1f::Dense::NullaryExpr(n, [&](auto i) { return wave(int(i)) * 1e9f; });
+    mesh.L = Array1i::Dense::NullaryExpr(n, [](auto i) { return int32_t(i * 1'000'003 - 1); });
+    mesh.I = Array1f::Dense::NullaryExpr(n, [&](auto i) { return 100 + wave(int(i)); });
+    mesh.scalars = {{"heat", mesh.I}, {"point error", mesh.B}};
+    return mesh;
+}
+
+template <class A>
+::testing::AssertionResult same_bits(const A& a, const A& b) {
+    if (a.rows() != b.rows() || a.cols() != b.cols())
+        return ::testing::AssertionFailure()
+               << a.rows() << " x " << a.cols() << " and " << b.rows() << " x " << b.cols();
+    if (std::memcmp(a.data(), b.data(), size_t(a.size()) * sizeof(*a.data())) != 0)
+        return ::testing::AssertionFailure() << "values differ";
+    return ::testing::AssertionSuccess();
+}
+
+void expect_same(const MeshData& mesh, const MeshData& back, const std::string& name) {
+    EXPECT_TRUE(same_bits(mesh.V, back.V)) << name;
+    EXPECT_TRUE(same_bits(mesh.N, back.N)) << name;
+    EXPECT_TRUE(same_bits(mesh.UV, back.UV)) << name;
+    EXPECT_TRUE(same_bits(mesh.T, back.T)) << name;
+    EXPECT_TRUE(same_bits(mesh.B, back.B)) << name;
+    EXPECT_TRUE(same_bits(mesh.L, back.L)) << name;
+    EXPECT_TRUE(same_bits(mesh.I, back.I)) << name;
+    ASSERT_EQ(back.scalars.size(), 2u) << name;
+    EXPECT_EQ(back.scalars[0].name, "heat") << name;
+    EXPECT_EQ(back.scalars[1].name, "point_error") << name;
+    EXPECT_TRUE(same_bits(mesh.scalars[1].values, back.scalars[1].values)) << name;
+    ASSERT_EQ(back.C.cols(), 4) << name;
+    // One rounding of the multiplication by 1 / 255, one of the division.
+    EXPECT_LE((mesh.C - back.C).cwiseAbs().maxCoeff(), 1.2e-7f) << name;
+}
+
+}  // namespace
+
+TEST(CloudFiles, ComeBackAsTheyWere) {
+    const TemporaryFolder folder;
+    // More than a writer's and less than a reader's piece, and one point.
+    for (const int n : {40'000, 1})
+        for (const char* name : {"c.pcd", "c.xyz", "c.txt", "c.asc", "c.csv", "c.npy", "c.npz", "c.ply"}) {
+            const MeshData mesh = cloud(n);
+            Mesh(mesh).save(folder / name);
+            expect_same(mesh, *Mesh(folder / name).snapshot(), fmt::format("{} with {} points", name, n));
+        }
+}
+
+TEST(CloudFiles, KeepTheOffset) {
+    const TemporaryFolder folder;
+    MeshData mesh = cloud(1000);
+    mesh.offset = {691'000, 5'335'000, 520};
+    for (const char* name : {"c.pcd", "c.xyz", "c.csv", "c.npy", "c.npz", "c.ply"}) {
+        Mesh(mesh).save(folder / name);
+        const auto back = Mesh(folder / name).snapshot();
+        ASSERT_EQ(back->V.rows(), 1000) << name;
+        for (Eigen::Index i = 0; i < 1000; ++i) {
+            const Vec3d given = mesh.offset + mesh.V.row(i).transpose().cast<double>();
+            const Vec3d read = back->offset + back->V.row(i).transpose().cast<double>();
+            // float64 at 5e6 in the file, and half the spacing of float32 up to 2 in memory.
+            ASSERT_LE((read - given).cwiseAbs().maxCoeff(), std::exp2(-24.0) + 1e-9) << name << " " << i;
+        }
+    }
+}
+
+TEST(CloudFiles, NpzKeepsFacesEdgesAndTheirValues) {
+    const TemporaryFolder folder;
+    MeshData mesh = cloud(10);
+    mesh.F = Array3i::Dense::NullaryExpr(4, 3, [](auto i, auto k) { return int32_t(i + k); });
+    mesh.E = Array2i::Dense::NullaryExpr(3, 2, [](auto i, auto k) { return int32_t(i + k); });
+    mesh.scalars = {{"area", Array1f::Dense::Constant(4, 0.5f)}};
+    Mesh(mesh).save(folder / "m.npz");
+    const auto back = Mesh(folder / "m.npz").snapshot();
+    EXPECT_TRUE(same_bits(mesh.F, back->F));
+    EXPECT_TRUE(same_bits(mesh.E, back->E));
+    ASSERT_EQ(back->scalars.size(), 1u);
+    EXPECT_EQ(back->scalars[0].values[3], 0.5f);
+}
+
+TEST(CloudFiles, FormatsOfPointsSayThatFacesAreLeftOut) {
+    const TemporaryFolder folder;
+    MeshData mesh = cloud(10);
+    mesh.F = Array3i::Dense::Zero(2, 3);
+    std::vector<std::string> warnings;
+    set_log_sink([&](LogLevel, std::string_view message) { warnings.emplace_back(message); });
+    Mesh(mesh).save(folder / "m.pcd");
+    set_log_sink({});
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("2 faces"), std::string::npos) << warnings[0];
+}
+
+TEST(CloudFiles, ChildrenAreMerged) {
+    const TemporaryFolder folder;
+    Mesh root = Mesh(cloud(10)), child = Mesh(cloud(5));
+    child.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(100, 0, 0)));
+    root.add_child(child);
+    root.save(folder / "m.xyz");
+    const auto back = Mesh(folder / "m.xyz").snapshot();
+    ASSERT_EQ(back->V.rows(), 15);
+    EXPECT_FLOAT_EQ(back->V(10, 0), child.V()(0, 0) + 100);
+}
