@@ -63,10 +63,11 @@ def test_every_public_name_is_in_the_reference(reference):
 
 
 def test_every_option_is_on_the_page_of_the_command_line():
-    text = subprocess.run([BINARY, "render", "--help"], capture_output=True, text=True, check=True).stdout
-    options = set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", text)) - {"--help"}
+    texts = [subprocess.run([BINARY, command, "--help"], capture_output=True, text=True, check=True).stdout
+             for command in ("render", "convert")]
+    options = set(re.findall(r"(?<![\w-])--[a-z][a-z-]*", "".join(texts))) - {"--help"}
     page = (ROOT / "docs/command_line.md").read_text()
-    assert len(options) > 30
+    assert len(options) > 45
     assert not [option for option in sorted(options) if not re.search(rf"{option}(?![\w-])", page)]
 
 

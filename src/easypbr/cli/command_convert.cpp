@@ -1,4 +1,5 @@
 #include "easypbr/cli/command.h"
+#include "easypbr/cli/mesh_steps.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/image_io.h"
 #include "easypbr/io/mesh_io.h"
@@ -9,6 +10,7 @@ namespace {
 struct ConvertOptions {
     std::string in, out;
     double crease_deg = io::LoadOptions{}.crease_angle_deg;
+    std::vector<MeshStep> steps;
 };
 
 void declare(CLI::App& command, ConvertOptions& options) {
@@ -16,24 +18,31 @@ void declare(CLI::App& command, ConvertOptions& options) {
     command.add_option("OUT", options.out, "Mesh (PLY, OBJ, GLB) or image file (PNG, JPEG, HDR, EXR)");
     command.add_option("--crease", options.crease_deg, "STL: edges sharper than this angle stay sharp")
         ->option_text("DEG");
+    declare_mesh_steps(command, options.steps);
 }
 
 int run(const ConvertOptions& options) {
     require(!options.out.empty(), "convert", "IN and OUT");
     check_writable(options.out);
-    if (is_image_file(options.in))
-        io::save_image(io::load_image(options.in), options.out);
-    else
-        io::save_mesh(io::load_mesh(options.in, {.crease_angle_deg = float(options.crease_deg)}),
-                      options.out);
+    if (!is_image_file(options.in)) {
+        const Mesh mesh = io::load_mesh(options.in, {.crease_angle_deg = float(options.crease_deg)});
+        io::save_mesh(apply_mesh_steps(mesh, options.steps), options.out);
+        return 0;
+    }
+    if (!options.steps.empty())
+        throw UsageError("convert: " + options.steps.front().option + " is for meshes, and " + options.in +
+                         " is an image");
+    io::save_image(io::load_image(options.in), options.out);
     return 0;
 }
 
 }  // namespace
 
 void add_convert(CLI::App& app, Job& job) {
-    set_job<ConvertOptions>(*app.add_subcommand("convert", "Write a mesh or an image in another format"), job,
-                            declare, run);
+    set_job<ConvertOptions>(
+        *app.add_subcommand(
+            "convert", "Write a mesh or an image in another format, a mesh after changes in the order given"),
+        job, declare, run);
 }
 
 }  // namespace easypbr::cli

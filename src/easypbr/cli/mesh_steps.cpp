@@ -1,0 +1,132 @@
+#include "easypbr/cli/mesh_steps.h"
+
+#include <utility>
+
+#include "easypbr/geometry/place.h"
+#include "easypbr/geometry/refine.h"
+#include "easypbr/geometry/repair.h"
+#include "easypbr/geometry/sample.h"
+#include "easypbr/geometry/simplify.h"
+#include "easypbr/geometry/subsample.h"
+#include "easypbr/geometry/surfels.h"
+
+namespace easypbr::cli {
+namespace {
+
+/// Adds options that append steps.
+class StepOptions {
+  public:
+    StepOptions(CLI::App& command, std::vector<MeshStep>& steps) : command_(command), steps_(steps) {}
+
+    /// An option with a number.
+    template <class Number>
+    void number(const char* name, const char* unit, const char* doc, Mesh (*apply)(const Mesh&, Number)) {
+        command_
+            .add_option_function<Number>(
+                name,
+                [this_steps = &steps_, name, apply](Number value) {
+                    this_steps->push_back(
+                        {name, [apply, value](const Mesh& mesh) { return apply(mesh, value); }});
+                },
+                doc)
+            ->option_text(unit)
+            ->trigger_on_parse();
+    }
+
+    void flag(const char* name, const char* doc, Mesh (*apply)(const Mesh&)) {
+        command_
+            .add_flag_callback(
+                name,
+                [this_steps = &steps_, name, apply] {
+                    this_steps->push_back({name, apply});
+                },
+                doc)
+            ->trigger_on_parse();
+    }
+
+  private:
+    CLI::App& command_;
+    std::vector<MeshStep>& steps_;
+};
+
+Mesh merge(const Mesh& mesh) {
+    return merged(std::vector{mesh});
+}
+
+Mesh clean(const Mesh& mesh) {
+    return remove_unreferenced_vertices(remove_degenerate_faces(mesh));
+}
+
+void declare_places(StepOptions& steps) {
+    steps.flag("--merge", "Make one mesh of all parts of the file (the other steps do so anyway)", merge);
+    steps.flag("--center", "Move the middle of the bounding box to the origin", centered);
+    steps.number<double>("--scale", "X", "Scale about the origin", [](const Mesh& mesh, double factor) {
+        return transformed(mesh, Eigen::Affine3d(Eigen::Scaling(factor)));
+    });
+    steps.number<double>("--normalize-size", "X", "Scale until the longest side of the bounding box is X",
+                         with_size);
+}
+
+void declare_repairs(StepOptions& steps) {
+    steps.number<double>("--weld", "DISTANCE",
+                         "Make one of vertices this near (0: at one place) with the same attributes",
+                         [](const Mesh& mesh, double tolerance) {
+                             return remove_duplicate_vertices(mesh, {tolerance, true});
+                         });
+    steps.flag("--clean", "Leave out faces without area and vertices that nothing uses", clean);
+    steps.flag("--flip-winding", "Turn the faces around", flip_winding);
+    steps.flag("--flip-normals", "Turn the normals around", flip_normals);
+}
+
+void declare_resolutions(StepOptions& steps) {
+    steps.number<int64_t>("--subsample", "N", "Keep N vertices, chosen at random",
+                          [](const Mesh& mesh, int64_t count) { return subsample_random(mesh, count); });
+    steps.number<double>("--subsample-cells", "EDGE", "Keep the mean vertex of each cube of this edge",
+                         subsample_voxels);
+    steps.number<double>("--voxelize", "EDGE", "Keep the centre of each cube of this edge that has vertices",
+                         voxelize);
+    steps.number<int>("--decimate", "N", "Simplify to at most N faces", [](const Mesh& mesh, int faces) {
+        return decimate(mesh, {faces, {}});
+    });
+    steps.number<double>("--decimate-error", "X", "Simplify as far as moves the surface by at most X",
+                         [](const Mesh& mesh, double error) {
+                             return decimate(mesh, {{}, error});
+                         });
+    steps.number<int>("--upsample", "N", "Cut every face in four, N times",
+                      [](const Mesh& mesh, int iterations) { return upsample(mesh, iterations); });
+    steps.number<int>("--smooth", "N", "Smooth N times (Taubin)",
+                      [](const Mesh& mesh, int iterations) { return smooth(mesh, iterations); });
+}
+
+void declare_points(StepOptions& steps) {
+    steps.number<int64_t>("--sample-surface", "N", "N points on the surface, uniform by area",
+                          [](const Mesh& mesh, int64_t count) { return sample_surface(mesh, count); });
+    steps.number<int>("--estimate-normals", "K", "Normals from the K nearest neighbours of each vertex",
+                      [](const Mesh& mesh, int k) {
+                          return estimate_normals(mesh, {k, {}});
+                      });
+    steps.number<int>("--estimate-surfels", "K", "Surfels from the K nearest neighbours of each vertex",
+                      [](const Mesh& mesh, int k) {
+                          return estimate_surfels(mesh, {k, {}});
+                      });
+    steps.flag("--to-surfels", "One surfel for each vertex of a mesh", surfels_from_mesh);
+}
+
+}  // namespace
+
+void declare_mesh_steps(CLI::App& command, std::vector<MeshStep>& steps) {
+    StepOptions options(command, steps);
+    declare_places(options);
+    declare_repairs(options);
+    declare_resolutions(options);
+    declare_points(options);
+}
+
+Mesh apply_mesh_steps(const Mesh& mesh, const std::vector<MeshStep>& steps) {
+    if (steps.empty()) return mesh;
+    Mesh result = merge(mesh);
+    for (const MeshStep& step : steps) result = step.apply(result);
+    return result;
+}
+
+}  // namespace easypbr::cli

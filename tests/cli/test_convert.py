@@ -1,0 +1,92 @@
+"""`convert` with steps: what it does to a mesh between reading and writing."""
+import json
+
+import pytest
+
+
+def info(easypbr, file):
+    return json.loads(easypbr("info", "--json", file).stdout)
+
+
+def size(found):
+    low, high = found["bounds"]["min"], found["bounds"]["max"]
+    return [b - a for a, b in zip(low, high)]
+
+
+# The sphere has 96 meridians and 48 rows of quads: 4704 vertices and 9216 triangles.
+@pytest.mark.parametrize("steps, vertices, faces", [
+    (["--decimate", "100"], None, (90, 100)),
+    (["--decimate-error", "0.05"], None, (30, 600)),
+    (["--upsample", "1"], None, (4 * 9216, 4 * 9216)),
+    (["--smooth", "3"], 4704, (9216, 9216)),
+    (["--subsample", "500"], 500, (0, 0)),
+    (["--sample-surface", "321"], 321, (0, 0)),
+    (["--subsample-cells", "10"], 8, (0, 0)),
+    (["--voxelize", "10"], 8, (0, 0)),
+    (["--flip-winding", "--flip-normals"], 4704, (9216, 9216)),
+])
+def test_steps_change_what_is_written(easypbr, sphere, steps, vertices, faces):
+    easypbr("convert", sphere, "out.ply", *steps)
+    found = info(easypbr, "out.ply")
+    assert vertices is None or found["vertices"] == vertices
+    assert faces[0] <= found["faces"] <= faces[1]
+
+
+def test_sizes(easypbr, box):
+    easypbr("convert", box, "large.ply", "--scale", "3", "--center")
+    assert size(info(easypbr, "large.ply")) == [6, 6, 6]
+    easypbr("convert", "large.ply", "small.ply", "--normalize-size", "0.5")
+    assert size(info(easypbr, "small.ply")) == [0.5, 0.5, 0.5]
+
+
+def test_steps_are_done_in_the_order_given(easypbr, box):
+    # 24 vertices at 8 places, which differ in uv. Points on the surface come after or before there are no faces.
+    easypbr("convert", box, "a.ply", "--sample-surface", "50", "--subsample", "10")
+    assert info(easypbr, "a.ply")["vertices"] == 10
+    assert "expected a mesh with faces" in easypbr(
+        "convert", box, "b.ply", "--subsample", "10", "--sample-surface", "50", code=1).stderr
+    easypbr("convert", box, "c.ply", "--scale", "2", "--normalize-size", "1", "--scale", "3")
+    assert size(info(easypbr, "c.ply")) == [3, 3, 3]
+
+
+def test_weld_and_clean(easypbr, tmp_path):
+    (tmp_path / "soup.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 0 0.001\nv 1 1 0\nv 0 1 0\nv 9 9 9\n"
+                                       "f 1 2 3\nf 4 5 6\nf 1 1 2\n")
+    easypbr("convert", "soup.obj", "out.ply", "--clean", "--weld", "0.01")
+    found = info(easypbr, "out.ply")
+    assert (found["vertices"], found["faces"]) == (4, 2)
+
+
+def test_normals_and_surfels_of_points(easypbr, sphere):
+    easypbr("convert", sphere, "points.ply", "--sample-surface", "2000")
+    easypbr("convert", "points.ply", "normals.ply", "--estimate-normals", "12")
+    assert "normals" in info(easypbr, "normals.ply")["attributes"]
+    easypbr("convert", "points.ply", "surfels.ply", "--estimate-surfels", "16")
+    easypbr("convert", sphere, "of_mesh.ply", "--to-surfels")
+    for file in ("surfels.ply", "of_mesh.ply"):
+        assert info(easypbr, file)["faces"] == 0 and "normals" in info(easypbr, file)["attributes"]
+
+
+def test_a_file_of_several_nodes_becomes_one_mesh(easypbr, box, tmp_path):
+    easypbr("convert", box, "box.glb")
+    easypbr("convert", "box.glb", "one.glb", "--merge")
+    assert info(easypbr, "one.glb")["faces"] == 12
+
+
+@pytest.mark.parametrize("steps, code, message", [
+    (["--decimate", "-1"], 1, "decimate: faces: expected a number >= 0, got -1"),
+    (["--decimate", "many"], 2, "many"),
+    (["--voxelize", "nan"], 1, "cell size"),
+    (["--estimate-surfels", "2"], 1, "k: expected a whole number from 3 to 256, got 2"),
+    (["--decimat", "5"], 2, "did you mean '--decimate'"),
+    (["--scale", "0"], 1, "determinant 0"),
+])
+def test_bad_steps_write_nothing(easypbr, box, tmp_path, steps, code, message):
+    assert message in easypbr("convert", box, "out.ply", *steps, code=code).stderr
+    assert not (tmp_path / "out.ply").exists()
+
+
+def test_steps_are_for_meshes(easypbr, sphere, render, tmp_path):
+    render(sphere, "-o", "picture.png")
+    assert "--decimate is for meshes" in easypbr("convert", "picture.png", "out.png", "--decimate", "5", code=2).stderr
+    assert not (tmp_path / "out.png").exists()
