@@ -155,7 +155,38 @@ def ambient_occlusion() -> np.ndarray:
     return row([view.render(), with_occlusion, np.repeat(grey.astype(np.uint8)[:, :, None], 3, axis=2)])
 
 
-PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion]
+def geometry() -> np.ndarray:
+    """A teapot; simplified; as surfels estimated from bare points; as voxels."""
+    mesh = teapot("#c8a15a", 0, 0.35)
+    simple = mesh.remove_duplicate_vertices(keep_seams=False).decimate(faces=800)
+    simple.style.flat = True
+    cloud = Mesh()
+    cloud.V = mesh.sample_surface(30000).V
+    surfels = cloud.estimate_surfels()
+    voxels = mesh.sample_surface(100000).voxelize(0.04)
+    for derived in (surfels, voxels):
+        derived.material = Material(base_color="#c8a15a", roughness=0.35)
+    return row(easypbr.render(each, size=(260, 190)) for each in (mesh, simple, surfels, voxels))
+
+
+def all_shapes() -> np.ndarray:
+    """All shapes."""
+    made = [shapes.box(0.8), shapes.sphere(0.45), shapes.icosphere(0.45, 1), shapes.cylinder(0.4, 0.8),
+            shapes.cone(0.45, 0.9), shapes.torus(0.4, 0.15), shapes.capsule(0.25, 0.4), shapes.plane(0.9),
+            shapes.grid(0.9, 6), shapes.arrow((0, -0.4, 0), (0.1, 0.45, 0.1), 0.03), shapes.axes(0.8, 0.02),
+            shapes.teapot(0.55)]
+    checker = (np.indices((64, 64)) // 8).sum(axis=0) % 2
+    texture = np.array([[208, 160, 96], [120, 80, 60]], np.uint8)[checker]
+    pictures = []
+    for mesh in made:
+        if len(mesh.UV) and not len(mesh.C):
+            mesh.material = Material(base_color="#ffffff", base_color_texture=texture, roughness=0.4)
+        pictures.append(easypbr.render(mesh, size=(150, 120), settings={"camera": {"elevation_deg": 25}}))
+    return np.vstack([row(pictures[:6]), row(pictures[6:])])
+
+
+PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion,
+            geometry, all_shapes]
 
 
 if __name__ == "__main__":

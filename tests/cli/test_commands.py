@@ -51,7 +51,7 @@ def test_convert_encodes_images(easypbr, tmp_path):
     assert png.read(tmp_path / "a.png")[0, 0, 0] in (127, 128)
 
 
-@pytest.mark.parametrize("out", ["copy.xyz", "missing/copy.ply"])
+@pytest.mark.parametrize("out", ["copy.step", "missing/copy.ply"])
 def test_convert_refuses_what_cannot_be_written(easypbr, box, tmp_path, out):
     assert out in easypbr("convert", box, out, code=1).stderr
     assert list(tmp_path.iterdir()) == []
