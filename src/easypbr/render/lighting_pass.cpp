@@ -150,6 +150,8 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightB
     set_lights(program, frame, block);
     draw_screen_triangle();
     glDisable(GL_BLEND);
+    // A second source is an error where there are several targets, even with blending off.
+    glBlendFunc(GL_ONE, GL_ZERO);
     glDisable(GL_SCISSOR_TEST);
     targets.reset_depth_range();
 }
