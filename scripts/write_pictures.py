@@ -185,8 +185,34 @@ def all_shapes() -> np.ndarray:
     return np.vstack([row(pictures[:6]), row(pictures[6:])])
 
 
+def glass() -> np.ndarray:
+    """A thin wall, solid, frosted, and coloured glass on a chequered floor."""
+    scene = Scene()
+    checker = (np.indices((256, 256)) // 32).sum(axis=0) % 2
+    floor = shapes.plane(6)
+    floor.material = Material(base_color="white", roughness=0.8,
+                              base_color_texture=np.array([[70, 78, 98], [205, 196, 178]], np.uint8)[checker])
+    scene.show(floor, "floor")
+    box = shapes.box(0.5)
+    box.material = Material(base_color="#c03020", roughness=0.4)
+    box.T_parent_mesh = [[1, 0, 0, -0.7], [0, 1, 0, 0.25], [0, 0, 1, -1.3], [0, 0, 0, 1]]
+    scene.show(box, "box")
+    kinds = [{}, {"thickness": 1}, {"thickness": 1, "roughness": 0.3},
+             {"thickness": 1, "attenuation_color": "#40c060", "attenuation_distance": 0.6}]
+    for place, kind in enumerate(kinds):
+        ball = shapes.sphere(0.5, 128)
+        ball.material = Material(**{"base_color": "white", "roughness": 0, "transmission": 1} | kind)
+        ball.T_parent_mesh = [[1, 0, 0, 1.15 * (place - 1.5)], [0, 1, 0, 0.5], [0, 0, 1, 0], [0, 0, 0, 1]]
+        scene.show(ball, f"ball {place}")
+    camera = {"position": (0, 1.9, 5.2), "target": (0, 0.4, 0), "fov_y_deg": 21}
+    view = Viewer((880, 330), {"camera": camera}, scene)
+    view.load_environment_map(sky(1024))
+    view.settings.background.mode = "environment"
+    return view.render(samples=64)
+
+
 PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion,
-            geometry, all_shapes]
+            geometry, all_shapes, glass]
 
 
 if __name__ == "__main__":

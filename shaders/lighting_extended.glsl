@@ -61,7 +61,11 @@ void prepare_extended(inout Surface s, vec3 albedo, float metallic, bool extende
     // A tinted reflection must not tint what is below with its complement (KHR_materials_specular).
     vec3 dielectric = (1.0 - metallic) * (e.f0 * dfg.x + e.f90 * dfg.y);
     vec3 below = 1.0 - s.energy.single - s.energy.multiple - (max_channel(dielectric) - dielectric);
-    s.diffuse = albedo * (1.0 - metallic) * (1.0 - e.transmission) * max(below, 0.0);
+    vec3 refracted = albedo * (1.0 - metallic) * max(below, 0.0);
+    s.diffuse = refracted * (1.0 - e.transmission);
+#ifdef TRANSMISSION
+    s.through = refracted * e.transmission;
+#endif
     s.keep = 1.0;
 #ifdef SHEEN
     s.extension.sheen_roughness = max(e.sheen_roughness, least_sheen_roughness);
@@ -75,6 +79,19 @@ void prepare_extended(inout Surface s, vec3 albedo, float metallic, bool extende
     s.keep *= 1.0 - s.coat_albedo;
 #endif
 }
+
+#ifdef TRANSMISSION
+// A light on the other side: the specular lobe around the way straight through (KHR_materials_transmission).
+float transmitted_lobe(vec3 l, Surface s) {
+    float n_dot_l = -dot(s.normal, l);
+    if (n_dot_l <= 0.0) return 0.0;
+    vec3 mirrored = l + 2.0 * n_dot_l * s.normal;
+    // Without refraction facets turn nothing.
+    float roughness = max(s.roughness * clamp(2.0 * s.extension.ior - 2.0, 0.0, 1.0), 0.045);
+    float n_dot_h = clamp(dot(s.normal, normalize(mirrored + s.view)), 0.0, 1.0);
+    return n_dot_l * D_ggx(n_dot_h, roughness * roughness) * V_smith(s.n_dot_v, n_dot_l, roughness);
+}
+#endif
 
 // Light from one direction into the view: the BRDF times the cosine.
 vec3 scattered(vec3 l, Surface s) {
@@ -100,6 +117,9 @@ vec3 scattered(vec3 l, Surface s) {
     specular *= 1.0 + compensated * (1.0 / s.energy.e - 1.0);
 #endif
     vec3 result = n_dot_l * (s.diffuse / pi + specular);
+#ifdef TRANSMISSION
+    result += s.extension.transmittance * s.through * transmitted_lobe(l, s);
+#endif
 #ifdef SHEEN
     float sheen = D_charlie(n_dot_h, e.sheen_roughness) * V_charlie(min(s.n_dot_v, 1.0), safe_n_dot_l, e.sheen_roughness);
     float keep = min(s.sheen_keep, 1.0 - max_channel(e.sheen_color) * min(sheen_albedo(n_dot_l, e.sheen_roughness), 1.0));

@@ -24,13 +24,13 @@ uniform float u_first_block;
 layout(location = 0) out vec4 o_radiance;
 #endif
 
+uniform float u_tap_offset;  // in [0, 1), another one in each frame
+uniform float u_tap_gap;     // between the offsets of all frames
 #ifdef ENVIRONMENT
 uniform samplerCube u_prefiltered;
 uniform samplerCube u_irradiance;
 uniform float u_last_level;
 uniform float u_env_intensity;
-uniform float u_tap_offset;  // in [0, 1), another one in each frame
-uniform float u_tap_gap;     // between the offsets of all frames
 #ifdef AMBIENT_OCCLUSION
 uniform sampler2D u_ambient_occlusion;
 #endif
@@ -59,7 +59,7 @@ struct Surface {
     Energy energy;
 #ifdef EXTENDED
     Extension extension;
-    vec3 f90, film;
+    vec3 f90, film, through;
     float keep;  // of what is below all layers
     float sheen_albedo, sheen_keep, coat_albedo, coat_n_dot_v;
 #endif
@@ -113,6 +113,9 @@ vec3 specular_visibility(float n_dot_v, float alpha, float visibility, vec3 f0) 
 
 #ifdef EXTENDED
 #include "lighting_extended.glsl"
+#ifdef BEHIND
+#include "lighting_transmission.glsl"
+#endif
 #else
 // Light from one direction into the view: the BRDF times the cosine. Compensation of multiple scattering as Turquin 2019.
 vec3 scattered(vec3 l, Surface s) {
@@ -210,6 +213,14 @@ void main() {
 #endif
     radiance = indirect(s, visibility);
 #endif
+    float coverage = 1.0;
+#ifdef BEHIND
+    if (u_first_block > 0.5 && is_lit(material.w)) {
+        vec4 light = transmitted(s);
+        radiance += light.rgb;
+        coverage = light.a;
+    }
+#endif
     s.roughness = light_roughness;
     s.alpha = light_roughness * light_roughness;
     for (int i = 0; i < u_plain_lights; ++i) radiance += direct(u_lights[i], s);
@@ -227,7 +238,7 @@ void main() {
     }
 #endif
 #endif
-    o_radiance = vec4(is_lit(material.w) ? radiance : vec3(0.0), 1.0);
+    o_radiance = vec4(is_lit(material.w) ? radiance : vec3(0.0), coverage);
 #ifdef EXTENDED
     o_keep = vec4(is_lit(material.w) && u_first_block > 0.5 ? s.keep : 1.0);
 #endif

@@ -12,7 +12,12 @@ uniform vec2 u_size;
 uniform sampler2D u_overlay;
 #endif
 
+#if defined(INTO_OVERLAY) || defined(WEAKEN_OVERLAY)
 layout(location = 0) out vec4 o_color;
+#else
+layout(location = 0, index = 0) out vec4 o_color;
+layout(location = 0, index = 1) out vec4 o_opacity;
+#endif
 
 void main() {
     vec2 uv = gl_FragCoord.xy / u_size;
@@ -26,13 +31,20 @@ void main() {
     if (display) discard;
 #endif
 #endif
-#if defined(INTO_OVERLAY) || defined(WEAKEN_OVERLAY)
+#ifdef INTO_OVERLAY
     o_color = vec4(albedo.rgb * opacity, opacity);
 #else
+    vec4 light = textureLod(u_radiance, uv, 0.0);
+#ifdef WEAKEN_OVERLAY
+    // Through glass the overlay is seen as far as the background is.
+    o_color = vec4(0.0, 0.0, 0.0, opacity * light.a);
+#else
 #ifdef OVERLAY
-    float overlay = textureLod(u_overlay, uv, 0.0).a;
-    opacity = opacity > 0.0 ? opacity / (1.0 - overlay * (1.0 - opacity)) : 0.0;
+    float overlay = textureLod(u_overlay, uv, 0.0).a, covering = opacity * light.a;
+    opacity = covering > 0.0 ? opacity / (1.0 - overlay * (1.0 - covering)) : opacity;
 #endif
-    o_color = vec4(textureLod(u_radiance, uv, 0.0).rgb * opacity, opacity);
+    o_color = vec4(light.rgb, light.a) * opacity;
+    o_opacity = vec4(min(opacity, 1.0));
+#endif
 #endif
 }

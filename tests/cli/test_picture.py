@@ -194,3 +194,15 @@ def test_f3d_spellings_give_the_same_picture(easypbr, render, sphere, constant, 
     easypbr("render", sphere, "--output=theirs.png", f"--hdri-file={constant}", "--resolution=40,30", "--samples=1")
     assert (tmp_path / "ours.png").read_bytes() == (tmp_path / "theirs.png").read_bytes()
     assert png.read(tmp_path / "ours.png").shape == (30, 40, 4)
+
+
+@pytest.mark.parametrize("thickness", ["0", "1"])
+def test_clear_glass_vanishes_in_a_uniform_environment(picture, sphere, constant, thickness):
+    pixels = picture(sphere, "--env", constant, "--background", "env", "--tonemap", "none", "--exposure", "1",
+                     "--color", "white", "--metallic", "0", "--roughness", "0", "--set", "material.transmission=1",
+                     "--set", f"material.thickness={thickness}")
+    # What is not reflected goes through: 1 for rounding to 8 bits, 1 for the tables of the reflection (0.5 %).
+    assert abs(pixels[:, :, :3] - srgb8(0.7)).max() <= 2
+    plain = picture(sphere, "--env", constant, "--background", "env", "--tonemap", "none", "--exposure", "1",
+                    "--color", "black", "--metallic", "0", "--roughness", "0")
+    assert plain[24, 32, 0] < 100

@@ -147,6 +147,11 @@ void Texture::sampling(Filtering filtering, Wrapping u, Wrapping v, float anisot
         glTextureParameterf(id(), GL_TEXTURE_MAX_ANISOTROPY_EXT, anisotropy);
 }
 
+void Texture::show_levels(int first, int last) const {
+    glTextureParameteri(id(), GL_TEXTURE_BASE_LEVEL, first);
+    glTextureParameteri(id(), GL_TEXTURE_MAX_LEVEL, last);
+}
+
 void Texture::bind(unsigned unit) const {
     glBindTextureUnit(unit, id());
 }
@@ -170,6 +175,16 @@ Framebuffer::Framebuffer(const Texture& array, int layer)
     : object_(ObjectKind::framebuffer), width_(array.width()), height_(array.height()) {
     glNamedFramebufferTextureLayer(object_.id(), GL_COLOR_ATTACHMENT0, array.id(), 0, layer);
     require_complete();
+}
+
+Framebuffer Framebuffer::of_level(const Texture& texture, int level) {
+    Framebuffer framebuffer;
+    framebuffer.object_ = Object(ObjectKind::framebuffer);
+    framebuffer.width_ = std::max(1, texture.width() >> level);
+    framebuffer.height_ = std::max(1, texture.height() >> level);
+    glNamedFramebufferTexture(framebuffer.object_.id(), GL_COLOR_ATTACHMENT0, texture.id(), level);
+    framebuffer.require_complete();
+    return framebuffer;
 }
 
 void Framebuffer::require_complete() const {

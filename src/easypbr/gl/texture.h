@@ -51,6 +51,8 @@ class Texture {
     void upload_area(int x, int y, int width, int height, std::span<const std::byte> pixels) const;
     void sampling(Filtering filtering, Wrapping u = Wrapping::clamp, Wrapping v = Wrapping::clamp,
                   float anisotropy = 1);
+    /// Lets shaders see these levels alone, the first as level 0: while another level is drawn to.
+    void show_levels(int first, int last) const;
     void bind(unsigned unit) const;
 
     uint32_t id() const { return object_.id(); }
@@ -75,6 +77,9 @@ class Framebuffer {
     Framebuffer(std::initializer_list<const Texture*> colors, const Texture* depth = nullptr);
     /// One layer of an array. Throws ContextError when the driver cannot draw to it.
     Framebuffer(const Texture& array, int layer);
+
+    /// One mip level, with the viewport on it. Throws ContextError when the driver cannot draw to it.
+    static Framebuffer of_level(const Texture& texture, int level);
 
     /// Binds it for drawing with the viewport on all of it.
     void bind() const;

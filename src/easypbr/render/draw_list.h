@@ -27,6 +27,12 @@ struct DrawItem {
     const MeshData& mesh() const { return *object->mesh; }
     bool emits() const { return material.unlit || !material.emissive.isZero(); }
     bool textured() const { return material.has_textures() && !mesh().UV.empty(); }
+    /// Light goes through a solid.
+    bool is_volume() const { return material.transmits() && material.thickness > 0; }
+    /// What is seen through it is blurred.
+    bool blurs_behind() const {
+        return material.transmits() && (material.roughness > 0 || material.roughness_texture);
+    }
     bool needs_tangents() const;
     /// What its shading needs beyond glTF's core model.
     ExtensionSet extensions() const { return kind == SurfaceKind::lit ? extensions_of(material) : 0; }

@@ -83,7 +83,7 @@ void test_geometry_depth(const Frame& frame) {
 
 void set_peel_uniforms(const gl::Program& program, const Peel& peel, unsigned unit) {
     program.set("u_peel_limit", int(unit));
-    program.set("u_peel_first", peel.first ? 1.0f : 0.0f);
+    program.set("u_peel_mode", peel.backs ? -1.0f : peel.first ? 1.0f : 0.0f);
     peel.limit->bind(unit);
 }
 

@@ -21,6 +21,17 @@ struct Peel {
     const gl::Texture* limit = nullptr;  ///< R32F, reversed depth
     bool first = true;  ///< the limit is the opaque surfaces' depth; else a pixel with 0 takes no more
     bool farthest = true;
+    bool backs = false;  ///< instead the nearest back faces that lie behind the limit
+};
+
+/// What is seen through a layer.
+struct Behind {
+    const gl::Texture* picture = nullptr;  ///< radiance of all that is farther, with mip levels
+    int levels = 1;
+    const gl::Texture* depth = nullptr;        ///< of the opaque surfaces
+    const gl::Texture* exit_depth = nullptr;   ///< of volumes' back faces
+    const gl::Texture* exit_normal = nullptr;  ///< of volumes' back faces
+    double reach = 0;                          ///< there is no geometry farther from the camera
 };
 
 /// One frame of an accumulated picture.
@@ -37,6 +48,7 @@ struct Frame {
     ExtensionSet extensions = 0;               ///< of the surfaces that are drawn and lit now
     bool partly_covered = false;               ///< the radiance may hold coverages between 0 and 1
     const Peel* peel = nullptr;                ///< set while a layer is drawn
+    const Behind* behind = nullptr;            ///< set while a layer is lit through which light goes
     Mat4d clip_from_view = Mat4d::Identity();  ///< jittered
     PixelRect covered;                         ///< all surfaces and lines are inside
 

@@ -10,10 +10,10 @@
 namespace easypbr::render {
 namespace {
 
-void set_culling(bool cull, bool mirrored) {
+void set_culling(bool cull, bool fronts, bool mirrored) {
     if (cull) {
         glEnable(GL_CULL_FACE);
-        glCullFace(GL_BACK);
+        glCullFace(fronts ? GL_FRONT : GL_BACK);
     } else {
         glDisable(GL_CULL_FACE);
     }
@@ -24,7 +24,7 @@ void set_culling(bool cull, bool mirrored) {
 bool is_one_sided(const DrawItem& item, const gpu::MeshBuffers& buffers) {
     const Material& m = item.material;
     // Of a volume the back is a part of what happens behind the front.
-    if (m.transmits() && m.thickness > 0) return true;
+    if (item.is_volume()) return true;
     const bool opaque = item.alpha == AlphaMode::opaque && !m.transmits();
     return !item.two_sided || (buffers.closed_outward && opaque && !item.style.flat);
 }
@@ -86,7 +86,7 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     const unsigned free_unit = set_material(program, frame, item, textures_);
     if (frame.peel) set_peel_uniforms(program, *frame.peel, free_unit);
 
-    set_culling(is_one_sided(item, buffers), mirrored);
+    set_culling(is_one_sided(item, buffers), frame.peel && frame.peel->backs, mirrored);
     buffers.array.bind();
     glDrawElements(GL_TRIANGLES, item.part.face_count * 3, GL_UNSIGNED_INT,
                    reinterpret_cast<const void*>(size_t(item.part.first_face) * 12));

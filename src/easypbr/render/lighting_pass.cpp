@@ -12,6 +12,7 @@ namespace easypbr::render {
 namespace {
 
 constexpr int extension_unit = 12;
+constexpr int behind_unit = 20;
 
 /// As the blocks in shaders/lighting_surface.frag and common_shadow.glsl.
 struct LightUniforms {
@@ -70,6 +71,15 @@ float lobe_slope(int index, int count) {
     return float(u / std::sqrt(1 - u * u));
 }
 
+/// Slope of the facet that frame `index` of `count` refracts at, in units of alpha: points of the golden
+/// spiral at the quantiles of GGX's slopes, P(slope < x) = x^2 / (1 + x^2).
+Vec2 lobe_point(int index, int count) {
+    if (count == 1) return Vec2::Zero();
+    const double u = (index + 0.5) / count, radius = std::sqrt(u / (1 - u));
+    const double angle = index * pi * (3 - std::sqrt(5.0));
+    return Vec2(float(radius * std::cos(angle)), float(radius * std::sin(angle)));
+}
+
 std::vector<std::string> defines_of(const Frame& frame, const GBuffer& targets, const LightBlock& block,
                                     bool with_environment) {
     const ShadingSettings& shading = frame.resolved->settings.shading;
@@ -92,6 +102,7 @@ std::vector<std::string> defines_of(const Frame& frame, const GBuffer& targets, 
     if (shading.brdf == Brdf::ue4) defines.emplace_back("BRDF_UE4");
     if (shading.brdf == Brdf::separable) defines.emplace_back("BRDF_SEPARABLE");
     add_extension_defines(frame.extensions, defines);
+    if (frame.behind) defines.emplace_back("BEHIND");
     return defines;
 }
 
@@ -107,7 +118,8 @@ const gl::Texture& LightingPass::dfg(Brdf brdf) {
     return dfg_;
 }
 
-void LightingPass::set_extensions(const gl::Program& program, const GBuffer& targets, bool first) {
+void LightingPass::set_extensions(const gl::Program& program, const Frame& frame, const GBuffer& targets,
+                                  bool first) {
     if (!sheen_albedo_) {
         sheen_albedo_ = gl::Texture(gl::Format::r16f, gpu::dfg_size, gpu::dfg_size);
         sheen_albedo_.upload(std::as_bytes(gpu::sheen_albedo_table()));
@@ -120,6 +132,23 @@ void LightingPass::set_extensions(const gl::Program& program, const GBuffer& tar
         program.set(samplers[i], extension_unit + i);
     }
     program.set("u_first_block", first ? 1.0f : 0.0f);
+    program.set("u_tap_gap", 1.0f / float(frame.sample_count));
+    program.set("u_tap_offset", (float(frame.sample_index) + 0.5f) / float(frame.sample_count));
+}
+
+void LightingPass::set_behind(const gl::Program& program, const Frame& frame) {
+    const Behind& behind = *frame.behind;
+    const gl::Texture* sources[] = {behind.picture, behind.depth, behind.exit_depth, behind.exit_normal};
+    const char* samplers[] = {"u_behind", "u_behind_depth", "u_exit_depth", "u_exit_normal"};
+    for (int i = 0; i < 4; ++i) {
+        // Without volumes in the layer nobody asks for their backs.
+        (sources[i] ? sources[i] : behind.depth)->bind(unsigned(behind_unit + i));
+        program.set(samplers[i], behind_unit + i);
+    }
+    program.set("u_behind_levels", float(behind.levels));
+    program.set("u_behind_reach", float(behind.reach));
+    program.set("u_lobe_sample", lobe_point(frame.sample_index, frame.sample_count));
+    program.set("u_lobe_share", 1 / std::sqrt(float(frame.sample_count)));
 }
 
 void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightBlock& block,
@@ -132,7 +161,9 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightB
     targets.test_covered();
     glEnable(GL_BLEND);
     // Layers of extended surfaces leave only a part of the emission that stands in the target.
-    glBlendFuncSeparate(GL_ONE, frame.extensions ? GL_SRC1_COLOR : GL_ONE, GL_ONE, GL_ZERO);
+    // The first block knows how much the surface covers.
+    glBlendFuncSeparate(GL_ONE, frame.extensions ? GL_SRC1_COLOR : GL_ONE, block.first ? GL_ONE : GL_ZERO,
+                        block.first ? GL_ZERO : GL_ONE);
 
     const gl::Texture* sources[] = {&targets.albedo, &targets.normal, &targets.material, &targets.depth};
     for (unsigned unit = 0; unit < 4; ++unit) sources[unit]->bind(unit);
@@ -145,7 +176,8 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightB
     if (targets.ambient_occlusion) targets.ambient_occlusion.bind(8);
     for (int unit = 0; unit < 9; ++unit) program.set(samplers[unit], unit);
     program.set("u_dielectric_f0", frame.resolved->settings.shading.dielectric_f0);
-    if (frame.extensions) set_extensions(program, targets, block.first);
+    if (frame.extensions) set_extensions(program, frame, targets, block.first);
+    if (frame.behind) set_behind(program, frame);
     if (maps) set_environment(program, frame, *maps);
     set_lights(program, frame, block);
     draw_screen_triangle();
@@ -164,8 +196,6 @@ void LightingPass::set_environment(const gl::Program& program, const Frame& fram
     program.set("u_last_level", maps.last_level());
     if (frame.sample_count > 1)
         program.set("u_lobe_slope", lobe_slope(frame.sample_index, frame.sample_count));
-    program.set("u_tap_gap", 1.0f / float(frame.sample_count));
-    program.set("u_tap_offset", (float(frame.sample_index) + 0.5f) / float(frame.sample_count));
     program.set("u_env_intensity", frame.resolved->settings.environment.intensity);
 }
 

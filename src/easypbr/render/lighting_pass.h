@@ -20,7 +20,8 @@ class LightingPass {
     const gl::Texture& dfg(Brdf brdf);
     void set_environment(const gl::Program& program, const Frame& frame, const gpu::EnvironmentMaps& maps);
     void set_lights(const gl::Program& program, const Frame& frame, const LightBlock& block);
-    void set_extensions(const gl::Program& program, const GBuffer& targets, bool first);
+    void set_behind(const gl::Program& program, const Frame& frame);
+    void set_extensions(const gl::Program& program, const Frame& frame, const GBuffer& targets, bool first);
 
     ProgramVariants programs_{"screen_triangle.vert", "lighting_surface.frag"};
     gl::Texture dfg_, sheen_albedo_;

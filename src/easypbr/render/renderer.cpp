@@ -193,11 +193,24 @@ void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& ca
 
 void Renderer::draw_layers(Frame& frame, const DrawList& list) {
     frame.extensions = list.extensions();
+    const bool see_through = frame.extensions & transmission_bit;
+    const bool rough = std::ranges::any_of(list.meshes, &DrawItem::blurs_behind);
+    DrawList volumes = list;
+    std::erase_if(volumes.meshes, [](const DrawItem& item) { return !item.is_volume(); });
+    const Box3d& bounds = bounds_of(*frame.scene);
+    const double reach = (bounds.center() - frame.camera.position()).norm() + bounds.diagonal().norm() / 2;
     transparency_.begin(frame, targets_);
     while (transparency_.open_layer(frame)) {
         geometry_.draw(frame, list.meshes, transparency_.layer());
         points_.draw(frame, list.points, transparency_.layer());
         if (!transparency_.close_layer(frame)) break;
+        no_attributes_.bind();
+        if (see_through) transparency_.look_behind(frame, targets_, rough, reach);
+        if (!volumes.meshes.empty()) {
+            transparency_.open_exits(frame);
+            geometry_.draw(frame, volumes.meshes, transparency_.exits());
+            transparency_.close_exits(frame);
+        }
         draw_lights(frame, transparency_.layer());
         transparency_.blend(frame, targets_);
     }

@@ -28,6 +28,7 @@ void TransparencyPass::begin(Frame& frame, const GBuffer& targets) {
 }
 
 bool TransparencyPass::open_layer(Frame& frame) {
+    frame.behind = nullptr;
     if (count_ >= frame.resolved->settings.transparency.max_layers + 1) return false;
     if (count_ > 0) {
         gl::copy(layer_.depth, limit_);
@@ -50,6 +51,68 @@ bool TransparencyPass::close_layer(Frame& frame) {
     return drawn;
 }
 
+void TransparencyPass::look_behind(Frame& frame, const GBuffer& targets, bool rough, double reach) {
+    if (!picture_ || Vec2i(picture_.width(), picture_.height()) != frame.size) {
+        const int levels = std::max(1, gl::full_levels(frame.size.x(), frame.size.y()) - 3);
+        picture_ = gl::Texture(gl::Format::rgba32f, frame.size.x(), frame.size.y(), levels);
+        picture_.sampling(gl::Filtering::trilinear);
+        levels_.clear();
+        for (int level = 0; level < levels; ++level)
+            levels_.push_back(gl::Framebuffer::of_level(picture_, level));
+    }
+    if (frame.with_overlay)
+        merge_overlay(frame, targets);
+    else
+        gl::copy(targets.radiance, picture_);
+    behind_ = {&picture_, rough ? int(levels_.size()) : 1, &targets.depth, nullptr, nullptr, reach};
+    frame.behind = &behind_;
+    if (!rough) return;
+    const gl::Program& program = downsample_.get({});
+    program.use();
+    program.set("u_source", 0);
+    picture_.bind(0);
+    glDisable(GL_DEPTH_TEST);
+    for (int level = 1; level < behind_.levels; ++level) {
+        const gl::Framebuffer& target = levels_[size_t(level)];
+        picture_.show_levels(level - 1, level - 1);
+        target.bind();
+        program.set("u_size", Vec2(float(target.width()), float(target.height())));
+        draw_screen_triangle();
+    }
+    picture_.show_levels(0, behind_.levels - 1);
+}
+
+void TransparencyPass::merge_overlay(const Frame& frame, const GBuffer& targets) {
+    const gl::Program& program = merge_.get({});
+    levels_.front().bind();
+    program.use();
+    program.set("u_size", Vec2(frame.size.cast<float>()));
+    program.set("u_exposure", frame.resolved->exposure);
+    program.set("u_radiance", 0);
+    program.set("u_overlay", 1);
+    targets.radiance.bind(0);
+    targets.overlay.bind(1);
+    glDisable(GL_DEPTH_TEST);
+    draw_screen_triangle();
+}
+
+void TransparencyPass::open_exits(Frame& frame) {
+    if (!exits_.albedo || exits_.size() != frame.size) exits_ = GBuffer(frame.size);
+    if (frame.extensions) exits_.add_extensions();
+    exits_.clear_layer();
+    peel_.limit = &layer_.depth;
+    peel_.farthest = false;
+    peel_.backs = true;
+    frame.peel = &peel_;
+}
+
+void TransparencyPass::close_exits(Frame& frame) {
+    peel_.backs = false;
+    frame.peel = nullptr;
+    behind_.exit_depth = &exits_.depth;
+    behind_.exit_normal = &exits_.normal;
+}
+
 void TransparencyPass::bind_layer(const gl::Program& program, const Frame& frame) const {
     program.set("u_size", Vec2(frame.size.cast<float>()));
     const gl::Texture* sources[] = {&layer_.radiance, &layer_.albedo, &layer_.material};
@@ -64,12 +127,12 @@ void TransparencyPass::blend(const Frame& frame, const GBuffer& targets) {
     glEnable(GL_SCISSOR_TEST);
     glScissor(frame.covered.x, frame.covered.y, frame.covered.width, frame.covered.height);
     glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     layer_.test_covered();
     blend_radiance(frame, targets);
     if (frame.with_overlay) blend_overlay(frame);
     layer_.reset_depth_range();
     glDisable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ZERO);  // a second source is an error where there are several targets, even unused
     glDisable(GL_SCISSOR_TEST);
 }
 
@@ -77,6 +140,8 @@ void TransparencyPass::blend_radiance(const Frame& frame, const GBuffer& targets
     std::vector<std::string> defines;
     if (frame.with_overlay) defines.emplace_back("OVERLAY");
     const gl::Program& program = programs_.get(defines);
+    // The layer weakens what is behind by its opacity, and covers by what it does not let through.
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC1_ALPHA);
     radiance_.bind();
     program.use();
     bind_layer(program, frame);
@@ -89,6 +154,7 @@ void TransparencyPass::blend_radiance(const Frame& frame, const GBuffer& targets
 
 void TransparencyPass::blend_overlay(const Frame& frame) {
     overlay_.bind();
+    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     for (const char* define : {"INTO_OVERLAY", "WEAKEN_OVERLAY"}) {
         const gl::Program& program = programs_.get({define});
         program.use();
@@ -100,6 +166,7 @@ void TransparencyPass::blend_overlay(const Frame& frame) {
 
 void TransparencyPass::end(Frame& frame) {
     frame.peel = nullptr;
+    frame.behind = nullptr;
     frame.partly_covered = frame.partly_covered || count_ > 0;
 }
 

@@ -16,6 +16,10 @@ namespace easypbr::render {
 ///     while (open_layer(frame)) {
 ///         ... geometry passes draw the layered items into layer() ...
 ///         if (!close_layer(frame)) break;
+///         if light goes through the layer: look_behind(frame, targets, ...);
+///         if it goes through volumes: open_exits(frame);
+///             ... geometry pass draws the volumes into exits() ...
+///             close_exits(frame);
 ///         ... lighting of layer() ...
 ///         blend(frame, targets);
 ///     }
@@ -31,27 +35,40 @@ class TransparencyPass {
     bool open_layer(Frame& frame);
     /// Whether anything was drawn since open_layer().
     bool close_layer(Frame& frame);
+    /// Keeps the picture as it is for surfaces through which it is seen, blurred too where `rough` is set.
+    /// There is no geometry farther than `reach` from the camera.
+    void look_behind(Frame& frame, const GBuffer& targets, bool rough, double reach);
+    /// Makes the targets ready for the volumes' back faces behind the layer.
+    void open_exits(Frame& frame);
+    void close_exits(Frame& frame);
     /// Puts the lit layer over the picture.
     void blend(const Frame& frame, const GBuffer& targets);
     void end(Frame& frame);
 
     const GBuffer& layer() const { return layer_; }
+    const GBuffer& exits() const { return exits_; }
     /// Layers that the last frame had.
     int layer_count() const { return count_; }
 
   private:
+    void merge_overlay(const Frame& frame, const GBuffer& targets);
     void blend_radiance(const Frame& frame, const GBuffer& targets);
     void blend_overlay(const Frame& frame);
     void bind_layer(const gl::Program& program, const Frame& frame) const;
 
-    GBuffer layer_;
+    GBuffer layer_, exits_;
     gl::Texture limit_;
     gl::Framebuffer radiance_, overlay_;  ///< the picture's targets with the layer's depth test
     uint32_t radiance_id_ = 0, overlay_id_ = 0;
     gl::OcclusionQuery query_;
     Peel peel_;
+    Behind behind_;
+    gl::Texture picture_;  ///< of what is behind, with mip levels
+    std::vector<gl::Framebuffer> levels_;
     int count_ = 0;
     ProgramVariants programs_{"screen_triangle.vert", "transparency_blend.frag"};
+    ProgramVariants merge_{"screen_triangle.vert", "transparency_behind.frag"};
+    ProgramVariants downsample_{"screen_triangle.vert", "downsample_picture.frag"};
 };
 
 }  // namespace easypbr::render
