@@ -1,0 +1,90 @@
+"""Files of point clouds that other programs wrote: numpy, text. The formats themselves are tested in C++."""
+
+import numpy as np
+import pytest
+
+import easypbr
+from easypbr import Mesh
+
+
+@pytest.fixture
+def points():
+    return np.random.default_rng(1).normal(size=(1000, 3)).astype(np.float32)
+
+
+@pytest.mark.parametrize("order", ["C", "F"])
+@pytest.mark.parametrize("dtype", ["<f4", ">f4", "<f8", ">f8", "<f2", "<i4", ">i2", "|i1", "<i8"])
+def test_numpy_arrays_of_every_type(points, tmp_path, dtype, order):
+    given = np.asarray(points * 20, dtype=dtype, order=order)
+    np.save(tmp_path / "a.npy", given)
+    np.testing.assert_array_equal(Mesh(tmp_path / "a.npy").V, given.astype(np.float32))
+
+
+def test_structured_array(points, tmp_path):
+    table = np.zeros(1000, [("xyz", "<f4", 3), ("rgb", "u1", 3), ("heat", "<f8"), ("label", "<i8")])
+    table["xyz"], table["rgb"] = points, np.arange(3000).reshape(1000, 3) % 256
+    table["heat"], table["label"] = points[:, 0], np.arange(1000)
+    np.save(tmp_path / "a.npy", table)
+    mesh = Mesh(tmp_path / "a.npy")
+    np.testing.assert_array_equal(mesh.V, points)
+    np.testing.assert_array_equal(np.round(mesh.C * 255), table["rgb"])
+    np.testing.assert_array_equal(mesh.L, table["label"])
+    np.testing.assert_array_equal(mesh.scalars["heat"], points[:, 0])
+
+
+@pytest.mark.parametrize("save", [np.savez, np.savez_compressed])
+def test_archives_of_named_arrays(points, tmp_path, save):
+    faces = np.arange(999).reshape(333, 3)
+    colors = np.random.default_rng(2).random((1000, 3))
+    save(tmp_path / "a.npz", points=points.astype(float), faces=faces, colors=colors, heat=points[:, 1],
+         area=np.arange(333.0), objects=np.array([{}, []], dtype=object))
+    mesh = Mesh(tmp_path / "a.npz")
+    np.testing.assert_array_equal(mesh.V, points)
+    np.testing.assert_array_equal(mesh.F, faces)
+    np.testing.assert_array_equal(mesh.C, colors.astype(np.float32))
+    np.testing.assert_array_equal(mesh.scalars["heat"], points[:, 1])
+    np.testing.assert_array_equal(mesh.scalars["area"], np.arange(333))
+
+
+def test_numpy_reads_what_is_written(points, tmp_path):
+    mesh = Mesh()
+    mesh.V = points + np.array([691_000.0, 5_335_000, 520])
+    mesh.C = np.tile(np.array([[255, 128, 0]], np.uint8), (1000, 1))
+    mesh.I = points[:, 0]
+    mesh.scalars["heat"] = points[:, 1]
+    mesh.save(tmp_path / "a.npz")
+    archive = np.load(tmp_path / "a.npz")
+    assert sorted(archive) == ["C", "I", "V", "heat", "offset"]
+    np.testing.assert_array_equal(archive["V"], mesh.V)
+    np.testing.assert_array_equal(archive["offset"], mesh.offset)
+    mesh.save(tmp_path / "a.npy")
+    table = np.load(tmp_path / "a.npy")
+    assert table.dtype.names == ("x", "y", "z", "red", "green", "blue", "intensity", "heat")
+    np.testing.assert_array_equal(table["y"], mesh.offset[1] + mesh.V[:, 1].astype(float))
+    np.testing.assert_array_equal(table["green"], 128)
+    mesh.save(tmp_path / "a.xyz")
+    np.testing.assert_array_equal(np.loadtxt(tmp_path / "a.xyz")[:, 0], table["x"])
+    mesh.save(tmp_path / "a.csv")
+    text = np.genfromtxt(tmp_path / "a.csv", delimiter=",", names=True)
+    np.testing.assert_array_equal(text["heat"].astype(np.float32), points[:, 1])
+
+
+def test_text_that_numpy_wrote(points, tmp_path):
+    np.savetxt(tmp_path / "a.txt", points)
+    np.testing.assert_array_equal(Mesh(tmp_path / "a.txt").V, points)
+    np.savetxt(tmp_path / "a.csv", points, delimiter=",", header="x,y,z")
+    np.testing.assert_array_equal(Mesh(tmp_path / "a.csv").V, points)
+
+
+def test_errors_are_python_errors(tmp_path):
+    (tmp_path / "a.pcd").write_text("VERSION 0.7\nFIELDS x y z\n")
+    with pytest.raises(easypbr.FormatError, match="a.pcd:3: the file ends before its line 'DATA'"):
+        Mesh(tmp_path / "a.pcd")
+    with pytest.raises(ValueError, match="a.las.*empty"):
+        (tmp_path / "a.las").write_bytes(b"")
+        Mesh(tmp_path / "a.las")
+
+
+def test_clouds_are_listed_among_what_is_read():
+    for extension in ("pcd", "xyz", "pts", "csv", "txt", "asc", "npy", "npz", "las", "bin"):
+        assert extension in easypbr._easypbr.readable_mesh_extensions()
