@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""One table: EasyPBR beside VTK 9 in the same run, on the same meshes, environment and size.
+"""One table: EasyPBR beside VTK 9 (clouds: Open3D) in the same run, on the same meshes, environment and size.
 
 usage: run.py --data FOLDER [--work FOLDER] [--quick]
 FOLDER holds nefertiti.obj and env/studio.hdr. Without --quick the 25.6 M-face mesh is measured too (VTK needs two
-minutes for it). Needs Debian's python3-vtk9, xvfb, python3-numpy and time; scripts/bench.sh installs them.
+minutes for it), and a cloud of 10 M points. Needs Debian's python3-vtk9, python3-open3d, xvfb, python3-numpy and time;
+scripts/bench.sh installs them.
 """
 import argparse
 import json
@@ -130,6 +131,52 @@ def measure_goliath(data, work):
     row("goliath 25.6 M: peak memory", memory, peer["memory_mb"], "<= 3000 MB", "MB")
 
 
+LOAD_CLOUD = """
+import json, sys, time
+import easypbr
+start = time.perf_counter()
+mesh = easypbr.Mesh(sys.argv[1])
+print(json.dumps({"load_s": time.perf_counter() - start, "points": len(mesh.V)}))
+"""
+
+
+def load_cloud(path):
+    """The faster of three loads, each in a process of its own; peak memory of the process beyond the file."""
+    best = None
+    for _ in range(3):
+        _, memory, text = run(ROOT / ".venv/bin/python", "-c", LOAD_CLOUD, path)
+        result = json.loads(text)
+        result["memory_mb"] = memory - path.stat().st_size / 2**20
+        best = min(best or result, result, key=lambda r: r["load_s"])
+    return best
+
+
+def open3d(path, *options):
+    best = None
+    for _ in range(1 if options else 3):
+        result = json.loads(run("/usr/bin/python3", ROOT / "bench/peer_open3d.py", path, *options)[2].splitlines()[-1])
+        best = min(best or result, result, key=lambda r: r["load_s"])
+    return best
+
+
+def measure_clouds(work, count=10_000_000):
+    clouds = [work / f"cloud.{extension}" for extension in ("ply", "pcd")] + [work / "cloud_compressed.pcd"]
+    if not clouds[1].exists():
+        run("/usr/bin/python3", ROOT / "bench/make_large_cloud.py", count, work / "cloud")
+    if not clouds[2].exists():
+        open3d(clouds[0], "--compress", clouds[2])
+    for path, name in zip(clouds, ("PLY", "PCD binary", "PCD compressed")):
+        path.read_bytes()  # both read it from the page cache
+        ours, peer = load_cloud(path), open3d(path)
+        if ours["points"] != peer["points"]:
+            sys.exit(f"{path}: {ours['points']} points, Open3D reads {peer['points']}")
+        row(f"cloud of {count // 1_000_000} M points, {name}: load", ours["load_s"], peer["load_s"], "<= 0.2 x")
+        row("  peak memory beyond the file", ours["memory_mb"], None, None, "MB")
+    seconds, memory, _ = run(EASYPBR, "render", clouds[0], "--size", SIZE, "--samples", 1, "-o", work / "cloud.png")
+    row("  process start to PNG", seconds, None, "<= 12 s")
+    row("  peak memory beyond the file", memory - clouds[0].stat().st_size / 2**20, None, "<= 1000 MB", "MB")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=pathlib.Path, required=True)
@@ -140,7 +187,8 @@ def main():
     measure_head(arguments.data, arguments.work)
     if not arguments.quick:
         measure_goliath(arguments.data, arguments.work)
-    header = ("what", "EasyPBR", "VTK 9", "ratio", "target")
+        measure_clouds(arguments.work)
+    header = ("what", "EasyPBR", "VTK 9, Open3D", "ratio", "target")
     widths = [max(len(r[i]) for r in [header, *rows]) for i in range(5)]
     for line in [header, tuple("-" * w for w in widths), *rows]:
         print("| " + " | ".join(cell.ljust(w) for cell, w in zip(line, widths)) + " |")
