@@ -83,6 +83,41 @@ std::string as_literals(const std::string& data) {
     return out;
 }
 
+/// LZF as others write it: repetitions of up to 264 bytes up to 8 KB back, found by a table of what was last
+/// seen.
+std::string as_matches(const std::string& data) {
+    std::string out, literals;
+    std::vector<size_t> seen(1 << 14, data.size());
+    const auto flush = [&] {
+        out += as_literals(literals);
+        literals.clear();
+    };
+    for (size_t i = 0; i < data.size();) {
+        size_t length = 0, distance = 0;
+        if (i + 3 < data.size()) {
+            const size_t slot =
+                (uint8_t(data[i]) * 7919u + uint8_t(data[i + 1]) * 257u + uint8_t(data[i + 2])) % seen.size();
+            const size_t before = std::exchange(seen[slot], i);
+            distance = i - before;
+            if (before < i && distance <= 8192)
+                while (length < 264 && i + length < data.size() && data[before + length] == data[i + length])
+                    ++length;
+        }
+        if (length < 3) {
+            literals += data[i++];
+            continue;
+        }
+        flush();
+        const size_t code = std::min<size_t>(length - 2, 7);
+        out += char(code << 5 | (distance - 1) >> 8);
+        if (code == 7) out += char(length - 9);
+        out += char((distance - 1) & 255);
+        i += length;
+    }
+    flush();
+    return out;
+}
+
 std::string compressed(const std::string& data, const std::string& lzf) {
     return Bytes().add(uint32_t(lzf.size())).add(uint32_t(data.size())).text(lzf).str();
 }
@@ -128,6 +163,49 @@ TEST(Pcd, ReadsTheSameFromAllThreeForms) {
     expect_points(read(header(fields, sizes, types, counts, 3, "binary_compressed") +
                        compressed(columns, as_literals(columns))),
                   "binary_compressed");
+}
+
+TEST(Pcd, ReadsCompressedDataInPieces) {
+    // 11 MB, decompressed 2 MB at a time: rows of 3 bytes and of 12 do not end where the pieces do.
+    const int count = 400'000;
+    Bytes x, y, z, tag, pair;
+    for (int i = 0; i < count; ++i) {
+        x.add(float(i % 977));
+        y.add(float(i) * 0.25f);
+        z.add(float((int64_t(i) * 7919) % 1000));
+        tag.add(uint8_t(i)).add(uint8_t(i >> 8)).add(uint8_t(i % 10 == 0));
+        pair.add(float(i)).add(float(-i)).add(float(i / 3));
+    }
+    const std::string head =
+        header("x y z tag pair", "4 4 4 1 4", "F F F U F", "1 1 1 3 3", count, "binary_compressed");
+    const std::string data = x.str() + y.str() + z.str() + tag.str() + pair.str(), packed = as_matches(data);
+    ASSERT_LT(packed.size(), data.size() * 9 / 10) << "there are matches";
+    const MeshData mesh = read(head + compressed(data, packed));
+    ASSERT_EQ(mesh.V.rows(), count);
+    const Array1f tag_1 = scalar_named(mesh, "tag_1").values, tag_2 = scalar_named(mesh, "tag_2").values;
+    const Array1f pair_1 = scalar_named(mesh, "pair_1").values;
+    for (int i = 0; i < count; ++i) {
+        ASSERT_EQ(Vec3(mesh.V.row(i)),
+                  Vec3(float(i % 977), float(i) * 0.25f, float((int64_t(i) * 7919) % 1000)));
+        ASSERT_EQ(tag_1[i], i >> 8 & 255);
+        ASSERT_EQ(tag_2[i], i % 10 == 0);
+        ASSERT_EQ(pair_1[i], -i);
+    }
+}
+
+TEST(Pcd, RecentresCompressedFloats) {
+    std::string data;
+    for (const float first : {691'000.0f, 5'335'000.0f, 520.0f}) {
+        Bytes column;
+        for (int i = 0; i < 100; ++i) column.add(first + 0.5f * float(i));
+        data += column.str();
+    }
+    const MeshData mesh = read(header("x y z", "4 4 4", "F F F", "1 1 1", 100, "binary_compressed") +
+                               compressed(data, as_matches(data)));
+    EXPECT_LT(mesh.V.cwiseAbs().maxCoeff(), 64);
+    for (int i = 0; i < 100; ++i)
+        EXPECT_EQ(mesh.offset + mesh.V.row(i).transpose().cast<double>(),
+                  Vec3d(691'000 + 0.5 * i, 5'335'000 + 0.5 * i, 520 + 0.5 * i));
 }
 
 TEST(Pcd, ReadsPositionsOfEveryType) {

@@ -262,4 +262,23 @@ void read_binary_elements(const Source& source, const char* body, std::endian en
     }
 }
 
+void read_binary_rows(const ElementPlan& plan, const char* data, std::endian endian, size_t first,
+                      size_t count) {
+    const bool swap = endian != std::endian::native;
+    const size_t stride = smallest_row(*plan.element);
+    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
+        const char* in = data + begin * stride;
+        for (size_t i = 0; i < plan.columns.size(); ++i) {
+            const ScalarType type = plan.element->properties[i].type;
+            const Column& column = plan.columns[i];
+            const ValueBlock block{in, stride, end - begin, 1, column.stride, column.scale, column.shift};
+            const size_t place = (first + begin) * column.stride;
+            if (column.floats) copy_values(block, type, swap, column.floats + place);
+            if (column.doubles) copy_values(block, type, swap, column.doubles + place);
+            if (column.integers) copy_values(block, type, swap, column.integers + place);
+            in += size_of(type);
+        }
+    });
+}
+
 }  // namespace easypbr::io

@@ -51,6 +51,7 @@ class CloudPlan {
     }
 
     void recentre(std::vector<Vec3d> samples) { arrays_->recentre(std::move(samples)); }
+    void recentre_positions() { arrays_->recentre_positions(); }
     std::vector<ElementPlan>& plans(size_t table) { return plans_[table]; }
 
     MeshData mesh() {
@@ -106,6 +107,56 @@ MeshData read_binary_cloud(const Source& source, const std::vector<BinaryTable>&
     for (size_t i = 0; i < tables.size(); ++i)
         read_binary_elements(tables[i].source, tables[i].body, tables[i].endian, cloud.plans(i));
     return cloud.mesh();
+}
+
+struct CloudStream::State {
+    State(const Source& source, std::vector<Element> given) : elements(std::move(given)), cloud(source) {
+        cloud.add(elements);
+        cloud.make_arrays();
+    }
+
+    const std::vector<Element> elements;
+    CloudPlan cloud;
+    size_t element = 0, row = 0;  ///< what comes next
+};
+
+CloudStream::CloudStream(const Source& source, std::vector<Element> elements)
+    : state_(std::make_unique<State>(source, std::move(elements))) {}
+
+CloudStream::~CloudStream() = default;
+
+bool CloudStream::can_read(const std::vector<Element>& elements) {
+    constexpr size_t largest_row = 4096;
+    for (const Element& element : elements) {
+        if (smallest_row(element) > largest_row) return false;
+        for (const Property& property : element.properties) {
+            const bool exact = size_of(property.type) < 4 || property.type == ScalarType::float32;
+            if (is_position_field(property.name) && !exact) return false;
+        }
+    }
+    return true;
+}
+
+size_t CloudStream::push(const char* data, size_t size) {
+    size_t used = 0;
+    while (state_->element < state_->elements.size()) {
+        const Element& element = state_->elements[state_->element];
+        const size_t stride = smallest_row(element);
+        const size_t rows = std::min(element.count - state_->row, (size - used) / stride);
+        read_binary_rows(state_->cloud.plans(0)[state_->element], data + used, std::endian::little,
+                         state_->row, rows);
+        used += rows * stride;
+        state_->row += rows;
+        if (state_->row < element.count) break;
+        ++state_->element;
+        state_->row = 0;
+    }
+    return used;
+}
+
+MeshData CloudStream::finish() {
+    state_->cloud.recentre_positions();
+    return state_->cloud.mesh();
 }
 
 MeshData read_text_cloud(const Source& source, const TextRows& rows, const Element& element, TextBits* bits) {

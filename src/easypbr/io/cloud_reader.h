@@ -2,6 +2,7 @@
 #pragma once
 
 #include <bit>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -25,6 +26,26 @@ struct BinaryTable {
 /// there are no points, no positions, or less bytes than the elements take. Points without finite positions
 /// are still there.
 MeshData read_binary_cloud(const Source& source, const std::vector<BinaryTable>& tables);
+
+/// Takes the bytes of a table as they come. push() is given what follows what it has used, and says how much
+/// of it that are whole rows it uses; the rest is given again, with more behind it.
+class CloudStream {
+  public:
+    CloudStream(const Source& source, std::vector<Element> elements);
+    ~CloudStream();
+
+    /// Positions of these fields lose nothing when they are recentred after reading.
+    static bool can_read(const std::vector<Element>& elements);
+
+    size_t push(const char* data, size_t size);
+
+    /// When all bytes have come.
+    MeshData finish();
+
+  private:
+    struct State;
+    std::unique_ptr<State> state_;
+};
 
 /// A property of text that is read as the 32 bits it stands for (see Column::bits), one for each row.
 struct TextBits {

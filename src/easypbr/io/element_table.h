@@ -69,6 +69,10 @@ size_t smallest_row(const Element& element);
 void read_binary_elements(const Source& source, const char* body, std::endian endian,
                           std::vector<ElementPlan>& plans);
 
+/// Reads `count` rows without lists, from row `first` on, that lie at `data`.
+void read_binary_rows(const ElementPlan& plan, const char* data, std::endian endian, size_t first,
+                      size_t count);
+
 /// How rows of text are written: one per line, numbers between blanks.
 struct TextStyle {
     char comment = 0;    ///< what follows it up to the line's end is ignored; 0: there are no comments

@@ -10,66 +10,53 @@ namespace {
 /// is a few instructions.
 constexpr size_t literal_copy = 32, match_copy = 16;
 
-class Decoder {
-  public:
-    Decoder(std::string_view in, std::span<char> out)
-        : in_(in.data()),
-          in_end_(in_ + in.size()),
-          begin_(out.data()),
-          out_(begin_),
-          end_(begin_ + out.size()) {}
-
-    bool decode() {
-        while (in_ != in_end_) {
-            const unsigned control = uint8_t(*in_++);
-            if (!(control < 32 ? copy_literals(control + 1) : copy_match(control))) return false;
-        }
-        return out_ == end_;
-    }
-
-  private:
-    size_t input() const { return size_t(in_end_ - in_); }
-    size_t room() const { return size_t(end_ - out_); }
-
-    bool copy_literals(size_t length) {
-        if (input() < length || room() < length) return false;
-        std::memcpy(out_, in_, input() >= literal_copy && room() >= literal_copy ? literal_copy : length);
-        in_ += length;
-        out_ += length;
-        return true;
-    }
-
-    /// Repeats what stands up to 8 KB before.
-    bool copy_match(unsigned control) {
-        size_t length = (control >> 5) + 2;
-        if (control >> 5 == 7) {
-            if (in_ == in_end_) return false;
-            length += uint8_t(*in_++);
-        }
-        if (in_ == in_end_) return false;
-        const size_t distance = ((control & 31) << 8) + uint8_t(*in_++) + 1;
-        if (size_t(out_ - begin_) < distance || room() < length) return false;
-        const char* from = out_ - distance;
-        if (distance >= match_copy && room() >= length + match_copy)
-            for (size_t k = 0; k < length; k += match_copy) std::memcpy(out_ + k, from + k, match_copy);
-        else
-            // Forwards byte by byte: a match may overlap what it makes.
-            for (size_t k = 0; k < length; ++k) out_[k] = from[k];
-        out_ += length;
-        return true;
-    }
-
-    const char* in_;
-    const char* in_end_;
-    char* begin_;
-    char* out_;
-    char* end_;
-};
-
 }  // namespace
 
+bool LzfDecoder::decode(const char* begin, char*& out, const char* aim, char* end) {
+    while (in_ != in_end_ && out < aim) {
+        const unsigned control = uint8_t(*in_++);
+        if (!(control < 32 ? copy_literals(control + 1, out, end) : copy_match(control, begin, out, end)))
+            return false;
+    }
+    return true;
+}
+
+bool LzfDecoder::copy_literals(size_t length, char*& out, char* end) {
+    const size_t input = size_t(in_end_ - in_), room = size_t(end - out);
+    if (input < length || room < length) return false;
+    std::memcpy(out, in_, input >= literal_copy && room >= literal_copy ? literal_copy : length);
+    in_ += length;
+    out += length;
+    return true;
+}
+
+/// Repeats what stands up to 8 KB before.
+bool LzfDecoder::copy_match(unsigned control, const char* begin, char*& out, char* end) {
+    size_t length = (control >> 5) + 2;
+    if (control >> 5 == 7) {
+        if (in_ == in_end_) return false;
+        length += uint8_t(*in_++);
+    }
+    if (in_ == in_end_) return false;
+    const size_t distance = ((control & 31) << 8) + uint8_t(*in_++) + 1;
+    const size_t room = size_t(end - out);
+    if (size_t(out - begin) < distance || room < length) return false;
+    const char* from = out - distance;
+    if (distance >= match_copy && room >= length + match_copy)
+        for (size_t k = 0; k < length; k += match_copy) std::memcpy(out + k, from + k, match_copy);
+    else
+        // Forwards byte by byte: a match may overlap what it makes.
+        for (size_t k = 0; k < length; ++k) out[k] = from[k];
+    out += length;
+    return true;
+}
+
 bool lzf_decompress(std::string_view in, std::span<char> out) {
-    return Decoder(in, out).decode();
+    LzfDecoder decoder(in);
+    char* at = out.data();
+    char* end = at + out.size();
+    // One byte beyond the end is aimed at, so that too much is noticed.
+    return decoder.decode(out.data(), at, end + 1, end) && at == end;
 }
 
 }  // namespace easypbr::io

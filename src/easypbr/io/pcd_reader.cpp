@@ -1,7 +1,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
+#include <memory>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/cloud_reader.h"
@@ -49,6 +51,83 @@ uint32_t read_size(const char* p) {
     return size;
 }
 
+[[noreturn]] void fail_damaged(const Source& source, std::string_view data) {
+    fail_at_byte(source, data.data(), "the compressed data are damaged");
+}
+
+MeshData read_at_once(const Source& source, std::string_view data, size_t size,
+                      std::vector<Element> elements) {
+    const auto bytes = std::make_unique_for_overwrite<char[]>(size);
+    if (!lzf_decompress(data, {bytes.get(), size})) fail_damaged(source, data);
+    source.release_until(source.end());
+    return read_binary_cloud(source, {{Source(std::string_view(bytes.get(), size), source.path), bytes.get(),
+                                       std::endian::little, std::move(elements)}});
+}
+
+/// Decompresses a piece while the one before is being read: one thread is busy with the one, the others with
+/// the other, and both stay in the processor's caches.
+class PieceReader {
+  public:
+    PieceReader(const Source& source, std::string_view data, size_t size, std::vector<Element> elements)
+        : source_(source), data_(data), left_(size), decoder_(data), stream_(source, std::move(elements)) {
+        for (Piece& piece : pieces_) {
+            piece.bytes = std::make_unique_for_overwrite<char[]>(capacity);
+            piece.begin = piece.end = piece.bytes.get() + LzfDecoder::history;
+        }
+    }
+
+    MeshData read() {
+        fill(pieces_[0], nullptr);
+        for (size_t i = 0; pieces_[i % 2].begin != pieces_[i % 2].end; ++i) {
+            Piece &now = pieces_[i % 2], &next = pieces_[(i + 1) % 2];
+            parallel_for(2, 1, [&](size_t task) { task == 0 ? fill(next, &now) : consume(now); });
+            if (!good_) break;
+        }
+        if (!good_ || left_ > 0 || !decoder_.at_end()) fail_damaged(source_, data_);
+        return stream_.finish();
+    }
+
+  private:
+    static constexpr size_t piece_size = 1 << 21;
+    static constexpr size_t capacity = LzfDecoder::history + piece_size + LzfDecoder::overshoot;
+
+    /// What was decoded last, behind the history before it.
+    struct Piece {
+        std::unique_ptr<char[]> bytes;
+        char* begin;
+        char* end;
+    };
+
+    void fill(Piece& piece, const Piece* before) {
+        const char* known = piece.begin = piece.end = piece.bytes.get() + LzfDecoder::history;
+        if (before) {
+            const size_t kept = std::min(LzfDecoder::history, decoded_);
+            known = piece.begin - kept;
+            std::memcpy(piece.begin - kept, before->end - kept, kept);
+        }
+        char* end = piece.begin + std::min(left_, piece_size + LzfDecoder::overshoot);
+        const char* aim = left_ > piece_size ? piece.begin + piece_size : end + 1;
+        if (!decoder_.decode(known, piece.end, aim, end)) good_ = false;
+        decoded_ += size_t(piece.end - piece.begin);
+        left_ -= size_t(piece.end - piece.begin);
+    }
+
+    /// A row that a piece ends within is read with the next one, which has it in its history.
+    void consume(const Piece& piece) {
+        const char* begin = piece.begin - unread_;
+        const size_t size = size_t(piece.end - begin);
+        unread_ = size - stream_.push(begin, size);
+    }
+
+    const Source& source_;
+    const std::string_view data_;
+    size_t left_, decoded_ = 0, unread_ = 0;
+    bool good_ = true;
+    LzfDecoder decoder_;
+    CloudStream stream_;
+    std::array<Piece, 2> pieces_;
+};
+
 MeshData read_compressed(const Source& source, const PcdHeader& header) {
     constexpr size_t sizes = 8;
     const size_t left = size_t(source.end() - header.body);
@@ -64,12 +143,10 @@ MeshData read_compressed(const Source& source, const PcdHeader& header) {
         fail_at_byte(source, header.body + 4,
                      fmt::format("{} points of {} bytes expected, but {} bytes were compressed to {}",
                                  header.points, row, full, compressed));
-    const auto bytes = std::make_unique_for_overwrite<char[]>(full);
-    if (!lzf_decompress({header.body + sizes, compressed}, {bytes.get(), full}))
-        fail_at_byte(source, header.body + sizes, "the compressed data are damaged");
-    source.release_until(source.end());
-    return read_binary_cloud(source, {{Source(std::string_view(bytes.get(), full), source.path), bytes.get(),
-                                       std::endian::little, elements_by_field(header)}});
+    const std::string_view data(header.body + sizes, compressed);
+    std::vector<Element> elements = elements_by_field(header);
+    if (CloudStream::can_read(elements)) return PieceReader(source, data, full, std::move(elements)).read();
+    return read_at_once(source, data, full, std::move(elements));
 }
 
 void set_packed_colors(const std::vector<uint32_t>& bits, bool alpha, MeshData& mesh) {

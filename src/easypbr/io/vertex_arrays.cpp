@@ -53,6 +53,12 @@ std::string plain_name(std::string_view name) {
                            : name);
 }
 
+bool has_name(const Spellings& spellings, std::string_view name) {
+    const std::string plain = lower(plain_name(name));
+    return std::ranges::any_of(
+        spellings, [&](const Names& names) { return std::ranges::find(names, plain) != names.end(); });
+}
+
 /// Places of the first of several spellings of which all fields are there and free.
 std::vector<size_t> find_spelling(const std::vector<VertexField>& fields, const Spellings& spellings) {
     for (const Names& names : spellings) {
@@ -133,7 +139,9 @@ void VertexArrays::plan_colors(const std::vector<VertexField>& fields, size_t co
     plan_floats(fields, color, count, C_);
     for (const size_t i : color) {
         fields[i].column->scale = color_scale(fields[i].property.type);
-        real_colors_ = !is_integer(fields[i].property.type);
+        const ScalarType type = fields[i].property.type;
+        real_colors_ = !is_integer(type);
+        may_leave_range_ |= type != ScalarType::uint8 && type != ScalarType::uint16;
     }
 }
 
@@ -157,6 +165,17 @@ void VertexArrays::recentre(std::vector<Vec3d> samples) {
     for (int axis = 0; axis < 3; ++axis) position_columns_[size_t(axis)]->shift -= offset_[axis];
 }
 
+void VertexArrays::recentre_positions() {
+    offset_ = choose_offset(size_t(V_.rows()), [&](size_t i) {
+        return Vec3d(V_.row(Eigen::Index(i)).transpose().cast<double>());
+    });
+    if (offset_.isZero(0)) return;
+    parallel_for(size_t(V_.rows()), grain, [&](size_t i) {
+        auto position = V_.row(Eigen::Index(i));
+        position = (position.cast<double>() - offset_.transpose()).cast<float>();
+    });
+}
+
 void VertexArrays::normalize_real_colors() {
     if (!real_colors_ || C_.size() == 0) return;
     std::vector<float> largest((size_t(C_.size()) + grain - 1) / grain, 0.0f);
@@ -172,7 +191,7 @@ void VertexArrays::normalize_real_colors() {
 
 void VertexArrays::move_into(MeshData& mesh) {
     tidy_normals(N_);
-    tidy_colors(C_);
+    if (may_leave_range_) tidy_colors(C_);
     tidy_uv(UV_);
     mesh.offset = offset_;
     mesh.V = std::move(V_);
@@ -222,12 +241,14 @@ void FaceArrays::move_into(MeshData& mesh) {
 }
 
 bool is_known_field(std::string_view name) {
-    const std::string plain = lower(plain_name(name));
-    for (const Spellings* spellings : {&position_names, &normal_names, &tangent_names, &bitangent_names,
-                                       &uv_names, &color_names, &label_names, &intensity_names})
-        for (const Names& names : *spellings)
-            if (std::ranges::find(names, plain) != names.end()) return true;
-    return false;
+    return std::ranges::any_of(std::array{&normal_names, &tangent_names, &bitangent_names, &uv_names,
+                                          &color_names, &label_names, &intensity_names},
+                               [&](const Spellings* spellings) { return has_name(*spellings, name); }) ||
+           is_position_field(name);
+}
+
+bool is_position_field(std::string_view name) {
+    return has_name(position_names, name);
 }
 
 std::vector<std::string> names_of_parts(const std::string& name, size_t count) {

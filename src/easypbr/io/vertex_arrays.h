@@ -34,6 +34,9 @@ class VertexArrays {
     /// Lets the position columns subtract what offset_of_samples() finds.
     void recentre(std::vector<Vec3d> samples);
 
+    /// The same after reading, for positions that float32 holds as the file has them.
+    void recentre_positions();
+
     /// Throws FormatError when a position is not finite.
     void check(const Source& source) const { check_positions(source, V_); }
     Eigen::Index count() const { return V_.rows(); }
@@ -56,7 +59,7 @@ class VertexArrays {
     std::optional<std::array<size_t, 3>> position_;
     std::array<Column*, 3> position_columns_{};
     Vec3d offset_ = Vec3d::Zero();
-    bool real_colors_ = false;
+    bool real_colors_ = false, may_leave_range_ = false;  ///< of colours
     Array3f::Dense V_, N_, T_;
     ArrayXf::Dense C_;
     Array2f::Dense UV_;
@@ -84,6 +87,9 @@ class FaceArrays {
 
 /// Whether a field of this name is recognised, not just kept as scalars.
 bool is_known_field(std::string_view name);
+
+/// Whether it is one of those of positions.
+bool is_position_field(std::string_view name);
 
 /// Names for a field of several values: those of the parts of a position, normal, colour or texture
 /// coordinate when it is called so and has as many, else NAME_0, NAME_1, ...
