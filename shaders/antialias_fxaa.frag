@@ -1,6 +1,10 @@
 // Fast approximate anti-aliasing of a single frame (Lottes 2009, the four-tap form): blurs along edges of luma.
 uniform sampler2D u_color;  // sRGB-encoded, linear filtering
 uniform vec2 u_size;
+#ifdef EXACT
+#include "common_surface_kind.glsl"
+uniform sampler2D u_material;
+#endif
 
 layout(location = 0) out vec4 o_color;
 
@@ -12,9 +16,21 @@ vec4 texel_at(ivec2 p) { return texelFetch(u_color, clamp(p, ivec2(0), ivec2(u_s
 
 float luma_of(vec4 c) { return dot(c.rgb, luma_weights) * c.a; }
 
-vec4 premultiplied(vec2 uv) {
-    vec4 c = textureLod(u_color, uv, 0.0);
-    return vec4(c.rgb * c.a, c.a);
+vec4 premultiplied(vec4 c) { return vec4(c.rgb * c.a, c.a); }
+
+#ifdef EXACT
+bool touches_exact(vec2 uv) {
+    vec4 kinds = textureGather(u_material, uv, 3);
+    return is_exact(kinds.x) || is_exact(kinds.y) || is_exact(kinds.z) || is_exact(kinds.w);
+}
+#endif
+
+/// What is blurred: the pixel itself in place of a table's colours, which nothing may mix with.
+vec4 sample_at(vec2 uv, vec4 centre) {
+#ifdef EXACT
+    if (touches_exact(uv)) return premultiplied(centre);
+#endif
+    return premultiplied(textureLod(u_color, uv, 0.0));
 }
 
 void main() {
@@ -31,8 +47,8 @@ void main() {
     float reduce = max((nw + ne + sw + se) * 0.03125, 1.0 / 128.0);
     along = clamp(along / (min(abs(along.x), abs(along.y)) + reduce), -span, span) * texel;
 
-    vec4 near = 0.5 * (premultiplied(uv - along / 6.0) + premultiplied(uv + along / 6.0));
-    vec4 wide = 0.5 * near + 0.25 * (premultiplied(uv - along * 0.5) + premultiplied(uv + along * 0.5));
+    vec4 near = 0.5 * (sample_at(uv - along / 6.0, centre) + sample_at(uv + along / 6.0, centre));
+    vec4 wide = 0.5 * near + 0.25 * (sample_at(uv - along * 0.5, centre) + sample_at(uv + along * 0.5, centre));
     float wide_luma = dot(wide.rgb, luma_weights);
     vec4 blurred = wide_luma < low || wide_luma > high ? near : wide;
     bool edge = high - low > max(1.0 / 16.0, high * 0.125);

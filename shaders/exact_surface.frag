@@ -5,6 +5,9 @@
 uniform sampler2D u_albedo;
 uniform sampler2D u_material;
 uniform vec2 u_size;
+#ifdef OVERLAY
+uniform sampler2D u_overlay;  // lines: linear display light, premultiplied
+#endif
 
 layout(location = 0) out vec4 o_color;
 
@@ -12,6 +15,10 @@ void main() {
     vec2 uv = gl_FragCoord.xy / u_size;
     if (!is_exact(textureLod(u_material, uv, 0.0).w)) discard;
     vec3 color = textureLod(u_albedo, uv, 0.0).rgb;
+#ifdef OVERLAY
+    vec4 over = textureLod(u_overlay, uv, 0.0);
+    color = color * (1.0 - over.a) + over.rgb;
+#endif
 #ifdef LINEAR_OUTPUT
     o_color = vec4(color, 1.0);
 #else

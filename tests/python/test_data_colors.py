@@ -43,6 +43,8 @@ def test_labels_of_points_are_the_tables_colours(samples, tone):
     seen, expected = colors_by_element(view, cloud.L, table_of(cloud.label_map))
     assert seen.mean() > 0.2
     assert (picture[seen][:, :3] == expected[seen]).all()
+    # And nothing is mixed with them where they end.
+    assert (picture[~seen][:, :3] == 64).all()
 
 
 def test_labels_of_faces_are_exact_when_they_are_not_lit():
@@ -57,6 +59,25 @@ def test_labels_of_faces_are_exact_when_they_are_not_lit():
     mesh.style.lit = True
     lit = view.render(samples=4)[seen][:, :3]
     assert (lit != expected[seen]).any(axis=1).mean() > 0.9
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+def test_lines_are_drawn_over_exact_colours(samples):
+    mesh = shapes.box()
+    mesh.L = np.arange(len(mesh.F)) % 3
+    mesh.style.lit = False
+    view = viewer(mesh)
+    plain = view.render(samples=samples)
+    mesh.style.show_wireframe = True
+    mesh.style.line_color = "#ffffff"
+    mesh.style.line_width = 3
+    wired = view.render(samples=samples)
+    element = view.layers(["element"])["element"] > 0
+    white = (wired[:, :, :3] == 255).all(axis=2)
+    # The three front faces of a box have nine edges and three diagonals: their pixels, three wide.
+    assert (white & element).sum() > 500
+    untouched = element & (wired == plain).all(axis=2)
+    assert untouched.sum() > 0.5 * element.sum()
 
 
 def test_labels_of_vertices_are_not_mixed_on_faces():
@@ -149,6 +170,4 @@ def test_render_takes_legend_and_colorbar(tmp_path):
 
 def test_asking_for_what_there_is_nothing_for_is_a_warning(caplog):
     easypbr.render(shapes.box(), size=(32, 24), samples=1, legend=True, colorbar=True)
-    messages = [record.getMessage() for record in caplog.records]
-    assert any("there is no legend" in message for message in messages)
-    assert any("there is no colour bar" in message for message in messages)
+    assert "there is no legend" in caplog.text and "there is no colour bar" in caplog.text

@@ -49,9 +49,7 @@ Settings unlit() {
 TEST(Resolve, LeavesNothingToInfer) {
     const ResolvedSettings resolved = resolve(scene_of(blob()), {}, size);
     for (const Field& field : fields()) {
-        // Each object has its own; a title is that of what it stands over.
-        const bool is_override = field.name.starts_with("material.") || field.name.starts_with("style.") ||
-                                 field.name == "annotation.title";
+        const bool is_override = field.name.starts_with("material.") || field.name.starts_with("style.");
         if (!field.can_be_automatic || is_override) continue;
         const Value value = field.get(resolved.settings);
         EXPECT_TRUE(value.latched) << field.name;

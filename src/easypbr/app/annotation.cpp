@@ -70,7 +70,7 @@ class Collector {
     std::vector<Legend> legends() const {
         std::vector<Legend> result;
         for (const auto& [map, labels] : labels_)
-            result.push_back({settings_.annotation.title.value_or(""), entries_of(labels, map)});
+            result.push_back({settings_.annotation.title, entries_of(labels, map)});
         return result;
     }
 
@@ -94,7 +94,7 @@ class Collector {
     void add_bar(const MeshData& mesh, const ColorPlan& plan) {
         const Array1f values = plan_values(mesh, plan);
         ColorBar bar;
-        bar.title = settings_.annotation.title.value_or(title_of(plan));
+        bar.title = settings_.annotation.title.empty() ? title_of(plan) : settings_.annotation.title;
         bar.range = value_range(values, plan.min, plan.max, plan.colormap == Colormap::coolwarm);
         std::ranges::transform(color_table(plan.colormap), bar.table.begin(), opaque);
         if (values.array().isNaN().any()) bar.nan_color = opaque(to_rgb8(plan.nan_color));

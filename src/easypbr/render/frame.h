@@ -43,8 +43,8 @@ struct Frame {
     int sample_index = 0;
     int sample_count = 1;
     bool with_ids = false;
-    bool has_exact = false;     ///< colours of tables are in the picture: its edges are not smoothed
     bool with_overlay = false;                 ///< something is shown past light and tone curve
+    bool with_exact = false;                   ///< colours of tables, which nothing may mix with others
     ExtensionSet extensions = 0;               ///< of the surfaces that are drawn and lit now
     bool partly_covered = false;               ///< the radiance may hold coverages between 0 and 1
     const Peel* peel = nullptr;                ///< set while a layer is drawn

@@ -150,13 +150,14 @@ void OutputPass::finish(const Frame& frame, const GBuffer& targets, const gl::Te
     }
     draw_screen_triangle();
     glDisable(GL_SCISSOR_TEST);
-    const bool single = !sum && encoding_ != Encoding::scene_linear && !frame.has_exact;
-    if (single && frame.resolved->settings.image.antialias == Antialias::fxaa) blur_edges(frame);
+    const bool single = !sum && encoding_ != Encoding::scene_linear;
+    if (single && frame.resolved->settings.image.antialias == Antialias::fxaa) blur_edges(frame, targets);
 }
 
 void OutputPass::write_exact(const Frame& frame, const GBuffer& targets) {
     std::vector<std::string> defines;
     if (encoding_ == Encoding::scene_linear) defines.emplace_back("LINEAR_OUTPUT");
+    if (frame.with_overlay) defines.emplace_back("OVERLAY");
     const gl::Program& program = exact_.get(defines);
     picture_framebuffer_.bind();
     program.use();
@@ -165,11 +166,12 @@ void OutputPass::write_exact(const Frame& frame, const GBuffer& targets) {
     program.set("u_material", 1);
     targets.albedo.bind(0);
     targets.material.bind(1);
+    bind_overlay(program, frame, targets);
     glDisable(GL_DEPTH_TEST);
     draw_screen_triangle();
 }
 
-void OutputPass::blur_edges(const Frame& frame) {
+void OutputPass::blur_edges(const Frame& frame, const GBuffer& targets) {
     const PixelRect& area = frame.covered;
     if (area.width == 0 || area.height == 0) return;
     if (!aliased_) {
@@ -178,11 +180,16 @@ void OutputPass::blur_edges(const Frame& frame) {
     }
     gl::copy(picture_, aliased_);
     picture_framebuffer_.bind();
-    const gl::Program& program = fxaa_.get({});
+    const gl::Program& program =
+        fxaa_.get(frame.with_exact ? std::vector<std::string>{"EXACT"} : std::vector<std::string>{});
     program.use();
     program.set("u_size", Vec2(frame.size.cast<float>()));
     program.set("u_color", 0);
     aliased_.bind(0);
+    if (frame.with_exact) {
+        program.set("u_material", 1);
+        targets.material.bind(1);
+    }
     // Edges are where geometry is; the environment behind it is smooth.
     glEnable(GL_SCISSOR_TEST);
     glScissor(area.x, area.y, area.width, area.height);

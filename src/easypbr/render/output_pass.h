@@ -24,7 +24,8 @@ class OutputPass {
     void accumulate(const Frame& frame, const GBuffer& targets);
     /// Writes the picture from the sum, or from the radiance of the only frame.
     void finish(const Frame& frame, const GBuffer& targets, const gl::Texture* background_image);
-    /// Puts the exact colours that the G-buffer holds into the finished picture.
+    /// Puts the exact colours that the G-buffer holds into the finished picture, lines in the overlay over
+    /// them.
     void write_exact(const Frame& frame, const GBuffer& targets);
 
     /// Row 0 of the framebuffer is the top of the picture.
@@ -32,7 +33,7 @@ class OutputPass {
     gl::Format format() const { return picture_.format(); }
 
   private:
-    void blur_edges(const Frame& frame);
+    void blur_edges(const Frame& frame, const GBuffer& targets);
 
     Encoding encoding_ = Encoding::srgb8;
     gl::Texture sum_, picture_, aliased_;

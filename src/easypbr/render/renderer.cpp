@@ -101,7 +101,7 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     frame.size = options.size;
     frame.sample_count = options.samples;
     frame.with_ids = options.ids;
-    frame.has_exact = has_exact;
+    frame.with_exact = has_exact;
     if (options.ids) targets_.add_ids();
     for (frame.sample_index = 0; frame.sample_index < options.samples; ++frame.sample_index) {
         draw_frame(frame, options.samples > 1 && has_exact ? averaged : list, list);
@@ -239,8 +239,14 @@ void Renderer::draw_exact(Frame& frame, const DrawList& list) {
         frame.camera = frame.resolved->camera;
         prepare_frame(frame, bounds_of(*frame.scene), list.reaches_beyond_vertices());
         draw_geometry(frame, list.without_layers());
-        no_attributes_.bind();
     }
+    frame.with_overlay = !list.lines.empty();
+    if (frame.with_overlay) {
+        const float nothing[4] = {0, 0, 0, 0};
+        targets_.display.clear_color(0, nothing);
+        lines_.draw(frame, list.lines, targets_);
+    }
+    no_attributes_.bind();
     output_.write_exact(frame, targets_);
 }
 

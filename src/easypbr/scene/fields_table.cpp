@@ -420,7 +420,7 @@ void add_annotation(Table& table) {
         make("annotation.colorbar", annotation(&AnnotationSettings::colorbar),
              "Whether the picture has a colour bar of the values that colour objects; automatic: no."));
     table.push_back(make("annotation.title", annotation(&AnnotationSettings::title),
-                         "Title of legends and colour bars; automatic: the values' name, none for legends."));
+                         "Title of legends and colour bars; empty: the values' name, none for legends."));
     table.push_back(make("annotation.corner", annotation(&AnnotationSettings::corner),
                          "Corner of the picture that they stand in."));
     table.push_back(make("annotation.text_size", annotation(&AnnotationSettings::text_size),

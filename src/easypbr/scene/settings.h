@@ -152,7 +152,7 @@ struct PointsSettings {
 struct AnnotationSettings {
     Auto<bool> legend;
     Auto<bool> colorbar;
-    Auto<std::string> title;
+    std::string title;
     Corner corner = Corner::top_right;
     float text_size = 0.03f;
 };
