@@ -132,6 +132,14 @@ def test_scalars_have_names():
     assert list(mesh.scalars) == ["y"]
     mesh.scalars = None
     assert mesh.scalars == {}
+    mesh.scalars["z"] = [5, 6]
+    assert mesh.scalars["z"].tolist() == [5, 6] and "z" in mesh.scalars and "x" not in mesh.scalars
+    del mesh.scalars["z"]
+    assert len(mesh.scalars) == 0
+    with pytest.raises(KeyError):
+        del mesh.scalars["z"]
+    with pytest.raises(easypbr.ArgumentError, match="scalars"):
+        mesh.scalars["z"] = [1, 2, 3]
 
 
 @pytest.mark.parametrize("values, message", [

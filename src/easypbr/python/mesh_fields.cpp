@@ -105,14 +105,19 @@ void bind_mesh_fields(nb::class_<Mesh>& mesh) {
             "What the labels mean; None: generated colours. Assign a LabelMap, a built-in one's name or a "
             "path.")
         .def_prop_rw(
-            "scalars", scalars_of,
+            "scalars",
+            [](const Mesh& m) { return nb::module_::import_("easypbr.scalars").attr("Scalars")(m); },
             [](Mesh& m, const ScalarsLike& value) {
                 const MeshChange change = prepare_scalars(value);
                 released([&] { m.edit(change); });
             },
-            nb::for_getter(nb::sig("def scalars(self) -> dict[str, numpy.ndarray]")),
+            nb::for_getter(
+                nb::sig("def scalars(self) -> collections.abc.MutableMapping[str, numpy.ndarray]")),
             nb::for_setter(nb::arg("value").none()),
-            "A copy of the named values, each for the vertices or the faces; assign a dict to replace all.")
+            "Named values, each for the vertices or the faces: mesh.scalars['heat'] = values adds or "
+            "replaces, del "
+            "removes; assign a dict to replace all.")
+        .def("_scalars", scalars_of)
         .def(
             "add_scalar",
             [](Mesh& m, const std::string& name, const ArrayLike& values) {

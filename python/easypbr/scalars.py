@@ -1,0 +1,31 @@
+"""A mesh's named values as a dict that writes through to the mesh."""
+from collections.abc import Iterator, MutableMapping
+
+import numpy as np
+
+
+class Scalars(MutableMapping[str, np.ndarray]):
+    """What `mesh.scalars` is: read-only arrays by name; assigning to a name or deleting it changes the mesh."""
+
+    def __init__(self, mesh) -> None:
+        self._mesh = mesh
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self._mesh._scalars()[name]
+
+    def __setitem__(self, name: str, values) -> None:
+        self._mesh.add_scalar(name, values)
+
+    def __delitem__(self, name: str) -> None:
+        if name not in self:
+            raise KeyError(name)
+        self._mesh.remove_scalar(name)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._mesh._scalars())
+
+    def __len__(self) -> int:
+        return len(self._mesh._scalars())
+
+    def __repr__(self) -> str:
+        return repr(self._mesh._scalars())
