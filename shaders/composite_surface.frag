@@ -19,6 +19,12 @@ uniform usampler2D u_element;
 layout(location = 5) out uint o_id;
 layout(location = 6) out uint o_element;
 #endif
+#ifdef WITH_EXTENSION
+uniform usampler2D u_extension0;
+uniform usampler2D u_extension1;
+layout(location = 5) out uvec4 o_extension0;
+layout(location = 6) out uvec4 o_extension1;
+#endif
 
 void main() {
     vec2 uv = gl_FragCoord.xy / u_size;
@@ -37,5 +43,9 @@ void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
     o_id = texelFetch(u_id, p, 0).r;
     o_element = texelFetch(u_element, p, 0).r;
+#endif
+#ifdef WITH_EXTENSION
+    o_extension0 = texelFetch(u_extension0, ivec2(gl_FragCoord.xy), 0);
+    o_extension1 = texelFetch(u_extension1, ivec2(gl_FragCoord.xy), 0);
 #endif
 }

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 import easypbr
-from easypbr import LabelMap, Mesh, Scene, Viewer, shapes
+from easypbr import LabelMap, Material, Mesh, Scene, Viewer, shapes
 
 
 def labelled_cloud(count: int = 3000) -> Mesh:
@@ -78,6 +78,28 @@ def test_lines_are_drawn_over_exact_colours(samples):
     assert (white & element).sum() > 500
     untouched = element & (wired == plain).all(axis=2)
     assert untouched.sum() > 0.5 * element.sum()
+
+
+@pytest.mark.parametrize("samples", [1, 4])
+def test_glass_is_seen_before_exact_colours(samples):
+    back, front = shapes.plane(4), shapes.plane(2)
+    back.L = [7, 7]
+    back.label_map = LabelMap(list("abcdefgh"))
+    back.style.lit = False
+    front.material = Material(base_color=(0, 0, 0), opacity=0.5, alpha_mode="blend", unlit=True)
+    scene = Scene()
+    scene.show(back, "back")
+    scene.show(front.transform([[1, 0, 0, 0], [0, 1, 0, 0.5], [0, 0, 1, 0], [0, 0, 0, 1]]), "front")
+    view = Viewer((120, 90), {"camera": {"position": (0, 8, 0), "target": (0, 0, 0), "up": "z"}}, scene)
+    picture = view.render(samples=samples)
+    exact = np.array(back.label_map.colors[7])
+    # In front of the middle half of the light is black.
+    linear = np.where(exact > 10, ((exact / 255 + 0.055) / 1.055) ** 2.4, exact / 255 / 12.92) / 2
+    half = 255 * np.where(linear > 0.0031308, 1.055 * linear ** (1 / 2.4) - 0.055, 12.92 * linear)
+    # A code: the overlay holds halves.
+    np.testing.assert_allclose(picture[45, 60, :3], half, atol=1)
+    # The larger square ends at 2 of 2.14 units from the middle (30 degrees from 8), the smaller at 1 of 2.
+    assert (picture[4, 60, :3] == exact).all() and (picture[86, 60, :3] == exact).all()
 
 
 def test_labels_of_vertices_are_not_mixed_on_faces():

@@ -118,6 +118,33 @@ TEST(Colors, OfValuesAreThoseOfTheTable) {
     }
 }
 
+// A chosen range that ends inside a triangle: what is beyond has the end's colour, what is within its own.
+TEST(Colors, OfAChosenRangeStayWhereTheirValuesAre) {
+    Mesh mesh = facing_square(1);
+    mesh.edit([](MeshData& d) {
+        Array1f::Dense values(4);
+        for (int i = 0; i < 4; ++i) values[i] = d.V(i, 0);
+        d.scalars = {{"x", Array1f(values)}};
+        d.style.lit = false;
+        d.style.color_by = ColorBy::scalar;
+        d.style.colormap = Colormap::grey;
+        d.style.color_min = -0.25f;
+        d.style.color_max = 0.5f;
+    });
+    Scene scene;
+    scene.show(mesh, "square");
+    app::Session session = plain_session(scene, 128);
+    look_from(session, Vec3d(0, 0, 4));
+    const Image picture = session.render({std::nullopt, 1, app::Encoding::srgb8});
+    const double pixels_per_unit = 64 / (4 * std::tan(radians(15.0)));
+    for (int x = 10; x < 118; ++x) {
+        const double value = (x + 0.5 - 64) / pixels_per_unit;
+        // Grey: the colour is its place in the table. A rounding error may take the neighbour.
+        const double place = std::clamp((value + 0.25) / 0.75, 0.0, 1.0) * 256 - 0.5;
+        EXPECT_NEAR(picture.at<uint8_t>(x, 64)[0], std::clamp(place, 0.0, 255.0), 1) << x;
+    }
+}
+
 TEST(Colors, OfANanValueAreThoseOfNothing) {
     Mesh mesh = facing_square(1);
     mesh.edit([](MeshData& d) {

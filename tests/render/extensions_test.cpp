@@ -463,6 +463,17 @@ TEST(Extensions, WithoutEffectTheyAreTheCoreModel) {
         ASSERT_NEAR(alone.pixels<float>()[i], beside.pixels<float>()[i], 2e-5);
 }
 
+// Drawn over everything else, with nothing else there, an extended surface looks as it does anyway.
+TEST(Extensions, StayWhatTheyAreInAnOverlay) {
+    Scene scene;
+    app::Session session = session_of(extended(), scene);
+    session.settings().environment.enabled = true;
+    const Image plain = render_linear(session);
+    session.settings().style.overlay = true;
+    const Image over = render_linear(session);
+    ASSERT_TRUE(std::ranges::equal(plain.pixels<float>(), over.pixels<float>()));
+}
+
 // Layers of ground truth are of the core model: extended surfaces are in them like others.
 TEST(Extensions, GroundTruthKnowsThem) {
     Scene scene;

@@ -71,11 +71,15 @@ MeshData with_face_colors(const MeshData& mesh, const std::vector<Rgba8>& colors
     return out;
 }
 
-/// A column of colours, and one more texel for what is not a number.
+/// Places of values are this many ranges away from the table at most, so that their interpolation stays
+/// finite.
+constexpr float farthest = 1e6f;
+
+/// The colours of a table in the first row, the colour of what is not a number in the second.
 Texture table_texture(const ElementColors& values) {
-    auto image = std::make_shared<Image>(257, 1, 4, PixelType::u8);
+    auto image = std::make_shared<Image>(256, 2, 4, PixelType::u8);
     uint8_t* to = image->pixels<uint8_t>().data();
-    for (size_t i = 0; i < 257; ++i)
+    for (size_t i = 0; i < 512; ++i)
         std::ranges::copy(i < 256 ? values.table[i] : values.nan_color, to + 4 * i);
     Texture texture;
     texture.image = image;
@@ -84,23 +88,23 @@ Texture table_texture(const ElementColors& values) {
     return texture;
 }
 
-/// Values as texture coordinates of their table: interpolated before they become colours. A face with a
-/// corner that is not a number has no values at all.
+/// Values as texture coordinates (v up) of their table: interpolated before they become colours, beyond the
+/// table's ends too. A face with a corner that is not a number has no values at all.
 MeshData with_values(const MeshData& mesh, const ElementColors& values) {
     const bool has_nan = !values.values.array().isFinite().all();
     MeshData out = has_nan ? with_own_corners(mesh) : mesh;
     Array2f::Dense UV(out.V.rows(), 2);
-    const float scale = 256.0f / 257.0f / (values.range.max - values.range.min);
-    const auto place = [&](float value) {
-        return std::clamp((value - values.range.min) * scale, 0.0f, 255.99f / 257.0f);
-    };
+    const float scale = 1 / (values.range.max - values.range.min);
     parallel_for(size_t(UV.rows()), grain, [&](size_t i) {
         const auto row = Eigen::Index(i);
         bool is_nan = false;
         if (has_nan)
             for (int k = 0; k < 3; ++k) is_nan |= !std::isfinite(values.values(mesh.F(row / 3, k)));
-        const Eigen::Index vertex = has_nan ? mesh.F.data()[i] : row;
-        UV.row(row) << (is_nan ? 256.5f / 257.0f : place(values.values(vertex))), 0.5f;
+        const float value = values.values(has_nan ? mesh.F.data()[i] : row);
+        if (is_nan)
+            UV.row(row) << 0.5f, 0.25f;
+        else
+            UV.row(row) << std::clamp((value - values.range.min) * scale, -farthest, farthest), 0.75f;
     });
     out.UV = Array2f(std::move(UV));
     out.C = {};

@@ -104,10 +104,20 @@ void SurfaceComposite::copy(const Frame& frame, const GBuffer& source, const Pix
     std::vector<std::string> defines;
     if (frame.with_ids) defines.emplace_back("OBJECT_ID");
     if (always) defines.emplace_back("WITH_EMISSION");
+    // What was found natively has no extensions.
+    const bool extended = always && frame.extensions;
+    if (extended) defines.emplace_back("WITH_EXTENSION");
     const gl::Program& program = programs_.get(defines);
-    (frame.with_ids ? targets.surface_ids : targets.surface_emission).bind();
+    (frame.with_ids ? targets.surface_ids
+     : extended     ? targets.surface_extended
+                    : targets.surface_emission)
+        .bind();
     program.use();
     bind_surface(program, frame, source);
+    for (unsigned i = 0; extended && i < 2; ++i) {
+        source.extension[i].bind(7 + i);
+        program.set(i == 0 ? "u_extension0" : "u_extension1", int(7 + i));
+    }
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_TRUE);
     glDepthFunc(always ? GL_ALWAYS : GL_GREATER);

@@ -154,8 +154,9 @@ void OutputPass::finish(const Frame& frame, const GBuffer& targets, const gl::Te
     if (single && frame.resolved->settings.image.antialias == Antialias::fxaa) blur_edges(frame, targets);
 }
 
-void OutputPass::write_exact(const Frame& frame, const GBuffer& targets) {
-    std::vector<std::string> defines;
+void OutputPass::write_exact(const Frame& frame, const GBuffer& targets, bool layers) {
+    std::vector<std::string> defines = tone_defines(frame, encoding_);
+    if (layers) defines.emplace_back("LAYERS");
     if (encoding_ == Encoding::scene_linear) defines.emplace_back("LINEAR_OUTPUT");
     if (frame.with_overlay) defines.emplace_back("OVERLAY");
     const gl::Program& program = exact_.get(defines);
@@ -167,6 +168,11 @@ void OutputPass::write_exact(const Frame& frame, const GBuffer& targets) {
     targets.albedo.bind(0);
     targets.material.bind(1);
     bind_overlay(program, frame, targets);
+    if (layers) {
+        targets.radiance.bind(3);
+        program.set("u_radiance", 3);
+        program.set("u_exposure", exposure_of(frame, encoding_));
+    }
     glDisable(GL_DEPTH_TEST);
     draw_screen_triangle();
 }

@@ -25,8 +25,8 @@ class OutputPass {
     /// Writes the picture from the sum, or from the radiance of the only frame.
     void finish(const Frame& frame, const GBuffer& targets, const gl::Texture* background_image);
     /// Puts the exact colours that the G-buffer holds into the finished picture, lines in the overlay over
-    /// them.
-    void write_exact(const Frame& frame, const GBuffer& targets);
+    /// them. With `layers` radiance and overlay are those of a whole frame with something before the colours.
+    void write_exact(const Frame& frame, const GBuffer& targets, bool layers);
 
     /// Row 0 of the framebuffer is the top of the picture.
     const gl::Framebuffer& picture() const { return picture_framebuffer_; }

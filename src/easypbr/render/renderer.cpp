@@ -157,6 +157,7 @@ void Renderer::draw_geometry(Frame& frame, const DrawList& list) {
     frame.covered = everything;
     if (!over_.albedo || over_.size() != frame.size) over_ = GBuffer(frame.size);
     if (frame.with_ids) over_.add_ids();
+    if (frame.extensions) over_.add_extensions();
     draw_geometry(frame, list.without([&](const DrawItem& item) { return !is_over(item); }), over_);
     frame.covered = everything;
     composite_.draw_over(frame, over_, targets_);
@@ -233,21 +234,27 @@ void Renderer::draw_lights(const Frame& frame, const GBuffer& targets) {
 }
 
 void Renderer::draw_exact(Frame& frame, const DrawList& list) {
-    if (frame.sample_count > 1) {
-        frame.sample_index = 0;
-        frame.sample_count = 1;
+    const bool has_layers = list.has([](const DrawItem& item) { return item.layered; });
+    const bool averaged = frame.sample_count > 1;
+    frame.sample_index = 0;
+    frame.sample_count = 1;
+    // What lies before exact colours is lit and mixed with them in a whole frame.
+    if (averaged && has_layers) draw_frame(frame, list, list);
+    if (averaged && !has_layers) {
         frame.camera = frame.resolved->camera;
         prepare_frame(frame, bounds_of(*frame.scene), list.reaches_beyond_vertices());
-        draw_geometry(frame, list.without_layers());
+        draw_geometry(frame, list);
     }
-    frame.with_overlay = !list.lines.empty();
-    if (frame.with_overlay) {
-        const float nothing[4] = {0, 0, 0, 0};
-        targets_.display.clear_color(0, nothing);
-        lines_.draw(frame, list.lines, targets_);
+    if (!has_layers) {
+        frame.with_overlay = !list.lines.empty();
+        if (frame.with_overlay) {
+            const float nothing[4] = {0, 0, 0, 0};
+            targets_.display.clear_color(0, nothing);
+            lines_.draw(frame, list.lines, targets_);
+        }
     }
     no_attributes_.bind();
-    output_.write_exact(frame, targets_);
+    output_.write_exact(frame, targets_, has_layers);
 }
 
 const gl::Texture* Renderer::background_texture(const Frame& frame, const SettingsImages& images) {
