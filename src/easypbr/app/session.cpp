@@ -9,6 +9,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image_io.h"
+#include "easypbr/scene/fields.h"
 
 namespace easypbr::app {
 namespace {
@@ -39,6 +40,9 @@ struct NamedTexture {
     Texture Material::*texture;
 };
 
+/// An automatic near plane stays within this part of the target's distance (auto_camera.cpp begins there).
+constexpr double near_part = 1e-3;
+
 constexpr NamedTexture named_textures[] = {
     {&MaterialSettings::base_color_texture, &Material::base_color_texture},
     {&MaterialSettings::metallic_texture, &Material::metallic_texture},
@@ -47,6 +51,22 @@ constexpr NamedTexture named_textures[] = {
     {&MaterialSettings::occlusion_texture, &Material::occlusion_texture},
     {&MaterialSettings::emissive_texture, &Material::emissive_texture},
     {&MaterialSettings::opacity_texture, &Material::opacity_texture}};
+
+/// The same data at the same places. Data never change, so those that are the same object are the same.
+bool same_scene(const SceneSnapshot& a, const SceneSnapshot& b) {
+    const auto same_object = [](const SceneSnapshot::Object& x, const SceneSnapshot::Object& y) {
+        return x.mesh == y.mesh && x.name == y.name && x.T_world_mesh.matrix() == y.T_world_mesh.matrix();
+    };
+    const auto hash = [](const Environment& environment) {
+        return environment.empty() ? std::string() : environment.hash();
+    };
+    return std::ranges::equal(a.objects, b.objects, same_object) && a.origin == b.origin &&
+           hash(a.environment) == hash(b.environment);
+}
+
+bool same_settings(const Settings& a, const Settings& b) {
+    return std::ranges::all_of(fields(), [&](const Field& field) { return field.get(a) == field.get(b); });
+}
 
 }  // namespace
 
@@ -155,16 +175,88 @@ Image Session::read_annotated() {
     return picture;
 }
 
+void Session::annotate(const Prepared& prepared) {
+    annotation_ = annotation_of(prepared.scene, prepared.resolved.settings);
+    annotation_settings_ = prepared.resolved.settings.annotation;
+}
+
 void Session::draw_frame(const PictureOptions& options) {
     const Prepared prepared = prepare(options);
+    refined_.reset();
     render::Renderer& renderer = this->renderer();
     const gl::ContextScope scope(*context_);
     const Stopwatch watch(timing_.draw);
     renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
     renderer.read_picture(1, 1);
-    annotation_ = annotation_of(prepared.scene, prepared.resolved.settings);
-    annotation_settings_ = prepared.resolved.settings.annotation;
+    annotate(prepared);
     latch_from(prepared);
+}
+
+bool Session::Refined::is_of(const Prepared& other, const render::SettingsImages& other_images) const {
+    const render::DrawOptions &a = prepared.options, &b = other.options;
+    const auto same_texture = [&](const NamedTexture& named) {
+        return (images.textures.*named.texture).image == (other_images.textures.*named.texture).image;
+    };
+    return a.size == b.size && a.samples == b.samples && a.encoding == b.encoding &&
+           images.background == other_images.background &&
+           std::ranges::all_of(named_textures, same_texture) && same_scene(prepared.scene, other.scene) &&
+           prepared.resolved.lights == other.resolved.lights &&
+           same_settings(prepared.resolved.settings, other.resolved.settings);
+}
+
+Session::Refinement Session::refine(const PictureOptions& options, bool finish) {
+    Prepared prepared = prepare(options);
+    Refinement done;
+    done.total = prepared.options.samples;
+    done.began = !refined_ || !refined_->is_of(prepared, settings_images_);
+    if (!done.began && refined_->frames == done.total) return done.frames = done.total, done;
+    render::Renderer& renderer = this->renderer();
+    const gl::ContextScope scope(*context_);
+    const Stopwatch watch(timing_.draw);
+    if (done.began) {
+        refined_.reset();
+        renderer.begin(prepared.scene, prepared.resolved, prepared.options, settings_images_);
+        annotate(prepared);
+        latch_from(prepared);
+        refined_ = std::make_unique<Refined>(std::move(prepared), settings_images_);
+    }
+    done.drew = true;
+    done.frames = refined_->frames = renderer.add_sample();
+    if (finish || done.frames == done.total) renderer.finish();
+    return done;
+}
+
+PickBuffer Session::pick_buffer(std::optional<Vec2i> size) {
+    const Prepared prepared = prepare({size, 1, Encoding::srgb8});
+    // A complete picture stays what it is; one that is being refined has to begin again.
+    if (refined_ && refined_->frames < refined_->prepared.options.samples) refined_.reset();
+    render::Renderer& renderer = this->renderer();
+    const gl::ContextScope scope(*context_);
+    renderer.draw_surfaces(prepared.scene, prepared.resolved, prepared.options.size, settings_images_);
+    latch_from(prepared);
+    using render::Layer;
+    return PickBuffer(prepared.scene, prepared.resolved.settings.style, prepared.resolved.camera,
+                      renderer.read_layer(Layer::id), renderer.read_layer(Layer::element),
+                      renderer.read_layer(Layer::depth));
+}
+
+ViewPoint Session::view_point(std::optional<Vec2i> size) {
+    const ResolvedSettings resolved = resolve(size);
+    return {resolved.camera, *resolved.settings.camera.target};
+}
+
+void Session::set_view_point(const ViewPoint& view) {
+    set_camera(view.camera);
+    CameraSettings& to = settings_.camera;
+    to.position.latch(view.camera.position());
+    to.target.latch(view.target);
+    const double nearest = near_part * view.distance();
+    if (to.near.value() && !to.near.is_pinned()) to.near.latch(std::min(*to.near.value(), nearest));
+}
+
+gl::Context& Session::context() {
+    renderer();
+    return *context_;
 }
 
 Image Session::last_picture() {
@@ -191,6 +283,7 @@ std::map<std::string, Image> Session::render_layers(const std::vector<std::strin
     });
     render::Renderer& renderer = this->renderer();
     const gl::ContextScope scope(*context_);
+    refined_.reset();
     renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
     latch_from(prepared);
     std::map<std::string, Image> images;
@@ -222,6 +315,12 @@ std::vector<std::string> Session::object_names() const {
 
 void Session::set_camera(const Camera& camera) {
     CameraSettings& to = settings_.camera;
+    // A pose replaces both; what they were still says how far away the target is.
+    for (Auto<Vec3d>* replaced : {&to.position, &to.target}) {
+        const std::optional<Vec3d> known = replaced->value();
+        *replaced = automatic;
+        if (known) replaced->latch(*known);
+    }
     const Mat4d T = camera.T_world_cam.matrix();
     to.pose.clear();
     for (int row = 0; row < 4; ++row)

@@ -9,6 +9,8 @@
 #include <vector>
 
 #include "easypbr/app/annotation.h"
+#include "easypbr/app/picking.h"
+#include "easypbr/app/view_point.h"
 #include "easypbr/core/image.h"
 #include "easypbr/gl/context.h"
 #include "easypbr/render/renderer.h"
@@ -64,6 +66,35 @@ class Session {
     /// finish: for measuring.
     void draw_frame(const PictureOptions& options = {});
 
+    /// A picture that gets better with every call: one more frame of draw_frame()'s, whose picture it is, bit
+    /// for bit, after the last. Begins anew when anything that is drawn has changed, or when something else
+    /// was drawn meanwhile; does nothing when all frames are there. Without `finish`, the frame is added but
+    /// the picture stays as it was.
+    struct Refinement {
+        int frames = 0, total = 0;
+        bool began = false;  ///< with this call
+        bool drew = false;   ///< in this call
+    };
+    Refinement refine(const PictureOptions& options = {}, bool finish = true);
+
+    /// What is seen in each pixel of the picture that would be drawn now, as surfaces.
+    PickBuffer pick_buffer(std::optional<Vec2i> size = std::nullopt);
+    /// What is seen in the pixel that the point lies in, counted from the picture's top left corner; nothing
+    /// where there is no surface.
+    std::optional<Pick> pick(Vec2d pixel, std::optional<Vec2i> size = std::nullopt) {
+        return pick_buffer(size).at(pixel);
+    }
+
+    /// The camera of the next picture with its target.
+    ViewPoint view_point(std::optional<Vec2i> size = std::nullopt);
+    /// Pins the camera, as set_camera(), and keeps its target; an automatic near plane comes as near as the
+    /// camera.
+    void set_view_point(const ViewPoint& view);
+
+    /// The context and the renderer, made when there are none yet: to draw on from the picture.
+    gl::Context& context();
+    render::Renderer& renderer();
+
     /// The picture that was drawn last, read back. Throws ArgumentError when there is none.
     Image last_picture();
 
@@ -106,7 +137,6 @@ class Session {
         ResolvedSettings resolved;
         render::DrawOptions options;
     };
-    render::Renderer& renderer();
     /// Snapshot, images, auto parameters.
     Prepared prepare(const PictureOptions& options);
     void load_images();
@@ -116,6 +146,8 @@ class Session {
     SceneSnapshot snapshot();
     /// The renderer's picture with its annotation.
     Image read_annotated();
+    /// What the last picture is annotated with.
+    void annotate(const Prepared& prepared);
     /// Keeps what was inferred, unless there was nothing to infer it from.
     void latch_from(const Prepared& prepared);
     Vec2i size_or(std::optional<Vec2i> size) const { return size.value_or(settings_.image.size); }
@@ -123,6 +155,15 @@ class Session {
     Scene scene_;
     Settings settings_;
     Timing timing_;
+
+    /// What refine() adds frames to; nothing: it has to begin.
+    struct Refined {
+        Prepared prepared;
+        render::SettingsImages images;
+        int frames = 0;
+        bool is_of(const Prepared& other, const render::SettingsImages& other_images) const;
+    };
+    std::unique_ptr<Refined> refined_;
 
     Annotation annotation_;  ///< of the picture that was drawn last
     AnnotationSettings annotation_settings_;

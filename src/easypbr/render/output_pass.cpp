@@ -138,7 +138,7 @@ void OutputPass::finish(const Frame& frame, const GBuffer& targets, const gl::Te
     program.use();
     program.set("u_size", Vec2(frame.size.cast<float>()));
     program.set("u_exposure", exposure_of(frame, encoding_));
-    program.set("u_sample_scale", 1.0f / float(frame.sample_count));
+    program.set("u_sample_scale", 1.0f / float(frame.sample_index + 1));
     program.set("u_background", background_color(frame));
     program.set("u_source", 0);
     (sum ? sum_ : targets.radiance).bind(0);

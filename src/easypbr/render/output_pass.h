@@ -22,7 +22,7 @@ class OutputPass {
     void begin(Vec2i size, Encoding encoding);
     /// Adds a frame's radiance to the sum. Not needed for a picture of one sample.
     void accumulate(const Frame& frame, const GBuffer& targets);
-    /// Writes the picture from the sum, or from the radiance of the only frame.
+    /// Writes the picture from the sum of the frames so far, or from the radiance of the only one.
     void finish(const Frame& frame, const GBuffer& targets, const gl::Texture* background_image);
     /// Puts the exact colours that the G-buffer holds into the finished picture, lines in the overlay over
     /// them. With `layers` radiance and overlay are those of a whole frame with something before the colours.
@@ -30,6 +30,7 @@ class OutputPass {
 
     /// Row 0 of the framebuffer is the top of the picture.
     const gl::Framebuffer& picture() const { return picture_framebuffer_; }
+    const gl::Texture& texture() const { return picture_; }
     gl::Format format() const { return picture_.format(); }
 
   private:

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/octahedral.h"
@@ -70,45 +71,119 @@ void Renderer::run(const char* name, Pass&& pass) {
 
 Renderer::Renderer() : no_attributes_(gl::VertexArray::make()) {}
 
+/// A picture that frames are added to. The lists point into the scene, so it stays where it is.
+struct Renderer::Picture {
+    Picture(const SceneSnapshot& scene_, const ResolvedSettings& resolved_, const DrawOptions& options_,
+            const SettingsImages& images_)
+        : scene(scene_), resolved(resolved_), options(options_), images(images_) {}
+    Picture(const Picture&) = delete;
+    Picture& operator=(const Picture&) = delete;
+
+    const SceneSnapshot scene;
+    const ResolvedSettings resolved;
+    const DrawOptions options;
+    const SettingsImages images;
+    DrawableScene drawable;
+    DrawList list;      ///< everything
+    DrawList averaged;  ///< of frames that are added up
+    Frame frame;
+    bool is_finished = false;  ///< at least once
+};
+
+Renderer::~Renderer() = default;
+
 void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved, const DrawOptions& options,
                     const SettingsImages& images) {
-    if (options.samples < 1)
-        throw ArgumentError(fmt::format("samples: expected 1 or more, got {}", options.samples));
+    begin(scene, resolved, options, images);
+    while (add_sample() < options.samples) continue;
+    finish();
+}
+
+void Renderer::prepare_targets(Vec2i size, const ResolvedSettings& resolved) {
     // Row 0 of every target is the top of the picture; depth runs from 1 (near) to 0 (infinitely far).
     glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
     glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
-    if (!targets_.albedo || targets_.size() != options.size) targets_ = GBuffer(options.size);
+    if (!targets_.albedo || targets_.size() != size) targets_ = GBuffer(size);
     if (!*resolved.settings.ssao.enabled) targets_.remove_ambient_occlusion();
-    output_.begin(options.size, options.encoding);
     pass_times_.clear();
     running_ = false;
+    camera_ = resolved.camera;
+}
+
+void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolved, const DrawOptions& options,
+                     const SettingsImages& images) {
+    if (options.samples < 1)
+        throw ArgumentError(fmt::format("samples: expected 1 or more, got {}", options.samples));
+    picture_.reset();
+    prepare_targets(options.size, resolved);
+    output_.begin(options.size, options.encoding);
     if (!resolved.environment.empty())
         run("environment", [&] {
             const bool seen = sees_environment(resolved);
             environment_.prepare(resolved.environment, seen ? resolved.seen_environment : Environment());
         });
-
-    const DrawableScene drawable = drawables_.apply(scene, resolved.settings);
-    const DrawList all = draw_list(drawable, resolved.settings, images.textures);
-    const DrawList list = options.layers || options.ids ? all.as_surfaces() : all;
-    // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
-    const bool has_exact = list.has([](const DrawItem& item) { return item.kind == SurfaceKind::exact; });
-    const DrawList averaged = options.samples > 1 && has_exact ? list.without_exact() : DrawList();
-    Frame frame;
-    frame.scene = &drawable.scene;
-    element_sources_ = drawable.sources;
-    frame.resolved = &resolved;
+    auto picture = std::make_unique<Picture>(scene, resolved, options, images);
+    picture->drawable = drawables_.apply(picture->scene, resolved.settings);
+    element_sources_ = picture->drawable.sources;
+    const DrawList all = draw_list(picture->drawable, resolved.settings, images.textures);
+    picture->list = options.layers || options.ids ? all.as_surfaces() : all;
+    Frame& frame = picture->frame;
+    frame.scene = &picture->drawable.scene;
+    frame.resolved = &picture->resolved;
     frame.size = options.size;
     frame.sample_count = options.samples;
+    frame.sample_index = -1;
     frame.with_ids = options.ids;
-    frame.with_exact = has_exact;
+    frame.with_exact =
+        picture->list.has([](const DrawItem& item) { return item.kind == SurfaceKind::exact; });
+    // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
+    const bool apart = options.samples > 1 && frame.with_exact;
+    picture->averaged = apart ? picture->list.without_exact() : picture->list;
     if (options.ids) targets_.add_ids();
-    for (frame.sample_index = 0; frame.sample_index < options.samples; ++frame.sample_index) {
-        draw_frame(frame, options.samples > 1 && has_exact ? averaged : list, list);
-        if (options.samples > 1) run("accumulate", [&] { output_.accumulate(frame, targets_); });
+    picture_ = std::move(picture);
+}
+
+int Renderer::add_sample() {
+    Frame& frame = picture_->frame;
+    ++frame.sample_index;
+    draw_frame(frame, picture_->averaged, picture_->list);
+    if (frame.sample_count > 1) run("accumulate", [&] { output_.accumulate(frame, targets_); });
+    return frame.sample_index + 1;
+}
+
+void Renderer::finish() {
+    const Frame& frame = picture_->frame;
+    run("output", [&] { output_.finish(frame, targets_, background_texture(frame, picture_->images)); });
+    if (frame.with_exact) {
+        Frame exact = frame;
+        run("exact", [&] { draw_exact(exact, picture_->list); });
     }
-    run("output", [&] { output_.finish(frame, targets_, background_texture(frame, images)); });
-    if (has_exact) run("exact", [&] { draw_exact(frame, list); });
+    // Once a picture: frames after the first ask for less than the first did.
+    if (!std::exchange(picture_->is_finished, true)) evict_unused();
+    if (frame.sample_index + 1 == frame.sample_count) picture_.reset();
+    glFlush();
+}
+
+void Renderer::draw_surfaces(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i size,
+                             const SettingsImages& images) {
+    picture_.reset();
+    prepare_targets(size, resolved);
+    targets_.add_ids();
+    const DrawableScene drawable = drawables_.apply(scene, resolved.settings);
+    element_sources_ = drawable.sources;
+    const DrawList list = draw_list(drawable, resolved.settings, images.textures).as_surfaces();
+    Frame frame;
+    frame.scene = &drawable.scene;
+    frame.resolved = &resolved;
+    frame.size = size;
+    frame.with_ids = true;
+    frame.camera = resolved.camera;
+    prepare_frame(frame, bounds_of(*frame.scene), list.reaches_beyond_vertices());
+    draw_geometry(frame, list);
+    glFlush();
+}
+
+void Renderer::evict_unused() {
     meshes_.evict_unused();
     textures_.evict_unused();
     software_geometry_.evict_unused();
@@ -117,8 +192,6 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     spacings_.evict_unused();
     drawables_.evict_unused();
     lines_.evict_unused();
-    camera_ = resolved.camera;
-    glFlush();
 }
 
 const Box3d& Renderer::bounds_of(const SceneSnapshot& scene) {

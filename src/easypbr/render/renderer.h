@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -59,10 +60,29 @@ struct SettingsImages {
 class Renderer {
   public:
     Renderer();
+    ~Renderer();
 
     /// Draws a picture; read_picture() and read_layer() give what was drawn last.
     void draw(const SceneSnapshot& scene, const ResolvedSettings& resolved, const DrawOptions& options,
               const SettingsImages& images = {});
+
+    /// The same picture frame by frame: begin(), then add_sample() up to options.samples times; finish()
+    /// writes the picture of the frames so far and may be called after any of them. After the last one it is
+    /// draw()'s, bit for bit, and complete. What is drawn between must not be another picture: then begin()
+    /// again.
+    void begin(const SceneSnapshot& scene, const ResolvedSettings& resolved, const DrawOptions& options,
+               const SettingsImages& images = {});
+    /// Returns the number of frames so far.
+    int add_sample();
+    void finish();
+
+    /// Draws nothing but surfaces, through the pixels' centres: for read_layer(), ids included. The picture
+    /// that was drawn last stays; one that frames are added to has to begin again.
+    void draw_surfaces(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i size,
+                       const SettingsImages& images = {});
+
+    /// The picture as a texture, until another one is drawn; row 0 is the top.
+    const gl::Texture& picture() const { return output_.texture(); }
 
     /// RGBA, row 0 on top: u8, u16 or f32 by the encoding.
     Image read_picture() const;
@@ -87,6 +107,9 @@ class Renderer {
     const std::vector<std::pair<std::string, double>>& pass_times() const { return pass_times_; }
 
   private:
+    struct Picture;
+    void prepare_targets(Vec2i size, const ResolvedSettings& resolved);
+    void evict_unused();
     void draw_frame(Frame& frame, const DrawList& list, const DrawList& casters);
     /// Fills the G-buffer by the faster way that can draw these items.
     void draw_geometry(Frame& frame, const DrawList& list);
@@ -130,6 +153,7 @@ class Renderer {
     /// Bounds of the last scene, and what they were computed from.
     std::vector<std::pair<uint64_t, Eigen::Affine3d>> bounded_;
     Box3d bounds_;
+    std::unique_ptr<Picture> picture_;  ///< that frames are added to
     bool native_geometry_ = true;
     bool measure_ = false, running_ = false;
     std::vector<std::pair<std::string, double>> pass_times_;

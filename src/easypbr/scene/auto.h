@@ -44,6 +44,8 @@ class Auto {
         if (mode_ != Mode::pinned) value_.reset();
     }
 
+    bool operator==(const Auto&) const = default;
+
   private:
     enum class Mode { automatic, follow, pinned };
     std::optional<T> value_;

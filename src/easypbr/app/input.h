@@ -1,0 +1,44 @@
+// What a person does with mouse and keyboard, as plain values: no window system is known here.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/math.h"
+
+namespace easypbr::app {
+
+enum class MouseButton { left, right, middle };
+
+/// Letters and digits are their capital ASCII codes; these are the others that mean something here.
+namespace key {
+inline constexpr int space = 32, escape = 256, enter = 257, tab = 258, backspace = 259, insert = 260,
+                     del = 261, right = 262, left = 263, down = 264, up = 265, page_up = 266, page_down = 267,
+                     home = 268, end = 269, f1 = 290, f12 = 301;
+}
+
+struct InputEvent {
+    enum class Kind {
+        move,     ///< the pointer is at `position`
+        press,    ///< of `button`
+        release,  ///< of `button`
+        scroll,   ///< by `scroll` notches
+        key_down,
+        key_up,
+        text,       ///< of one `code` point
+        drop,       ///< files `paths` were dropped
+        focus_lost  ///< keys and buttons count as released
+    };
+    Kind kind = Kind::move;
+    Vec2d position{0, 0};  ///< pixels of the picture, (0, 0) is the top left corner
+    MouseButton button = MouseButton::left;
+    int key = 0;
+    bool shift = false, control = false, alt = false;
+    Vec2d scroll{0, 0};  ///< y: positive away from the person
+    uint32_t code = 0;
+    std::vector<std::string> paths;
+    double time = 0;  ///< seconds, from any beginning
+};
+
+}  // namespace easypbr::app

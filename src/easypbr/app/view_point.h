@@ -1,0 +1,42 @@
+// A camera and the point it turns about, and the ways a person moves them. Pure functions.
+#pragma once
+
+#include "easypbr/scene/camera.h"
+
+namespace easypbr::app {
+
+/// Where a person looks from. The target lies on the optical axis, before the camera.
+struct ViewPoint {
+    Camera camera;
+    Vec3d target{0, 0, 0};
+
+    /// Distance of the target along the optical axis.
+    double distance() const { return (target - camera.position()).norm(); }
+};
+
+/// World position of what is seen at a pixel of a picture of `size` at a depth along the optical axis. Pixels
+/// count from the picture's top left corner.
+Vec3d point_at(const Camera& camera, Vec2d pixel, Vec2i size, double depth);
+
+/// The pixel that a world position is seen at; x, y may lie outside of the picture. z is the depth along the
+/// optical axis: what has none above 0 is behind a perspective camera.
+Vec3d pixel_of(const Camera& camera, const Vec3d& point, Vec2i size);
+
+/// Turns about the target: `right_deg` about the world's up axis, counter-clockwise seen from above, then
+/// `up_deg` about the picture's horizontal, which stops short of looking straight along the axis. The
+/// distance and the roll stay.
+ViewPoint orbited(const ViewPoint& view, const Vec3d& up, double right_deg, double up_deg);
+
+/// Moves in the picture's plane so that what is at the target's depth moves by `pixels` (x right, y down).
+ViewPoint panned(const ViewPoint& view, Vec2d pixels, Vec2i size);
+
+/// Scales all distances about a point, which stays at its pixel: below 1 goes nearer.
+ViewPoint zoomed(const ViewPoint& view, double factor, const Vec3d& about);
+
+/// Moves along the camera's own axes, target and all: x right, y up, z forward, world units.
+ViewPoint flown(const ViewPoint& view, const Vec3d& by);
+
+/// Makes a point the target and the middle of the picture; direction and distance stay.
+ViewPoint focused(const ViewPoint& view, const Vec3d& point);
+
+}  // namespace easypbr::app

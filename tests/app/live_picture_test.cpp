@@ -1,0 +1,154 @@
+// Pictures that get better call by call, and what is seen where in them.
+#include <gtest/gtest.h>
+
+#include "easypbr/app/session.h"
+#include "easypbr/geometry/primitives.h"
+
+namespace easypbr::app {
+namespace {
+
+Session ball_session() {
+    Scene scene;
+    scene.show(make_sphere(1, 16), "ball");
+    Session session(scene);
+    session.settings().image.size = Vec2i(64, 48);
+    session.settings().image.samples = 4;
+    return session;
+}
+
+bool same(const Image& a, const Image& b) {
+    return std::ranges::equal(a.bytes(), b.bytes());
+}
+
+TEST(Refine, EndsAtTheStillBitForBit) {
+    const Image still = ball_session().render();
+    Session session = ball_session();
+    for (int frame = 1; frame <= 4; ++frame) {
+        const Session::Refinement done = session.refine();
+        EXPECT_EQ(done.frames, frame);
+        EXPECT_EQ(done.total, 4);
+        EXPECT_EQ(done.began, frame == 1);
+        EXPECT_TRUE(done.drew);
+        EXPECT_EQ(same(session.last_picture(), still), frame == 4);
+    }
+    EXPECT_FALSE(session.refine().drew);
+    EXPECT_TRUE(same(session.last_picture(), still));
+}
+
+TEST(Refine, EveryFrameOnTheWayIsThePictureOfItsOwnFrames) {
+    Session session = ball_session();
+    session.settings().background.mode = BackgroundMode::color;
+    session.settings().background.color = Vec3(1, 0, 0);
+    session.refine();
+    session.refine();
+    // A sum that is divided by the wrong number of frames darkens or lets the background through.
+    const Image half = session.last_picture(), still = ball_session().render();
+    const uint8_t *middle = half.at<uint8_t>(32, 24), *expected = still.at<uint8_t>(32, 24);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(middle[c], expected[c], 6);  // noise of two frames against four
+    EXPECT_EQ(half.at<uint8_t>(0, 0)[0], 255);
+}
+
+TEST(Refine, BeginsAnewWhenAnythingChanges) {
+    Session session = ball_session();
+    const auto began_after = [&](auto&& change) {
+        session.refine();
+        session.refine();
+        change();
+        return session.refine().began;
+    };
+    EXPECT_FALSE(began_after([] {}));
+    EXPECT_TRUE(began_after([&] { session.settings().tone.exposure_compensation = 1; }));
+    EXPECT_TRUE(began_after([&] { session.scene().show(make_box(), "box"); }));
+    EXPECT_TRUE(began_after([&] {
+        session.scene().get("box").set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(1, 0, 0)));
+    }));
+    EXPECT_TRUE(began_after([&] { session.scene().set_light("lamp", {}); }));
+    EXPECT_TRUE(began_after([&] { session.render(); }));
+    EXPECT_TRUE(began_after([&] { session.refine({Vec2i(32, 32), std::nullopt}); }));
+    EXPECT_TRUE(began_after([&] { session.pick({1, 1}); }));
+}
+
+TEST(Refine, PickingLeavesAFinishedPictureAlone) {
+    Session session = ball_session();
+    while (session.refine().frames < 4) continue;
+    const Image before = session.last_picture();
+    session.pick({32, 24});
+    EXPECT_FALSE(session.refine().drew);
+    EXPECT_TRUE(same(session.last_picture(), before));
+}
+
+TEST(Pick, FindsTheFaceAndThePositionOnTheBall) {
+    Session session = ball_session();
+    session.set_view_point({Camera::look_at(Vec3d(0, 0, 5), Vec3d(0, 0, 0)), Vec3d(0, 0, 0)});
+    const Vec2i size(65, 65);  // the middle pixel's centre is on the optical axis
+    const std::optional<Pick> pick = session.pick({32.5, 32.5}, size);
+    ASSERT_TRUE(pick);
+    EXPECT_EQ(pick->object, "ball");
+    EXPECT_TRUE(pick->is_face);
+    // The axis goes through the ball's face before the vertex circle, or through a vertex: between the sphere
+    // of radius 1 and the plane of its largest face, at most 1 - cos^2(pi / 32) below it.
+    EXPECT_NEAR(pick->position.z(), 1, 0.02);
+    EXPECT_NEAR(pick->position.head<2>().norm(), 0, 1e-6);
+    EXPECT_NEAR(pick->depth, 5 - pick->position.z(), 1e-5);
+    const Mesh ball = session.scene().get("ball");
+    ASSERT_LT(pick->element, ball.F().rows());
+    Eigen::AlignedBox3f face;
+    for (int corner = 0; corner < 3; ++corner)
+        face.extend(Vec3(ball.V().row(ball.F()(pick->element, corner))));
+    const Vec3 p = pick->position.cast<float>();
+    const Vec3 outside = p - p.cwiseMax(face.min()).cwiseMin(face.max());
+    EXPECT_LT(outside.norm(), 1e-5);
+    EXPECT_FALSE(session.pick({1, 1}, size));
+    EXPECT_FALSE(session.pick({-5, 900}, size));
+}
+
+TEST(Pick, NamesPartsAndPoints) {
+    Session session;
+    Mesh quad = make_plane(2);
+    quad.edit([](MeshData& data) {
+        data.parts = {{"lower", 0, 1, 0}, {"upper", 1, 1, 0}};
+        data.materials = {Material()};
+    });
+    session.scene().show(quad, "quad");
+    const PickBuffer buffer = session.pick_buffer(Vec2i(64, 64));
+    std::set<std::string> parts;
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x)
+            if (const auto pick = buffer.at(Vec2d(x, y))) {
+                parts.insert(pick->part);
+                EXPECT_EQ(pick->part_index, pick->element);
+            }
+    EXPECT_EQ(parts, (std::set<std::string>{"lower", "upper"}));
+
+    Array3f::Dense point(1, 3);
+    point << 0, 0, 0;
+    MeshData cloud;
+    cloud.V = point;
+    cloud.style.point_size = 9.0f;
+    Session points;
+    points.scene().show(Mesh(cloud), "cloud");
+    points.set_view_point({Camera::look_at(Vec3d(0, 0, 5), Vec3d(0, 0, 0)), Vec3d(0, 0, 0)});
+    const std::optional<Pick> pick = points.pick({32.5, 32.5}, Vec2i(65, 65));
+    ASSERT_TRUE(pick);
+    EXPECT_FALSE(pick->is_face);
+    EXPECT_EQ(pick->element, 0);
+}
+
+TEST(ViewPoint, ReplacesAPinnedPositionAndComesNear) {
+    Session session = ball_session();
+    session.settings().camera.position = Vec3d(0, 0, 9);
+    session.settings().camera.target = Vec3d(0, 0, 0);
+    session.render();
+    ViewPoint view = session.view_point();
+    EXPECT_LT((view.camera.position() - Vec3d(0, 0, 9)).norm(), 1e-12);
+    view = zoomed(view, 1e-3, Vec3d(0, 0, 1));
+    session.set_view_point(view);
+    const ViewPoint after = session.view_point();
+    EXPECT_LT((after.target - view.target).norm(), 1e-9);
+    // 8 mm before the ball's surface, and the near plane is nearer still.
+    EXPECT_LT(after.camera.near, 0.008);
+    ASSERT_TRUE(session.pick({32, 24}));
+}
+
+}  // namespace
+}  // namespace easypbr::app
