@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """One table: EasyPBR beside VTK 9 (clouds: Open3D) in the same run, on the same meshes, environment and size.
 
-usage: run.py --data FOLDER [--work FOLDER] [--quick]
+usage: run.py --data FOLDER [--work FOLDER] [--quick | --clouds]
 FOLDER holds nefertiti.obj and env/studio.hdr. Without --quick the 25.6 M-face mesh is measured too (VTK needs two
-minutes for it), and a cloud of 10 M points. Needs Debian's python3-vtk9, python3-open3d, xvfb, python3-numpy and time;
-scripts/bench.sh installs them.
+minutes for it), a cloud of 10 M points and 1 M surfels; with --clouds only these. Needs Debian's python3-vtk9,
+python3-open3d, xvfb, python3-numpy and time; scripts/bench.sh installs them.
 """
 import argparse
 import json
@@ -159,6 +159,26 @@ def open3d(path, *options):
     return best
 
 
+MAKE_SURFELS = """
+import sys
+import easypbr
+sys.path.insert(0, sys.argv[1])
+import make_large_cloud
+cloud = easypbr.Mesh()
+cloud.V, cloud.C = make_large_cloud.terrain(1_000_000)
+cloud.estimate_surfels().save(sys.argv[2])
+"""
+
+
+def measure_surfels(data, work):
+    surfels = work / "surfels.ply"
+    if not surfels.exists():
+        run(ROOT / ".venv/bin/python", "-c", MAKE_SURFELS, ROOT / "bench", surfels)
+    ours = frames(surfels, 5, data / "env/studio.hdr")
+    row("1 M surfels: frame", ours["frame_ms_median"] / 1000, None, "<= 1.5 s")
+    row("  pass geometry", ours["passes_ms"]["geometry"] / 1000)
+
+
 def measure_clouds(work, count=10_000_000):
     clouds = [work / f"cloud.{extension}" for extension in ("ply", "pcd")] + [work / "cloud_compressed.pcd"]
     if not clouds[1].exists():
@@ -182,12 +202,16 @@ def main():
     parser.add_argument("--data", type=pathlib.Path, required=True)
     parser.add_argument("--work", type=pathlib.Path, default=pathlib.Path(tempfile.gettempdir()) / "easypbr_bench")
     parser.add_argument("--quick", action="store_true")
+    parser.add_argument("--clouds", action="store_true", help="only clouds and surfels")
     arguments = parser.parse_args()
     arguments.work.mkdir(parents=True, exist_ok=True)
-    measure_head(arguments.data, arguments.work)
-    if not arguments.quick:
-        measure_goliath(arguments.data, arguments.work)
+    if not arguments.clouds:
+        measure_head(arguments.data, arguments.work)
+        if not arguments.quick:
+            measure_goliath(arguments.data, arguments.work)
+    if arguments.clouds or not arguments.quick:
         measure_clouds(arguments.work)
+        measure_surfels(arguments.data, arguments.work)
     header = ("what", "EasyPBR", "VTK 9, Open3D", "ratio", "target")
     widths = [max(len(r[i]) for r in [header, *rows]) for i in range(5)]
     for line in [header, tuple("-" * w for w in widths), *rows]:

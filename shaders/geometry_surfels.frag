@@ -4,12 +4,12 @@ uniform sampler2D u_depth_target;  // of what hides surfels
 uniform vec2 u_size;
 uniform vec3 u_depth;              // as in common_camera.glsl
 uniform vec3 u_material;           // metallic, roughness, code of the kind
-uniform float u_least_radius;
 
 flat in vec2 v_centre;
 flat in vec4 v_axes;
 flat in vec4 v_plane;
 flat in vec4 v_distance;
+flat in float v_least;
 flat in vec3 v_normal;
 flat in vec3 v_color;
 
@@ -35,7 +35,7 @@ float reversed(float z) {
 
 void main() {
     vec2 d = gl_FragCoord.xy - v_centre;
-    float far = max(abs(d.x), abs(d.y)) / u_least_radius;
+    float far = max(abs(d.x), abs(d.y)) / v_least;
     float screen = far * far;
     float scale = v_plane.w / (dot(v_plane.xy, d) + v_plane.z);
     vec2 uv = vec2(v_axes.w * d.x - v_axes.z * d.y, v_axes.x * d.y - v_axes.y * d.x) * scale;

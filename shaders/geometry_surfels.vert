@@ -22,6 +22,7 @@ flat out vec2 v_centre;     // pixels
 flat out vec4 v_axes;       // tx, ty, bx, by
 flat out vec4 v_plane;      // t x b; wc
 flat out vec4 v_distance;   // axial distance along t and b and of the centre; band
+flat out float v_least;     // half the side of the smallest square it covers, pixels
 flat out vec3 v_normal;
 flat out vec3 v_color;
 #ifdef OBJECT_ID
@@ -32,10 +33,10 @@ vec3 any_perpendicular(vec3 n) {
     return normalize(abs(n.x) > abs(n.z) ? vec3(-n.y, n.x, 0.0) : vec3(0.0, -n.z, n.y));
 }
 
-vec2 extent(float t, float b, vec3 w, float q_ww) {
+vec2 extent(float t, float b, vec3 w, float q_ww, float least) {
     float q_kw = t * w.x + b * w.y;
     float root = sqrt(max(0.0, q_kw * q_kw - q_ww * (t * t + b * b)));
-    return vec2(min((q_kw + root) / q_ww, -u_least_radius), max((q_kw - root) / q_ww, u_least_radius));
+    return vec2(min((q_kw + root) / q_ww, -least), max((q_kw - root) / q_ww, least));
 }
 
 void main() {
@@ -68,7 +69,10 @@ void main() {
     v_axes = vec4(t2, b2);
     v_plane = vec4(cross(vec3(t2, w.x), vec3(b2, w.y)), w.z);
     v_distance = vec4(z, max(length(t), length(b)) * u_surfel.w);
-    vec2 x = extent(t2.x, b2.x, w, q_ww), y = extent(t2.y, b2.y, w, q_ww);
+    // As least_radius() in render/surfel_projection.h.
+    float facing = dot(a_normal, a_normal) > 0.0 ? dot(n, normalize(to_viewer)) : 1.0;
+    v_least = facing < 0.0 ? max(1e-3, -facing * u_least_radius) : u_least_radius;
+    vec2 x = extent(t2.x, b2.x, w, q_ww, v_least), y = extent(t2.y, b2.y, w, q_ww, v_least);
     // Half a pixel more: the centres of all pixels that count are inside whatever the driver rounds.
     vec2 corner = v_centre + vec2((gl_VertexID & 1) == 0 ? x.x - 0.5 : x.y + 0.5,
                                   (gl_VertexID & 2) == 0 ? y.x - 0.5 : y.y + 0.5);

@@ -60,6 +60,9 @@ std::optional<SurfelProjection> SurfelProjector::project(Eigen::Index i) const {
         return -(view(2, 0) * v.x() + view(2, 1) * v.y() + view(2, 2) * v.z() + view(2, 3) * one);
     };
     SurfelProjection s;
+    const Vec3 to_viewer = orthographic_ ? towards_viewer_ : Vec3(eye_ - p), n = item_->mesh().N.row(i);
+    const float lengths = n.norm() * to_viewer.norm();
+    s.least = least_radius(lengths > 0 ? n.dot(to_viewer) / lengths : 1);
     s.wc = clip(3, p, 1);
     const float wt = clip(3, t, 0), wb = clip(3, b, 0);
     s.z_c = axial(p, 1);
@@ -87,8 +90,8 @@ std::optional<SurfelProjection> SurfelProjector::project(Eigen::Index i) const {
     const auto extent = [&](float tk, float bk, float centre, float& low, float& high) {
         const float q_kw = tk * wt + bk * wb, q_kk = tk * tk + bk * bk;
         const float root = std::sqrt(std::max(0.0f, q_kw * q_kw - q_ww * q_kk));
-        low = centre + std::min((q_kw + root) / q_ww, -least_surfel_radius);
-        high = centre + std::max((q_kw - root) / q_ww, least_surfel_radius);
+        low = centre + std::min((q_kw + root) / q_ww, -s.least);
+        high = centre + std::max((q_kw - root) / q_ww, s.least);
     };
     extent(s.tx, s.bx, s.centre_x, s.x0, s.x1);
     extent(s.ty, s.by, s.centre_y, s.y0, s.y1);

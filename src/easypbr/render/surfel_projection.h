@@ -14,6 +14,13 @@ namespace easypbr::render {
 /// filter of EWA splatting as Botsch et al. 2005 approximate it, made no larger than it has to be.
 constexpr float least_surfel_radius = 0.5f;
 
+/// The same for a surfel whose normal has the cosine `facing` to the direction towards the viewer. Those that
+/// turn away lie just behind the rim of closed surfaces, which they would make ragged: seen edge-on they need
+/// no pixel of their own.
+inline float least_radius(float facing) {
+    return facing < 0 ? std::max(1e-3f, -facing * least_surfel_radius) : least_surfel_radius;
+}
+
 /// A surfel at p with semi-axes t and b covers the points p + u t + v b with u^2 + v^2 <= 1. Homogeneous
 /// pixel coordinates relative to the centre's are linear in (u, v, 1), so that the inverse of a 3 x 3 matrix
 /// takes a pixel back to (u, v), right under perspective (Sigg et al. 2006, "GPU-Based Ray-Casting of
@@ -24,6 +31,7 @@ struct SurfelProjection {
     float qx, qy, qz;          ///< t x b
     float z_t, z_b, z_c;       ///< axial distance is z_c + u z_t + v z_b
     float x0, x1, y0, y1;      ///< box, pixels, relative to nothing
+    float least;               ///< half the side of the smallest square it covers, pixels
     float band;                ///< surfels that deep behind the nearest are blended with it
 
     /// Of a pixel's centre: the squared radius in the ellipse, above 1 outside, and the axial distance.
@@ -32,7 +40,7 @@ struct SurfelProjection {
     };
     Hit at(float x, float y) const {
         const float dx = x - centre_x, dy = y - centre_y;
-        const float far = std::max(std::abs(dx), std::abs(dy)) / least_surfel_radius;
+        const float far = std::max(std::abs(dx), std::abs(dy)) / least;
         const float screen = far * far;
         const float q = qx * dx + qy * dy + qz;
         const float scale = wc / q;
