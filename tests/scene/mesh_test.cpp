@@ -222,13 +222,9 @@ TEST(Mesh, CannotContainItself) {
     a.add_child(b);
     EXPECT_THROW(a.add_child(a), ArgumentError);
     EXPECT_THROW(b.add_child(a), ArgumentError);
-    b.edit([&](MeshData& d) { d.children = {a}; });
-    EXPECT_THROW(for_each_node(a, [](const auto&, const auto&) {}), ArgumentError);
-    EXPECT_THROW(a.clone(), ArgumentError);
-    Scene scene;
-    scene.show(a, "a");
-    EXPECT_THROW(scene.snapshot(), ArgumentError);
-    b.edit([](MeshData& d) { d.children.clear(); });
+    EXPECT_THROW(b.edit([&](MeshData& d) { d.children = {a}; }), ArgumentError);
+    EXPECT_THROW(b.edit([&](MeshData& d) { d.children = {b}; }), ArgumentError);
+    EXPECT_TRUE(b.children().empty());
 }
 
 TEST(Mesh, ComposesPosesFromParentToChild) {

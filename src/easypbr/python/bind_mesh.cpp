@@ -11,6 +11,7 @@
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
 #include "easypbr/python/mesh_fields.h"
+#include "easypbr/python/mesh_pose.h"
 
 namespace easypbr::python {
 namespace {
@@ -223,30 +224,6 @@ void bind_look(nb::class_<Mesh>& mesh) {
             "How the mesh is drawn; changes of its attributes go through.");
 }
 
-void bind_hierarchy(nb::class_<Mesh>& mesh) {
-    mesh.def_prop_rw(
-            "T_parent_mesh", [](const Mesh& m) { return matrix_to_numpy(m.T_parent_mesh().matrix()); },
-            [](Mesh& m, const ArrayLike& T) { m.set_T_parent_mesh(to_affine(T, "T_parent_mesh")); },
-            nb::for_getter(nb::sig("def T_parent_mesh(self) -> numpy.ndarray")),
-            "4 x 4 pose in the parent, or in the world.")
-        .def_prop_rw(
-            "offset", [](const Mesh& m) { return matrix_to_numpy(m.offset().transpose()); },
-            [](Mesh& m, const ArrayLike& offset) {
-                const Vec3d value = to_vector3(offset, "offset");
-                released([&] { m.set_offset(value); });
-            },
-            nb::for_getter(nb::sig("def offset(self) -> numpy.ndarray")),
-            "3 float64: offset + V are the coordinates that the mesh was given. Not zero for data far from "
-            "zero, which float32 would not hold. Meshes of one scene are placed by it, see Scene.origin.")
-        .def(
-            "add_child", [](Mesh& m, const Mesh& child) { released([&] { m.add_child(child); }); },
-            nb::arg("child"))
-        .def_prop_ro("children", [](const Mesh& m) { return m.snapshot()->children; })
-        .def(
-            "clone", [](const Mesh& m) { return released([&] { return m.clone(); }); },
-            "A copy of its own, children included.");
-}
-
 void bind_array_edit(nb::module_& module) {
     nb::class_<ArrayEdit>(module, "ArrayEdit", "A mesh's array while it is edited.")
         .def("__enter__", &ArrayEdit::enter, nb::sig("def __enter__(self) -> numpy.ndarray"))
@@ -271,7 +248,7 @@ void bind_mesh(nb::module_& module) {
     bind_arrays(mesh);
     bind_mesh_fields(mesh);
     bind_look(mesh);
-    bind_hierarchy(mesh);
+    bind_mesh_pose(mesh);
     mesh.def_prop_rw(
             "name", [](const Mesh& m) { return m.name(); },
             [](Mesh& m, const std::string& name) { m.edit([&](MeshData& data) { data.name = name; }); })

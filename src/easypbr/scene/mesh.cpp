@@ -145,13 +145,6 @@ bool same_array(const Array& a, const Array& b) {
     return a.data() == b.data() && a.rows() == b.rows() && a.revision() == b.revision();
 }
 
-bool reaches(const Mesh& from, const Mesh& wanted, int depth) {
-    if (from == wanted || depth > max_mesh_depth) return true;
-    const auto data = from.snapshot();
-    return std::any_of(data->children.begin(), data->children.end(),
-                       [&](const Mesh& child) { return reaches(child, wanted, depth + 1); });
-}
-
 using NodeVisitor = std::function<void(const std::shared_ptr<const MeshData>&, const Eigen::Affine3d&)>;
 
 void visit_node(const Mesh& mesh, const Eigen::Affine3d& T_world_parent, const NodeVisitor& visit,
@@ -212,21 +205,9 @@ Mesh::Mesh(Array3f V, Array3i F)
           return data;
       }()) {}
 
-Mesh::Mesh(MeshData data) : shared_(std::make_shared<Shared>()) {
-    validate(data);
-    shared_->data = std::make_shared<const MeshData>(std::move(data));
-}
-
 std::shared_ptr<const MeshData> Mesh::snapshot() const {
     std::lock_guard lock(shared_->mutex);
     return shared_->data;
-}
-
-bool Mesh::replace(const std::shared_ptr<const MeshData>& expected, std::shared_ptr<const MeshData> next) {
-    std::lock_guard lock(shared_->mutex);
-    if (shared_->data != expected) return false;
-    shared_->data = std::move(next);
-    return true;
 }
 
 void Mesh::set_positions(
@@ -273,23 +254,6 @@ void Mesh::remove_scalar(const std::string& name) {
         const ScalarArray& scalar = scalar_named(data, name);
         data.scalars.erase(data.scalars.begin() + (&scalar - data.scalars.data()));
     });
-}
-
-void Mesh::add_child(const Mesh& child) {
-    if (reaches(child, *this, 0))
-        throw ArgumentError(fmt::format(
-            "mesh '{}' cannot become a child of '{}': it is that mesh or contains it", child.name(), name()));
-    edit([&](MeshData& data) { data.children.push_back(child); });
-}
-
-Mesh Mesh::clone() const {
-    // Refuses a hierarchy that contains itself before following it.
-    for_each_node(*this, [](const auto&, const auto&) {});
-    MeshData copy = *snapshot();
-    for (Mesh& child : copy.children) child = child.clone();
-    Mesh result;
-    result.shared_->data = std::make_shared<const MeshData>(std::move(copy));
-    return result;
 }
 
 void for_each_node(const Mesh& root, const NodeVisitor& visit) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -203,7 +204,36 @@ class Mesh {
         edit([&](MeshData& d) { d.T_parent_mesh = T; });
     }
 
-    void add_child(const Mesh& child);
+    /// Pose in the world: those of all parents, applied to T_parent_mesh.
+    Eigen::Affine3d T_world_mesh() const;
+    /// Chooses T_parent_mesh so that the pose in the world is T. Throws ArgumentError when T is not finite or
+    /// a parent's pose cannot be inverted.
+    void set_T_world_mesh(const Eigen::Affine3d& T);
+
+    // Steps of motion, in the parent's frame, which is the world for a mesh without a parent; children move
+    // along. They throw ArgumentError for what is not finite and for an axis without length. Computed in
+    // double; a rotation stays one to the last bits, however many steps are made.
+
+    /// Moves by `step`.
+    void translate(const Vec3d& step);
+    /// Turns about the mesh's own origin, counter-clockwise seen against the axis.
+    void rotate_axis_angle(const Vec3d& axis, double angle_deg);
+    /// Turns about the line through `center` along the axis: the mesh goes around it and turns with it.
+    void orbit(const Vec3d& axis, const Vec3d& center, double angle_deg);
+    /// Scales along the mesh's own axes about its own origin. Throws ArgumentError for a factor that is 0.
+    void scale(const Vec3d& factors);
+    void scale(double factor) { scale(Vec3d(factor, factor, factor)); }
+
+    /// Hangs a mesh below this one: its pose is relative to this one's from now on. With `keep_world_pose`
+    /// its T_parent_mesh changes so that it stays where it is. Does nothing when it is a child already.
+    /// Throws ArgumentError when it is this mesh or contains it, or is the child of another mesh.
+    void add_child(const Mesh& child, bool keep_world_pose = false);
+    /// Takes a child away; with `keep_world_pose` it stays where it is. Throws ArgumentError when it is no
+    /// child of this mesh.
+    void remove_child(const Mesh& child, bool keep_world_pose = false);
+    std::vector<Mesh> children() const { return snapshot()->children; }
+    /// The mesh that this one is a child of. Of several, which only copies of MeshData give, the first.
+    std::optional<Mesh> parent() const;
 
     /// A copy of its own, children included; arrays stay shared until one of the two is given others.
     Mesh clone() const;
@@ -213,15 +243,27 @@ class Mesh {
 
     /// The same object (not: equal data).
     bool operator==(const Mesh& other) const { return shared_ == other.shared_; }
+    /// Equal for handles to the same object, and different from those of others that live.
+    const void* identity() const { return shared_.get(); }
 
   private:
-    /// Puts `next` in place if the data are still the `expected` ones.
-    bool replace(const std::shared_ptr<const MeshData>& expected, std::shared_ptr<const MeshData> next);
-
     struct Shared {
         mutable std::mutex mutex;
         std::shared_ptr<const MeshData> data;
+        std::vector<std::weak_ptr<Shared>> parents;  ///< guarded by the one mutex of all hierarchies
     };
+    explicit Mesh(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {}
+
+    /// Puts `next` in place if the data are still the `expected` ones. Throws ArgumentError when a child of
+    /// it contains this mesh.
+    bool replace(const std::shared_ptr<const MeshData>& expected, std::shared_ptr<const MeshData> next);
+    bool exchange(const std::shared_ptr<const MeshData>& expected, std::shared_ptr<const MeshData> next);
+    /// Makes this mesh known to its children as their parent. The hierarchies' mutex must be held.
+    void adopt(const std::vector<Mesh>& children) const;
+    void disown(const std::vector<Mesh>& children) const;
+    /// Whether this mesh is among its own descendants, or would be as a parent of `children`.
+    bool is_below(const std::vector<Mesh>& children, int depth = 0) const;
+
     std::shared_ptr<Shared> shared_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <limits>
 #include <optional>
+#include <set>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
@@ -35,16 +36,17 @@ auto& require_entry(Map& map, const std::string& name, const char* kind) {
 }
 
 /// Adds the node and its descendants, with the poses of V + offset; what is invisible takes its descendants
-/// along.
+/// along. Descendants that are shown under a name of their own are left to that name.
 void add_nodes(const Mesh& mesh, const std::string& name, const Eigen::Affine3d& T_world_parent, int depth,
-               std::vector<SceneSnapshot::Object>& objects) {
+               const std::set<const void*>& shown, std::vector<SceneSnapshot::Object>& objects) {
     require_mesh_depth(depth);
     const auto data = mesh.snapshot();
     if (!data->style.visible.value_or(true)) return;
     const Eigen::Affine3d T_world_mesh = T_world_parent * data->T_parent_mesh;
     objects.push_back({name, data, T_world_mesh});
     for (const Mesh& child : data->children)
-        add_nodes(child, name + "/" + child.name(), T_world_mesh, depth + 1, objects);
+        if (!shown.count(child.identity()))
+            add_nodes(child, name + "/" + child.name(), T_world_mesh, depth + 1, shown, objects);
 }
 
 /// The offset of the first node with vertices among objects[first..end).
@@ -218,10 +220,14 @@ SceneSnapshot Scene::snapshot() const {
     std::lock_guard lock(shared_->mutex);
     uint64_t earliest = std::numeric_limits<uint64_t>::max();
     std::optional<Vec3d> origin;
+    std::set<const void*> shown;
+    for (const auto& [name, entry] : shared_->meshes) shown.insert(entry.mesh.identity());
     for (const auto& [name, entry] : shared_->meshes) {
         if (entry.hidden) continue;
         const size_t first = result.objects.size();
-        add_nodes(entry.mesh, name, Eigen::Affine3d::Identity(), 0, result.objects);
+        const std::optional<Mesh> parent = entry.mesh.parent();
+        add_nodes(entry.mesh, name, parent ? parent->T_world_mesh() : Eigen::Affine3d::Identity(), 0, shown,
+                  result.objects);
         const auto offset = first_offset(result.objects, first, result.objects.size());
         if (offset && entry.order < earliest) origin = offset, earliest = entry.order;
     }

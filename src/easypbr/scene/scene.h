@@ -43,7 +43,8 @@ class Scene {
   public:
     Scene();
 
-    /// Shows a mesh under a name; the same name again replaces it.
+    /// Shows a mesh under a name; the same name again replaces it. A mesh that is the child of another one
+    /// moves with its parent, and is drawn once when both are shown.
     void show(const Mesh& mesh, const std::string& name);
     /// Throws NameError with the nearest name when there is none.
     Mesh get(const std::string& name) const;

@@ -1,0 +1,59 @@
+"""Meshes that move, and their hierarchy."""
+
+import numpy as np
+import pytest
+
+from easypbr import Mesh, Scene, Viewer, shapes
+
+
+def test_steps_of_motion():
+    mesh = shapes.box()
+    mesh.translate((1, 2, 3))
+    mesh.rotate_axis_angle((0, 0, 1), 90)
+    # A quarter turn about z takes x to y; the position stays.
+    np.testing.assert_allclose(mesh.T_world_mesh @ [1, 0, 0, 1], [1, 3, 3, 1], atol=1e-15)
+    mesh.orbit((0, 1, 0), (0, 0, 0), 180)
+    np.testing.assert_allclose(mesh.T_world_mesh[:3, 3], [-1, 2, -3], atol=1e-15)
+    mesh.scale(2)
+    mesh.scale((1, 1, 3))
+    np.testing.assert_allclose(np.linalg.norm(mesh.T_world_mesh[:3, :3], axis=0), [2, 2, 6], rtol=1e-15)
+    with pytest.raises(ValueError, match="axis with a length"):
+        mesh.rotate_axis_angle((0, 0, 0), 10)
+    with pytest.raises(ValueError, match="factors other than 0"):
+        mesh.scale(0)
+
+
+def test_children_move_with_their_parent():
+    car, wheel = shapes.box(), shapes.sphere(0.3)
+    car.add_child(wheel)
+    assert wheel.parent == car and car.parent is None
+    wheel.translate((1, 0, 0))
+    car.translate((0, 0, 5))
+    np.testing.assert_allclose(wheel.T_world_mesh[:3, 3], [1, 0, 5])
+    wheel.T_world_mesh = np.eye(4)
+    np.testing.assert_allclose(wheel.T_parent_mesh[:3, 3], [0, 0, -5])
+    with pytest.raises(ValueError, match="cannot become a child"):
+        wheel.add_child(car)
+    car.remove_child(wheel, keep_world_pose=True)
+    assert car.children == [] and wheel.parent is None
+    np.testing.assert_array_equal(wheel.T_parent_mesh, np.eye(4))
+
+
+def test_a_moved_parent_is_drawn_where_it_is(size):
+    """Moving a parent by a step is drawn as its child at that place: the same picture, bit for bit."""
+    still, moved = Scene(), Scene()
+    parent, child = Mesh(), shapes.box()
+    parent.add_child(child)
+    moved.show(parent, "box")
+    settings = {"camera.position": (3, 2, 5), "camera.target": (0, 0, 0), "tonemap.exposure": 1.0}
+    view = Viewer(size, settings, scene=moved)
+    first = view.render(samples=1)
+    parent.translate((0.5, 0, 0))
+    second = view.render(samples=1)
+    assert (first != second).any()
+    other = shapes.box()
+    still.show(other, "box")
+    view = Viewer(size, settings, scene=still)
+    np.testing.assert_array_equal(view.render(samples=1), first)
+    other.translate((0.5, 0, 0))
+    np.testing.assert_array_equal(view.render(samples=1), second)
