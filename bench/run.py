@@ -2,9 +2,9 @@
 """One table: EasyPBR beside VTK 9 (clouds: Open3D) in the same run, on the same meshes, environment and size.
 
 usage: run.py --data FOLDER [--work FOLDER] [--quick | --clouds]
-FOLDER holds nefertiti.obj and env/studio.hdr. Without --quick the 25.6 M-face mesh is measured too (VTK needs two
-minutes for it), a cloud of 10 M points and 1 M surfels; with --clouds only these. Needs Debian's python3-vtk9,
-python3-open3d, xvfb, python3-numpy and time; scripts/bench.sh installs them.
+FOLDER holds nefertiti.obj, env/studio.hdr and DamagedHelmet/DamagedHelmet.gltf. Without --quick the 25.6 M-face mesh is
+measured too (VTK needs two minutes for it), a cloud of 10 M points and 1 M surfels; with --clouds only these. Needs
+Debian's python3-vtk9, python3-open3d, xvfb, python3-numpy and time; scripts/bench.sh installs them.
 """
 import argparse
 import json
@@ -197,6 +197,15 @@ def measure_clouds(work, count=10_000_000):
     row("  peak memory beyond the file", memory - clouds[0].stat().st_size / 2**20, None, "<= 1000 MB", "MB")
 
 
+def measure_recording(data, work):
+    """What recording a turntable costs beside drawing it, each the best of three rounds."""
+    command = (ROOT / "build/bench_recording", data / "DamagedHelmet/DamagedHelmet.gltf", 120, "1280x720")
+    for name in ("turntable.mp4", "turntable_%03d.png"):
+        times = json.loads(run(*command, work / name)[2])
+        row(f"helmet, 120 frames of 1280x720 drawn and recorded: {name.partition('.')[2].upper()}", times["record_s"])
+        row("  more than drawn alone", times["cost"] * 100, None, "<= 15 %" if name.endswith("mp4") else None, "%")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=pathlib.Path, required=True)
@@ -207,6 +216,7 @@ def main():
     arguments.work.mkdir(parents=True, exist_ok=True)
     if not arguments.clouds:
         measure_head(arguments.data, arguments.work)
+        measure_recording(arguments.data, arguments.work)
         if not arguments.quick:
             measure_goliath(arguments.data, arguments.work)
     if arguments.clouds or not arguments.quick:

@@ -4,9 +4,13 @@ install(TARGETS easypbr EXPORT easypbrTargets LIBRARY DESTINATION ${CMAKE_INSTAL
 if(TARGET easypbr_assimp)
   install(TARGETS easypbr_assimp LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
 endif()
+if(TARGET easypbr_ffmpeg)
+  install(TARGETS easypbr_ffmpeg LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
+endif()
 install(TARGETS easypbr_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT library)
 install(DIRECTORY src/easypbr DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library
-        FILES_MATCHING PATTERN "*.h" PATTERN cli EXCLUDE PATTERN python EXCLUDE PATTERN tools EXCLUDE PATTERN assimp EXCLUDE)
+        FILES_MATCHING PATTERN "*.h" PATTERN cli EXCLUDE PATTERN python EXCLUDE PATTERN tools EXCLUDE PATTERN assimp EXCLUDE
+        PATTERN ffmpeg EXCLUDE)
 install(EXPORT easypbrTargets NAMESPACE easypbr:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/easypbr COMPONENT library)
 configure_package_config_file(cmake/easypbrConfig.cmake.in ${PROJECT_BINARY_DIR}/easypbrConfig.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/easypbr)

@@ -10,3 +10,16 @@ if(assimp_FOUND)
 else()
   message(STATUS "assimp not found: FBX, DAE, 3DS and the like are not read (Debian: libassimp-dev)")
 endif()
+
+# Videos.
+pkg_check_modules(FFMPEG QUIET IMPORTED_TARGET libavcodec libavformat libavutil libswscale)
+if(FFMPEG_FOUND)
+  file(GLOB ffmpeg_sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/easypbr/io/ffmpeg/*.cpp)
+  add_library(easypbr_ffmpeg MODULE ${ffmpeg_sources})
+  target_link_libraries(easypbr_ffmpeg PRIVATE easypbr easypbr_options easypbr_dependencies PkgConfig::FFMPEG)
+  set_target_properties(easypbr_ffmpeg PROPERTIES INSTALL_RPATH "$ORIGIN" BUILD_RPATH_USE_ORIGIN ON)
+  set_target_properties(easypbr_ffmpeg PROPERTIES LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR})
+else()
+  message(STATUS "FFmpeg not found: videos are not written "
+                 "(Debian: libavcodec-dev libavformat-dev libavutil-dev libswscale-dev)")
+endif()

@@ -10,6 +10,7 @@ packages=(
   libepoxy-dev libegl1 libegl-mesa0 libopengl0 libgl1-mesa-dri
   libspng-dev libturbojpeg0-dev libtinyexr-dev zlib1g-dev libmeshoptimizer-dev libnanoflann-dev libassimp-dev libyaml-cpp-dev
   libstb-dev fonts-dejavu-core
+  libavcodec-dev libavformat-dev libavutil-dev libswscale-dev ffmpeg
   libgtest-dev python3-dev python3-venv
   libembree-dev
 )

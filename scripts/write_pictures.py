@@ -211,8 +211,22 @@ def glass() -> np.ndarray:
     return view.render(samples=64)
 
 
+def camera_path() -> np.ndarray:
+    """A path of four keys around a teapot on a pedestal, as its curve and its cameras."""
+    scene = on_floor(teapot("#c8b89a", roughness=0.6))
+    floor = scene.get("floor")
+    floor.scale(2.5)
+    keys = [easypbr.Camera.look_at((2 * np.sin(a), 0.4 + 0.4 * i, 2 * np.cos(a)), (0, 0.45, 0), fov_y_deg=35)
+            for i, a in enumerate(np.radians([-40, 25, 90, 160]))]
+    path = easypbr.CameraPath(keys)
+    scene.show(shapes.camera_path(path, size=(16, 9), depth=0.4), "path")
+    view = Viewer((640, 360), {"style.line_color": "#ff6a00", "style.line_width": 2.5}, scene)
+    view.camera = easypbr.Camera.look_at((3.4, 2.8, 5), (0.1, 0.5, 0), fov_y_deg=30)
+    return view.render()
+
+
 PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion,
-            geometry, all_shapes, glass]
+            geometry, all_shapes, glass, camera_path]
 
 
 if __name__ == "__main__":

@@ -14,7 +14,7 @@ from easypbr import _easypbr
 #: Groups in the order of the page; every public name of the package is in one of them.
 PYTHON_GROUPS = {
     "Drawing": ["render", "Viewer", "Scene", "Settings", "auto", "follow", "Automatic", "Follow"],
-    "Content": ["Mesh", "LabelMap", "load_scene", "as_mesh", "Material", "Style", "Light", "Environment", "Camera"],
+    "Content": ["Mesh", "LabelMap", "load_scene", "as_mesh", "Material", "Style", "Light", "Environment", "Camera", "CameraPath"],
     "Geometry": ["KdTree"],
     "Images": ["load_image", "save_image", "compare_images", "colormap"],
     "Errors": ["Error", "FileError", "FormatError", "ArgumentError", "UnknownNameError", "ContextError"],

@@ -10,6 +10,7 @@ from . import errors, shapes
 from ._easypbr import (
     Automatic,
     Camera,
+    CameraPath,
     Environment,
     Follow,
     KdTree,
@@ -38,6 +39,7 @@ __all__ = [
     "ArgumentError",
     "Automatic",
     "Camera",
+    "CameraPath",
     "ContextError",
     "Environment",
     "Error",

@@ -11,11 +11,13 @@ __all__ = [
     "axes",
     "box",
     "camera_frustum",
+    "camera_path",
     "capsule",
     "cone",
     "cylinder",
     "grid",
     "icosphere",
+    "image_plane",
     "plane",
     "sphere",
     "teapot",
@@ -40,6 +42,39 @@ def camera_frustum(camera, image=None, size=None, depth: float = 1.0) -> "_easyp
     if size is None:
         raise ArgumentError("camera_frustum: expected a size, (width, height), or an image, beside (K, T_world_cam)")
     return _easypbr._camera_frustum(_easypbr.Camera.from_opencv(*camera, size), image, size, depth)
+
+
+def camera_path(
+    path: "_easypbr.CameraPath", size=(4, 3), fov_y_deg: float = 30.0, depth: float | None = None
+) -> "_easypbr.Mesh":
+    """The curve of a camera path as lines, with the outlines of its cameras as children: one at each key, twelve on an
+    orbit. Their pictures have the size's shape, and the angle of view where the path has none; `depth` is how far the
+    outlines reach, by default a tenth of the curve's extent."""
+    return _easypbr._camera_path(path, size, fov_y_deg, depth)
+
+
+def image_plane(image, width: float | None = None, height: float | None = None) -> "_easypbr.Mesh":
+    """A picture standing in the xy plane around the origin, seen from +z, shown as it is: unlit, in its own colours.
+
+    `image` is an array of height x width (x 1, 3 or 4), uint8, uint16 or linear floats. One of width and height is enough; by
+    default the plane is 1 high.
+    """
+    rows, columns = np.shape(image)[:2]
+    if width is None:
+        width = (1.0 if height is None else height) * columns / rows
+    if height is None:
+        height = width * rows / columns
+    if not (width > 0 and height > 0):
+        raise ArgumentError(f"image_plane: expected width and height above 0, got {width} and {height}")
+    corners = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]) * (width / 2, height / 2, 0)
+    mesh = _easypbr.Mesh(corners, [[0, 1, 2], [0, 2, 3]])
+    mesh.assign(N=np.tile([0, 0, 1], (4, 1)), UV=[[0, 0], [1, 0], [1, 1], [0, 1]])
+    mesh.name = "image"
+    mesh.material.base_color = (1, 1, 1)
+    mesh.material.unlit = True
+    mesh.material.double_sided = True
+    mesh.material.base_color_texture = image
+    return mesh
 
 
 def voxel_grid(array, origin=(0, 0, 0), cell_size: float = 1.0, empty: int = 0) -> "_easypbr.Mesh":

@@ -2,26 +2,15 @@
 
 import os
 from collections.abc import Mapping, Sequence
-from pathlib import Path
 
 import numpy as np
 
 from . import _easypbr
 from .errors import ArgumentError, ContextError
 from .lights import _STUDIO, Lights
+from .recorder import Recorder
 from .scene import Scene
 from .settings import Settings
-
-
-class Recorder:
-    """Pictures of a viewer as files, complete when the call returns."""
-
-    def __init__(self, handle):
-        self._handle = handle
-
-    def record(self, path, size=None, samples: int | None = None, deep: bool = False) -> Path:
-        """Writes PNG (16 bits with `deep`), JPEG, HDR or EXR, by the extension."""
-        return self._handle.record(path, size, samples, deep)
 
 
 class Viewer:
@@ -32,7 +21,7 @@ class Viewer:
         """`settings`: a file that save_settings() wrote, or a dict of values; `size`: (width, height)."""
         self.scene = Scene.default() if scene is None else scene
         self._handle = _easypbr.ViewerHandle(self.scene._handle)
-        self.recorder = Recorder(self._handle)
+        self.recorder = Recorder(self)
         self._settings = Settings(self._handle)
         if isinstance(settings, Mapping):
             self._settings.update(settings)
@@ -88,6 +77,35 @@ class Viewer:
     @camera.setter
     def camera(self, camera):
         self._handle.camera = camera
+
+    @property
+    def time(self) -> float:
+        """Seconds of the animation: of the last frame of a window or a recording; assign to set it."""
+        return self._handle.time
+
+    @time.setter
+    def time(self, seconds: float):
+        self._handle.time = seconds
+
+    @property
+    def delta_time(self) -> float:
+        """Seconds between the last two frames; 0 at the first, while recording 1 / fps at all others."""
+        return self._handle.delta_time
+
+    @property
+    def fixed_step(self) -> float | None:
+        """Seconds that each frame takes of the animation's time, however long it is drawn; None: real time. While
+        recording it is 1 / fps."""
+        return self._handle.fixed_step
+
+    @fixed_step.setter
+    def fixed_step(self, seconds: float | None):
+        self._handle.fixed_step = seconds
+
+    def turntable(self, duration_s: float = 4.0) -> "_easypbr.CameraPath":
+        """One turn of the camera around the content, from where it is; while it is automatic from far enough away for
+        the content to stay in the picture."""
+        return self._handle.turntable(duration_s)
 
     def refit(self) -> None:
         """Forgets what was inferred, so that the next picture infers it anew."""

@@ -1,4 +1,4 @@
-// Pictures to files: which encoding a file takes, and the recorder.
+// Pictures to files: which encoding a file takes, and settings beside them.
 #pragma once
 
 #include <filesystem>
@@ -37,15 +37,5 @@ void save_settings(const Session& session, const std::vector<std::filesystem::pa
 /// Takes over settings and lights from a file that save_settings() wrote. Files with another content than
 /// then are reported as warnings.
 void load_settings(Session& session, const std::filesystem::path& path);
-
-/// Pictures of a session, written when the call returns.
-class Recorder {
-  public:
-    explicit Recorder(Session& session) : session_(session) {}
-    std::filesystem::path record(const std::filesystem::path& path) { return render_to_file(session_, path); }
-
-  private:
-    Session& session_;
-};
 
 }  // namespace easypbr::app

@@ -246,8 +246,10 @@ ViewPoint Session::view_point(std::optional<Vec2i> size) {
 }
 
 void Session::set_view_point(const ViewPoint& view) {
-    set_camera(view.camera);
     CameraSettings& to = settings_.camera;
+    const Auto<double> near = to.near;
+    set_camera(view.camera);
+    to.near = near;
     to.position.latch(view.camera.position());
     to.target.latch(view.target);
     const double nearest = near_part * view.distance();
@@ -325,6 +327,8 @@ void Session::set_camera(const Camera& camera) {
     to.pose.clear();
     for (int row = 0; row < 4; ++row)
         for (int column = 0; column < 4; ++column) to.pose.push_back(T(row, column));
+    // Where the near plane may lie depends on the pose: a path may lead nearer than the first picture was.
+    to.near.release();
     to.projection = camera.projection;
     to.fov_y_deg = float(camera.fov_y_deg);
     to.ortho_height = camera.ortho_height;

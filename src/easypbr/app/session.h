@@ -105,7 +105,7 @@ class Session {
     /// FormatError.
     void load_environment(const std::filesystem::path& path);
 
-    /// Pins the camera to a pose: settings().camera follows.
+    /// Pins the camera to a pose: settings().camera follows. A near plane that was inferred is inferred anew.
     void set_camera(const Camera& camera);
     /// The camera of the next picture.
     Camera camera() { return resolve().camera; }

@@ -6,6 +6,7 @@
 #include <future>
 
 #include "easypbr/app/output.h"
+#include "easypbr/app/recorder.h"
 #include "easypbr/app/session.h"
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/console.h"
@@ -15,6 +16,7 @@
 #include "easypbr/cli/stopwatch.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/io/camera_path_io.h"
 #include "easypbr/io/image_io.h"
 #include "easypbr/io/label_map_io.h"
 
@@ -62,10 +64,21 @@ Look look_of(const RenderOptions& options) {
     return look;
 }
 
+app::RecordingOptions recording_of(const RenderOptions& options) {
+    app::RecordingOptions recording;
+    recording.fps = options.fps.value_or(recording.fps);
+    recording.codec = options.codec;
+    recording.deep = options.bit_depth == 16;
+    return recording;
+}
+
 /// Throws FileError, ArgumentError before anything is loaded or drawn.
-void check_files(const Picture& picture, const Settings& settings, const std::vector<std::string>& layers) {
-    if (picture.output != "-") app::check_picture(picture.output, settings);
-    for (const std::string& layer : layers) check_writable(app::layer_path(picture.output, layer));
+void check_files(const Picture& picture, const Settings& settings, const RenderOptions& options) {
+    if (options.records())
+        app::check_recording(picture.output, settings, recording_of(options));
+    else if (picture.output != "-")
+        app::check_picture(picture.output, settings);
+    for (const std::string& layer : options.layers) check_writable(app::layer_path(picture.output, layer));
     if (!picture.save_settings.empty()) check_writable(picture.save_settings);
     for (const std::string& file : picture.files) MappedFile{file};
     const MaterialSettings& m = settings.material;
@@ -93,12 +106,14 @@ class RenderJob {
         : options_(options),
           look_(look_of(options)),
           styles_(parse_styles(options.styles, unique_names(options.files))),
-          label_map_(options.label_map.empty() ? nullptr : io::find_label_map(options.label_map)) {}
+          label_map_(options.label_map.empty() ? nullptr : io::find_label_map(options.label_map)) {
+        if (!options.camera_path.empty()) camera_path_ = io::load_camera_path(options.camera_path);
+    }
 
     int run() {
         const std::vector<Picture> pictures = pictures_of(options_);
         if (!options_.batch) {
-            check_files(pictures.front(), look_.settings, options_.layers);
+            check_files(pictures.front(), look_.settings, options_);
             make(pictures.front());
             return 0;
         }
@@ -111,7 +126,7 @@ class RenderJob {
     /// One file that cannot be drawn must not keep the others from it.
     int try_to_make(const Picture& picture) {
         try {
-            check_files(picture, look_.settings, options_.layers);
+            check_files(picture, look_.settings, options_);
             make(picture);
             return 0;
         } catch (const Error& error) {
@@ -124,6 +139,13 @@ class RenderJob {
         Stopwatch watch;
         start_look();
         load(picture, watch);
+        if (options_.records()) {
+            record(picture);
+            watch.lap("record");
+            save_settings(picture);
+            if (options_.timing) fmt::print(stderr, "easypbr: timing: {}\n", watch.summary());
+            return;
+        }
         const Image image = session_.render({std::nullopt, std::nullopt, encoding_of(picture)});
         watch.add("context", session_.timing().context);
         watch.add("images", session_.timing().images);
@@ -133,6 +155,16 @@ class RenderJob {
         write(picture, image);
         watch.lap("write");
         if (options_.timing) fmt::print(stderr, "easypbr: timing: {}\n", watch.summary());
+    }
+
+    void record(const Picture& picture) {
+        const app::RecordingOptions recording = recording_of(options_);
+        app::Clock clock;
+        app::Recorder recorder(session_, clock);
+        const CameraPath path =
+            camera_path_ ? *camera_path_
+                         : app::turntable(session_, options_.turntable.value_or(1) / recording.fps);
+        recorder.record_path(path, picture.output, recording, options_.turntable);
     }
 
     void start_look() {
@@ -175,6 +207,10 @@ class RenderJob {
         else
             io::save_image(image, picture.output);
         if (!options_.layers.empty()) app::layers_to_files(session_, picture.output, options_.layers);
+        save_settings(picture);
+    }
+
+    void save_settings(const Picture& picture) {
         if (!picture.save_settings.empty())
             app::save_settings(session_, {picture.files.begin(), picture.files.end()}, picture.save_settings);
     }
@@ -183,6 +219,7 @@ class RenderJob {
     Look look_;
     std::vector<StyleOption> styles_;
     std::shared_ptr<const LabelMap> label_map_;
+    std::optional<CameraPath> camera_path_;
     app::Session session_;
     bool environment_is_loaded_ = false;
 };

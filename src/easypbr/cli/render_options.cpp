@@ -15,6 +15,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/io/video.h"
 #include "easypbr/render/renderer.h"
 #include "easypbr/scene/fields.h"
 
@@ -58,8 +59,10 @@ void declare_shorthands(CLI::App& command, RenderOptions& options) {
 
 void declare_output(CLI::App& command, RenderOptions& options) {
     command
-        .add_option("-o,--output", options.output,
-                    "Picture to write: PNG, JPEG, HDR or EXR; '-': PNG to standard output")
+        .add_option(
+            "-o,--output", options.output,
+            "Picture to write: PNG, JPEG, HDR or EXR; '-': PNG to standard output. Of many frames: MP4, "
+            "WebM, GIF, or pictures: frame_%04d.png")
         ->option_text("FILE");
     command.add_option("--size,--resolution", options.size, "Width and height in pixels")->option_text("WxH");
     command.add_option("--bit-depth", options.bit_depth, "Bits per channel of a PNG: 8 or 16")
@@ -116,6 +119,13 @@ void declare_camera(CLI::App& command, RenderOptions& options) {
         ->option_text("NAME|NUMBER");
     command.add_option("--camera-axes", options.camera_axes, "Axes of the pose's camera: opengl or opencv")
         ->check(CLI::IsMember({"opengl", "opencv"}));
+    command.add_option("--turntable", options.turntable, "Record one turn around the content in N frames")
+        ->option_text("N");
+    command.add_option("--camera-path", options.camera_path, "Record the camera on a path from a JSON file")
+        ->option_text("FILE");
+    command.add_option("--fps", options.fps, "Frames per second of a recording (30)")->option_text("X");
+    command.add_option("--codec", options.codec, "FFmpeg's name of the encoder of a video")
+        ->option_text("NAME");
     command.add_option("--ortho", options.ortho, "Orthographic picture of this world height")
         ->option_text("HEIGHT|auto");
 }
@@ -213,9 +223,31 @@ void declare_render_options(CLI::App& command, RenderOptions& options) {
     declare_shorthands(command, options);
 }
 
+namespace {
+
+void check_recording_usage(const RenderOptions& options) {
+    if (!options.records()) {
+        if (options.fps || !options.codec.empty())
+            throw UsageError(fmt::format("render: {} needs --turntable or --camera-path",
+                                         options.fps ? "--fps" : "--codec"));
+        if (io::is_video(options.output))
+            throw UsageError("render: a video needs --turntable or --camera-path");
+        return;
+    }
+    if (options.turntable && !options.camera_path.empty())
+        throw UsageError("render: --turntable and --camera-path exclude each other");
+    if (options.turntable && *options.turntable < 1)
+        throw UsageError(fmt::format("--turntable: expected at least one frame, got {}", *options.turntable));
+    if (options.output == "-") throw UsageError("render: a recording cannot go to standard output");
+    if (!options.layers.empty()) throw UsageError("render: --layers are of one picture, not of a recording");
+}
+
+}  // namespace
+
 void check_usage(const RenderOptions& options) {
     require(!options.files.empty(), "render", "at least one FILE");
     require(!options.output.empty(), "render", "-o OUT.png");
+    check_recording_usage(options);
     parse_styles(options.styles, unique_names(options.files));
     if (options.smooth && options.flat) throw UsageError("render: --smooth and --flat exclude each other");
     if (!options.camera_pose.empty())

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,6 +22,10 @@ struct RenderOptions {
     std::string size, background, ortho;
     std::string camera;  ///< name or number of a camera in the files
     std::string camera_pose, camera_axes = "opengl";
+    std::optional<int> turntable;  ///< frames of one turn
+    std::string camera_path;       ///< file
+    std::optional<double> fps;
+    std::string codec;
     std::string settings, save_settings;
     std::vector<std::string> layers;
     std::vector<std::string> textures;  ///< "base_color=FILE"
@@ -33,6 +38,9 @@ struct RenderOptions {
         std::string option, setting, text;
     };
     std::vector<Shorthand> shorthands;
+
+    /// Many frames instead of one picture.
+    bool records() const { return turntable || !camera_path.empty(); }
 };
 
 /// Ties the command's options to `options`, which must outlive the parsing.

@@ -3,52 +3,16 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
-#include <unistd.h>
-
-#include <mutex>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/settings_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/settings_value.h"
-#include "easypbr/viewer/viewer.h"
+#include "easypbr/python/shared_viewer.h"
 
 namespace easypbr::python {
 namespace {
-
-/// A viewer that threads take turns in.
-class SharedViewer {
-  public:
-    explicit SharedViewer(const Scene& scene) : viewer_(scene) {}
-
-    template <class Work>
-    auto run(Work&& work) {
-        return released([&] {
-            require_same_process();
-            const std::lock_guard lock(mutex_);
-            return work(viewer_);
-        });
-    }
-
-  private:
-    void require_same_process() const {
-        if (getpid() != process_)
-            throw ContextError(
-                "this viewer belongs to the process that this one was forked from: GL contexts do not "
-                "survive a fork; "
-                "start processes with multiprocessing.get_context('spawn')");
-    }
-
-    std::mutex mutex_;
-    pid_t process_ = getpid();
-    Viewer viewer_;
-};
-
-std::optional<Vec2i> optional_size(const nb::object& size) {
-    if (size.is_none()) return std::nullopt;
-    return to_size(size, "size");
-}
 
 app::Encoding encoding_named(const std::string& name) {
     if (name == "srgb8") return app::Encoding::srgb8;
@@ -61,13 +25,6 @@ nb::object render(SharedViewer& self, const nb::object& size, std::optional<int>
                   const std::string& encoding) {
     const app::PictureOptions options{optional_size(size), samples, encoding_named(encoding)};
     return to_numpy(self.run([&](Viewer& viewer) { return viewer.render(options); }));
-}
-
-fs::path record(SharedViewer& self, const fs::path& path, const nb::object& size, std::optional<int> samples,
-                bool deep) {
-    const app::PictureOptions options{optional_size(size), samples};
-    return self.run(
-        [&](Viewer& viewer) { return app::render_to_file(viewer.session(), path, options, deep); });
 }
 
 nb::dict layers(SharedViewer& self, const std::vector<std::string>& names, const nb::object& size) {
@@ -129,8 +86,6 @@ void bind_pictures(ViewerClass& viewer) {
     viewer
         .def("render", render, nb::arg("size").none() = nb::none(), nb::arg("samples").none() = nb::none(),
              nb::arg("encoding") = "srgb8")
-        .def("record", record, nb::arg("path"), nb::arg("size").none() = nb::none(),
-             nb::arg("samples").none() = nb::none(), nb::arg("deep") = false)
         .def("layers", layers, nb::arg("names"), nb::arg("size").none() = nb::none())
         .def("object_names",
              [](SharedViewer& self) {
@@ -179,6 +134,7 @@ void bind_viewer(nb::module_& module) {
             });
     bind_pictures(viewer);
     bind_viewer_settings(viewer);
+    bind_recorder(module, viewer);
     module.def("layer_names", [] { return render::layer_names(); });
 }
 

@@ -24,6 +24,7 @@ void bind_light(nb::module_& module);
 void bind_environment(nb::module_& module);
 void bind_scene(nb::module_& module);
 void bind_camera(nb::module_& module);
+void bind_camera_path(nb::module_& module);
 void bind_viewer(nb::module_& module);
 
 /// Hands the messages logged so far to Python. Needs the GIL; no lock of ours may be held.

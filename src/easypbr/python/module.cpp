@@ -38,6 +38,7 @@ NB_MODULE(_easypbr, module) {
     bind_environment(module);
     bind_scene(module);
     bind_camera(module);
+    bind_camera_path(module);
     bind_shapes(module);
     bind_neighbors(module);
     bind_geometry(module);

@@ -7,7 +7,10 @@ Scene& default_scene() {
     return scene;
 }
 
-Viewer::Viewer(const Scene& scene) : session_(std::make_unique<app::Session>(scene)), recorder(*session_) {}
+Viewer::Viewer(const Scene& scene)
+    : session_(std::make_unique<app::Session>(scene)),
+      clock_(std::make_unique<app::Clock>()),
+      recorder(*session_, *clock_) {}
 
 Viewer::Viewer(Vec2i size, const std::filesystem::path& settings) : Viewer(default_scene()) {
     if (!settings.empty()) app::load_settings(*session_, settings);

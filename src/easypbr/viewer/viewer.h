@@ -6,7 +6,9 @@
 #include <memory>
 #include <string>
 
+#include "easypbr/app/clock.h"
 #include "easypbr/app/output.h"
+#include "easypbr/app/recorder.h"
 #include "easypbr/app/session.h"
 
 namespace easypbr {
@@ -26,8 +28,9 @@ inline void clear() {
 
 /// Draws a scene. No window is opened and no GL context made until they are needed.
 class Viewer {
-    // First, because the recorder keeps a reference to it.
+    // First, because the recorder keeps references to them.
     std::unique_ptr<app::Session> session_;
+    std::unique_ptr<app::Clock> clock_;
 
   public:
     Viewer() : Viewer(default_scene()) {}
@@ -40,6 +43,11 @@ class Viewer {
     Scene& scene() { return session_->scene(); }
     Settings& settings() { return session_->settings(); }
     app::Session& session() { return *session_; }
+
+    /// The time of animations; see Clock. Frames that the recorder adds let it go on.
+    app::Clock& clock() { return *clock_; }
+    double time() const { return clock_->time(); }
+    double delta_time() const { return clock_->delta_time(); }
 
     /// Lights the scene with an equirectangular picture (HDR, EXR, PNG, JPEG). Throws FileError, FormatError.
     void load_environment_map(const std::filesystem::path& path);

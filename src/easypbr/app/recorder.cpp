@@ -1,0 +1,149 @@
+#include "easypbr/app/recorder.h"
+
+#include <fmt/format.h>
+
+#include <chrono>
+#include <cmath>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/core/log.h"
+
+namespace easypbr::app {
+namespace {
+
+/// Puts the camera back at the end.
+class KeptCamera {
+  public:
+    explicit KeptCamera(Session& session) : session_(session), camera_(session.settings().camera) {}
+    ~KeptCamera() { session_.settings().camera = camera_; }
+    KeptCamera(const KeptCamera&) = delete;
+    KeptCamera& operator=(const KeptCamera&) = delete;
+
+  private:
+    Session& session_;
+    CameraSettings camera_;
+};
+
+/// Reports how far a recording is, a few times per second.
+class FrameProgress {
+  public:
+    FrameProgress(const std::filesystem::path& path, int count)
+        : name_(path.filename().string()), count_(count) {}
+    ~FrameProgress() { report_progress(name_, 1); }
+
+    void report(int frame) {
+        const auto now = Steady::now();
+        if (frame == 0 || now - last_ < std::chrono::milliseconds(200)) return;
+        last_ = now;
+        const double passed = std::chrono::duration<double>(now - start_).count();
+        const long left = std::lround(passed / frame * (count_ - frame));
+        report_progress(
+            fmt::format("{}: frame {} of {}, {}:{:02} left", name_, frame, count_, left / 60, left % 60),
+            std::min(0.999, double(frame) / count_));
+    }
+
+  private:
+    using Steady = std::chrono::steady_clock;
+    std::string name_;
+    int count_;
+    Steady::time_point start_ = Steady::now(), last_ = start_;
+};
+
+}  // namespace
+
+Recorder::~Recorder() {
+    try {
+        stop();
+    } catch (const std::exception& error) {
+        log_warning(error.what());
+    }
+}
+
+void Recorder::start(const fs::path& path, const RecordingOptions& options) {
+    if (recording_)
+        throw ArgumentError(fmt::format("cannot record {}: {} is being recorded; stop() that first",
+                                        path.string(), recording_->path.string()));
+    check_recording(path, session_.settings(), options);
+    auto recording = std::make_unique<Recording>();
+    recording->path = path;
+    recording->picture = {options.size.value_or(session_.settings().image.size), options.samples,
+                          encoding_for_recording(path, options.deep)};
+    recording->queue =
+        std::make_unique<FrameQueue>(make_frame_writer(path, *recording->picture.size, options));
+    recording->step_before = clock_.fixed_step();
+    clock_.set_fixed_step(1 / options.fps);
+    recording_ = std::move(recording);
+}
+
+int Recorder::frame_count() const {
+    return recording_ ? recording_->queue->count() : 0;
+}
+
+Recorder::Recording& Recorder::require_recording() {
+    if (!recording_) throw ArgumentError("nothing is being recorded: call start() first");
+    return *recording_;
+}
+
+void Recorder::add_frame() {
+    add_frame(session_.render(require_recording().picture));
+}
+
+void Recorder::add_frame(Image picture) {
+    Recording& recording = require_recording();
+    const Vec2i size = *recording.picture.size;
+    if (picture.width() != size.x() || picture.height() != size.y())
+        throw ArgumentError(fmt::format("{}: expected frames of {}x{}, got {}x{}", recording.path.string(),
+                                        size.x(), size.y(), picture.width(), picture.height()));
+    try {
+        recording.queue->push(picture.channels() == 4 ? std::move(picture) : with_channels(picture, 4));
+    } catch (...) {
+        // What failed once is over; the queue's own report would be the same again.
+        const std::exception_ptr failure = std::current_exception();
+        try {
+            end()->queue->finish();
+        } catch (...) {
+        }
+        std::rethrow_exception(failure);
+    }
+    clock_.tick();
+}
+
+std::unique_ptr<Recorder::Recording> Recorder::end() {
+    clock_.set_fixed_step(recording_->step_before);
+    return std::move(recording_);
+}
+
+int Recorder::stop() {
+    if (!recording_) return 0;
+    const std::unique_ptr<Recording> recording = end();
+    recording->queue->finish();
+    return recording->queue->count();
+}
+
+int Recorder::record_path(const CameraPath& path, const fs::path& file, const RecordingOptions& options,
+                          std::optional<int> frames, const BeforeFrame& before_frame) {
+    const std::vector<double> times = frames ? path.times(*frames) : path.frame_times(options.fps);
+    const KeptCamera kept(session_);
+    const Camera camera = session_.resolve(options.size).camera;
+    start(file, options);
+    FrameProgress progress(file, int(times.size()));
+    try {
+        for (size_t i = 0; i < times.size(); ++i) {
+            progress.report(int(i));
+            if (before_frame) before_frame(int(i), int(times.size()), times[i]);
+            session_.set_camera(path.camera(times[i], camera));
+            add_frame();
+        }
+    } catch (...) {
+        if (recording_) try {
+                stop();
+            } catch (const std::exception& error) {
+                log_warning(error.what());
+            }
+        throw;
+    }
+    return stop();
+}
+
+}  // namespace easypbr::app

@@ -1,0 +1,78 @@
+// Recorder: pictures of a session as files, one by one or as a recording of many frames.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+
+#include "easypbr/app/clock.h"
+#include "easypbr/app/output.h"
+#include "easypbr/app/recording_target.h"
+#include "easypbr/scene/camera_path.h"
+
+namespace easypbr::app {
+
+/// Frames are encoded and written by threads beside the drawing, in the order they were added, all of them:
+/// stop(), the recorder's end and an exception in between finish the file. While it records, the clock makes
+/// steps of 1 / fps.
+class Recorder {
+  public:
+    /// Both must outlive the recorder.
+    Recorder(Session& session, Clock& clock) : session_(session), clock_(clock) {}
+    /// Finishes a recording; a failure is logged.
+    ~Recorder();
+    Recorder(Recorder&&) = default;
+
+    /// One picture (PNG, JPEG, HDR, EXR), written when the call returns. See render_to_file().
+    std::filesystem::path record(const std::filesystem::path& path, const PictureOptions& options = {},
+                                 bool deep = false) {
+        return render_to_file(session_, path, options, deep);
+    }
+
+    /// Begins a recording: a video (MP4, MOV, MKV, WebM, GIF) or numbered pictures ("out/frame_%04d.png", or
+    /// a folder), by the name. The size stays what it is now. Throws ArgumentError when one is going on
+    /// already, and as check_recording() does.
+    void start(const std::filesystem::path& path, const RecordingOptions& options = {});
+    bool is_recording() const { return recording_ != nullptr; }
+    /// Frames added since start().
+    int frame_count() const;
+
+    /// Draws the scene as it is as the next frame, and lets the clock make its step. Throws ArgumentError
+    /// when nothing is recorded; what writing an earlier frame threw, whereupon the recording ends.
+    void add_frame();
+    /// A picture as the next frame: of the recording's size, u8 with 3 or 4 channels for a video.
+    void add_frame(Image picture);
+
+    /// Waits until all frames are written and finishes the file. Returns how many there are; 0 when nothing
+    /// was being recorded. Throws what writing threw.
+    int stop();
+
+    /// Called before a frame is drawn with its number, how many there are, and its time on the path.
+    using BeforeFrame = std::function<void(int frame, int count, double time_s)>;
+    /// Records the camera on its way: path.frame_times(fps), or `frames` times evenly over the path. The
+    /// camera is afterwards what it was. Progress with the time left is reported (report_progress()). Returns
+    /// the number of frames. Throws as start() and add_frame() do; what was recorded until then is finished.
+    int record_path(const CameraPath& path, const std::filesystem::path& file,
+                    const RecordingOptions& options = {}, std::optional<int> frames = std::nullopt,
+                    const BeforeFrame& before_frame = {});
+
+  private:
+    struct Recording {
+        std::filesystem::path path;
+        PictureOptions picture;
+        std::unique_ptr<FrameQueue> queue;
+        std::optional<double> step_before;  ///< the clock's, before the recording
+    };
+    Recording& require_recording();
+    std::unique_ptr<Recording> end();
+
+    Session& session_;
+    Clock& clock_;
+    std::unique_ptr<Recording> recording_;
+};
+
+/// A turn around the content's middle, once around the up axis, from the session's camera on. While the
+/// camera is automatic it is far enough away for the content to stay in the picture all the way around.
+CameraPath turntable(Session& session, double duration_s);
+
+}  // namespace easypbr::app

@@ -1,0 +1,141 @@
+#include "easypbr/app/recording_target.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/io/image_io.h"
+#include "easypbr/io/video.h"
+
+namespace easypbr::app {
+namespace {
+
+/// The "%04d" of a name: where it is, and how many digits at least.
+struct Number {
+    size_t begin, end;
+    int digits;
+};
+
+std::optional<Number> number_in(const std::string& name) {
+    const size_t begin = name.find('%');
+    if (begin == name.npos) return {};
+    size_t end = begin + 1;
+    while (end < name.size() && std::isdigit(static_cast<unsigned char>(name[end]))) ++end;
+    const std::string digits = name.substr(begin + 1, end - begin - 1);
+    if (end == name.size() || name[end] != 'd' || digits.size() > 3 || name.find('%', end) != name.npos)
+        return {};
+    return Number{begin, end + 1, digits.empty() ? 1 : std::stoi(digits)};
+}
+
+bool is_folder(const fs::path& path) {
+    return !path.has_filename() || fs::is_directory(path) || extension_of(path).empty();
+}
+
+/// The path with a number in its name.
+fs::path numbered(const fs::path& path) {
+    return is_folder(path) && !number_in(path.filename().string()) ? path / "frame_%05d.png" : path;
+}
+
+/// The names that recordings may have, for messages.
+std::string known_kinds() {
+    return fmt::format("a video ({}) or numbered pictures ({}), for example out/frame_%04d.png",
+                       fmt::join(io::video_extensions(), ", "),
+                       fmt::join(io::writable_image_extensions(), ", "));
+}
+
+class PictureFrames final : public FrameWriter {
+  public:
+    explicit PictureFrames(fs::path path) : path_(std::move(path)) {}
+    void write(int index, const Image& picture) override {
+        io::save_image(picture, frame_path(path_, index));
+    }
+    int threads() const override { return std::clamp(thread_count(), 1, 8); }
+
+  private:
+    fs::path path_;
+};
+
+class VideoFrames final : public FrameWriter {
+  public:
+    explicit VideoFrames(std::unique_ptr<io::VideoWriter> video) : video_(std::move(video)) {}
+    void write(int, const Image& picture) override { video_->add(picture); }
+    void finish() override { video_->finish(); }
+
+  private:
+    std::unique_ptr<io::VideoWriter> video_;
+};
+
+/// The folder of numbered pictures, which may be made.
+void check_folder(const fs::path& pattern) {
+    const fs::path folder = pattern.parent_path();
+    if (folder.empty() || fs::is_directory(folder))
+        check_writable(frame_path(pattern, 0));
+    else
+        check_writable(fs::path(folder.string()).lexically_normal());
+}
+
+}  // namespace
+
+fs::path frame_path(const fs::path& path, int index) {
+    const fs::path pattern = numbered(path);
+    const std::string name = pattern.filename().string();
+    const std::optional<Number> number = number_in(name);
+    if (!number)
+        throw ArgumentError(
+            fmt::format("cannot record to {}: one picture cannot hold many frames; expected {}",
+                        path.string(), known_kinds()));
+    return pattern.parent_path() / fmt::format("{}{:0{}d}{}", name.substr(0, number->begin), index,
+                                               number->digits, name.substr(number->end));
+}
+
+Encoding encoding_for_recording(const fs::path& path, bool deep) {
+    return io::is_video(path) ? Encoding::srgb8 : encoding_for(frame_path(path, 0), deep);
+}
+
+void check_recording(const fs::path& path, const Settings& settings, const RecordingOptions& options) {
+    if (!(options.fps > 0) || !std::isfinite(options.fps))
+        throw ArgumentError(fmt::format("cannot record {}: expected above 0 frames per second, got {}",
+                                        path.string(), options.fps));
+    const bool transparent = settings.background.mode == BackgroundMode::transparent;
+    if (io::is_video(path)) {
+        if (transparent)
+            throw ArgumentError(
+                fmt::format("cannot record {}: videos have no transparency; record PNG or EXR pictures "
+                            "(out/frame_%04d.png), or choose another background",
+                            path.string()));
+        io::check_video(path, options.codec);
+        return check_writable(path);
+    }
+    const fs::path pattern = numbered(path);
+    const std::vector<std::string> known = io::writable_image_extensions();
+    if (std::ranges::count(known, extension_of(pattern)) == 0)
+        throw ArgumentError(fmt::format("cannot record to {}: unknown extension '{}'; expected {}",
+                                        path.string(), extension_of(pattern), known_kinds()));
+    if (!options.codec.empty())
+        throw ArgumentError(
+            fmt::format("cannot record {}: pictures have no codec, got '{}'", path.string(), options.codec));
+    if (transparent && extension_of(pattern).starts_with("jp"))
+        throw ArgumentError(fmt::format("cannot record {}: JPEG has no transparency", path.string()));
+    frame_path(path, 0);
+    check_folder(pattern);
+}
+
+std::unique_ptr<FrameWriter> make_frame_writer(const fs::path& path, const Vec2i& size,
+                                               const RecordingOptions& options) {
+    if (io::is_video(path))
+        return std::make_unique<VideoFrames>(io::open_video(path, {size, options.fps, options.codec}));
+    const fs::path pattern = numbered(path);
+    std::error_code failed;
+    const fs::path folder = pattern.parent_path();
+    if (!folder.empty()) fs::create_directory(folder, failed);
+    if (failed)
+        throw FileError(fmt::format("cannot make the folder {}: {}", folder.string(), failed.message()));
+    return std::make_unique<PictureFrames>(pattern);
+}
+
+}  // namespace easypbr::app

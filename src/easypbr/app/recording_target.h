@@ -1,0 +1,38 @@
+// Where a recording goes: a video, or a picture for each frame.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "easypbr/app/frame_queue.h"
+#include "easypbr/app/output.h"
+
+namespace easypbr::app {
+
+struct RecordingOptions {
+    double fps = 30;
+    std::optional<Vec2i> size = std::nullopt;   ///< none: the settings'
+    std::optional<int> samples = std::nullopt;  ///< none: the settings'
+    std::string codec = {};  ///< FFmpeg's name of an encoder; empty: the usual one of the file's kind
+    bool deep = false;       ///< PNG with 16 bits
+};
+
+/// The path of frame `index` for "out/frame_%04d.png" or for a folder ("out/": out/frame_00000.png).
+std::filesystem::path frame_path(const std::filesystem::path& path, int index);
+
+/// What the frames must be drawn as.
+Encoding encoding_for_recording(const std::filesystem::path& path, bool deep);
+
+/// Throws, before anything is drawn, when the recording cannot be written there: FileError; ArgumentError for
+/// an extension that is no video's and no picture's, a picture's name without a number (%04d), an encoder
+/// that is not there, transparency where the file has none, and a rate that is not above 0; FormatError when
+/// the module for videos is missing.
+void check_recording(const std::filesystem::path& path, const Settings& settings,
+                     const RecordingOptions& options);
+
+/// A writer for frames of that size; makes the folder of pictures. Throws as check_recording() does.
+std::unique_ptr<FrameWriter> make_frame_writer(const std::filesystem::path& path, const Vec2i& size,
+                                               const RecordingOptions& options);
+
+}  // namespace easypbr::app

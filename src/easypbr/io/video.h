@@ -1,0 +1,51 @@
+// Videos: pictures in order into one file.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/image.h"
+#include "easypbr/core/math.h"
+
+namespace easypbr::io {
+
+struct VideoOptions {
+    Vec2i size{0, 0};  ///< of the pictures; odd sides of H.264 and VP9 get their last row or column twice
+    double fps = 30;
+    std::string codec;  ///< FFmpeg's name of an encoder; empty: H.264 for MP4, VP9 for WebM
+};
+
+/// A video being written. One thread at a time.
+class VideoWriter {
+  public:
+    virtual ~VideoWriter() = default;
+    /// Appends a u8 picture of the video's size with 4 channels, row 0 on top; alpha is left out. Throws
+    /// ArgumentError for another picture, FileError when the file cannot be written.
+    virtual void add(const Image& picture) = 0;
+    /// Writes what is still in the encoder and closes the file; add() may not follow. Throws FileError. A
+    /// writer that is destroyed before is finished as far as it can be.
+    virtual void finish() = 0;
+};
+
+/// Begins a video: MP4, MOV (H.264), WebM (VP9), MKV or GIF, by the extension. Pictures are taken for sRGB
+/// and written with the primaries and matrix of BT.709 in limited range, and tagged so. While it is written
+/// an MP4 consists of fragments of its own, so that it can be played when the process is killed; finish()
+/// makes it an ordinary file. The work is done by a module of its own (libeasypbr_ffmpeg.so, searched beside
+/// libeasypbr.so and then where the system searches). Throws FormatError when the module is missing,
+/// ArgumentError for a codec that is not there (naming those that are), a size or a rate out of range,
+/// FileError when the file cannot be written.
+std::unique_ptr<VideoWriter> open_video(const std::filesystem::path& path, const VideoOptions& options);
+
+/// Throws as open_video() does for a codec or module that is missing; writes nothing.
+void check_video(const std::filesystem::path& path, const std::string& codec);
+
+/// Whether the extension is one of a video.
+bool is_video(const std::filesystem::path& path);
+std::vector<std::string> video_extensions();
+
+/// Names of the encoders that are there; empty without the module.
+std::vector<std::string> video_encoders();
+
+}  // namespace easypbr::io

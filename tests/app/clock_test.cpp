@@ -1,0 +1,50 @@
+#include "easypbr/app/clock.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <thread>
+
+#include "easypbr/core/error.h"
+
+namespace easypbr::app {
+namespace {
+
+TEST(Clock, FixedStepsAreCountedNotAddedUp) {
+    Clock clock;
+    EXPECT_EQ(clock.time(), 0);
+    clock.set_fixed_step(0.1);
+    for (int i = 0; i < 100000; ++i) clock.tick();
+    EXPECT_EQ(clock.time(), 0.1 * 100000);
+    EXPECT_EQ(clock.delta_time(), 0.1);
+    clock.set_fixed_step(0.25);
+    clock.tick();
+    EXPECT_EQ(clock.time(), 0.1 * 100000 + 0.25);
+}
+
+TEST(Clock, RealTimePassesBetweenFrames) {
+    Clock clock;
+    clock.tick();
+    EXPECT_EQ(clock.delta_time(), 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    EXPECT_EQ(clock.time(), 0) << "the time of a frame stands still";
+    clock.tick();
+    EXPECT_GE(clock.delta_time(), 0.02);
+    EXPECT_EQ(clock.time(), clock.delta_time());
+}
+
+TEST(Clock, MayBeSet) {
+    Clock clock;
+    clock.set_fixed_step(0.5);
+    clock.tick();
+    clock.set_time(10);
+    clock.tick();
+    EXPECT_EQ(clock.time(), 10.5);
+    clock.set_fixed_step({});
+    EXPECT_EQ(clock.time(), 10.5) << "time goes on from where it is";
+    EXPECT_THROW(clock.set_fixed_step(0), ArgumentError);
+    EXPECT_THROW(clock.set_time(std::numeric_limits<double>::infinity()), ArgumentError);
+}
+
+}  // namespace
+}  // namespace easypbr::app

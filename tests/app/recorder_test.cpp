@@ -1,0 +1,252 @@
+#include "easypbr/app/recorder.h"
+
+#include <gtest/gtest.h>
+
+#include <regex>
+#include <stdexcept>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
+#include "easypbr/geometry/primitives.h"
+#include "easypbr/io/image_io.h"
+#include "easypbr/io/video.h"
+#include "io/temporary_folder.h"
+
+namespace easypbr::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Notes what it is given; fails at one index.
+struct NotingWriter : FrameWriter {
+    struct Notes {
+        std::vector<int> indices;
+        int most_waiting = 0;
+        bool finished = false;
+    };
+    NotingWriter(Notes& notes, int bad_index = -1) : notes_(notes), bad_index_(bad_index) {}
+    void write(int index, const Image& picture) override {
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        if (index == bad_index_) throw FileError("the disk is full");
+        EXPECT_EQ(int(*picture.at<uint8_t>(0, 0)), index % 256);
+        notes_.indices.push_back(index);
+    }
+    void finish() override { notes_.finished = true; }
+    Notes& notes_;
+    int bad_index_;
+};
+
+Image picture_of(int value) {
+    Image image(2, 2, 4, PixelType::u8);
+    *image.at<uint8_t>(0, 0) = uint8_t(value);
+    return image;
+}
+
+TEST(FrameQueue, WritesAllInOrder) {
+    NotingWriter::Notes notes;
+    FrameQueue queue(std::make_unique<NotingWriter>(notes));
+    for (int i = 0; i < 300; ++i) queue.push(picture_of(i));
+    queue.finish();
+    ASSERT_EQ(notes.indices.size(), 300u);
+    for (int i = 0; i < 300; ++i) EXPECT_EQ(notes.indices[size_t(i)], i);
+    EXPECT_TRUE(notes.finished);
+}
+
+TEST(FrameQueue, IsFinishedByItsEnd) {
+    NotingWriter::Notes notes;
+    {
+        FrameQueue queue(std::make_unique<NotingWriter>(notes));
+        for (int i = 0; i < 20; ++i) queue.push(picture_of(i));
+    }
+    EXPECT_EQ(notes.indices.size(), 20u);
+    EXPECT_TRUE(notes.finished);
+}
+
+TEST(FrameQueue, PassesFailuresOnAndKeepsWhatCameBefore) {
+    NotingWriter::Notes notes;
+    FrameQueue queue(std::make_unique<NotingWriter>(notes, 5));
+    EXPECT_THROW(
+        {
+            for (int i = 0; i < 1000; ++i) queue.push(picture_of(i));
+        },
+        FileError);
+    EXPECT_THROW(queue.finish(), FileError);
+    EXPECT_EQ(notes.indices.size(), 5u);
+    EXPECT_TRUE(notes.finished);
+}
+
+TEST(RecordingTarget, NumbersPictures) {
+    EXPECT_EQ(frame_path("out/frame_%04d.png", 7), fs::path("out/frame_0007.png"));
+    EXPECT_EQ(frame_path("out/%d.exr", 12345), fs::path("out/12345.exr"));
+    EXPECT_EQ(frame_path("out/", 3), fs::path("out/frame_00003.png"));
+    EXPECT_EQ(frame_path("out", 3), fs::path("out/frame_00003.png"));
+    EXPECT_THROW(frame_path("out/frame.png", 0), ArgumentError);
+    EXPECT_THROW(frame_path("out/%d_%d.png", 0), ArgumentError);
+    EXPECT_THROW(frame_path("out/%s.png", 0), ArgumentError);
+}
+
+class Recordings : public testing::Test {
+  protected:
+    Recordings() {
+        scene_.show(make_sphere(1, 16), "sphere");
+        session_.settings().image.size = Vec2i(48, 32);
+        session_.settings().image.samples = 1;
+    }
+
+    std::string error_of(const fs::path& path, const RecordingOptions& options = {}) {
+        try {
+            recorder_.start(path, options);
+        } catch (const std::exception& error) {
+            return error.what();
+        }
+        recorder_.stop();
+        return "no error";
+    }
+
+    TemporaryFolder folder_;
+    Scene scene_;
+    Session session_{scene_};
+    Clock clock_;
+    Recorder recorder_{session_, clock_};
+};
+
+TEST_F(Recordings, FramesAreTheStills) {
+    const Camera start = session_.camera();
+    const CameraPath path = CameraPath::orbit(start, Vec3d::Zero());
+    EXPECT_EQ(recorder_.record_path(path, folder_ / "f_%02d.png", {}, 5), 5);
+    // The camera is what it was.
+    EXPECT_TRUE(session_.camera().T_world_cam.isApprox(start.T_world_cam, 1e-15));
+    EXPECT_FALSE(recorder_.is_recording());
+    for (int i = 0; i < 5; ++i) {
+        session_.set_camera(path.camera(path.times(5)[size_t(i)], start));
+        const Image still = session_.render();
+        const Image frame = io::load_image(frame_path(folder_ / "f_%02d.png", i));
+        EXPECT_TRUE(std::ranges::equal(frame.bytes(), still.bytes())) << "frame " << i;
+    }
+    EXPECT_FALSE(fs::exists(folder_ / "f_05.png"));
+}
+
+TEST_F(Recordings, TheClockMakesStepsOfAFrame) {
+    recorder_.start(folder_ / "a", {.fps = 10});
+    EXPECT_TRUE(recorder_.is_recording());
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(clock_.time(), 0.1 * i);
+        recorder_.add_frame();
+    }
+    EXPECT_EQ(clock_.delta_time(), 0.1);
+    EXPECT_EQ(recorder_.frame_count(), 3);
+    EXPECT_EQ(recorder_.stop(), 3);
+    EXPECT_EQ(recorder_.stop(), 0);
+    EXPECT_FALSE(clock_.fixed_step());
+    EXPECT_TRUE(fs::exists(folder_ / "a/frame_00002.png"));
+    EXPECT_THROW(recorder_.add_frame(), ArgumentError);
+}
+
+TEST_F(Recordings, AreFinishedByTheRecordersEndAndByExceptions) {
+    {
+        Recorder passing(session_, clock_);
+        passing.start(folder_ / "video.mp4");
+        for (int i = 0; i < 4; ++i) passing.add_frame();
+        EXPECT_THROW(passing.start(folder_ / "other.mp4"), ArgumentError);
+        EXPECT_THROW(passing.add_frame(picture_of(1)), ArgumentError) << "another size";
+    }
+    EXPECT_GT(fs::file_size(folder_ / "video.mp4"), 500u);
+    const CameraPath path = CameraPath::orbit(session_.camera(), Vec3d::Zero());
+    const auto fail = [](int frame, int, double) {
+        if (frame == 3) throw std::runtime_error("no more");
+    };
+    EXPECT_THROW(recorder_.record_path(path, folder_ / "g_%d.png", {}, 9, fail), std::runtime_error);
+    EXPECT_TRUE(fs::exists(folder_ / "g_2.png"));
+    EXPECT_FALSE(fs::exists(folder_ / "g_3.png"));
+    EXPECT_FALSE(recorder_.is_recording());
+    EXPECT_FALSE(clock_.fixed_step());
+}
+
+TEST_F(Recordings, SayWhatCannotBeRecorded) {
+    EXPECT_NE(
+        error_of(folder_ / "one.png").find("one picture cannot hold many frames; expected a video (gif"),
+        std::string::npos);
+    EXPECT_NE(error_of(folder_ / "a.avi").find("unknown extension 'avi'"), std::string::npos);
+    EXPECT_NE(error_of("/nowhere/at/all/a.mp4").find("/nowhere/at/all"), std::string::npos);
+    EXPECT_NE(error_of("/nowhere/at/all/%d.png").find("/nowhere/at/all"), std::string::npos);
+    EXPECT_NE(error_of(folder_ / "a.mp4", {.fps = 0}).find("above 0 frames per second, got 0"),
+              std::string::npos);
+    EXPECT_NE(error_of(folder_ / "a.gif", {.fps = 60}).find("at most 50 frames per second"),
+              std::string::npos);
+    const std::string codec = error_of(folder_ / "a.mp4", {.codec = "betamax"});
+    EXPECT_NE(codec.find("no encoder 'betamax' for it; it has "), std::string::npos) << codec;
+    EXPECT_NE(codec.find("libx264"), std::string::npos) << codec;
+    EXPECT_NE(error_of(folder_ / "%d.png", {.codec = "libx264"}).find("pictures have no codec"),
+              std::string::npos);
+    session_.settings().background.mode = BackgroundMode::transparent;
+    EXPECT_NE(error_of(folder_ / "a.mp4").find("no transparency"), std::string::npos);
+    EXPECT_NE(error_of(folder_ / "%d.jpg").find("no transparency"), std::string::npos);
+    EXPECT_EQ(error_of(folder_ / "%d.png"), "no error");
+    EXPECT_FALSE(fs::exists(folder_ / "a.mp4"));
+}
+
+// /dev/full takes a file's name and no byte: what a full disk does.
+TEST_F(Recordings, AFullDiskIsAnError) {
+    for (const char* name : {"full.mp4", "full.webm", "full.gif"}) {
+        fs::create_symlink("/dev/full", folder_ / name);
+        EXPECT_THROW(
+            {
+                recorder_.start(folder_ / name);
+                for (int i = 0; i < 100; ++i) recorder_.add_frame();
+                recorder_.stop();
+            },
+            FileError)
+            << name;
+        EXPECT_FALSE(recorder_.is_recording());
+    }
+}
+
+TEST_F(Recordings, ReportTheTimeLeft) {
+    std::vector<std::string> said;
+    set_progress_sink([&](std::string_view what, double part) {
+        said.push_back(std::string(what) + (part >= 1 ? "!" : ""));
+    });
+    const CameraPath path = CameraPath::orbit(session_.camera(), Vec3d::Zero());
+    const auto slowly = [](int, int, double) { std::this_thread::sleep_for(std::chrono::milliseconds(110)); };
+    recorder_.record_path(path, folder_ / "%d.png", {}, 4, slowly);
+    set_progress_sink({});
+    ASSERT_GE(said.size(), 2u);
+    // How long a frame takes depends on the machine.
+    EXPECT_TRUE(std::regex_match(said.front(), std::regex("%d.png: frame [1-3] of 4, 0:[0-9]{2} left")))
+        << said.front();
+    EXPECT_EQ(said.back(), "%d.png!");
+}
+
+// Content that is much deeper than wide is seen whole from every side, and touches the picture's border from
+// one.
+TEST(Turntable, KeepsTheContentInThePicture) {
+    Scene scene;
+    Mesh bar = make_box(Vec3(0.2f, 0.3f, 4));
+    bar.translate({5, 0, 0});
+    scene.show(bar, "bar");
+    Session session(scene);
+    session.settings().image.size = Vec2i(96, 64);
+    const CameraPath path = turntable(session, 1);
+    double nearest_border = 1;
+    for (const double t : path.times(24)) {
+        const Camera camera = path.camera(t, session.camera());
+        const Mat4d P = camera.projection_matrix(1.5) * camera.view();
+        for (Eigen::Index i = 0; i < bar.V().rows(); ++i) {
+            const Vec3d world = bar.T_world_mesh() * bar.V().row(i).transpose().cast<double>();
+            const Eigen::Vector4d clip = P * world.homogeneous();
+            ASSERT_GT(clip.w(), 0);
+            nearest_border = std::min(
+                {nearest_border, 1 - std::abs(clip.x() / clip.w()), 1 - std::abs(clip.y() / clip.w())});
+        }
+    }
+    // The margin, 5 % of both sides together, is kept; the cylinder around the bar is a little larger than
+    // it.
+    EXPECT_GT(nearest_border, 0.049);
+    EXPECT_LT(nearest_border, 0.09);
+    // A camera that was chosen stays where it is.
+    session.set_camera(Camera::look_at(Vec3d(5, 0, 9), Vec3d(5, 0, 0)));
+    EXPECT_LT((turntable(session, 1).pose(0).translation() - Vec3d(5, 0, 9)).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace easypbr::app

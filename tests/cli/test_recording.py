@@ -1,0 +1,194 @@
+"""Recordings as FFmpeg and the stills see them: frame for frame."""
+import json
+import os
+import resource
+import signal
+import subprocess
+import time
+
+import numpy as np
+import pytest
+
+import png
+from binary import BINARY
+
+SIZE = (96, 64)
+LOOK = ("--size", "96x64", "--samples", "1", "--camera-position", "3,2,4", "--camera-target", "0,0,0")
+
+
+def probe(path, *, count=True):
+    """What ffprobe finds in the one stream of a video; its frames are counted by decoding them."""
+    command = ["ffprobe", "-v", "error", "-show_streams", "-show_format", "-of", "json"]
+    command += ["-count_frames"] if count else []
+    done = subprocess.run([*command, path], capture_output=True, text=True, check=True)
+    found = json.loads(done.stdout)
+    (stream,) = found["streams"]
+    return {**stream, "file_duration": found["format"].get("duration")}
+
+
+def luma_of_video(path, width, height):
+    """The Y plane of every frame, as it is in the file."""
+    command = ["ffmpeg", "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "yuv420p", "-"]
+    raw = subprocess.run(command, capture_output=True, check=True).stdout
+    frame = width * height * 3 // 2
+    planes = np.frombuffer(raw, np.uint8).reshape(-1, frame)
+    return planes[:, : width * height].reshape(-1, height, width).astype(float)
+
+
+def luma(picture):
+    """Y of BT.709 in limited range (ITU-R BT.709-6, items 3.2 and 3.4) of a picture's 8-bit values."""
+    return 16 + 219 / 255 * (picture[..., :3].astype(float) @ [0.2126, 0.7152, 0.0722])
+
+
+def psnr(a, b):
+    return 10 * np.log10(255**2 / np.mean((a - b) ** 2))
+
+
+def test_turntable_video_has_the_frames_of_the_stills(easypbr, render, box, tmp_path):
+    render(box, "--turntable", "12", "--fps", "24", "-o", "a.mp4", *LOOK)
+    render(box, "--turntable", "12", "--fps", "24", "-o", "f_%02d.png", *LOOK)
+    found = probe(tmp_path / "a.mp4")
+    assert (found["codec_name"], found["width"], found["height"]) == ("h264", *SIZE)
+    assert (found["nb_frames"], found["nb_read_frames"]) == ("12", "12")
+    assert found["r_frame_rate"] == "24/1" and found["pix_fmt"] == "yuv420p"
+    assert float(found["file_duration"]) == pytest.approx(0.5, abs=1e-3) and float(found["start_time"]) == 0
+    tags = [found[name] for name in ("color_range", "color_space", "color_primaries", "color_transfer")]
+    assert tags == ["tv", "bt709", "bt709", "bt709"]
+    planes = luma_of_video(tmp_path / "a.mp4", *SIZE)
+    stills = [luma(png.read(tmp_path / f"f_{i:02}.png")) for i in range(12)]
+    for i, still in enumerate(stills):
+        assert psnr(planes[i], still) >= 38, i
+    # The test above tells frames apart: the next one is another picture.
+    assert psnr(planes[0], stills[1]) < 30
+
+
+def test_odd_sizes_get_their_last_row_and_column_twice(render, box, tmp_path):
+    render(box, "--turntable", "2", "-o", "odd.mp4", "--size", "51x33", "--samples", "1")
+    render(box, "--turntable", "2", "-o", "odd_%d.png", "--size", "51x33", "--samples", "1")
+    found = probe(tmp_path / "odd.mp4")
+    assert (found["width"], found["height"]) == (52, 34)
+    plane = luma_of_video(tmp_path / "odd.mp4", 52, 34)[0]
+    still = np.pad(luma(png.read(tmp_path / "odd_0.png")), ((0, 1), (0, 1)), "edge")
+    assert psnr(plane, still) >= 38
+
+
+@pytest.mark.parametrize("name, codec", [("a.webm", "vp9"), ("a.gif", "gif"), ("a.mkv", "h264"), ("a.mov", "h264")])
+def test_other_videos(render, box, tmp_path, name, codec):
+    render(box, "--turntable", "10", "--fps", "25", "-o", name, *LOOK)
+    found = probe(tmp_path / name)
+    assert (found["codec_name"], found["width"], found["height"], found["nb_read_frames"]) == (codec, *SIZE, "10")
+    assert float(found["file_duration"]) == pytest.approx(0.4, abs=0.03)
+
+
+def test_gif_colours(render, box, tmp_path):
+    """256 colours of their own for each frame and a dither of +- 5: the means agree within a step."""
+    render(box, "--turntable", "2", "-o", "a.gif", *LOOK)
+    render(box, "--turntable", "2", "-o", "f_%d.png", *LOOK)
+    command = ["ffmpeg", "-v", "error", "-i", tmp_path / "a.gif", "-vsync", "passthrough", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"]
+    frames = np.frombuffer(subprocess.run(command, capture_output=True, check=True).stdout, np.uint8)
+    frames = frames.reshape(2, SIZE[1], SIZE[0], 3).astype(float)
+    for i in range(2):
+        still = png.read(tmp_path / f"f_{i}.png")[..., :3].astype(float)
+        assert np.abs(frames[i] - still).mean() < 6
+        assert np.abs(frames[i].mean((0, 1)) - still.mean((0, 1))).max() < 1.5
+
+
+def test_pictures_and_their_folder(render, box, tmp_path):
+    render(box, "--turntable", "3", "-o", "out", *LOOK)
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == [f"frame_{i:05}.png" for i in range(3)]
+    render(box, "--turntable", "2", "-o", "out/f_%d.exr", *LOOK)
+    assert (tmp_path / "out/f_1.exr").exists()
+
+
+def test_a_camera_path_hits_its_keys(render, box, tmp_path):
+    """Frame 0 and the last frame are the stills at the first and the last key, bit for bit."""
+    keys = [{"position": [3, 2, 4], "target": [0, 0, 0]}, {"position": [-3, 1, 4], "target": [0, 0.2, 0]}]
+    (tmp_path / "path.json").write_text(json.dumps({"keys": keys, "segment_s": 0.2}))
+    light = ("--exposure", "1", "--set", "lights.key.enabled=false", "--set", "lights.fill.enabled=false",
+             "--set", "lights.rim.enabled=false")
+    render(box, "--camera-path", "path.json", "--fps", "20", "-o", "p_%d.png", "--size", "96x64", *light)
+    assert len(list(tmp_path.glob("p_*.png"))) == 5
+    for number, key in ((0, keys[0]), (4, keys[1])):
+        position, target = (",".join(map(str, key[name])) for name in ("position", "target"))
+        render(box, "--camera-position", position, "--camera-target", target, "-o", "still.png", "--size", "96x64", *light)
+        frame, still = png.read(tmp_path / f"p_{number}.png"), png.read(tmp_path / "still.png")
+        # The path's quaternion is the look-at matrix but for its last bits.
+        assert (np.abs(frame.astype(int) - still.astype(int)) > 0).mean() < 1e-3
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (("--turntable", "0", "-o", "a.mp4"), "expected at least one frame, got 0"),
+        (("--turntable", "5", "--camera-path", "p.json", "-o", "a.mp4"), "exclude each other"),
+        (("-o", "a.mp4"), "a video needs --turntable or --camera-path"),
+        (("--fps", "30", "-o", "a.png"), "--fps needs --turntable or --camera-path"),
+        (("--turntable", "5", "-o", "-"), "cannot go to standard output"),
+        (("--turntable", "5", "-o", "a.mp4", "--layers", "depth"), "--layers are of one picture"),
+    ],
+)
+def test_wrong_commands(render, box, arguments, message):
+    assert message in render(box, *arguments, code=2).stderr
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (("--turntable", "5", "-o", "a.png"), "one picture cannot hold many frames"),
+        (("--turntable", "5", "-o", "a.mp4", "--codec", "betamax"), "no encoder 'betamax' for it; it has "),
+        (("--turntable", "5", "-o", "no/such/folder/a.mp4"), "no/such/folder"),
+        (("--turntable", "5", "-o", "a.mp4", "--background", "transparent"), "no transparency"),
+        (("--camera-path", "none.json", "-o", "a.mp4"), "none.json"),
+    ],
+)
+def test_what_cannot_be_recorded(render, box, tmp_path, arguments, message):
+    assert message in render(box, *arguments, code=1).stderr
+    assert not (tmp_path / "a.mp4").exists()
+
+
+def test_a_missing_module_is_named(environment, box, tmp_path):
+    """The program and its library alone, in a folder without the module."""
+    for file in BINARY.parent.glob("libeasypbr.so*"):
+        (tmp_path / file.name).symlink_to(file)
+    for file in (BINARY, *BINARY.parent.glob("libeasypbr.so.*.*.*")):
+        (tmp_path / file.name).unlink(missing_ok=True)
+        (tmp_path / file.name).write_bytes(file.read_bytes())
+        (tmp_path / file.name).chmod(0o755)
+    command = [tmp_path / BINARY.name, "render", box, "--turntable", "2", "-o", tmp_path / "a.mp4"]
+    done = subprocess.run(command, capture_output=True, text=True, env={**environment, "LD_LIBRARY_PATH": str(tmp_path)})
+    assert done.returncode == 1
+    assert "FFmpeg module" in done.stderr and "libeasypbr_ffmpeg.so" in done.stderr
+
+
+def killed_recording(environment, box, folder, name):
+    """Kills a recording for good while it runs."""
+    command = [BINARY, "render", box, "--turntable", "2000", "-o", folder / name, *LOOK]
+    process = subprocess.Popen(command, env=environment, stderr=subprocess.DEVNULL)
+    deadline = time.monotonic() + 60
+    while not (folder / name).exists() or (folder / name).stat().st_size < 60_000:
+        assert time.monotonic() < deadline and process.poll() is None
+        time.sleep(0.02)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+
+
+@pytest.mark.parametrize("name", ["a.mp4", "a.webm"])
+def test_a_killed_recording_can_be_played(environment, box, tmp_path, name):
+    killed_recording(environment, box, tmp_path, name)
+    assert 20 < int(probe(tmp_path / name)["nb_read_frames"]) < 2000
+
+
+def test_a_full_disk_is_an_error(environment, box, tmp_path):
+    """The system's limit on a file's size stands for a full disk."""
+
+    def small_files():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
+
+    for name in ("a.mp4", "f_%03d.png"):
+        command = [BINARY, "render", box, "--turntable", "50", "-o", tmp_path / name, *LOOK]
+        # The caches of the run must not be what fails.
+        done = subprocess.run(command, capture_output=True, text=True, env=environment, preexec_fn=small_files)
+        assert done.returncode == 1 and "cannot write" in done.stderr, done.stderr
+    for picture in tmp_path.glob("f_*.png"):
+        assert picture.stat().st_size > 2000 or png.read(picture).shape == (64, 96, 4)
