@@ -22,7 +22,7 @@ PYTHON_GROUPS = {
 #: Modules with names of their own.
 MODULES = {"shapes": "Shapes"}
 #: What public functions and attributes return; described below the group of what returns them.
-HELPERS = {"Drawing": ["Recorder", "Lights", "StudioLight"], "Content": ["LoadedScene"]}
+HELPERS = {"Drawing": ["Recorder", "Lights", "StudioLight"], "Content": ["LoadedScene", "Animations"]}
 
 SETTINGS_HEAD = """# Settings
 

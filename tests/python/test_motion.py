@@ -1,9 +1,12 @@
 """Meshes that move, and their hierarchy."""
 
+import base64
+import json
+
 import numpy as np
 import pytest
 
-from easypbr import Mesh, Scene, Viewer, shapes
+from easypbr import Mesh, Scene, Viewer, load_scene, shapes
 
 
 def test_steps_of_motion():
@@ -57,3 +60,40 @@ def test_a_moved_parent_is_drawn_where_it_is(size):
     np.testing.assert_array_equal(view.render(samples=1), first)
     other.translate((0.5, 0, 0))
     np.testing.assert_array_equal(view.render(samples=1), second)
+
+
+@pytest.fixture
+def moving(tmp_path):
+    """A triangle that goes from x = 0 to x = 4 in two seconds."""
+    arrays = [np.array(values, "<f4") for values in ([[0, 0, 0], [1, 0, 0], [0, 1, 0]], [0, 2], [[0, 0, 0], [4, 0, 0]])]
+    views, data = [], b""
+    for array in arrays:
+        views.append({"buffer": 0, "byteOffset": len(data), "byteLength": array.nbytes})
+        data += array.tobytes()
+    (tmp_path / "moving.gltf").write_text(json.dumps({
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "animations": [{"name": "go", "samplers": [{"input": 1, "output": 2}],
+                        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}],
+        "accessors": [{"bufferView": i, "componentType": 5126, "count": len(array), "type": ["SCALAR", "VEC3"][array.ndim - 1]}
+                      for i, array in enumerate(arrays)],
+        "bufferViews": views,
+        "buffers": [{"byteLength": len(data), "uri": "data:;base64," + base64.b64encode(data).decode()}],
+    }))
+    return load_scene(tmp_path / "moving.gltf")
+
+
+def test_animations_of_a_file_move_its_meshes(moving, tmp_path):
+    animations, (node,) = moving.animations, moving.mesh.children
+    assert animations.names == ["go"] and len(animations) == 1 and animations.duration_s("go") == 2
+    for time, x in ((0.5, 1), (1.5, 3), (2.5, 1), (-0.5, 3)):
+        animations.apply(time)
+        np.testing.assert_allclose(node.T_world_mesh[:3, 3], [x, 0, 0], atol=1e-12)
+    animations.apply(2.5, "go", loop=False)
+    np.testing.assert_allclose(node.T_world_mesh[:3, 3], [4, 0, 0])
+    with pytest.raises(KeyError, match="there is no animation 'og'"):
+        animations.apply(0, "og")
+    shapes.box().save(tmp_path / "box.glb")
+    assert not load_scene(tmp_path / "box.glb").animations

@@ -164,7 +164,25 @@ class RenderJob {
         const CameraPath path =
             camera_path_ ? *camera_path_
                          : app::turntable(session_, options_.turntable.value_or(1) / recording.fps);
-        recorder.record_path(path, picture.output, recording, options_.turntable);
+        const auto play = [&](int frame, int, double) { animate(frame / recording.fps); };
+        recorder.record_path(path, picture.output, recording, options_.turntable, play);
+    }
+
+    /// Puts what --animation names where it is `time` seconds after --animation-time.
+    void animate(double time_s) {
+        if (animation_)
+            animation_->first.apply(animation_->second, options_.animation_time.value_or(0) + time_s);
+    }
+
+    /// The first file with animations has the one that is meant.
+    void find_animation(const std::vector<io::LoadedScene>& loaded) {
+        animation_.reset();
+        if (options_.animation.empty()) return;
+        for (const io::LoadedScene& file : loaded)
+            if (!file.animations.empty() && !animation_)
+                animation_ = {file.animations, file.animations.find(options_.animation)};
+        if (!animation_) throw NameError("--animation: the files hold no animations");
+        animate(0);
     }
 
     void start_look() {
@@ -186,6 +204,7 @@ class RenderJob {
             style_object(picture.names[i], styles_, label_map_, loaded[i].mesh);
             show(session_.scene(), loaded[i], picture.names[i]);
         }
+        find_animation(loaded);
         if (!options_.camera.empty()) session_.set_camera(find_camera(loaded, options_.camera));
         for (const auto& [name, light] : look_.lights) session_.scene().set_light(name, light);
     }
@@ -220,6 +239,7 @@ class RenderJob {
     std::vector<StyleOption> styles_;
     std::shared_ptr<const LabelMap> label_map_;
     std::optional<CameraPath> camera_path_;
+    std::optional<std::pair<Animations, size_t>> animation_;
     app::Session session_;
     bool environment_is_loaded_ = false;
 };

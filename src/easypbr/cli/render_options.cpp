@@ -126,6 +126,14 @@ void declare_camera(CLI::App& command, RenderOptions& options) {
     command.add_option("--fps", options.fps, "Frames per second of a recording (30)")->option_text("X");
     command.add_option("--codec", options.codec, "FFmpeg's name of the encoder of a video")
         ->option_text("NAME");
+    command
+        .add_option("--animation", options.animation,
+                    "Animation of the file (glTF) by its name, or its number from 0; a recording plays it")
+        ->option_text("NAME|NUMBER");
+    command
+        .add_option("--animation-time", options.animation_time,
+                    "Where the animation is, or a recording of it begins")
+        ->option_text("SECONDS");
     command.add_option("--ortho", options.ortho, "Orthographic picture of this world height")
         ->option_text("HEIGHT|auto");
 }
@@ -226,6 +234,8 @@ void declare_render_options(CLI::App& command, RenderOptions& options) {
 namespace {
 
 void check_recording_usage(const RenderOptions& options) {
+    if (options.animation_time && options.animation.empty())
+        throw UsageError("render: --animation-time needs --animation");
     if (!options.records()) {
         if (options.fps || !options.codec.empty())
             throw UsageError(fmt::format("render: {} needs --turntable or --camera-path",

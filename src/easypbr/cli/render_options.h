@@ -26,6 +26,8 @@ struct RenderOptions {
     std::string camera_path;       ///< file
     std::optional<double> fps;
     std::string codec;
+    std::string animation;                 ///< name or number of one in the files
+    std::optional<double> animation_time;  ///< seconds
     std::string settings, save_settings;
     std::vector<std::string> layers;
     std::vector<std::string> textures;  ///< "base_color=FILE"

@@ -66,6 +66,7 @@ float as_float(T value, bool normalized) {
 
 int components_of(const std::string& type) {
     if (type == "SCALAR") return 1;
+    if (type == "MAT4") return 16;
     if (type.size() == 4 && type.starts_with("VEC") && type[3] >= '2' && type[3] <= '4') return type[3] - '0';
     return 0;
 }
@@ -85,7 +86,7 @@ class Accessor {
         components = components_of(document.text(json_, "type"));
         normalized = document.boolean(json_, "normalized", false);
         if (!size_of_component(type)) fail(fmt::format("has unknown componentType {}", type));
-        if (!components) fail("must be SCALAR, VEC2, VEC3 or VEC4");
+        if (!components) fail("must be SCALAR, VEC2, VEC3, VEC4 or MAT4");
         if (count < 1 || count > size_t(std::numeric_limits<int32_t>::max()))
             fail(fmt::format("has a count of {}", count));
         if (const auto view = document.optional_integer(json_, "bufferView"))

@@ -24,8 +24,9 @@ enum class Mode : size_t { points, lines, line_loop, line_strip, triangles, tria
 /// Vertices that primitives with the same accessors share. Absent attributes have no rows.
 struct Block {
     Eigen::Index first = 0;
-    ArrayXf::Dense V, N, UV, C;
-    std::vector<int32_t> triangles;  ///< of all primitives; indices into the block
+    ArrayXf::Dense V, N, UV, C, joints, weights;
+    std::vector<ArrayXf::Dense> targets_V, targets_N;  ///< of morph targets; without rows where one has none
+    std::vector<int32_t> triangles;                    ///< of all primitives; indices into the block
 };
 
 void encode_colors(ArrayXf::Dense& C) {
@@ -82,7 +83,7 @@ class MeshBuilder {
     MeshBuilder(GltfDocument& document, const GltfMaterials& materials, size_t index)
         : document_(document), materials_(materials), name_(fmt::format("meshes[{}]", index)) {}
 
-    MeshData build(const Json& json) {
+    GltfMesh build(const Json& json) {
         const Json* primitives = member(json, "primitives");
         if (!primitives || !primitives->is_array() || primitives->empty()) fail("has no primitives");
         out_.name = document_.text(json, "name");
@@ -92,7 +93,9 @@ class MeshBuilder {
         if (!edges_.empty())
             out_.E =
                 Array2i(Eigen::Map<const Array2i::Dense>(edges_.data(), Eigen::Index(edges_.size() / 2), 2));
-        return std::move(out_);
+        GltfMesh mesh{std::move(out_), {}, {}};
+        read_deformation(json, mesh);
+        return mesh;
     }
 
   private:
@@ -107,7 +110,7 @@ class MeshBuilder {
         const size_t mode = document_.optional_integer(json, "mode").value_or(size_t(Mode::triangles));
         if (mode > size_t(Mode::triangle_fan)) fail(fmt::format("has a primitive of unknown mode {}", mode));
         const auto material = document_.optional_integer(json, "material");
-        Block& block = block_of(*attributes, materials_.uv_set(material));
+        Block& block = block_of(json, *attributes, materials_.uv_set(material));
         add_elements(json, Mode(mode), material, block);
     }
 
@@ -120,12 +123,17 @@ class MeshBuilder {
                 "compression");
     }
 
-    Block& block_of(const Json& attributes, int uv_set) {
+    Block& block_of(const Json& primitive, const Json& attributes, int uv_set) {
         const std::string wanted_uv = fmt::format("TEXCOORD_{}", uv_set);
         const char* uv = member(attributes, wanted_uv.c_str()) ? wanted_uv.c_str() : "TEXCOORD_0";
         BlockKey key;
-        for (const char* name : {"POSITION", "NORMAL", uv, "COLOR_0"})
+        for (const char* name :
+             {"POSITION", "NORMAL", uv, "COLOR_0", "JOINTS_0", "WEIGHTS_0", "JOINTS_1", "WEIGHTS_1"})
             key.push_back(document_.optional_integer(attributes, name));
+        if (const Json* targets = member(primitive, "targets"); targets && targets->is_array())
+            for (const Json& target : *targets)
+                for (const char* name : {"POSITION", "NORMAL"})
+                    key.push_back(document_.optional_integer(target, name));
         const auto [found, is_new] = block_index_.try_emplace(key, blocks_.size());
         if (is_new) blocks_.push_back(read_block(key));
         return blocks_[found->second];
@@ -145,6 +153,18 @@ class MeshBuilder {
         read(key[1], 3, 3, block.N);
         read(key[2], 2, 2, block.UV);
         read(key[3], 3, 4, block.C);
+        for (size_t set : {4, 6}) {
+            if (!key[set] || !key[set + 1]) break;
+            ArrayXf::Dense joints, weights;
+            read(key[set], 4, 4, joints);
+            read(key[set + 1], 4, 4, weights);
+            append_columns(block.joints, joints);
+            append_columns(block.weights, weights);
+        }
+        for (size_t target = 8; target + 1 < key.size(); target += 2) {
+            read(key[target], 3, 3, block.targets_V.emplace_back());
+            read(key[target + 1], 3, 3, block.targets_N.emplace_back());
+        }
         normalize_rows(block.N);
         flip_v(block.UV);
         encode_colors(block.C);
@@ -197,19 +217,56 @@ class MeshBuilder {
             edges_.insert(edges_.end(), {first + index(count - 1), first + index(0)});
     }
 
-    /// One column block of all vertices; rows of blocks that lack it have `fallback`.
-    ArrayXf::Dense merged(ArrayXf::Dense Block::*attribute, float fallback) {
+    static void append_columns(ArrayXf::Dense& to, const ArrayXf::Dense& more) {
+        const Eigen::Index before = to.cols();
+        to.conservativeResize(more.rows(), before + more.cols());
+        to.rightCols(more.cols()) = more;
+    }
+
+    /// One column block of all vertices, of(block) of each; rows of blocks that lack it have `fallback`.
+    template <class Of>
+    ArrayXf::Dense merged_of(float fallback, Of&& of) {
         Eigen::Index columns = 0;
-        for (const Block& block : blocks_)
-            if ((block.*attribute).rows()) columns = std::max(columns, (block.*attribute).cols());
+        for (Block& block : blocks_)
+            if (of(block).rows()) columns = std::max(columns, of(block).cols());
         if (columns == 0) return ArrayXf::Dense(0, 0);
-        if (blocks_.size() == 1) return std::move(blocks_[0].*attribute);
+        if (blocks_.size() == 1) return std::move(of(blocks_[0]));
         ArrayXf::Dense out = ArrayXf::Dense::Constant(vertex_count_, columns, fallback);
-        for (const Block& block : blocks_) {
-            const ArrayXf::Dense& from = block.*attribute;
+        for (Block& block : blocks_) {
+            const ArrayXf::Dense& from = of(block);
             if (from.rows()) out.block(block.first, 0, from.rows(), from.cols()) = from;
         }
         return out;
+    }
+    ArrayXf::Dense merged(ArrayXf::Dense Block::*attribute, float fallback) {
+        return merged_of(fallback, [&](Block& block) -> ArrayXf::Dense& { return block.*attribute; });
+    }
+
+    void read_deformation(const Json& json, GltfMesh& mesh) {
+        Deformation& out = mesh.deformation;
+        out.joints = ArrayXf(merged(&Block::joints, 0));
+        out.weights = ArrayXf(merged(&Block::weights, 0));
+        size_t targets = 0;
+        for (const Block& block : blocks_) targets = std::max(targets, block.targets_V.size());
+        for (size_t k = 0; k < targets; ++k) {
+            const auto target = [&](std::vector<ArrayXf::Dense> Block::*list) {
+                return merged_of(0, [&](Block& block) -> ArrayXf::Dense& {
+                    return k < (block.*list).size() ? (block.*list)[k] : none_;
+                });
+            };
+            const ArrayXf::Dense V = target(&Block::targets_V), N = target(&Block::targets_N);
+            out.targets_V.push_back(V.rows() ? Array3f(V) : Array3f(Array3f::Dense::Zero(vertex_count_, 3)));
+            out.targets_N.push_back(N.rows() ? Array3f(N) : Array3f());
+        }
+        if (const Json* weights = member(json, "weights"); weights && weights->is_array()) {
+            if (weights->size() != targets)
+                fail(fmt::format("has {} morph targets and {} weights", targets, weights->size()));
+            for (const Json& weight : *weights) mesh.weights.push_back(weight.get<float>());
+        }
+        mesh.weights.resize(targets, 0);
+        if (out.empty()) return;
+        out.V = mesh.data.V;
+        out.N = mesh.data.N;
     }
 
     void compute_missing_normals() {
@@ -242,6 +299,7 @@ class MeshBuilder {
     std::string name_;
     MeshData out_;
     std::vector<Block> blocks_;
+    ArrayXf::Dense none_;  ///< what a block has of a morph target that it lacks
     std::map<BlockKey, size_t> block_index_;
     std::map<std::optional<size_t>, int> material_index_;
     Eigen::Index vertex_count_ = 0;
@@ -250,7 +308,7 @@ class MeshBuilder {
 
 }  // namespace
 
-MeshData read_gltf_mesh(GltfDocument& document, const GltfMaterials& materials, size_t index) {
+GltfMesh read_gltf_mesh(GltfDocument& document, const GltfMaterials& materials, size_t index) {
     const Json& json = document.item("meshes", index);
     return MeshBuilder(document, materials, index).build(json);
 }

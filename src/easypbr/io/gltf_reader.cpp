@@ -8,6 +8,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
+#include "easypbr/io/gltf_animation.h"
 #include "easypbr/io/gltf_document.h"
 #include "easypbr/io/gltf_extensions.h"
 #include "easypbr/io/gltf_materials.h"
@@ -48,6 +49,7 @@ class SceneReader {
 
     LoadedScene read() {
         warn_of_extensions();
+        rig_ = read_gltf_rig(document_);
         MeshData root;
         root.name = document_.path().stem().string();
         root.source = document_.path();
@@ -55,6 +57,7 @@ class SceneReader {
             if (auto mesh = read_node(node, Eigen::Affine3d::Identity(), 1)) root.children.push_back(*mesh);
         if (root.children.empty()) document_.fail("there is no mesh in its scene");
         out_.mesh = Mesh(std::move(root));
+        if (!rig_.animations.empty()) out_.animations = Animations(std::move(rig_));
         return std::move(out_);
     }
 
@@ -96,43 +99,44 @@ class SceneReader {
         visited_[index] = true;
 
         const auto mesh = document_.optional_integer(json, "mesh");
-        MeshData data = mesh ? mesh_of(*mesh) : MeshData();
+        MeshData data = mesh ? mesh_of(*mesh).data : MeshData();
         data.name =
             document_.text(json, "name", data.name.empty() ? fmt::format("node {}", index) : data.name);
-        data.T_parent_mesh = pose_of(json, index);
+        data.T_parent_mesh = pose_of(index);
         const Eigen::Affine3d T_world_node = T_world_parent * data.T_parent_mesh;
         add_camera(json, document_.text(json, "name", ""), data.name, T_world_node);
         add_light(json, data.name, T_world_node);
         for (const size_t child : document_.integers(json, "children"))
             if (auto below = read_node(child, T_world_node, depth + 1)) data.children.push_back(*below);
         if (!mesh && data.children.empty()) return std::nullopt;
-        return Mesh(std::move(data));
+        const Mesh node(std::move(data));
+        if (!rig_.animations.empty()) animate(index, json, node, mesh);
+        return node;
     }
 
-    const MeshData& mesh_of(size_t index) {
+    /// Tells the animations which mesh is the node's.
+    void animate(size_t index, const Json& json, const Mesh& mesh, std::optional<size_t> mesh_index) {
+        AnimationNode& node = rig_.nodes[index];
+        node.mesh = mesh;
+        if (!mesh_index) return;
+        const GltfMesh& source = mesh_of(*mesh_index);
+        node.deformation = source.deformation;
+        node.weights = source.weights;
+        if (const auto weights = document_.numbers(json, "weights", source.weights.size()))
+            node.weights.assign(weights->begin(), weights->end());
+    }
+
+    const GltfMesh& mesh_of(size_t index) {
         document_.item("meshes", index);
         auto& mesh = meshes_[index];
         if (!mesh) mesh = read_gltf_mesh(document_, materials_, index);
         return *mesh;
     }
 
-    Eigen::Affine3d pose_of(const Json& json, size_t index) const {
-        Eigen::Affine3d pose = Eigen::Affine3d::Identity();
-        if (const auto m = document_.numbers(json, "matrix", 16)) {
-            pose.matrix() = Eigen::Map<const Mat4d>(m->data());
-            if (pose.matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1))
-                document_.fail(
-                    fmt::format("nodes[{}].matrix is not affine: its last row must be 0 0 0 1", index));
-            return pose;
-        }
-        const auto t = document_.numbers(json, "translation", 3).value_or(std::vector<double>{0, 0, 0});
-        const auto r = document_.numbers(json, "rotation", 4).value_or(std::vector<double>{0, 0, 0, 1});
-        const auto s = document_.numbers(json, "scale", 3).value_or(std::vector<double>{1, 1, 1});
-        const Eigen::Quaterniond rotation(r[3], r[0], r[1], r[2]);
-        pose.translate(Vec3d(t[0], t[1], t[2]));
-        if (rotation.norm() > 0) pose.rotate(rotation.normalized());
-        pose.scale(Vec3d(s[0], s[1], s[2]));
-        return pose;
+    Eigen::Affine3d pose_of(size_t index) const {
+        const AnimationNode node = read_gltf_pose(document_, index);
+        if (node.matrix) return *node.matrix;
+        return Eigen::Translation3d(node.translation) * node.rotation * Eigen::Scaling(node.scale);
     }
 
     /// Named after its node, as viewers show it, else after the camera itself.
@@ -199,7 +203,8 @@ class SceneReader {
 
     GltfDocument& document_;
     GltfMaterials materials_;
-    std::vector<std::optional<MeshData>> meshes_;
+    std::vector<std::optional<GltfMesh>> meshes_;
+    AnimationRig rig_;
     std::vector<bool> visited_;
     LoadedScene out_;
 };

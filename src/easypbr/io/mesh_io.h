@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "easypbr/scene/animation.h"
 #include "easypbr/scene/camera.h"
 #include "easypbr/scene/light.h"
 #include "easypbr/scene/mesh.h"
@@ -17,6 +18,7 @@ struct LoadedScene {
     Mesh mesh;
     std::map<std::string, Light> lights;    ///< in world space (glTF KHR_lights_punctual)
     std::map<std::string, Camera> cameras;  ///< in world space (glTF)
+    Animations animations = {};             ///< what moves the mesh and its children (glTF)
 };
 
 struct LoadOptions {

@@ -44,7 +44,8 @@ void bind_scene(nb::module_& module) {
     nb::class_<io::LoadedScene>(module, "LoadedScene", "All that a file holds: mesh, cameras and lights.")
         .def_ro("mesh", &io::LoadedScene::mesh)
         .def_ro("cameras", &io::LoadedScene::cameras, "Cameras by name, in world space (glTF).")
-        .def_ro("lights", &io::LoadedScene::lights, "Lights by name, in world space (glTF).");
+        .def_ro("lights", &io::LoadedScene::lights, "Lights by name, in world space (glTF).")
+        .def_ro("animations", &io::LoadedScene::animations, "What moves the mesh and its children (glTF).");
     module.def(
         "load_scene",
         [](const std::filesystem::path& path) { return released([&] { return io::load_scene(path); }); },

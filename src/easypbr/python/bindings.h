@@ -23,6 +23,7 @@ void bind_surfaces(nb::module_& module);
 void bind_light(nb::module_& module);
 void bind_environment(nb::module_& module);
 void bind_scene(nb::module_& module);
+void bind_animation(nb::module_& module);
 void bind_camera(nb::module_& module);
 void bind_camera_path(nb::module_& module);
 void bind_viewer(nb::module_& module);

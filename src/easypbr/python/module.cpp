@@ -36,6 +36,7 @@ NB_MODULE(_easypbr, module) {
     bind_mesh(module);
     bind_light(module);
     bind_environment(module);
+    bind_animation(module);
     bind_scene(module);
     bind_camera(module);
     bind_camera_path(module);

@@ -1,0 +1,43 @@
+// Animations: what moves the meshes of a file.
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include "easypbr/python/bindings.h"
+#include "easypbr/scene/animation.h"
+
+namespace easypbr::python {
+namespace {
+
+/// A name or a number.
+size_t index_of(const Animations& animations, const nb::object& animation) {
+    if (!nb::isinstance<nb::int_>(animation)) return animations.find(nb::cast<std::string>(animation));
+    return animations.find(nb::cast<std::string>(nb::str(animation)));
+}
+
+}  // namespace
+
+void bind_animation(nb::module_& module) {
+    nb::class_<Animations>(module, "Animations", "What moves the meshes of a file; empty when nothing does.")
+        .def_prop_ro("names", &Animations::names)
+        .def("__len__", [](const Animations& a) { return a.names().size(); })
+        .def(
+            "duration_s",
+            [](const Animations& a, const nb::object& animation) {
+                return a.duration_s(index_of(a, animation));
+            },
+            nb::arg("animation") = 0, nb::sig("def duration_s(self, animation: str | int = 0) -> float"),
+            "Seconds of an animation, by its name or number.")
+        .def(
+            "apply",
+            [](Animations& a, double time, const nb::object& animation, bool loop) {
+                const size_t index = index_of(a, animation);
+                released([&] { a.apply(index, time, loop); });
+            },
+            nb::arg("time_s"), nb::arg("animation") = 0, nb::arg("loop") = true,
+            nb::sig("def apply(self, time_s: float, animation: str | int = 0, loop: bool = True) -> None"),
+            "Puts the file's meshes where they are at a time: poses, skins, morph targets. With loop the "
+            "time goes "
+            "around, else the animation rests at its ends.");
+}
+
+}  // namespace easypbr::python

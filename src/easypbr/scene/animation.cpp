@@ -1,0 +1,266 @@
+#include "easypbr/scene/animation.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/core/suggest.h"
+
+namespace easypbr {
+namespace {
+
+constexpr size_t vertex_grain = 4096;
+
+Eigen::VectorXd row(const AnimationChannel& channel, Eigen::Index i) {
+    return channel.values.row(i).transpose().cast<double>();
+}
+
+Eigen::Quaterniond quaternion(const Eigen::VectorXd& xyzw) {
+    return Eigen::Quaterniond(Eigen::Vector4d(xyzw));
+}
+
+/// Between keys i and i + 1, at `part` of the `length` seconds between them.
+Eigen::VectorXd between(const AnimationChannel& channel, Eigen::Index i, double part, double length) {
+    if (channel.interpolation == Interpolation::step) return row(channel, i);
+    if (channel.interpolation == Interpolation::linear) {
+        const Eigen::VectorXd from = row(channel, i), to = row(channel, i + 1);
+        if (channel.property != AnimatedProperty::rotation) return (1 - part) * from + part * to;
+        return quaternion(from).normalized().slerp(part, quaternion(to).normalized()).coeffs();
+    }
+    // Each key: in-tangent, value, out-tangent.
+    const double t = part, t2 = t * t, t3 = t2 * t;
+    return (2 * t3 - 3 * t2 + 1) * row(channel, 3 * i + 1) +
+           length * (t3 - 2 * t2 + t) * row(channel, 3 * i + 2) +
+           (3 * t2 - 2 * t3) * row(channel, 3 * i + 4) + length * (t3 - t2) * row(channel, 3 * i + 3);
+}
+
+Eigen::VectorXd sample_raw(const AnimationChannel& channel, double time_s) {
+    const auto& times = channel.times;
+    const bool cubic = channel.interpolation == Interpolation::cubic_spline;
+    const auto value = [&](Eigen::Index i) { return row(channel, cubic ? 3 * i + 1 : i); };
+    if (time_s <= double(times.front())) return value(0);
+    if (time_s >= double(times.back())) return value(Eigen::Index(times.size()) - 1);
+    const auto after = std::upper_bound(times.begin(), times.end(), time_s,
+                                        [](double time, float key) { return time < double(key); });
+    const auto i = size_t(after - times.begin()) - 1;
+    const double length = double(times[i + 1]) - double(times[i]);
+    return between(channel, Eigen::Index(i), (time_s - double(times[i])) / length, length);
+}
+
+void check_index(const char* what, int index, size_t count, bool may_lack) {
+    if ((index < 0 && !(may_lack && index == -1)) || index >= int(count))
+        throw ArgumentError(
+            fmt::format("animation rig: {} {} does not exist, there are {}", what, index, count));
+}
+
+/// Throws unless all arrays of a deformation fit together and every joint is one of the skin's.
+void check_deformation(const Deformation& d, size_t joints, bool has_skin) {
+    const Eigen::Index n = d.V.rows();
+    const auto fits = [&](const auto& array) { return array.empty() || array.rows() == n; };
+    bool good = fits(d.N) && fits(d.joints) && fits(d.weights) && d.joints.rows() == d.weights.rows() &&
+                d.joints.cols() == d.weights.cols() && d.targets_V.size() == d.targets_N.size();
+    for (size_t k = 0; good && k < d.targets_V.size(); ++k)
+        good = fits(d.targets_V[k]) && fits(d.targets_N[k]);
+    if (!good) throw ArgumentError("animation rig: joints, weights or morph targets do not fit the vertices");
+    if (!has_skin || d.joints.empty()) return;
+    if (!(d.joints.minCoeff() >= 0) || !(d.joints.maxCoeff() < float(joints)))
+        throw ArgumentError(fmt::format("animation rig: vertices follow joints {} to {}, but the skin has {}",
+                                        d.joints.minCoeff(), d.joints.maxCoeff(), joints));
+}
+
+/// Weighted sums of the joints' matrices move V; their cofactors turn N, as the inverse transpose does.
+struct Deformed {
+    Array3f::Dense V, N;
+};
+
+void add_targets(const Deformation& from, const std::vector<float>& weights, Deformed& out) {
+    for (size_t k = 0; k < from.targets_V.size() && k < weights.size(); ++k) {
+        if (weights[k] == 0) continue;
+        parallel_for(size_t(out.V.rows()), vertex_grain, [&](size_t i) {
+            const auto r = Eigen::Index(i);
+            out.V.row(r) += weights[k] * from.targets_V[k].row(r);
+            if (out.N.rows() && !from.targets_N[k].empty())
+                out.N.row(r) += weights[k] * from.targets_N[k].row(r);
+        });
+    }
+}
+
+Mat3d cofactors(const Mat3d& M) {
+    Mat3d result;
+    result << M.col(1).cross(M.col(2)), M.col(2).cross(M.col(0)), M.col(0).cross(M.col(1));
+    return result;
+}
+
+void follow_joints(const Deformation& from, const std::vector<Eigen::Affine3d>& T_mesh_joints,
+                   Deformed& out) {
+    parallel_for(size_t(out.V.rows()), vertex_grain, [&](size_t i) {
+        const auto r = Eigen::Index(i);
+        Eigen::Matrix<double, 3, 4> T = Eigen::Matrix<double, 3, 4>::Zero();
+        double sum = 0;
+        for (Eigen::Index k = 0; k < from.weights.cols(); ++k) {
+            const double weight = double(from.weights(r, k));
+            if (weight == 0) continue;
+            T += weight * T_mesh_joints[size_t(from.joints(r, k))].matrix().topRows<3>();
+            sum += weight;
+        }
+        if (!(sum > 0)) return;
+        T /= sum;
+        const Vec3d v = out.V.row(r).transpose().cast<double>();
+        out.V.row(r) = (T.leftCols<3>() * v + T.col(3)).cast<float>().transpose();
+        if (!out.N.rows()) return;
+        const Vec3d n = out.N.row(r).transpose().cast<double>();
+        out.N.row(r) = (cofactors(T.leftCols<3>()) * n).cast<float>().transpose();
+    });
+}
+
+void normalize(Array3f::Dense& N) {
+    parallel_for(size_t(N.rows()), vertex_grain, [&](size_t i) {
+        auto n = N.row(Eigen::Index(i));
+        if (const float length = n.norm(); length > 0) n /= length;
+    });
+}
+
+}  // namespace
+
+Eigen::VectorXd sample(const AnimationChannel& channel, double time_s) {
+    Eigen::VectorXd value = sample_raw(channel, time_s);
+    if (channel.property != AnimatedProperty::rotation) return value;
+    const double length = value.norm();
+    return length > 0 ? Eigen::VectorXd(value / length) : Eigen::VectorXd(Eigen::Vector4d(0, 0, 0, 1));
+}
+
+/// A node's properties at a moment.
+struct Animations::Pose {
+    Vec3d translation, scale;
+    Eigen::Quaterniond rotation;
+    std::vector<float> weights;
+
+    Eigen::Affine3d matrix() const {
+        return Eigen::Translation3d(translation) * rotation * Eigen::Scaling(scale);
+    }
+};
+
+Animations::Animations(AnimationRig rig) : rig_(std::move(rig)) {
+    const size_t count = rig_.nodes.size();
+    for (const AnimationNode& node : rig_.nodes) {
+        check_index("node", node.parent, count, true);
+        check_index("skin", node.skin, rig_.skins.size(), true);
+    }
+    for (const AnimationNode& node : rig_.nodes)
+        check_deformation(node.deformation, node.skin < 0 ? 0 : rig_.skins[size_t(node.skin)].joints.size(),
+                          node.skin >= 0);
+    for (const Skin& skin : rig_.skins)
+        for (const int joint : skin.joints) check_index("joint", joint, count, false);
+    for (const Animation& animation : rig_.animations)
+        for (const AnimationChannel& channel : animation.channels)
+            check_index("node", channel.node, count, false);
+    std::vector<bool> placed(count, false);
+    // As many rounds as the hierarchy is deep; a circle would never be placed.
+    for (bool again = true; again;) {
+        again = false;
+        for (size_t i = 0; i < count; ++i) {
+            const int parent = rig_.nodes[i].parent;
+            if (placed[i] || (parent >= 0 && !placed[size_t(parent)])) continue;
+            order_.push_back(i);
+            placed[i] = again = true;
+        }
+    }
+    if (order_.size() != count) throw ArgumentError("animation rig: a node is its own descendant");
+}
+
+std::vector<std::string> Animations::names() const {
+    std::vector<std::string> names;
+    for (const Animation& animation : rig_.animations) names.push_back(animation.name);
+    return names;
+}
+
+size_t Animations::find(const std::string& name) const {
+    const std::vector<std::string> known = names();
+    if (const auto found = std::ranges::find(known, name); found != known.end())
+        return size_t(found - known.begin());
+    size_t number = 0;
+    const auto [end, error] = std::from_chars(name.data(), name.data() + name.size(), number);
+    if (error == std::errc() && end == name.data() + name.size() && number < known.size()) return number;
+    throw NameError(fmt::format("there is no animation '{}'{}; there {}", name, did_you_mean(name, known),
+                                known.empty() ? "is none" : fmt::format("are {}", fmt::join(known, ", "))));
+}
+
+double Animations::duration_s(size_t index) const {
+    if (index >= rig_.animations.size())
+        throw NameError(fmt::format("there is no animation {}: there are {}", index, rig_.animations.size()));
+    return rig_.animations[index].duration_s;
+}
+
+std::vector<Animations::Pose> Animations::pose(const Animation& animation, double time_s) const {
+    std::vector<Pose> poses;
+    for (const AnimationNode& node : rig_.nodes)
+        poses.push_back({node.translation, node.scale, node.rotation, node.weights});
+    for (const AnimationChannel& channel : animation.channels) {
+        Pose& pose = poses[size_t(channel.node)];
+        const Eigen::VectorXd value = sample(channel, time_s);
+        switch (channel.property) {
+            case AnimatedProperty::translation:
+                pose.translation = value;
+                break;
+            case AnimatedProperty::scale:
+                pose.scale = value;
+                break;
+            case AnimatedProperty::rotation:
+                pose.rotation = quaternion(value);
+                break;
+            case AnimatedProperty::weights: {
+                const Eigen::VectorXf weights = value.cast<float>();
+                pose.weights.assign(weights.begin(), weights.end());
+            }
+        }
+    }
+    return poses;
+}
+
+void Animations::apply(size_t index, double time_s, bool loop) {
+    const double duration = duration_s(index);
+    if (!std::isfinite(time_s))
+        throw ArgumentError(fmt::format("animation: expected a finite time, got {}", time_s));
+    if (loop && duration > 0) time_s -= duration * std::floor(time_s / duration);
+    const std::vector<Pose> poses = pose(rig_.animations[index], time_s);
+    std::vector<Eigen::Affine3d> T_world_nodes(rig_.nodes.size());
+    for (const size_t i : order_) {
+        AnimationNode& node = rig_.nodes[i];
+        const Eigen::Affine3d T = node.matrix ? *node.matrix : poses[i].matrix();
+        T_world_nodes[i] = node.parent < 0 ? T : T_world_nodes[size_t(node.parent)] * T;
+        if (node.mesh) node.mesh->set_T_parent_mesh(T);
+    }
+    for (const size_t i : order_)
+        if (AnimationNode& node = rig_.nodes[i]; node.mesh && !node.deformation.empty())
+            deform(node, T_world_nodes[i], poses[i].weights, T_world_nodes);
+}
+
+void Animations::deform(AnimationNode& node, const Eigen::Affine3d& T_world_node,
+                        const std::vector<float>& weights,
+                        const std::vector<Eigen::Affine3d>& T_world_nodes) {
+    const Deformation& from = node.deformation;
+    Deformed out{from.V, from.N.empty() ? Array3f::Dense(0, 3) : Array3f::Dense(from.N)};
+    add_targets(from, weights, out);
+    if (node.skin >= 0 && !from.joints.empty()) {
+        // The joints say where the vertices are in the world; the mesh is drawn with its node's pose.
+        const Skin& skin = rig_.skins[size_t(node.skin)];
+        const Eigen::Affine3d T_node_world = T_world_node.inverse();
+        std::vector<Eigen::Affine3d> T_mesh_joints;
+        for (size_t k = 0; k < skin.joints.size(); ++k)
+            T_mesh_joints.push_back(T_node_world * T_world_nodes[size_t(skin.joints[k])] *
+                                    skin.T_joint_at_rest[k]);
+        follow_joints(from, T_mesh_joints, out);
+    }
+    normalize(out.N);
+    node.mesh->edit([&](MeshData& data) {
+        data.V = out.V;
+        if (out.N.rows()) data.N = out.N;
+    });
+}
+
+}  // namespace easypbr

@@ -1,0 +1,62 @@
+"""Animations of glTF files from the command line."""
+import base64
+import json
+
+import numpy as np
+import pytest
+
+import png
+
+LOOK = ("--camera-position", "3,2,6", "--camera-target", "0,0,0", "--exposure", "1")
+
+
+@pytest.fixture
+def moving(tmp_path):
+    """A triangle that goes from x = 0 to x = 1 in half a second."""
+    positions = np.array([[-1, -1, 0], [1, -1, 0], [0, 1, 0]], "<f4")
+    data = positions.tobytes() + np.array([0, 0.5], "<f4").tobytes() + np.array([0, 0, 0, 1, 0, 0], "<f4").tobytes()
+    views = [(0, 36), (36, 8), (44, 24)]
+    kinds = [(3, "VEC3"), (2, "SCALAR"), (2, "VEC3")]
+    uri = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
+    (tmp_path / "moving.gltf").write_text(json.dumps({
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "animations": [{"name": "go", "samplers": [{"input": 1, "output": 2}],
+                        "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}],
+        "accessors": [{"bufferView": i, "componentType": 5126, "count": count, "type": kind}
+                      for i, (count, kind) in enumerate(kinds)],
+        "bufferViews": [{"buffer": 0, "byteOffset": start, "byteLength": length} for start, length in views],
+        "buffers": [{"byteLength": len(data), "uri": uri}],
+    }))
+    return tmp_path / "moving.gltf"
+
+
+def test_a_still_shows_the_animation_at_a_time(render, moving, tmp_path):
+    for time in (0, 0.25):
+        render(moving, "--animation", "go", "--animation-time", time, "-o", f"{time}.png", *LOOK)
+    rest, moved = (np.abs(png.read(tmp_path / name)[..., :3].astype(int) - 64).max(2) > 8 for name in ("0.png", "0.25.png"))
+    # The triangle has gone by half a unit: to the right.
+    assert np.argwhere(moved)[:, 1].mean() > np.argwhere(rest)[:, 1].mean() + 2
+
+
+def test_a_recording_plays_it(render, moving, tmp_path):
+    """Frame k is the still k / fps later, bit for bit, with the camera at rest."""
+    pose = np.eye(4)
+    pose[2, 3] = 6
+    (tmp_path / "rest.json").write_text(json.dumps({"keys": [pose.tolist()] * 2, "segment_s": 0.2, "mode": "linear"}))
+    look = ("--exposure", "1", "--set", "lights.key.enabled=false", "--set", "lights.fill.enabled=false", "--set",
+            "lights.rim.enabled=false", "--set", "camera.near=0.1")
+    render(moving, "--animation", "0", "--camera-path", "rest.json", "--fps", "10", "-o", "f_%d.png", *look)
+    (tmp_path / "pose.txt").write_text(" ".join(map(str, pose.ravel())))
+    for frame in range(3):
+        render(moving, "--animation", "0", "--animation-time", frame / 10, "--camera-pose", "pose.txt", "-o", "s.png", *look)
+        np.testing.assert_array_equal(png.read(tmp_path / f"f_{frame}.png"), png.read(tmp_path / "s.png"))
+    assert (png.read(tmp_path / "f_0.png") != png.read(tmp_path / "f_2.png")).any()
+
+
+def test_what_is_not_there(render, moving, box):
+    assert "there is no animation 'og'" in render(moving, "--animation", "og", "-o", "a.png", code=1).stderr
+    assert "the files hold no animations" in render(box, "--animation", "go", "-o", "a.png", code=1).stderr
+    assert "--animation-time needs --animation" in render(moving, "--animation-time", "1", "-o", "a.png", code=2).stderr

@@ -1,0 +1,126 @@
+#include <gtest/gtest.h>
+
+#include "easypbr/core/error.h"
+#include "easypbr/io/gltf_reader.h"
+#include "io/gltf_builder.h"
+#include "test_data.h"
+
+namespace easypbr::io {
+namespace {
+
+LoadedScene load(const GltfBuilder& file) {
+    const std::string glb = file.glb();
+    return decode_gltf(as_span(glb), "moving.glb");
+}
+
+std::string error_of(const GltfBuilder& file) {
+    try {
+        load(file);
+    } catch (const FormatError& error) {
+        return error.what();
+    }
+    return "no error";
+}
+
+/// A triangle whose node goes from x = 0 to x = 6 in two seconds.
+GltfBuilder moving() {
+    GltfBuilder file;
+    file.triangle();
+    const size_t input = file.floats({0, 2}, 1), output = file.floats({0, 0, 0, 6, 0, 0}, 3);
+    file.json["animations"] = {
+        {{"name", "go"},
+         {"samplers", {{{"input", input}, {"output", output}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "translation"}}}}}}}};
+    return file;
+}
+
+TEST(GltfAnimation, MovesNodes) {
+    LoadedScene scene = load(moving());
+    ASSERT_EQ(scene.animations.names(), std::vector<std::string>{"go"});
+    EXPECT_EQ(scene.animations.duration_s(0), 2);
+    scene.animations.apply(0, 0.5);
+    EXPECT_EQ(scene.mesh.children()[0].T_world_mesh().translation(), Vec3d(1.5, 0, 0));
+    EXPECT_TRUE(load([] {
+                    GltfBuilder still;
+                    still.triangle();
+                    return still;
+                }())
+                    .animations.empty());
+}
+
+// Two joints, one of them at x = 1 below the other; the second turns by 90 degrees about z. A vertex at (2,
+// 0, 0) that follows it goes to (1, 1, 0).
+TEST(GltfAnimation, BendsSkins) {
+    GltfBuilder file;
+    nlohmann::json& primitive = file.triangle();
+    const std::vector<float> positions{0, 0, 0, 1, 0, 0, 2, 0, 0};
+    const size_t position = file.floats(positions, 3);
+    const size_t joints =
+        file.accessor(std::vector<uint8_t>{0, 0, 0, 0, 0, 1, 0, 0, 1, 0, 0, 0}, 5121, "VEC4", 3);
+    const size_t weights = file.floats({1, 0, 0, 0, 0.5f, 0.5f, 0, 0, 1, 0, 0, 0}, 4);
+    primitive["attributes"] = {{"POSITION", position}, {"JOINTS_0", joints}, {"WEIGHTS_0", weights}};
+    const std::vector<float> bind{1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0,  0, 0, 1,
+                                  1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1};
+    const size_t matrices = file.accessor(bind, 5126, "MAT4", 2);
+    file.json["skins"] = {{{"joints", {1, 2}}, {"inverseBindMatrices", matrices}}};
+    file.json["nodes"] = {{{"mesh", 0}, {"skin", 0}}, {{"children", {2}}}, {{"translation", {1, 0, 0}}}};
+    file.json["scenes"] = {{{"nodes", {0, 1}}}};
+    const float half = float(std::sqrt(0.5));
+    const size_t input = file.floats({0, 1}, 1), output = file.floats({0, 0, 0, 1, 0, 0, half, half}, 4);
+    file.json["animations"] = {
+        {{"samplers", {{{"input", input}, {"output", output}, {"interpolation", "LINEAR"}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", 2}, {"path", "rotation"}}}}}}}};
+    LoadedScene scene = load(file);
+    const Mesh mesh = scene.mesh.children()[0];
+    EXPECT_EQ(mesh.V()(2, 0), 2) << "at rest";
+    scene.animations.apply(scene.animations.find("animations[0]"), 1, false);
+    const Array3f::Dense expected{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}};
+    EXPECT_LT((mesh.V() - expected).cwiseAbs().maxCoeff(), 1e-6f);
+}
+
+TEST(GltfAnimation, MorphsBySplines) {
+    GltfBuilder file;
+    nlohmann::json& primitive = file.triangle();
+    const size_t lifted = file.floats({0, 0, 1, 0, 0, 1, 0, 0, 1}, 3),
+                 widened = file.floats({0, 0, 0, 1, 0, 0, 0, 0, 0}, 3);
+    file.json["meshes"][0]["primitives"][0]["targets"] = {{{"POSITION", lifted}}, {{"POSITION", widened}}};
+    file.json["meshes"][0]["weights"] = {0.25, 0};
+    (void)primitive;
+    // Two targets, keys of in-tangents, values and out-tangents; without tangents half way is the mean.
+    const size_t input = file.floats({0, 1}, 1),
+                 output = file.floats({0, 0, 0, 0, 0, 0, 0, 0, 1, 4, 0, 0}, 1);
+    file.json["animations"] = {
+        {{"samplers", {{{"input", input}, {"output", output}, {"interpolation", "CUBICSPLINE"}}}},
+         {"channels", {{{"sampler", 0}, {"target", {{"node", 0}, {"path", "weights"}}}}}}}};
+    LoadedScene scene = load(file);
+    scene.animations.apply(0, 0.5);
+    const Array3f::Dense expected{{0, 0, 0.5}, {3, 0, 0.5}, {0, 1, 0.5}};
+    EXPECT_LT((scene.mesh.children()[0].V() - expected).cwiseAbs().maxCoeff(), 1e-6f);
+}
+
+TEST(GltfAnimation, SaysWhatIsWrong) {
+    GltfBuilder file = moving();
+    file.json["animations"][0]["samplers"][0]["input"] = file.floats({2, 2}, 1);
+    EXPECT_NE(error_of(file).find("do not rise"), std::string::npos) << error_of(file);
+    file = moving();
+    file.json["animations"][0]["samplers"][0]["interpolation"] = "MAGIC";
+    EXPECT_NE(error_of(file).find("unknown interpolation 'MAGIC'"), std::string::npos);
+    file = moving();
+    file.json["animations"][0]["samplers"][0]["output"] = file.floats({0, 0, 0}, 3);
+    EXPECT_NE(error_of(file).find("has 2 keys, but accessors["), std::string::npos) << error_of(file);
+    file = moving();
+    file.json["animations"][0]["channels"][0]["target"]["node"] = 5;
+    EXPECT_NE(error_of(file).find("nodes[5]"), std::string::npos);
+    file = moving();
+    file.json["animations"][0]["channels"][0]["sampler"] = 1;
+    EXPECT_NE(error_of(file).find("has no sampler 1"), std::string::npos);
+    file = moving();
+    file.json["animations"][0]["channels"][0]["target"]["path"] = "pointer";
+    EXPECT_TRUE(load(file).animations.duration_s(0) == 0) << "what is not known is left out";
+    file = moving();
+    file.json["skins"] = {{{"joints", {0, 9}}}};
+    EXPECT_NE(error_of(file).find("nodes[9]"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace easypbr::io

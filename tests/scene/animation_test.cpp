@@ -1,0 +1,163 @@
+#include "easypbr/scene/animation.h"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "easypbr/core/error.h"
+
+namespace easypbr {
+namespace {
+
+AnimationChannel channel(Interpolation interpolation, std::vector<float> times, ArrayXf::Dense values,
+                         AnimatedProperty property = AnimatedProperty::translation) {
+    AnimationChannel out;
+    out.property = property;
+    out.interpolation = interpolation;
+    out.times = std::move(times);
+    out.values = std::move(values);
+    return out;
+}
+
+TEST(AnimationChannel, LinearAndStep) {
+    const ArrayXf::Dense values{{0, 0, 0}, {2, 4, 8}, {2, 0, 0}};
+    const AnimationChannel linear = channel(Interpolation::linear, {1, 3, 4}, values),
+                           step = channel(Interpolation::step, {1, 3, 4}, values);
+    EXPECT_EQ(sample(linear, 1.5), Vec3d(0.5, 1, 2));
+    EXPECT_EQ(sample(linear, 3.75), Vec3d(2, 1, 2));
+    EXPECT_EQ(sample(step, 2.999), Vec3d(0, 0, 0));
+    EXPECT_EQ(sample(step, 3), Vec3d(2, 4, 8));
+    for (const AnimationChannel& c : {linear, step}) {
+        EXPECT_EQ(sample(c, -5), Vec3d(0, 0, 0));
+        EXPECT_EQ(sample(c, 99), Vec3d(2, 0, 0));
+    }
+}
+
+// Hermite's cubic with the values 0 and 1 and the tangents a and b over a time of 2 is, at a quarter,
+// 3/16 - 2/64 + 2 a (1/64 - 2/16 + 1/4) + 2 b (1/64 - 1/16).
+TEST(AnimationChannel, CubicSpline) {
+    const float a = 3, b = -5;
+    const AnimationChannel cubic =
+        channel(Interpolation::cubic_spline, {0, 2},
+                ArrayXf::Dense{{9, 9, 9}, {0, 0, 0}, {a, 0, 0}, {b, 0, 0}, {1, 0, 0}, {9, 9, 9}});
+    const double expected =
+        3.0 / 16 - 2.0 / 64 + 2 * 3 * (1.0 / 64 - 2.0 / 16 + 1.0 / 4) - 2 * 5 * (1.0 / 64 - 1.0 / 16);
+    EXPECT_NEAR(sample(cubic, 0.5)[0], expected, 1e-15);
+    EXPECT_EQ(sample(cubic, 0), Vec3d(0, 0, 0));
+    EXPECT_EQ(sample(cubic, 2), Vec3d(1, 0, 0));
+}
+
+// From 0 to 270 degrees about y is -90 the shorter way; a third of the time is -30 degrees.
+TEST(AnimationChannel, RotationsGoTheShorterWay) {
+    const float half = float(std::sqrt(0.5));
+    const AnimationChannel turn =
+        channel(Interpolation::linear, {0, 3}, ArrayXf::Dense{{0, 0, 0, 1}, {0, half, 0, -half}},
+                AnimatedProperty::rotation);
+    const Eigen::VectorXd q = sample(turn, 1);
+    EXPECT_NEAR(std::abs(q[3]), std::cos(radians(15)), 1e-7);
+    EXPECT_NEAR(q[1] * q[3], -std::sin(radians(15)) * std::cos(radians(15)), 1e-7);
+    EXPECT_NEAR(q.norm(), 1, 1e-15);
+}
+
+Mesh triangle() {
+    return Mesh(Array3f::Dense{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, Array3i::Dense{{0, 1, 2}});
+}
+
+/// A mesh (node 0) on two joints (1, and 2 below it), which its vertices follow with the weights 1, 1/2 + 1/2
+/// and 1.
+AnimationRig skinned(const Mesh& mesh) {
+    AnimationRig rig;
+    rig.nodes.resize(3);
+    rig.nodes[2].parent = 1;
+    rig.nodes[2].translation = Vec3d(0, 1, 0);
+    rig.skins = {{{1, 2}, {Eigen::Affine3d::Identity(), Eigen::Affine3d(Eigen::Translation3d(0, -1, 0))}}};
+    rig.nodes[0].mesh = mesh;
+    rig.nodes[0].skin = 0;
+    Deformation& d = rig.nodes[0].deformation;
+    d.V = mesh.V();
+    d.joints = ArrayXf::Dense{{0, 0, 0, 0}, {0, 1, 0, 0}, {1, 0, 0, 0}};
+    d.weights = ArrayXf::Dense{{1, 0, 0, 0}, {0.5, 0.5, 0, 0}, {1, 0, 0, 0}};
+    rig.animations = {{"bend", 1, {}}};
+    AnimationChannel c = channel(Interpolation::linear, {0, 1}, ArrayXf::Dense{{0, 1, 0}, {4, 1, 0}});
+    c.node = 2;
+    rig.animations[0].channels = {c};
+    return rig;
+}
+
+TEST(Animations, SkinsFollowTheirJoints) {
+    Mesh mesh = triangle();
+    Animations animations(skinned(mesh));
+    animations.apply(0, 0);
+    EXPECT_EQ(mesh.V(), triangle().V()) << "at rest";
+    animations.apply(0, 0.5);
+    // The second joint has moved by 2 along x: all of it, and half of it.
+    EXPECT_EQ(mesh.V(), (Array3f::Dense{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}}));
+    animations.apply(0, 1.25);
+    EXPECT_EQ(mesh.V()(2, 0), 1) << "goes around";
+    animations.apply(0, 1.25, false);
+    EXPECT_EQ(mesh.V()(2, 0), 4) << "rests";
+}
+
+TEST(Animations, TheMeshsOwnNodeDoesNotMoveItsSkin) {
+    Mesh mesh = triangle();
+    AnimationRig rig = skinned(mesh);
+    rig.nodes[0].translation = Vec3d(7, 0, 0);
+    Animations(std::move(rig)).apply(0, 0.5);
+    // In the world the vertices are where the joints put them.
+    EXPECT_LT((mesh.T_world_mesh() * mesh.V().row(2).transpose().cast<double>() - Vec3d(2, 1, 0)).norm(),
+              1e-6);
+}
+
+TEST(Animations, MorphTargetsAddUp) {
+    Mesh mesh = triangle();
+    AnimationRig rig;
+    rig.nodes.resize(1);
+    rig.nodes[0].mesh = mesh;
+    rig.nodes[0].deformation.V = mesh.V();
+    rig.nodes[0].deformation.targets_V = {Array3f::Dense{{0, 0, 1}, {0, 0, 0}, {0, 0, 0}},
+                                          Array3f::Dense{{0, 0, 0}, {0, 0, 2}, {0, 0, 0}}};
+    rig.nodes[0].deformation.targets_N.resize(2);
+    rig.nodes[0].weights = {0.5f, 0};
+    rig.animations = {{"rest", 0, {}},
+                      {"smile",
+                       1,
+                       {channel(Interpolation::linear, {0, 1}, ArrayXf::Dense{{0, 0}, {1, 2}},
+                                AnimatedProperty::weights)}}};
+    Animations animations(std::move(rig));
+    animations.apply(1, 0.5);
+    EXPECT_EQ(mesh.V(), (Array3f::Dense{{0, 0, 0.5}, {1, 0, 2}, {0, 1, 0}}));
+    animations.apply(0, 0);
+    EXPECT_EQ(mesh.V(), (Array3f::Dense{{0, 0, 0.5}, {1, 0, 0}, {0, 1, 0}})) << "weights at rest";
+    EXPECT_EQ(animations.find("smile"), 1u);
+    EXPECT_EQ(animations.find("0"), 0u);
+    EXPECT_THROW(animations.find("smiel"), NameError);
+    EXPECT_THROW(animations.apply(2, 0), NameError);
+    EXPECT_THROW(animations.apply(0, std::numeric_limits<double>::infinity()), ArgumentError);
+}
+
+// A joint that scales by 2 along x turns the normal (1, 1, 0) as the inverse transpose does: to (1/2, 1, 0).
+TEST(Animations, NormalsFollowTheInverseTranspose) {
+    MeshData data = *triangle().snapshot();
+    data.N = Array3f::Dense(Vec3(1, 1, 0).normalized().transpose().replicate(3, 1));
+    Mesh mesh(data);
+    AnimationRig rig = skinned(mesh);
+    rig.nodes[0].deformation.N = data.N;
+    rig.nodes[1].scale = Vec3d(2, 1, 1);
+    Animations(std::move(rig)).apply(0, 0);
+    EXPECT_LT((mesh.N().row(0).transpose() - Vec3(0.5f, 1, 0).normalized()).norm(), 1e-6);
+}
+
+TEST(Animations, RefuseBrokenRigs) {
+    AnimationRig rig = skinned(triangle());
+    rig.nodes[1].parent = 2;
+    EXPECT_THROW(Animations{rig}, ArgumentError) << "a circle";
+    rig = skinned(triangle());
+    rig.skins[0].joints[1] = 3;
+    EXPECT_THROW(Animations{rig}, ArgumentError);
+    rig = skinned(triangle());
+    rig.nodes[0].deformation.joints = ArrayXf::Dense(ArrayXf::Dense::Constant(3, 4, 2));
+    EXPECT_THROW(Animations{rig}, ArgumentError) << "a joint that the skin lacks";
+}
+
+}  // namespace
+}  // namespace easypbr
