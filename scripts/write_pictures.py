@@ -225,8 +225,38 @@ def camera_path() -> np.ndarray:
     return view.render()
 
 
+def shadows() -> np.ndarray:
+    """None, 3x3, soft in one frame, soft in 64."""
+    view = Viewer((220, 170), scene=on_floor(teapot("#d8d2c4", 0, 0.6)))
+    view.settings.environment.intensity = 0.4
+    for name in ("fill", "rim"):
+        view.lights[name].enabled = False
+    pictures = []
+    for mode, samples in (("none", 1), ("pcf", 1), ("soft", 1), ("soft", 64)):
+        view.settings.shadows.enabled = mode != "none"
+        view.settings.shadows.mode = mode if mode != "none" else "soft"
+        pictures.append(view.render(samples=samples))
+    return row(pictures)
+
+
+def ground() -> np.ndarray:
+    """A shadow on white, on an environment; a plane."""
+    pictures = []
+    for mode, background in (("shadow", "#ffffff"), ("shadow", "environment"), ("plane", "#b8c4d0")):
+        scene = Scene()
+        scene.show(teapot("#c8a15a", 0, 0.35), "teapot")
+        view = Viewer((290, 220), {"ground": {"mode": mode, "plane_color": "#9098a0"}, "camera": {"margin": 0.25}}, scene)
+        if background == "environment":
+            view.load_environment_map(sky(1024))
+            view.settings.background.mode = background
+        else:
+            view.settings.background.color = background
+        pictures.append(view.render(samples=64))
+    return row(pictures)
+
+
 PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion,
-            geometry, all_shapes, glass, camera_path]
+            geometry, all_shapes, glass, camera_path, shadows, ground]
 
 
 if __name__ == "__main__":

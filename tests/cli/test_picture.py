@@ -206,3 +206,29 @@ def test_clear_glass_vanishes_in_a_uniform_environment(picture, sphere, constant
     plain = picture(sphere, "--env", constant, "--background", "env", "--tonemap", "none", "--exposure", "1",
                     "--color", "black", "--metallic", "0", "--roughness", "0")
     assert plain[24, 32, 0] < 100
+
+
+def test_a_ground_catches_shadows_on_a_transparent_background(picture, sphere):
+    arguments = (sphere, "--background", "transparent", "--camera-position", "0,4,5", "--camera-target", "0,0,0")
+    assert not (picture(*arguments)[40, :, 3] > 0).any()
+    caught = picture(*arguments, "--set", "ground.mode=shadow")
+    row = caught[40]
+    # Black where some light is missing, and nowhere all of it: studio and three lights.
+    assert (row[:, :3] == 0).all() and 10 < row[:, 3].max() < 255
+    half = picture(*arguments, "--set", "ground.mode=shadow", "--set", "ground.shadow_strength=0.5")[40]
+    # 1: rounding of both to 8 bits.
+    assert abs(half[:, 3].astype(int) * 2 - row[:, 3]).max() <= 2
+    lifted = picture(*arguments, "--set", "ground.mode=plane", "--set", "ground.height=-3", "--set", "ground.plane_color=#ff0000")
+    assert lifted[46, 32, 0] > lifted[46, 32, 1] + 20 and lifted[46, 32, 3] == 255
+
+
+@pytest.mark.parametrize("setting, words", [
+    ("ground.mode=mirror", ["ground.mode", "shadow", "mirror"]),
+    ("ground.shadow_strength=2", ["ground.shadow_strength", "2"]),
+    ("ground.radius=0", ["ground.radius", "0"]),
+    ("ground.plane_roughness=-0.1", ["ground.plane_roughness", "-0.1"]),
+    ("ground.height=nan", ["ground.height", "nan"]),
+])
+def test_a_wrong_ground_is_named(easypbr, sphere, setting, words):
+    done = easypbr("render", sphere, "-o", "out.png", "--set", setting, code=2)
+    assert all(word in done.stderr for word in words)

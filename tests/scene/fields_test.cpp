@@ -75,6 +75,7 @@ TEST(Fields, AreComplete) {
         {"background", 4},
         {"lights", 1 + 3 * 6},
         {"shadows", 3},
+        {"ground", 6},
         {"shading", 3},
         {"edl", 3},
         {"ssao", 9},

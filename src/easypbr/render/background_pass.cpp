@@ -17,7 +17,8 @@ float equirect_level(const Frame& frame, int equirect_width) {
 
 }  // namespace
 
-void BackgroundPass::draw(const Frame& frame, const GBuffer& targets, const gpu::EnvironmentMaps& maps) {
+void BackgroundPass::draw(const Frame& frame, const GBuffer& targets, const gpu::EnvironmentMaps& maps,
+                          bool under) {
     const BackgroundSettings& background = frame.resolved->settings.background;
     const bool blur = background.mode == BackgroundMode::blur;
     std::vector<std::string> defines = camera_defines(frame);
@@ -26,7 +27,9 @@ void BackgroundPass::draw(const Frame& frame, const GBuffer& targets, const gpu:
     targets.lit.bind();
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);
-    glDepthFunc(GL_EQUAL);
+    glDepthFunc(under ? GL_ALWAYS : GL_EQUAL);
+    if (under) glEnable(GL_BLEND);
+    if (under) glBlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
     program.use();
     set_camera_uniforms(program, frame);
     program.set("u_env_from_world", Mat3(frame.resolved->R_env_world.cast<float>()));
@@ -37,6 +40,8 @@ void BackgroundPass::draw(const Frame& frame, const GBuffer& targets, const gpu:
     program.set(blur ? "u_prefiltered" : "u_equirect", 0);
     program.set("u_level", level);
     draw_screen_triangle();
+    glDisable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ZERO);
 }
 
 }  // namespace easypbr::render

@@ -10,8 +10,9 @@ namespace easypbr::render {
 
 class BackgroundPass {
   public:
-    /// Draws the environment, sharp or blurred, where there is no geometry.
-    void draw(const Frame& frame, const GBuffer& targets, const gpu::EnvironmentMaps& maps);
+    /// Draws the environment, sharp or blurred, where there is no geometry; with `under`, behind all that
+    /// does not cover its pixel.
+    void draw(const Frame& frame, const GBuffer& targets, const gpu::EnvironmentMaps& maps, bool under);
 
   private:
     ProgramVariants programs_{"screen_triangle.vert", "background_environment.frag"};

@@ -45,6 +45,7 @@ struct Frame {
     bool with_ids = false;
     bool with_overlay = false;                 ///< something is shown past light and tone curve
     bool with_exact = false;                   ///< colours of tables, which nothing may mix with others
+    bool with_ground = false;                  ///< a plane under the content belongs to the picture
     ExtensionSet extensions = 0;               ///< of the surfaces that are drawn and lit now
     bool partly_covered = false;               ///< the radiance may hold coverages between 0 and 1
     const Peel* peel = nullptr;                ///< set while a layer is drawn

@@ -80,11 +80,10 @@ Vec2 lobe_point(int index, int count) {
     return Vec2(float(radius * std::cos(angle)), float(radius * std::sin(angle)));
 }
 
-std::vector<std::string> defines_of(const Frame& frame, const GBuffer& targets, const LightBlock& block,
-                                    bool with_environment) {
-    const ShadingSettings& shading = frame.resolved->settings.shading;
+/// Macros of all shaders that light.
+std::vector<std::string> light_defines(const Frame& frame, const GBuffer& targets, const LightBlock& block,
+                                       bool with_environment) {
     std::vector<std::string> defines = camera_defines(frame);
-    defines.push_back(fmt::format("DFG_SIZE {}", gpu::dfg_size));
     defines.push_back(fmt::format("LIGHTS_PER_BLOCK {}", lights_per_block));
     if (!block.shadows.empty()) {
         constexpr const char* modes[] = {"SHADOWS_HARD", "SHADOWS_PCF", "SHADOWS_SOFT"};
@@ -93,11 +92,18 @@ std::vector<std::string> defines_of(const Frame& frame, const GBuffer& targets, 
     }
     if (block.cubes > 0) defines.emplace_back("SHADOW_CUBES");
     if (with_environment) defines.emplace_back("ENVIRONMENT");
+    if (with_environment && targets.ambient_occlusion) defines.emplace_back("AMBIENT_OCCLUSION");
+    return defines;
+}
+
+std::vector<std::string> defines_of(const Frame& frame, const GBuffer& targets, const LightBlock& block,
+                                    bool with_environment) {
+    const ShadingSettings& shading = frame.resolved->settings.shading;
+    std::vector<std::string> defines = light_defines(frame, targets, block, with_environment);
+    defines.push_back(fmt::format("DFG_SIZE {}", gpu::dfg_size));
     if (with_environment && frame.sample_count > 1) defines.emplace_back("LOBE_SAMPLES");
-    if (with_environment && targets.ambient_occlusion) {
-        defines.emplace_back("AMBIENT_OCCLUSION");
-        if (frame.resolved->settings.ssao.multi_bounce) defines.emplace_back("MULTI_BOUNCE");
-    }
+    if (with_environment && targets.ambient_occlusion && frame.resolved->settings.ssao.multi_bounce)
+        defines.emplace_back("MULTI_BOUNCE");
     if (shading.multiple_scattering) defines.emplace_back("MULTIPLE_SCATTERING");
     if (shading.brdf == Brdf::ue4) defines.emplace_back("BRDF_UE4");
     if (shading.brdf == Brdf::separable) defines.emplace_back("BRDF_SEPARABLE");
@@ -185,6 +191,33 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightB
     // A second source is an error where there are several targets, even with blending off.
     glBlendFunc(GL_ONE, GL_ZERO);
     glDisable(GL_SCISSOR_TEST);
+    targets.reset_depth_range();
+}
+
+void LightingPass::draw_caught(const Frame& frame, const GBuffer& targets, const LightBlock& block,
+                               const gpu::EnvironmentMaps* maps, const gl::Framebuffer& light) {
+    light.bind();
+    targets.test_covered();
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE);
+    const gl::Program& program = catcher_.get(light_defines(frame, targets, block, maps != nullptr));
+    program.use();
+    set_camera_uniforms(program, frame);
+    const std::pair<const char*, const gl::Texture*> sources[] = {
+        {"u_normal", &targets.normal}, {"u_material", &targets.material}, {"u_depth_target", &targets.depth}};
+    for (int unit = 0; unit < 3; ++unit) {
+        program.set(sources[unit].first, unit);
+        sources[unit].second->bind(unsigned(unit));
+    }
+    program.set("u_irradiance", 6);
+    program.set("u_shadow_maps", 7);
+    program.set("u_ambient_occlusion", 8);
+    if (targets.ambient_occlusion) targets.ambient_occlusion.bind(8);
+    if (maps) set_environment(program, frame, *maps);
+    set_lights(program, frame, block);
+    draw_screen_triangle();
+    glDisable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ZERO);
     targets.reset_depth_range();
 }
 

@@ -16,6 +16,11 @@ class LightingPass {
     void draw(const Frame& frame, const GBuffer& targets, const LightBlock& block,
               const gpu::EnvironmentMaps* maps);
 
+    /// Adds the light that a block and the environment send to the pixels of the ground's catcher, with and
+    /// without shadows, to `light` (GroundPass::light()).
+    void draw_caught(const Frame& frame, const GBuffer& targets, const LightBlock& block,
+                     const gpu::EnvironmentMaps* maps, const gl::Framebuffer& light);
+
   private:
     const gl::Texture& dfg(Brdf brdf);
     void set_environment(const gl::Program& program, const Frame& frame, const gpu::EnvironmentMaps& maps);
@@ -24,6 +29,7 @@ class LightingPass {
     void set_extensions(const gl::Program& program, const Frame& frame, const GBuffer& targets, bool first);
 
     ProgramVariants programs_{"screen_triangle.vert", "lighting_surface.frag"};
+    ProgramVariants catcher_{"screen_triangle.vert", "lighting_catcher.frag"};
     gl::Texture dfg_, sheen_albedo_;
     Brdf dfg_brdf_ = Brdf::height_correlated;
     gl::Buffer lights_, shadows_;

@@ -139,6 +139,8 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
     // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
     const bool apart = options.samples > 1 && frame.with_exact;
     picture->averaged = apart ? picture->list.without_exact() : picture->list;
+    // Layers are of the content.
+    frame.with_ground = GroundPass::is_on(resolved) && !options.layers && !options.ids;
     if (options.ids) targets_.add_ids();
     picture_ = std::move(picture);
 }
@@ -238,7 +240,8 @@ void Renderer::draw_geometry(Frame& frame, const DrawList& list) {
 
 void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& casters) {
     frame.camera = frame.resolved->camera;
-    prepare_frame(frame, bounds_of(*frame.scene), list.reaches_beyond_vertices());
+    if (frame.with_ground) GroundPass::widen_depth(frame.camera, *frame.resolved, bounds_of(*frame.scene));
+    prepare_frame(frame, bounds_of(*frame.scene), list.reaches_beyond_vertices() || frame.with_ground);
     frame.with_overlay = list.needs_overlay();
     if (frame.with_overlay) targets_.add_overlay();
     const bool has_layers = list.has([](const DrawItem& item) { return item.layered; });
@@ -250,16 +253,24 @@ void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& ca
     if (frame.extensions) targets_.add_extensions();
     run("geometry", [&] { draw_geometry(frame, has_layers ? solid : list); });
     no_attributes_.bind();
+    if (frame.with_ground) {
+        frame.covered = everything;
+        run("ground", [&] { ground_.draw(frame, targets_); });
+    }
     if (*frame.resolved->settings.ssao.enabled)
         run("ambient occlusion", [&] { ambient_occlusion_.draw(frame, targets_); });
     shadow_maps_.begin(frame, casters, bounds_of(*frame.scene));
     draw_lights(frame, targets_);
+    if (frame.with_ground) {
+        run("ground", [&] { ground_.finish(frame, targets_, bounds_of(*frame.scene)); });
+        frame.partly_covered = true;
+    }
     const bool with_environment = !frame.resolved->environment.empty();
     if (frame.with_overlay) run("display", [&] { display_.draw(frame, targets_); });
     if (!list.lines.empty()) run("lines", [&] { lines_.draw(frame, list.lines, targets_); });
     no_attributes_.bind();
     if (with_environment && sees_environment(*frame.resolved))
-        run("background", [&] { background_.draw(frame, targets_, environment_); });
+        run("background", [&] { background_.draw(frame, targets_, environment_, frame.with_ground); });
     if (!has_layers) return;
     frame.covered = everything;
     run("transparency", [&] { draw_layers(frame, list.layers()); });
@@ -293,6 +304,8 @@ void Renderer::draw_layers(Frame& frame, const DrawList& list) {
 
 void Renderer::draw_lights(const Frame& frame, const GBuffer& targets) {
     shadow_maps_.rewind();
+    const bool catches = frame.with_ground && &targets == &targets_ && GroundPass::catches(*frame.resolved);
+    if (catches) ground_.begin_light(frame, targets);
     LightBlock block;
     bool first = true;
     do {
@@ -300,8 +313,10 @@ void Renderer::draw_lights(const Frame& frame, const GBuffer& targets) {
         block.first = first;
         no_attributes_.bind();
         const bool with_environment = first && !frame.resolved->environment.empty();
-        run("lighting",
-            [&] { lighting_.draw(frame, targets, block, with_environment ? &environment_ : nullptr); });
+        const gpu::EnvironmentMaps* maps = with_environment ? &environment_ : nullptr;
+        run("lighting", [&] { lighting_.draw(frame, targets, block, maps); });
+        if (catches)
+            run("ground", [&] { lighting_.draw_caught(frame, targets, block, maps, ground_.light()); });
         first = false;
     } while (shadow_maps_.has_more());
 }

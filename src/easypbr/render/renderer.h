@@ -11,6 +11,7 @@
 #include "easypbr/render/background_pass.h"
 #include "easypbr/render/display_pass.h"
 #include "easypbr/render/geometry_pass.h"
+#include "easypbr/render/ground_pass.h"
 #include "easypbr/render/lighting_pass.h"
 #include "easypbr/render/line_pass.h"
 #include "easypbr/render/output_pass.h"
@@ -139,6 +140,7 @@ class Renderer {
     ShadowMaps shadow_maps_{meshes_, textures_};
     AmbientOcclusionPass ambient_occlusion_;
     LightingPass lighting_;
+    GroundPass ground_;
     DisplayPass display_;
     LinePass lines_;
     TransparencyPass transparency_;

@@ -9,11 +9,13 @@ namespace easypbr::render {
 /// shaders/common_surface_kind.glsl.
 enum class SurfaceKind : uint8_t {
     lit = 0,
-    extended = 20,   ///< lit, with values in GBuffer::extension
-    display = 51,    ///< the albedo is the picture's colour: neither light nor tone curve touch it
-    eye_dome = 102,  ///< the same, shaded by eye-dome lighting
-    exact = 153,     ///< the same, and not smoothed either: tables of labels and scalars
-    unlit = 255      ///< the emission is the radiance (KHR_materials_unlit)
+    ground_plane = 10,     ///< lit, fading into the background
+    extended = 20,         ///< lit, with values in GBuffer::extension
+    display = 51,          ///< the albedo is the picture's colour: neither light nor tone curve touch it
+    eye_dome = 102,        ///< the same, shaded by eye-dome lighting
+    exact = 153,           ///< the same, and not smoothed either: tables of labels and scalars
+    ground_catcher = 204,  ///< shows the shadows on it and nothing else
+    unlit = 255            ///< the emission is the radiance (KHR_materials_unlit)
 };
 
 constexpr float code_of(SurfaceKind kind) {

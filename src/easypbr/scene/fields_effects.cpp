@@ -13,6 +13,11 @@ const std::vector<std::string>& enum_names<OcclusionResolution>() {
     static const std::vector<std::string> names = {"adaptive", "half", "full"};
     return names;
 }
+template <>
+const std::vector<std::string>& enum_names<GroundMode>() {
+    static const std::vector<std::string> names = {"none", "shadow", "plane"};
+    return names;
+}
 namespace {
 
 void add_ssao(Table& table) {
@@ -46,9 +51,33 @@ void add_ssao(Table& table) {
              "own recesses."));
 }
 
+void add_ground(Table& table) {
+    const auto ground = [](auto member) { return at(&Settings::ground, member); };
+    table.push_back(make("ground.mode", ground(&GroundSettings::mode),
+                         "A plane under the content: none; shadow: it shows the shadows that fall on it and "
+                         "nothing else, over any background; plane: a surface of its own."));
+    table.push_back(
+        make("ground.height", ground(&GroundSettings::height),
+             "Where the ground is, along the up axis; automatic: at the lowest point of the content.",
+             "world units"));
+    table.push_back(make("ground.shadow_strength", ground(&GroundSettings::strength),
+                         "How dark the shadows are that the ground shows in mode shadow: 1 as dark as in "
+                         "nature.",
+                         "", {0, 1}));
+    table.push_back(
+        color("ground.plane_color", ground(&GroundSettings::color), "Colour of the ground in mode plane."));
+    table.push_back(make("ground.plane_roughness", ground(&GroundSettings::roughness),
+                         "Roughness of the ground in mode plane.", "", {0, 1}));
+    table.push_back(make("ground.radius", ground(&GroundSettings::radius),
+                         "Distance from the content at which the ground of mode plane has faded into the "
+                         "background; automatic: 12 radii of the content.",
+                         "world units", {positive, unlimited}));
+}
+
 }  // namespace
 
 void add_effects(Table& table) {
+    add_ground(table);
     add_ssao(table);
 }
 

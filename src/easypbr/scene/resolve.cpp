@@ -80,6 +80,17 @@ bool has_surfaces(const SceneSnapshot& scene) {
     });
 }
 
+/// Radii of the content after which a visible ground has faded.
+constexpr double ground_radii = 12;
+
+void resolve_ground(const detail::Content& content, ResolvedSettings& resolved) {
+    GroundSettings& ground = resolved.settings.ground;
+    if (content.empty()) return;
+    const Vec3d up = parse_up(resolved.settings.camera.up);
+    if (!ground.height.value()) detail::fill(ground.height, content.extent_along(up).first);
+    if (!ground.radius.value()) detail::fill(ground.radius, float(ground_radii * content.radius()));
+}
+
 void resolve_effects(const detail::Content& content, ResolvedSettings& resolved) {
     SsaoSettings& ssao = resolved.settings.ssao;
     if (!ssao.enabled.value()) detail::fill(ssao.enabled, has_surfaces(content.scene()));
@@ -105,6 +116,7 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, V
     detail::fill(resolved.settings.annotation.legend, false);
     detail::fill(resolved.settings.annotation.colorbar, false);
     resolve_effects(content, resolved);
+    resolve_ground(content, resolved);
     return resolved;
 }
 

@@ -18,6 +18,7 @@ enum class Antialias { none, fxaa };
 enum class BackgroundMode { color, environment, blur, image, transparent };
 enum class Brdf { height_correlated, separable, ue4 };
 enum class ShadowMode { hard, pcf, soft };
+enum class GroundMode { none, shadow, plane };
 enum class TransparencyMode { layers, stochastic };
 enum class Corner { top_left, top_right, bottom_left, bottom_right };
 enum class OcclusionMethod { horizon, hemisphere };
@@ -77,6 +78,16 @@ struct ShadowSettings {
     bool enabled = true;
     ShadowMode mode = ShadowMode::soft;
     int resolution = 1024;
+};
+
+/// A plane that the content stands on.
+struct GroundSettings {
+    GroundMode mode = GroundMode::none;
+    Auto<double> height;
+    float strength = 1;
+    Vec3 color{0.5f, 0.5f, 0.5f};
+    float roughness = 0.7f;
+    Auto<float> radius;
 };
 
 struct ShadingSettings {
@@ -168,6 +179,7 @@ struct Settings {
     BackgroundSettings background;
     LightsSettings lights;
     ShadowSettings shadows;
+    GroundSettings ground;
     ShadingSettings shading;
     EyeDomeSettings eye_dome;
     TransparencySettings transparency;
