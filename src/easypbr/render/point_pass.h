@@ -12,21 +12,19 @@ namespace easypbr::render {
 
 class PointPass {
   public:
-    /// The cache is shared with other passes, must outlive this one, and is emptied by its owner.
-    explicit PointPass(SpacingCache& spacings) : spacings_(spacings) {}
+    /// The caches are shared with other passes, must outlive this one, and are emptied by their owner.
+    PointPass(SpacingCache& spacings, gpu::PointCache& points) : spacings_(spacings), cache_(points) {}
 
     /// Adds the points to what the G-buffer holds, in two passes: the first finds the nearest depth and
     /// empties its pixel, the second keeps, channel by channel, the largest of what lies at that depth. So
     /// coincident points give the same picture in any order.
     void draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets);
 
-    void evict_unused() { cache_.evict_unused(); }
-
   private:
     void draw_items(const Frame& frame, const std::vector<DrawItem>& items, bool write);
 
     SpacingCache& spacings_;
-    gpu::PointCache cache_;
+    gpu::PointCache& cache_;
     ProgramVariants programs_{"geometry_points.vert", "geometry_points.frag"};
 };
 

@@ -6,8 +6,6 @@
 namespace easypbr::render {
 namespace {
 
-/// Splats of this many spacings leave no hole between the points of a square grid (its diagonal is 1.41).
-constexpr double spacings_per_splat = 1.5;
 /// Least diameter of automatic splats, in pixels of a picture 1080 high.
 constexpr double least_pixels_at_1080 = 1.5;
 

@@ -189,8 +189,8 @@ void Renderer::evict_unused() {
     meshes_.evict_unused();
     textures_.evict_unused();
     software_geometry_.evict_unused();
-    points_.evict_unused();
-    surfels_.evict_unused();
+    point_buffers_.evict_unused();
+    surfel_buffers_.evict_unused();
     spacings_.evict_unused();
     drawables_.evict_unused();
     lines_.evict_unused();

@@ -31,6 +31,7 @@ ShadowMaps::Caster ShadowMaps::caster_of(const DrawItem& item, int sample_index)
     const Material& m = item.material;
     Caster caster{};
     caster.revisions = {mesh.V.revision(), mesh.F.revision()};
+    caster.splat = {0, 0};
     caster.first_face = item.part.first_face;
     caster.face_count = item.part.face_count;
     caster.T_world_mesh = item.object->T_world_mesh.matrix().topRows<3>();
@@ -44,10 +45,33 @@ ShadowMaps::Caster ShadowMaps::caster_of(const DrawItem& item, int sample_index)
     return caster;
 }
 
+ShadowMaps::Caster ShadowMaps::splat_of(const DrawItem& item, bool surfels, int sample_index) {
+    const MeshData& mesh = item.mesh();
+    Caster caster = caster_of(item, sample_index);
+    // Points have no faces: what the kind of splat and its light depend on instead.
+    caster.revisions[1] = 0;
+    caster.revisions[5] = mesh.N.revision();
+    caster.revisions[6] = surfels ? mesh.T.revision() : uint64_t(item.style.point_shape);
+    caster.revisions[7] = surfels ? mesh.B.revision() : uint64_t(item.kind);
+    caster.face_count = surfels ? -2 : -1;
+    caster.splat = {splats_.reach(item, surfels), surfels ? item.style.surfel_scale : 1.0};
+    return caster;
+}
+
+Box3d ShadowMaps::caster_bounds(const DrawList& list, const Box3d& bounds) {
+    double reach = 0;
+    for (const DrawItem& item : list.points) reach = std::max(reach, splats_.reach(item, false));
+    for (const DrawItem& item : list.surfels) reach = std::max(reach, splats_.reach(item, true));
+    if (bounds.isEmpty() || reach == 0) return bounds;
+    return {bounds.min() - Vec3d::Constant(reach), bounds.max() + Vec3d::Constant(reach)};
+}
+
 void ShadowMaps::note_casters(const DrawList& list, const Box3d& bounds, int sample_index) {
     std::vector<Caster> casters;
     casters.reserve(list.meshes.size());
     for (const DrawItem& item : list.meshes) casters.push_back(caster_of(item, sample_index));
+    for (const DrawItem& item : list.points) casters.push_back(splat_of(item, false, sample_index));
+    for (const DrawItem& item : list.surfels) casters.push_back(splat_of(item, true, sample_index));
     const bool same_bounds = bounds.min() == bounds_.min() && bounds.max() == bounds_.max();
     if (casters == casters_ && same_bounds && casters_generation_ != 0) return;
     casters_ = std::move(casters);
@@ -85,7 +109,9 @@ void ShadowMaps::set_resolution(int resolution) {
     resolution_ = resolution;
 }
 
-void ShadowMaps::begin(const Frame& frame, const DrawList& casters, const Box3d& bounds) {
+void ShadowMaps::begin(const Frame& frame, const DrawList& casters, const Box3d& vertices) {
+    const Box3d bounds = caster_bounds(casters, vertices);
+    splats_.evict_unused();
     note_casters(casters, bounds, frame.sample_index);
     list_ = &casters;
     sample_index_ = frame.sample_index;

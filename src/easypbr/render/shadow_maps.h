@@ -16,10 +16,13 @@ namespace easypbr::render {
 /// made anew for every frame.
 class ShadowMaps {
   public:
-    ShadowMaps(gpu::MeshCache& meshes, gpu::TextureCache& textures) : pass_(meshes, textures) {}
+    /// The caches are shared with other passes, must outlive this one, and are emptied by their owner.
+    ShadowMaps(gpu::MeshCache& meshes, gpu::TextureCache& textures, SpacingCache& spacings,
+               gpu::PointCache& points, gpu::SurfelCache& surfels)
+        : splats_(spacings, points, surfels), pass_(meshes, textures, splats_) {}
 
-    /// Takes note of a frame's lights and of what casts, within `bounds`. `casters` must live until its last
-    /// block.
+    /// Takes note of a frame's lights and of what casts; `bounds` are those of its vertices. `casters` must
+    /// live until its last block.
     void begin(const Frame& frame, const DrawList& casters, const Box3d& bounds);
 
     /// Goes back to the first block.
@@ -53,15 +56,19 @@ class ShadowMaps {
     };
     /// A part of an object as far as its shadow is concerned.
     struct Caster {
-        std::array<uint64_t, 5> revisions;
+        std::array<uint64_t, 8> revisions;
         std::array<const void*, 2> images;
         std::array<float, 3> alpha;
+        std::array<double, 2> splat;  ///< radius, factor on it
         int first_face, face_count, frame;
         Eigen::Matrix<double, 3, 4> T_world_mesh;
         bool operator==(const Caster&) const = default;
     };
 
     static Caster caster_of(const DrawItem& item, int sample_index);
+    Caster splat_of(const DrawItem& item, bool surfels, int sample_index);
+    /// The vertices' bounds and the splats around them.
+    Box3d caster_bounds(const DrawList& list, const Box3d& bounds);
     void note_casters(const DrawList& list, const Box3d& bounds, int sample_index);
     static Request request_of(const Light& light, const Frame& frame, const Box3d& bounds);
     /// Forgets all maps of another size; 0: no maps.
@@ -79,6 +86,7 @@ class ShadowMaps {
     bool grow(int layers);
     void take(int first, int layers, bool taken);
 
+    SplatShadows splats_;
     ShadowPass pass_;
     gl::Texture maps_;
     std::vector<gl::Framebuffer> framebuffers_;  ///< of each layer

@@ -42,13 +42,14 @@ void ShadowPass::draw(const ShadowView& view, const DrawList& casters, int sampl
                       int layer, const gl::Framebuffer& framebuffer) {
     std::vector<Items> objects = objects_of(casters.meshes);
     const bool native = native_ && gl::Context::current().info().software;
-    if (native && std::ranges::any_of(objects, suits_native)) {
-        objects = draw_native(view, objects, maps, layer);
+    const bool native_points = native && std::ranges::any_of(casters.points, SplatShadows::suits_native);
+    if (native && (native_points || std::ranges::any_of(objects, suits_native))) {
+        objects = draw_native(view, objects, casters.points, maps, layer);
     } else {
         const float nothing[4] = {no_shadow_depth, 0, 0, 0};
         framebuffer.clear_color(0, nothing);
     }
-    if (objects.empty()) return;
+    if (objects.empty() && casters.points.empty() && casters.surfels.empty()) return;
     framebuffer.bind();
     // The largest depth stays, whatever the order: no depth buffer is needed.
     glDisable(GL_DEPTH_TEST);
@@ -56,13 +57,14 @@ void ShadowPass::draw(const ShadowView& view, const DrawList& casters, int sampl
     glEnable(GL_BLEND);
     glBlendEquation(GL_MAX);
     for (const Items& items : objects) draw_object(view, items, sample_index);
+    draw_splats(view, casters, sample_index, native, maps.width());
     glBlendEquation(GL_FUNC_ADD);
     glDisable(GL_BLEND);
 }
 
 std::vector<ShadowPass::Items> ShadowPass::draw_native(const ShadowView& view,
-                                                       const std::vector<Items>& objects, gl::Texture& maps,
-                                                       int layer) {
+                                                       const std::vector<Items>& objects, Items clouds,
+                                                       gl::Texture& maps, int layer) {
     const int size = maps.width();
     visibility_.clear(Vec2i(size, size), {0, 0, size, size});
     std::vector<Items> left;
@@ -74,6 +76,8 @@ std::vector<ShadowPass::Items> ShadowPass::draw_native(const ShadowView& view,
             !visibility_.draw(mesh.V, mesh.F, 0, int(mesh.F.rows()), clip_from_mesh, 0, true, false))
             left.push_back(items);
     }
+    for (const DrawItem& item : clouds)
+        if (SplatShadows::suits_native(item)) splats_.draw_points_natively(view, item, visibility_);
     depths_.resize(visibility_.pixels().size());
     parallel_for(depths_.size(), 1 << 14, [&](size_t i) {
         const uint64_t pixel = visibility_.pixels()[i];
@@ -81,6 +85,14 @@ std::vector<ShadowPass::Items> ShadowPass::draw_native(const ShadowView& view,
     });
     maps.upload(std::as_bytes(std::span(depths_)), 0, layer);
     return left;
+}
+
+void ShadowPass::draw_splats(const ShadowView& view, const DrawList& casters, int sample_index, bool native,
+                             int resolution) {
+    for (const DrawItem& item : casters.points)
+        if (!native || !SplatShadows::suits_native(item))
+            splats_.draw_points(view, item, sample_index, resolution);
+    for (const DrawItem& item : casters.surfels) splats_.draw_surfels(view, item, sample_index);
 }
 
 void ShadowPass::draw_object(const ShadowView& view, Items items, int sample_index) {

@@ -10,6 +10,7 @@
 #include "easypbr/render/draw_list.h"
 #include "easypbr/render/programs.h"
 #include "easypbr/render/shadow_view.h"
+#include "easypbr/render/splat_shadows.h"
 #include "easypbr/render/visibility.h"
 
 namespace easypbr::render {
@@ -20,26 +21,31 @@ inline constexpr float no_shadow_depth = -1e30f;
 class ShadowPass {
   public:
     /// The caches are shared with other passes and must outlive this one.
-    ShadowPass(gpu::MeshCache& meshes, gpu::TextureCache& textures) : meshes_(meshes), textures_(textures) {}
+    ShadowPass(gpu::MeshCache& meshes, gpu::TextureCache& textures, SplatShadows& splats)
+        : meshes_(meshes), textures_(textures), splats_(splats) {}
 
     /// Fills one layer. Surfaces cast from both sides, masked ones with their holes, blended ones where
     /// frame `sample_index` of a still draws them.
     void draw(const ShadowView& view, const DrawList& casters, int sample_index, gl::Texture& maps, int layer,
               const gl::Framebuffer& framebuffer);
 
-    /// Without a GPU, large opaque meshes are rasterised natively; false leaves them to the driver.
+    /// Without a GPU, large opaque meshes and points are rasterised natively; false leaves them to the
+    /// driver.
     void allow_native(bool allow) { native_ = allow; }
 
   private:
     using Items = std::span<const DrawItem>;
     /// Draws what can be drawn natively and uploads the layer; the objects that are left.
-    std::vector<Items> draw_native(const ShadowView& view, const std::vector<Items>& objects,
+    std::vector<Items> draw_native(const ShadowView& view, const std::vector<Items>& objects, Items clouds,
                                    gl::Texture& maps, int layer);
+    void draw_splats(const ShadowView& view, const DrawList& casters, int sample_index, bool native,
+                     int resolution);
     void draw_object(const ShadowView& view, Items items, int sample_index);
     void draw_item(const ShadowView& view, const DrawItem& item, int sample_index);
 
     gpu::MeshCache& meshes_;
     gpu::TextureCache& textures_;
+    SplatShadows& splats_;
     ProgramVariants programs_{"shadow_depth.vert", "shadow_depth.frag"};
     bool native_ = true;
     VisibilityBuffer visibility_;

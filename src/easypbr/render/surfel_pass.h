@@ -17,14 +17,12 @@ namespace easypbr::render {
 /// geometry shader.
 class SurfelPass {
   public:
-    /// The cache is shared with other passes, must outlive this one, and is emptied by its owner.
-    explicit SurfelPass(SpacingCache& spacings) : spacings_(spacings) {}
+    /// The caches are shared with other passes, must outlive this one, and are emptied by their owner.
+    SurfelPass(SpacingCache& spacings, gpu::SurfelCache& surfels) : spacings_(spacings), cache_(surfels) {}
 
     /// Adds the surfels to what the G-buffer holds; natively, which is faster where there is no GPU, or by
     /// the driver.
     void draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets, bool native);
-
-    void evict_unused() { cache_.evict_unused(); }
 
   private:
     void draw_natively(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets);
@@ -36,7 +34,7 @@ class SurfelPass {
     }
 
     SpacingCache& spacings_;
-    gpu::SurfelCache cache_;
+    gpu::SurfelCache& cache_;
     gl::Texture albedo_sum_, normal_sum_, material_sum_, depth_, id_, element_;
     gl::Framebuffer visibility_, visibility_ids_, sums_;
     ProgramVariants splats_{"geometry_surfels.vert", "geometry_surfels.frag"};

@@ -144,8 +144,8 @@ void VisibilityBuffer::draw_points(const Array3f& V, const PointSplats& splats, 
             const float diameter = splats.world_pixels > 0
                                        ? std::max(splats.least_pixels, splats.world_pixels * scale)
                                        : splats.pixels;
-            const float r = 0.5f * diameter;
-            if (!(x + r >= left && x - r < right && y + r >= top && y - r < bottom)) continue;
+            const float r = 0.5f * diameter, ry = r * splats.y_per_x;
+            if (!(x + r >= left && x - r < right && y + ry >= top && y - ry < bottom)) continue;
             const uint64_t key = uint64_t(std::bit_cast<uint32_t>(depth)) << 32 | uint32_t(~(first_id + i));
             const auto put = [&](int column, int line) {
                 if (column < area_.x || column >= area_.x + area_.width || line < area_.y ||
@@ -156,14 +156,14 @@ void VisibilityBuffer::draw_points(const Array3f& V, const PointSplats& splats, 
             };
             const int own_x = int(std::floor(x)), own_y = int(std::floor(y));
             put(own_x, own_y);
-            if (diameter <= 1) continue;
+            if (diameter <= 1 && ry <= 0.5f) continue;
             const int x0 = std::max(int(std::ceil(x - r - 0.5f)), area_.x),
                       x1 = std::min(int(std::floor(x + r - 0.5f)), area_.x + area_.width - 1);
-            const int y0 = std::max(int(std::ceil(y - r - 0.5f)), area_.y),
-                      y1 = std::min(int(std::floor(y + r - 0.5f)), area_.y + area_.height - 1);
+            const int y0 = std::max(int(std::ceil(y - ry - 0.5f)), area_.y),
+                      y1 = std::min(int(std::floor(y + ry - 0.5f)), area_.y + area_.height - 1);
             for (int line = y0; line <= y1; ++line)
                 for (int column = x0; column <= x1; ++column) {
-                    const float dx = float(column) + 0.5f - x, dy = float(line) + 0.5f - y;
+                    const float dx = float(column) + 0.5f - x, dy = (float(line) + 0.5f - y) / splats.y_per_x;
                     if (!splats.round || dx * dx + dy * dy <= r * r) put(column, line);
                 }
         }
