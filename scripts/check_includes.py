@@ -16,9 +16,10 @@ MAY_USE = {
     "gpu": {"core", "scene", "gl"},
     "render": {"core", "scene", "gl", "gpu"},
     "app": {"core", "scene", "gl", "io", "gpu", "render"},
-    "viewer": {"core", "scene", "gl", "io", "gpu", "render", "app"},
-    "cli": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "viewer"},
-    "python": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "viewer", "cli"},
+    "dataset": {"core", "scene", "gl", "io", "gpu", "render", "app"},
+    "viewer": {"core", "scene", "gl", "io", "gpu", "render", "app", "dataset"},
+    "cli": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "dataset", "viewer"},
+    "python": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "dataset", "viewer", "cli"},
 }
 INCLUDE = re.compile(r'#include\s+["<]easypbr/(\w+)/')
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Makes .venv-oracle, the environment of the reference renderer that tests/oracle compares with. Does nothing when it
+# Makes .venv-oracle, the environment of what tests/oracle compares with. Does nothing when it
 # is there already in the version asked for.
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -7,9 +7,11 @@ cd "$(dirname "$0")/.."
 mitsuba=3.7.1
 numpy=2.4.6
 openexr=3.5.3
+opencv=4.11.0.86
+pycocotools=2.0.11
 folder=.venv-oracle
 marker=$folder/versions
-versions="mitsuba==$mitsuba numpy==$numpy OpenEXR==$openexr"
+versions="mitsuba==$mitsuba numpy==$numpy OpenEXR==$openexr opencv-python-headless==$opencv pycocotools==$pycocotools"
 
 [ "$(cat "$marker" 2>/dev/null || true)" = "$versions" ] && exit 0
 /usr/bin/python3 -m venv --clear "$folder"

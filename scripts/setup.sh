@@ -11,7 +11,7 @@ packages=(
   libspng-dev libturbojpeg0-dev libtinyexr-dev zlib1g-dev libmeshoptimizer-dev libnanoflann-dev libassimp-dev libyaml-cpp-dev
   libstb-dev fonts-dejavu-core
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev ffmpeg
-  libgtest-dev python3-dev python3-venv
+  libgtest-dev python3-dev python3-venv python3-torch
   libembree-dev
 )
 missing=()

@@ -16,6 +16,7 @@ PYTHON_GROUPS = {
     "Drawing": ["render", "Viewer", "Scene", "Settings", "auto", "follow", "Automatic", "Follow"],
     "Content": ["Mesh", "LabelMap", "load_scene", "as_mesh", "Material", "Style", "Light", "Environment", "Camera", "CameraPath"],
     "Geometry": ["KdTree"],
+    "Ground truth and tensors": ["Instance", "Moment", "MeshLoader", "eigen2tensor", "tensor2eigen"],
     "Images": ["load_image", "save_image", "compare_images", "colormap"],
     "Errors": ["Error", "FileError", "FormatError", "ArgumentError", "UnknownNameError", "ContextError"],
 }

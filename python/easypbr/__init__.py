@@ -12,12 +12,14 @@ from ._easypbr import (
     Camera,
     CameraPath,
     Environment,
+    Instance,
     Follow,
     KdTree,
     LabelMap,
     Light,
     Material,
     Mesh,
+    Moment,
     Style,
     __version__,
     auto,
@@ -30,9 +32,11 @@ from ._easypbr import (
 )
 from .convert import as_mesh
 from .errors import ArgumentError, ContextError, Error, FileError, FormatError, UnknownNameError
+from .loader import MeshLoader
 from .rendering import render
 from .scene import Scene
 from .settings import Settings
+from .tensors import eigen2tensor, tensor2eigen
 from .viewer import Viewer
 
 __all__ = [
@@ -46,11 +50,14 @@ __all__ = [
     "FileError",
     "Follow",
     "FormatError",
+    "Instance",
     "KdTree",
     "LabelMap",
     "Light",
     "Material",
     "Mesh",
+    "MeshLoader",
+    "Moment",
     "Scene",
     "Settings",
     "Style",
@@ -60,6 +67,7 @@ __all__ = [
     "auto",
     "colormap",
     "compare_images",
+    "eigen2tensor",
     "errors",
     "follow",
     "load_image",
@@ -67,4 +75,5 @@ __all__ = [
     "render",
     "save_image",
     "shapes",
+    "tensor2eigen",
 ]

@@ -11,6 +11,7 @@ from .lights import _STUDIO, Lights
 from .recorder import Recorder
 from .scene import Scene
 from .settings import Settings
+from .tensors import converter
 
 
 class Viewer:
@@ -120,6 +121,51 @@ class Viewer:
         if isinstance(names, str):
             names = [names]
         return self._handle.layers(list(_easypbr.layer_names() if names is None else names), size)
+
+    def render_layers(
+        self,
+        names: Sequence[str],
+        size=None,
+        samples: int | None = None,
+        instances_by: str = "object",
+        classes: Mapping[str, int] | None = None,
+        previous: "_easypbr.Moment | None" = None,
+        next: "_easypbr.Moment | None" = None,
+        amodal: bool = True,
+        as_: str = "numpy",
+    ) -> dict:
+        """The picture and exact ground truth of the same frame by name, all of the same height and width: color, hdr,
+        depth, distance, position, normal_world, normal_camera, albedo, roughness, metallic, instance_id, semantic_id,
+        object_coordinates, face_id, barycentrics, uv, flow_forward, flow_backward and their occlusion_forward and
+        occlusion_backward, and "instances", a list of Instance.
+
+        `instances_by`: "object" (with all its children), "node" or "part". `classes`: semantic ids by the objects'
+        names. Flow needs the `next` or `previous` frame's moment(). Without `amodal` what is hidden of the instances is
+        not measured. `as_`: "numpy" or "torch"."""
+        if isinstance(names, str):
+            names = [names]
+        convert = converter(as_)
+        data = _easypbr.ground_truth(
+            self._handle,
+            [name for name in names if name != "instances"],
+            size,
+            samples,
+            instances_by,
+            dict(classes or {}),
+            previous,
+            next,
+            "instances" in names,
+            amodal,
+        )
+        return {name: value if name == "instances" else convert(value) for name, value in data.items()}
+
+    def annotations(self, size=None, **options) -> "list[_easypbr.Instance]":
+        """Masks, boxes, poses and visibility of all instances; options as render_layers() has them."""
+        return self.render_layers(["instances"], size, **options)["instances"]
+
+    def moment(self, size=None) -> "_easypbr.Moment":
+        """The scene and camera as they are now, for flow between frames: render_layers(..., previous=moment)."""
+        return _easypbr.moment(self._handle, size)
 
     def save_settings(self, path) -> None:
         """Writes every value, chosen and inferred, with hashes of the files shown."""

@@ -70,7 +70,7 @@ TEST(Fields, AreComplete) {
     // clang-format off
     const std::map<std::string, int> expected = {
         {"image", 3},
-        {"camera", 12},
+        {"camera", 14},
         {"environment", 5},
         {"background", 4},
         {"lights", 1 + 3 * 6},

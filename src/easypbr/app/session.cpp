@@ -170,7 +170,7 @@ Image Session::render(const PictureOptions& options) {
 }
 
 Image Session::read_annotated() {
-    Image picture = renderer_->read_picture();
+    Image picture = warp(renderer_->read_picture(), lens_);
     draw_annotation(annotation_, annotation_settings_, picture);
     return picture;
 }
@@ -181,7 +181,8 @@ void Session::annotate(const Prepared& prepared) {
 }
 
 void Session::draw_frame(const PictureOptions& options) {
-    const Prepared prepared = prepare(options);
+    Prepared prepared = prepare(options);
+    apply_lens(prepared);
     refined_.reset();
     render::Renderer& renderer = this->renderer();
     const gl::ContextScope scope(*context_);
@@ -215,6 +216,9 @@ Session::Refinement Session::refine(const PictureOptions& options, bool finish) 
     const Stopwatch watch(timing_.draw);
     if (done.began) {
         refined_.reset();
+        // What is refined is shown as it is drawn: a window has no lens.
+        lens_ = {};
+        lens_key_.clear();
         renderer.begin(prepared.scene, prepared.resolved, prepared.options, settings_images_);
         annotate(prepared);
         latch_from(prepared);
@@ -283,14 +287,79 @@ std::map<std::string, Image> Session::render_layers(const std::vector<std::strin
     prepared.options.ids = std::ranges::any_of(layers, [](render::Layer layer) {
         return layer == render::Layer::id || layer == render::Layer::element;
     });
+    apply_lens(prepared);
     render::Renderer& renderer = this->renderer();
     const gl::ContextScope scope(*context_);
     refined_.reset();
     renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
     latch_from(prepared);
     std::map<std::string, Image> images;
-    for (size_t i = 0; i < names.size(); ++i) images[names[i]] = renderer.read_layer(layers[i]);
+    for (size_t i = 0; i < names.size(); ++i)
+        images[names[i]] = pick_nearest(renderer.read_layer(layers[i]), lens_);
     return images;
+}
+
+void Session::apply_lens(Prepared& prepared) {
+    const Camera& camera = prepared.resolved.camera;
+    std::vector<double> key = {double(prepared.options.size.x()), double(prepared.options.size.y())};
+    if (camera.is_warped()) {
+        const Intrinsics& k = *camera.intrinsics;
+        key.insert(key.end(), {k.fx, k.fy, k.cx, k.cy, double(k.width), double(k.height), k.skew});
+        if (camera.distortion) {
+            key.push_back(double(camera.distortion->model));
+            key.insert(key.end(), camera.distortion->k.begin(), camera.distortion->k.end());
+        }
+    }
+    if (key != lens_key_) {
+        lens_ = lens_map(camera, prepared.options.size);
+        lens_key_ = key;
+    }
+    if (!camera.is_warped()) return;
+    prepared.options.size = lens_.drawn_size;
+    prepared.resolved.camera.distortion.reset();
+    prepared.resolved.camera.intrinsics = lens_.drawn.intrinsics;
+}
+
+render::SurfaceFrame Session::draw_surfaces(const PictureOptions& options, bool picture,
+                                            const Moment* moment) {
+    Prepared prepared = prepare(options);
+    prepared.options.surfaces = true;
+    if (moment) prepared.resolved.camera = moment->camera;
+    apply_lens(prepared);
+    render::Renderer& renderer = this->renderer();
+    const gl::ContextScope scope(*context_);
+    const Stopwatch watch(timing_.draw);
+    refined_.reset();
+    if (picture && !moment)
+        renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
+    else
+        renderer.draw_surfaces(moment ? moment->scene : prepared.scene, prepared.resolved,
+                               prepared.options.size, settings_images_);
+    annotate(prepared);
+    if (!moment) latch_from(prepared);
+    return renderer.read_surfaces();
+}
+
+Image Session::drawn_picture() {
+    const gl::ContextScope scope(*context_);
+    return read_annotated();
+}
+
+Image Session::drawn_layer(render::Layer layer) {
+    const gl::ContextScope scope(*context_);
+    return renderer_->read_layer(layer);
+}
+
+std::vector<uint8_t> Session::coverage(const render::PixelRect& area,
+                                       const std::function<bool(size_t, int)>& wanted) {
+    const gl::ContextScope scope(*context_);
+    return renderer_->coverage(area, wanted);
+}
+
+Moment Session::moment(std::optional<Vec2i> size) {
+    Moment moment{snapshot(), {}};
+    moment.camera = easypbr::resolve(moment.scene, settings_, size_or(size)).camera;
+    return moment;
 }
 
 void Session::replace_settings(const Settings& settings) {
@@ -336,6 +405,12 @@ void Session::set_camera(const Camera& camera) {
     if (camera.intrinsics) {
         const Intrinsics& k = *camera.intrinsics;
         to.intrinsics = {k.fx, k.fy, k.cx, k.cy, double(k.width), double(k.height)};
+        if (k.skew != 0) to.intrinsics.push_back(k.skew);
+    }
+    to.distortion.clear();
+    if (camera.distortion) {
+        to.distortion_model = camera.distortion->model;
+        to.distortion = camera.distortion->coefficients();
     }
 }
 

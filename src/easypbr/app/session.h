@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "easypbr/app/annotation.h"
+#include "easypbr/app/lens.h"
 #include "easypbr/app/picking.h"
 #include "easypbr/app/view_point.h"
 #include "easypbr/core/image.h"
@@ -27,6 +28,12 @@ struct PictureOptions {
     std::optional<Vec2i> size;
     std::optional<int> samples;
     Encoding encoding = Encoding::srgb8;
+};
+
+/// A moment that surfaces are drawn of instead of the session's own.
+struct Moment {
+    SceneSnapshot scene;
+    Camera camera;
 };
 
 /// Seconds that the steps of the last picture took.
@@ -58,6 +65,23 @@ class Session {
     /// The same scene, camera and size in exact values through the pixels' centres (no anti-aliasing).
     std::map<std::string, Image> render_layers(const std::vector<std::string>& names,
                                                std::optional<Vec2i> size = std::nullopt);
+
+    /// What the pixels' centres see, as it is drawn: of a warped camera a wider picture, see lens(). With
+    /// `picture` the picture that the options ask for is drawn in the same go; drawn_picture() reads it.
+    /// `moment` is drawn in place of the session's scene and camera (no picture then).
+    render::SurfaceFrame draw_surfaces(const PictureOptions& options, bool picture,
+                                       const Moment* moment = nullptr);
+    /// From the pixels of the picture drawn last to what was drawn.
+    const LensMap& lens() const { return lens_; }
+    /// The picture of the last draw_surfaces().
+    Image drawn_picture();
+    /// A layer of the last draw_surfaces(), as it was drawn.
+    Image drawn_layer(render::Layer layer);
+    /// See render::Renderer::coverage(); of the last draw_surfaces().
+    std::vector<uint8_t> coverage(const render::PixelRect& area,
+                                  const std::function<bool(size_t object, int first_face)>& wanted);
+    /// The scene as it is now and the camera of the next picture.
+    Moment moment(std::optional<Vec2i> size = std::nullopt);
 
     /// Names of what is visible; the layer "id" holds 1 + the place in this list.
     std::vector<std::string> object_names() const;
@@ -164,6 +188,11 @@ class Session {
         bool is_of(const Prepared& other, const render::SettingsImages& other_images) const;
     };
     std::unique_ptr<Refined> refined_;
+
+    /// Replaces a camera that is warped, and the size, by what has to be drawn.
+    void apply_lens(Prepared& prepared);
+    LensMap lens_;
+    std::vector<double> lens_key_;
 
     Annotation annotation_;  ///< of the picture that was drawn last
     AnnotationSettings annotation_settings_;

@@ -1,6 +1,8 @@
 // Camera: poses and projections, in OpenGL's and in OpenCV's axes.
 #include <fmt/format.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include "easypbr/core/error.h"
 #include "easypbr/python/convert.h"
@@ -17,10 +19,26 @@ Camera look_at(const ArrayLike& position, const ArrayLike& target, const nb::obj
     return camera;
 }
 
-Camera from_opencv(const ArrayLike& K, const ArrayLike& T_world_cam, const ArrayLike& size) {
+DistortionModel model_named(const std::string& name) {
+    if (name == "brown_conrady") return DistortionModel::brown_conrady;
+    if (name == "fisheye") return DistortionModel::fisheye;
+    throw ArgumentError(fmt::format("model: expected brown_conrady or fisheye, got '{}'", name));
+}
+
+Camera from_opencv(const ArrayLike& K, const ArrayLike& T_world_cam, const ArrayLike& size,
+                   const std::optional<std::vector<double>>& distortion, const std::string& model,
+                   const std::string& axes) {
     const Vec2i pixels = to_size(size, "size");
-    return Camera::from_opencv(to_matrix3(K, "K"), to_matrix4(T_world_cam, "T_world_cam"), pixels.x(),
-                               pixels.y());
+    Mat4d T = to_matrix4(T_world_cam, "T_world_cam");
+    if (axes == "opengl")
+        T.topLeftCorner<3, 3>() *= Vec3d(1, -1, -1).asDiagonal();
+    else if (axes != "opencv")
+        throw ArgumentError(fmt::format("axes: expected opencv or opengl, got '{}'", axes));
+    Camera camera = Camera::from_opencv(to_matrix3(K, "K"), T, pixels.x(), pixels.y());
+    const DistortionModel known = model_named(model);
+    if (distortion && !distortion->empty())
+        camera.distortion = Distortion::from_coefficients(known, *distortion);
+    return camera;
 }
 
 void set_pose(Camera& camera, const ArrayLike& T_world_cam) {
@@ -44,8 +62,11 @@ void bind_makers(nb::class_<Camera>& camera) {
                     "Looks from a position to a target; up is (0, 1, 0) unless given.")
         .def_static(
             "from_opencv", from_opencv, nb::arg("K"), nb::arg("T_world_cam"), nb::arg("size"),
+            nb::arg("distortion").none() = nb::none(), nb::arg("model") = "brown_conrady",
+            nb::arg("axes") = "opencv",
             "From OpenCV's K (pixel centres at integers), a camera-to-world pose with OpenCV's axes, and the "
-            "(width, height) that K belongs to.")
+            "(width, height) that K belongs to. The pose's axes may be 'opengl' too. `distortion`: 4, 5 or 8 "
+            "coefficients in OpenCV's order; of the model 'fisheye' 4.")
         .def_static(
             "from_opengl",
             [](const ArrayLike& T, double fov_y_deg) {
@@ -86,6 +107,12 @@ void bind_camera(nb::module_& module) {
             },
             nb::arg("size"), nb::sig("def opencv_K(self, size: numpy.typing.ArrayLike) -> numpy.ndarray"),
             "OpenCV's K for a picture of (width, height).")
+        .def_prop_ro(
+            "distortion",
+            [](const Camera& c) {
+                return c.distortion ? c.distortion->coefficients() : std::vector<double>();
+            },
+            "Coefficients of the lens's distortion in OpenCV's order; empty: none.")
         .def_prop_ro(
             "opencv_T_world_cam", [](const Camera& c) { return matrix_to_numpy(c.opencv_T_world_cam()); },
             nb::sig("def opencv_T_world_cam(self) -> numpy.ndarray"), "Pose with OpenCV's axes.");

@@ -12,9 +12,10 @@
 namespace easypbr::python {
 namespace {
 
-nb::bytes png_bytes(const ArrayLike& array) {
+nb::bytes png_bytes(const ArrayLike& array, bool deep) {
     const Image image = to_image(array, "image");
-    const std::vector<std::byte> bytes = released([&] { return io::encode_png(to_u8(image)); });
+    const std::vector<std::byte> bytes =
+        released([&] { return io::encode_png(deep ? image : to_u8(image)); });
     return nb::bytes(bytes.data(), bytes.size());
 }
 
@@ -47,7 +48,8 @@ void bind_image(nb::module_& module) {
         },
         nb::arg("image"), nb::arg("path"),
         "Writes PNG, JPEG, HDR or EXR by the extension. Floating-point pictures are linear, others sRGB.");
-    module.def("encode_png", png_bytes, nb::arg("image"), "The bytes of an 8-bit PNG file.");
+    module.def("encode_png", png_bytes, nb::arg("image"), nb::arg("deep") = false,
+               "The bytes of a PNG file of 8 bits; with `deep`, of 16 if the picture is uint16.");
     module.def(
         "compare_images", compare_images, nb::arg("a"), nb::arg("b"),
         "How much two pictures of the same size and type differ: max, mean, rmse, psnr, different (pixels).");

@@ -1,6 +1,7 @@
 // Mesh: arrays as read-only views that own their numbers.
 #include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -8,6 +9,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/io/mesh_io.h"
+#include "easypbr/io/mesh_queue.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
 #include "easypbr/python/mesh_fields.h"
@@ -186,9 +188,10 @@ void bind_arrays(nb::class_<Mesh>& mesh) {
                 nb::sig(fmt::format("def {}(self, value: numpy.typing.ArrayLike | None) -> None", array.name)
                             .c_str())),
             array.doc);
-    mesh.def("assign", assign, nb::sig("def assign(self, **arrays: object) -> None"),
-             "Replaces several arrays at once, e.g. assign(V=v, F=f, N=None); also label_map and scalars. With "
-             "offset=(0, 0, 0), V is taken as world coordinates whatever the offset was.");
+    mesh.def(
+        "assign", assign, nb::sig("def assign(self, **arrays: object) -> None"),
+        "Replaces several arrays at once, e.g. assign(V=v, F=f, N=None); also label_map and scalars. With "
+        "offset=(0, 0, 0), V is taken as world coordinates whatever the offset was.");
     mesh.def(
         "edit",
         [](const Mesh& m, const std::string& name) {
@@ -267,6 +270,11 @@ void bind_mesh(nb::module_& module) {
         });
     // Equal handles would need equal hashes; a mesh is no key.
     mesh.attr("__hash__") = nb::none();
+    nb::class_<io::MeshQueue>(module, "MeshQueue")
+        .def(nb::init<std::vector<fs::path>, int, int>(), nb::arg("paths"), nb::arg("workers"),
+             nb::arg("prefetch"))
+        .def("next", [](io::MeshQueue& queue) { return released([&] { return queue.next(); }); })
+        .def("__len__", &io::MeshQueue::size);
     module.def("readable_mesh_extensions", [] { return released([] { return io::readable_extensions(); }); });
 }
 

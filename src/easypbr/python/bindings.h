@@ -27,6 +27,7 @@ void bind_animation(nb::module_& module);
 void bind_camera(nb::module_& module);
 void bind_camera_path(nb::module_& module);
 void bind_viewer(nb::module_& module);
+void bind_ground_truth(nb::module_& module);
 
 /// Hands the messages logged so far to Python. Needs the GIL; no lock of ours may be held.
 void deliver_log();

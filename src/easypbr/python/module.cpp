@@ -45,6 +45,7 @@ NB_MODULE(_easypbr, module) {
     bind_geometry(module);
     bind_surfaces(module);
     bind_viewer(module);
+    bind_ground_truth(module);
     module.attr("__version__") = EASYPBR_VERSION;
 #ifdef EASYPBR_HAS_CLI
     module.def("main", run_command_line, nb::arg("arguments"),

@@ -87,7 +87,8 @@ struct Renderer::Picture {
     DrawList list;      ///< everything
     DrawList averaged;  ///< of frames that are added up
     Frame frame;
-    bool is_finished = false;  ///< at least once
+    bool is_finished = false;     ///< at least once
+    bool holds_surfaces = false;  ///< its only frame is what the pixels' centres see
 };
 
 Renderer::~Renderer() = default;
@@ -115,6 +116,7 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
     if (options.samples < 1)
         throw ArgumentError(fmt::format("samples: expected 1 or more, got {}", options.samples));
     picture_.reset();
+    drawn_.reset();
     prepare_targets(options.size, resolved);
     output_.begin(options.size, options.encoding);
     if (!resolved.environment.empty())
@@ -134,6 +136,15 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
     frame.sample_count = options.samples;
     frame.sample_index = -1;
     frame.with_ids = options.ids;
+    if (options.surfaces) {
+        keep_surfaces(scene, resolved, options.size, images);
+        const auto sees_more = [](const DrawItem& item) {
+            return item.layered || item.alpha == AlphaMode::blend;
+        };
+        picture->holds_surfaces = options.samples == 1 && !all.has(sees_more) && !all.extensions() &&
+                                  !GroundPass::is_on(resolved);
+        frame.with_ids |= picture->holds_surfaces;
+    }
     frame.with_exact =
         picture->list.has([](const DrawItem& item) { return item.kind == SurfaceKind::exact; });
     // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
@@ -141,7 +152,7 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
     picture->averaged = apart ? picture->list.without_exact() : picture->list;
     // Layers are of the content.
     frame.with_ground = GroundPass::is_on(resolved) && !options.layers && !options.ids;
-    if (options.ids) targets_.add_ids();
+    if (frame.with_ids) targets_.add_ids();
     picture_ = std::move(picture);
 }
 
@@ -160,9 +171,12 @@ void Renderer::finish() {
         Frame exact = frame;
         run("exact", [&] { draw_exact(exact, picture_->list); });
     }
+    const bool is_last = frame.sample_index + 1 == frame.sample_count;
+    if (is_last && picture_->options.surfaces && !picture_->holds_surfaces)
+        run("surfaces", [&] { draw_kept_surfaces(); });
     // Once a picture: frames after the first ask for less than the first did.
     if (!std::exchange(picture_->is_finished, true)) evict_unused();
-    if (frame.sample_index + 1 == frame.sample_count) picture_.reset();
+    if (is_last) picture_.reset();
     glFlush();
 }
 
@@ -170,19 +184,31 @@ void Renderer::draw_surfaces(const SceneSnapshot& scene, const ResolvedSettings&
                              const SettingsImages& images) {
     picture_.reset();
     prepare_targets(size, resolved);
-    targets_.add_ids();
-    const DrawableScene drawable = drawables_.apply(scene, resolved.settings);
-    element_sources_ = drawable.sources;
-    const DrawList list = draw_list(drawable, resolved.settings, images.textures).as_surfaces();
-    Frame frame;
-    frame.scene = &drawable.scene;
-    frame.resolved = &resolved;
-    frame.size = size;
-    frame.with_ids = true;
-    frame.camera = resolved.camera;
-    prepare_frame(frame, bounds_of(*frame.scene), list.reaches_beyond_vertices());
-    draw_geometry(frame, list);
+    keep_surfaces(scene, resolved, size, images);
+    draw_kept_surfaces();
+    evict_unused();
     glFlush();
+}
+
+void Renderer::keep_surfaces(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i size,
+                             const SettingsImages& images) {
+    drawn_ =
+        std::make_unique<Drawn>(Drawn{drawables_.apply(scene, resolved.settings), resolved, scene, {}, size});
+    element_sources_ = drawn_->drawable.sources;
+    drawn_->surfaces = draw_list(drawn_->drawable, resolved.settings, images.textures).as_surfaces();
+}
+
+void Renderer::draw_kept_surfaces() {
+    targets_.add_ids();
+    Frame frame;
+    frame.scene = &drawn_->drawable.scene;
+    frame.resolved = &drawn_->resolved;
+    frame.size = drawn_->size;
+    frame.with_ids = true;
+    frame.camera = drawn_->resolved.camera;
+    prepare_frame(frame, bounds_of(*frame.scene), drawn_->surfaces.reaches_beyond_vertices());
+    draw_geometry(frame, drawn_->surfaces);
+    no_attributes_.bind();
 }
 
 void Renderer::evict_unused() {

@@ -1,6 +1,7 @@
 // Renderer: runs the passes in order. Source order is pipeline order.
 #pragma once
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -18,6 +19,7 @@
 #include "easypbr/render/point_pass.h"
 #include "easypbr/render/shadow_maps.h"
 #include "easypbr/render/software_geometry_pass.h"
+#include "easypbr/render/surface_frame.h"
 #include "easypbr/render/surfel_pass.h"
 #include "easypbr/render/transparency_pass.h"
 
@@ -46,9 +48,11 @@ struct DrawOptions {
     Vec2i size{800, 600};
     int samples = 1;
     Encoding encoding = Encoding::srgb8;
-    bool ids = false;     ///< fill the id target too
-    bool layers = false;  ///< read_layer() will be called: blended surfaces stand in it where they are half
-                          ///< opaque or more, and there is no picture
+    bool ids = false;       ///< fill the id target too
+    bool layers = false;    ///< read_layer() will be called: blended surfaces stand in it where they are half
+                            ///< opaque or more, and there is no picture
+    bool surfaces = false;  ///< read_surfaces() and read_layer() will be called: where the picture's last
+                            ///< frame does not hold what the pixels' centres see, that is drawn once more
 };
 
 /// Images that the settings name, loaded by the caller.
@@ -77,8 +81,8 @@ class Renderer {
     int add_sample();
     void finish();
 
-    /// Draws nothing but surfaces, through the pixels' centres: for read_layer(), ids included. The picture
-    /// that was drawn last stays; one that frames are added to has to begin again.
+    /// Draws nothing but surfaces, through the pixels' centres: for read_layer() and read_surfaces(). The
+    /// picture that was drawn last stays; one that frames are added to has to begin again.
     void draw_surfaces(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i size,
                        const SettingsImages& images = {});
 
@@ -90,6 +94,15 @@ class Renderer {
     /// The first `width` x `height` pixels only: forces the picture to be finished.
     Image read_picture(int width, int height) const;
     Image read_layer(Layer layer) const;
+    /// What the pixels' centres see; of a picture drawn with `surfaces`.
+    SurfaceFrame read_surfaces() const;
+
+    /// Which pixel centres of a rectangle, inside the last picture or outside, some parts of objects would
+    /// cover if they were alone: 1 or 0, row by row. `wanted` is asked with the object's place in the
+    /// snapshot and the part's first face. The last picture was drawn with `surfaces`; what it left behind is
+    /// not changed.
+    std::vector<uint8_t> coverage(const PixelRect& area,
+                                  const std::function<bool(size_t object, int first_face)>& wanted);
 
     /// Without a GPU, plain triangles are rasterised natively; false leaves them to the driver: for comparing
     /// the two.
@@ -119,6 +132,10 @@ class Renderer {
     void draw_layers(Frame& frame, const DrawList& list);
     /// Draws what must not be averaged or smoothed into the finished picture.
     void draw_exact(Frame& frame, const DrawList& list);
+    /// Keeps what surfaces are drawn of in `drawn_`, and draws it.
+    void keep_surfaces(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i size,
+                       const SettingsImages& images);
+    void draw_kept_surfaces();
     /// Lights a G-buffer, block by block of lights with their shadow maps.
     void draw_lights(const Frame& frame, const GBuffer& targets);
     const Box3d& bounds_of(const SceneSnapshot& scene);
@@ -154,6 +171,16 @@ class Renderer {
     SurfaceComposite composite_;
     Camera camera_;
     std::vector<Array1i> element_sources_;  ///< DrawableScene::sources of the last picture
+    /// Of the last picture that was drawn with `surfaces`.
+    struct Drawn {
+        DrawableScene drawable;
+        ResolvedSettings resolved;
+        SceneSnapshot scene;
+        DrawList surfaces;  ///< its items point into `drawable`
+        Vec2i size{0, 0};
+    };
+    std::unique_ptr<Drawn> drawn_;
+    GBuffer coverage_targets_;
     /// Bounds of the last scene, and what they were computed from.
     std::vector<std::pair<uint64_t, Eigen::Affine3d>> bounded_;
     Box3d bounds_;

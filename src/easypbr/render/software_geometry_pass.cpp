@@ -134,6 +134,17 @@ void SoftwareGeometryPass::draw_points_over(const Frame& frame, const DrawList& 
     composite_.draw(frame, pixels_, targets);
 }
 
+bool SoftwareGeometryPass::cover(const Frame& frame, const DrawList& list, std::vector<uint8_t>& covered) {
+    const auto shaped_by_alpha = [](const DrawItem& item) { return item.alpha != AlphaMode::opaque; };
+    if (!list.surfels.empty() || list.has(shaped_by_alpha)) return false;
+    visibility_.clear(frame.size, {0, 0, frame.size.x(), frame.size.y()});
+    std::vector<Surface> surfaces;
+    if (!add_meshes(frame, list, surfaces)) return false;
+    add_points(frame, list, surfaces);
+    for (size_t i = 0; i < covered.size(); ++i) covered[i] = visibility_.pixels()[i] != 0;
+    return true;
+}
+
 void SoftwareGeometryPass::resolve(const Frame& frame, const std::vector<Surface>& surfaces) {
     const PixelRect& area = visibility_.area();
     pixels_.resize(area, frame.with_ids);

@@ -31,6 +31,10 @@ class SoftwareGeometryPass {
     /// Adds the list's points to what the G-buffer holds.
     void draw_points_over(const Frame& frame, const DrawList& list, const GBuffer& targets);
 
+    /// Sets to 1 what meshes and points cover of the frame, row by row; false, with nothing set, when only
+    /// the driver can draw them.
+    bool cover(const Frame& frame, const DrawList& list, std::vector<uint8_t>& covered);
+
     void evict_unused();
 
   private:

@@ -18,6 +18,8 @@ void reject_contradictions(const CameraSettings& settings) {
     if (!settings.intrinsics.empty() && settings.projection == Projection::orthographic)
         throw ArgumentError(
             "settings 'camera.intrinsics' and 'camera.projection' = orthographic contradict each other");
+    if (!settings.distortion.empty() && settings.intrinsics.empty())
+        throw ArgumentError("setting 'camera.distortion' needs 'camera.intrinsics'");
 }
 
 /// Looks as view_rotation() does, also straight up and down where `up` alone says nothing about the picture's
@@ -102,7 +104,10 @@ Camera lens_of(const CameraSettings& settings) {
                             max_image_side, k[4], k[5]));
         Mat3d K;
         K << k[0], 0, k[2], 0, k[1], k[3], 0, 0, 1;
+        if (k.size() > 6) K(0, 1) = k[6];
         lens = Camera::from_opencv(K, Mat4d::Identity(), int(k[4]), int(k[5]));
+        if (!settings.distortion.empty())
+            lens.distortion = Distortion::from_coefficients(settings.distortion_model, settings.distortion);
     } else {
         lens.fov_y_deg = settings.fov_y_deg;
     }

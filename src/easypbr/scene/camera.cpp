@@ -92,15 +92,15 @@ Camera Camera::from_opencv(const Mat3d& K, const Mat4d& T_world_cam, int width, 
         throw ArgumentError(
             fmt::format("camera: expected a picture of at least 1x1, got {}x{}", width, height));
     const bool shape = K.allFinite() && K(1, 0) == 0 && K(2, 0) == 0 && K(2, 1) == 0 && K(2, 2) == 1;
-    if (!shape || !(K(0, 0) > 0) || !(K(1, 1) > 0) || K(0, 1) != 0)
+    if (!shape || !(K(0, 0) > 0) || !(K(1, 1) > 0))
         throw ArgumentError(
-            fmt::format("camera: expected K = [fx 0 cx; 0 fy cy; 0 0 1] with fx, fy > 0, got [{} {} {}; {} "
+            fmt::format("camera: expected K = [fx s cx; 0 fy cy; 0 0 1] with fx, fy > 0, got [{} {} {}; {} "
                         "{} {}; {} {} {}]",
                         K(0, 0), K(0, 1), K(0, 2), K(1, 0), K(1, 1), K(1, 2), K(2, 0), K(2, 1), K(2, 2)));
     Camera camera;
     camera.T_world_cam = require_rigid(T_world_cam);
     camera.T_world_cam.linear() = camera.T_world_cam.linear() * axis_flip.asDiagonal();
-    camera.intrinsics = Intrinsics{K(0, 0), K(1, 1), K(0, 2), K(1, 2), width, height};
+    camera.intrinsics = Intrinsics{K(0, 0), K(1, 1), K(0, 2), K(1, 2), width, height, K(0, 1)};
     camera.fov_y_deg = degrees(2 * std::atan(height / (2 * K(1, 1))));
     return camera;
 }
@@ -124,6 +124,7 @@ Mat3d Camera::opencv_K(int width, int height) const {
     K(1, 1) = height * P(1, 1) / 2;
     K(0, 2) = width * (1 - P(0, 2)) / 2 - 0.5;
     K(1, 2) = height * (1 + P(1, 2)) / 2 - 0.5;
+    if (intrinsics) K(0, 1) = intrinsics->skew * width / intrinsics->width;
     return K;
 }
 

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "easypbr/core/math.h"
+#include "easypbr/scene/distortion.h"
 
 namespace easypbr {
 
@@ -13,6 +14,7 @@ enum class Projection { perspective, orthographic };
 struct Intrinsics {
     double fx = 0, fy = 0, cx = 0, cy = 0;
     int width = 0, height = 0;
+    double skew = 0;
 };
 
 struct Camera {
@@ -24,9 +26,13 @@ struct Camera {
     double far = 100;         ///< orthographic only
     std::optional<Intrinsics>
         intrinsics;  ///< perspective; replaces fov_y_deg, scaled to the size of the picture
+    std::optional<Distortion> distortion;  ///< of the lens; perspective with intrinsics
 
     Vec3d position() const { return T_world_cam.translation(); }
     Mat4d view() const { return T_world_cam.inverse().matrix(); }
+
+    /// What is drawn has to be warped: skew or distortion are not in projection_matrix() (app/lens.h).
+    bool is_warped() const { return distortion || (intrinsics && intrinsics->skew != 0); }
 
     /// Reversed-Z projection for clip depth 0 (far) to 1 (near): z_ndc = near / z for perspective.
     Mat4d projection_matrix(double aspect) const;
@@ -35,9 +41,9 @@ struct Camera {
     /// Throws ArgumentError when position and target coincide.
     static Camera look_at(const Vec3d& position, const Vec3d& target, const Vec3d& up = Vec3d::UnitY());
 
-    /// From OpenCV's intrinsic matrix K (pixel centres at integers) for a picture of width x height, and a
-    /// pose whose axes are OpenCV's (x right, y down, z forward). Throws ArgumentError when K or the pose is
-    /// not valid.
+    /// From OpenCV's intrinsic matrix K (pixel centres at integers, skew allowed) for a picture of width x
+    /// height, and a pose whose axes are OpenCV's (x right, y down, z forward). Throws ArgumentError when K
+    /// or the pose is not valid.
     static Camera from_opencv(const Mat3d& K, const Mat4d& T_world_cam, int width, int height);
 
     /// From a 4x4 pose with OpenGL axes. Throws ArgumentError when it is not a rotation and a translation

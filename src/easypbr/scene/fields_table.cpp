@@ -18,6 +18,11 @@ const std::vector<std::string>& enum_names<Projection>() {
     return names;
 }
 template <>
+const std::vector<std::string>& enum_names<DistortionModel>() {
+    static const std::vector<std::string> names = {"brown_conrady", "fisheye"};
+    return names;
+}
+template <>
 const std::vector<std::string>& enum_names<BackgroundMode>() {
     static const std::vector<std::string> names = {"color", "environment", "blur", "image", "transparent"};
     return names;
@@ -140,10 +145,17 @@ void add_camera(Table& table) {
                    {0, 16}));
     table.push_back(
         with_sizes(make("camera.intrinsics", camera(&CameraSettings::intrinsics),
-                        "fx, fy, cx, cy, width, height as OpenCV has them (pixel centres at integers); "
-                        "replaces fov_y_deg.",
+                        "fx, fy, cx, cy, width, height as OpenCV has them (pixel centres at integers), and "
+                        "skew if there is any; replaces fov_y_deg.",
                         "pixels"),
-                   {0, 6}));
+                   {0, 6, 7}));
+    table.push_back(make("camera.distortion_model", camera(&CameraSettings::distortion_model),
+                         "What the coefficients of the lens's distortion mean, as OpenCV has them."));
+    table.push_back(with_sizes(
+        make("camera.distortion", camera(&CameraSettings::distortion),
+             "Distortion of the lens: k1, k2, p1, p2, then k3, then k4, k5, k6; of a fisheye k1, k2, "
+             "k3, k4. Needs camera.intrinsics."),
+        {0, 4, 5, 8}));
 }
 
 void add_surroundings(Table& table) {

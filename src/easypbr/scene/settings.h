@@ -43,7 +43,9 @@ struct CameraSettings {
     float elevation_deg = 15;
     float margin = 0.05f;
     std::vector<double> pose;        ///< empty, or 16 numbers: T_world_cam row by row, OpenGL axes
-    std::vector<double> intrinsics;  ///< empty, or fx, fy, cx, cy, width, height (OpenCV)
+    std::vector<double> intrinsics;  ///< empty, or fx, fy, cx, cy, width, height and skew (OpenCV)
+    DistortionModel distortion_model = DistortionModel::brown_conrady;
+    std::vector<double> distortion;  ///< empty, or coefficients in OpenCV's order
 };
 
 struct EnvironmentSettings {

@@ -1,0 +1,88 @@
+"""MeshLoader: meshes and clouds read ahead of training."""
+
+import os
+import sys
+from collections.abc import Callable, Iterable, Iterator
+
+from . import _easypbr
+from .errors import ArgumentError, Error
+from .tensors import eigen2tensor
+
+#: What a sample holds when no transform is given: those of these arrays that the mesh has.
+_ARRAYS = ("V", "N", "C", "F", "L", "I", "UV")
+
+
+class MeshLoader:
+    """An iterable over files: meshes and clouds are read by native threads of its own, without Python's lock, in order,
+    at most `prefetch` of them ahead. Also a torch IterableDataset where torch is there: DataLoader(loader,
+    batch_size=None).
+
+    `transform(mesh)` makes a sample of a Mesh; without it a sample is a dict of torch tensors of the mesh's arrays (V, N,
+    C, F, L, I, UV). Tensors in what it gives are moved to `device`. A file that cannot be read raises at its place, with
+    its name; `on_error="skip"` leaves it out. SemanticKITTI's scans (.bin) come with their .label files."""
+
+    def __init__(
+        self,
+        paths: Iterable[str | os.PathLike],
+        transform: Callable | None = None,
+        workers: int = 2,
+        prefetch: int = 4,
+        device: str = "cpu",
+        on_error: str = "raise",
+    ):
+        if on_error not in ("raise", "skip"):
+            raise ArgumentError(f"on_error: expected 'raise' or 'skip', got '{on_error}'")
+        self.paths = [os.fspath(path) for path in paths]
+        self.transform = transform
+        self.workers, self.prefetch = workers, prefetch
+        self.device = device
+        self.on_error = on_error
+
+    def __new__(cls, *arguments, **options):
+        return super().__new__(_with_torch(cls))
+
+    def __len__(self) -> int:
+        return len(self.paths)
+
+    def __iter__(self) -> Iterator:
+        queue = _easypbr.MeshQueue(_own_share(self.paths), self.workers, self.prefetch)
+        for _ in range(len(queue)):
+            try:
+                mesh = queue.next()
+            except Error:
+                if self.on_error == "raise":
+                    raise
+                continue
+            yield _moved(_tensors(mesh) if self.transform is None else self.transform(mesh), self.device)
+
+
+def _with_torch(cls):
+    """The class, derived from torch's IterableDataset too if torch has been imported: only then can it matter."""
+    data = getattr(sys.modules.get("torch"), "utils", None)
+    if data is None or not hasattr(data, "data") or issubclass(cls, data.data.IterableDataset):
+        return cls
+    return type(cls.__name__, (cls, data.data.IterableDataset), {"__module__": cls.__module__})
+
+
+def _own_share(paths: list) -> list:
+    """In a worker process of a DataLoader, the files that are its own."""
+    data = getattr(getattr(sys.modules.get("torch"), "utils", None), "data", None)
+    worker = data.get_worker_info() if data is not None else None
+    return paths if worker is None else paths[worker.id :: worker.num_workers]
+
+
+def _tensors(mesh) -> dict:
+    if mesh.children:
+        mesh = mesh.merge()  # all nodes of a hierarchy
+    arrays = {name: getattr(mesh, name) for name in _ARRAYS}
+    return {name: eigen2tensor(array) for name, array in arrays.items() if len(array)}
+
+
+def _moved(sample, device: str):
+    if device == "cpu":
+        return sample
+    if isinstance(sample, dict):
+        return {name: _moved(value, device) for name, value in sample.items()}
+    if isinstance(sample, (tuple, list)):
+        return type(sample)(_moved(value, device) for value in sample)
+    return sample.to(device, non_blocking=True) if hasattr(sample, "to") else sample

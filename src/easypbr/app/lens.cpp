@@ -1,0 +1,124 @@
+#include "easypbr/app/lens.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/parallel.h"
+
+namespace easypbr::app {
+namespace {
+
+std::vector<Vec2d> undistorted_slopes(const Camera& camera, Vec2i size) {
+    const Mat3d K = camera.opencv_K(size.x(), size.y());
+    std::vector<Vec2d> slopes(size_t(size.x()) * size_t(size.y()));
+    parallel_for(size_t(size.y()), 8, [&](size_t row) {
+        for (int x = 0; x < size.x(); ++x) {
+            const double y = (double(row) - K(1, 2)) / K(1, 1);
+            const Vec2d seen((x - K(0, 2) - K(0, 1) * y) / K(0, 0), y);
+            slopes[row * size_t(size.x()) + size_t(x)] =
+                camera.distortion ? camera.distortion->undistort(seen) : seen;
+        }
+    });
+    return slopes;
+}
+
+/// A pinhole camera with the same focal lengths whose picture holds all these rays, and one pixel more.
+void choose_drawn(const Camera& camera, const std::vector<Vec2d>& slopes, LensMap& map) {
+    const Mat3d K = camera.opencv_K(map.size.x(), map.size.y());
+    Eigen::AlignedBox2d box;
+    for (const Vec2d& s : slopes) box.extend(s);
+    const Vec2d focal(K(0, 0), K(1, 1));
+    const Vec2d low = (box.min().cwiseProduct(focal)).array().floor() - 1,
+                high = (box.max().cwiseProduct(focal)).array().ceil() + 1;
+    if ((high - low).maxCoeff() > max_image_side - 1)
+        throw ArgumentError(fmt::format(
+            "camera distortion: the picture without it would have {:.0f} x {:.0f} pixels, more than {}",
+            high.x() - low.x(), high.y() - low.y(), max_image_side));
+    map.drawn = camera;
+    map.drawn.distortion.reset();
+    map.drawn_size = (high - low).cast<int>() + Vec2i(1, 1);
+    map.drawn.intrinsics =
+        Intrinsics{focal.x(), focal.y(), -low.x(), -low.y(), map.drawn_size.x(), map.drawn_size.y()};
+}
+
+}  // namespace
+
+size_t LensMap::nearest(size_t pixel) const {
+    if (source.empty()) return pixel;
+    const int x = std::clamp(int(std::lround(source[pixel].x())), 0, drawn_size.x() - 1);
+    const int y = std::clamp(int(std::lround(source[pixel].y())), 0, drawn_size.y() - 1);
+    return size_t(y) * size_t(drawn_size.x()) + size_t(x);
+}
+
+LensMap lens_map(const Camera& camera, Vec2i size) {
+    LensMap map;
+    map.size = map.drawn_size = size;
+    map.drawn = camera;
+    if (!camera.is_warped()) return map;
+    const std::vector<Vec2d> slopes = undistorted_slopes(camera, size);
+    choose_drawn(camera, slopes, map);
+    const Intrinsics& k = *map.drawn.intrinsics;
+    for (const Vec2d& s : slopes) {
+        map.slopes.push_back(s.cast<float>());
+        map.source.push_back(Vec2d(k.fx * s.x() + k.cx, k.fy * s.y() + k.cy).cast<float>());
+    }
+    return map;
+}
+
+namespace {
+
+template <class T>
+void warp_pixels(const Image& drawn, const LensMap& map, Image& picture) {
+    const int channels = drawn.channels();
+    parallel_for(map.source.size(), 1 << 12, [&](size_t i) {
+        const Vec2 p = map.source[i];
+        const int x = std::clamp(int(std::floor(p.x())), 0, drawn.width() - 2);
+        const int y = std::clamp(int(std::floor(p.y())), 0, drawn.height() - 2);
+        const float u = p.x() - float(x), v = p.y() - float(y);
+        T* to = picture.pixels<T>().data() + i * size_t(channels);
+        for (int c = 0; c < channels; ++c) {
+            const auto at = [&](int dx, int dy) { return float(drawn.at<T>(x + dx, y + dy)[c]); };
+            const float value =
+                (at(0, 0) * (1 - u) + at(1, 0) * u) * (1 - v) + (at(0, 1) * (1 - u) + at(1, 1) * u) * v;
+            if constexpr (std::is_integral_v<T>)
+                to[c] = T(std::lround(value));
+            else
+                to[c] = value;
+        }
+    });
+}
+
+}  // namespace
+
+Image pick_nearest(const Image& drawn, const LensMap& map) {
+    if (map.is_identity()) return drawn;
+    const size_t channels = size_t(drawn.channels());
+    Image picture(map.size.x(), map.size.y(), drawn.channels(), drawn.type());
+    const float* from = drawn.pixels<float>().data();
+    float* to = picture.pixels<float>().data();
+    parallel_for(map.source.size(), 1 << 14, [&](size_t i) {
+        std::copy_n(from + map.nearest(i) * channels, channels, to + i * channels);
+    });
+    return picture;
+}
+
+Image warp(const Image& drawn, const LensMap& map) {
+    if (map.is_identity()) return drawn;
+    Image picture(map.size.x(), map.size.y(), drawn.channels(), drawn.type());
+    switch (drawn.type()) {
+        case PixelType::u8:
+            warp_pixels<uint8_t>(drawn, map, picture);
+            break;
+        case PixelType::u16:
+            warp_pixels<uint16_t>(drawn, map, picture);
+            break;
+        case PixelType::f32:
+            warp_pixels<float>(drawn, map, picture);
+            break;
+    }
+    return picture;
+}
+
+}  // namespace easypbr::app

@@ -1,0 +1,35 @@
+// Pictures of lenses with distortion or skew: a wider picture without them is drawn and warped.
+#pragma once
+
+#include <vector>
+
+#include "easypbr/core/image.h"
+#include "easypbr/scene/camera.h"
+
+namespace easypbr::app {
+
+/// From the pixels of a picture to those of the picture that is drawn. Without distortion and skew the two
+/// are the same, and `source` is empty.
+struct LensMap {
+    Vec2i size{0, 0};  ///< of the picture
+    Camera drawn;      ///< what is drawn: a pinhole camera without skew
+    Vec2i drawn_size{0, 0};
+    std::vector<Vec2> source;  ///< for each pixel its place in the drawn picture, pixel centres at integers
+    std::vector<Vec2> slopes;  ///< for each pixel x/z and y/z of its ray, OpenCV's axes
+
+    bool is_identity() const { return source.empty(); }
+    /// Place of the nearest drawn pixel, row by row.
+    size_t nearest(size_t pixel) const;
+};
+
+/// The map of a camera for a picture of this size. Throws ArgumentError where the lens has no inverse
+/// (Distortion::undistort) or when the picture to draw would be larger than `max_image_side`.
+LensMap lens_map(const Camera& camera, Vec2i size);
+
+/// The picture as the lens shows it: bilinear, 0 where nothing was drawn.
+Image warp(const Image& drawn, const LensMap& map);
+
+/// The nearest drawn pixel of each: for values that must not be mixed. f32 only.
+Image pick_nearest(const Image& drawn, const LensMap& map);
+
+}  // namespace easypbr::app

@@ -1,0 +1,309 @@
+#include "easypbr/dataset/instances.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "easypbr/core/parallel.h"
+#include "easypbr/core/suggest.h"
+
+namespace easypbr::dataset {
+namespace {
+
+/// The name in the scene that a node belongs to: the longest that it begins with.
+std::string root_of(const std::string& node, const std::vector<std::string>& shown) {
+    std::string root;
+    for (const std::string& name : shown)
+        if (name.size() > root.size() && (node == name || node.starts_with(name + "/"))) root = name;
+    return root.empty() ? node : root;
+}
+
+void extend(Box3d& box, const Eigen::Affine3d& T_obj_mesh, const MeshData& mesh, const MeshPart* part) {
+    const bool moved = !T_obj_mesh.matrix().isIdentity(1e-12);
+    const auto add = [&](Eigen::Index v) {
+        const Vec3d p = Vec3(mesh.V.row(v)).cast<double>();
+        box.extend(moved ? Vec3d(T_obj_mesh * p) : p);
+    };
+    if (part)
+        for (int i = 3 * part->first_face; i < 3 * (part->first_face + part->face_count); ++i)
+            add(mesh.F.data()[i]);
+    else if (moved)
+        for (Eigen::Index v = 0; v < mesh.V.rows(); ++v) add(v);
+    else if (!mesh.V.empty())
+        box.extend(Box3d(Vec3d(mesh.V.colwise().minCoeff().transpose().cast<double>()),
+                         Vec3d(mesh.V.colwise().maxCoeff().transpose().cast<double>())));
+}
+
+PixelBox box_of(int x0, int y0, int x1, int y1) {
+    return x1 < x0 ? PixelBox{} : PixelBox{x0, y0, x1 - x0 + 1, y1 - y0 + 1};
+}
+
+/// Least and largest pixels so far.
+struct Extent {
+    int x0 = std::numeric_limits<int>::max(), y0 = x0, x1 = std::numeric_limits<int>::min(), y1 = x1;
+    void add(int x, int y) {
+        x0 = std::min(x0, x);
+        x1 = std::max(x1, x);
+        y0 = std::min(y0, y);
+        y1 = std::max(y1, y);
+    }
+    PixelBox box() const { return box_of(x0, y0, x1, y1); }
+};
+
+bool overlap(const PixelBox& a, const PixelBox& b) {
+    return a.x < b.x + b.width && b.x < a.x + a.width && a.y < b.y + b.height && b.y < a.y + a.height;
+}
+
+bool contains(Vec2i size, const PixelBox& box) {
+    return box.x >= 0 && box.y >= 0 && box.x + box.width <= size.x() && box.y + box.height <= size.y();
+}
+
+void add_geometry(Instance& instance, const Surfaces& s) {
+    const Eigen::Affine3d T_cv_world =
+        Eigen::Affine3d(s.camera.opencv_T_world_cam()).inverse(Eigen::Isometry);
+    instance.T_cam_obj = T_cv_world * instance.T_world_obj;
+    for (int i = 0; i < 8; ++i) {
+        const Vec3d corner =
+            instance.box.isEmpty() ? Vec3d(Vec3d::Zero()) : instance.box.corner(Box3d::CornerType(i));
+        const Vec3d seen = instance.T_cam_obj * corner;
+        instance.corners_world.row(i) = instance.T_world_obj * corner;
+        instance.corners_cam.row(i) = seen;
+        const bool before = seen.z() > 0 || s.camera.projection == Projection::orthographic;
+        instance.corners_px.row(i) = before
+                                         ? project(s.camera, s.size, seen)
+                                         : Vec2d(Vec2d::Constant(std::numeric_limits<double>::quiet_NaN()));
+    }
+}
+
+void count_visible(std::vector<Instance>& instances, const Surfaces& s, const InstanceTable& table) {
+    std::vector<Extent> extents(instances.size());
+    for (size_t i = 0; i < s.object.size(); ++i) {
+        if (!s.covered(i)) continue;
+        const size_t k = table.of(s.object[i] - 1, s.part[i]);
+        ++instances[k].pixels_visible;
+        extents[k].add(int(i) % s.size.x(), int(i) / s.size.x());
+    }
+    for (size_t k = 0; k < instances.size(); ++k)
+        if (instances[k].pixels_visible) instances[k].box_visible = extents[k].box();
+}
+
+/// Pixels of the drawn picture that an instance may cover if it is alone, at most three times the picture.
+/// Splats reach beyond the vertices, by less than a quarter of the object.
+PixelBox reach_of(const Instance& instance, const app::LensMap& lens, const Camera& drawn, bool splats) {
+    const Vec2i size = lens.drawn_size;
+    Vec2d low = Vec2d::Constant(1e30), high = -low;
+    if (instance.box.isEmpty()) return {};
+    bool all_before = true;
+    for (int i = 0; i < 8; ++i) {
+        const Vec3d p = instance.corners_cam.row(i);
+        all_before &= p.z() > drawn.near;
+        if (!all_before) break;
+        const Vec2d pixel = project(drawn, size, p);
+        low = low.cwiseMin(pixel);
+        high = high.cwiseMax(pixel);
+    }
+    if (!all_before && (instance.corners_cam.col(2).array() <= drawn.near).all()) return {};
+    const Vec2d margin = splats ? Vec2d((high - low) / 4 + Vec2d(16, 16)) : Vec2d(2, 2);
+    const Vec2d least = -size.cast<double>(), most = 2.0 * size.cast<double>() - Vec2d(1, 1);
+    low = all_before ? Vec2d((low - margin).cwiseMax(least)) : least;
+    high = all_before ? Vec2d((high + margin).cwiseMin(most)) : most;
+    return box_of(int(std::floor(low.x())), int(std::floor(low.y())), int(std::ceil(high.x())),
+                  int(std::ceil(high.y())));
+}
+
+/// Counts of the instance alone in the pixels that were drawn.
+void count_amodal(Instance& instance, const PixelBox& area, const std::vector<uint8_t>& alone, Vec2i size) {
+    Extent extent;
+    for (size_t i = 0; i < alone.size(); ++i) {
+        if (!alone[i]) continue;
+        const int x = area.x + int(i) % area.width, y = area.y + int(i) / area.width;
+        ++instance.pixels_amodal;
+        instance.pixels_amodal_inside += x >= 0 && y >= 0 && x < size.x() && y < size.y();
+        extent.add(x, y);
+    }
+    if (instance.pixels_amodal) instance.box_amodal = extent.box();
+}
+
+Bitmap inside_picture(const PixelBox& area, const std::vector<uint8_t>& alone, Vec2i size) {
+    const int x0 = std::max(0, area.x), y0 = std::max(0, area.y);
+    const int x1 = std::min(size.x(), area.x + area.width), y1 = std::min(size.y(), area.y + area.height);
+    if (x1 <= x0 || y1 <= y0) return {};
+    Bitmap bitmap{{x0, y0, x1 - x0, y1 - y0}, {}};
+    for (int y = y0; y < y1; ++y) {
+        const auto row = alone.begin() + long(y - area.y) * area.width + (x0 - area.x);
+        bitmap.pixels.insert(bitmap.pixels.end(), row, row + (x1 - x0));
+    }
+    return bitmap;
+}
+
+/// The same through a lens: what is inside is looked up in the picture that was drawn.
+void count_warped(Instance& instance, const PixelBox& area, const std::vector<uint8_t>& alone,
+                  const app::LensMap& lens, const Surfaces& s) {
+    instance.amodal = {{0, 0, lens.size.x(), lens.size.y()}, std::vector<uint8_t>(lens.source.size())};
+    Extent extent;
+    for (size_t i = 0; i < lens.source.size(); ++i) {
+        const int drawn = int(lens.nearest(i));
+        const int x = drawn % lens.drawn_size.x() - area.x, y = drawn / lens.drawn_size.x() - area.y;
+        if (x < 0 || y < 0 || x >= area.width || y >= area.height) continue;
+        if (!alone[size_t(y) * size_t(area.width) + size_t(x)]) continue;
+        instance.amodal.pixels[i] = 1;
+        ++instance.pixels_amodal_inside;
+        extent.add(int(i) % lens.size.x(), int(i) / lens.size.x());
+    }
+    if (instance.pixels_amodal_inside) instance.box_amodal = extent.box();
+    // Outside of the picture the lens's polynomial means nothing: parts are compared in the drawn picture.
+    int all = 0, inside = 0;
+    const Intrinsics& k = *lens.drawn.intrinsics;
+    for (size_t i = 0; i < alone.size(); ++i) {
+        if (!alone[i]) continue;
+        ++all;
+        const Vec3d ray((area.x + int(i) % area.width - k.cx) / k.fx,
+                        (area.y + int(i) / area.width - k.cy) / k.fy, 1);
+        const Vec2d pixel = project(s.camera, s.size, ray);
+        const bool in_drawn =
+            contains(lens.drawn_size, {area.x + int(i) % area.width, area.y + int(i) / area.width, 1, 1});
+        inside += in_drawn && pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < s.size.x() - 0.5 &&
+                  pixel.y() < s.size.y() - 0.5;
+    }
+    instance.pixels_amodal =
+        inside ? int(std::lround(double(instance.pixels_amodal_inside) * all / inside)) : all;
+}
+
+/// A pixel that is seen is covered, whatever the rounding of two projections says.
+void add_visible(Instance& instance, const Surfaces& s, const InstanceTable& table, size_t place) {
+    const PixelBox& seen = instance.box_visible;
+    Bitmap& bitmap = instance.amodal;
+    for (int y = seen.y; y < seen.y + seen.height; ++y)
+        for (int x = seen.x; x < seen.x + seen.width; ++x) {
+            const size_t i = size_t(y) * size_t(s.size.x()) + size_t(x);
+            if (!s.covered(i) || table.of(s.object[i] - 1, s.part[i]) != place) continue;
+            const int u = x - bitmap.area.x, v = y - bitmap.area.y;
+            if (u < 0 || v < 0 || u >= bitmap.area.width || v >= bitmap.area.height) continue;
+            uint8_t& pixel = bitmap.pixels[size_t(v) * size_t(bitmap.area.width) + size_t(u)];
+            instance.pixels_amodal += !pixel;
+            instance.pixels_amodal_inside += !pixel;
+            pixel = 1;
+        }
+}
+
+Bitmap visible_bitmap(const Instance& instance, const Surfaces& s, const InstanceTable& table, size_t place) {
+    Bitmap bitmap{instance.box_visible, {}};
+    const PixelBox& box = bitmap.area;
+    for (int y = box.y; y < box.y + box.height; ++y)
+        for (int x = box.x; x < box.x + box.width; ++x) {
+            const size_t i = size_t(y) * size_t(s.size.x()) + size_t(x);
+            bitmap.pixels.push_back(s.covered(i) && table.of(s.object[i] - 1, s.part[i]) == place);
+        }
+    return bitmap;
+}
+
+void take_visible(Instance& instance) {
+    instance.amodal = instance.visible;
+    instance.pixels_amodal = instance.pixels_amodal_inside = instance.pixels_visible;
+    instance.box_amodal = instance.box_visible;
+}
+
+/// Instances whose reach no other's touches are seen whole, as long as they are inside of the picture.
+bool seen_whole(const std::vector<PixelBox>& reaches, size_t place, const app::LensMap& lens) {
+    if (!lens.is_identity() || !contains(lens.size, reaches[place])) return false;
+    for (size_t k = 0; k < reaches.size(); ++k)
+        if (k != place && overlap(reaches[k], reaches[place])) return false;
+    return true;
+}
+
+}  // namespace
+
+InstancesBy instances_by_named(const std::string& name) {
+    static const std::vector<std::string> names = {"object", "node", "part"};
+    const auto found = std::ranges::find(names, name);
+    if (found == names.end())
+        throw NameError(fmt::format("instances cannot be told apart by '{}'{}: expected {}", name,
+                                    did_you_mean(name, names), fmt::join(names, ", ")));
+    return InstancesBy(found - names.begin());
+}
+
+InstanceTable::InstanceTable(const SceneSnapshot& scene, const std::vector<std::string>& shown,
+                             InstancesBy by, const std::map<std::string, int>& classes) {
+    std::map<std::string, size_t> places;
+    const auto place_of = [&](const std::string& name, const std::string& root, const Eigen::Affine3d& T) {
+        const auto [found, is_new] = places.emplace(name, instances_.size());
+        if (!is_new) return found->second;
+        Instance instance;
+        instance.id = int(instances_.size()) + 1;
+        instance.name = name;
+        const auto own = classes.find(name), of_root = classes.find(root);
+        instance.semantic_id = own != classes.end()       ? own->second
+                               : of_root != classes.end() ? of_root->second
+                                                          : 0;
+        instance.T_world_obj = T;
+        instances_.push_back(instance);
+        return found->second;
+    };
+    for (const auto& object : scene.objects) {
+        const std::string root = root_of(object.name, shown);
+        std::vector<size_t> row;
+        const std::vector<MeshPart>& parts = object.mesh->parts;
+        const bool in_parts = by == InstancesBy::part && parts.size() > 1;
+        for (size_t p = 0; p < (in_parts ? parts.size() : 1); ++p) {
+            std::string name = by == InstancesBy::object ? root : object.name;
+            if (in_parts)
+                name += fmt::format(":{}", parts[p].name.empty() ? std::to_string(p) : parts[p].name);
+            if (in_parts && places.contains(name)) name += fmt::format("#{}", p);
+            const size_t place = place_of(name, root, object.T_world_mesh);
+            Instance& instance = instances_[place];
+            extend(instance.box, instance.T_world_obj.inverse() * object.T_world_mesh, *object.mesh,
+                   in_parts ? &parts[p] : nullptr);
+            row.push_back(place);
+        }
+        table_.push_back(std::move(row));
+    }
+}
+
+std::vector<Instance> annotate(app::Session& session, const Surfaces& s, const InstanceTable& table,
+                               bool amodal) {
+    std::vector<Instance> instances = table.instances();
+    for (Instance& instance : instances) add_geometry(instance, s);
+    count_visible(instances, s, table);
+    for (size_t k = 0; k < instances.size(); ++k) {
+        instances[k].picture = s.size;
+        instances[k].visible = visible_bitmap(instances[k], s, table, k);
+    }
+    const app::LensMap& lens = session.lens();
+    Camera drawn = lens.is_identity() ? s.camera : lens.drawn;
+    std::vector<bool> splats(instances.size());
+    for (size_t o = 0; o < s.scene.objects.size(); ++o)
+        if (!s.has_faces[o]) splats[table.of(o, 0)] = true;
+    std::vector<PixelBox> reaches;
+    for (size_t k = 0; k < instances.size(); ++k)
+        reaches.push_back(reach_of(instances[k], lens, drawn, splats[k]));
+    for (size_t k = 0; k < instances.size(); ++k) {
+        Instance& instance = instances[k];
+        const PixelBox& area = reaches[k];
+        if (!amodal || seen_whole(reaches, k, lens)) {
+            take_visible(instance);
+        } else if (area.width > 0) {
+            const auto alone = session.coverage(area, [&](size_t object, int first_face) {
+                const auto& parts = s.scene.objects[object].mesh->parts;
+                size_t part = 0;
+                while (part + 1 < parts.size() && parts[part].first_face != first_face) ++part;
+                return table.of(object, part) == k;
+            });
+            if (lens.is_identity()) {
+                instance.amodal = inside_picture(area, alone, s.size);
+                count_amodal(instance, area, alone, s.size);
+            } else {
+                count_warped(instance, area, alone, lens, s);
+            }
+            add_visible(instance, s, table, k);
+        }
+        if (instance.pixels_amodal == 0) continue;
+        instance.visible_fraction = double(instance.pixels_visible) / instance.pixels_amodal;
+        instance.truncation = 1 - double(instance.pixels_amodal_inside) / instance.pixels_amodal;
+    }
+    return instances;
+}
+
+}  // namespace easypbr::dataset

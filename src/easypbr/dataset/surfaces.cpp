@@ -1,0 +1,117 @@
+#include "easypbr/dataset/surfaces.h"
+
+#include <cmath>
+
+#include "easypbr/core/parallel.h"
+
+namespace easypbr::dataset {
+namespace {
+
+/// How far the ray's hit may lie from the drawn depth, as a part of it: beyond, the face is seen edge-on or
+/// the pixel only touches it.
+constexpr double depth_tolerance = 0.01;
+
+struct Ray {
+    Vec3d origin, direction;  ///< direction.z is 1: the parameter is the depth
+};
+
+Ray ray_of(const Surfaces& s, size_t pixel) {
+    const Vec2d slope = s.slopes[pixel].cast<double>();
+    if (s.camera.projection == Projection::orthographic)
+        return {Vec3d(slope.x(), slope.y(), 0), Vec3d::UnitZ()};
+    return {Vec3d::Zero(), Vec3d(slope.x(), slope.y(), 1)};
+}
+
+std::vector<Vec2> slopes_of(const Camera& camera, Vec2i size, const app::LensMap& lens) {
+    if (!lens.is_identity()) return lens.slopes;
+    std::vector<Vec2> slopes(size_t(size.x()) * size_t(size.y()));
+    // Of the device's coordinates, x to the right and y upwards.
+    const Mat4d P = camera.projection_matrix(double(size.x()) / size.y());
+    const bool orthographic = camera.projection == Projection::orthographic;
+    const Vec2d shift = orthographic ? Vec2d(-P(0, 3), -P(1, 3)) : Vec2d(P(0, 2), P(1, 2));
+    parallel_for(size_t(size.y()), 16, [&](size_t row) {
+        for (int x = 0; x < size.x(); ++x) {
+            const Vec2d ndc(2 * (x + 0.5) / size.x() - 1, 1 - 2 * (double(row) + 0.5) / size.y());
+            slopes[row * size_t(size.x()) + size_t(x)] =
+                Vec2d((ndc.x() + shift.x()) / P(0, 0), -(ndc.y() + shift.y()) / P(1, 1)).cast<float>();
+        }
+    });
+    return slopes;
+}
+
+/// Weights that may be a little outside of the face are brought to its border.
+Vec3 inside(const Vec3d& weights) {
+    const Vec3d positive = weights.cwiseMax(0.0);
+    const double sum = positive.sum();
+    return sum > 0 ? Vec3((positive / sum).cast<float>()) : Vec3(Vec3::Constant(1.0f / 3));
+}
+
+void meet_face(Surfaces& s, size_t pixel, const Eigen::Affine3d& T_cv_mesh, double drawn_depth) {
+    const MeshData& mesh = s.mesh_of(pixel);
+    const int32_t* f = mesh.F.data() + 3 * s.element_of(pixel);
+    Vec3d corner[3];
+    for (int k = 0; k < 3; ++k) corner[k] = T_cv_mesh * Vec3(mesh.V.row(f[k])).cast<double>();
+    const Ray ray = ray_of(s, pixel);
+    const Vec3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    const double slant = normal.dot(ray.direction);
+    double depth = slant != 0 ? normal.dot(corner[0] - ray.origin) / slant : drawn_depth;
+    if (!(std::abs(depth - drawn_depth) <= depth_tolerance * drawn_depth)) depth = drawn_depth;
+    const Vec3d point = ray.origin + depth * ray.direction;
+    const double area = normal.squaredNorm();
+    Vec3d weights = Vec3d::Constant(1.0 / 3);
+    if (area > 0)
+        for (int k = 0; k < 3; ++k)
+            weights[k] =
+                normal.dot((corner[(k + 2) % 3] - corner[(k + 1) % 3]).cross(point - corner[(k + 1) % 3])) /
+                area;
+    s.position[pixel] = point.cast<float>();
+    s.barycentrics[pixel] = inside(weights);
+}
+
+}  // namespace
+
+Eigen::Affine3d cv_from_mesh(const Camera& camera, const SceneSnapshot::Object& object) {
+    return Eigen::Affine3d(camera.opencv_T_world_cam()).inverse(Eigen::Isometry) * object.T_world_mesh;
+}
+
+Vec2d project(const Camera& camera, Vec2i size, const Vec3d& p) {
+    if (camera.projection == Projection::orthographic) {
+        const double scale = size.y() / camera.ortho_height;
+        return {p.x() * scale + (size.x() - 1) / 2.0, p.y() * scale + (size.y() - 1) / 2.0};
+    }
+    const Mat3d K = camera.opencv_K(size.x(), size.y());
+    Vec2d slopes(p.x() / p.z(), p.y() / p.z());
+    if (camera.distortion) slopes = camera.distortion->distort(slopes);
+    return {K(0, 0) * slopes.x() + K(0, 1) * slopes.y() + K(0, 2), K(1, 1) * slopes.y() + K(1, 2)};
+}
+
+Surfaces surfaces_of(render::SurfaceFrame frame, const Camera& camera, const app::LensMap& lens) {
+    Surfaces s;
+    s.size = lens.size;
+    s.camera = camera;
+    s.slopes = slopes_of(camera, s.size, lens);
+    s.scene = std::move(frame.scene);
+    s.has_faces = std::move(frame.has_faces);
+    const size_t count = s.slopes.size();
+    s.object.resize(count);
+    s.element.resize(count);
+    s.part.resize(count);
+    s.position.assign(count, Vec3::Zero());
+    s.barycentrics.assign(count, Vec3::Zero());
+    std::vector<Eigen::Affine3d> T_cv_mesh;
+    for (const auto& object : s.scene.objects) T_cv_mesh.push_back(cv_from_mesh(camera, object));
+    parallel_for(count, 1 << 12, [&](size_t i) {
+        const size_t drawn = lens.nearest(i);
+        s.object[i] = frame.object[drawn];
+        s.element[i] = frame.element[drawn];
+        s.part[i] = frame.part[drawn];
+        if (!s.covered(i)) return;
+        const double depth = frame.depth[drawn];
+        if (s.on_face(i)) return meet_face(s, i, T_cv_mesh[s.object[i] - 1], depth);
+        const Ray ray = ray_of(s, i);
+        s.position[i] = Vec3d(ray.origin + depth * ray.direction).cast<float>();
+    });
+    return s;
+}
+
+}  // namespace easypbr::dataset

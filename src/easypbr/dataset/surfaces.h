@@ -1,0 +1,38 @@
+// What each pixel of a picture sees, in numbers: exact points on the user's own faces.
+#pragma once
+
+#include <vector>
+
+#include "easypbr/app/session.h"
+
+namespace easypbr::dataset {
+
+/// A surface frame (render/surface_frame.h) brought into the picture's pixels, with the point that the ray
+/// through each pixel's centre meets. Row 0 on top.
+struct Surfaces {
+    Vec2i size{0, 0};
+    Camera camera;                                ///< of the picture, with its distortion
+    SceneSnapshot scene;                          ///< with the objects' own data
+    std::vector<bool> has_faces;                  ///< for each object: its elements are faces
+    std::vector<uint32_t> object, element, part;  ///< as in render::SurfaceFrame
+    std::vector<Vec3> position;      ///< in the camera's frame, OpenCV's axes; z is 0 where there is nothing
+    std::vector<Vec3> barycentrics;  ///< weights of the corners of the face; 0 where there is none
+    std::vector<Vec2> slopes;        ///< x/z and y/z of the ray; for orthographic cameras x and y
+
+    bool covered(size_t pixel) const { return object[pixel] != 0; }
+    const MeshData& mesh_of(size_t pixel) const { return *scene.objects[object[pixel] - 1].mesh; }
+    bool on_face(size_t pixel) const { return covered(pixel) && has_faces[object[pixel] - 1]; }
+    size_t element_of(size_t pixel) const { return element[pixel] - 1; }
+};
+
+/// From the camera's frame (OpenCV's axes) to the frame of an object's V.
+Eigen::Affine3d cv_from_mesh(const Camera& camera, const SceneSnapshot::Object& object);
+
+/// Pixel (centres at integers) of a point in the camera's frame with z > 0, through the lens.
+Vec2d project(const Camera& camera, Vec2i size, const Vec3d& point_cv);
+
+/// A face is met in double precision by the ray itself, so that the result does not have the rasteriser's
+/// rounding; points of splats have the depth that was drawn.
+Surfaces surfaces_of(render::SurfaceFrame frame, const Camera& camera, const app::LensMap& lens);
+
+}  // namespace easypbr::dataset

@@ -1,0 +1,25 @@
+// What the centres of the pixels see, and of which object it is: what ground truth is derived from.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "easypbr/scene/camera.h"
+#include "easypbr/scene/scene.h"
+
+namespace easypbr::render {
+
+/// Never anti-aliased, blended or filtered; row 0 on top. A blended surface stands where it is half opaque or
+/// more.
+struct SurfaceFrame {
+    Vec2i size{0, 0};
+    Camera camera;
+    std::vector<float> depth;       ///< distance along the optical axis, 0 where there is nothing
+    std::vector<uint32_t> object;   ///< 1 + place in `scene`, 0 where there is nothing
+    std::vector<uint32_t> element;  ///< 1 + index of the face, point or voxel in the object's own data
+    std::vector<uint32_t> part;     ///< of meshes, index into MeshData::parts, else 0
+    SceneSnapshot scene;            ///< with the objects' own data
+    std::vector<bool> has_faces;    ///< for each object: its elements are faces
+};
+
+}  // namespace easypbr::render
