@@ -30,6 +30,8 @@ foreach(source IN LISTS package_sources)
   file(CREATE_LINK ${source} ${package}/${name} SYMBOLIC)
 endforeach()
 
+file(CREATE_LINK ${PROJECT_SOURCE_DIR}/python/easypbr/dataset ${package}/dataset SYMBOLIC)
+
 nanobind_add_stub(easypbr_stub MODULE easypbr._easypbr OUTPUT ${package}/_easypbr.pyi
                   PYTHON_PATH ${PROJECT_BINARY_DIR}/python DEPENDS _easypbr)
 add_custom_command(OUTPUT ${package}/settings.pyi

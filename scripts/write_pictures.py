@@ -255,8 +255,20 @@ def ground() -> np.ndarray:
     return row(pictures)
 
 
+def drones() -> np.ndarray:
+    """The contact sheet of the built-in data set, in smaller pictures and without their noise."""
+    from easypbr.dataset import DatasetSpec, ImageSpec, PlacementSpec, SensorSpec, generate
+
+    spec = DatasetSpec.demo()
+    spec.count, spec.image, spec.placement = 10, ImageSpec((320, 240), 8), PlacementSpec(distance=(2.0, 4.5))
+    spec.sensor = SensorSpec()
+    with tempfile.TemporaryDirectory() as folder:
+        generate(spec, folder, workers=1)
+        return easypbr.load_image(pathlib.Path(folder) / "contact_sheet.png")
+
+
 PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion,
-            geometry, all_shapes, glass, camera_path, shadows, ground]
+            geometry, all_shapes, glass, camera_path, shadows, ground, drones]
 
 
 if __name__ == "__main__":

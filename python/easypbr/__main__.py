@@ -1,5 +1,6 @@
 """The command line: python -m easypbr."""
 
+import os
 import signal
 import sys
 
@@ -11,6 +12,8 @@ def main() -> int:
     # Python's handlers would wait for the native job to end.
     signal.signal(signal.SIGINT, signal.SIG_DFL)
     signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    # The command that hands over to this package.
+    os.environ["EASYPBR_PYTHON"] = sys.executable
     return run(["easypbr", *sys.argv[1:]])
 
 

@@ -69,6 +69,7 @@ void add_commands(CLI::App& app, Job& job) {
     add_compare(app, job);
     add_doctor(app, job);
     add_view(app, job);
+    add_dataset(app, job);
 }
 
 int parse_and_run(int argc, const char* const* argv) {

@@ -1,0 +1,29 @@
+"""Data sets for training: pictures with exact annotations, from a spec and a seed.
+
+    from easypbr.dataset import DatasetSpec, generate
+    generate(DatasetSpec.demo(), "drones")
+"""
+
+from .run import generate
+from .spec import (
+    BackgroundSpec,
+    CameraSpec,
+    DatasetSpec,
+    ImageSpec,
+    ObjectSpec,
+    OcclusionSpec,
+    PlacementSpec,
+    SensorSpec,
+)
+
+__all__ = [
+    "BackgroundSpec",
+    "CameraSpec",
+    "DatasetSpec",
+    "ImageSpec",
+    "ObjectSpec",
+    "OcclusionSpec",
+    "PlacementSpec",
+    "SensorSpec",
+    "generate",
+]

@@ -1,0 +1,304 @@
+"""One frame of a data set: placed, drawn, annotated. Follows from the spec and the frame's number alone."""
+
+import dataclasses
+import glob
+import os
+from pathlib import Path
+
+import numpy as np
+
+from .. import shapes
+from .._easypbr import Camera, Environment, Mesh, load_image, readable_mesh_extensions
+from ..errors import ArgumentError, Error
+from ..scene import Scene
+from ..viewer import Viewer
+from . import content
+from .spec import DatasetSpec, ObjectSpec
+
+_LAYERS = ("color", "depth", "normal_camera", "instance_id", "instances")
+
+
+@dataclasses.dataclass
+class Frame:
+    """What writers write."""
+
+    index: int
+    picture: np.ndarray  #: height x width x 3, uint8
+    depth: np.ndarray
+    normal: np.ndarray
+    instance_id: np.ndarray  #: int32: place in `objects` + 1, 0 for all else
+    K: np.ndarray
+    T_world_cam: np.ndarray  #: OpenCV's axes
+    distortion: list
+    objects: list[dict]
+
+    def record(self) -> dict:
+        """All but the pixels, as JSON takes it."""
+        height, width = self.depth.shape
+        return {"index": self.index, "width": width, "height": height, "K": self.K.tolist(),
+                "T_world_cam": self.T_world_cam.tolist(), "distortion": self.distortion, "objects": self.objects}
+
+
+def _draw(random, value) -> float:
+    return float(random.uniform(*value)) if isinstance(value, tuple) else float(value)
+
+
+class FrameMaker:
+    """Draws frames of a spec. Meshes and skies are kept from frame to frame; nothing else is."""
+
+    def __init__(self, spec: DatasetSpec):
+        spec.check()
+        self.spec = spec
+        self.classes = []
+        for entry in spec.objects:
+            if not entry.distractor and self.class_of(entry) not in self.classes:
+                self.classes.append(self.class_of(entry))
+        self.skipped: list[str] = []
+        self._files = [self._find(entry) for entry in spec.objects]
+        self._meshes: dict[str, Mesh | None] = {}
+        self._skies: dict[int, Environment] = {}
+        self._scene = Scene()
+        self._view = Viewer(spec.image.size, scene=self._scene)
+
+    @staticmethod
+    def class_of(entry: ObjectSpec) -> str:
+        """Its name, or that of its source."""
+        return entry.class_name or Path(entry.source.removeprefix("builtin:")).stem
+
+    def _find(self, entry: ObjectSpec) -> list[str]:
+        if entry.source.startswith("builtin:"):
+            name = entry.source.removeprefix("builtin:")
+            if name not in content.BUILTIN:
+                raise ArgumentError(f"dataset: there is no builtin '{name}': expected {', '.join(content.BUILTIN)}")
+            return []
+        if os.path.isdir(entry.source):
+            known = {"." + extension.lstrip(".") for extension in readable_mesh_extensions()}
+            files = [str(p) for p in sorted(Path(entry.source).rglob("*")) if p.suffix.lower() in known]
+        else:
+            files = sorted(glob.glob(entry.source, recursive=True)) or [entry.source]
+        if not files:
+            raise ArgumentError(f"dataset: {entry.source}: the folder holds no mesh")
+        return files
+
+    def _mesh(self, path: str) -> Mesh | None:
+        """The file's mesh; None when it cannot be read and that is to be skipped."""
+        if path not in self._meshes:
+            try:
+                self._meshes[path] = Mesh(path)
+            except Error:
+                if self.spec.on_error == "stop":
+                    raise
+                self._meshes[path] = None
+                self.skipped.append(path)
+        return self._meshes[path]
+
+    def _object(self, number: int, random) -> Mesh:
+        entry = self.spec.objects[number]
+        files = self._files[number]
+        if not files:
+            mesh = content.BUILTIN[entry.source.removeprefix("builtin:")](random)
+        else:
+            # The order is drawn whole, so that a file that is left out does not move the others.
+            order = random.permutation(len(files))
+            found = next((mesh for mesh in (self._mesh(files[i]) for i in order) if mesh is not None), None)
+            if found is None:
+                raise ArgumentError(f"dataset: {entry.source}: none of {len(files)} files can be read")
+            mesh = found.clone()
+        if entry.random_material:
+            content.random_material(mesh, random)
+        return mesh
+
+    def make(self, index: int) -> Frame:
+        """The frame. Raises ArgumentError naming the constraint that cannot be met, and what reading meshes raises."""
+        limit = self.spec.occlusion
+        worst = ""
+        for attempt in range(limit.tries):
+            random = np.random.default_rng([self.spec.seed, index, attempt])
+            data, camera, entries = self._attempt(random)
+            counted = {name: entry for name, entry in entries.items() if not entry.distractor}
+            worst = ""
+            for instance in data["instances"]:
+                if instance.name not in counted:
+                    continue
+                if instance.visible_fraction < limit.min_visible * (1 - limit.max_truncation) or not instance.pixels_visible:
+                    worst = f"occlusion.min_visible = {limit.min_visible}"
+                elif instance.truncation > limit.max_truncation:
+                    worst = f"occlusion.max_truncation = {limit.max_truncation}"
+                elif instance.pixels_visible < limit.min_visible * instance.pixels_amodal_inside:
+                    worst = f"occlusion.min_visible = {limit.min_visible}"
+            if not worst:
+                return self._finish(index, random, data, camera, counted)
+        raise ArgumentError(f"dataset: frame {index}: {worst} was not met in {limit.tries} tries: relax it, or show fewer objects")
+
+    def _attempt(self, random):
+        spec = self.spec
+        self._scene.clear()
+        camera = self._camera(random)
+        self._background(random)
+        entries, spheres = {}, []
+        for number, entry in enumerate(spec.objects):
+            low, high = entry.count
+            for _ in range(int(random.integers(low, high + 1))):
+                name = f"{len(entries):03d}"
+                mesh = self._object(number, random)
+                self._place(mesh, entry, camera, random, spheres)
+                self._scene.show(mesh, name)
+                entries[name] = entry
+        if spec.placement.mode == "surface":
+            ground = shapes.plane(4 * spec.placement.radius)
+            content.random_material(ground, random)
+            ground.material.metallic = 0
+            self._scene.show(ground, "ground")
+        self._view.refit()
+        self._view.camera = camera
+        classes = {name: self.classes.index(self.class_of(e)) + 1 for name, e in entries.items() if not e.distractor}
+        self._view.settings["tonemap.exposure_compensation"] = _draw(random, spec.sensor.exposure)
+        data = self._view.render_layers(_LAYERS, samples=spec.image.samples, classes=classes)
+        return data, camera, entries
+
+    def _camera(self, random) -> Camera:
+        given, (width, height) = self.spec.camera, self.spec.image.size
+        azimuth, elevation = np.radians(_draw(random, given.azimuth_deg)), np.radians(_draw(random, given.elevation_deg))
+        away = np.array([np.cos(elevation) * np.sin(azimuth), np.sin(elevation), np.cos(elevation) * np.cos(azimuth)])
+        camera = Camera.look_at(away * _draw(random, given.distance), (0, 0, 0))
+        fov = _draw(random, given.fov_y_deg)
+        if given.K:
+            K = np.array(given.K)
+        else:
+            focal = height / 2 / np.tan(np.radians(fov) / 2)
+            K = np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1]])
+        return Camera.from_opencv(K, camera.opencv_T_world_cam, (width, height), list(given.distortion), given.distortion_model)
+
+    def _background(self, random) -> None:
+        given, settings = self.spec.background, self._view.settings
+        turn, intensity = random.uniform(-180, 180), _draw(random, given.intensity)
+        choice = int(random.integers(given.skies if given.mode == "sky" else max(len(given.files), 1)))
+        settings["environment.rotation_deg"] = turn
+        settings["environment.intensity"] = intensity
+        settings["background.mode"] = "environment" if given.mode in ("sky", "environment") else given.mode
+        settings["background.color"] = given.color
+        if given.mode == "image":
+            settings["background.image"] = given.files[choice]
+        if given.mode in ("sky", "environment"):
+            if choice not in self._skies:
+                own = np.random.default_rng([self.spec.seed, 1 << 32, choice])
+                self._skies[choice] = content.sky(own) if given.mode == "sky" else Environment(load_image(given.files[choice]))
+            self._scene.environment = self._skies[choice]
+
+    def _place(self, mesh: Mesh, entry: ObjectSpec, camera: Camera, random, spheres: list) -> None:
+        """Sets the pose so that the mesh has its size and its ball meets no other's."""
+        given = self.spec.placement
+        size, turn = _draw(random, entry.size), _rotation(entry, random)
+        low, high = bounds(mesh)
+        scale = size / max(float((high - low).max()), 1e-12)
+        T = np.eye(4)
+        T[:3, :3] = turn * scale
+        radius = float(np.linalg.norm(high - low)) / 2 * scale
+        for _ in range(given.tries):
+            if given.mode == "frustum":
+                centre = self._in_frustum(camera, random)
+            else:
+                r, a = given.radius * np.sqrt(random.random()), random.uniform(0, 2 * np.pi)
+                corners = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+                bottom = ((corners - (low + high) / 2) @ T[:3, :3].T)[:, 1].min()
+                centre = np.array([r * np.sin(a), -bottom, r * np.cos(a)])
+            if given.collisions or all(np.linalg.norm(centre - c) > radius + other for c, other in spheres):
+                spheres.append((centre, radius))
+                T[:3, 3] = centre - T[:3, :3] @ ((low + high) / 2)
+                mesh.T_parent_mesh = T
+                return
+        raise ArgumentError(
+            f"dataset: placement.collisions = false: no room for another '{self.class_of(entry)}' of {size:.3g} m in "
+            f"{given.tries} tries: enlarge placement.{'distance' if given.mode == 'frustum' else 'radius'}, or show fewer or "
+            "smaller objects"
+        )
+
+    def _in_frustum(self, camera: Camera, random) -> np.ndarray:
+        given, size = self.spec.placement, np.array(self.spec.image.size)
+        pixel = (given.margin + (1 - 2 * given.margin) * random.random(2)) * size - 0.5
+        depth = _draw(random, given.distance)
+        T = camera.opencv_T_world_cam
+        return T[:3, :3] @ (np.linalg.inv(camera.opencv_K(size)) @ [*pixel, 1] * depth) + T[:3, 3]
+
+    def _finish(self, index: int, random, data: dict, camera: Camera, counted: dict) -> Frame:
+        size = self.spec.image.size
+        picture = sensor(data["color"][..., :3], self.spec.sensor, random)
+        wanted = [instance for instance in data["instances"] if instance.name in counted]
+        numbers = np.zeros(len(data["instances"]) + 1, dtype=np.int32)
+        objects = []
+        for place, instance in enumerate(wanted):
+            numbers[instance.id] = place + 1
+            objects.append(_annotation(instance, self.class_of(counted[instance.name])))
+        return Frame(index, picture, data["depth"], data["normal_camera"], numbers[data["instance_id"]],
+                     camera.opencv_K(size), camera.opencv_T_world_cam, list(camera.distortion), objects)
+
+
+def _rotation(entry: ObjectSpec, random) -> np.ndarray:
+    quaternion = random.normal(size=4)
+    yaw, tilt, towards = random.uniform(0, 2 * np.pi), np.radians(entry.tilt_deg) * random.uniform(-1, 1), random.uniform(0, 2 * np.pi)
+    if entry.rotation == "none":
+        return np.eye(3)
+    if entry.rotation == "any":
+        w, x, y, z = quaternion / np.linalg.norm(quaternion)
+        return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                         [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                         [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+    c, s = np.cos(yaw), np.sin(yaw)
+    upright = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+    # Tilted about a level axis (Rodrigues).
+    k = np.array([[0, 0, np.sin(towards)], [0, 0, -np.cos(towards)], [-np.sin(towards), np.cos(towards), 0]])
+    return (np.eye(3) + np.sin(tilt) * k + (1 - np.cos(tilt)) * k @ k) @ upright
+
+
+def bounds(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
+    """Least and largest coordinates of a mesh and its children in its own frame."""
+    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    if len(mesh.V):
+        low, high = mesh.V.min(0).astype(float), mesh.V.max(0).astype(float)
+    for child in mesh.children:
+        a, b = bounds(child)
+        if not np.isfinite(a).all():
+            continue
+        corners = np.array([[x, y, z] for x in (a[0], b[0]) for y in (a[1], b[1]) for z in (a[2], b[2])])
+        corners = corners @ child.T_parent_mesh[:3, :3].T + child.T_parent_mesh[:3, 3]
+        low, high = np.minimum(low, corners.min(0)), np.maximum(high, corners.max(0))
+    return low, high
+
+
+def sensor(picture: np.ndarray, given, random) -> np.ndarray:
+    """The picture blurred, then with noise."""
+    blur, noise = _draw(random, given.blur), _draw(random, given.noise)
+    values = picture.astype(np.float32)
+    if blur > 0.05:
+        reach = int(np.ceil(3 * blur))
+        kernel = np.exp(-0.5 * (np.arange(-reach, reach + 1) / blur) ** 2).astype(np.float32)
+        kernel /= kernel.sum()
+        for axis in (0, 1):
+            padded = np.pad(values, [(reach, reach) if a == axis else (0, 0) for a in range(3)], mode="edge")
+            count = values.shape[axis]
+            cuts = [padded[k : k + count] if axis == 0 else padded[:, k : k + count] for k in range(len(kernel))]
+            values = sum(weight * cut for weight, cut in zip(kernel, cuts))
+    if noise > 0:
+        values = values + random.standard_normal(values.shape, dtype=np.float32) * np.float32(255 * noise)
+    return np.clip(np.rint(values), 0, 255).astype(np.uint8)
+
+
+def _annotation(instance, class_name: str) -> dict:
+    return {
+        "class": class_name,
+        "category_id": instance.semantic_id,
+        "box": list(instance.box_visible),
+        "box_amodal": list(instance.box_amodal),
+        "pixels": instance.pixels_visible,
+        "pixels_amodal": instance.pixels_amodal,
+        "pixels_amodal_inside": instance.pixels_amodal_inside,
+        "visible_fraction": instance.visible_fraction,
+        "truncation": instance.truncation,
+        "rle": instance.rle,
+        "amodal_rle": instance.amodal_rle,
+        "box3d_center": instance.box3d_center.tolist(),
+        "box3d_size": instance.box3d_size.tolist(),
+        "corners_px": instance.corners_px.tolist(),
+        "corners_cam": instance.corners_cam.tolist(),
+        "T_cam_obj": instance.T_cam_obj.tolist(),
+    }

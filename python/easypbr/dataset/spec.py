@@ -1,0 +1,221 @@
+"""What a data set is made of: plain classes, the same as a TOML file."""
+
+import dataclasses
+import difflib
+import tomllib
+import typing
+from pathlib import Path
+
+from ..errors import ArgumentError
+
+#: A number, or the least and the largest of a uniform distribution.
+Range = float | tuple[float, float]
+
+
+@dataclasses.dataclass
+class ImageSpec:
+    """The pictures."""
+
+    size: tuple[int, int] = (640, 480)
+    samples: int = 4
+    format: str = "png"
+
+
+@dataclasses.dataclass
+class CameraSpec:
+    """Where the camera stands, looking at the origin, and its lens."""
+
+    fov_y_deg: Range = (35.0, 60.0)
+    K: tuple = ()
+    distortion: tuple[float, ...] = ()
+    distortion_model: str = "brown_conrady"
+    distance: Range = 4.0
+    azimuth_deg: Range = (-180.0, 180.0)
+    elevation_deg: Range = (-25.0, 35.0)
+
+
+@dataclasses.dataclass
+class ObjectSpec:
+    """A class of objects. `source`: a file, a folder, a pattern of files, or "builtin:drone", "builtin:shapes"."""
+
+    source: str = "builtin:drone"
+    class_name: str = ""
+    count: tuple[int, int] = (1, 1)
+    size: Range = (0.6, 1.2)
+    rotation: str = "upright"
+    tilt_deg: float = 0.0
+    distractor: bool = False
+    random_material: bool = False
+
+
+@dataclasses.dataclass
+class PlacementSpec:
+    """Where objects are: in the camera's frustum, or on a ground of this radius around the origin."""
+
+    mode: str = "frustum"
+    distance: Range = (3.0, 9.0)
+    margin: float = 0.1
+    radius: float = 3.0
+    collisions: bool = False
+    tries: int = 200
+
+
+@dataclasses.dataclass
+class OcclusionSpec:
+    """Frames in which an object is hidden or cut off more than this are placed anew."""
+
+    min_visible: float = 0.1
+    max_truncation: float = 0.7
+    tries: int = 20
+
+
+@dataclasses.dataclass
+class BackgroundSpec:
+    """What lights and stands behind: sky (procedural), environment or image files, or color."""
+
+    mode: str = "sky"
+    files: tuple[str, ...] = ()
+    color: str = "#808080"
+    skies: int = 6
+    intensity: Range = (0.7, 1.3)
+
+
+@dataclasses.dataclass
+class SensorSpec:
+    """What the sensor does: exposure in stops, blur and noise as standard deviations (pixels; parts of full scale)."""
+
+    exposure: Range = 0.0
+    blur: Range = 0.0
+    noise: Range = 0.0
+
+
+@dataclasses.dataclass
+class DatasetSpec:
+    """A data set. Frame `i` follows from the spec, the seed and `i` alone."""
+
+    count: int = 100
+    seed: int = 0
+    writers: tuple[str, ...] = ("coco", "yolo")
+    on_error: str = "stop"
+    image: ImageSpec = dataclasses.field(default_factory=ImageSpec)
+    camera: CameraSpec = dataclasses.field(default_factory=CameraSpec)
+    objects: list[ObjectSpec] = dataclasses.field(default_factory=list)
+    placement: PlacementSpec = dataclasses.field(default_factory=PlacementSpec)
+    occlusion: OcclusionSpec = dataclasses.field(default_factory=OcclusionSpec)
+    background: BackgroundSpec = dataclasses.field(default_factory=BackgroundSpec)
+    sensor: SensorSpec = dataclasses.field(default_factory=SensorSpec)
+
+    @classmethod
+    def demo(cls) -> "DatasetSpec":
+        """Drones of several shapes and materials before procedural skies: needs no files."""
+        return cls(
+            objects=[ObjectSpec(class_name="drone", count=(1, 3), tilt_deg=20.0)],
+            sensor=SensorSpec(exposure=(-0.7, 0.7), blur=(0.0, 0.8), noise=(0.0, 0.02)),
+        )
+
+    @classmethod
+    def from_toml(cls, path) -> "DatasetSpec":
+        """Reads a spec; files in it are relative to the TOML file's folder. Raises ArgumentError naming the key."""
+        path = Path(path)
+        try:
+            values = tomllib.loads(path.read_text())
+        except tomllib.TOMLDecodeError as error:
+            raise ArgumentError(f"{path}: {error}") from None
+        spec = _from_dict(cls, values, str(path))
+        spec._resolve_files(path.parent)
+        spec.check()
+        return spec
+
+    def _resolve_files(self, folder: Path) -> None:
+        for entry in self.objects:
+            if not entry.source.startswith("builtin:"):
+                entry.source = str(folder / entry.source)
+        self.background.files = tuple(str(folder / file) for file in self.background.files)
+
+    def check(self) -> None:
+        """Raises ArgumentError naming the first value that cannot be."""
+        from .writers import WRITERS
+
+        choices = {
+            "image.format": (self.image.format, ("png", "jpg")),
+            "placement.mode": (self.placement.mode, ("frustum", "surface")),
+            "background.mode": (self.background.mode, ("sky", "environment", "image", "color")),
+            "on_error": (self.on_error, ("stop", "skip")),
+        }
+        for i, entry in enumerate(self.objects):
+            choices[f"objects[{i}].rotation"] = (entry.rotation, ("upright", "any", "none"))
+        for name in self.writers:
+            choices[f"writers ({name})"] = (name, tuple(WRITERS))
+        for key, (value, allowed) in choices.items():
+            if value not in allowed:
+                raise ArgumentError(f"dataset: {key}: expected {', '.join(allowed)}, got '{value}'{_nearest(value, allowed)}")
+        if self.count < 1:
+            raise ArgumentError(f"dataset: count: expected 1 or more, got {self.count}")
+        if not self.objects:
+            raise ArgumentError("dataset: objects: expected at least one [[objects]]")
+        if self.background.mode in ("environment", "image") and not self.background.files:
+            raise ArgumentError(f"dataset: background.files: expected files for mode '{self.background.mode}'")
+
+
+def _nearest(name: str, names) -> str:
+    found = difflib.get_close_matches(name, names, 1, 0.5)
+    return f" (did you mean '{found[0]}'?)" if found else ""
+
+
+def _from_dict(cls, values: dict, where: str):
+    """An object of a class of this module; keys are its fields, "class" stands for class_name."""
+    hints = typing.get_type_hints(cls)
+    result = cls()
+    for key, value in values.items():
+        name = "class_name" if key == "class" and "class_name" in hints else key
+        if name not in hints:
+            names = [("class" if hint == "class_name" else hint) for hint in hints]
+            raise ArgumentError(f"{where}: there is no '{key}'{_nearest(key, names)}: expected {', '.join(names)}")
+        setattr(result, name, _value(hints[name], value, f"{where}: {key}"))
+    return result
+
+
+def _value(hint, value, where: str):
+    if dataclasses.is_dataclass(hint):
+        if not isinstance(value, dict):
+            raise ArgumentError(f"{where}: expected a table, got {value!r}")
+        return _from_dict(hint, value, where)
+    if typing.get_origin(hint) is list:
+        if not isinstance(value, list):
+            raise ArgumentError(f"{where}: expected tables [[...]], got {value!r}")
+        return [_value(typing.get_args(hint)[0], item, f"{where}[{i}]") for i, item in enumerate(value)]
+    if hint == Range:
+        return _range(value, where)
+    if typing.get_origin(hint) is tuple or hint is tuple:
+        return _tuple(hint, value, where)
+    if hint is float and isinstance(value, int) and not isinstance(value, bool):
+        return float(value)
+    if not isinstance(value, hint) or (hint is int and isinstance(value, bool)):
+        raise ArgumentError(f"{where}: expected {_word(hint)}, got {value!r}")
+    return value
+
+
+def _range(value, where: str) -> Range:
+    numbers = value if isinstance(value, (list, tuple)) else [value]
+    is_number = all(isinstance(number, (int, float)) and not isinstance(number, bool) for number in numbers)
+    if not is_number or len(numbers) > 2 or not numbers or (len(numbers) == 2 and numbers[0] > numbers[1]):
+        raise ArgumentError(f"{where}: expected a number or [least, largest], got {value!r}")
+    return tuple(map(float, numbers)) if len(numbers) == 2 else float(numbers[0])
+
+
+def _tuple(hint, value, where: str) -> tuple:
+    kinds = typing.get_args(hint)
+    if isinstance(value, int) and kinds == (int, int):
+        value = [value, value]
+    if not isinstance(value, (list, tuple)):
+        raise ArgumentError(f"{where}: expected a list, got {value!r}")
+    if kinds and kinds[-1] is not Ellipsis and len(kinds) != len(value):
+        raise ArgumentError(f"{where}: expected {len(kinds)} values, got {len(value)}")
+    if kinds:
+        kind = kinds[0]
+        return tuple(_value(kind, item, where) for item in value)
+    return tuple(tuple(map(float, row)) for row in value)
+
+
+def _word(hint) -> str:
+    return {int: "a whole number", float: "a number", str: "a text", bool: "true or false"}.get(hint, str(hint))

@@ -1,0 +1,275 @@
+"""Formats. Each has files of a frame, written with it, and files of the set, made of all frames' records at the end."""
+
+import io
+import json
+import tarfile
+from pathlib import Path
+
+import numpy as np
+
+from .. import _easypbr
+from ..errors import ArgumentError
+
+
+def _json(value) -> bytes:
+    return (json.dumps(value, indent=1, allow_nan=True) + "\n").encode()
+
+
+def _png(array: np.ndarray) -> bytes:
+    return _easypbr.encode_png(array)
+
+
+def decode_rle(rle: dict) -> np.ndarray:
+    """The mask, height x width, of COCO's compressed run lengths."""
+    height, width = rle["size"]
+    counts, value, shift = [], 0, 0
+    for letter in rle["counts"].encode():
+        group = letter - 48
+        value |= (group & 31) << shift
+        shift += 5
+        if not group & 32:
+            if group & 16:
+                value -= 1 << shift
+            counts.append(value + (counts[-2] if len(counts) > 2 else 0))
+            value = shift = 0
+    flags = np.repeat(np.arange(len(counts)) % 2 == 1, counts)
+    return flags.reshape(width, height).T
+
+
+class Writer:
+    """The base of all: nothing is written."""
+
+    def __init__(self, image_format: str, classes: list[str]):
+        self.image_format, self.classes = image_format, classes
+
+    def picture(self, index: int) -> str:
+        """Where the picture of a frame is, in the set's folder."""
+        return f"images/{index:06d}.{self.image_format}"
+
+    def frame(self, frame) -> dict[str, bytes]:
+        """Files of a frame by their path in the set's folder."""
+        return {}
+
+    def finish(self, records: list[dict], folder: Path) -> dict[str, bytes]:
+        """Files of the set."""
+        return {}
+
+
+class Coco(Writer):
+    """annotations.json: boxes, masks as run lengths, and the corners of the 3D box as keypoints."""
+
+    def finish(self, records, folder):
+        images, annotations = [], []
+        for record in records:
+            size = {"width": record["width"], "height": record["height"]}
+            images.append({"id": record["index"], "file_name": self.picture(record["index"]), **size})
+            for entry in record["objects"]:
+                if entry["box"][2] < 1 or entry["box"][3] < 1:
+                    continue  # Nothing is seen: COCO has no empty boxes.
+                annotations.append({
+                    "id": len(annotations) + 1, "image_id": record["index"], "category_id": entry["category_id"],
+                    "bbox": entry["box"], "area": entry["pixels"], "iscrowd": 0, "segmentation": entry["rle"],
+                    "keypoints": self._keypoints(entry, record), "num_keypoints": 8,
+                })
+        names = [f"corner_{i}" for i in range(8)]
+        edges = [[a + 1, b + 1] for a in range(8) for b in range(a + 1, 8) if bin(a ^ b).count("1") == 1]
+        categories = [{"id": i + 1, "name": name, "keypoints": names, "skeleton": edges} for i, name in enumerate(self.classes)]
+        return {"annotations.json": _json({"images": images, "categories": categories, "annotations": annotations})}
+
+    @staticmethod
+    def _keypoints(entry, record):
+        flat = []
+        for x, y in entry["corners_px"]:
+            inside = -0.5 <= x < record["width"] - 0.5 and -0.5 <= y < record["height"] - 0.5
+            # COCO's pixel edges are at integers.
+            flat += [round(x + 0.5, 3), round(y + 0.5, 3), 2] if inside else [0, 0, 0]
+        return flat
+
+
+class Yolo(Writer):
+    """labels/*.txt: class, centre and size of the box as parts of the picture; data.yaml."""
+
+    def frame(self, frame):
+        height, width = frame.depth.shape
+        lines = []
+        for entry in frame.objects:
+            x, y, w, h = entry["box"]
+            if w > 0 and h > 0:
+                place = (x + w / 2) / width, (y + h / 2) / height, w / width, h / height
+                lines.append(f"{entry['category_id'] - 1} " + " ".join(f"{value:.6f}" for value in place))
+        return {f"labels/{frame.index:06d}.txt": "".join(line + "\n" for line in lines).encode()}
+
+    def finish(self, records, folder):
+        names = "".join(f"  {i}: {name}\n" for i, name in enumerate(self.classes))
+        return {"data.yaml": f"path: .\ntrain: images\nval: images\nnames:\n{names}".encode()}
+
+
+class Kitti(Writer):
+    """label_2/*.txt and calib/*.txt of KITTI's object benchmark, depth/*.png (uint16, 1/256 m)."""
+
+    def frame(self, frame):
+        name = f"{frame.index:06d}"
+        P = np.c_[frame.K, np.zeros(3)]
+        calib = f"P2: {' '.join(f'{value:.12e}' for value in P.ravel())}\n"
+        # 0: no depth; farther than 65535 / 256 m is none either.
+        depth = np.rint(frame.depth * 256)
+        depth = np.where(depth < 65536, depth, 0).astype(np.uint16)
+        labels = "".join(self._line(entry) for entry in frame.objects if entry["box"][2] > 0)
+        return {f"kitti/label_2/{name}.txt": labels.encode(), f"kitti/calib/{name}.txt": calib.encode(),
+                f"kitti/depth/{name}.png": save16(depth)}
+
+    @staticmethod
+    def _line(entry) -> str:
+        hidden = 1 - entry["pixels"] / max(entry["pixels_amodal_inside"], 1)
+        occluded = 0 if hidden < 0.1 else 1 if hidden < 0.5 else 2
+        T = np.array(entry["T_cam_obj"])
+        scale = np.linalg.norm(T[:3, :3], axis=0)
+        width, height, length = np.array(entry["box3d_size"]) * scale  # x, y, z of the object; z is its front
+        bottom = np.array(entry["box3d_center"]) - (0, entry["box3d_size"][1] / 2, 0)
+        x, y, z = T[:3, :3] @ bottom + T[:3, 3]
+        front = T[:3, 2] / scale[2]
+        turn = np.arctan2(-front[2], front[0])
+        alpha = (turn - np.arctan2(x, z) + np.pi) % (2 * np.pi) - np.pi
+        u, v, w, h = entry["box"]
+        values = [entry["truncation"], alpha, u, v, u + w - 1, v + h - 1, height, width, length, x, y, z, turn]
+        numbers = [f"{value:.3f}" for value in values]
+        name = entry["class"].replace(" ", "_")
+        return f"{name} {numbers[0]} {occluded} {' '.join(numbers[1:])}\n"
+
+
+def save16(array: np.ndarray) -> bytes:
+    """A PNG of 16 bits."""
+    return _easypbr.encode_png(array, deep=True)
+
+
+class Bop(Writer):
+    """A scene of the BOP challenge: rgb, depth, mask, mask_visib, scene_camera, scene_gt, scene_gt_info."""
+
+    scale = 1.0  # millimetres of a unit of depth: up to 65 m
+
+    def frame(self, frame):
+        name, base = f"{frame.index:06d}", "bop/000000"
+        depth = np.rint(frame.depth * 1000 / self.scale)
+        files = {f"{base}/depth/{name}.png": save16(np.where(depth < 65536, depth, 0).astype(np.uint16)),
+                 f"{base}/rgb/{name}.png": _png(frame.picture)}
+        for i, entry in enumerate(frame.objects):
+            visible = (frame.instance_id == i + 1).astype(np.uint8) * 255
+            files[f"{base}/mask_visib/{name}_{i:06d}.png"] = _png(visible)
+            files[f"{base}/mask/{name}_{i:06d}.png"] = _png(decode_rle(entry["amodal_rle"]).astype(np.uint8) * 255)
+        return files
+
+    def finish(self, records, folder):
+        camera, truth, info = {}, {}, {}
+        for record in records:
+            T_cam_world = np.linalg.inv(record["T_world_cam"])
+            key = str(record["index"])
+            camera[key] = {"cam_K": np.ravel(record["K"]).tolist(), "depth_scale": self.scale,
+                           "cam_R_w2c": T_cam_world[:3, :3].ravel().tolist(), "cam_t_w2c": (1000 * T_cam_world[:3, 3]).tolist()}
+            truth[key] = [self._pose(entry) for entry in record["objects"]]
+            info[key] = [self._info(entry) for entry in record["objects"]]
+        base = "bop/000000"
+        return {f"{base}/scene_camera.json": _json(camera), f"{base}/scene_gt.json": _json(truth),
+                f"{base}/scene_gt_info.json": _json(info)}
+
+    @staticmethod
+    def _pose(entry):
+        T = np.array(entry["T_cam_obj"])
+        R = T[:3, :3] / np.linalg.norm(T[:3, :3], axis=0)
+        return {"cam_R_m2c": R.ravel().tolist(), "cam_t_m2c": (1000 * T[:3, 3]).tolist(), "obj_id": entry["category_id"]}
+
+    @staticmethod
+    def _info(entry):
+        def box(xywh):  # BOP's width is the difference of the outermost pixels.
+            return [xywh[0], xywh[1], xywh[2] - 1, xywh[3] - 1] if xywh[2] > 0 else [-1, -1, -1, -1]
+
+        return {"bbox_obj": box(entry["box_amodal"]), "bbox_visib": box(entry["box"]), "px_count_all": entry["pixels_amodal"],
+                "px_count_valid": entry["pixels_amodal_inside"], "px_count_visib": entry["pixels"],
+                "visib_fract": entry["visible_fraction"]}
+
+
+class Nerfstudio(Writer):
+    """transforms.json: poses with OpenGL's axes."""
+
+    def finish(self, records, folder):
+        frames = []
+        for record in records:
+            K = np.array(record["K"])
+            T = np.array(record["T_world_cam"]) @ np.diag([1, -1, -1, 1.0])
+            # Its pixel edges are at integers.
+            frames.append({"file_path": self.picture(record["index"]), "transform_matrix": T.tolist(), "fl_x": K[0, 0],
+                           "fl_y": K[1, 1], "cx": K[0, 2] + 0.5, "cy": K[1, 2] + 0.5, "w": record["width"], "h": record["height"]})
+        return {"transforms.json": _json({"camera_model": "PINHOLE", "frames": frames})}
+
+
+class Colmap(Writer):
+    """sparse/0/cameras.txt, images.txt and an empty points3D.txt."""
+
+    def finish(self, records, folder):
+        cameras, images = ["# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]"], ["# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME"]
+        for record in records:
+            K, number = np.array(record["K"]), record["index"] + 1
+            lens = (K[0, 0], K[1, 1], K[0, 2] + 0.5, K[1, 2] + 0.5)
+            cameras.append(f"{number} PINHOLE {record['width']} {record['height']} " + " ".join(f"{v:.9f}" for v in lens))
+            T = np.linalg.inv(record["T_world_cam"])
+            pose = " ".join(f"{value:.9f}" for value in (*quaternion(T[:3, :3]), *T[:3, 3]))
+            images += [f"{number} {pose} {number} {Path(self.picture(record['index'])).name}", ""]
+        return {"sparse/0/cameras.txt": "\n".join(cameras + [""]).encode(), "sparse/0/points3D.txt": b"",
+                "sparse/0/images.txt": "\n".join(images + [""]).encode()}
+
+
+def quaternion(R: np.ndarray) -> np.ndarray:
+    """w, x, y, z of a rotation, w not negative: the eigenvector of Bar-Itzhack's matrix (2000)."""
+    (a, b, c), (d, e, f), (g, h, i) = R
+    M = np.array([[a - e - i, b + d, c + g, h - f], [b + d, e - a - i, f + h, c - g],
+                  [c + g, f + h, i - a - e, d - b], [h - f, c - g, d - b, a + e + i]]) / 3
+    x, y, z, w = np.linalg.eigh(M)[1][:, -1]
+    q = np.array([w, x, y, z])
+    return -q if q[0] < 0 else q
+
+
+class WebDataset(Writer):
+    """shards/*.tar of up to 1000 samples: the picture and its annotation."""
+
+    per_shard = 1000
+
+    def finish(self, records, folder):
+        files = {}
+        for first in range(0, len(records), self.per_shard):
+            buffer = io.BytesIO()
+            with tarfile.open(fileobj=buffer, mode="w", format=tarfile.USTAR_FORMAT) as tar:
+                for record in records[first : first + self.per_shard]:
+                    name = f"{record['index']:06d}"
+                    picture = (folder / self.picture(record["index"])).read_bytes()
+                    for extension, data in ((self.image_format, picture), ("json", _json(record))):
+                        entry = tarfile.TarInfo(f"{name}.{extension}")  # of time 0: the same bytes at every run
+                        entry.size = len(data)
+                        tar.addfile(entry, io.BytesIO(data))
+            files[f"shards/{first // self.per_shard:06d}.tar"] = buffer.getvalue()
+        return files
+
+
+class Raw(Writer):
+    """raw/*.npz: depth, normals, instance ids, K, T_world_cam."""
+
+    def frame(self, frame):
+        buffer = io.BytesIO()
+        np.savez_compressed(buffer, depth=frame.depth, normal_camera=frame.normal, instance_id=frame.instance_id, K=frame.K,
+                            T_world_cam=frame.T_world_cam)
+        return {f"raw/{frame.index:06d}.npz": buffer.getvalue()}
+
+
+class Png(Writer):
+    """depth/*.png (uint16, millimetres), normals/*.png and ids/*.png (uint16): what a fast loader reads."""
+
+    def frame(self, frame):
+        name = f"{frame.index:06d}.png"
+        depth = np.rint(frame.depth * 1000)
+        if len(frame.objects) > 65535:
+            raise ArgumentError(f"dataset: writer png: 16 bits hold up to 65535 instances, frame {frame.index} has {len(frame.objects)}")
+        return {f"depth/{name}": save16(np.where(depth < 65536, depth, 0).astype(np.uint16)),
+                f"normals/{name}": _png(np.rint(127.5 * (frame.normal + 1)).astype(np.uint8)),
+                f"ids/{name}": save16(frame.instance_id.astype(np.uint16))}
+
+
+WRITERS = {"coco": Coco, "yolo": Yolo, "kitti": Kitti, "bop": Bop, "nerfstudio": Nerfstudio, "colmap": Colmap,
+           "webdataset": WebDataset, "raw": Raw, "png": Png}

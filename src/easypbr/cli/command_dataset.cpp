@@ -1,0 +1,75 @@
+// The generator of data sets is a part of the Python package; this hands over to it.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "easypbr/cli/command.h"
+#include "easypbr/core/error.h"
+
+namespace easypbr::cli {
+namespace {
+
+struct DatasetOptions {
+    std::string spec, output, count, seed, workers, writers, on_error;
+    bool demo = false, quiet = false;
+};
+
+void declare(CLI::App& command, DatasetOptions& o) {
+    command.add_option("spec", o.spec, "What to generate, a TOML file")->option_text("SPEC");
+    command.add_flag("--demo", o.demo, "Generate the built-in drones instead of a SPEC");
+    command
+        .add_option("-o,--output", o.output, "Folder to write; started again, only what is missing is made")
+        ->option_text("FOLDER");
+    command.add_option("--count", o.count, "Number of pictures")->option_text("N");
+    command.add_option("--seed", o.seed, "Another seed gives other pictures")->option_text("N");
+    command.add_option("--workers", o.workers, "Processes that draw; one for two cores unless given")
+        ->option_text("N");
+    command
+        .add_option("--writers", o.writers,
+                    "Formats, separated by commas: coco, yolo, kitti, bop, nerfstudio, "
+                    "colmap, webdataset, raw, png")
+        ->option_text("NAMES");
+    command.add_option("--on-error", o.on_error, "A mesh that cannot be read: stop, or skip and report it")
+        ->option_text("stop|skip");
+    command.add_flag("-q,--quiet", o.quiet, "No progress");
+}
+
+/// Python's path; the package sets it when it runs the command line itself.
+std::string python() {
+    const char* given = std::getenv("EASYPBR_PYTHON");
+    return given && *given ? given : "python3";
+}
+
+int run(const DatasetOptions& o) {
+    std::vector<std::string> arguments = {python(), "-m", "easypbr.dataset"};
+    if (!o.spec.empty()) arguments.push_back(o.spec);
+    if (o.demo) arguments.emplace_back("--demo");
+    if (o.quiet) arguments.emplace_back("--quiet");
+    const std::pair<const char*, const std::string&> values[] = {
+        {"--output", o.output},   {"--count", o.count},     {"--seed", o.seed},
+        {"--workers", o.workers}, {"--writers", o.writers}, {"--on-error", o.on_error}};
+    for (const auto& [name, value] : values)
+        if (!value.empty()) arguments.push_back(fmt::format("{}={}", name, value));
+    std::vector<char*> pointers;
+    for (std::string& argument : arguments) pointers.push_back(argument.data());
+    pointers.push_back(nullptr);
+    std::fflush(nullptr);
+    execvp(pointers[0], pointers.data());
+    throw ContextError(
+        fmt::format("dataset: cannot run {} ({}): the generator is a part of the Python package; set "
+                    "EASYPBR_PYTHON to the Python that has it",
+                    arguments[0], std::strerror(errno)));
+}
+
+}  // namespace
+
+void add_dataset(CLI::App& app, Job& job) {
+    set_job<DatasetOptions>(*app.add_subcommand("dataset", "Generate pictures with annotations for training"),
+                            job, declare, run);
+}
+
+}  // namespace easypbr::cli

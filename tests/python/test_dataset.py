@@ -1,0 +1,279 @@
+"""Generated data sets: the same bytes however they are made, formats that agree with the layers they come from."""
+
+import hashlib
+import json
+import signal
+import subprocess
+import sys
+import tarfile
+import time
+
+import numpy as np
+import pytest
+
+import easypbr
+from easypbr import ArgumentError, FileError, shapes
+from easypbr.dataset import (
+    CameraSpec,
+    DatasetSpec,
+    ImageSpec,
+    ObjectSpec,
+    OcclusionSpec,
+    PlacementSpec,
+    SensorSpec,
+    generate,
+)
+from easypbr.dataset.frames import FrameMaker
+from easypbr.dataset.writers import decode_rle, quaternion
+
+ALL = ("coco", "yolo", "kitti", "bop", "nerfstudio", "colmap", "webdataset", "raw", "png")
+
+
+def small(**changes) -> DatasetSpec:
+    spec = DatasetSpec.demo()
+    spec.count, spec.image = 3, ImageSpec((96, 72), 1)
+    spec.background.skies = 1
+    spec.writers = ALL
+    for name, value in changes.items():
+        setattr(spec, name, value)
+    return spec
+
+
+def hashes(folder) -> dict[str, str]:
+    return {str(p.relative_to(folder)): hashlib.sha256(p.read_bytes()).hexdigest()
+            for p in sorted(folder.rglob("*")) if p.is_file()}
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("made") / "set"
+    generate(small(), folder, workers=1)
+    return folder
+
+
+def records(folder):
+    return [json.loads(path.read_text()) for path in sorted((folder / "records").iterdir())]
+
+
+def test_frames_follow_from_their_number_alone(made, tmp_path):
+    """Workers that draw other frames before, in other processes, give the same bytes."""
+    generate(small(), tmp_path / "again", workers=2)
+    assert hashes(tmp_path / "again") == hashes(made)
+    other = FrameMaker(small(seed=1)).make(0)
+    assert not np.array_equal(other.picture, easypbr.load_image(made / "images/000000.png"))
+
+
+def test_killed_and_started_again_ends_the_same(made, tmp_path):
+    folder = tmp_path / "killed"
+    script = tmp_path / "job.py"
+    script.write_text(
+        "import sys\nsys.path.insert(0, sys.argv[2])\nfrom test_dataset import small, generate\n"
+        "if __name__ == '__main__':\n    generate(small(), sys.argv[1], workers=1)\n"
+    )
+    job = [sys.executable, script, folder, str(__import__("pathlib").Path(__file__).parent)]
+    for wanted in (1, 2):
+        process = subprocess.Popen(job)
+        while process.poll() is None and len(list(folder.glob("records/*.json"))) < wanted:
+            time.sleep(0.01)
+        process.send_signal(signal.SIGKILL)
+        process.wait()
+        for record in records(folder):  # What counts is complete.
+            assert (folder / f"images/{record['index']:06d}.png").exists()
+    assert len(records(folder)) < 4
+    generate(small(), folder, workers=1)
+    assert hashes(folder) == hashes(made)
+
+
+def test_coco(made):
+    data = json.loads((made / "annotations.json").read_text())
+    assert [image["file_name"] for image in data["images"]] == [f"images/{i:06d}.png" for i in range(3)]
+    assert data["categories"][0]["name"] == "drone"
+    total = sum(entry["pixels"] > 0 for record in records(made) for entry in record["objects"])
+    assert len(data["annotations"]) == total > 2
+    for annotation in data["annotations"]:
+        ids = np.load(made / f"raw/{annotation['image_id']:06d}.npz")["instance_id"]
+        mask = decode_rle(annotation["segmentation"])
+        assert mask.sum() == annotation["area"]
+        rows, columns = np.nonzero(mask)
+        x, y, w, h = annotation["bbox"]
+        assert (x, y, w, h) == (columns.min(), rows.min(), np.ptp(columns) + 1, np.ptp(rows) + 1)
+        assert len(np.unique(ids[mask])) == 1 and len(annotation["keypoints"]) == 24
+
+
+def test_yolo_kitti_and_raw_agree(made):
+    for record in records(made):
+        name = f"{record['index']:06d}"
+        lines = (made / f"labels/{name}.txt").read_text().splitlines()
+        seen = [entry for entry in record["objects"] if entry["box"][2] > 0]
+        assert len(lines) == len(seen)
+        for line, entry in zip(lines, seen):
+            number, cx, cy, w, h = map(float, line.split())
+            x, y, width, height = entry["box"]
+            # Six decimals of parts of 96 and 72 pixels.
+            np.testing.assert_allclose([cx * 96, cy * 72, w * 96, h * 72], [x + width / 2, y + height / 2, width, height], atol=1e-4)
+        kitti = (made / f"kitti/label_2/{name}.txt").read_text().splitlines()
+        P = np.array((made / f"kitti/calib/{name}.txt").read_text().split()[1:], float).reshape(3, 4)
+        for line, entry in zip(kitti, seen):
+            fields = line.split()
+            assert len(fields) == 15 and fields[0] == "drone"
+            # The bottom's centre, projected, is between the projected corners.
+            u = P @ [*map(float, fields[11:14]), 1]
+            corners = np.array(entry["corners_px"])
+            assert (u[:2] / u[2] > corners.min(0) - 1).all() and (u[:2] / u[2] < corners.max(0) + 1).all()
+        raw = np.load(made / f"raw/{name}.npz")
+        depth = easypbr.load_image(made / f"kitti/depth/{name}.png")
+        assert depth.dtype == np.uint16
+        np.testing.assert_allclose(depth / 256, raw["depth"], atol=1 / 256)
+        assert (easypbr.load_image(made / f"ids/{name}.png") == raw["instance_id"]).all()
+        assert ((raw["depth"] > 0) == (raw["instance_id"] > 0)).all()
+
+
+def test_bop(made):
+    base = made / "bop/000000"
+    truth, info = (json.loads((base / f"{name}.json").read_text()) for name in ("scene_gt", "scene_gt_info"))
+    camera = json.loads((base / "scene_camera.json").read_text())
+    for record in records(made):
+        key, name = str(record["index"]), f"{record['index']:06d}"
+        raw = np.load(made / f"raw/{name}.npz")
+        depth = easypbr.load_image(base / f"depth/{name}.png") * camera[key]["depth_scale"] / 1000
+        np.testing.assert_allclose(depth, raw["depth"], atol=0.00051)
+        for i, (pose, numbers, entry) in enumerate(zip(truth[key], info[key], record["objects"])):
+            R = np.array(pose["cam_R_m2c"]).reshape(3, 3)
+            np.testing.assert_allclose(R @ R.T, np.eye(3), atol=1e-9)
+            visible = easypbr.load_image(base / f"mask_visib/{name}_{i:06d}.png") > 0
+            whole = easypbr.load_image(base / f"mask/{name}_{i:06d}.png") > 0
+            assert visible.sum() == numbers["px_count_visib"] and not (visible & ~whole).any()
+            assert (visible == (raw["instance_id"] == i + 1)).all()
+            # BOP's boxes end at their last pixel.
+            assert numbers["bbox_visib"][2] == entry["box"][2] - 1
+
+
+def test_cameras_for_nerfstudio_and_colmap(made):
+    frames = json.loads((made / "transforms.json").read_text())["frames"]
+    images = [line.split() for line in (made / "sparse/0/images.txt").read_text().splitlines() if line and line[0] != "#"]
+    for record, frame, image in zip(records(made), frames, images):
+        T = np.array(record["T_world_cam"])
+        np.testing.assert_allclose(np.array(frame["transform_matrix"]) @ np.diag([1, -1, -1, 1]), T)
+        w, x, y, z = map(float, image[1:5])
+        R = np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
+                      [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
+                      [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
+        T_cam_world = np.linalg.inv(T)
+        np.testing.assert_allclose(R, T_cam_world[:3, :3], atol=1e-7)
+        np.testing.assert_allclose(list(map(float, image[5:8])), T_cam_world[:3, 3], atol=1e-7)
+        assert frame["cx"] == record["K"][0][2] + 0.5
+    np.testing.assert_allclose(quaternion(np.diag([1.0, -1, -1])), [0, 1, 0, 0], atol=1e-12)
+
+
+def test_webdataset(made):
+    with tarfile.open(made / "shards/000000.tar") as tar:
+        assert tar.getnames() == [f"{i:06d}.{extension}" for i in range(3) for extension in ("png", "json")]
+        assert tar.extractfile("000001.png").read() == (made / "images/000001.png").read_bytes()
+
+
+def test_objects_do_not_meet_and_are_seen():
+    spec = small(objects=[ObjectSpec("builtin:shapes", "thing", (5, 5), (0.3, 0.6), "any")],
+                 occlusion=OcclusionSpec(0.4, 0.5), sensor=SensorSpec())
+    frame = FrameMaker(spec).make(0)
+    centres = [np.mean(entry["corners_cam"], 0) for entry in frame.objects]
+    radii = [np.linalg.norm(np.subtract(entry["corners_cam"][0], entry["corners_cam"][7])) / 2 for entry in frame.objects]
+    assert len(frame.objects) == 5
+    for i in range(5):
+        assert frame.objects[i]["truncation"] <= 0.5
+        assert frame.objects[i]["pixels"] >= 0.4 * frame.objects[i]["pixels_amodal_inside"]
+        # The longest edge is the size that was asked for.
+        size = np.linalg.norm(np.diff(np.array(frame.objects[i]["corners_cam"])[[0, 1, 0, 2, 0, 4]], axis=0)[::2], axis=1).max()
+        assert 0.3 - 1e-6 < size < 0.6 + 1e-6
+        for j in range(i):
+            assert np.linalg.norm(centres[i] - centres[j]) > radii[i] + radii[j]
+
+
+def test_objects_stand_on_the_ground():
+    spec = small(objects=[ObjectSpec("builtin:shapes", "thing", (3, 3), 0.5, "none")],
+                 placement=PlacementSpec("surface", radius=2.0), camera=CameraSpec(elevation_deg=40.0, distance=6.0))
+    frame = FrameMaker(spec).make(1)
+    assert len(frame.objects) == 3
+    for entry in frame.objects:
+        corners = np.c_[entry["corners_cam"], np.ones(8)] @ frame.T_world_cam.T
+        np.testing.assert_allclose(corners[:, 1].min(), 0, atol=1e-6)
+        assert np.hypot(*corners[:, [0, 2]].mean(0)) < 2
+
+
+def test_impossible_specs_name_the_constraint():
+    crowd = ObjectSpec(class_name="drone", count=(40, 40), size=2.0)
+    with pytest.raises(ArgumentError, match="placement.collisions.*200 tries"):
+        FrameMaker(small(objects=[crowd])).make(0)
+    with pytest.raises(ArgumentError, match="occlusion.max_truncation"):
+        near = PlacementSpec(distance=0.4, margin=0.0)
+        one = [ObjectSpec(class_name="drone")]
+        FrameMaker(small(objects=one, placement=near, occlusion=OcclusionSpec(0.1, 0.0, 3))).make(0)
+
+
+@pytest.mark.parametrize("text, message", [
+    ("cuont = 3", "no 'cuont'.*'count'"),
+    ("[camera]\nfov = 3", "no 'fov'.*fov_y_deg"),
+    ("[[objects]]\nsouce = 'a'", "no 'souce'.*'source'"),
+    ("count = 'three'", "count: expected a whole number"),
+    ("[camera]\ndistance = [5, 2]", "least, largest"),
+    ("writers = ['cocoo']\n[[objects]]", "'cocoo'.*'coco'"),
+    ("count = 3", "objects"),
+    ("count = 0\n[[objects]]", "count: expected 1 or more"),
+    ("count = ", "spec.toml"),
+    ("[[objects]]\nrotation = 'sideways'", "rotation.*upright"),
+])
+def test_bad_specs_say_what_is_wrong(tmp_path, text, message):
+    (tmp_path / "spec.toml").write_text(text)
+    with pytest.raises(ArgumentError, match=message):
+        DatasetSpec.from_toml(tmp_path / "spec.toml")
+
+
+def test_specs_are_files(tmp_path):
+    shapes.teapot(1, 4).save(tmp_path / "pot.ply")
+    (tmp_path / "broken.ply").write_text("ply\nnonsense")
+    (tmp_path / "spec.toml").write_text(
+        "count = 2\nseed = 7\nwriters = ['yolo']\non_error = 'skip'\n[image]\nsize = [64, 48]\nsamples = 1\n"
+        "[background]\nmode = 'color'\ncolor = '#203040'\n[[objects]]\nsource = '.'\nclass = 'pot'\nrandom_material = true\n"
+    )
+    spec = DatasetSpec.from_toml(tmp_path / "spec.toml")
+    statistics = generate(spec, tmp_path / "out", workers=1)
+    assert statistics["classes"] == {"pot": 2}
+    assert not statistics["skipped"] or statistics["skipped"][0].endswith("broken.ply")
+    assert "pot" in (tmp_path / "out/data.yaml").read_text()
+    spec.on_error = "stop"
+    spec.objects[0].source = str(tmp_path / "broken.ply")
+    with pytest.raises(easypbr.FormatError, match="broken.ply"):
+        generate(spec, tmp_path / "other", workers=1)
+    with pytest.raises(ArgumentError, match="another spec"):
+        generate(small(), tmp_path / "out", workers=1)
+
+
+def test_objects_that_are_not_seen_are_no_boxes():
+    from easypbr.dataset.writers import Coco, Yolo
+
+    entry = {"box": [0, 0, 0, 0], "category_id": 1, "corners_px": [[0, 0]] * 8}
+    record = {"index": 0, "width": 4, "height": 4, "objects": [entry]}
+    files = Coco("png", ["a"]).finish([record], None)
+    assert json.loads(files["annotations.json"])["annotations"] == []
+
+
+def test_a_full_disk_is_an_error(made, tmp_path, monkeypatch):
+    from pathlib import Path
+
+    def full(self, data):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(Path, "write_bytes", full)
+    with pytest.raises(FileError, match="No space left"):
+        generate(small(), tmp_path / "full", workers=1)
+    assert not list((tmp_path / "full/unfinished").glob("*"))
+
+
+def test_command_line(tmp_path):
+    command = [sys.executable, "-m", "easypbr", "dataset"]
+    done = subprocess.run([*command, "--demo", "-o", "out", "--count", "1", "--writers", "yolo", "--workers", "1"],
+                          cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    assert "1/1" in done.stderr and "1 pictures with" in done.stdout
+    assert (tmp_path / "out/images/000000.png").exists() and (tmp_path / "out/contact_sheet.png").exists()
+    assert subprocess.run([*command, "nothing.toml", "-o", "x"], cwd=tmp_path, capture_output=True).returncode == 1
+    assert subprocess.run([*command, "-o", "x"], cwd=tmp_path, capture_output=True).returncode == 2

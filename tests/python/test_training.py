@@ -1,0 +1,34 @@
+"""The example that trains, and the figure made of a data set, in a short form."""
+
+import pathlib
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import easypbr
+
+EXAMPLES = pathlib.Path(__file__).resolve().parents[2] / "examples"
+
+
+def run(script, folder, *arguments) -> str:
+    done = subprocess.run([sys.executable, EXAMPLES / script, *arguments], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_a_network_learns_parts_of_clouds(tmp_path):
+    """Of three classes a third would be right by chance; the ground alone is told by its height."""
+    right = float(re.match(r"([\d.]+) of", run("training/segment_clouds.py", tmp_path, "--steps", "40"))[1])
+    assert right > 0.6
+    assert np.ptp(easypbr.load_image(tmp_path / "segmentation.png")[..., :3]) > 100
+
+
+@pytest.mark.parametrize("count", [1])
+def test_figure_7_shows_boxes(tmp_path, count):
+    run("figures/figure_07_drone_boxes.py", tmp_path, "--count", str(count))
+    picture = easypbr.load_image(tmp_path / "drone_boxes.png")
+    assert picture.shape == (480, 480 * count, 3)
+    assert (picture == (230, 80, 60)).all(-1).sum() > 500  # the colour of the boxes' lines
