@@ -80,6 +80,16 @@ def test_other_videos(render, box, tmp_path, name, codec):
     assert float(found["file_duration"]) == pytest.approx(0.4, abs=0.03)
 
 
+@pytest.mark.parametrize("codec, name", [("libx265", "hevc"), ("mpeg4", "mpeg4")])
+def test_other_encoders_do_not_print(render, box, tmp_path, codec, name):
+    there = subprocess.run(["ffmpeg", "-v", "error", "-encoders"], capture_output=True, text=True, check=True).stdout
+    if f" {codec} " not in there:
+        pytest.skip(f"left out: this FFmpeg has no {codec}")
+    done = render(box, "--turntable", "3", "-o", "a.mp4", "--codec", codec, *LOOK)
+    assert (done.stdout, done.stderr) == ("", "")
+    assert (probe(tmp_path / "a.mp4")["codec_name"], probe(tmp_path / "a.mp4")["nb_read_frames"]) == (name, "3")
+
+
 def test_gif_colours(render, box, tmp_path):
     """256 colours of their own for each frame and a dither of +- 5: the means agree within a step."""
     render(box, "--turntable", "2", "-o", "a.gif", *LOOK)

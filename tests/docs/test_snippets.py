@@ -97,6 +97,7 @@ def test_cpp_page_draws_what_it_says(programs, work):
     run(programs / "page", cwd=work)
     assert easypbr.load_image(work / "tetrahedron.png").shape == (600, 800, 4)
     assert easypbr.load_image(work / "tetrahedron.exr").shape == (240, 320, 4)
+    assert sorted(path.name for path in work.glob("turn_*.png")) == [f"turn_{frame:02}.png" for frame in range(4)]
 
 
 def test_cpp_example_draws(programs, tmp_path):

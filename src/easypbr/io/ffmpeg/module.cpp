@@ -183,6 +183,11 @@ class FfmpegVideo final : public VideoWriter {
             av_dict_set(&options, "preset", "superfast", 0);
             av_dict_set(&options, "crf", "17", 0);
             av_dict_set(&options, "x264-params", "log=-1", 0);
+        } else if (name == "libx265") {
+            // It prints by itself.
+            av_dict_set(&options, "preset", "superfast", 0);
+            av_dict_set(&options, "crf", "19", 0);
+            av_dict_set(&options, "x265-params", "log-level=none", 0);
         } else if (name.starts_with("libvpx")) {
             av_dict_set(&options, "deadline", "realtime", 0);
             av_dict_set(&options, "cpu-used", "6", 0);
