@@ -497,6 +497,35 @@ TEST(AmbientOcclusion, DarkensRecessesOfClouds) {
     EXPECT_LT(in_corner / corner_count, elsewhere / elsewhere_count - 0.1);
 }
 
+// A tilted plane of points is as open as one of faces, though its splats face the viewer like stairs.
+TEST(AmbientOcclusion, LeavesTiltedCloudsOpen) {
+    const int n = 300;
+    Array3f::Dense V(n * n, 3);
+    for (int i = 0; i < n * n; ++i) V.row(i) << float(i % n) / n * 2 - 1, 0, float(i / n) / n * 2 - 1;
+    Mesh cloud;
+    cloud.set_V(Array3f(V));
+    Scene scene;
+    scene.show(cloud, "plane");
+    app::Session session = plain_session(scene, 160);
+    session.settings().ssao.enabled = true;
+    session.settings().ssao.radius = 0.2f;
+    for (const double elevation_deg : {20.0, 45.0, 80.0}) {
+        const double a = radians(elevation_deg);
+        place(session, 3 * Vec3d(0, std::sin(a), std::cos(a)), Vec3d::Zero(), 40);
+        const Occlusion o(session);
+        double sum = 0;
+        int count = 0;
+        for (int y = 0; y < 160; ++y)
+            for (int x = 0; x < 160; ++x) {
+                if (!o.covered(x, y) || o.world(x, y).cwiseAbs().maxCoeff() > 0.7) continue;
+                sum += o.at(x, y);
+                ++count;
+            }
+        ASSERT_GT(count, 300) << elevation_deg;
+        EXPECT_GT(sum / count, 0.9) << elevation_deg;
+    }
+}
+
 TEST(AmbientOcclusion, SaysWhatItExpected) {
     Settings settings;
     for (const char* radius : {"0", "-1", "nan", "inf"})

@@ -62,6 +62,9 @@ void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets) {
     glEnable(GL_DEPTH_TEST);
     glDepthMask(GL_FALSE);
     glDepthFunc(GL_LESS);
+    // Points are shown past the light.
+    estimated_ = frame.with_overlay;
+    if (estimated_) estimate_normals(frame, targets);
     limit_to(frame.covered, half ? 2 : 1);
     if (smooth) {
         make_targets(frame.size, half);
@@ -78,6 +81,15 @@ void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets) {
         run(frame, targets, {sampling, defines, targets.occluded});
     }
     glDisable(GL_SCISSOR_TEST);
+}
+
+void AmbientOcclusionPass::estimate_normals(const Frame& frame, const GBuffer& targets) {
+    if (!normal_ || normal_.width() != frame.size.x() || normal_.height() != frame.size.y())
+        normal_ = gl::Texture(gl::Format::rg16, frame.size.x(), frame.size.y());
+    gl::copy(targets.normal, normal_);
+    estimate_ = gl::Framebuffer({&normal_}, &targets.depth_test);
+    limit_to(frame.covered, 1);
+    run(frame, targets, {estimating_, camera_defines(frame), estimate_});
 }
 
 void AmbientOcclusionPass::select_surfaces(const Frame& frame, const GBuffer& targets,
@@ -106,7 +118,9 @@ void AmbientOcclusionPass::run(const Frame& frame, const GBuffer& targets, const
     program.set("u_depth_target", 0);
     targets.depth.bind(0);
     program.set("u_normal", 1);
-    targets.normal.bind(1);
+    (estimated_ ? normal_ : targets.normal).bind(1);
+    program.set("u_material", 4);
+    targets.material.bind(4);
     program.set("u_surface", 2);
     if (surface_) {
         surface_.bind(2);

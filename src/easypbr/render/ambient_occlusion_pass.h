@@ -12,12 +12,14 @@ namespace easypbr::render {
 /// a longer still each take other directions at full resolution, and their mean needs no blur.
 class AmbientOcclusionPass {
   public:
-    /// Adds and fills the G-buffer's visibility from its depth and normals.
+    /// Adds and fills the G-buffer's visibility from its depth and normals. Points without normals have those
+    /// of the surface that they sample, estimated from the depth.
     void draw(const Frame& frame, GBuffer& targets);
 
   private:
     struct Step;
     void make_targets(Vec2i size, bool half);
+    void estimate_normals(const Frame& frame, const GBuffer& targets);
     void select_surfaces(const Frame& frame, const GBuffer& targets, const std::vector<std::string>& defines);
     void run(const Frame& frame, const GBuffer& targets, const Step& step);
 
@@ -26,6 +28,10 @@ class AmbientOcclusionPass {
     gl::Texture surface_;  ///< of half resolution, see shaders/occlusion_select.frag
     gl::Texture depth_, sampled_, blurred_;
     gl::Framebuffer select_, sample_, blur_;
+    gl::Texture normal_;  ///< the G-buffer's and estimated ones
+    gl::Framebuffer estimate_;
+    bool estimated_ = false;
+    ProgramVariants estimating_{"screen_triangle.vert", "occlusion_normals.frag"};
     ProgramVariants selecting_{"screen_triangle.vert", "occlusion_select.frag"};
     ProgramVariants horizon_{"screen_triangle.vert", "occlusion_horizon.frag"};
     ProgramVariants hemisphere_{"screen_triangle.vert", "occlusion_hemisphere.frag"};

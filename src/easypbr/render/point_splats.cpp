@@ -8,6 +8,8 @@ namespace {
 
 /// Least diameter of automatic splats, in pixels of a picture 1080 high.
 constexpr double least_pixels_at_1080 = 1.5;
+/// The same where all points are at one place: there is no spacing, and nothing else to see.
+constexpr double lonely_pixels_at_1080 = 12;
 
 }  // namespace
 
@@ -24,8 +26,8 @@ PointSplats splats_of(const DrawItem& item, const Frame& frame, double spacing) 
                          : style.point_size_unit == SizeUnit::world ? double(*style.point_size)
                                                                     : 0.0;
     splats.world_pixels = float(world * pixels_per_unit);
-    splats.least_pixels =
-        style.point_size ? 1 : float(std::max(1.0, least_pixels_at_1080 * frame.size.y() / 1080));
+    const double least = spacing > 0 ? least_pixels_at_1080 : lonely_pixels_at_1080;
+    splats.least_pixels = style.point_size ? 1 : float(std::max(1.0, least * frame.size.y() / 1080));
     splats.pixels = style.point_size && world == 0 ? *style.point_size : splats.least_pixels;
     return splats;
 }

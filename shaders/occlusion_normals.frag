@@ -1,0 +1,42 @@
+// Normals of points that have none, from the depths in a part of the occlusion's radius around them.
+#include "common_occlusion.glsl"
+#include "common_surface_kind.glsl"
+
+uniform sampler2D u_material;
+
+layout(location = 0) out vec2 o_normal;
+
+// From a surface to what is seen some pixels beside it, and how much it counts: not where nothing is seen, hardly where
+// something else lies before or behind.
+vec4 neighbor(Surface s, vec2 offset) {
+    vec2 pixel = floor(s.pixel + offset) + 0.5, uv = pixel / u_size;
+    float depth = textureLod(u_depth_target, uv, 0.0).r;
+    if (depth <= 0.0 || uv != clamp(uv, 0.0, 1.0)) return vec4(0.0);
+    vec3 delta = view_position(pixel, depth) - s.position;
+    float far = dot(delta, delta) / (u_radius * u_radius);
+    return vec4(delta, 1.0 / (1.0 + 16.0 * far * far));
+}
+
+void main() {
+    if (!is_eye_dome(textureLod(u_material, gl_FragCoord.xy / u_size, 0.0).w)) discard;
+    float depth;
+    Surface s = surface_at(gl_FragCoord.xy, depth);
+    float reach = u_radius / pixel_size(s.position);
+    vec3 sum = vec3(0.0);
+    // Of all triangles with two neighbours side by side: on a plane each has its normal.
+    for (int ring = 1; ring <= 3; ++ring) {
+        float radius = max(reach * 0.12 * float(ring), 2.0 * float(ring));
+        vec4 before = neighbor(s, vec2(radius, 0.0));
+        for (int i = 1; i <= 8; ++i) {
+            float angle = 0.78539816339 * float(i);
+            vec4 next = neighbor(s, radius * vec2(cos(angle), sin(angle)));
+            sum += before.w * next.w * cross(before.xyz, next.xyz);
+            before = next;
+        }
+    }
+    vec3 view = to_viewer(s.position);
+    float size = length(sum);
+    vec3 normal = size > 0.0 ? sum / size : view;
+    normal = dot(normal, view) < 0.0 ? -normal : normal;
+    o_normal = oct_encode(u_world_from_view * normal) * 0.5 + 0.5;
+}
