@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <mutex>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/cloud_reader.h"
 #include "easypbr/io/las_header.h"
+#include "easypbr/io/laz.h"
 #include "easypbr/io/mesh_readers.h"
 #include "easypbr/scene/label_map.h"
 
@@ -93,12 +95,52 @@ MeshData read_records(const Source& source, const Source& records, const LasHead
     return mesh;
 }
 
+std::mutex decompressor_mutex;
+LazDecompressor decompressor;
+
+std::string decompressed(const Source& source, const LasHeader& header) {
+    LazDecompressor decompress;
+    {
+        const std::lock_guard lock(decompressor_mutex);
+        decompress = decompressor;
+    }
+    if (!decompress)
+        fail(source,
+             "compressed points (LAZ) are read by the Python package alone, with lazrs (pip install lazrs); "
+             "elsewhere decompress the file first, with laszip or las2las");
+    if (header.laszip.empty())
+        fail(source, "its points are compressed (LAZ), but the record of LASzip is missing");
+    // What is compressed can hardly become more than this; a header that lies must not take all memory.
+    constexpr size_t largest_ratio = 1000;
+    const size_t left = source.bytes.size() - header.body;
+    if (header.points / largest_ratio > left / header.record_size)
+        fail(source, fmt::format("truncated: {} compressed points expected, but {} bytes are left",
+                                 header.points, left));
+    const size_t size = header.points * header.record_size;
+    try {
+        std::string records = decompress(header.laszip, source.bytes.substr(header.body), header.body, size);
+        if (records.size() != size)
+            fail(source, fmt::format("{} bytes of points expected, got {}", size, records.size()));
+        return records;
+    } catch (const FormatError&) {
+        throw;
+    } catch (const Error& error) {
+        fail(source, error.what());
+    }
+}
+
 }  // namespace
+
+void set_laz_decompressor(LazDecompressor given) {
+    const std::lock_guard lock(decompressor_mutex);
+    decompressor = std::move(given);
+}
 
 MeshData read_las(const Source& source) {
     const LasHeader header = parse_las_header(source);
-    if (header.compressed) fail(source, "compressed points (LAZ) are not read");
-    MeshData mesh = read_records(source, source.from(header.body), header);
+    const std::string records = header.compressed ? decompressed(source, header) : std::string();
+    const Source body = header.compressed ? Source(records, source.path) : source.from(header.body);
+    MeshData mesh = read_records(source, body, header);
     drop_points_without_position(source, mesh);
     return mesh;
 }

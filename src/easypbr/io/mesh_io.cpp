@@ -54,7 +54,8 @@ const std::map<std::string, Reader>& readers() {
                                                    {"npy", without_options(read_npy)},
                                                    {"npz", without_options(read_npz)},
                                                    {"bin", without_options(read_kitti)},
-                                                   {"las", without_options(read_las)}};
+                                                   {"las", without_options(read_las)},
+                                                   {"laz", without_options(read_las)}};
     return all;
 }
 
