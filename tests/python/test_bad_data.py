@@ -1,0 +1,135 @@
+"""Data that is odd or wrong: a message that says what was expected, or a sensible picture. Never a crash, never garbage."""
+import numpy as np
+import pytest
+
+import easypbr
+from easypbr import Mesh, Scene, Viewer, shapes
+
+NAN = float("nan")
+V = np.random.default_rng(0).random((50, 3))
+
+
+def mesh_of(**arrays) -> Mesh:
+    mesh = Mesh()
+    mesh.assign(**arrays)
+    return mesh
+
+
+def with_row(values: np.ndarray, row: int, value: float) -> np.ndarray:
+    changed = np.array(values, dtype=float)
+    changed[row] = value
+    return changed
+
+
+@pytest.mark.parametrize("arrays, message", [
+    ({"V": V, "N": V[:49]}, "array N: expected 50 rows, one per vertex, or none; got 49 x 3"),
+    ({"V": V, "C": V[:7]}, "array C: expected 50 rows.*got 7 x 3"),
+    ({"V": V, "L": np.zeros(49, int)}, "array L: expected 50 rows, one per vertex, or 0, one per face, or none; got 49 x 1"),
+    ({"V": V, "I": V[:3, 0]}, "array I: expected 50 rows.*got 3 x 1"),
+    ({"V": V[:, :2]}, "array V: expected n x 3, got 50 x 2 float64"),
+    ({"V": V[0]}, "array V: expected n x 3, got 3"),
+    ({"V": np.array([["a", "b", "c"]])}, "array V: expected numbers, got dtype <U1"),
+    ({"V": V * 1j}, "array V: expected numbers, got dtype complex128"),
+    ({"V": V, "F": [[0.5, 1, 2]]}, "array F: expected whole numbers"),
+    ({"V": V, "F": [[0, 1, 50]]}, "array F: expected vertex indices from 0 to 49, got 50 in row 0 of 1"),
+    ({"V": V, "F": [[0, 1, 2], [-1, 1, 2]]}, "array F: expected vertex indices from 0 to 49, got -1 in row 1 of 2"),
+    ({"V": V, "E": [[0, 50]]}, "array E: expected vertex indices from 0 to 49, got 50"),
+    ({"V": with_row(V, 3, NAN)}, r"array V: expected finite positions, got \(nan, nan, nan\) in row 3 of 50"),
+    ({"V": with_row(V, 4, np.inf)}, "array V: expected finite positions, got .*inf.* in row 4 of 50"),
+    ({"V": V, "L": np.full(50, 999), "label_map": "semantic_kitti"}, "label 999 in row 0 of 50 is not in the label map"),
+    ({"V": V, "L": np.full(50, 1.5)}, "array L: expected whole numbers"),
+])
+def test_wrong_arrays_are_named(arrays, message):
+    mesh = mesh_of(V=[[1, 2, 3]])
+    with pytest.raises(easypbr.ArgumentError, match=message):
+        mesh.assign(**arrays)
+    assert mesh.V.tolist() == [[1, 2, 3]], "the mesh stays as it was"
+
+
+@pytest.mark.parametrize("name, value, message", [
+    ("colormap", "viridiz", "did you mean 'viridis'"),
+    ("mode", "surfel", "did you mean 'surfels'"),
+    ("color_by", "lable", "expected one of solid"),
+    ("point_size", NAN, "expected a number"),
+    ("point_size", -1, "expected a number of at least"),
+])
+def test_wrong_styles_are_named(name, value, message):
+    mesh = mesh_of(V=V)
+    with pytest.raises(easypbr.ArgumentError, match=f"style.{name}.*{message}"):
+        setattr(mesh.style, name, value)
+
+
+def test_an_unknown_colormap_is_named():
+    with pytest.raises(easypbr.UnknownNameError, match="viridiz.*did you mean 'viridis'"):
+        easypbr.colormap("viridiz")
+
+
+def drawn_share(mesh: Mesh, samples: int = 1) -> float:
+    """Share of the picture that is not background. What is asked of the layers is that all of them are numbers."""
+    scene = Scene()
+    scene.show(mesh, "mesh")
+    view = Viewer((200, 150), scene=scene)
+    picture = view.render(samples=samples)
+    for name, layer in view.layers(["normal", "depth", "albedo"]).items():
+        assert np.isfinite(layer).all(), name
+    return (picture[:, :, :3] != 64).any(axis=2).mean()
+
+
+@pytest.mark.parametrize("positions", [np.zeros((0, 3)), None])
+def test_an_empty_cloud_is_nothing_to_show(positions):
+    mesh = Mesh() if positions is None else mesh_of(V=positions)
+    with pytest.raises(easypbr.ArgumentError, match="nothing to show"):
+        drawn_share(mesh)
+    scene = Scene()
+    scene.show(mesh, "empty")
+    scene.show(shapes.box(), "box")
+    assert Viewer((40, 30), scene=scene).render(samples=1)[15, 20, 0] != 64, "beside something else it is no error"
+
+
+@pytest.mark.parametrize("count", [1, 9])
+def test_points_at_one_place_are_a_dot(count):
+    # 12 pixels of a picture 1080 high are 1.7 here: a pixel at least.
+    assert 1 <= drawn_share(mesh_of(V=[[1, 2, 3]] * count)) * 200 * 150 <= 16
+
+
+@pytest.mark.parametrize("factor", [1e-12, 1e12])
+def test_clouds_of_any_size_are_drawn(factor):
+    assert drawn_share(mesh_of(V=V * factor)) > 0.2
+
+
+def some_nan(values: np.ndarray) -> np.ndarray:
+    return with_row(values, slice(None, None, 3), NAN)
+
+
+BALL = shapes.sphere(1, 32)
+SURFELS = BALL.to_surfels()
+
+
+@pytest.mark.parametrize("mesh, changed", [
+    (BALL, {"N": some_nan(BALL.N)}),
+    (BALL, {"N": 0 * BALL.N}),
+    (BALL, {"C": some_nan(np.ones_like(BALL.V))}),
+    (BALL, {"F": np.vstack([BALL.F, [[0, 0, 0]] * 9])}),
+    (SURFELS, {"N": some_nan(SURFELS.N)}),
+    (SURFELS, {"N": 0 * SURFELS.N}),
+    (SURFELS, {"T": some_nan(SURFELS.T)}),
+    (SURFELS, {"T": with_row(SURFELS.T, slice(None, None, 3), 0)}),
+    (SURFELS, {"B": some_nan(SURFELS.B)}),
+    (SURFELS, {"B": -SURFELS.B}),
+    (mesh_of(V=BALL.V), {"N": some_nan(BALL.N)}),
+    (mesh_of(V=BALL.V), {"N": 0 * BALL.N}),
+    (mesh_of(V=BALL.V), {"C": some_nan(np.ones_like(BALL.V))}),
+    (mesh_of(V=BALL.V), {"I": some_nan(BALL.V[:, 0])}),
+    (mesh_of(V=BALL.V), {"scalars": {"nothing": np.full(len(BALL.V), NAN)}}),
+])
+def test_what_is_no_number_or_has_no_direction_leaves_the_rest(mesh, changed):
+    odd = mesh.clone()
+    odd.assign(**changed)
+    usual = drawn_share(mesh)
+    assert 0.8 * usual < drawn_share(odd) < 1.3 * usual
+
+
+@pytest.mark.parametrize("points", [[], [[1, 2, 3]], [[1, 2, 3]] * 20])
+def test_surfels_need_different_points(points):
+    with pytest.raises(easypbr.ArgumentError, match="estimate_surfels: expected"):
+        mesh_of(V=np.reshape(points, (-1, 3))).estimate_surfels()
