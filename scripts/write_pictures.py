@@ -3,6 +3,7 @@
 
 usage: write_pictures.py [OUTPUT_FOLDER]      default: docs/images; the easypbr package must be importable
 """
+import importlib
 import pathlib
 import subprocess
 import sys
@@ -14,6 +15,7 @@ import easypbr
 from easypbr import Material, Mesh, Scene, Viewer, shapes
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "examples/figures"))
 
 
 def sky(width: int = 512) -> np.ndarray:
@@ -31,6 +33,20 @@ def sky(width: int = 512) -> np.ndarray:
     sun = (toward_sun > np.cos(np.radians(3)))[:, :, None] * np.array([600.0, 420.0, 250.0])
     return (horizon + dome + sun).astype(np.float32)
 
+
+def figure(name: str):
+    """A figure of examples/figures, drawn without data."""
+    module = importlib.import_module(name)
+
+    def draw() -> np.ndarray:
+        return module.draw(None, 1.0)
+
+    draw.__name__ = name
+    return draw
+
+
+FIGURES = [figure(name) for name in ("eye_dome_lighting", "surfel_steps", "bunny_surfels", "labelled_street", "plants",
+                                     "all_kinds", "scalar_field")]
 
 def row(pictures) -> np.ndarray:
     """Pictures side by side with a white gap."""
@@ -276,5 +292,5 @@ if __name__ == "__main__":
         sys.exit(__doc__)
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) == 2 else ROOT / "docs/images"
     folder.mkdir(parents=True, exist_ok=True)
-    for draw in PICTURES:
+    for draw in PICTURES + FIGURES:
         easypbr.save_image(draw(), folder / f"{draw.__name__}.png")

@@ -104,7 +104,7 @@ def test_site_builds_without_a_warning(reference, tmp_path):
 
 
 def test_pictures_are_those_that_the_script_draws():
-    drawn = {f"{draw.__name__}.png" for draw in write_pictures.PICTURES}
+    drawn = {f"{draw.__name__}.png" for draw in write_pictures.PICTURES + write_pictures.FIGURES}
     assert drawn == {path.name for path in (ROOT / "docs/images").iterdir()}
     shown = {pathlib.Path(target).name for page in PAGES for target in links(page)}
     assert drawn <= shown, "a picture that no page shows"
