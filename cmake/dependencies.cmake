@@ -13,9 +13,19 @@ find_package(tinyexr REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_path(STB_FOLDER stb/stb_truetype.h REQUIRED)
+# The window's library is loaded when the first window is opened: only its header is needed here.
+find_path(GLFW_FOLDER GLFW/glfw3.h REQUIRED)
+find_path(IMGUI_FOLDER imgui.h PATH_SUFFIXES imgui REQUIRED)
+# As archives, so that nothing of them has to be installed where the library runs.
+find_library(IMGUI_LIBRARY libimgui.a REQUIRED)
+find_library(STB_LIBRARY libstb.a REQUIRED)
 find_file(EASYPBR_FONT DejaVuSans.ttf PATHS /usr/share/fonts PATH_SUFFIXES truetype/dejavu dejavu dejavu-sans-fonts
           REQUIRED)
 
 add_library(easypbr_dependencies INTERFACE)
 target_link_libraries(easypbr_dependencies INTERFACE Eigen3::Eigen fmt::fmt TBB::tbb nlohmann_json::nlohmann_json
   meshoptimizer::meshoptimizer nanoflann::nanoflann PkgConfig::EPOXY PkgConfig::SPNG PkgConfig::TURBOJPEG tinyexr::tinyexr ZLIB::ZLIB yaml-cpp ${CMAKE_DL_LIBS})
+# What the room gui alone uses.
+add_library(easypbr_gui_dependencies INTERFACE)
+target_link_libraries(easypbr_gui_dependencies INTERFACE ${IMGUI_LIBRARY} ${STB_LIBRARY})
+target_include_directories(easypbr_gui_dependencies SYSTEM INTERFACE ${GLFW_FOLDER} ${IMGUI_FOLDER})

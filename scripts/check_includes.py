@@ -16,10 +16,11 @@ MAY_USE = {
     "gpu": {"core", "scene", "gl"},
     "render": {"core", "scene", "gl", "gpu"},
     "app": {"core", "scene", "gl", "io", "gpu", "render"},
+    "gui": {"core", "scene", "gl", "io", "gpu", "render", "app"},
     "dataset": {"core", "scene", "gl", "io", "gpu", "render", "app"},
-    "viewer": {"core", "scene", "gl", "io", "gpu", "render", "app", "dataset"},
-    "cli": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "dataset", "viewer"},
-    "python": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "dataset", "viewer", "cli"},
+    "viewer": {"core", "scene", "gl", "io", "gpu", "render", "app", "gui", "dataset"},
+    "cli": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "gui", "dataset", "viewer"},
+    "python": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "gui", "dataset", "viewer", "cli"},
 }
 INCLUDE = re.compile(r'#include\s+["<]easypbr/(\w+)/')
 

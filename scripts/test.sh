@@ -12,5 +12,5 @@ ctest --test-dir build --output-on-failure -j "$(nproc)" || failed=1
 if [ -z "${EASYPBR_TEST_DATA:-}" ]; then
   echo "EASYPBR_TEST_DATA is not set: $(ctest --test-dir build -N | grep -c 'Test *#') tests ran, those on real files were left out"
 fi
-.venv/bin/python -m pytest -q tests/cli tests/python tests/oracle tests/package tests/docs || failed=1
+.venv/bin/python -m pytest -q tests/cli tests/python tests/window tests/oracle tests/package tests/docs || failed=1
 exit $failed

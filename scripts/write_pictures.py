@@ -71,6 +71,32 @@ def on_floor(mesh: Mesh) -> Scene:
     return scene
 
 
+def window_of(size, samples=16) -> Viewer:
+    """A viewer with a few things to look at, one of them selected."""
+    scene = on_floor(teapot("#b03a2e", 0, 0.25))
+    ball = shapes.sphere(0.2)
+    ball.material = Material(base_color="#d9b54a", metallic=1, roughness=0.3)
+    ball.T_parent_mesh = [[1, 0, 0, -0.6], [0, 1, 0, 0.2], [0, 0, 1, 0.5], [0, 0, 0, 1]]
+    scene.show(ball, "ball")
+    return Viewer(size, {"image": {"samples": samples}, "camera": {"elevation_deg": 20}}, scene=scene)
+
+
+def viewer() -> np.ndarray:
+    """The window, a ball selected."""
+    view = window_of((1120, 700))
+    view._handle.set_gui("object", "ball")
+    return view.screenshot()[:, :, :3]
+
+
+def viewer_slices() -> np.ndarray:
+    """The window with light panels, its G-buffer in slices."""
+    view = window_of((1120, 620))
+    view._handle.set_gui("light_theme", True)
+    view._handle.set_gui("channel", "slices")
+    view._handle.set_gui("Effects", False)
+    return view.screenshot()[:, :, :3]
+
+
 def demo() -> np.ndarray:
     """What `easypbr demo` draws, its camera included."""
     with tempfile.TemporaryDirectory() as folder:
@@ -285,6 +311,8 @@ def drones() -> np.ndarray:
 
 PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion,
             geometry, all_shapes, glass, camera_path, shadows, ground, drones]
+
+PICTURES += [viewer, viewer_slices]
 
 
 if __name__ == "__main__":

@@ -25,6 +25,8 @@ MODULES = {"shapes": "Shapes"}
 #: What public functions and attributes return; described below the group of what returns them.
 HELPERS = {"Drawing": ["Recorder", "Lights", "StudioLight"], "Content": ["LoadedScene", "Animations"]}
 
+PYTHON_GROUPS["Window"] = ["show", "Pick"]
+
 SETTINGS_HEAD = """# Settings
 
 Every setting there is. The same names serve `--set name=value` on the command line, `view.settings.name = value` in

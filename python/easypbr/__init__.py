@@ -20,6 +20,7 @@ from ._easypbr import (
     Material,
     Mesh,
     Moment,
+    Pick,
     Style,
     __version__,
     auto,
@@ -37,7 +38,7 @@ from .rendering import render
 from .scene import Scene
 from .settings import Settings
 from .tensors import eigen2tensor, tensor2eigen
-from .viewer import Viewer
+from .viewer import Viewer, show
 
 __all__ = [
     "ArgumentError",
@@ -58,6 +59,7 @@ __all__ = [
     "Mesh",
     "MeshLoader",
     "Moment",
+    "Pick",
     "Scene",
     "Settings",
     "Style",
@@ -75,5 +77,6 @@ __all__ = [
     "render",
     "save_image",
     "shapes",
+    "show",
     "tensor2eigen",
 ]

@@ -1,12 +1,16 @@
 """Viewer: draws a scene."""
 
+import atexit
 import os
-from collections.abc import Mapping, Sequence
+import sys
+import threading
+import traceback
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
 from . import _easypbr
-from .errors import ArgumentError, ContextError
+from .errors import ArgumentError
 from .lights import _STUDIO, Lights
 from .recorder import Recorder
 from .scene import Scene
@@ -24,6 +28,8 @@ class Viewer:
         self._handle = _easypbr.ViewerHandle(self.scene._handle)
         self.recorder = Recorder(self)
         self._settings = Settings(self._handle)
+        self._thread = None
+        self._before_draw, self._after_draw, self._told = [], [], set()
         if isinstance(settings, Mapping):
             self._settings.update(settings)
         elif settings is not None:
@@ -181,11 +187,82 @@ class Viewer:
         """Seconds that the steps of the last picture took."""
         return self._handle.timing()
 
-    def show(self):
-        """Would open a window; this build has none."""
-        raise ContextError(_NO_WINDOW)
+    def update(self) -> bool:
+        """Opens the window at the first call; shows what has changed and does what mouse and keys ask for. Waits up to
+        16 ms for something to happen. False when the window has been closed: while view.update(): ..."""
+        self._run(self._before_draw)
+        is_open = self._handle.update()
+        self._run(self._after_draw)
+        return is_open
 
-    update = show
+    def show(self, block: bool = True) -> None:
+        """Shows the window until it is closed; with block=False it lives on a thread of its own meanwhile."""
+        self._handle.reopen()
+        if block:
+            while self.update():
+                pass
+            return
+        if self._thread is not None and self._thread.is_alive():
+            return
+        self.update()  # What keeps the window from opening is told here.
+        self._thread = threading.Thread(target=self._live, name="easypbr window", daemon=True)
+        self._thread.start()
+        atexit.register(self.close)  # A thread within the library must not outlive the interpreter.
+
+    def _live(self) -> None:
+        while self.update():
+            pass
+
+    def close(self) -> None:
+        """Closes the window; update() returns False from now on, until show()."""
+        self._handle.close()
+        if self._thread is not None and self._thread is not threading.current_thread():
+            self._thread.join()
+            self._thread = None
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the window is there."""
+        return self._handle.is_open()
+
+    def before_draw(self, function: Callable[[], None]) -> Callable[[], None]:
+        """Calls `function` in every update() before it draws. What it raises is shown with its traceback, and the loop
+        goes on. Also as a decorator."""
+        self._before_draw.append(function)
+        return function
+
+    def after_draw(self, function: Callable[[], None]) -> Callable[[], None]:
+        """Calls `function` in every update() after it has drawn."""
+        self._after_draw.append(function)
+        return function
+
+    def _run(self, functions: list) -> None:
+        for function in list(functions):
+            self._call(function)
+
+    def _call(self, function, *arguments):
+        """Calls a user's function; an exception is told once, on stderr with its traceback and in the window."""
+        try:
+            return function(*arguments)
+        except Exception as error:
+            text = traceback.format_exc()
+            if text not in self._told:
+                self._told.add(text)
+                print(text, file=sys.stderr, end="")
+                self._handle.notify("".join(traceback.format_exception_only(type(error), error)).strip(), True)
+
+    def open(self, path) -> None:
+        """Adds what a file holds, as a file dropped on the window; HDR and EXR become the environment."""
+        self._handle.open(path)
+
+    def pick(self, x: float, y: float, size=None) -> "_easypbr.Pick | None":
+        """What lies under a pixel of a picture of `size`, counted from the top left corner: object, part, face or point,
+        position. None where there is no surface."""
+        return self._handle.pick(x, y, size)
+
+    def screenshot(self, size=None, scale: float = 1) -> np.ndarray:
+        """What the window would show, panels included; needs no display. `scale`: pixels of a plain one (HiDPI)."""
+        return self._handle.screenshot(size, scale)
 
     def _repr_png_(self) -> bytes | None:
         if not self.scene.names():
@@ -193,6 +270,14 @@ class Viewer:
         return _easypbr.encode_png(self.render())
 
 
-_NO_WINDOW = (
-    "this build has no window: use view.render() for an array or view.recorder.record('picture.png') for a file"
-)
+def show(what, name: str | None = None, block: bool = True, size=(1280, 720), settings=None) -> Viewer:
+    """Shows anything as_mesh() takes, a path or a Scene in a window, until it is closed; with block=False the window
+    lives on its own. Returns its Viewer; `settings` as Viewer takes them."""
+    if isinstance(what, Scene):
+        scene = what
+    else:
+        scene = Scene()
+        scene.show(what, name)
+    view = Viewer(size, settings, scene=scene)
+    view.show(block)
+    return view

@@ -1,4 +1,5 @@
 """The other commands, and the command line itself."""
+import shapes
 import json
 import os
 import subprocess
@@ -102,8 +103,21 @@ def test_without_a_driver_the_attempts_are_listed(environment, sphere, tmp_path)
     assert list(tmp_path.iterdir()) == []
 
 
-def test_view_says_that_there_is_no_window(easypbr):
-    assert "easypbr render a.ply" in easypbr("view", "a.ply", code=1).stderr
+def test_view_says_when_there_is_no_display(easypbr, environment, tmp_path):
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        environment.pop(name, None)
+    shapes.write_box(tmp_path / "a.obj")
+    assert "no window" in easypbr("view", "a.obj", code=1).stderr
+
+
+def test_view_makes_a_screenshot_without_a_display(easypbr, environment, tmp_path):
+    for name in ("DISPLAY", "WAYLAND_DISPLAY"):
+        environment.pop(name, None)
+    shapes.write_box(tmp_path / "a.obj")
+    easypbr("view", "a.obj", "--size", "320x200", "--set", "image.samples=1", "--screenshot", "window.png")
+    assert easypbr("info", "window.png").stdout.count("320")
+    assert "'bmp'" in easypbr("view", "a.obj", "--screenshot", "window.bmp", code=1).stderr
+    assert "missing.ply" in easypbr("view", "missing.ply", "--screenshot", "window.png", code=1).stderr
 
 
 def test_demo_writes_a_picture_and_says_where(easypbr, tmp_path):

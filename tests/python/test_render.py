@@ -154,12 +154,36 @@ def test_notebooks_get_a_png(sphere, tmp_path):
     assert Viewer(scene=Scene())._repr_png_() is None
 
 
-def test_there_is_no_window():
-    view = Viewer()
-    for act in (view.show, view.update):
-        with pytest.raises(easypbr.ContextError, match="no window.*view.render"):
+def test_without_a_display_there_is_no_window(sphere, monkeypatch):
+    monkeypatch.delenv("DISPLAY", raising=False)
+    view = Viewer(scene=_scene_of(sphere))
+    for act in (view.show, view.update, lambda: view.show(block=False), lambda: easypbr.show(sphere)):
+        with pytest.raises(easypbr.ContextError, match=r"no window: .*render\(\)"):
             act()
-    assert issubclass(easypbr.ContextError, RuntimeError)
+    assert issubclass(easypbr.ContextError, RuntimeError) and not view.is_open
+    view.close()
+    assert not view.update()
+
+
+def test_a_screenshot_holds_picture_and_panels(sphere):
+    view = Viewer((400, 300), {"image": {"samples": 2}}, scene=_scene_of(sphere))
+    with_panels = view.screenshot()
+    view._handle.set_gui("show_panels", False)
+    without = view.screenshot()
+    assert with_panels.shape == (300, 400, 4)
+    assert np.abs(without[:, :, :3].astype(int) - view.render()[:, :, :3]).max() <= 1
+    assert np.mean(np.any(with_panels != without, axis=2)) > 0.3
+
+
+def test_picking_names_object_face_and_position(sphere, size):
+    view = Viewer(size, scene=_scene_of(sphere))
+    view.camera = easypbr.Camera.look_at((0, 0, 4), (0, 0, 0))
+    pick = view.pick(size[0] / 2, size[1] / 2)
+    assert pick.is_face and 0 <= pick.element < len(sphere.F) and pick.object in view.object_names()
+    corners = sphere.V[sphere.F[pick.element]]
+    assert np.all(pick.position >= corners.min(axis=0) - 1e-4) and np.all(pick.position <= corners.max(axis=0) + 1e-4)
+    assert abs(pick.depth - (4 - pick.position[2])) < 1e-4
+    assert view.pick(0, 0) is None and view.pick(-1, 1e6) is None
 
 
 def test_a_moved_mesh_moves_in_the_picture(sphere, size):

@@ -15,9 +15,11 @@ __asm__(
     "easypbr_font_begin:\n"
     ".incbin \"" EASYPBR_FONT_FILE
     "\"\n"
+    "easypbr_font_end:\n"
     ".byte 0\n"
     ".previous\n");
 extern "C" const unsigned char easypbr_font_begin[] __attribute__((visibility("hidden")));
+extern "C" const unsigned char easypbr_font_end[] __attribute__((visibility("hidden")));
 
 namespace easypbr::app {
 namespace {
@@ -64,6 +66,10 @@ void draw_glyph(int glyph, float scale, float x, int baseline, const Coverage& c
 }
 
 }  // namespace
+
+std::span<const std::byte> font_file() {
+    return std::as_bytes(std::span(easypbr_font_begin, easypbr_font_end));
+}
 
 Font::Font(float em) : scale_(stbtt_ScaleForMappingEmToPixels(&font(), em)) {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;

@@ -1,13 +1,18 @@
 // The embedded font, as coverage of pixels.
 #pragma once
 
+#include <cstddef>
 #include <functional>
+#include <span>
 #include <string_view>
 
 namespace easypbr::app {
 
 /// Called for every pixel that text touches, with the part of it that is covered, 0 to 1.
 using Coverage = std::function<void(int x, int y, float coverage)>;
+
+/// The embedded font's file (TrueType).
+std::span<const std::byte> font_file();
 
 /// DejaVu Sans in one size. Text is UTF-8; what the font lacks is a box.
 class Font {

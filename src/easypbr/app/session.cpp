@@ -230,6 +230,15 @@ Session::Refinement Session::refine(const PictureOptions& options, bool finish) 
     return done;
 }
 
+uint64_t Session::picture_version(std::optional<Vec2i> size) {
+    Prepared prepared = prepare({size, 1, Encoding::srgb8});
+    if (!versioned_ || !versioned_->is_of(prepared, settings_images_)) {
+        versioned_ = std::make_unique<Refined>(std::move(prepared), settings_images_);
+        ++version_;
+    }
+    return version_;
+}
+
 PickBuffer Session::pick_buffer(std::optional<Vec2i> size) {
     const Prepared prepared = prepare({size, 1, Encoding::srgb8});
     // A complete picture stays what it is; one that is being refined has to begin again.

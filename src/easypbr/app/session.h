@@ -101,6 +101,9 @@ class Session {
     };
     Refinement refine(const PictureOptions& options = {}, bool finish = true);
 
+    /// A number that grows whenever a picture of this size would be another one.
+    uint64_t picture_version(std::optional<Vec2i> size = std::nullopt);
+
     /// What is seen in each pixel of the picture that would be drawn now, as surfaces.
     PickBuffer pick_buffer(std::optional<Vec2i> size = std::nullopt);
     /// What is seen in the pixel that the point lies in, counted from the picture's top left corner; nothing
@@ -188,6 +191,8 @@ class Session {
         bool is_of(const Prepared& other, const render::SettingsImages& other_images) const;
     };
     std::unique_ptr<Refined> refined_;
+    std::unique_ptr<Refined> versioned_;  ///< what picture_version() saw last
+    uint64_t version_ = 0;
 
     /// Replaces a camera that is warped, and the size, by what has to be drawn.
     void apply_lens(Prepared& prepared);

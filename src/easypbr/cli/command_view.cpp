@@ -1,27 +1,77 @@
+#include <fmt/format.h>
+
+#include <optional>
+
+#include "easypbr/app/output.h"
 #include "easypbr/cli/command.h"
-#include "easypbr/core/error.h"
+#include "easypbr/cli/drawable.h"
+#include "easypbr/cli/render_options.h"
+#include "easypbr/core/file.h"
+#include "easypbr/gui/live_view.h"
+#include "easypbr/io/image_io.h"
+#include "easypbr/scene/fields.h"
+#include "easypbr/viewer/viewer.h"
 
 namespace easypbr::cli {
 namespace {
 
 struct ViewOptions {
-    std::vector<std::string> files;
+    std::vector<std::string> files, values;
+    std::string size = "1280x720", environment, settings, screenshot;
+    bool watch = false, light = false;
 };
 
 void declare(CLI::App& command, ViewOptions& options) {
-    command.add_option("FILE", options.files, "Meshes");
+    command.add_option("FILE", options.files, "Meshes: PLY, OBJ, STL, OFF, glTF, GLB and more");
+    command.add_option("--size,--resolution", options.size, "Width and height of the window in pixels")
+        ->option_text("WxH");
+    command.add_option("--env,--hdri-file", options.environment, field("environment.file").doc)
+        ->option_text("FILE");
+    command.add_option("--settings", options.settings, "Start from a file that --save-settings wrote")
+        ->option_text("FILE");
+    command.add_option("--set", options.values, "Any setting, for example tonemap.exposure=2")
+        ->allow_extra_args(false)
+        ->option_text("KEY=VALUE");
+    command.add_flag("--watch", options.watch, "Show files again when they change");
+    command.add_flag("--light", options.light, "Light panels instead of dark ones");
+    command
+        .add_option("--screenshot", options.screenshot,
+                    "Write what the window would show to an image file instead; needs no display")
+        ->option_text("FILE");
+}
+
+RenderOptions look_of(const ViewOptions& options) {
+    RenderOptions look;
+    look.size = options.size;
+    look.values = options.values;
+    if (!options.environment.empty())
+        look.shorthands.push_back({"--env", "environment.file", options.environment});
+    return look;
 }
 
 int run(const ViewOptions& options) {
-    const std::string file = options.files.empty() ? "FILE" : options.files.front();
-    throw Error("view: this version has no window; use 'easypbr render " + file + " -o OUT.png'");
+    Viewer view{Scene()};
+    if (!options.settings.empty()) app::load_settings(view.session(), options.settings);
+    apply(look_of(options), view.settings());
+    if (!options.screenshot.empty()) app::encoding_for(options.screenshot);
+    const std::vector<std::string> names = unique_names(options.files);
+    for (size_t i = 0; i < names.size(); ++i) {
+        const io::LoadOptions load{.crease_angle_deg = view.settings().load.crease_deg};
+        show(view.scene(), load_drawable(options.files[i], load), names[i]);
+        if (options.watch) view.live().watch(options.files[i], names[i]);
+    }
+    if (options.light) view.live().state().theme = gui::Theme::light;
+    if (options.screenshot.empty())
+        view.show();
+    else
+        io::save_image(view.screenshot(), options.screenshot);
+    return 0;
 }
 
 }  // namespace
 
 void add_view(CLI::App& app, Job& job) {
-    set_job<ViewOptions>(*app.add_subcommand("view", "Show mesh files in a window (not in this version)"),
-                         job, declare, run);
+    set_job<ViewOptions>(*app.add_subcommand("view", "Show mesh files in a window"), job, declare, run);
 }
 
 }  // namespace easypbr::cli

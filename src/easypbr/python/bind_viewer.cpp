@@ -1,4 +1,5 @@
 // Viewer, as the Python class of the same name uses it: one thread at a time, without the GIL.
+#include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
@@ -6,6 +7,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/gui/live_view.h"
 #include "easypbr/io/settings_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/settings_value.h"
@@ -80,7 +82,85 @@ nb::dict timing(SharedViewer& self) {
     return result;
 }
 
+nb::object pick(SharedViewer& self, double x, double y, const nb::object& size) {
+    const std::optional<Vec2i> pixels = optional_size(size);
+    const auto pick = self.run([&](Viewer& viewer) { return viewer.pick({x, y}, pixels); });
+    return pick ? nb::cast(*pick) : nb::none();
+}
+
+/// What tests and programs may ask about the window.
+nb::dict gui_state(SharedViewer& self) {
+    nb::dict result;
+    const auto put = [&](const char* name, const auto& value) { result[name] = nb::cast(value); };
+    gui::GuiState state = self.run([](Viewer& viewer) { return viewer.live().state(); });
+    put("object", state.object);
+    put("show_panels", state.show_panels);
+    put("show_keys", state.show_keys);
+    put("channel", state.channel);
+    put("pictures", state.statistics.pictures);
+    put("frames", state.statistics.frames);
+    put("total", state.statistics.total);
+    put("size", std::vector<int>{state.size.x(), state.size.y()});
+    put("drawn_size", std::vector<int>{state.statistics.size.x(), state.statistics.size.y()});
+    put("frame_seconds", state.statistics.frame_seconds);
+    nb::list panels, messages;
+    for (int i = 0; i < gui::panel_count; ++i)
+        if (state.open[size_t(i)]) panels.append(gui::panel_name(gui::Panel(i)));
+    for (const gui::Notification& message : state.notifications) messages.append(message.text);
+    result["panels"] = panels;
+    result["messages"] = messages;
+    return result;
+}
+
+void set_gui(SharedViewer& self, const std::string& name, nb::handle value) {
+    const std::string text = nb::isinstance<nb::str>(value) ? nb::cast<std::string>(value) : "";
+    const bool flag = text.empty() && nb::cast<bool>(value);
+    self.run([&](Viewer& viewer) {
+        viewer.live().touch();
+        gui::GuiState& state = viewer.live().state();
+        if (name == "object")
+            state.object = text;
+        else if (name == "channel")
+            state.channel = text;
+        else if (name == "light_theme")
+            state.theme = flag ? gui::Theme::light : gui::Theme::dark;
+        else if (name == "show_panels")
+            state.show_panels = flag;
+        else if (name == "show_keys")
+            state.show_keys = flag;
+        for (int i = 0; i < gui::panel_count; ++i)
+            if (name == gui::panel_name(gui::Panel(i))) state.open[size_t(i)] = flag;
+    });
+}
+
 using ViewerClass = nb::class_<SharedViewer>;
+
+void bind_window(ViewerClass& viewer) {
+    viewer.def("update", [](SharedViewer& self) { return self.run([](Viewer& v) { return v.update(); }); })
+        .def("reopen", [](SharedViewer& self) { self.run([](Viewer& v) { v.reopen(); }); })
+        .def("close", [](SharedViewer& self) { self.run([](Viewer& v) { v.close(); }); })
+        .def("is_open", [](SharedViewer& self) { return self.run([](Viewer& v) { return v.is_open(); }); })
+        .def("pick", pick, nb::arg("x"), nb::arg("y"), nb::arg("size").none() = nb::none())
+        .def(
+            "screenshot",
+            [](SharedViewer& self, const nb::object& size, float scale) {
+                const std::optional<Vec2i> pixels = optional_size(size);
+                return to_numpy(self.run([&](Viewer& v) { return v.screenshot(pixels, scale); }));
+            },
+            nb::arg("size").none() = nb::none(), nb::arg("scale") = 1.0f)
+        .def("open", [](SharedViewer& self,
+                        const fs::path& path) { self.run([&](Viewer& v) { v.live().open(path); }); })
+        .def("watch",
+             [](SharedViewer& self, const fs::path& path, const std::string& name) {
+                 self.run([&](Viewer& v) { v.live().watch(path, name); });
+             })
+        .def("notify",
+             [](SharedViewer& self, const std::string& text, bool is_error) {
+                 self.run([&](Viewer& v) { v.live().state().notify(text, is_error); });
+             })
+        .def("gui_state", gui_state)
+        .def("set_gui", set_gui, nb::arg("name"), nb::arg("value"));
+}
 
 void bind_pictures(ViewerClass& viewer) {
     viewer
@@ -135,6 +215,21 @@ void bind_viewer(nb::module_& module) {
     bind_pictures(viewer);
     bind_viewer_settings(viewer);
     bind_recorder(module, viewer);
+    bind_window(viewer);
+    nb::class_<app::Pick>(module, "Pick", "What lies under a pixel.")
+        .def_ro("object", &app::Pick::object, "Name in the scene; 'car/wheel' for a child.")
+        .def_ro("part", &app::Pick::part, "Name of the part of the mesh; empty where it has none.")
+        .def_ro("is_face", &app::Pick::is_face, "Whether `element` is a face; else it is a point.")
+        .def_ro("element", &app::Pick::element, "Index of the face or point.")
+        .def_prop_ro(
+            "position", [](const app::Pick& pick) { return matrix_to_numpy(pick.position.transpose()); },
+            "World position, in the scene's frame.", nb::sig("def position(self) -> numpy.ndarray"))
+        .def_ro("depth", &app::Pick::depth, "Distance along the optical axis.")
+        .def("__repr__", [](const app::Pick& pick) {
+            return fmt::format("<Pick: {} {} {} at ({:g}, {:g}, {:g})>", pick.object,
+                               pick.is_face ? "face" : "point", pick.element, pick.position.x(),
+                               pick.position.y(), pick.position.z());
+        });
     module.def("layer_names", [] { return render::layer_names(); });
 }
 

@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <condition_variable>
 #include <mutex>
 #include <optional>
 
@@ -13,6 +14,29 @@
 
 namespace easypbr::python {
 
+/// Lets threads in by the order in which they came: a loop that updates a window leaves others their turn.
+class Turns {
+  public:
+    void lock() {
+        std::unique_lock lock(mutex_);
+        const uint64_t turn = next_++;
+        changed_.wait(lock, [&] { return turn == served_; });
+    }
+    void unlock() {
+        {
+            const std::lock_guard lock(mutex_);
+            ++served_;
+        }
+        changed_.notify_all();
+    }
+
+  private:
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    uint64_t next_ = 0, served_ = 0;
+};
+
+/// A viewer that threads take turns in.
 class SharedViewer {
   public:
     explicit SharedViewer(const Scene& scene) : viewer_(scene) {}
@@ -35,7 +59,7 @@ class SharedViewer {
                 "start processes with multiprocessing.get_context('spawn')");
     }
 
-    std::mutex mutex_;
+    Turns mutex_;
     pid_t process_ = getpid();
     Viewer viewer_;
 };

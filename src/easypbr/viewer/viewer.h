@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "easypbr/app/clock.h"
@@ -12,6 +13,10 @@
 #include "easypbr/app/session.h"
 
 namespace easypbr {
+
+namespace gui {
+class LiveView;
+}
 
 /// The one scene there is without being made: what show() fills and a Viewer without a scene draws.
 Scene& default_scene();
@@ -35,6 +40,9 @@ class Viewer {
   public:
     Viewer() : Viewer(default_scene()) {}
     explicit Viewer(const Scene& scene);
+    ~Viewer();
+    Viewer(const Viewer&) = delete;
+    Viewer& operator=(const Viewer&) = delete;
     /// Settings from a file that --save-settings wrote, and a picture size.
     explicit Viewer(Vec2i size, const std::filesystem::path& settings = {});
 
@@ -57,9 +65,39 @@ class Viewer {
     void set_camera(const Camera& camera) { session_->set_camera(camera); }
     void refit() { session_->refit(); }
 
+    /// Opens the window at the first call; then shows what has changed and does what mouse and keys ask for.
+    /// Waits up to 16 ms for something to happen and draws nothing while nothing changes. False when the
+    /// window has been closed: while (view.update()) ... Every call is a frame of the clock, and one of the
+    /// recording while the recorder records. Throws ContextError when there is no display, and as
+    /// Recorder::add_frame().
+    bool update();
+    /// Shows the window, again when it has been closed, until it is closed.
+    void show();
+    /// Lets update() open the window again after it has been closed.
+    void reopen();
+    /// Closes the window; update() returns false from now on, until show().
+    void close();
+    bool is_open() const;
+
+    /// What lies under a pixel of a picture of `size` (image.size when not given), counted from its top left
+    /// corner; nothing where there is no surface.
+    std::optional<app::Pick> pick(Vec2d pixel, std::optional<Vec2i> size = std::nullopt) {
+        return session_->pick(pixel, size);
+    }
+
+    /// What the window would show: picture and panels, refined; needs no display.
+    Image screenshot(std::optional<Vec2i> size = std::nullopt, float scale = 1);
+
+    /// The GUI behind window and screenshots.
+    gui::LiveView& live();
+
     /// Adds or replaces a light of the scene.
     void add_light(const std::string& name, const Light& light) { scene().set_light(name, light); }
     void remove_light(const std::string& name) { scene().remove_light(name); }
+
+  private:
+    struct Window;
+    std::unique_ptr<Window> window_;
 };
 
 }  // namespace easypbr

@@ -1,0 +1,236 @@
+#include "easypbr/gui/gui.h"
+
+#include <imgui.h>
+#include <imgui_internal.h>
+
+#include <algorithm>
+#include <mutex>
+#include <utility>
+
+#include "easypbr/core/error.h"
+#include "easypbr/gui/panels.h"
+#include "easypbr/gui/widgets.h"
+
+namespace easypbr::gui {
+namespace {
+
+std::recursive_mutex& imgui_mutex() {
+    static std::recursive_mutex mutex;
+    return mutex;
+}
+
+/// Makes a context ImGui's own for a scope, and gives back another one that was.
+class GuiScope {
+  public:
+    explicit GuiScope(ImGuiContext* context) : lock_(imgui_mutex()), previous_(ImGui::GetCurrentContext()) {
+        ImGui::SetCurrentContext(context);
+    }
+    ~GuiScope() { ImGui::SetCurrentContext(previous_); }
+    GuiScope(const GuiScope&) = delete;
+    GuiScope& operator=(const GuiScope&) = delete;
+
+  private:
+    std::lock_guard<std::recursive_mutex> lock_;
+    ImGuiContext* previous_;
+};
+
+struct Column {
+    const char* id;
+    std::vector<std::pair<Panel, void (*)(GuiState&)>> panels;
+};
+
+const Column left = {"##left", {{Panel::scene, scene_panel}, {Panel::object, object_panel}}};
+const Column right = {"##right",
+                      {{Panel::effects, effects_panel},
+                       {Panel::lights, lights_panel},
+                       {Panel::environment, environment_panel},
+                       {Panel::camera, camera_panel},
+                       {Panel::channels, channels_panel},
+                       {Panel::statistics, statistics_panel}}};
+const Panel folded[] = {Panel::lights, Panel::environment, Panel::camera};
+
+void draw_panel(GuiState& state, Panel panel, void (*contents)(GuiState&)) {
+    if (!heading(panel_name(panel), std::ranges::find(folded, panel) == std::end(folded))) return;
+    ImGui::PushID(panel_name(panel));
+    ImGui::Spacing();
+    contents(state);
+    ImGui::Spacing();
+    ImGui::PopID();
+}
+
+void draw_column(GuiState& state, const Column& column, float x, float top, float width) {
+    const bool any =
+        std::ranges::any_of(column.panels, [&](const auto& p) { return state.is_open(p.first); });
+    if (!any) return;
+    ImGui::SetNextWindowPos(ImVec2(x, top));
+    // As high as what is in it, down to the bottom of the window.
+    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, float(state.size.y()) - top));
+    ImGui::SetNextWindowSize(ImVec2(width, 0));
+    const ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
+                                   ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings |
+                                   ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_AlwaysAutoResize;
+    if (ImGui::Begin(column.id, nullptr, flags))
+        for (const auto& [panel, contents] : column.panels)
+            if (state.is_open(panel)) draw_panel(state, panel, contents);
+    ImGui::End();
+}
+
+}  // namespace
+
+Gui::Gui() {
+    const GuiScope none(nullptr);
+    IMGUI_CHECKVERSION();
+    context_ = ImGui::CreateContext();
+    ImGui::SetCurrentContext(context_);
+    ImGuiIO& io = ImGui::GetIO();
+    io.IniFilename = nullptr;
+    io.LogFilename = nullptr;
+    io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
+    namespace k = app::key;
+    const std::pair<ImGuiKey, int> keys[] = {{ImGuiKey_Tab, k::tab},
+                                             {ImGuiKey_LeftArrow, k::left},
+                                             {ImGuiKey_RightArrow, k::right},
+                                             {ImGuiKey_UpArrow, k::up},
+                                             {ImGuiKey_DownArrow, k::down},
+                                             {ImGuiKey_PageUp, k::page_up},
+                                             {ImGuiKey_PageDown, k::page_down},
+                                             {ImGuiKey_Home, k::home},
+                                             {ImGuiKey_End, k::end},
+                                             {ImGuiKey_Insert, k::insert},
+                                             {ImGuiKey_Delete, k::del},
+                                             {ImGuiKey_Backspace, k::backspace},
+                                             {ImGuiKey_Space, k::space},
+                                             {ImGuiKey_Enter, k::enter},
+                                             {ImGuiKey_Escape, k::escape},
+                                             {ImGuiKey_A, 'A'},
+                                             {ImGuiKey_C, 'C'},
+                                             {ImGuiKey_V, 'V'},
+                                             {ImGuiKey_X, 'X'},
+                                             {ImGuiKey_Y, 'Y'},
+                                             {ImGuiKey_Z, 'Z'}};
+    for (const auto& [name, code] : keys) io.KeyMap[name] = code;
+}
+
+Gui::~Gui() {
+    const GuiScope none(nullptr);
+    ImGui::DestroyContext(context_);
+}
+
+bool Gui::over_panel(Vec2d position) const {
+    return popup_ ||
+           std::ranges::any_of(panels_, [&](const auto& panel) { return panel.contains(position); });
+}
+
+void Gui::take_button(const app::InputEvent& event) {
+    const size_t button = size_t(event.button);
+    down_[button] = event.kind == app::InputEvent::Kind::press;
+    pressed_[button] |= down_[button];
+}
+
+bool Gui::take(const app::InputEvent& event) {
+    using Kind = app::InputEvent::Kind;
+    const GuiScope scope(context_);
+    ImGuiIO& io = ImGui::GetIO();
+    io.MousePos = ImVec2(float(event.position.x()), float(event.position.y()));
+    const auto owned = std::ranges::find(owned_, event.button);
+    switch (event.kind) {
+        case Kind::move:
+            return !owned_.empty() || (over_panel(event.position) && down_ == std::array<bool, 3>{});
+        case Kind::press:
+            take_button(event);
+            if (over_panel(event.position)) owned_.push_back(event.button);
+            return over_panel(event.position);
+        case Kind::release: {
+            take_button(event);
+            const bool own = owned != owned_.end();
+            if (own) owned_.erase(owned);
+            return own;
+        }
+        case Kind::scroll:
+            io.MouseWheel += float(event.scroll.y());
+            io.MouseWheelH += float(event.scroll.x());
+            return over_panel(event.position);
+        case Kind::key_down:
+        case Kind::key_up:
+            if (event.key >= 0 && event.key < int(std::size(io.KeysDown)))
+                io.KeysDown[event.key] = event.kind == Kind::key_down;
+            io.KeyCtrl = event.control;
+            io.KeyShift = event.shift;
+            io.KeyAlt = event.alt;
+            return wants_keys_;
+        case Kind::text:
+            io.AddInputCharacter(event.code);
+            return wants_keys_;
+        case Kind::focus_lost:
+            down_ = pressed_ = {};
+            io.ClearInputKeys();
+            owned_.clear();
+            return false;
+        default:
+            return false;
+    }
+}
+
+void Gui::prepare(const GuiState& state, double seconds) {
+    ImGuiIO& io = ImGui::GetIO();
+    if (font_scale_ != state.scale) {
+        io.Fonts->Clear();
+        add_font(*io.Fonts, state.scale);
+        renderer_.make_font_texture(*io.Fonts);
+        font_scale_ = state.scale;
+    }
+    if (theme_ != state.theme || theme_scale_ != state.scale) {
+        apply_theme(state.theme, state.scale);
+        theme_ = state.theme;
+        theme_scale_ = state.scale;
+    }
+    io.DisplaySize = ImVec2(float(state.size.x()), float(state.size.y()));
+    io.DeltaTime = float(std::max(seconds, 1e-4));
+    for (size_t i = 0; i < down_.size(); ++i) io.MouseDown[i] = down_[i] || std::exchange(pressed_[i], false);
+}
+
+void Gui::lay_out(GuiState& state, const std::function<void()>& more) {
+    state.handles_pointer = state.show_panels && manipulate(state);
+    if (state.show_panels) {
+        menu_bar(state);
+        const float top = ImGui::GetFrameHeight();
+        draw_column(state, left, 0, top, left_width * state.scale);
+        const float width = right_width * state.scale;
+        draw_column(state, right, float(state.size.x()) - width, top, width);
+        status_line(state);
+    }
+    if (more) more();
+    keys_window(state);
+    notifications(state);
+}
+
+void Gui::draw(GuiState& state, double seconds, const gl::Texture& picture, const gl::Framebuffer& target,
+               const std::function<void()>& more) {
+    const GuiScope scope(context_);
+    prepare(state, seconds);
+    ImGui::NewFrame();
+    if (picture)
+        ImGui::GetBackgroundDrawList()->AddImage(ImTextureID(intptr_t(picture.id())), ImVec2(0, 0),
+                                                 ImGui::GetIO().DisplaySize);
+    try {
+        lay_out(state, more);
+    } catch (const Error& error) {
+        // What was begun is ended, so that the next frame is drawn as ever.
+        ImGui::ErrorCheckEndFrameRecover(nullptr);
+        state.notify(error.what(), true);
+    }
+    ImGui::Render();
+    const ImGuiIO& io = ImGui::GetIO();
+    panels_.clear();
+    for (const ImGuiWindow* window : ImGui::GetCurrentContext()->Windows)
+        if (window->Active && window->RootWindow == window &&
+            !(window->Flags & ImGuiWindowFlags_NoMouseInputs))
+            panels_.emplace_back(Vec2d(window->Pos.x, window->Pos.y),
+                                 Vec2d(window->Pos.x + window->Size.x, window->Pos.y + window->Size.y));
+    popup_ = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
+    wants_keys_ = io.WantTextInput;
+    active_ = ImGui::IsAnyItemActive();
+    renderer_.draw(*ImGui::GetDrawData(), target);
+}
+
+}  // namespace easypbr::gui

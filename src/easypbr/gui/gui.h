@@ -1,0 +1,53 @@
+// Gui: a Dear ImGui context with its renderer; lays the panels out and draws them over a picture.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "easypbr/app/input.h"
+#include "easypbr/gui/imgui_renderer.h"
+#include "easypbr/gui/state.h"
+
+struct ImGuiContext;
+
+namespace easypbr::gui {
+
+/// Dear ImGui serves one thread at a time: viewers on several threads take turns here.
+class Gui {
+  public:
+    Gui();
+    ~Gui();
+    Gui(const Gui&) = delete;
+    Gui& operator=(const Gui&) = delete;
+
+    /// Tells the GUI what happened. Returns whether the event is its own: over a panel, or typed into a
+    /// field.
+    bool take(const app::InputEvent& event);
+    /// The pointer drags a slider or the like, or a field is typed into.
+    bool is_active() const { return active_; }
+
+    /// Lays out everything and draws it into `target`, over the picture (stretched over all of it; may be
+    /// empty); `more` adds windows of its own. The session's context must be current.
+    void draw(GuiState& state, double seconds, const gl::Texture& picture, const gl::Framebuffer& target,
+              const std::function<void()>& more = {});
+
+  private:
+    void prepare(const GuiState& state, double seconds);
+    void lay_out(GuiState& state, const std::function<void()>& more);
+
+    ImGuiContext* context_ = nullptr;
+    ImGuiRenderer renderer_;
+    float font_scale_ = 0, theme_scale_ = 0;
+    Theme theme_ = Theme::dark;
+    bool over_panel(Vec2d position) const;
+    void take_button(const app::InputEvent& event);
+
+    bool wants_keys_ = false, active_ = false, popup_ = false;
+    std::vector<Eigen::AlignedBox2d> panels_;  ///< where windows of the last frame take the mouse
+    /// A click within one frame is held down for all of it, or the GUI would not see it.
+    std::array<bool, 3> down_{}, pressed_{};
+    std::vector<app::MouseButton> owned_;  ///< buttons that went down over a panel
+};
+
+}  // namespace easypbr::gui

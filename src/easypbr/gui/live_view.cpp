@@ -1,0 +1,415 @@
+#include "easypbr/gui/live_view.h"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <set>
+
+#include "easypbr/app/camera_text.h"
+#include "easypbr/app/channels.h"
+#include "easypbr/app/output.h"
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/gl/context.h"
+#include "easypbr/io/mesh_io.h"
+
+namespace easypbr::gui {
+namespace {
+
+namespace fs = std::filesystem;
+using app::InputEvent;
+using Kind = InputEvent::Kind;
+
+/// A picture of fewer frames is worse than a single one, whose edges are smoothed.
+constexpr int least_frames = 4;
+/// What a frame may take while something moves, and the resolutions that it may have for that.
+constexpr double slow_seconds = 0.07, quick_seconds = 0.03;
+constexpr double lowest_reduction = 0.25;
+constexpr double watch_seconds = 0.5;
+
+double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+Vec2i reduced(Vec2i size, double factor) {
+    return {std::max(1, int(size.x() * factor)), std::max(1, int(size.y() * factor))};
+}
+
+bool make_texture(gl::Texture& texture, Vec2i size) {
+    if (texture && texture.width() == size.x() && texture.height() == size.y()) return false;
+    texture = gl::Texture(gl::Format::rgba8, size.x(), size.y());
+    texture.sampling(gl::Filtering::linear);
+    return true;
+}
+
+bool is_environment_file(const fs::path& path) {
+    const std::string extension = extension_of(path);
+    return extension == "hdr" || extension == "exr";
+}
+
+std::string unique_name(const Scene& scene, const std::string& stem) {
+    std::string name = stem;
+    for (int number = 2; scene.contains(name); ++number) name = fmt::format("{}-{}", stem, number);
+    return name;
+}
+
+void show_loaded(Scene& scene, const io::LoadedScene& loaded, const std::string& name) {
+    scene.show(loaded.mesh, name);
+    for (const auto& [light, value] : loaded.lights) scene.set_light(name + "/" + light, value);
+}
+
+}  // namespace
+
+LiveView::LiveView(app::Session& session) : session_(session), state_(session) {
+    auto clipboard = std::make_shared<std::string>();
+    state_.read_clipboard = [clipboard] { return *clipboard; };
+    state_.write_clipboard = [clipboard](const std::string& text) { *clipboard = text; };
+}
+
+bool LiveView::is_moving() const {
+    return (control_.is_moving() && control_.has_dragged()) || gui_.is_active() || state_.drag.axis >= 0;
+}
+
+bool LiveView::update(const std::vector<InputEvent>& events, Vec2i size, float scale, double seconds) {
+    if (size.minCoeff() < 1) return false;
+    bool changed = state_.size != size || state_.scale != scale || !events.empty();
+    state_.size = size;
+    state_.scale = scale;
+    keep_looks();
+    reload_changed(seconds);
+    for (const InputEvent& event : events) handle(event);
+    try {
+        if (app::ViewPoint view;
+            control_.is_moving() && (view = session_.view_point(size), control_.advance(seconds, view)))
+            session_.set_view_point(view);
+        if (std::exchange(state_.fit, false)) fit();
+        if (std::exchange(state_.save, false)) save_settings(settings_file);
+    } catch (const Error& error) {
+        state_.notify(error.what(), true);
+    }
+    std::erase_if(state_.notifications, [&](Notification& n) { return (n.seconds_left -= seconds) <= 0; });
+    const gl::ContextScope scope(session_.context());
+    const bool drew = draw_picture();
+    changed |= std::exchange(told_, state_.notifications.size()) != state_.notifications.size();
+    if (changed || drew) gui_frames_ = 3;
+    const bool draws = gui_frames_ > 0;
+    if (draws) {
+        draw_screen(seconds);
+        --gui_frames_;
+    }
+    if (!is_moving() && !failed_) state_.history.note(session_.settings());
+    const bool refines = !failed_ && frames_ < state_.statistics.total;
+    busy_ = refines || gui_frames_ > 0 || control_.is_moving();
+    return draws;
+}
+
+void LiveView::handle(const InputEvent& event) {
+    if (event.kind == Kind::drop) {
+        for (const std::string& path : event.paths) try {
+                open(path);
+            } catch (const Error& error) {
+                state_.notify(error.what(), true);
+            }
+        return;
+    }
+    const bool own = gui_.take(event);
+    if (event.kind == Kind::move) {
+        if (event.position != pointer_) zoom_about_.reset();
+        pointer_ = event.position;
+        wants_hover_ = !own;
+        if (own) state_.hovered.reset();
+    }
+    if (own || shortcut(event)) return;
+    // The release of a button that the manipulator holds is the camera's as well: it forgets nothing by it.
+    const bool on_handle =
+        state_.handles_pointer && event.kind == Kind::press && event.button == app::MouseButton::left;
+    if (!on_handle) move_camera(event);
+}
+
+bool LiveView::shortcut(const InputEvent& event) {
+    if (event.kind == Kind::text && event.code == '?') return state_.show_keys = !state_.show_keys, true;
+    if (event.kind != Kind::key_down) return false;
+    if (event.control) return control_shortcut(event.key);
+    const int panel = event.key - app::key::f1;
+    if (panel >= 0 && panel < panel_count) return state_.open[size_t(panel)] ^= true, true;
+    switch (event.key) {
+        case app::key::escape:
+            if (state_.show_keys)
+                state_.show_keys = false;
+            else
+                state_.close = true;
+            return true;
+        case 'H':
+            state_.show_panels = !state_.show_panels;
+            return true;
+        case 'T':
+        case 'R':
+        case 'Y':
+            state_.handle = event.key == 'T' ? Handle::move : event.key == 'R' ? Handle::turn : Handle::scale;
+            return true;
+        default:
+            return false;
+    }
+}
+
+bool LiveView::control_shortcut(int key) {
+    try {
+        if (key == 'Z') undo(state_);
+        if (key == 'Y') redo(state_);
+        if (key == 'S') state_.save = true;
+        if (key == 'C') {
+            state_.write_clipboard(app::camera_text(session_.settings()));
+            state_.notify("The camera is on the clipboard");
+        }
+        if (key == 'V') app::apply_camera_text(state_.read_clipboard(), session_.settings());
+    } catch (const Error& error) {
+        state_.notify(error.what(), true);
+    }
+    return true;
+}
+
+void LiveView::move_camera(const InputEvent& event) {
+    const bool can_move = !session_.scene().names().empty() || !session_.settings().camera.pose.empty();
+    if (!can_move) return;
+    try {
+        const app::ViewPoint before = session_.view_point(state_.size);
+        app::ViewPoint view = before;
+        const app::CameraControl::Wish wish =
+            control_.handle(event, view, state_.size, parse_up(session_.settings().camera.up));
+        if (view.camera.T_world_cam.matrix() != before.camera.T_world_cam.matrix())
+            session_.set_view_point(view);
+        state_.fit |= wish.fit;
+        if (wish.zoom) zoom(*wish.zoom, wish.zoom_factor);
+        if (wish.focus)
+            if (const auto pick = surfaces().at(*wish.focus))
+                session_.set_view_point(focused(session_.view_point(state_.size), pick->position));
+        if (event.kind == Kind::press) pressed_ = event.position;
+        const bool clicked = event.kind == Kind::release && event.button == app::MouseButton::left &&
+                             !control_.has_dragged() && (event.position - pressed_).norm() < 3;
+        if (clicked) click(event.position);
+    } catch (const Error& error) {
+        state_.notify(error.what(), true);
+    }
+}
+
+const app::PickBuffer& LiveView::surfaces() {
+    const uint64_t version = session_.picture_version(state_.size);
+    if (!surfaces_ || surfaces_version_ != version || surfaces_->size() != state_.size) {
+        const bool complete = frames_ >= state_.statistics.total;
+        surfaces_.emplace(session_.pick_buffer(state_.size));
+        surfaces_version_ = version;
+        if (!complete) frames_ = 0;
+    }
+    return *surfaces_;
+}
+
+void LiveView::zoom(Vec2d pixel, double factor) {
+    const app::ViewPoint view = session_.view_point(state_.size);
+    if (!zoom_about_) {
+        const auto pick = surfaces().at(pixel);
+        zoom_about_ = pick ? pick->position : app::point_at(view.camera, pixel, state_.size, view.distance());
+    }
+    session_.set_view_point(zoomed(view, factor, *zoom_about_));
+}
+
+void LiveView::click(Vec2d pixel) {
+    state_.picked = surfaces().at(pixel);
+    state_.object = state_.picked ? state_.picked->object : "";
+    state_.light.clear();
+}
+
+void LiveView::fit() {
+    const SceneSnapshot scene = session_.scene().snapshot();
+    if (scene.objects.empty()) return;
+    CameraSettings lens = session_.settings().camera;
+    const app::ViewPoint view = session_.view_point(state_.size);
+    Camera camera =
+        fit_camera(scene, view.camera.T_world_cam.linear(), lens, double(state_.size.x()) / state_.size.y());
+    const Vec3d forward = -camera.T_world_cam.linear().col(2);
+    const double depth = (scene.bounds().center() - camera.position()).dot(forward);
+    session_.set_view_point({camera, camera.position() + forward * depth});
+    if (camera.projection == Projection::orthographic) session_.settings().camera.ortho_height = automatic;
+}
+
+void LiveView::keep_looks() {
+    std::map<std::string, Mesh> present;
+    for (const auto& [object, changes] : state_.looks) {
+        const std::optional<Mesh> node = node_named(session_.scene(), object);
+        if (!node) continue;
+        present.insert_or_assign(object, *node);
+        const auto known = known_.find(object);
+        if (known == known_.end() || known->second == *node) continue;
+        Mesh shown = *node;
+        for (const auto& [property, change] : changes) shown.edit(change);
+    }
+    known_ = std::move(present);
+}
+
+void LiveView::open(const fs::path& path) {
+    if (is_environment_file(path)) {
+        session_.load_environment(path);
+        state_.notify("Environment: " + path.filename().string());
+        return;
+    }
+    const io::LoadedScene loaded =
+        io::load_scene(path, {.crease_angle_deg = session_.settings().load.crease_deg});
+    const std::string name = unique_name(session_.scene(), path.stem().string());
+    show_loaded(session_.scene(), loaded, name);
+    state_.notify("Added " + name);
+}
+
+void LiveView::watch(const fs::path& path, const std::string& name) {
+    watched_.push_back({path, name, fs::last_write_time(path)});
+}
+
+void LiveView::reload_changed(double seconds) {
+    if (watched_.empty() || (since_watch_ += seconds) < watch_seconds) return;
+    since_watch_ = 0;
+    for (Watched& file : watched_) try {
+            std::error_code gone;  // A file that is being replaced may be missing for a moment.
+            const auto time = fs::last_write_time(file.path, gone);
+            if (gone || time == file.time) continue;
+            file.time = time;
+            show_loaded(session_.scene(),
+                        io::load_scene(file.path, {.crease_angle_deg = session_.settings().load.crease_deg}),
+                        file.name);
+            state_.notify("Reloaded " + file.name);
+        } catch (const Error& error) {
+            state_.notify(error.what(), true);
+        }
+}
+
+void LiveView::save_settings(const fs::path& path) {
+    std::set<fs::path> files;
+    for (const std::string& name : session_.scene().names())
+        if (const fs::path source = session_.scene().get(name).snapshot()->source; !source.empty())
+            files.insert(source);
+    app::save_settings(session_, {files.begin(), files.end()}, path);
+    state_.notify(fmt::format("Saved {}: easypbr render --settings {} makes this picture", path.string(),
+                              path.filename().string()));
+}
+
+bool LiveView::draw_picture() {
+    try {
+        const uint64_t version = session_.picture_version(state_.size);
+        const bool moving = is_moving();
+        const bool software = session_.context_info().software;
+        const Vec2i wanted = moving && software ? reduced(state_.size, reduction_) : state_.size;
+        const bool stale = version != version_ || shown_channel_ != state_.channel || failed_ ||
+                           (!moving && quick_size_ != state_.size);
+        bool drew = false;
+        if (stale) {
+            version_ = version;
+            shown_channel_ = state_.channel;
+            quick_size_ = wanted;
+            failed_ = false;
+            drew = draw_quickly(moving && software);
+        } else if (frames_ < state_.statistics.total && !moving) {
+            drew = refine();
+        } else if (wants_hover_ && !moving) {
+            wants_hover_ = false;
+            state_.hovered = surfaces().at(pointer_);
+            drew = true;
+        }
+        last_error_.clear();
+        return drew;
+    } catch (const Error& error) {
+        // Told once; drawn again when something changes.
+        if (last_error_ != error.what() && !session_.scene().names().empty())
+            state_.notify(error.what(), true);
+        const bool is_new = last_error_ != error.what();
+        last_error_ = error.what();
+        failed_ = true;
+        if (is_new) shown_ = gl::Texture();
+        return is_new;
+    }
+}
+
+bool LiveView::draw_quickly(bool adapt) {
+    const double start = now();
+    const bool layer = shows_layers() && state_.channel != "slices";
+    const bool measures = state_.show_panels && state_.is_open(Panel::statistics) && !layer;
+    session_.renderer().measure_passes(measures);
+    if (!layer) session_.refine({quick_size_, 1});
+    state_.statistics.passes =
+        measures ? session_.renderer().pass_times() : decltype(state_.statistics.passes){};
+    session_.renderer().measure_passes(false);
+    show_picture();
+    glFinish();
+    const double seconds = now() - start;
+    if (adapt && seconds > slow_seconds) reduction_ = std::max(lowest_reduction, reduction_ * 0.75);
+    if (adapt && seconds < quick_seconds) reduction_ = std::min(1.0, reduction_ * 1.2);
+    state_.statistics.frame_seconds = seconds;
+    state_.statistics.size = quick_size_;
+    ++state_.statistics.pictures;
+    frames_ = 0;
+    state_.statistics.total = layer ? 0 : session_.settings().image.samples;
+    state_.statistics.frames = layer ? 0 : 1;
+    if (state_.statistics.total == 1) frames_ = 1;
+    state_.resolved = session_.resolve(state_.size);
+    state_.hovered.reset();
+    wants_hover_ |= !state_.hovered && pointer_.x() >= 0;
+    return true;
+}
+
+bool LiveView::refine() {
+    const double start = now();
+    const int total = state_.statistics.total;
+    const bool show = frames_ + 1 >= std::min(least_frames, total);
+    const app::Session::Refinement done = session_.refine({state_.size, total}, show);
+    frames_ = state_.statistics.frames = done.frames;
+    if (show && (state_.channel == "picture" || frames_ == total)) show_picture();
+    glFinish();
+    state_.statistics.frame_seconds = now() - start;
+    return show;
+}
+
+void LiveView::show_picture() {
+    const AnnotationSettings& annotation = session_.settings().annotation;
+    if (state_.channel == "slices") {
+        std::vector<Image> pictures = {session_.last_picture()};
+        const std::vector<std::string> names = {"metallic", "albedo", "ambient_occlusion", "normal"};
+        const auto layers = session_.render_layers(names, quick_size_);
+        for (const std::string& name : names) pictures.push_back(app::layer_picture(name, layers.at(name)));
+        show_image(app::slices(pictures));
+    } else if (shows_layers()) {
+        show_image(app::layer_picture(
+            state_.channel, session_.render_layers({state_.channel}, quick_size_).at(state_.channel)));
+    } else if (annotation.legend.value_or(false) || annotation.colorbar.value_or(false)) {
+        show_image(session_.last_picture());
+    } else {
+        const gl::Texture& picture = session_.renderer().picture();
+        make_texture(shown_, {picture.width(), picture.height()});
+        gl::copy(picture, shown_);
+    }
+}
+
+void LiveView::show_image(const Image& image) {
+    make_texture(shown_, {image.width(), image.height()});
+    shown_.upload(image.bytes());
+}
+
+void LiveView::draw_screen(double seconds) {
+    if (make_texture(screen_, state_.size)) screen_framebuffer_ = gl::Framebuffer({&screen_});
+    const float grey[4] = {0.25f, 0.25f, 0.25f, 1};
+    screen_framebuffer_.clear_color(0, grey);
+    gui_.draw(state_, seconds, shown_, screen_framebuffer_);
+}
+
+Image LiveView::screen() {
+    if (!screen_) throw ArgumentError("nothing has been drawn yet");
+    const gl::ContextScope scope(session_.context());
+    Image image(screen_.width(), screen_.height(), 4, PixelType::u8);
+    screen_framebuffer_.read(0, gl::Format::rgba8, 0, 0, image.width(), image.height(), image.bytes());
+    return image;
+}
+
+Image LiveView::finished_screen(Vec2i size, float scale) {
+    do update({}, size, scale, 1.0 / 60);
+    while (busy_);
+    return screen();
+}
+
+}  // namespace easypbr::gui

@@ -1,0 +1,106 @@
+// LiveView: a session that a person looks at. Input events go in, a picture with the GUI comes out; with a
+// window or without one.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "easypbr/app/camera_control.h"
+#include "easypbr/app/session.h"
+#include "easypbr/gui/gui.h"
+#include "easypbr/gui/state.h"
+
+namespace easypbr::gui {
+
+/// Used by one thread at a time. While nothing changes nothing is drawn; while nothing moves the picture
+/// refines up to image.samples frames; while something moves it is drawn quickly, on software contexts at a
+/// lower resolution.
+class LiveView {
+  public:
+    explicit LiveView(app::Session& session);
+
+    /// Takes what has happened in `seconds` and draws what is to be drawn. Returns whether the screen
+    /// changed. Errors in what is drawn become notifications.
+    bool update(const std::vector<app::InputEvent>& events, Vec2i size, float scale, double seconds);
+
+    /// There is more to draw, though nothing happens.
+    bool is_busy() const { return busy_; }
+    /// Escape was pressed.
+    bool wants_to_close() const { return state_.close; }
+
+    /// The screen, RGBA u8, row 0 on top: picture and GUI. Throws ArgumentError before the first update().
+    Image screen();
+    /// The screen when all is refined; draws until then.
+    Image finished_screen(Vec2i size, float scale = 1);
+
+    /// Adds what a file holds under the file's name, made unique; pictures with high range become the
+    /// environment. Throws FileError, FormatError.
+    void open(const std::filesystem::path& path);
+    /// Shows the file again under `name` whenever it changes.
+    void watch(const std::filesystem::path& path, const std::string& name);
+
+    /// After a change to it call touch(), which has the GUI drawn again.
+    GuiState& state() { return state_; }
+    void touch() { gui_frames_ = 3; }
+    const app::CameraControl& control() const { return control_; }
+
+    /// Writes the settings; what Ctrl+S does.
+    void save_settings(const std::filesystem::path& path);
+    std::filesystem::path settings_file = "settings.json";
+
+  private:
+    struct Watched {
+        std::filesystem::path path;
+        std::string name;
+        std::filesystem::file_time_type time;
+    };
+    void handle(const app::InputEvent& event);
+    bool shortcut(const app::InputEvent& event);
+    bool control_shortcut(int key);
+    void move_camera(const app::InputEvent& event);
+    void zoom(Vec2d pixel, double factor);
+    void click(Vec2d pixel);
+    void fit();
+    void keep_looks();
+    void reload_changed(double seconds);
+    /// Surfaces of the view as it is now.
+    const app::PickBuffer& surfaces();
+
+    bool draw_picture();
+    bool draw_quickly(bool moving);
+    bool refine();
+    void show_picture();
+    void show_image(const Image& image);
+    void draw_screen(double seconds);
+    bool is_moving() const;
+    bool shows_layers() const { return state_.channel != "picture"; }
+
+    app::Session& session_;
+    GuiState state_;
+    app::CameraControl control_;
+    Gui gui_;
+
+    gl::Texture shown_, screen_;
+    gl::Framebuffer screen_framebuffer_;
+    uint64_t version_ = 0;  ///< of what is shown, see Session::picture_version(); 0: nothing
+    Vec2i quick_size_{0, 0};
+    std::string shown_channel_;
+    int frames_ = 0;        ///< refined so far
+    double reduction_ = 1;  ///< of the resolution while something moves
+    int gui_frames_ = 3;    ///< that are still to be drawn, so that the GUI settles
+    bool busy_ = true, wants_hover_ = false, failed_ = false;
+    Vec2d pointer_{-1, -1}, pressed_{0, 0};
+    std::optional<app::PickBuffer> surfaces_;
+    uint64_t surfaces_version_ = 0;
+    std::optional<Vec3d> zoom_about_;  ///< while the pointer rests
+    std::map<std::string, Mesh> known_;
+    std::vector<Watched> watched_;
+    double since_watch_ = 0;
+    std::string last_error_;
+    size_t told_ = 0;  ///< notifications on the screen
+};
+
+}  // namespace easypbr::gui

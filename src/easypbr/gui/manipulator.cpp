@@ -1,0 +1,226 @@
+// Handles drawn over the picture that move, turn and scale what is selected.
+#include <imgui.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "easypbr/app/view_point.h"
+#include "easypbr/core/error.h"
+#include "easypbr/gui/panels.h"
+
+namespace easypbr::gui {
+namespace {
+
+constexpr ImU32 axis_colors[3] = {IM_COL32(230, 80, 75, 255), IM_COL32(110, 190, 70, 255),
+                                  IM_COL32(75, 130, 240, 255)};
+constexpr ImU32 hot_color = IM_COL32(255, 215, 80, 255);
+constexpr float length_pixels = 90, grab_pixels = 8;
+constexpr int ring_points = 64;
+
+/// What the handles act on: where they stand, and how a change of the world is applied to it.
+struct Subject {
+    Vec3d centre{0, 0, 0};
+    std::function<void(const Eigen::Affine3d& change)> apply;  ///< of what it was when the drag began
+    bool only_moves = false;
+};
+
+struct View {
+    const Camera& camera;
+    Vec2i size;
+
+    std::optional<ImVec2> project(const Vec3d& point) const {
+        const Vec3d p = app::pixel_of(camera, point, size);
+        if (camera.projection == Projection::perspective && p.z() <= camera.near) return {};
+        return ImVec2(float(p.x()), float(p.y()));
+    }
+    /// World length of a number of pixels at a point.
+    double length_of(float pixels, const Vec3d& at) const {
+        const double depth = app::pixel_of(camera, at, size).z();
+        const Vec3d a = app::point_at(camera, {0, 0}, size, depth);
+        return (app::point_at(camera, {double(pixels), 0}, size, depth) - a).norm();
+    }
+};
+
+float distance_to_segment(ImVec2 p, ImVec2 a, ImVec2 b) {
+    const Vec2 ab(b.x - a.x, b.y - a.y), ap(p.x - a.x, p.y - a.y);
+    const float t = std::clamp(ap.dot(ab) / std::max(ab.squaredNorm(), 1e-6f), 0.0f, 1.0f);
+    return (ap - t * ab).norm();
+}
+
+/// The part of the world that a node's pose acts in.
+Eigen::Affine3d parent_pose(const Scene& scene, const std::string& name) {
+    Eigen::Affine3d T = Eigen::Affine3d::Identity();
+    for (size_t at = name.find('/'); at != name.npos; at = name.find('/', at + 1))
+        if (const auto node = node_named(scene, name.substr(0, at))) T = T * node->T_parent_mesh();
+    return T;
+}
+
+Box3d bounds_of(const SceneSnapshot& scene, const std::string& name) {
+    SceneSnapshot part = scene;
+    std::erase_if(part.objects, [&](const SceneSnapshot::Object& object) {
+        return object.name != name && !object.name.starts_with(name + "/");
+    });
+    return part.bounds();
+}
+
+std::optional<Subject> selected_object(GuiState& state) {
+    const Scene& scene = state.session.scene();
+    const std::optional<Mesh> node = node_named(scene, state.object);
+    if (!node) return {};
+    const Box3d box = bounds_of(scene.snapshot(), state.object);
+    if (box.isEmpty()) return {};
+    Subject subject;
+    subject.centre = box.center();
+    const Eigen::Affine3d parent = parent_pose(scene, state.object), own = node->T_parent_mesh();
+    subject.apply = [mesh = *node, parent, own](const Eigen::Affine3d& change) mutable {
+        mesh.set_T_parent_mesh(parent.inverse(Eigen::Affine) * change * parent * own);
+    };
+    return subject;
+}
+
+std::optional<Subject> selected_light(GuiState& state) {
+    Subject subject;
+    subject.only_moves = true;
+    if (StudioLight* light = state.light == "key"    ? &state.settings().lights.key
+                             : state.light == "fill" ? &state.settings().lights.fill
+                             : state.light == "rim"  ? &state.settings().lights.rim
+                                                     : nullptr) {
+        if (!light->position.value()) return {};
+        const Vec3 position = *light->position;
+        subject.centre = position.cast<double>();
+        subject.apply = [light, position](const Eigen::Affine3d& change) {
+            light->position = Vec3((change * position.cast<double>()).cast<float>());
+        };
+        return subject;
+    }
+    Scene& scene = state.session.scene();
+    const auto names = scene.light_names();
+    if (std::ranges::find(names, state.light) == names.end()) return {};
+    const Light light = scene.light(state.light);
+    subject.centre = light.position.cast<double>();
+    subject.apply = [&scene, light, name = state.light](const Eigen::Affine3d& change) {
+        Light moved = light;
+        moved.position = (change * light.position.cast<double>()).cast<float>();
+        scene.set_light(name, moved);
+    };
+    return subject;
+}
+
+/// Points of a handle on the screen: a line for moving and scaling, a ring for turning.
+std::vector<ImVec2> handle_points(const View& view, const Vec3d& centre, int axis, Handle handle,
+                                  double length) {
+    std::vector<ImVec2> points;
+    const auto add = [&](const Vec3d& point) {
+        if (const auto p = view.project(point)) points.push_back(*p);
+    };
+    if (handle != Handle::turn) {
+        add(centre);
+        add(centre + length * Vec3d::Unit(axis));
+        return points;
+    }
+    const Vec3d u = Vec3d::Unit((axis + 1) % 3), v = Vec3d::Unit((axis + 2) % 3);
+    for (int i = 0; i <= ring_points; ++i) {
+        const double angle = 2 * pi * i / ring_points;
+        add(centre + length * (std::cos(angle) * u + std::sin(angle) * v));
+    }
+    return points;
+}
+
+Eigen::Affine3d change_of(const View& view, const HandleDrag& drag, Handle handle, ImVec2 pointer) {
+    const Vec3d axis = Vec3d::Unit(drag.axis);
+    const auto centre = view.project(drag.centre);
+    Eigen::Affine3d change = Eigen::Affine3d::Identity();
+    if (!centre) return change;
+    if (handle == Handle::turn) {
+        const auto angle = [&](ImVec2 p) { return std::atan2(p.y - centre->y, p.x - centre->x); };
+        // Seen against the axis, the screen's clockwise is the axis' own sense.
+        const double towards = axis.dot(view.camera.position() - drag.centre) > 0 ? -1 : 1;
+        const double turn = towards * double(angle(pointer) - angle(ImVec2(drag.from.x(), drag.from.y())));
+        return Eigen::Translation3d(drag.centre) * Eigen::AngleAxisd(turn, axis) *
+               Eigen::Translation3d(-drag.centre);
+    }
+    const double unit = view.length_of(length_pixels, drag.centre);
+    const auto end = view.project(drag.centre + unit * axis);
+    if (!end) return change;
+    const Vec2 line(end->x - centre->x, end->y - centre->y);
+    const Vec2 by(pointer.x - drag.from.x(), pointer.y - drag.from.y());
+    const double steps = double(by.dot(line)) / std::max(double(line.squaredNorm()), 1.0);
+    if (handle == Handle::move) {
+        change.translation() = steps * unit * axis;
+        return change;
+    }
+    const double factor = std::exp(std::clamp(steps, -6.0, 6.0));
+    Vec3d scale = Vec3d::Ones();
+    scale[drag.axis] = factor;
+    return Eigen::Translation3d(drag.centre) * Eigen::Scaling(scale) * Eigen::Translation3d(-drag.centre);
+}
+
+void draw_handle(const std::vector<ImVec2>& points, ImU32 color, Handle handle, float scale) {
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    const float width = 2.5f * scale;
+    if (handle == Handle::turn) {
+        list.AddPolyline(points.data(), int(points.size()), color, 0, width);
+        return;
+    }
+    list.AddLine(points[0], points[1], color, width);
+    if (handle == Handle::scale) {
+        const float side = 5 * scale;
+        list.AddRectFilled(ImVec2(points[1].x - side, points[1].y - side),
+                           ImVec2(points[1].x + side, points[1].y + side), color, 1);
+        return;
+    }
+    const Vec2 line(points[1].x - points[0].x, points[1].y - points[0].y);
+    if (line.norm() < 1) return;
+    const Vec2 along = line.normalized() * 13 * scale, across(-along.y() * 0.45f, along.x() * 0.45f);
+    const Vec2 tip(points[1].x + along.x() * 0.3f, points[1].y + along.y() * 0.3f), base = tip - along;
+    list.AddTriangleFilled(ImVec2(tip.x(), tip.y()), ImVec2(base.x() + across.x(), base.y() + across.y()),
+                           ImVec2(base.x() - across.x(), base.y() - across.y()), color);
+}
+
+}  // namespace
+
+bool manipulate(GuiState& state) {
+    HandleDrag& drag = state.drag;
+    if (!state.resolved) return false;
+    const bool has_light = !state.light.empty();
+    const std::optional<Subject> subject = has_light ? selected_light(state) : selected_object(state);
+    if (!subject) {
+        drag.axis = -1;
+        return false;
+    }
+    const View view{state.resolved->camera, state.size};
+    const Handle handle = subject->only_moves ? Handle::move : state.handle;
+    const double length = view.length_of(length_pixels * state.scale, subject->centre);
+    const ImVec2 pointer = ImGui::GetIO().MousePos;
+    int hovered = -1;
+    float nearest = grab_pixels * state.scale;
+    std::array<std::vector<ImVec2>, 3> points;
+    for (int axis = 0; axis < 3; ++axis) {
+        points[size_t(axis)] = handle_points(view, subject->centre, axis, handle, length);
+        const auto& p = points[size_t(axis)];
+        for (size_t i = 0; i + 1 < p.size(); ++i)
+            if (const float d = distance_to_segment(pointer, p[i], p[i + 1]); d < nearest) {
+                nearest = d;
+                hovered = axis;
+            }
+    }
+    const bool free = !ImGui::GetIO().WantCaptureMouse;
+    if (drag.axis < 0 && hovered >= 0 && free && ImGui::IsMouseClicked(0))
+        drag = {hovered, Vec2(pointer.x, pointer.y), subject->centre, subject->apply};
+    if (!ImGui::IsMouseDown(0)) drag.axis = -1;
+    if (drag.axis >= 0) try {
+            drag.apply(change_of(view, drag, handle, pointer));
+        } catch (const Error& error) {
+            state.notify(error.what(), true);
+            drag.axis = -1;
+        }
+    const int hot = drag.axis >= 0 ? drag.axis : free ? hovered : -1;
+    for (int axis = 0; axis < 3; ++axis)
+        if (points[size_t(axis)].size() > 1)
+            draw_handle(points[size_t(axis)], axis == hot ? hot_color : axis_colors[axis], handle,
+                        state.scale);
+    return drag.axis >= 0 || (free && hovered >= 0);
+}
+
+}  // namespace easypbr::gui

@@ -1,0 +1,132 @@
+#include <fmt/format.h>
+#include <imgui.h>
+
+#include <algorithm>
+
+#include "easypbr/gui/panels.h"
+#include "easypbr/gui/widgets.h"
+
+namespace easypbr::gui {
+namespace {
+
+struct KeyLine {
+    const char *keys, *what;
+};
+constexpr KeyLine key_lines[] = {{"Left drag", "turn about the target"},
+                                 {"Right or middle drag", "move sideways"},
+                                 {"Wheel", "zoom to the pointer"},
+                                 {"Click", "select an object"},
+                                 {"Double click", "turn about the point"},
+                                 {"W A S D, Q E", "fly; with Shift faster"},
+                                 {"F", "fit all into the picture"},
+                                 {"T  R  Y", "move, turn, scale the object"},
+                                 {"H", "hide or show the panels"},
+                                 {"F1 to F8", "hide or show one panel"},
+                                 {"Ctrl+C  Ctrl+V", "camera to and from the clipboard"},
+                                 {"Ctrl+Z  Ctrl+Y", "undo, redo"},
+                                 {"Ctrl+S", "save the settings"},
+                                 {"?", "this list"},
+                                 {"Escape", "close"}};
+
+}  // namespace
+
+void statistics_panel(GuiState& state) {
+    const Statistics& now = state.statistics;
+    if (!ImGui::BeginTable("statistics", 2, ImGuiTableFlags_NoSavedSettings)) return;
+    const auto line = [](const std::string& name, const std::string& value) {
+        ImGui::TableNextRow();
+        ImGui::TableNextColumn();
+        ImGui::TextUnformatted(name.c_str());
+        ImGui::TableNextColumn();
+        const float gap = ImGui::GetContentRegionAvail().x - ImGui::CalcTextSize(value.c_str()).x;
+        ImGui::SetCursorPosX(ImGui::GetCursorPosX() + std::max(gap, 0.0f));
+        ImGui::TextUnformatted(value.c_str());
+    };
+    line("frame", fmt::format("{:.1f} ms", now.frame_seconds * 1e3));
+    line("picture", fmt::format("{} x {}", now.size.x(), now.size.y()));
+    line("frames", fmt::format("{} of {}", now.frames, now.total));
+    for (const auto& [pass, ms] : now.passes) line("  " + pass, fmt::format("{:.1f} ms", ms));
+    ImGui::EndTable();
+}
+
+void menu_bar(GuiState& state) {
+    if (!ImGui::BeginMainMenuBar()) return;
+    if (ImGui::BeginMenu("View")) {
+        for (int i = 0; i < panel_count; ++i)
+            ImGui::MenuItem(panel_name(Panel(i)), fmt::format("F{}", i + 1).c_str(), &state.open[size_t(i)]);
+        ImGui::Separator();
+        ImGui::MenuItem("All panels", "H", &state.show_panels);
+        bool light = state.theme == Theme::light;
+        if (ImGui::MenuItem("Light theme", nullptr, &light)) state.theme = light ? Theme::light : Theme::dark;
+        ImGui::EndMenu();
+    }
+    if (ImGui::BeginMenu("Edit")) {
+        if (ImGui::MenuItem("Undo", "Ctrl+Z", false, state.history.can_undo())) undo(state);
+        if (ImGui::MenuItem("Redo", "Ctrl+Y", false, state.history.can_redo())) redo(state);
+        ImGui::EndMenu();
+    }
+    if (ImGui::BeginMenu("Help")) {
+        ImGui::MenuItem("Keys", "?", &state.show_keys);
+        ImGui::EndMenu();
+    }
+    const Statistics& now = state.statistics;
+    const std::string text = fmt::format("{} x {}   {:.0f} ms   {} / {}", now.size.x(), now.size.y(),
+                                         now.frame_seconds * 1e3, now.frames, now.total);
+    ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(text.c_str()).x - 24 * state.scale);
+    dim_text(text);
+    ImGui::EndMainMenuBar();
+}
+
+void keys_window(GuiState& state) {
+    if (!state.show_keys) return;
+    ImGui::SetNextWindowPos(ImVec2(float(state.size.x()) / 2, float(state.size.y()) / 2), ImGuiCond_Appearing,
+                            ImVec2(0.5f, 0.5f));
+    const ImGuiWindowFlags flags =
+        ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings;
+    if (ImGui::Begin("Keys and mouse", &state.show_keys, flags) && ImGui::BeginTable("keys", 2)) {
+        for (const KeyLine& line : key_lines) {
+            ImGui::TableNextRow();
+            ImGui::TableNextColumn();
+            ImGui::TextUnformatted(line.keys);
+            ImGui::TableNextColumn();
+            dim_text(line.what);
+        }
+        ImGui::EndTable();
+    }
+    ImGui::End();
+}
+
+void status_line(GuiState& state) {
+    if (!state.hovered) return;
+    const app::Pick& pick = *state.hovered;
+    std::string text = pick.object;
+    if (!pick.part.empty()) text += " / " + pick.part;
+    text += fmt::format("   {} {}   ({:.4g}, {:.4g}, {:.4g})", pick.is_face ? "face" : "point", pick.element,
+                        pick.position.x(), pick.position.y(), pick.position.z());
+    const float pad = 6 * state.scale, width = ImGui::CalcTextSize(text.c_str()).x;
+    const float x = (float(state.size.x()) - width) / 2;
+    const float y = float(state.size.y()) - ImGui::GetTextLineHeight() - 2 * pad;
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    list.AddRectFilled(ImVec2(x - 2 * pad, y - pad), ImVec2(x + width + 2 * pad, float(state.size.y()) - pad),
+                       ImGui::GetColorU32(ImGuiCol_WindowBg), 4 * state.scale);
+    list.AddText(ImVec2(x, y), ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
+}
+
+void notifications(GuiState& state) {
+    float bottom = float(state.size.y()) - 40 * state.scale;
+    const float pad = 8 * state.scale, wrap = std::min(0.5f * float(state.size.x()), 620 * state.scale);
+    ImDrawList& list = *ImGui::GetForegroundDrawList();
+    for (auto n = state.notifications.rbegin(); n != state.notifications.rend(); ++n) {
+        const ImVec2 size = ImGui::CalcTextSize(n->text.c_str(), nullptr, false, wrap);
+        const ImVec2 from((float(state.size.x()) - size.x) / 2, bottom - size.y);
+        const ImU32 color = n->is_error ? IM_COL32(168, 52, 48, 240) : ImGui::GetColorU32(ImGuiCol_WindowBg);
+        list.AddRectFilled(ImVec2(from.x - pad, from.y - pad),
+                           ImVec2(from.x + size.x + pad, from.y + size.y + pad), color, 4 * state.scale);
+        list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), from,
+                     n->is_error ? IM_COL32_WHITE : ImGui::GetColorU32(ImGuiCol_Text), n->text.c_str(),
+                     nullptr, wrap);
+        bottom = from.y - 2.5f * pad;
+    }
+}
+
+}  // namespace easypbr::gui

@@ -1,0 +1,37 @@
+// The panels: each draws its part of the GUI and changes the session.
+#pragma once
+
+#include "easypbr/gui/state.h"
+
+namespace easypbr::gui {
+
+/// The objects, nested, with a box for each that hides it.
+void scene_panel(GuiState& state);
+/// Style and material of the selected object.
+void object_panel(GuiState& state);
+/// Every group of settings that has no panel of its own.
+void effects_panel(GuiState& state);
+/// Key, fill and rim and the scene's own lights.
+void lights_panel(GuiState& state);
+void environment_panel(GuiState& state);
+void camera_panel(GuiState& state);
+/// What is shown: the picture, a layer, or all of them in slices.
+void channels_panel(GuiState& state);
+void statistics_panel(GuiState& state);
+
+/// The bar at the top.
+void menu_bar(GuiState& state);
+/// What the keys do.
+void keys_window(GuiState& state);
+/// Messages and the line at the bottom.
+void status_line(GuiState& state);
+void notifications(GuiState& state);
+
+/// Rows for all settings whose names begin with `prefix`.
+void settings_rows(GuiState& state, const std::string& prefix);
+
+/// Handles to move, turn or scale the selected object, or to move the selected light. Returns whether the
+/// pointer is theirs.
+bool manipulate(GuiState& state);
+
+}  // namespace easypbr::gui

@@ -1,0 +1,99 @@
+// What the parts of the GUI share: the session they change and what is only about looking at it.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "easypbr/app/history.h"
+#include "easypbr/app/session.h"
+#include "easypbr/gui/theme.h"
+
+namespace easypbr::gui {
+
+enum class Panel { scene, object, effects, lights, environment, camera, channels, statistics };
+inline constexpr int panel_count = 8;
+/// Name of a panel as it stands in menus; its key is F1 and on.
+const char* panel_name(Panel panel);
+
+enum class Handle { move, turn, scale };
+
+/// What the drawing takes.
+struct Statistics {
+    uint64_t pictures = 0;      ///< drawn since the beginning, refinement apart
+    int frames = 0, total = 0;  ///< of the picture that is being refined
+    double frame_seconds = 0;   ///< of the last frame
+    Vec2i size{0, 0};           ///< of the picture, smaller while it moves on slow machines
+    std::vector<std::pair<std::string, double>> passes;  ///< milliseconds of the last frame, when measured
+};
+
+struct Notification {
+    std::string text;
+    bool is_error = false;
+    double seconds_left = 0;
+};
+
+/// A drag of the manipulator, which goes on over frames.
+struct HandleDrag {
+    int axis = -1;  ///< none
+    Vec2 from{0, 0};
+    Vec3d centre{0, 0, 0};
+    std::function<void(const Eigen::Affine3d& change)> apply;  ///< to what it was when the drag began
+};
+
+/// A change to an object's look, by the property that it sets; made again when other data are shown under the
+/// same name.
+using LookChange = std::function<void(MeshData&)>;
+
+struct GuiState {
+    explicit GuiState(app::Session& s) : session(s) {}
+
+    app::Session& session;
+    std::optional<ResolvedSettings> resolved;  ///< of the last frame
+    Vec2i size{1, 1};                          ///< of the window
+    float scale = 1;
+
+    std::array<bool, panel_count> open = {true, true, true, true, true, true, true, true};
+    bool show_panels = true, show_keys = false;
+    Theme theme = Theme::dark;
+
+    std::string object;  ///< selected, "car/wheel" for a child; empty: none
+    std::string light;   ///< selected: a light's name, or "key", "fill", "rim"
+    Handle handle = Handle::move;
+    HandleDrag drag;
+    bool handles_pointer = false;  ///< the pointer is on the manipulator
+    std::optional<app::Pick> hovered, picked;
+    std::string channel = "picture";  ///< what is shown: this, "slices", or a layer's name
+    Statistics statistics;
+    std::vector<Notification> notifications;
+    app::History history;
+
+    std::map<std::string, std::map<std::string, LookChange>> looks;  ///< by object, by property
+    bool close = false, fit = false, save = false;
+
+    std::function<std::string()> read_clipboard;
+    std::function<void(const std::string&)> write_clipboard;
+
+    bool& is_open(Panel panel) { return open[size_t(panel)]; }
+    Settings& settings() { return session.settings(); }
+    void notify(const std::string& text, bool is_error = false) {
+        notifications.push_back({text, is_error, is_error ? 12.0 : 5.0});
+    }
+};
+
+/// The mesh of a node's name, "car" or "car/wheel"; nothing when there is none.
+std::optional<Mesh> node_named(const Scene& scene, const std::string& name);
+
+/// Changes a node's look now and whenever other data are shown under its name. Errors become notifications.
+void change_look(GuiState& state, const std::string& object, const std::string& property,
+                 const LookChange& change);
+
+/// Undo or redo; nothing happens when there is nothing to.
+void undo(GuiState& state);
+void redo(GuiState& state);
+
+}  // namespace easypbr::gui

@@ -1,0 +1,231 @@
+#include "easypbr/gui/window.h"
+
+#include <epoxy/gl.h>
+#include <fmt/format.h>
+
+#include <atomic>
+#include <chrono>
+#include <exception>
+#include <thread>
+#include <utility>
+
+#include "easypbr/core/error.h"
+#include "easypbr/gui/glfw.h"
+
+namespace easypbr::gui {
+namespace {
+
+using app::InputEvent;
+using Kind = InputEvent::Kind;
+
+static_assert(app::key::escape == GLFW_KEY_ESCAPE && app::key::del == GLFW_KEY_DELETE &&
+              app::key::right == GLFW_KEY_RIGHT && app::key::end == GLFW_KEY_END &&
+              app::key::f1 == GLFW_KEY_F1 && app::key::f12 == GLFW_KEY_F12);
+
+/// Threads that wait for the one that waits for events.
+std::atomic<int> waiting_threads = 0;
+
+/// Takes the mutex soon, also while another thread waits for events under it.
+class GlfwLock {
+  public:
+    GlfwLock() : lock_(glfw_mutex(), std::defer_lock) {
+        if (lock_.try_lock()) return;
+        ++waiting_threads;
+        if (started_) glfw_->glfwPostEmptyEvent();
+        lock_.lock();
+        --waiting_threads;
+    }
+
+    static const Glfw& functions() {
+        glfw_ = &glfw();
+        started_ = true;
+        return *glfw_;
+    }
+
+    static bool started() { return started_; }
+
+  private:
+    std::unique_lock<std::recursive_mutex> lock_;
+    static inline const Glfw* glfw_ = nullptr;
+    static inline std::atomic<bool> started_ = false;
+};
+
+double now() {
+    return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+}  // namespace
+
+/// GLFW's callbacks; they run within Window::events().
+struct WindowCallbacks {
+    static Window& of(GLFWwindow* window) {
+        return *static_cast<Window*>(glfw().glfwGetWindowUserPointer(window));
+    }
+    static InputEvent& add(GLFWwindow* window, Kind kind) {
+        Window& self = of(window);
+        InputEvent event;
+        event.kind = kind;
+        event.time = now();
+        double x = 0, y = 0;
+        glfw().glfwGetCursorPos(window, &x, &y);
+        event.position = in_pixels(window, {x, y});
+        self.events_.push_back(event);
+        return self.events_.back();
+    }
+    static Vec2d in_pixels(GLFWwindow* window, Vec2d position) {
+        int width = 0, height = 0, pixels_x = 0, pixels_y = 0;
+        glfw().glfwGetWindowSize(window, &width, &height);
+        glfw().glfwGetFramebufferSize(window, &pixels_x, &pixels_y);
+        if (width > 0 && height > 0)
+            position = Vec2d(position.x() * pixels_x / width, position.y() * pixels_y / height);
+        return position;
+    }
+    static void modify(InputEvent& event, int mods) {
+        event.shift = mods & GLFW_MOD_SHIFT;
+        event.control = mods & GLFW_MOD_CONTROL;
+        event.alt = mods & GLFW_MOD_ALT;
+    }
+
+    static void move(GLFWwindow* window, double x, double y) {
+        add(window, Kind::move).position = in_pixels(window, {x, y});
+    }
+    static void button(GLFWwindow* window, int button, int action, int mods) {
+        if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;
+        InputEvent& event = add(window, action == GLFW_RELEASE ? Kind::release : Kind::press);
+        event.button = app::MouseButton(button);
+        modify(event, mods);
+    }
+    static void scroll(GLFWwindow* window, double x, double y) { add(window, Kind::scroll).scroll = {x, y}; }
+    static void key(GLFWwindow* window, int key, int, int action, int mods) {
+        InputEvent& event = add(window, action == GLFW_RELEASE ? Kind::key_up : Kind::key_down);
+        event.key = key;
+        modify(event, mods);
+    }
+    static void text(GLFWwindow* window, unsigned code) { add(window, Kind::text).code = code; }
+    static void drop(GLFWwindow* window, int count, const char** paths) {
+        add(window, Kind::drop).paths.assign(paths, paths + count);
+    }
+    static void focus(GLFWwindow* window, int focused) {
+        if (!focused) add(window, Kind::focus_lost);
+    }
+    static void refresh(GLFWwindow* window) { of(window).needs_present_ = true; }
+};
+
+Window::Window(const std::string& title, Vec2i size) {
+    const GlfwLock lock;
+    const Glfw& f = GlfwLock::functions();
+    f.glfwDefaultWindowHints();
+    // EGL as everywhere else in the library, so that one process never mixes two ways to make contexts.
+    f.glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
+    f.glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
+    f.glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
+    f.glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    window_ = f.glfwCreateWindow(size.x(), size.y(), title.c_str(), nullptr, nullptr);
+    if (!window_) {
+        const char* reason = nullptr;
+        f.glfwGetError(&reason);
+        throw ContextError(fmt::format("no window: {}", reason ? reason : "it cannot be made"));
+    }
+    f.glfwSetWindowUserPointer(window_, this);
+    f.glfwSetCursorPosCallback(window_, WindowCallbacks::move);
+    f.glfwSetMouseButtonCallback(window_, WindowCallbacks::button);
+    f.glfwSetScrollCallback(window_, WindowCallbacks::scroll);
+    f.glfwSetKeyCallback(window_, WindowCallbacks::key);
+    f.glfwSetCharCallback(window_, WindowCallbacks::text);
+    f.glfwSetDropCallback(window_, WindowCallbacks::drop);
+    f.glfwSetWindowFocusCallback(window_, WindowCallbacks::focus);
+    f.glfwSetWindowRefreshCallback(window_, WindowCallbacks::refresh);
+}
+
+Window::~Window() {
+    const GlfwLock lock;
+    glfw().glfwDestroyWindow(window_);
+}
+
+std::vector<InputEvent> Window::events(double seconds) {
+    {
+        const GlfwLock lock;
+        if (seconds > 0)
+            glfw().glfwWaitEventsTimeout(seconds);
+        else
+            glfw().glfwPollEvents();
+    }
+    // Whoever asked for the mutex meanwhile gets it before this thread waits again.
+    if (waiting_threads > 0) std::this_thread::sleep_for(std::chrono::microseconds(200));
+    const GlfwLock lock;
+    return std::exchange(events_, {});
+}
+
+Vec2i Window::size() const {
+    const GlfwLock lock;
+    Vec2i size(0, 0);
+    glfw().glfwGetFramebufferSize(window_, &size.x(), &size.y());
+    return size;
+}
+
+float Window::scale() const {
+    const GlfwLock lock;
+    float x = 1, y = 1;
+    glfw().glfwGetWindowContentScale(window_, &x, &y);
+    return x;
+}
+
+bool Window::should_close() const {
+    const GlfwLock lock;
+    return glfw().glfwWindowShouldClose(window_);
+}
+
+void Window::make_target(Vec2i size) {
+    if (size == target_size_) return;
+    if (!texture_) {
+        glGenTextures(1, &texture_);
+        glGenFramebuffers(1, &framebuffer_);
+    }
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA8, size.x(), size.y(), 0, GL_RGBA, GL_UNSIGNED_BYTE, nullptr);
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+    glFramebufferTexture2D(GL_READ_FRAMEBUFFER, GL_COLOR_ATTACHMENT0, GL_TEXTURE_2D, texture_, 0);
+    target_size_ = size;
+}
+
+void Window::present(const Image& picture) {
+    const GlfwLock lock;
+    const Glfw& f = glfw();
+    f.glfwMakeContextCurrent(window_);
+    f.glfwSwapInterval(0);  // Pictures are paced by update(); waiting here would hold the mutex.
+    make_target({picture.width(), picture.height()});
+    glBindTexture(GL_TEXTURE_2D, texture_);
+    glTexSubImage2D(GL_TEXTURE_2D, 0, 0, 0, picture.width(), picture.height(), GL_RGBA, GL_UNSIGNED_BYTE,
+                    picture.bytes().data());
+    glBindFramebuffer(GL_READ_FRAMEBUFFER, framebuffer_);
+    glBindFramebuffer(GL_DRAW_FRAMEBUFFER, 0);
+    const Vec2i to = size();
+    // The window's first row is the lowest.
+    glBlitFramebuffer(0, 0, picture.width(), picture.height(), 0, to.y(), to.x(), 0, GL_COLOR_BUFFER_BIT,
+                      to == target_size_ ? GL_NEAREST : GL_LINEAR);
+    f.glfwSwapBuffers(window_);
+    f.glfwMakeContextCurrent(nullptr);
+    needs_present_ = false;
+}
+
+std::string Window::clipboard() const {
+    const GlfwLock lock;
+    const char* text = glfw().glfwGetClipboardString(window_);
+    return text ? text : "";
+}
+
+void Window::set_clipboard(const std::string& text) {
+    const GlfwLock lock;
+    glfw().glfwSetClipboardString(window_, text.c_str());
+}
+
+void Window::set_title(const std::string& title) {
+    const GlfwLock lock;
+    glfw().glfwSetWindowTitle(window_, title.c_str());
+}
+
+void wake_windows() {
+    if (GlfwLock::started()) glfw().glfwPostEmptyEvent();
+}
+
+}  // namespace easypbr::gui

@@ -1,0 +1,58 @@
+// Window: shows pictures and collects what a person does. It has a small OpenGL context of its own, used for
+// nothing but showing.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "easypbr/app/input.h"
+#include "easypbr/core/image.h"
+
+struct GLFWwindow;
+
+namespace easypbr::gui {
+
+/// Any number of windows, on any threads: each call waits for others. A window may be destroyed on any
+/// thread.
+class Window {
+  public:
+    /// Throws ContextError when there is no GLFW or no display.
+    Window(const std::string& title, Vec2i size);
+    ~Window();
+    Window(const Window&) = delete;
+    Window& operator=(const Window&) = delete;
+
+    /// What has happened since the last call; waits up to `seconds` for something.
+    std::vector<app::InputEvent> events(double seconds);
+
+    /// Size in pixels; 0 while it is minimised.
+    Vec2i size() const;
+    /// Pixels of the screen for each of a plain one (HiDPI).
+    float scale() const;
+    bool should_close() const;
+
+    /// Shows an RGBA u8 picture, row 0 on top, stretched over the window.
+    void present(const Image& picture);
+    /// The window system lost what was shown.
+    bool needs_present() const { return needs_present_; }
+
+    std::string clipboard() const;
+    void set_clipboard(const std::string& text);
+    void set_title(const std::string& title);
+
+  private:
+    friend struct WindowCallbacks;
+    void make_target(Vec2i size);
+
+    GLFWwindow* window_ = nullptr;
+    std::vector<app::InputEvent> events_;
+    bool needs_present_ = true;
+    unsigned texture_ = 0, framebuffer_ = 0;
+    Vec2i target_size_{0, 0};
+};
+
+/// Ends the wait of events() on whatever thread: something is to be shown.
+void wake_windows();
+
+}  // namespace easypbr::gui

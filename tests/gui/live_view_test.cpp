@@ -1,0 +1,301 @@
+// The window's inside, driven by events, without a window.
+#include "easypbr/gui/live_view.h"
+
+#include <gtest/gtest.h>
+
+#include "easypbr/app/camera_text.h"
+#include "easypbr/app/channels.h"
+#include "easypbr/core/error.h"
+#include "easypbr/geometry/primitives.h"
+
+namespace easypbr::gui {
+namespace {
+
+using app::InputEvent;
+using Kind = InputEvent::Kind;
+
+const Vec2i size(900, 600);
+const Vec2d middle(450, 300);
+
+class Live : public testing::Test {
+  protected:
+    Live() : session_(ball_scene()) {
+        session_.settings().image.samples = 6;
+        view_.state().show_panels = false;
+        settle();
+    }
+
+    static Scene ball_scene() {
+        Scene scene;
+        scene.show(make_sphere(1, 32), "ball");
+        return scene;
+    }
+
+    bool step(const std::vector<InputEvent>& events = {}) { return view_.update(events, size, 1, 0.02); }
+    void settle() {
+        for (int i = 0; i < 100 && (step() || view_.is_busy()); ++i) continue;
+        EXPECT_FALSE(view_.is_busy());
+    }
+    static InputEvent at(Kind kind, Vec2d position) {
+        InputEvent event;
+        event.kind = kind;
+        event.position = position;
+        return event;
+    }
+    static InputEvent key(int code, bool control = false) {
+        InputEvent event;
+        event.kind = Kind::key_down;
+        event.key = code;
+        event.control = control;
+        return event;
+    }
+    void drag(Vec2d from, Vec2d to) {
+        step({at(Kind::move, from)});
+        step({at(Kind::press, from)});
+        step({at(Kind::move, (from + to) / 2)});
+        step({at(Kind::move, to)});
+        step({at(Kind::release, to)});
+    }
+    Vec3d camera_position() { return session_.view_point(size).camera.position(); }
+
+    app::Session session_;
+    LiveView view_{session_};
+};
+
+TEST_F(Live, RefinesToTheStillAndThenDrawsNothing) {
+    const Image screen = view_.screen();
+    const Image still = app::Session(session_.scene()).render({size, 6});
+    double worst = 0;
+    for (size_t i = 0; i < still.pixel_count(); ++i)
+        for (size_t c = 0; c < 3; ++c)
+            worst = std::max(worst, std::abs(double(screen.pixels<uint8_t>()[4 * i + c]) -
+                                             still.pixels<uint8_t>()[4 * i + c]));
+    EXPECT_LE(worst, 1);  // once more through 8 bits
+    EXPECT_FALSE(step());
+    EXPECT_FALSE(step());
+}
+
+TEST_F(Live, ALeftDragTurnsTheCameraAndUndoTurnsItBack) {
+    const Vec3d before = camera_position();
+    drag(middle, middle + Vec2d(120, 0));
+    settle();
+    const Vec3d after = camera_position();
+    EXPECT_GT((after - before).norm(), 0.5);
+    EXPECT_NEAR((after - session_.view_point(size).target).norm(),
+                (before - session_.view_point(size).target).norm(), 1e-6);
+    step({key('Z', true)});
+    EXPECT_LT((camera_position() - before).norm(), 1e-9);
+    step({key('Y', true)});
+    EXPECT_LT((camera_position() - after).norm(), 1e-9);
+}
+
+TEST_F(Live, AClickSelectsAndTheWheelZoomsToThePointer) {
+    const Vec2d place = middle + Vec2d(60, 30);
+    step({at(Kind::move, place)});
+    step({at(Kind::press, place), at(Kind::release, place)});
+    EXPECT_EQ(view_.state().object, "ball");
+    ASSERT_TRUE(view_.state().picked);
+    const Vec3d point = view_.state().picked->position;
+    InputEvent wheel = at(Kind::scroll, place);
+    wheel.scroll = {0, 3};
+    const double before = session_.view_point(size).camera.position().norm();
+    step({wheel});
+    const app::ViewPoint view = session_.view_point(size);
+    EXPECT_LT(view.camera.position().norm(), before);
+    // Picked positions are those of the pixel's centre.
+    EXPECT_LT((app::pixel_of(view.camera, point, size).head<2>() - place).norm(), 1.0);
+    const Vec2d corner(5, 5);
+    step({at(Kind::move, corner)});
+    step({at(Kind::press, corner), at(Kind::release, corner)});
+    EXPECT_EQ(view_.state().object, "");
+}
+
+TEST_F(Live, ADoubleClickMakesThePointTheTarget) {
+    InputEvent first = at(Kind::press, middle + Vec2d(50, 0)), second = first;
+    first.time = 1;
+    second.time = 1.2;
+    step({first, at(Kind::release, first.position), second, at(Kind::release, first.position)});
+    EXPECT_NEAR(session_.view_point(size).target.norm(), 1, 0.02);  // on the ball
+}
+
+TEST_F(Live, HoveringNamesWhatIsThere) {
+    step({at(Kind::move, middle)});
+    settle();
+    ASSERT_TRUE(view_.state().hovered);
+    EXPECT_EQ(view_.state().hovered->object, "ball");
+    step({at(Kind::move, {3, 3})});
+    settle();
+    EXPECT_FALSE(view_.state().hovered);
+}
+
+TEST_F(Live, KeysHidePanelsShowThemselvesFitAndClose) {
+    view_.state().show_panels = true;
+    step({key('H')});
+    EXPECT_FALSE(view_.state().show_panels);
+    InputEvent question = at(Kind::text, middle);
+    question.code = '?';
+    step({question});
+    EXPECT_TRUE(view_.state().show_keys);
+    step({key(app::key::escape)});
+    EXPECT_FALSE(view_.state().show_keys);
+    EXPECT_FALSE(view_.wants_to_close());
+    for (int i = 0; i < panel_count; ++i) {
+        const bool before = view_.state().is_open(Panel(i));
+        step({key(app::key::f1 + i)});
+        EXPECT_NE(view_.state().is_open(Panel(i)), before);
+    }
+    const double fitted = camera_position().norm();
+    session_.set_view_point(app::zoomed(session_.view_point(size), 5, Vec3d(0, 0, 0)));
+    step({key('F')});
+    EXPECT_NEAR(camera_position().norm(), fitted, 0.02 * fitted);
+    step({key(app::key::escape)});
+    EXPECT_TRUE(view_.wants_to_close());
+}
+
+TEST_F(Live, ThePanelsTakeTheirOwnClicks) {
+    view_.state().show_panels = true;
+    settle();
+    const Vec2d in_panel(60, 60);
+    step({at(Kind::move, in_panel)});
+    step();
+    const Vec3d before = camera_position();
+    drag(in_panel, in_panel + Vec2d(100, 5));
+    EXPECT_LT((camera_position() - before).norm(), 1e-12);
+    const Image with = view_.screen();
+    step({key('H')});
+    settle();
+    EXPECT_FALSE(std::ranges::equal(with.bytes(), view_.screen().bytes()));
+}
+
+TEST_F(Live, NewDataUnderTheSameNameKeepLookAndCamera) {
+    change_look(view_.state(), "ball", "material.roughness", [](MeshData& data) {
+        data.materials.resize(1);
+        data.materials[0].roughness = 0.125f;
+    });
+    drag(middle, middle + Vec2d(80, 0));
+    settle();
+    const Vec3d camera = camera_position();
+    session_.scene().show(make_sphere(1, 12), "ball");
+    settle();
+    EXPECT_EQ(session_.scene().get("ball").material().roughness, 0.125f);
+    EXPECT_EQ(session_.scene().get("ball").F().rows(), make_sphere(1, 12).F().rows());
+    EXPECT_LT((camera_position() - camera).norm(), 1e-12);
+}
+
+TEST_F(Live, TheManipulatorMovesTheObjectAlongItsAxis) {
+    view_.state().show_panels = true;
+    view_.state().object = "ball";
+    session_.set_view_point({Camera::look_at(Vec3d(0, 0, 6), Vec3d(0, 0, 0)), Vec3d(0, 0, 0)});
+    settle();
+    // The x handle goes 90 pixels to the right of the centre.
+    drag(middle + Vec2d(60, 0), middle + Vec2d(120, 0));
+    const Eigen::Affine3d T = session_.scene().get("ball").T_parent_mesh();
+    const double pixel = app::point_at(session_.view_point(size).camera, {1, 0}, size, 6).x() -
+                         app::point_at(session_.view_point(size).camera, {0, 0}, size, 6).x();
+    EXPECT_NEAR(T.translation().x(), 60 * pixel, 0.01);
+    EXPECT_NEAR(T.translation().tail<2>().norm(), 0, 1e-9);
+    EXPECT_LT((camera_position() - Vec3d(0, 0, 6)).norm(), 1e-12);
+}
+
+TEST_F(Live, EveryChannelIsShown) {
+    std::vector<Image> seen;
+    for (const char* channel : {"picture", "slices", "normal", "depth", "albedo", "id"}) {
+        view_.state().channel = channel;
+        settle();
+        const Image screen = view_.screen();
+        for (const Image& other : seen)
+            EXPECT_FALSE(std::ranges::equal(other.bytes(), screen.bytes())) << channel;
+        seen.push_back(screen);
+    }
+    // The ball's middle faces the camera: its world normal is towards it.
+    view_.state().channel = "normal";
+    settle();
+    const Vec3d towards = camera_position().normalized();
+    const Image screen = view_.screen();
+    for (int c = 0; c < 3; ++c)
+        EXPECT_NEAR(screen.at<uint8_t>(450, 300)[c], (towards[c] / 2 + 0.5) * 255, 2);  // 8 bits, flat faces
+}
+
+TEST_F(Live, WhatCannotBeDrawnIsToldAndTheLoopGoesOn) {
+    session_.settings().background.mode = BackgroundMode::image;
+    step();
+    ASSERT_EQ(view_.state().notifications.size(), 1u);
+    EXPECT_NE(view_.state().notifications[0].text.find("background.image"), std::string::npos);
+    for (int i = 0; i < 5; ++i) step();
+    EXPECT_EQ(view_.state().notifications.size(), 1u);
+    session_.settings().background.mode = BackgroundMode::color;
+    settle();
+    InputEvent drop = at(Kind::drop, middle);
+    drop.paths = {"/nowhere/at_all.ply"};
+    step({drop});
+    EXPECT_EQ(view_.state().notifications.size(), 2u);
+}
+
+TEST(LiveView, AnEmptySceneIsAnEmptyScreen) {
+    app::Session session;
+    LiveView view(session);
+    view.state().show_panels = false;
+    EXPECT_TRUE(view.update({}, {64, 48}, 1, 0.01));
+    const Image screen = view.screen();
+    EXPECT_EQ(screen.at<uint8_t>(32, 24)[0], 64);  // the grey of a default background
+    EXPECT_TRUE(view.state().notifications.empty());
+    EXPECT_THROW(LiveView(session).screen(), ArgumentError);
+}
+
+TEST(CameraText, GoesThroughTheClipboardExactly) {
+    Settings settings, other;
+    settings.camera.pose = {1, 0, 0, 0.1, 0, 1, 0, 1.0 / 3, 0, 0, 1, 1e-17, 0, 0, 0, 1};
+    settings.camera.fov_y_deg = 41.5f;
+    app::apply_camera_text("--set " + app::camera_text(settings), other);
+    EXPECT_EQ(other.camera.pose, settings.camera.pose);
+    EXPECT_EQ(other.camera.fov_y_deg, 41.5f);
+    EXPECT_THROW(app::apply_camera_text("hello", other), FormatError);
+    EXPECT_THROW(app::apply_camera_text("", other), FormatError);
+    EXPECT_THROW(app::apply_camera_text("camera.fov_y_deg=far", other), ArgumentError);
+    EXPECT_THROW(app::apply_camera_text("camera.pose=2,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1", other), ArgumentError);
+    EXPECT_EQ(other.camera.pose, settings.camera.pose);
+}
+
+TEST(History, ForgetsWhatWasUndoneWhenSomethingNewIsDone) {
+    app::History history;
+    Settings settings;
+    history.note(settings);
+    EXPECT_FALSE(history.can_undo());
+    settings.image.samples = 2;
+    history.note(settings);
+    settings.tone.exposure.latch(3);  // inferred: no choice of a person's
+    history.note(settings);
+    settings.image.samples = 3;
+    history.note(settings);
+    EXPECT_EQ(history.undo().image.samples, 2);
+    EXPECT_EQ(history.undo().image.samples, Settings().image.samples);
+    EXPECT_FALSE(history.can_undo());
+    EXPECT_THROW(history.undo(), ArgumentError);
+    EXPECT_EQ(history.redo().image.samples, 2);
+    settings.image.samples = 9;
+    history.note(settings);
+    EXPECT_FALSE(history.can_redo());
+    EXPECT_EQ(history.undo().image.samples, 2);
+}
+
+TEST(Slices, CutThePictureIntoSlantedParts) {
+    std::vector<Image> pictures;
+    for (const uint8_t grey : {10, 20, 30}) {
+        Image picture(90, 60, 4, PixelType::u8);
+        std::ranges::fill(picture.pixels<uint8_t>(), grey);
+        pictures.push_back(picture);
+    }
+    const Image cut = app::slices(pictures);
+    // In the middle row the borders are at a third and two thirds.
+    EXPECT_EQ(cut.at<uint8_t>(15, 30)[0], 10);
+    EXPECT_EQ(cut.at<uint8_t>(45, 30)[0], 20);
+    EXPECT_EQ(cut.at<uint8_t>(75, 30)[0], 30);
+    EXPECT_EQ(cut.at<uint8_t>(30, 30)[0], 255);  // the line
+    // 30 rows lower a border has moved 30 tan(15 deg) = 8 pixels to the left.
+    EXPECT_EQ(cut.at<uint8_t>(25, 59)[0], 20);
+    EXPECT_THROW(app::slices({}), ArgumentError);
+    EXPECT_THROW(app::slices({pictures[0], Image(2, 2, 4, PixelType::u8)}), ArgumentError);
+}
+
+}  // namespace
+}  // namespace easypbr::gui

@@ -1,0 +1,183 @@
+"""The real window: mouse, keys, panels, closing, several at once."""
+import os
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import easypbr
+from display import wait_until
+
+MIDDLE = (400, 300)
+
+
+def distance(camera):
+    return np.linalg.norm(camera.position)
+
+
+def test_the_screen_shows_what_the_viewer_draws(window):
+    window.view._handle.set_gui("show_panels", False)
+    window.settle()
+    shown = window.shown()
+    drawn = window.view.screenshot((800, 600))[:, :, :3]
+    # Where the pointer is the window system draws over it.
+    assert np.mean(np.any(shown != drawn, axis=2)) < 0.005
+    assert np.mean(np.abs(shown.astype(int) - window.view.render((800, 600))[:, :, :3])) < 0.5
+
+
+def test_a_left_drag_orbits_and_a_right_drag_pans(window):
+    window.key("h")
+    before = window.view.camera.position.copy()
+    window.mouse("mousemove", *MIDDLE, "mousedown", 1)
+    window.mouse("mousemove", 460, 310)
+    window.mouse("mousemove", 520, 320)
+    window.mouse("mouseup", 1)
+    turned = window.view.camera.position.copy()
+    assert np.linalg.norm(turned - before) > 0.3
+    target = np.array(window.view.settings.resolve("camera.target"))
+    assert abs(np.linalg.norm(turned - target) - np.linalg.norm(before - target)) < 1e-6
+    pixel = window.view.pick(*MIDDLE, (800, 600)).position
+    window.mouse("mousemove", *MIDDLE, "mousedown", 3)
+    window.mouse("mousemove", 430, 300)
+    window.mouse("mousemove", 450, 300)
+    window.mouse("mouseup", 3)
+    moved = window.view.pick(450, 300, (800, 600)).position
+    assert np.linalg.norm(moved - pixel) < 0.05
+    window.settle()
+    columns = np.flatnonzero(np.any(np.abs(window.shown().astype(int) - 64).max(axis=2) > 8, axis=0))
+    assert abs((columns[0] + columns[-1]) / 2 - 450) < 6
+
+
+def test_the_wheel_zooms_and_a_click_picks(window):
+    window.key("h")
+    before = distance(window.view.camera)
+    window.mouse("mousemove", *MIDDLE, "click", 4, "click", 4)
+    assert distance(window.view.camera) < 0.9 * before
+    window.mouse("mousemove", *MIDDLE, "click", 1)
+    assert window.state["object"] == "ball"
+    window.mouse("mousemove", 5, 5, "click", 1)
+    assert window.state["object"] == ""
+    window.key("f")
+    assert abs(distance(window.view.camera) - before) < 0.05 * before
+
+
+def test_keys_toggle_each_panel(window):
+    names = ["Scene", "Object", "Effects", "Lights", "Environment", "Camera", "Channels", "Statistics"]
+    assert window.state["panels"] == names
+    pictures = [window.shown()]
+    for number, name in enumerate(names, 1):
+        window.key(f"F{number}")
+        assert name not in window.state["panels"]
+        pictures.append(window.shown())
+        assert np.any(pictures[-1] != pictures[-2]), name
+    window.key("question")
+    assert window.state["show_keys"]
+    window.key("Escape")
+    assert not window.state["show_keys"] and window.view.is_open
+
+
+def test_typing_into_a_panel_is_not_for_the_camera(window):
+    before = window.view.camera.position.copy()
+    window.mouse("mousemove", 60, 120, "mousedown", 1)
+    window.mouse("mousemove", 90, 130)
+    window.mouse("mouseup", 1)
+    assert np.array_equal(window.view.camera.position, before)
+
+
+def test_the_picture_follows_a_resized_window(window):
+    window.display.run("wmctrl", "-r", window.title, "-e", "0,-1,-1,1000,500")
+    wait_until(lambda: window.update() and window.state["size"] == [1000, 500])
+    window.settle()
+    assert window.state["drawn_size"] == [1000, 500]
+
+
+@pytest.mark.parametrize("how", ["button", "key"])
+def test_closing_ends_the_loop(window, how):
+    if how == "button":
+        window.display.run("wmctrl", "-c", window.title)
+        wait_until(lambda: not window.update())
+    else:
+        window.display.run("xdotool", "key", "Escape")
+        wait_until(lambda: not window.update())
+    assert not window.view.is_open and not window.view.update()
+    wait_until(lambda: window.title not in window.display.windows())
+
+
+def test_an_idle_window_costs_next_to_nothing(window):
+    window.mouse("mousemove", 790, 590)
+    window.settle()
+    start, cpu = time.monotonic(), time.process_time()
+    while time.monotonic() < start + 2:
+        window.update()
+    assert (time.process_time() - cpu) / 2 < 0.05
+
+
+def test_shows_what_another_thread_shows_meanwhile(window):
+    scene = window.view.scene
+    thread = threading.Thread(target=lambda: [scene.show(easypbr.shapes.box(s / 20), "box") for s in range(1, 21)])
+    thread.start()
+    while thread.is_alive():
+        assert window.update()
+    window.settle()
+    window.view.camera = easypbr.Camera.look_at((0, 0, 9), (0, 0, 0))
+    window.settle()
+    assert window.view.pick(*MIDDLE, (800, 600)).object == "ball"
+    assert sorted(window.view.object_names()) == ["ball", "box"]
+
+
+def test_an_exception_in_a_callback_is_shown_and_the_loop_goes_on(window, capsys):
+    calls = []
+
+    @window.view.before_draw
+    def broken():
+        calls.append(1)
+        raise RuntimeError("the weights are NaN")
+
+    assert window.update(3)
+    assert len(calls) == 3
+    told = capsys.readouterr().err
+    assert told.count("Traceback") == 1 and "the weights are NaN" in told and "in broken" in told
+    assert "RuntimeError: the weights are NaN" in window.state["messages"]
+
+
+def test_a_window_that_lives_beside_the_program(display):
+    view = easypbr.show(easypbr.shapes.box(), block=False, size=(320, 240))
+    wait_until(lambda: view._handle.gui_state()["frames"] == 16)
+    before = view.camera.position
+    view.settings.camera.azimuth_deg = 80
+    view.refit()
+    wait_until(lambda: np.any(view.camera.position != before))
+    assert view.is_open
+    view.close()
+    assert not view.is_open
+
+
+def test_viewers_made_and_dropped_on_several_threads(display):
+    errors = []
+
+    def work(number):
+        try:
+            for _ in range(3):
+                scene = easypbr.Scene()
+                scene.show(easypbr.shapes.box(), f"box{number}")
+                view = easypbr.Viewer((160, 120), {"image": {"samples": 1}}, scene=scene)
+                for _ in range(5):
+                    assert view.update()
+        except Exception as error:
+            errors.append(error)
+
+    threads = [threading.Thread(target=work, args=(i,)) for i in range(4)]
+    [thread.start() for thread in threads]
+    [thread.join(120) for thread in threads]
+    assert not errors and not any(thread.is_alive() for thread in threads)
+
+
+def test_without_a_display_it_says_so():
+    environment = {name: value for name, value in os.environ.items() if name not in ("DISPLAY", "WAYLAND_DISPLAY")}
+    code = "import easypbr; easypbr.show(easypbr.shapes.box())"
+    done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 1
+    assert "ContextError: no window: X11: " in done.stderr and "render()" in done.stderr
