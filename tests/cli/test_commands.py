@@ -32,6 +32,13 @@ def test_info_counts_a_mesh(easypbr, box):
     assert "faces       12\n" in easypbr("info", box).stdout
 
 
+def test_info_shows_places_far_from_zero(easypbr, tmp_path):
+    (tmp_path / "far.xyz").write_text("691000.125 5335000.5 520.25\n691100.375 5335100.75 530.5\n")
+    text = easypbr("info", "far.xyz").stdout
+    assert "bounds      (691000.125, 5335000.5, 520.25) to (691100.375, 5335100.75, 530.5)\n" in text
+    assert "attributes  none\n" in text
+
+
 def test_info_describes_an_image(easypbr, tmp_path):
     exr.write(tmp_path / "a.exr", np.zeros((3, 5, 3), np.float32))
     info = json.loads(easypbr("info", "--json", "a.exr").stdout)

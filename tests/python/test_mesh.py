@@ -181,6 +181,20 @@ def test_textures_are_arrays_or_files(square, tmp_path):
         mesh.material.normal_texture = tmp_path / "missing.png"
 
 
+def test_positions_alone_are_a_cloud(square):
+    cloud = Mesh(square[0])
+    np.testing.assert_array_equal(cloud.V, square[0])
+    assert len(cloud.F) == 0
+
+
+def test_a_style_says_what_is_chosen(square):
+    mesh = Mesh(*square)
+    assert repr(mesh.style) == "Style()"
+    mesh.style.show_wireframe = True
+    mesh.style.colormap = "magma"
+    assert repr(mesh.style) == "Style(show_wireframe=True, colormap='magma')"
+
+
 def test_style(square):
     mesh = Mesh(*square)
     assert mesh.style.flat == auto and mesh.style.visible == auto

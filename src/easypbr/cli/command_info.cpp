@@ -1,6 +1,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -127,13 +130,31 @@ std::string image_text(const Json& image) {
                        image["channels"].get<int>(), image["type"].get<std::string>());
 }
 
+/// Corners with as many digits as tell places apart that are a hundred thousandth of the box's size from each
+/// other: far from zero that takes more than the usual six.
+std::string box_text(const Json& low, const Json& high) {
+    double size = 0, farthest = 0;
+    for (size_t k = 0; k < 3; ++k) {
+        size = std::max(size, high[k].get<double>() - low[k].get<double>());
+        farthest = std::max({farthest, std::abs(low[k].get<double>()), std::abs(high[k].get<double>())});
+    }
+    const double digits = size > 0 ? std::ceil(std::log10(farthest / size) + 5) : 6;
+    const int precision = int(std::clamp(digits, 6.0, 17.0));
+    const auto corner = [&](const Json& p) {
+        return fmt::format("({:.{}g}, {:.{}g}, {:.{}g})", p[0].get<double>(), precision, p[1].get<double>(),
+                           precision, p[2].get<double>(), precision);
+    };
+    return corner(low) + " to " + corner(high);
+}
+
 void print_mesh(const Json& mesh) {
     for (const char* count : {"vertices", "faces", "nodes", "parts", "lights", "cameras"})
         fmt::print("{:<12}{}\n", count, mesh[count].get<size_t>());
+    const auto attributes = mesh["attributes"].get<std::vector<std::string>>();
     fmt::print("{:<12}{}\n", "attributes",
-               fmt::join(mesh["attributes"].get<std::vector<std::string>>(), ", "));
+               attributes.empty() ? "none" : fmt::format("{}", fmt::join(attributes, ", ")));
     if (mesh.contains("bounds"))
-        fmt::print("{:<12}{} to {}\n", "bounds", row(mesh["bounds"]["min"]), row(mesh["bounds"]["max"]));
+        fmt::print("{:<12}{}\n", "bounds", box_text(mesh["bounds"]["min"], mesh["bounds"]["max"]));
     for (const Json& material : mesh["materials"]) {
         fmt::print("{:<12}'{}': base colour {}, metallic {:.3g}, roughness {:.3g}\n", "material",
                    material["name"].get<std::string>(), row(material["base_color"]),

@@ -101,10 +101,24 @@ void construct(Handle* self, const nb::kwargs& values) {
     new (self) Handle(nb::cast<const Handle&>(object));
 }
 
+/// What is not automatic, as arguments.
+std::string style_text(nb::handle style) {
+    const std::string prefix = "style.";
+    std::string text;
+    for (const Field& field : fields()) {
+        if (!field.name.starts_with(prefix)) continue;
+        const std::string name = field.name.substr(prefix.size());
+        const std::string value = nb::cast<std::string>(nb::repr(style.attr(name.c_str())));
+        if (value != "auto") text += (text.empty() ? "" : ", ") + name + "=" + value;
+    }
+    return "Style(" + text + ")";
+}
+
 void bind_style(nb::module_& module) {
     nb::class_<StyleHandle> style(module, "Style",
                                   "How a mesh is drawn; `auto` where it follows from the data.");
     style.def("__init__", construct<StyleHandle>, nb::sig("def __init__(self, **values: object) -> None"));
+    style.def("__repr__", style_text);
     const std::string prefix = "style.";
     for (const Field& field : fields()) {
         if (!field.name.starts_with(prefix)) continue;

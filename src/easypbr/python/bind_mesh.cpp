@@ -245,9 +245,12 @@ void bind_mesh(nb::module_& module) {
     mesh.def("__init__", [](Mesh* self) { new (self) Mesh(); })
         .def(
             "__init__", [](Mesh* self, const fs::path& path) { released([&] { new (self) Mesh(path); }); },
-            nb::arg("path"), "Reads PLY, OBJ, STL, OFF, glTF, GLB, and what the assimp module reads.")
-        .def("__init__", construct_from_arrays, nb::arg("V"), nb::arg("F"),
-             "n x 3 positions and m x 3 vertex indices, of any numeric type.");
+            nb::arg("path"),
+            "Reads PLY, OBJ, STL, OFF, glTF, GLB, the formats of point clouds (PCD, XYZ, NPY, LAS, ...), and "
+            "what "
+            "the assimp module reads.")
+        .def("__init__", construct_from_arrays, nb::arg("V"), nb::arg("F").none() = nb::none(),
+             "n x 3 positions and m x 3 vertex indices, of any numeric type; without faces a cloud.");
     bind_arrays(mesh);
     bind_mesh_fields(mesh);
     bind_look(mesh);
@@ -260,7 +263,7 @@ void bind_mesh(nb::module_& module) {
             "The file it was read from; empty for a mesh made in memory.")
         .def(
             "save", [](const Mesh& m, const fs::path& path) { released([&] { m.save(path); }); },
-            nb::arg("path"), "Writes PLY, OBJ or GLB, by the extension.")
+            nb::arg("path"), "Writes PLY, OBJ, GLB, PCD, XYZ, CSV, NPY or NPZ, by the extension.")
         .def(
             "__eq__", [](const Mesh& a, const Mesh& b) { return a == b; }, nb::is_operator(),
             "Whether both are handles to the same mesh.")
