@@ -1,6 +1,7 @@
 // Milliseconds per frame on an orbit, as peer_vtk.py measures them: 3 degrees a frame, each frame finished by
 // reading a pixel back. Prints one JSON line. usage: bench_frames MESH FRAMES ENVIRONMENT WIDTHxHEIGHT
-// [--driver] [group.name=value]...
+// [--driver] [--lights=N] [group.name=value]...
+// --lights=N: that many point lights around the mesh.
 // --driver: OpenGL's driver rasterises all triangles, also where there is no GPU.
 #include <fmt/format.h>
 
@@ -43,6 +44,21 @@ Camera vtk_camera(const Box3d& bounds, double azimuth_deg) {
                            bounds.center());
 }
 
+/// Lights on a spiral around the content, together as bright as one.
+void add_lights(Scene& scene, int count) {
+    const Box3d bounds = scene.snapshot().bounds();
+    const double distance = 1.5 * bounds.diagonal().norm();
+    for (int i = 0; i < count; ++i) {
+        const double z = 1 - (2 * i + 1.0) / count, angle = i * pi * (3 - std::sqrt(5.0)),
+                     across = std::sqrt(1 - z * z);
+        const Vec3d way(across * std::cos(angle), z, across * std::sin(angle));
+        Light light;
+        light.position = (bounds.center() + distance * way).cast<float>();
+        light.intensity = float(distance * distance / count);
+        scene.set_light(fmt::format("light {}", i), light);
+    }
+}
+
 int measure(int argc, char** argv) {
     if (argc < 5) return 2;
     auto start = std::chrono::steady_clock::now();
@@ -66,6 +82,10 @@ int measure(int argc, char** argv) {
     for (int i = 5; i < argc; ++i) {
         const std::string option = argv[i];
         const size_t equals = option.find('=');
+        if (option.starts_with("--lights=")) {
+            add_lights(scene, std::stoi(option.substr(9)));
+            continue;
+        }
         if (option == "--driver") session.allow_native_geometry(false);
         if (equals != std::string::npos)
             set_from_text(settings, option.substr(0, equals), option.substr(equals + 1));

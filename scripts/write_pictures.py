@@ -197,6 +197,38 @@ def ambient_occlusion() -> np.ndarray:
     return row([view.render(), with_occlusion, np.repeat(grey.astype(np.uint8)[:, :, None], 3, axis=2)])
 
 
+def bloom() -> np.ndarray:
+    """Without, with a threshold, with a tenth of all light spread."""
+    scene = on_floor(teapot("#ffe29b", 1, 0.2))
+    lamp = shapes.sphere(0.08)
+    lamp.material = Material(base_color="#000000", emissive=(60, 30, 10))
+    lamp.T_parent_mesh = [[1, 0, 0, 0.75], [0, 1, 0, 0.12], [0, 0, 1, 0.5], [0, 0, 0, 1]]
+    scene.show(lamp, "lamp")
+    view = Viewer((290, 220), {"environment": {"intensity": 0.3}}, scene)
+    pictures = [view.render()]
+    view.settings.bloom.enabled = True
+    pictures.append(view.render())
+    view.settings.update({"bloom": {"threshold": 0, "intensity": 0.1}})
+    return row([*pictures, view.render()])
+
+
+def depth_of_field() -> np.ndarray:
+    """A row of teapots: without, focused on the nearest, on the farthest."""
+    scene = Scene()
+    for place, color in enumerate(("#b03a2e", "#d9a441", "#3f7f5f", "#2f5f9f", "#6f4f8f")):
+        mesh = teapot(color)
+        mesh.T_parent_mesh = [[1, 0, 0, 0.8 * place], [0, 1, 0, 0], [0, 0, 1, -1.6 * place], [0, 0, 0, 1]]
+        scene.show(mesh, str(place))
+    view = Viewer((290, 220), {"camera": {"azimuth_deg": 0, "elevation_deg": 12}}, scene)
+    pictures = [view.render()]
+    depth = view.layers(["depth"])["depth"]
+    view.settings.update({"depth_of_field": {"enabled": True, "f_number": 2.5}})
+    for distance in (depth[depth > 0].min() * 1.1, depth.max() * 0.95):
+        view.settings.depth_of_field.focus_distance = float(distance)
+        pictures.append(view.render(samples=64))
+    return row(pictures)
+
+
 def geometry() -> np.ndarray:
     """A teapot; simplified; as surfels estimated from bare points; as voxels."""
     mesh = teapot("#c8a15a", 0, 0.35)
@@ -310,7 +342,7 @@ def drones() -> np.ndarray:
 
 
 PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion,
-            geometry, all_shapes, glass, camera_path, shadows, ground, drones]
+            bloom, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones]
 
 PICTURES += [viewer, viewer_slices]
 

@@ -1,5 +1,8 @@
 // Adds one jittered frame to the sum, tone mapped, so that each sample of an edge weighs what the eye makes of it.
 #include "common_tone.glsl"
+#ifdef BLOOM
+#include "common_bloom.glsl"
+#endif
 
 uniform sampler2D u_radiance;
 uniform vec2 u_size;
@@ -13,6 +16,9 @@ uniform sampler2D u_overlay;  // linear display light, premultiplied
 
 void main() {
     vec4 radiance = textureLod(u_radiance, gl_FragCoord.xy / u_size, 0.0);
+#ifdef BLOOM
+    radiance = with_bloom(radiance, gl_FragCoord.xy);
+#endif
     o_sum = displayed(radiance, u_exposure);
 #ifdef OVERLAY
     vec4 over = textureLod(u_overlay, gl_FragCoord.xy / u_size, 0.0);

@@ -1,6 +1,9 @@
 // The last step: background behind what was drawn, sRGB encoding.
 #include "common_encoding.glsl"
 #include "common_tone.glsl"
+#ifdef BLOOM
+#include "common_bloom.glsl"
+#endif
 
 uniform sampler2D u_source;  // SUM: accumulated display light; else one frame's radiance
 uniform vec2 u_size;
@@ -24,6 +27,9 @@ void main() {
 #ifdef SUM
     vec4 color = source * u_sample_scale;
 #else
+#ifdef BLOOM
+    source = with_bloom(source, gl_FragCoord.xy);
+#endif
     vec4 color = displayed(source, u_exposure);
 #ifdef OVERLAY
     vec4 over = textureLod(u_overlay, uv, 0.0);

@@ -173,6 +173,14 @@ class Viewer:
         """The scene and camera as they are now, for flow between frames: render_layers(..., previous=moment)."""
         return _easypbr.moment(self._handle, size)
 
+    def focus_at(self, x: int, y: int, size=None) -> float:
+        """Focuses the lens (settings.depth_of_field) on what pixel (x, y) shows and returns its depth."""
+        return self._handle.focus_at(x, y, size)
+
+    def forget_motion(self) -> None:
+        """The next picture shows no motion since this one (settings.motion_blur)."""
+        self._handle.forget_motion()
+
     def save_settings(self, path) -> None:
         """Writes every value, chosen and inferred, with hashes of the files shown."""
         sources = (self.scene.get(name).source for name in self.scene.names())

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "easypbr/core/color.h"
+#include "easypbr/core/log.h"
 #include "easypbr/scene/material_table.h"
 #include "lobe_reference.h"
 #include "render_test.h"
@@ -341,6 +342,51 @@ TEST(Extensions, VarnishDimsWhatGlowsBelow) {
         ASSERT_NEAR(point.radiance.z(), keep, 0.004);
         ASSERT_NEAR(point.radiance.x(), 3 * keep, 0.012);
     }
+}
+
+// Lights of extended surfaces are added with two outputs of one shader, which a draw into several targets
+// must not inherit: the layers of the same frame, and the geometry of the next.
+TEST(Extensions, LeaveNothingBehindForLayersAndNextFrames) {
+    Material varnished = with([](Material& m) { m.clearcoat = 1; });
+    Material veil;
+    veil.alpha_mode = AlphaMode::blend;
+    veil.opacity = 0.5f;
+    veil.unlit = true;
+    veil.base_color = Vec3(1, 0, 0);
+    Scene scene;
+    app::Session session = session_of(varnished, scene);
+    Mesh before = facing_square(0.5f, veil);
+    before.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, 1.5)));
+    scene.show(before, "veil");
+    std::string logged;
+    set_log_sink([&](LogLevel, std::string_view text) { logged += text; });
+    const Image first = render_linear(session), second = render_linear(session);
+    set_log_sink({});
+    EXPECT_EQ(logged, "");  // OpenGL's errors come here.
+    EXPECT_NEAR(first.at<float>(size / 2, size / 2)[0], 0.5f, 0.01f);
+    EXPECT_EQ(std::memcmp(first.bytes().data(), second.bytes().data(), first.bytes().size()), 0);
+}
+
+// Exact colours are drawn once more at the end of a still, whatever its frames had beside them.
+TEST(Extensions, LeaveNothingBehindForExactColors) {
+    Scene scene;
+    app::Session session = session_of(with([](Material& m) { m.clearcoat = 1; }), scene);
+    Material veil;
+    veil.alpha_mode = AlphaMode::blend;
+    veil.opacity = 0.5f;
+    veil.clearcoat = 1;
+    scene.show(facing_square(0.2f, veil), "veil");
+    Mesh labelled = facing_square(0.5f);
+    labelled.set_L(Array1i(Array1i::Dense::Constant(4, 1)));
+    labelled.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, 1.5)));
+    scene.show(labelled, "labelled");
+    std::string logged;
+    set_log_sink([&](LogLevel, std::string_view text) { logged += text; });
+    const Image one = session.render({std::nullopt, 1}), four = session.render({std::nullopt, 4});
+    set_log_sink({});
+    EXPECT_EQ(logged, "");
+    for (int c = 0; c < 4; ++c)
+        EXPECT_EQ(four.at<uint8_t>(size / 2, size / 2)[c], one.at<uint8_t>(size / 2, size / 2)[c]);
 }
 
 /// Mean difference of two pictures of a sphere in an environment that is not the same everywhere, and under a

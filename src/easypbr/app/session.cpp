@@ -7,6 +7,7 @@
 #include <set>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image_io.h"
 #include "easypbr/scene/fields.h"
@@ -150,8 +151,9 @@ ResolvedSettings Session::resolve(std::optional<Vec2i> size) {
 Session::Prepared Session::prepare(const PictureOptions& options) {
     timing_ = {};
     Prepared prepared;
-    prepared.options = {size_or(options.size), options.samples.value_or(settings_.image.samples),
-                        options.encoding};
+    prepared.options.size = size_or(options.size);
+    prepared.options.samples = options.samples.value_or(settings_.image.samples);
+    prepared.options.encoding = options.encoding;
     check_size(prepared.options.size);
     {
         const Stopwatch watch(timing_.images);
@@ -159,6 +161,11 @@ Session::Prepared Session::prepare(const PictureOptions& options) {
     }
     const Stopwatch watch(timing_.draw);
     prepared.resolved = easypbr::resolve(prepared.scene, settings_, prepared.options.size);
+    const bool no_lens =
+        settings_.depth_of_field.enabled && prepared.resolved.camera.projection == Projection::orthographic;
+    if (no_lens && !warned_of_lens_)
+        log_warning("depth_of_field.enabled: an orthographic camera has no lens, so nothing is blurred");
+    warned_of_lens_ = no_lens;
     return prepared;
 }
 
@@ -182,6 +189,7 @@ void Session::annotate(const Prepared& prepared) {
 
 void Session::draw_frame(const PictureOptions& options) {
     Prepared prepared = prepare(options);
+    if (settings_.motion_blur.enabled) prepared.options.motion = motion_;
     apply_lens(prepared);
     refined_.reset();
     render::Renderer& renderer = this->renderer();
@@ -190,6 +198,7 @@ void Session::draw_frame(const PictureOptions& options) {
     renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
     renderer.read_picture(1, 1);
     annotate(prepared);
+    motion_ = std::make_shared<const Motion>(prepared.scene, prepared.resolved.camera);
     latch_from(prepared);
 }
 
@@ -369,6 +378,18 @@ Moment Session::moment(std::optional<Vec2i> size) {
     Moment moment{snapshot(), {}};
     moment.camera = easypbr::resolve(moment.scene, settings_, size_or(size)).camera;
     return moment;
+}
+
+double Session::focus_at(int x, int y, std::optional<Vec2i> size) {
+    const Vec2i pixels = size_or(size);
+    if (x < 0 || y < 0 || x >= pixels.x() || y >= pixels.y())
+        throw ArgumentError(fmt::format("focus: expected a pixel of the picture of {}x{}, got ({}, {})",
+                                        pixels.x(), pixels.y(), x, y));
+    const double depth = render_layers({"depth"}, pixels).at("depth").at<float>(x, y)[0];
+    if (!(depth > 0))
+        throw ArgumentError(fmt::format("focus: pixel ({}, {}) shows nothing to focus on", x, y));
+    settings_.depth_of_field.focus_distance = depth;
+    return depth;
 }
 
 void Session::replace_settings(const Settings& settings) {

@@ -15,6 +15,7 @@
 #include "easypbr/core/image.h"
 #include "easypbr/gl/context.h"
 #include "easypbr/render/renderer.h"
+#include "easypbr/scene/motion.h"
 #include "easypbr/scene/resolve.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/scene/settings.h"
@@ -82,6 +83,15 @@ class Session {
                                   const std::function<bool(size_t object, int first_face)>& wanted);
     /// The scene as it is now and the camera of the next picture.
     Moment moment(std::optional<Vec2i> size = std::nullopt);
+
+    /// Focuses on what a pixel shows, (0, 0) the upper left one of a picture of this size:
+    /// settings().depth_of_field.focus_distance is pinned to its depth, which is returned; the rest stays as
+    /// it is. Throws ArgumentError when the pixel is outside of the picture or shows nothing.
+    double focus_at(int x, int y, std::optional<Vec2i> size = std::nullopt);
+
+    /// With motion_blur.enabled a picture of several samples shows how things moved since the picture before.
+    /// After this the next one shows none: nothing is known of before.
+    void forget_motion() { motion_.reset(); }
 
     /// Names of what is visible; the layer "id" holds 1 + the place in this list.
     std::vector<std::string> object_names() const;
@@ -182,6 +192,8 @@ class Session {
     Scene scene_;
     Settings settings_;
     Timing timing_;
+    bool warned_of_lens_ = false;
+    std::shared_ptr<const Motion> motion_;  ///< where things were in the picture that was drawn last
 
     /// What refine() adds frames to; nothing: it has to begin.
     struct Refined {

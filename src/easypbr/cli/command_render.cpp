@@ -139,6 +139,7 @@ class RenderJob {
         Stopwatch watch;
         start_look();
         load(picture, watch);
+        if (const auto pixel = parse_focus(options_.focus)) session_.focus_at(pixel->x(), pixel->y());
         if (options_.records()) {
             record(picture);
             watch.lap("record");

@@ -134,6 +134,10 @@ void declare_camera(CLI::App& command, RenderOptions& options) {
         .add_option("--animation-time", options.animation_time,
                     "Where the animation is, or a recording of it begins")
         ->option_text("SECONDS");
+    command
+        .add_option("--focus", options.focus,
+                    "Depth of field, focused on what this pixel shows, from the upper left")
+        ->option_text("X,Y");
     command.add_option("--ortho", options.ortho, "Orthographic picture of this world height")
         ->option_text("HEIGHT|auto");
 }
@@ -216,6 +220,18 @@ int parse_side(std::string_view text, const std::string& whole) {
 
 }  // namespace
 
+std::optional<Vec2i> parse_focus(const std::string& text) {
+    if (text.empty()) return std::nullopt;
+    Vec2i pixel;
+    const char *at = text.data(), *const end = at + text.size();
+    const auto [comma, first_error] = std::from_chars(at, end, pixel.x());
+    if (first_error == std::errc() && comma != end && *comma == ',') {
+        const auto [last, error] = std::from_chars(comma + 1, end, pixel.y());
+        if (error == std::errc() && last == end) return pixel;
+    }
+    throw UsageError(fmt::format("--focus: expected the pixel X,Y, got '{}'", text));
+}
+
 Vec2i parse_size(const std::string& text) {
     const size_t at = text.find_first_of("x,");
     if (at == text.npos) throw UsageError(fmt::format("--size: expected WIDTHxHEIGHT, got '{}'", text));
@@ -281,6 +297,7 @@ void check_usage(const RenderOptions& options) {
 }
 
 void apply(const RenderOptions& options, Settings& settings) {
+    if (parse_focus(options.focus)) settings.depth_of_field.enabled = true;
     if (!options.size.empty()) settings.image.size = parse_size(options.size);
     if (!options.background.empty()) apply_background(options.background, settings.background);
     for (const std::string& text : options.textures) apply_texture(text, settings);

@@ -21,6 +21,7 @@ struct RenderOptions {
     int bit_depth = 8;
     std::string size, background, ortho;
     std::string camera;  ///< name or number of a camera in the files
+    std::string focus;   ///< "X,Y"
     std::string camera_pose, camera_axes = "opengl";
     std::optional<int> turntable;  ///< frames of one turn
     std::string camera_path;       ///< file
@@ -54,6 +55,9 @@ void check_usage(const RenderOptions& options);
 /// Sets what the options say, --set last; the rest stays as it is. Throws UsageError for a value that cannot
 /// be understood, FileError or FormatError for a pose file, ArgumentError for a picture size out of range.
 void apply(const RenderOptions& options, Settings& settings);
+
+/// The pixel that --focus names; nothing without it. Throws UsageError when it is not X,Y.
+std::optional<Vec2i> parse_focus(const std::string& text);
 
 /// Width and height from "800x600" or "800,600". Throws UsageError when it is not of this form, ArgumentError
 /// when it is out of range.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "easypbr/core/color.h"
@@ -105,6 +106,19 @@ Image to_linear_f32(const Image& image) {
         }
     });
     return out;
+}
+
+size_t replace_non_finite(Image& image) {
+    if (image.type() != PixelType::f32) return 0;
+    const auto values = image.pixels<float>();
+    std::atomic<size_t> replaced = 0;
+    parallel_chunks(values.size(), size_t(1) << 18, [&](size_t begin, size_t end) {
+        size_t count = 0;
+        for (size_t i = begin; i < end; ++i)
+            if (!std::isfinite(values[i])) values[i] = 0, ++count;
+        replaced += count;
+    });
+    return replaced;
 }
 
 Image half_size(const Image& image) {

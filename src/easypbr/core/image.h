@@ -86,6 +86,9 @@ Image to_u8(const Image& image);
 /// scaled only.
 Image to_linear_f32(const Image& image);
 
+/// Puts 0 where a value of an f32 image is NaN or infinite; returns how many there were.
+size_t replace_non_finite(Image& image);
+
 /// Every second row and column averaged in 2x2 boxes, as for mip levels (at least 1x1). f32 only.
 Image half_size(const Image& image);
 

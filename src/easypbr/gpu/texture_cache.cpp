@@ -1,9 +1,12 @@
 #include "easypbr/gpu/texture_cache.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 
 #include "easypbr/core/color.h"
+#include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/gl/context.h"
 
@@ -53,11 +56,21 @@ gl::Wrapping wrapping(Wrap wrap) {
                                   : gl::Wrapping::clamp;
 }
 
+/// The image as u8, without values that are no numbers.
+Image to_valid_u8(const Image& image, const std::string& name) {
+    if (image.type() != PixelType::f32) return to_u8(image);
+    Image valid = image;
+    if (const size_t replaced = replace_non_finite(valid))
+        log_warning(fmt::format("texture '{}': {} values that are NaN or infinite were replaced by 0", name,
+                                replaced));
+    return to_u8(valid);
+}
+
 }  // namespace
 
-gl::Texture make_texture(const Image& image, bool color) {
+gl::Texture make_texture(const Image& image, bool color, const std::string& name) {
     // Three channels are uploaded as they are; grey and grey with alpha are spread to four.
-    Image level = to_u8(image);
+    Image level = to_valid_u8(image, name);
     if (level.channels() < 3) level = with_channels(level, 4);
     // A texture larger than the driver takes is drawn at half the resolution, or less.
     while (std::max(level.width(), level.height()) > gl::Context::current().info().max_texture_size)
@@ -78,7 +91,7 @@ const gl::Texture& TextureCache::get(const Texture& texture, bool color) {
     entry.used = true;
     if (!entry.texture) {
         entry.image = texture.image;
-        entry.texture = make_texture(*texture.image, color);
+        entry.texture = make_texture(*texture.image, color, texture.path);
         // Anisotropic filtering is cheap on a GPU and costs several times the fetch on a CPU rasteriser.
         const float anisotropy = gl::Context::current().info().software ? 1.0f : 8.0f;
         entry.texture.sampling(

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <string>
 #include <tuple>
 
 #include "easypbr/gl/texture.h"
@@ -29,7 +30,8 @@ class TextureCache {
     std::map<Key, Entry> entries_;
 };
 
-/// An image as 8-bit RGBA with all mip levels, on its own: for backgrounds.
-gl::Texture make_texture(const Image& image, bool color);
+/// An image as 8-bit RGBA with all mip levels, on its own: for backgrounds. Values that are NaN or infinite
+/// are replaced by 0 and reported to the log under the name.
+gl::Texture make_texture(const Image& image, bool color, const std::string& name);
 
 }  // namespace easypbr::gpu

@@ -167,6 +167,15 @@ void bind_pictures(ViewerClass& viewer) {
         .def("render", render, nb::arg("size").none() = nb::none(), nb::arg("samples").none() = nb::none(),
              nb::arg("encoding") = "srgb8")
         .def("layers", layers, nb::arg("names"), nb::arg("size").none() = nb::none())
+        .def("forget_motion",
+             [](SharedViewer& self) { self.run([](Viewer& viewer) { viewer.session().forget_motion(); }); })
+        .def(
+            "focus_at",
+            [](SharedViewer& self, int x, int y, const nb::object& size) {
+                const std::optional<Vec2i> pixels = optional_size(size);
+                return self.run([&](Viewer& viewer) { return viewer.session().focus_at(x, y, pixels); });
+            },
+            nb::arg("x"), nb::arg("y"), nb::arg("size").none() = nb::none())
         .def("object_names",
              [](SharedViewer& self) {
                  return self.run([](Viewer& viewer) { return viewer.session().object_names(); });

@@ -19,6 +19,16 @@ double halton(int index, int base) {
     return value;
 }
 
+/// A permutation of 0 to count - 1: the rank of a number among all with its digits in this base reversed.
+/// Another base than those of the pixel's offsets, so that what a frame samples has nothing to do with where
+/// in the pixel it looks.
+int rank_of(int index, int count, int base) {
+    const double own = halton(index, base);
+    int rank = 0;
+    for (int i = 0; i < count; ++i) rank += halton(i, base) < own;
+    return rank;
+}
+
 /// Screen rectangle of the bounds' corners, one pixel of margin; the whole picture when a corner is behind
 /// the camera.
 PixelRect covered_rect(const Box3d& bounds, const Mat4d& clip_from_world, Vec2i size) {
@@ -46,9 +56,52 @@ Vec2d jitter_of(int index, int count) {
     return Vec2d(halton(index + 1, 2), halton(index + 1, 3)) - mean;
 }
 
+double shutter_time(int index, int count, double shutter) {
+    return 1 - shutter * (1 - (rank_of(index, count, 7) + 0.5) / count);
+}
+
+Vec2d lens_position(int index, int count) {
+    const auto point = [&](int k) {
+        const double angle = k * pi * (3 - std::sqrt(5.0));
+        return Vec2d(std::sqrt((k + 0.5) / count) * Vec2d(std::cos(angle), std::sin(angle)));
+    };
+    Vec2d mean(0, 0);
+    for (int k = 0; k < count; ++k) mean += point(k) / count;
+    return point(rank_of(index, count, 5)) - mean;
+}
+
+namespace {
+
+/// Moves the camera to the frame's place on the lens; what is in focus stays where it is in the picture.
+void look_through_lens(Frame& frame) {
+    const double focus = frame.resolved->focus_distance;
+    const Vec2d place = frame.resolved->lens_radius * lens_position(frame.sample_index, frame.sample_count);
+    frame.camera.T_world_cam.translate(Vec3d(place.x(), place.y(), 0));
+    frame.clip_from_view(0, 2) -= frame.clip_from_view(0, 0) * place.x() / focus;
+    frame.clip_from_view(1, 2) -= frame.clip_from_view(1, 1) * place.y() / focus;
+}
+
+/// Clip space of the frame's part of the picture.
+Mat4d part_of_picture(const Frame& frame) {
+    const Vec2d whole = frame.picture_size.cast<double>(), part = frame.size.cast<double>(),
+                corner = frame.origin.cast<double>();
+    const Vec2d scale = whole.cwiseQuotient(part);
+    Mat4d T = Mat4d::Identity();
+    T(0, 0) = scale.x();
+    T(1, 1) = scale.y();
+    T(0, 3) = scale.x() - 1 - 2 * corner.x() / part.x();
+    T(1, 3) = 1 - scale.y() + 2 * corner.y() / part.y();
+    return T;
+}
+
+}  // namespace
+
 void prepare_frame(Frame& frame, const Box3d& bounds, bool reaches_beyond) {
     const Camera& camera = frame.camera;
-    frame.clip_from_view = camera.projection_matrix(double(frame.size.x()) / frame.size.y());
+    frame.clip_from_view = camera.projection_matrix(double(frame.picture_size.x()) / frame.picture_size.y());
+    if (frame.through_lens) look_through_lens(frame);
+    if (frame.size != frame.picture_size)
+        frame.clip_from_view = part_of_picture(frame) * frame.clip_from_view;
     frame.covered = reaches_beyond ? PixelRect{0, 0, frame.size.x(), frame.size.y()}
                                    : covered_rect(bounds, frame.clip_from_view * camera.view(), frame.size);
     // Moving the picture by (dx, dy) pixels moves ndc by (2 dx / w, -2 dy / h): row 0 is the top.
@@ -69,6 +122,12 @@ void set_camera_uniforms(const gl::Program& program, const Frame& frame) {
     program.set("u_unproject", Vec4(float(1 / p(0, 0)), float(1 / p(1, 1)), shift.x(), shift.y()));
     program.set("u_depth", Vec3(float(camera.near), float(camera.far), frame.orthographic() ? 1.0f : 0.0f));
     program.set("u_world_from_view", Mat3(camera.T_world_cam.linear().cast<float>()));
+}
+
+void set_bloom_uniforms(const gl::Program& program, const Frame& frame) {
+    const BloomSettings& bloom = frame.resolved->settings.bloom;
+    program.set("u_bloom", Vec4(bloom.intensity, frame.resolved->exposure, bloom.threshold,
+                                bloom.knee * bloom.threshold));
 }
 
 std::vector<std::string> camera_defines(const Frame& frame) {

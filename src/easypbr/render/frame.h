@@ -7,6 +7,7 @@
 #include "easypbr/gl/program.h"
 #include "easypbr/gl/texture.h"
 #include "easypbr/render/extensions.h"
+#include "easypbr/scene/motion.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
@@ -34,12 +35,24 @@ struct Behind {
     double reach = 0;                          ///< there is no geometry farther from the camera
 };
 
+/// What a frame shows once its passes have run.
+struct LitPicture {
+    const gl::Texture* radiance = nullptr;  ///< as GBuffer::radiance
+    const gl::Texture* overlay = nullptr;   ///< as GBuffer::overlay, where there is one
+    const gl::Texture* glow = nullptr;      ///< of BloomPass, where there is one
+};
+
 /// One frame of an accumulated picture.
 struct Frame {
     const SceneSnapshot* scene = nullptr;
     const ResolvedSettings* resolved = nullptr;
     Camera camera;  ///< of this frame: the resolved one, moved where a still is sampled over lens or shutter
     Vec2i size{0, 0};
+    Vec2i picture_size{0, 0};  ///< what the camera sees: all of it, or `size` pixels of it from `origin` on
+    Vec2i origin{0, 0};
+    const Motion* motion = nullptr;  ///< the frames of a still are of different times, where something moved
+    double time = 1;                 ///< of this frame, see shutter_time()
+    bool through_lens = false;       ///< the frames of a still look through different places of the lens
     int sample_index = 0;
     int sample_count = 1;
     bool with_ids = false;
@@ -47,6 +60,7 @@ struct Frame {
     bool with_exact = false;                   ///< colours of tables, which nothing may mix with others
     bool with_ground = false;                  ///< a plane under the content belongs to the picture
     ExtensionSet extensions = 0;               ///< of the surfaces that are drawn and lit now
+    bool spreads = false;                      ///< light may fall beyond `covered`
     bool partly_covered = false;               ///< the radiance may hold coverages between 0 and 1
     const Peel* peel = nullptr;                ///< set while a layer is drawn
     const Behind* behind = nullptr;            ///< set while a layer is lit through which light goes
@@ -60,12 +74,26 @@ struct Frame {
 /// the mean of the first `count` is the pixel's centre. One sample is the centre itself.
 Vec2d jitter_of(int index, int count);
 
-/// Fills in the jittered projection and, from the bounds of all geometry, the covered rectangle; the whole
-/// picture where splats or lines reach beyond the vertices.
+/// Where on the lens, in parts of its radius, a sample looks through: points of a spiral (Vogel 1979), which
+/// cover the disc evenly whatever their number. Their mean is the centre.
+Vec2d lens_position(int index, int count);
+
+/// When a sample is taken, from 0 (the picture before) to 1: evenly within the part of the time before 1 that
+/// the shutter is open.
+double shutter_time(int index, int count, double shutter);
+
+/// Moves the camera to its place on the lens, and fills in the jittered projection and, from the bounds of
+/// all geometry, the covered rectangle; the whole picture where splats or lines reach beyond the vertices.
 void prepare_frame(Frame& frame, const Box3d& bounds, bool reaches_beyond);
 
 /// Sets the uniforms of shaders/common_camera.glsl.
 void set_camera_uniforms(const gl::Program& program, const Frame& frame);
+
+/// Sets the uniforms of shaders/common_bloom.glsl.
+void set_bloom_uniforms(const gl::Program& program, const Frame& frame);
+
+/// Side of a texel of a glow, in pixels.
+inline constexpr int glow_texel = 4;
 
 /// Macros that shaders with the camera depend on.
 std::vector<std::string> camera_defines(const Frame& frame);

@@ -62,19 +62,39 @@ Vec4 cover(const gl::Texture& image, Vec2i size) {
     return {scale.x(), scale.y(), (1 - scale.x()) / 2, (1 - scale.y()) / 2};
 }
 
-constexpr int overlay_unit = 2;
+constexpr int overlay_unit = 2, glow_unit = 3;
 
-void bind_overlay(const gl::Program& program, const Frame& frame, const GBuffer& targets) {
-    if (!frame.with_overlay) return;
+void add_defines(const LitPicture& lit, std::vector<std::string>& defines) {
+    if (lit.overlay) defines.emplace_back("OVERLAY");
+    if (lit.glow) defines.emplace_back("BLOOM");
+}
+
+void bind_overlay(const gl::Program& program, const gl::Texture& overlay) {
     program.set("u_overlay", overlay_unit);
-    targets.overlay.bind(overlay_unit);
+    overlay.bind(overlay_unit);
+}
+
+void bind(const LitPicture& lit, const gl::Program& program, const Frame& frame) {
+    lit.radiance->bind(0);
+    if (lit.overlay) bind_overlay(program, *lit.overlay);
+    if (!lit.glow) return;
+    set_bloom_uniforms(program, frame);
+    program.set("u_glow", glow_unit);
+    program.set("u_glow_size",
+                Vec2(float(glow_texel * lit.glow->width()), float(glow_texel * lit.glow->height())));
+    lit.glow->bind(glow_unit);
+}
+
+PixelRect united(const PixelRect& a, const PixelRect& b) {
+    const int x = std::min(a.x, b.x), y = std::min(a.y, b.y);
+    return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
 }
 
 /// Screen passes touch only where geometry may be, when nothing else was drawn.
-void limit_to_content(const Frame& frame) {
-    if (sees_environment(frame)) return;
+void limit_to(const PixelRect& area, const Frame& frame) {
+    if (sees_environment(frame) || frame.spreads) return;
     glEnable(GL_SCISSOR_TEST);
-    glScissor(frame.covered.x, frame.covered.y, frame.covered.width, frame.covered.height);
+    glScissor(area.x, area.y, area.width, area.height);
 }
 
 }  // namespace
@@ -91,37 +111,40 @@ void OutputPass::begin(Vec2i size, Encoding encoding) {
     encoding_ = encoding;
 }
 
-void OutputPass::accumulate(const Frame& frame, const GBuffer& targets) {
+void OutputPass::accumulate(const Frame& frame, const LitPicture& lit) {
     if (!sum_) {
         sum_ = gl::Texture(gl::Format::rgba32f, frame.size.x(), frame.size.y());
         sum_framebuffer_ = gl::Framebuffer({&sum_});
     }
+    drawn_ = frame.sample_index == 0 ? frame.covered : united(drawn_, frame.covered);
     const float zero[4] = {0, 0, 0, 0};
     if (frame.sample_index == 0) sum_framebuffer_.clear_color(0, zero);
     sum_framebuffer_.bind();
     std::vector<std::string> defines = tone_defines(frame, encoding_);
-    if (frame.with_overlay) defines.emplace_back("OVERLAY");
+    add_defines(lit, defines);
     const gl::Program& program = accumulate_.get(defines);
     program.use();
     program.set("u_size", Vec2(frame.size.cast<float>()));
     program.set("u_exposure", exposure_of(frame, encoding_));
     program.set("u_radiance", 0);
-    targets.radiance.bind(0);
-    bind_overlay(program, frame, targets);
+    bind(lit, program, frame);
     glDisable(GL_DEPTH_TEST);
     glEnable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ONE);
-    limit_to_content(frame);
+    limit_to(frame.covered, frame);
     draw_screen_triangle();
     glDisable(GL_SCISSOR_TEST);
     glDisable(GL_BLEND);
 }
 
-void OutputPass::finish(const Frame& frame, const GBuffer& targets, const gl::Texture* background_image) {
+void OutputPass::finish(const Frame& frame, const LitPicture& lit, const GBuffer& targets,
+                        const gl::Texture* background_image) {
     const bool sum = frame.sample_count > 1;
     std::vector<std::string> defines = tone_defines(frame, encoding_);
-    if (sum) defines.emplace_back("SUM");
-    if (!sum && frame.with_overlay) defines.emplace_back("OVERLAY");
+    if (sum)
+        defines.emplace_back("SUM");
+    else
+        add_defines(lit, defines);
     if (background_image) defines.emplace_back("BACKGROUND_IMAGE");
     if (encoding_ == Encoding::scene_linear) defines.emplace_back("LINEAR_OUTPUT");
     const gl::Program& program = display_.get(defines);
@@ -133,7 +156,7 @@ void OutputPass::finish(const Frame& frame, const GBuffer& targets, const gl::Te
         if (encoding_ != Encoding::scene_linear) code.head<3>() = srgb_from_linear(Vec3(b.head<3>()));
         const float rgba[4] = {code.x(), code.y(), code.z(), code.w()};
         picture_framebuffer_.clear_color(0, rgba);
-        limit_to_content(frame);
+        limit_to(sum ? drawn_ : frame.covered, frame);
     }
     program.use();
     program.set("u_size", Vec2(frame.size.cast<float>()));
@@ -141,8 +164,10 @@ void OutputPass::finish(const Frame& frame, const GBuffer& targets, const gl::Te
     program.set("u_sample_scale", 1.0f / float(frame.sample_index + 1));
     program.set("u_background", background_color(frame));
     program.set("u_source", 0);
-    (sum ? sum_ : targets.radiance).bind(0);
-    if (!sum) bind_overlay(program, frame, targets);
+    if (sum)
+        sum_.bind(0);
+    else
+        bind(lit, program, frame);
     if (background_image) {
         program.set("u_background_image", 1);
         program.set("u_background_uv", cover(*background_image, frame.size));
@@ -167,7 +192,7 @@ void OutputPass::write_exact(const Frame& frame, const GBuffer& targets, bool la
     program.set("u_material", 1);
     targets.albedo.bind(0);
     targets.material.bind(1);
-    bind_overlay(program, frame, targets);
+    if (frame.with_overlay) bind_overlay(program, targets.overlay);
     if (layers) {
         targets.radiance.bind(3);
         program.set("u_radiance", 3);

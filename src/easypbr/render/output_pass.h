@@ -21,9 +21,10 @@ class OutputPass {
     /// Forgets the sum and makes targets for this size and encoding.
     void begin(Vec2i size, Encoding encoding);
     /// Adds a frame's radiance to the sum. Not needed for a picture of one sample.
-    void accumulate(const Frame& frame, const GBuffer& targets);
+    void accumulate(const Frame& frame, const LitPicture& lit);
     /// Writes the picture from the sum of the frames so far, or from the radiance of the only one.
-    void finish(const Frame& frame, const GBuffer& targets, const gl::Texture* background_image);
+    void finish(const Frame& frame, const LitPicture& lit, const GBuffer& targets,
+                const gl::Texture* background_image);
     /// Puts the exact colours that the G-buffer holds into the finished picture, lines in the overlay over
     /// them. With `layers` radiance and overlay are those of a whole frame with something before the colours.
     void write_exact(const Frame& frame, const GBuffer& targets, bool layers);
@@ -36,6 +37,7 @@ class OutputPass {
   private:
     void blur_edges(const Frame& frame, const GBuffer& targets);
 
+    PixelRect drawn_;  ///< what the frames of the sum cover together
     Encoding encoding_ = Encoding::srgb8;
     gl::Texture sum_, picture_, aliased_;
     gl::Framebuffer sum_framebuffer_, picture_framebuffer_, aliased_framebuffer_;

@@ -87,6 +87,7 @@ struct Renderer::Picture {
     DrawList list;      ///< everything
     DrawList averaged;  ///< of frames that are added up
     Frame frame;
+    LitPicture lit;               ///< of the frame drawn last
     bool is_finished = false;     ///< at least once
     bool holds_surfaces = false;  ///< its only frame is what the pixels' centres see
 };
@@ -132,8 +133,12 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
     Frame& frame = picture->frame;
     frame.scene = &picture->drawable.scene;
     frame.resolved = &picture->resolved;
-    frame.size = options.size;
+    frame.size = frame.picture_size = options.size;
     frame.sample_count = options.samples;
+    const bool still = options.samples > 1 && !options.layers;
+    frame.motion = still ? options.motion.get() : nullptr;
+    frame.through_lens = still && resolved.lens_radius > 0;
+    frame.spreads = resolved.settings.bloom.enabled || resolved.lens_radius > 0;
     frame.sample_index = -1;
     frame.with_ids = options.ids;
     if (options.surfaces) {
@@ -141,8 +146,8 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
         const auto sees_more = [](const DrawItem& item) {
             return item.layered || item.alpha == AlphaMode::blend;
         };
-        picture->holds_surfaces = options.samples == 1 && !all.has(sees_more) && !all.extensions() &&
-                                  !GroundPass::is_on(resolved);
+        picture->holds_surfaces =
+            options.samples == 1 && !all.has(sees_more) && !all.extensions() && !GroundPass::is_on(resolved);
         frame.with_ids |= picture->holds_surfaces;
     }
     frame.with_exact =
@@ -159,16 +164,24 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
 int Renderer::add_sample() {
     Frame& frame = picture_->frame;
     ++frame.sample_index;
+    frame.time =
+        shutter_time(frame.sample_index, frame.sample_count, picture_->resolved.settings.motion_blur.shutter);
+    if (frame.motion) move_objects(picture_->drawable, picture_->scene, *frame.motion, frame.time);
     draw_frame(frame, picture_->averaged, picture_->list);
-    if (frame.sample_count > 1) run("accumulate", [&] { output_.accumulate(frame, targets_); });
+    picture_->lit = picture_->options.layers ? LitPicture{&targets_.radiance} : post_process(frame);
+    if (frame.sample_count > 1) run("accumulate", [&] { output_.accumulate(frame, picture_->lit); });
     return frame.sample_index + 1;
 }
 
 void Renderer::finish() {
     const Frame& frame = picture_->frame;
-    run("output", [&] { output_.finish(frame, targets_, background_texture(frame, picture_->images)); });
+    run("output",
+        [&] { output_.finish(frame, picture_->lit, targets_, background_texture(frame, picture_->images)); });
+    if (frame.motion) move_objects(picture_->drawable, picture_->scene, *frame.motion, 1);
     if (frame.with_exact) {
         Frame exact = frame;
+        exact.motion = nullptr;
+        exact.through_lens = false;
         run("exact", [&] { draw_exact(exact, picture_->list); });
     }
     const bool is_last = frame.sample_index + 1 == frame.sample_count;
@@ -203,7 +216,7 @@ void Renderer::draw_kept_surfaces() {
     Frame frame;
     frame.scene = &drawn_->drawable.scene;
     frame.resolved = &drawn_->resolved;
-    frame.size = drawn_->size;
+    frame.size = frame.picture_size = drawn_->size;
     frame.with_ids = true;
     frame.camera = drawn_->resolved.camera;
     prepare_frame(frame, bounds_of(*frame.scene), drawn_->surfaces.reaches_beyond_vertices());
@@ -220,6 +233,34 @@ void Renderer::evict_unused() {
     spacings_.evict_unused();
     drawables_.evict_unused();
     lines_.evict_unused();
+}
+
+void Renderer::move_objects(DrawableScene& drawable, const SceneSnapshot& scene, const Motion& motion,
+                            double time) {
+    for (size_t i = 0; i < scene.objects.size(); ++i) {
+        const SceneSnapshot::Object& object = scene.objects[i];
+        const auto before = motion.poses.find(object.name);
+        // What was not there before does not move.
+        const bool moved = before != motion.poses.end() &&
+                           before->second.matrix() != object.T_world_mesh.matrix() && time < 1;
+        drawable.scene.objects[i].T_world_mesh =
+            moved ? between(before->second, object.T_world_mesh, time) : object.T_world_mesh;
+    }
+}
+
+LitPicture Renderer::post_process(Frame& frame) {
+    LitPicture lit{&targets_.radiance, frame.with_overlay ? &targets_.overlay : nullptr};
+    no_attributes_.bind();
+    if (frame.resolved->lens_radius > 0 && !frame.through_lens) {
+        run("depth of field", [&] { focus_.draw(frame, targets_, bounds_of(*frame.scene)); });
+        lit.radiance = &focus_.radiance();
+        frame.partly_covered = true;
+    }
+    if (!frame.resolved->settings.bloom.enabled) return lit;
+    run("bloom", [&] { bloom_.draw(frame, *lit.radiance); });
+    lit.glow = &bloom_.glow();
+    frame.partly_covered = true;  // Light falls where nothing is.
+    return lit;
 }
 
 const Box3d& Renderer::bounds_of(const SceneSnapshot& scene) {
@@ -265,7 +306,8 @@ void Renderer::draw_geometry(Frame& frame, const DrawList& list) {
 }
 
 void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& casters) {
-    frame.camera = frame.resolved->camera;
+    const Camera& camera = frame.resolved->camera;
+    frame.camera = frame.motion ? between(frame.motion->camera, camera, frame.time) : camera;
     if (frame.with_ground) GroundPass::widen_depth(frame.camera, *frame.resolved, bounds_of(*frame.scene));
     prepare_frame(frame, bounds_of(*frame.scene), list.reaches_beyond_vertices() || frame.with_ground);
     frame.with_overlay = list.needs_overlay();
@@ -355,6 +397,7 @@ void Renderer::draw_exact(Frame& frame, const DrawList& list) {
     // What lies before exact colours is lit and mixed with them in a whole frame.
     if (averaged && has_layers) draw_frame(frame, list, list);
     if (averaged && !has_layers) {
+        frame.extensions = 0;  // What the averaged frames left: nothing is lit here.
         frame.camera = frame.resolved->camera;
         prepare_frame(frame, bounds_of(*frame.scene), list.reaches_beyond_vertices());
         draw_geometry(frame, list);
@@ -376,7 +419,8 @@ const gl::Texture* Renderer::background_texture(const Frame& frame, const Settin
         return nullptr;
     if (images.background != background_image_) {
         background_image_ = images.background;
-        background_texture_ = gpu::make_texture(*background_image_, true);
+        background_texture_ =
+            gpu::make_texture(*background_image_, true, frame.resolved->settings.background.image);
         background_texture_.sampling(gl::Filtering::linear);
     }
     return &background_texture_;

@@ -10,7 +10,9 @@
 #include "easypbr/core/image.h"
 #include "easypbr/render/ambient_occlusion_pass.h"
 #include "easypbr/render/background_pass.h"
+#include "easypbr/render/bloom_pass.h"
 #include "easypbr/render/display_pass.h"
+#include "easypbr/render/focus_pass.h"
 #include "easypbr/render/geometry_pass.h"
 #include "easypbr/render/ground_pass.h"
 #include "easypbr/render/lighting_pass.h"
@@ -53,6 +55,8 @@ struct DrawOptions {
                             ///< opaque or more, and there is no picture
     bool surfaces = false;  ///< read_surfaces() and read_layer() will be called: where the picture's last
                             ///< frame does not hold what the pixels' centres see, that is drawn once more
+    std::shared_ptr<const Motion> motion = {};  ///< since the picture before: blurs what moved, in several
+                                                ///< samples
 };
 
 /// Images that the settings name, loaded by the caller.
@@ -125,6 +129,9 @@ class Renderer {
     void prepare_targets(Vec2i size, const ResolvedSettings& resolved);
     void evict_unused();
     void draw_frame(Frame& frame, const DrawList& list, const DrawList& casters);
+    /// Puts the objects where they are at the frame's time, 1 being the end.
+    static void move_objects(DrawableScene& drawable, const SceneSnapshot& scene, const Motion& motion,
+                             double time);
     /// Fills the G-buffer by the faster way that can draw these items.
     void draw_geometry(Frame& frame, const DrawList& list);
     void draw_geometry(Frame& frame, const DrawList& list, const GBuffer& targets);
@@ -138,6 +145,8 @@ class Renderer {
     void draw_kept_surfaces();
     /// Lights a G-buffer, block by block of lights with their shadow maps.
     void draw_lights(const Frame& frame, const GBuffer& targets);
+    /// What the lens and the eye make of the frame.
+    LitPicture post_process(Frame& frame);
     const Box3d& bounds_of(const SceneSnapshot& scene);
     template <class Pass>
     void run(const char* name, Pass&& pass);
@@ -164,6 +173,8 @@ class Renderer {
     LinePass lines_;
     TransparencyPass transparency_;
     BackgroundPass background_;
+    FocusPass focus_;
+    BloomPass bloom_;
     OutputPass output_;
     std::shared_ptr<const Image> background_image_;
     gl::Texture background_texture_;

@@ -89,7 +89,7 @@ std::vector<uint8_t> Renderer::coverage(const PixelRect& area,
     frame.scene = &drawn_->drawable.scene;
     frame.resolved = &drawn_->resolved;
     frame.camera = drawn_->resolved.camera;
-    frame.size = drawn_->size;
+    frame.size = frame.picture_size = drawn_->size;
     frame.with_ids = true;
     prepare_frame(frame, Box3d(), true);
     frame.clip_from_view = crop(area, frame.size) * frame.clip_from_view;

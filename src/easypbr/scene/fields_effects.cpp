@@ -74,11 +74,62 @@ void add_ground(Table& table) {
                          "world units", {positive, unlimited}));
 }
 
+void add_bloom(Table& table) {
+    const auto bloom = [](auto member) { return at(&Settings::bloom, member); };
+    table.push_back(make("bloom.enabled", bloom(&BloomSettings::enabled),
+                         "Whether bright light glows beyond what shines it, before the tone curve."));
+    table.push_back(make("bloom.intensity", bloom(&BloomSettings::intensity),
+                         "Part of the light above the threshold that is spread. It is taken from where it "
+                         "was: no light is added.",
+                         "", {0, 1}));
+    table.push_back(make("bloom.threshold", bloom(&BloomSettings::threshold),
+                         "Brightness from which light is spread, after exposure (the largest of red, green "
+                         "and blue; 1: white without a tone curve); 0: all light.",
+                         "", {0, 1e6}));
+    table.push_back(make("bloom.knee", bloom(&BloomSettings::knee),
+                         "Softness of the threshold, as a part of it.", "", {0, 1}));
+    table.push_back(make("bloom.levels", bloom(&BloomSettings::levels),
+                         "Levels of the pyramid, the first of 4 pixels, each next one twice as wide; "
+                         "automatic: up to 6, the widest texel an eighth of the picture's smaller side.",
+                         "", {1, 8}));
+    table.push_back(make("bloom.suppress_fireflies", bloom(&BloomSettings::suppress_fireflies),
+                         "Whether single pixels that are far brighter than those around them glow less; "
+                         "automatic: where there is a threshold. Without, the glow keeps all energy."));
+}
+
+void add_lens(Table& table) {
+    const auto lens = [](auto member) { return at(&Settings::depth_of_field, member); };
+    table.push_back(make("depth_of_field.enabled", lens(&DepthOfFieldSettings::enabled),
+                         "Whether what is out of focus is blurred, as by a thin lens. Orthographic cameras "
+                         "have no lens."));
+    table.push_back(make("depth_of_field.f_number", lens(&DepthOfFieldSettings::f_number),
+                         "Focal length over the diameter of the aperture: smaller blurs more.", "",
+                         {0.1, 1000}));
+    table.push_back(make("depth_of_field.focus_distance", lens(&DepthOfFieldSettings::focus_distance),
+                         "Distance along the optical axis of what is sharp; automatic: the middle of the "
+                         "content, for every picture anew.",
+                         "world units", {positive, unlimited}));
+    table.push_back(make("depth_of_field.sensor_height", lens(&DepthOfFieldSettings::sensor_height),
+                         "Height of the sensor: 0.024 is a full-frame camera's where the world unit is the "
+                         "metre; automatic: 5 % of the diagonal of the content's bounding box.",
+                         "world units", {positive, unlimited}));
+    const auto motion = [](auto member) { return at(&Settings::motion_blur, member); };
+    table.push_back(make("motion_blur.enabled", motion(&MotionBlurSettings::enabled),
+                         "Whether a picture of several samples shows how camera and objects moved since the "
+                         "session's last one."));
+    table.push_back(make("motion_blur.shutter", motion(&MotionBlurSettings::shutter),
+                         "Part of the time since the last picture that the shutter is open, until the moment "
+                         "of this one.",
+                         "", {0, 1}));
+}
+
 }  // namespace
 
 void add_effects(Table& table) {
     add_ground(table);
     add_ssao(table);
+    add_bloom(table);
+    add_lens(table);
 }
 
 }  // namespace easypbr::detail

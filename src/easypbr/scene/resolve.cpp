@@ -91,11 +91,39 @@ void resolve_ground(const detail::Content& content, ResolvedSettings& resolved) 
     if (!ground.radius.value()) detail::fill(ground.radius, float(ground_radii * content.radius()));
 }
 
-void resolve_effects(const detail::Content& content, ResolvedSettings& resolved) {
+/// The widest texel of the pyramid has an eighth of the picture's smaller side.
+int automatic_bloom_levels(Vec2i size) {
+    return std::clamp(int(std::lround(std::log2(size.minCoeff() / 16.0))), 1, 6);
+}
+
+/// The sensor's height as a part of the content's diagonal: a full-frame camera before a bust.
+constexpr double sensor_part = 0.05;
+
+/// Thin lens: an image at distance v behind it, with the field of view that the camera has, of what is in
+/// focus.
+void resolve_lens(const detail::Content& content, Vec2i size, ResolvedSettings& resolved) {
+    DepthOfFieldSettings& lens = resolved.settings.depth_of_field;
+    const Camera& camera = resolved.camera;
+    if (!lens.sensor_height.value())
+        detail::fill(lens.sensor_height, std::max(sensor_part * 2 * content.radius(), 1e-30));
+    if (!lens.enabled || camera.projection == Projection::orthographic) return;
+    const double depth = -camera.T_world_cam.linear().col(2).dot(content.centre() - camera.position());
+    resolved.focus_distance = lens.focus_distance.value_or(std::max(depth, 2 * camera.near));
+    const double half_slope = 1 / camera.projection_matrix(double(size.x()) / size.y())(1, 1);
+    const double v = *lens.sensor_height / (2 * half_slope), z = resolved.focus_distance;
+    const double focal_length = v * z / (v + z);
+    resolved.lens_radius = focal_length / lens.f_number / 2;
+}
+
+void resolve_effects(const detail::Content& content, Vec2i size, ResolvedSettings& resolved) {
     SsaoSettings& ssao = resolved.settings.ssao;
     if (!ssao.enabled.value()) detail::fill(ssao.enabled, has_surfaces(content.scene()));
     if (!ssao.radius.value())
         detail::fill(ssao.radius, float(std::max(occlusion_radius * 2 * content.radius(), 1e-30)));
+    const BloomSettings& bloom = resolved.settings.bloom;
+    resolved.bloom_levels = bloom.levels.value_or(automatic_bloom_levels(size));
+    resolved.suppress_fireflies = bloom.suppress_fireflies.value_or(bloom.threshold > 0);
+    resolve_lens(content, size, resolved);
 }
 
 }  // namespace
@@ -115,7 +143,7 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, V
     resolve_exposure(content, resolved);
     detail::fill(resolved.settings.annotation.legend, false);
     detail::fill(resolved.settings.annotation.colorbar, false);
-    resolve_effects(content, resolved);
+    resolve_effects(content, size, resolved);
     resolve_ground(content, resolved);
     return resolved;
 }

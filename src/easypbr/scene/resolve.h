@@ -13,13 +13,18 @@ namespace easypbr {
 
 /// All that the renderer asks of the settings, with nothing left to infer.
 struct ResolvedSettings {
-    Settings settings;  ///< every automatic field holds its value, but overrides of materials and styles
+    Settings settings;  ///< every automatic field holds its value, but overrides of materials and styles, and
+                        ///< what is inferred for every picture anew: the next three
+    int bloom_levels = 1;
+    bool suppress_fireflies = false;
+    double focus_distance = 1;  ///< of the depth of field
     Camera camera;
     std::vector<Light> lights;                 ///< enabled lights of the scene, then key, fill, rim and sun
     std::map<std::string, float> light_radii;  ///< those inferred for lights of the scene, by name
     Environment environment;  ///< what lights the scene: the given one, less its sun, the studio, or empty
     Environment seen_environment;         ///< the same with its sun, as it is seen in the background
     Mat3 R_env_world = Mat3::Identity();  ///< turns a world direction into the environment's frame
+    double lens_radius = 0;               ///< of the aperture, world units; 0: a pinhole
     float exposure = 1;  ///< factor from radiance to the tone curve's input, compensation included
 };
 

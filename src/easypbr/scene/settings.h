@@ -123,6 +123,30 @@ struct SsaoSettings {
     bool multi_bounce = true;
 };
 
+/// Light that spreads in lens and eye.
+struct BloomSettings {
+    bool enabled = false;
+    float intensity = 0.2f;
+    float threshold = 1;
+    float knee = 0.5f;
+    Auto<int> levels;
+    Auto<bool> suppress_fireflies;
+};
+
+/// A thin lens in the place of a pinhole.
+struct DepthOfFieldSettings {
+    bool enabled = false;
+    float f_number = 2.8f;
+    Auto<double> focus_distance;
+    Auto<double> sensor_height;
+};
+
+/// Of stills, by their samples.
+struct MotionBlurSettings {
+    bool enabled = false;
+    float shutter = 0.5f;
+};
+
 struct ToneSettings {
     ToneOperator tone_operator = ToneOperator::aces;
     Auto<float> exposure;
@@ -186,6 +210,9 @@ struct Settings {
     EyeDomeSettings eye_dome;
     TransparencySettings transparency;
     SsaoSettings ssao;
+    BloomSettings bloom;
+    DepthOfFieldSettings depth_of_field;
+    MotionBlurSettings motion_blur;
     ToneSettings tone;
     MaterialSettings material;
     Style style;  ///< overrides of every object's style; automatic: the object's own value

@@ -63,6 +63,10 @@ class Viewer {
     Image render(const app::PictureOptions& options = {}) { return session_->render(options); }
     Camera camera() { return session_->camera(); }
     void set_camera(const Camera& camera) { session_->set_camera(camera); }
+    /// See app::Session.
+    void forget_motion() { session_->forget_motion(); }
+    /// See app::Session::focus_at().
+    double focus_at(int x, int y) { return session_->focus_at(x, y); }
     void refit() { session_->refit(); }
 
     /// Opens the window at the first call; then shows what has changed and does what mouse and keys ask for.

@@ -1,0 +1,40 @@
+// From one level of bloom's pyramid to the next (Jimenez 2014). Positions are counted in texels of the level that is read:
+// the sides of levels are rounded up, so parts of the texture's size would drift.
+uniform sampler2D u_source;
+uniform vec2 u_source_size;  // of the texture, texels
+uniform vec2 u_extent;       // of the picture, texels of the source
+
+layout(location = 0) out vec4 o_light;
+
+vec3 light_at(vec2 texel) {
+    texel = abs(texel);
+    texel = clamp(u_extent - abs(u_extent - texel), vec2(0.0), u_extent);
+    return textureLod(u_source, texel / u_source_size, 0.0).rgb;
+}
+
+#ifdef DOWN
+// 13 taps between texels: boxes of 4 x 4, one of 1/2 in the middle, four of 1/8 around it.
+vec3 resampled(vec2 at) {
+    at *= 2.0;
+    vec3 inner = light_at(at + vec2(-1.0, -1.0)) + light_at(at + vec2(1.0, -1.0)) + light_at(at + vec2(-1.0, 1.0)) +
+                 light_at(at + vec2(1.0, 1.0));
+    vec3 sides = light_at(at + vec2(-2.0, 0.0)) + light_at(at + vec2(2.0, 0.0)) + light_at(at + vec2(0.0, -2.0)) +
+                 light_at(at + vec2(0.0, 2.0));
+    vec3 corners = light_at(at + vec2(-2.0, -2.0)) + light_at(at + vec2(2.0, -2.0)) + light_at(at + vec2(-2.0, 2.0)) +
+                   light_at(at + vec2(2.0, 2.0));
+    return 0.125 * (light_at(at) + inner) + 0.0625 * sides + 0.03125 * corners;
+}
+#else
+// A tent of 3 x 3 taps.
+vec3 resampled(vec2 at) {
+#ifdef UP
+    at *= 0.5;
+#endif
+    vec3 sum = vec3(0.0);
+    for (int y = -1; y <= 1; ++y)
+        for (int x = -1; x <= 1; ++x) sum += float((2 - abs(x)) * (2 - abs(y))) * light_at(at + vec2(x, y));
+    return sum / 16.0;
+}
+#endif
+
+void main() { o_light = vec4(resampled(gl_FragCoord.xy), 1.0); }

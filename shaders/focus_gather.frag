@@ -1,0 +1,55 @@
+// Depth of field of a single frame at half resolution: each pixel gathers from those whose circles of confusion reach it
+// (scatter as gather; Jimenez 2014). What is nearer than the pixel hides it by as much of its circle as it covers; the rest
+// is the mean of what is as far away.
+uniform sampler2D u_light;
+uniform sampler2D u_confusion;
+uniform vec2 u_half_size;
+uniform float u_reach;  // largest radius, pixels of half resolution
+
+layout(location = 0) out vec4 o_behind;  // of what is no nearer than the pixel: its mean, with the mean coverage
+layout(location = 1) out vec4 o_before;  // of what is nearer, premultiplied by the part of the pixel that it hides
+layout(location = 2) out float o_hidden;
+
+const int taps = 72;
+const float golden_angle = 2.39996323;
+
+// Part of a circle's light that a place at a distance from its centre gets, with an edge a pixel wide.
+float reaching(float radius, float distance) {
+    return clamp(radius - distance + 0.5, 0.0, 1.0) / (3.14159265 * max(radius * radius, 0.25));
+}
+
+// Half the circle's radius in pixels of full resolution, no more than the taps reach.
+float radius_at(vec2 uv) { return clamp(0.5 * textureLod(u_confusion, uv, 0.0).r, -u_reach, u_reach); }
+
+void main() {
+    vec2 here = gl_FragCoord.xy;
+    float own = radius_at(here / u_half_size);
+    vec4 behind = vec4(0.0), before = vec4(0.0);
+    float behind_weight = 0.0, hidden = 0.0;
+    for (int k = 0; k < taps; ++k) {
+        // Places are denser near the centre, where small circles are; each counts by the area it stands for.
+        float u = (float(k) + 0.5) / float(taps);
+        float distance = (u_reach + 0.5) * pow(u, 0.75), angle = float(k) * golden_angle;
+        float area = 4.71238898 * (u_reach + 0.5) * (u_reach + 0.5) * sqrt(u) / float(taps);
+        vec2 uv = (here + distance * vec2(cos(angle), sin(angle))) / u_half_size;
+        float radius = radius_at(uv);
+        vec4 light = textureLod(u_light, uv, 0.0);
+        // Nearer than what is here, or before the plane in focus, where the pixel's own surface is one of many that hide
+        // what is behind.
+        float near = max(step(radius, own - 0.5), step(radius, -0.25));
+        float blurred = step(0.25, abs(radius));  // What is sharp stands in the picture itself.
+        float spread = near * blurred * reaching(abs(radius), distance) * area;
+        before += spread * light;
+        hidden += spread;
+        // What is behind reaches no farther than the circle of what it is seen beside; where a near object hides it, all
+        // that is known stands in for it.
+        float far = own < -0.25 ? 1e-4 : reaching(min(max(radius, 0.0), max(own, 0.0)), distance);
+        far *= (1.0 - near) * area;
+        behind += far * light;
+        behind_weight += far;
+    }
+    vec4 light = textureLod(u_light, here / u_half_size, 0.0);
+    o_behind = behind_weight > 0.0 ? behind / behind_weight : light;
+    o_before = hidden > 1.0 ? before / hidden : before;
+    o_hidden = min(hidden, 1.0);
+}

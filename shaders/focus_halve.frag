@@ -1,0 +1,22 @@
+// Light and circle of confusion at half resolution: the mean of four pixels, and of their circles the nearest surface's.
+#include "common_focus.glsl"
+
+uniform sampler2D u_radiance;
+uniform sampler2D u_depth_target;
+uniform vec2 u_size;
+
+layout(location = 0) out vec4 o_light;      // as GBuffer::radiance
+layout(location = 1) out float o_confusion;  // pixels of full resolution
+
+void main() {
+    vec2 corner = floor(gl_FragCoord.xy) * 2.0 + 0.5;
+    vec4 sum = vec4(0.0);
+    float depth = 0.0;
+    for (int i = 0; i < 4; ++i) {
+        vec2 uv = min(corner + vec2(float(i & 1), float(i >> 1)), u_size - 0.5) / u_size;
+        sum += min(textureLod(u_radiance, uv, 0.0), 60000.0);
+        depth = max(depth, textureLod(u_depth_target, uv, 0.0).r);
+    }
+    o_light = sum * 0.25;
+    o_confusion = confusion(depth);
+}
