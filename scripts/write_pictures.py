@@ -46,7 +46,7 @@ def figure(name: str):
 
 
 FIGURES = [figure(name) for name in ("eye_dome_lighting", "surfel_steps", "bunny_surfels", "labelled_street", "plants",
-                                     "all_kinds", "scalar_field")]
+                                     "all_kinds", "scalar_field", "slices", "shadows_and_occlusion", "gltf_materials")]
 
 def row(pictures) -> np.ndarray:
     """Pictures side by side with a white gap."""
