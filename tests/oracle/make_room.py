@@ -56,7 +56,7 @@ def main():
     folder = os.environ.get("EASYPBR_TEST_DATA")
     parser.add_argument("--data", type=pathlib.Path, default=folder, required=not folder)
     data = pathlib.Path(parser.parse_args().data)
-    path = HERE / "references/room.exr"
+    path = HERE / "room.exr"
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     OpenEXR.File(header, {"RGBA": render(data).astype(np.float16)}).write(str(path))
     about = {"mitsuba": mi.__version__, **SCENE, "input": hash_of(data / SCENE["mesh"]), "sha256": hash_of(path)}

@@ -27,7 +27,7 @@ def srgb8(linear):
 @pytest.fixture(scope="module")
 def pictures():
     """8-bit sRGB of the reference and of ours, the exposure fixed by the reference, and where both see the room."""
-    path = HERE / "references/room.exr"
+    path = HERE / "room.exr"
     assert hashlib.sha256(path.read_bytes()).hexdigest() == ROOM["sha256"]
     assert hashlib.sha256((pathlib.Path(DATA) / ROOM["mesh"]).read_bytes()).hexdigest() == ROOM["input"]
     reference = easypbr.load_image(path)
