@@ -30,6 +30,11 @@ def test_a_label_map_without_labels_is_a_warning(render, box):
     assert "'box' has no labels" in render(box, "-o", "out.png", "--label-map", "cityscapes").stderr
 
 
+def test_surfels_of_a_mesh_without_normals_are_a_warning(render, box):
+    said = render(box, "-o", "out.png", "--style", "mode=surfels").stderr
+    assert "'box' has no normals" in said and "--to-surfels" in said and said.count("\n") == 1
+
+
 def write_labelled(path):
     """Three points: with the labels of a car, a road and a pole."""
     path.write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"

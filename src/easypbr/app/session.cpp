@@ -10,6 +10,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image_io.h"
+#include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/fields.h"
 
 namespace easypbr::app {
@@ -166,7 +167,24 @@ Session::Prepared Session::prepare(const PictureOptions& options) {
     if (no_lens && !warned_of_lens_)
         log_warning("depth_of_field.enabled: an orthographic camera has no lens, so nothing is blurred");
     warned_of_lens_ = no_lens;
+    warn_of_surfels(prepared.scene);
     return prepared;
+}
+
+void Session::warn_of_surfels(const SceneSnapshot& scene) {
+    const auto lacks_normals = [&](const SceneSnapshot::Object& object) {
+        const DrawStyle style = resolve_style(*object.mesh, settings_.style);
+        return style.visible && style.mode == DrawMode::surfels && object.mesh->N.empty();
+    };
+    const auto found = std::find_if(scene.objects.begin(), scene.objects.end(), lacks_normals);
+    const bool lacking = found != scene.objects.end();
+    if (lacking && !warned_of_surfels_)
+        log_warning(
+            fmt::format("style.mode: '{}' has no normals to draw surfels from and is shown as points; "
+                        "Mesh.estimate_surfels() and "
+                        "'easypbr convert --to-surfels' make them",
+                        found->name));
+    warned_of_surfels_ = lacking;
 }
 
 Image Session::render(const PictureOptions& options) {

@@ -187,12 +187,14 @@ class Session {
     void annotate(const Prepared& prepared);
     /// Keeps what was inferred, unless there was nothing to infer it from.
     void latch_from(const Prepared& prepared);
+    /// Says when surfels are asked for and a mesh has no normals to make them from: it is drawn as points.
+    void warn_of_surfels(const SceneSnapshot& scene);
     Vec2i size_or(std::optional<Vec2i> size) const { return size.value_or(settings_.image.size); }
 
     Scene scene_;
     Settings settings_;
     Timing timing_;
-    bool warned_of_lens_ = false;
+    bool warned_of_lens_ = false, warned_of_surfels_ = false;
     std::shared_ptr<const Motion> motion_;  ///< where things were in the picture that was drawn last
 
     /// What refine() adds frames to; nothing: it has to begin.
