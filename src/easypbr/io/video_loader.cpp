@@ -1,4 +1,3 @@
-#include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,6 +5,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/ffmpeg/module.h"
+#include "easypbr/io/module_loader.h"
 #include "easypbr/io/video.h"
 
 namespace easypbr::io {
@@ -13,31 +13,16 @@ namespace {
 
 constexpr const char* module_name = "libeasypbr_ffmpeg.so";
 
-/// The module's functions, or the reason why there are none. It is never unloaded: its exceptions may outlive
-/// a call.
-struct Module {
-    Module() {
-        void* handle = nullptr;
-        Dl_info self{};
-        if (::dladdr(reinterpret_cast<void*>(&is_video), &self) && self.dli_fname)
-            handle = ::dlopen((fs::path(self.dli_fname).parent_path() / module_name).c_str(),
-                              RTLD_NOW | RTLD_LOCAL);
-        if (!handle) handle = ::dlopen(module_name, RTLD_NOW | RTLD_LOCAL);
-        if (!handle) {
-            const char* message = ::dlerror();
-            reason = message ? message : "unknown reason";
-            return;
-        }
-        open = reinterpret_cast<decltype(open)>(::dlsym(handle, "easypbr_ffmpeg_open"));
-        check = reinterpret_cast<decltype(check)>(::dlsym(handle, "easypbr_ffmpeg_check"));
-        encoders = reinterpret_cast<decltype(encoders)>(::dlsym(handle, "easypbr_ffmpeg_encoders"));
-        if (!open || !check || !encoders) reason = fmt::format("{} is of another version", module_name);
+struct Module : RuntimeModule {
+    Module() : RuntimeModule(module_name) {
+        find(open, "easypbr_ffmpeg_open");
+        find(check, "easypbr_ffmpeg_check");
+        find(encoders, "easypbr_ffmpeg_encoders");
     }
 
     decltype(&easypbr_ffmpeg_open) open = nullptr;
     decltype(&easypbr_ffmpeg_check) check = nullptr;
     decltype(&easypbr_ffmpeg_encoders) encoders = nullptr;
-    std::string reason;
 };
 
 const Module& ffmpeg_module() {
@@ -47,13 +32,13 @@ const Module& ffmpeg_module() {
 
 const Module& require_module(const fs::path& path) {
     const Module& ffmpeg = ffmpeg_module();
-    if (!ffmpeg.reason.empty())
+    if (!ffmpeg.reason().empty())
         throw FormatError(fmt::format(
             "cannot write {}: videos are written by the FFmpeg module, which cannot be loaded ({}); install "
-            "the "
-            "packages libavcodec59, libavformat59 and libswscale6 and keep {} beside libeasypbr.so, or write "
+            "the packages libavcodec59, libavformat59 and libswscale6 and keep {} beside libeasypbr.so, or "
+            "write "
             "pictures: out/frame_%04d.png",
-            path.string(), ffmpeg.reason, module_name));
+            path.string(), ffmpeg.reason(), module_name));
     return ffmpeg;
 }
 
@@ -79,7 +64,7 @@ std::unique_ptr<VideoWriter> open_video(const fs::path& path, const VideoOptions
 
 std::vector<std::string> video_encoders() {
     std::vector<std::string> names;
-    if (ffmpeg_module().reason.empty()) ffmpeg_module().encoders(names);
+    if (ffmpeg_module().reason().empty()) ffmpeg_module().encoders(names);
     return names;
 }
 

@@ -9,9 +9,6 @@
 #include <utility>
 
 #include "easypbr/core/error.h"
-#include "easypbr/core/octahedral.h"
-#include "easypbr/core/parallel.h"
-#include "easypbr/core/suggest.h"
 #include "easypbr/gl/context.h"
 
 namespace easypbr::render {
@@ -22,32 +19,7 @@ bool sees_environment(const ResolvedSettings& resolved) {
     return mode == BackgroundMode::environment || mode == BackgroundMode::blur;
 }
 
-template <class T>
-std::vector<T> read(const gl::Framebuffer& framebuffer, unsigned index, gl::Format format) {
-    const size_t bytes = size_t(framebuffer.width()) * size_t(framebuffer.height()) * gl::pixel_bytes(format);
-    std::vector<T> values(bytes / sizeof(T));
-    framebuffer.read(index, format, 0, 0, framebuffer.width(), framebuffer.height(),
-                     std::as_writable_bytes(std::span(values)));
-    return values;
-}
-
 }  // namespace
-
-const std::vector<std::string>& layer_names() {
-    static const std::vector<std::string> names = {
-        "albedo", "normal", "depth", "roughness", "metallic", "occlusion", "ambient_occlusion",
-        "id",     "element"};
-    return names;
-}
-
-Layer layer_named(const std::string& name) {
-    const auto& names = layer_names();
-    const auto found = std::find(names.begin(), names.end(), name);
-    if (found == names.end())
-        throw NameError(fmt::format("there is no layer '{}'{}: expected {}", name, did_you_mean(name, names),
-                                    fmt::join(names, ", ")));
-    return Layer(found - names.begin());
-}
 
 template <class Pass>
 void Renderer::run(const char* name, Pass&& pass) {
@@ -424,78 +396,6 @@ const gl::Texture* Renderer::background_texture(const Frame& frame, const Settin
         background_texture_.sampling(gl::Filtering::linear);
     }
     return &background_texture_;
-}
-
-Image Renderer::read_picture() const {
-    return read_picture(output_.picture().width(), output_.picture().height());
-}
-
-Image Renderer::read_picture(int width, int height) const {
-    const gl::Format format = output_.format();
-    const PixelType type = format == gl::Format::rgba8    ? PixelType::u8
-                           : format == gl::Format::rgba16 ? PixelType::u16
-                                                          : PixelType::f32;
-    Image image(width, height, 4, type);
-    output_.picture().read(0, format, 0, 0, width, height, image.bytes());
-    return image;
-}
-
-Image Renderer::read_layer(Layer layer) const {
-    const std::vector<float> depth = read<float>(targets_.surface, 3, gl::Format::r32f);
-    const int channels = layer == Layer::albedo ? 4 : layer == Layer::normal ? 3 : 1;
-    Image image(targets_.size().x(), targets_.size().y(), channels, PixelType::f32);
-    float* to = image.pixels<float>().data();
-    const auto for_each_covered = [&](auto&& body) {
-        parallel_for(depth.size(), 1 << 14, [&](size_t i) {
-            if (depth[i] > 0) body(i);
-        });
-    };
-    if (layer == Layer::depth) {
-        const float near = float(camera_.near), far = float(camera_.far);
-        const bool orthographic = camera_.projection == Projection::orthographic;
-        for_each_covered(
-            [&](size_t i) { to[i] = orthographic ? far + (near - far) * depth[i] : near / depth[i]; });
-    } else if (layer == Layer::albedo) {
-        const auto texels = read<uint16_t>(targets_.surface, 0, gl::Format::rgba16);
-        for_each_covered([&](size_t i) {
-            for (size_t c = 0; c < 3; ++c) to[4 * i + c] = float(texels[4 * i + c]) / 65535.0f;
-            to[4 * i + 3] = 1;
-        });
-    } else if (layer == Layer::normal) {
-        const auto texels = read<uint16_t>(targets_.surface, 1, gl::Format::rg16);
-        for_each_covered([&](size_t i) {
-            const Vec3 n = oct_decode(Vec2(texels[2 * i], texels[2 * i + 1]) / 32767.5f - Vec2(1, 1));
-            std::copy_n(n.data(), 3, to + 3 * i);
-        });
-    } else if (layer == Layer::id || layer == Layer::element) {
-        if (!targets_.id)
-            throw ArgumentError(fmt::format("layer {}: the last picture was drawn without ids",
-                                            layer_names()[size_t(layer)]));
-        const auto texels =
-            read<uint32_t>(targets_.surface_ids, layer == Layer::id ? 5 : 6, gl::Format::r32ui);
-        if (layer == Layer::id) {
-            for_each_covered([&](size_t i) { to[i] = float(texels[i]); });
-        } else {
-            // Elements of the user's own data, not of what was made of them to be drawn.
-            const auto objects = read<uint32_t>(targets_.surface_ids, 5, gl::Format::r32ui);
-            for_each_covered([&](size_t i) {
-                const Array1i& source = element_sources_[objects[i] - 1];
-                to[i] = source.empty() ? float(texels[i]) : float(source(Eigen::Index(texels[i]) - 1) + 1);
-            });
-        }
-    } else if (layer == Layer::ambient_occlusion) {
-        if (!targets_.ambient_occlusion) {  // Nothing occludes anything.
-            for_each_covered([&](size_t i) { to[i] = 1; });
-            return image;
-        }
-        const auto texels = read<uint16_t>(targets_.occluded, 0, gl::Format::r16);
-        for_each_covered([&](size_t i) { to[i] = float(texels[i]) / 65535.0f; });
-    } else {
-        const size_t channel = layer == Layer::metallic ? 0 : layer == Layer::roughness ? 1 : 2;
-        const auto texels = read<uint8_t>(targets_.surface, 2, gl::Format::rgba8);
-        for_each_covered([&](size_t i) { to[i] = float(texels[4 * i + channel]) / 255.0f; });
-    }
-    return image;
 }
 
 }  // namespace easypbr::render
