@@ -8,9 +8,18 @@ caches=$(mktemp -d)
 trap 'rm -rf "$caches"' EXIT
 export EASYPBR_CACHE_DIR=$caches
 
-ctest --test-dir build --output-on-failure -j "$(nproc)" || failed=1
+# What takes longer than its limit is stopped with the stacks of its threads, so that a test that hangs has a name.
+limit_s=600
+stacks=(-o "faulthandler_timeout=$limit_s" -o faulthandler_exit_on_timeout=true)
+
+echo "C++ tests, $(date -u +%T)"
+ctest --test-dir build --output-on-failure -j "$(nproc)" --timeout "$limit_s" || failed=1
 if [ -z "${EASYPBR_TEST_DATA:-}" ]; then
   echo "EASYPBR_TEST_DATA is not set: $(ctest --test-dir build -N | grep -c 'Test *#') tests ran, those on real files were left out"
 fi
-.venv/bin/python -m pytest -q tests/cli tests/python tests/window tests/oracle tests/package tests/docs || failed=1
+for part in cli python window oracle package docs; do
+  echo "tests/$part, $(date -u +%T)"
+  .venv/bin/python -m pytest -q --durations=3 "${stacks[@]}" "tests/$part" || failed=1
+done
+echo "the end, $(date -u +%T)"
 exit $failed
