@@ -7,6 +7,7 @@ export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 .PHONY: demo test build setup bench check-long docs format lint clean
 
 build: setup
+	@echo "build, $$(date -u +%T)"
 	cmake --preset release -DPython_EXECUTABLE=$(CURDIR)/$(PYTHON)
 	cmake --build $(BUILD)
 	$(PYTHON) scripts/link_python.py $(BUILD) .venv
