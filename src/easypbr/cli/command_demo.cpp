@@ -33,7 +33,7 @@ int run(const DemoOptions& options) {
     camera.position = Vec3d(3.75, 2.35, 6.45);
     camera.target = Vec3d(0.02, 0.36, 0.02);
     camera.fov_y_deg = 26;
-    session.settings().background.color = Vec3(0.22f, 0.227f, 0.24f);
+    session.settings().background.color = Vec3(0.36f, 0.375f, 0.40f);
     watch.lap("make the scene");
     session.context_info();
     watch.lap("open an OpenGL context");

@@ -88,7 +88,7 @@ Mesh make_floor(float radius, float thickness) {
 
 Scene make_demo_scene() {
     Scene scene;
-    show(scene, make_floor(4.2f, 0.07f), make_material("floor", {0.17f, 0.17f, 0.18f}, 0, 0.6f),
+    show(scene, make_floor(4.2f, 0.07f), make_material("floor", {0.66f, 0.65f, 0.64f}, 0, 0.6f),
          Eigen::Affine3d::Identity());
     show_teapots(scene);
     show_spheres(scene);
