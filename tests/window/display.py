@@ -16,18 +16,23 @@ def missing_tools():
 
 
 class Display:
-    def __init__(self, folder: pathlib.Path):
+    """Closed at the end of a with block."""
+
+    def __init__(self, folder: pathlib.Path, manager: bool = True):
         reader, writer = os.pipe()
         self.framebuffer = folder / "Xvfb_screen0"
         self._processes = [subprocess.Popen(
-            ["Xvfb", "-displayfd", str(writer), "-screen", "0", "1600x1000x24", "-fbdir", str(folder), "-nolisten", "tcp"],
+            ["Xvfb", "-displayfd", str(writer), "-screen", "0", "1600x1000x24", "-fbdir", str(folder), "-nolisten", "tcp", "-noreset"],
             pass_fds=[writer], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)]
         os.close(writer)
         with os.fdopen(reader) as numbers:
             self.name = ":" + numbers.readline().strip()
         self.environment = {**os.environ, "DISPLAY": self.name}
-        self._start("openbox")
-        wait_until(lambda: self.run("wmctrl", "-m", check=False).returncode == 0)
+        if manager:
+            # It names itself before it is ready, and loses what programs ask of it in between.
+            ready = folder / "ready"
+            self._start("openbox", "--startup", f"touch {ready}")
+            wait_until(ready.exists)
 
     def _start(self, *command):
         self._processes.append(subprocess.Popen(command, env=self.environment, stdout=subprocess.DEVNULL,
@@ -57,6 +62,12 @@ class Display:
         start = header[0] + 12 * colors
         pixels = np.frombuffer(data, np.uint8, row * height, start).reshape(height, row)[:, : 4 * width]
         return pixels.reshape(height, width, 4)[:, :, 2::-1]
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.stop()
 
     def stop(self):
         for process in reversed(self._processes):

@@ -1,5 +1,6 @@
 """The real window: mouse, keys, panels, closing, several at once."""
 import os
+import pathlib
 import subprocess
 import sys
 import threading
@@ -9,7 +10,7 @@ import numpy as np
 import pytest
 
 import easypbr
-from display import wait_until
+from display import Display, wait_until
 
 MIDDLE = (400, 300)
 
@@ -181,3 +182,24 @@ def test_without_a_display_it_says_so():
     done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, timeout=120)
     assert done.returncode == 1
     assert "ContextError: no window: X11: " in done.stderr and "render()" in done.stderr
+
+
+def test_a_window_that_its_manager_forgets_is_asked_for_again(tmp_path):
+    program = """
+import easypbr
+view = easypbr.Viewer((320, 240))
+for _ in range(200):
+    view.update()
+"""
+    here = pathlib.Path(__file__).parent
+    with Display(tmp_path, manager=False) as display:
+        manager = subprocess.Popen([sys.executable, here / "forgetful_manager.py"], env=display.environment, text=True,
+                                   stdout=subprocess.PIPE)
+        try:
+            assert manager.stdout.readline() == "ready\n"
+            done = subprocess.run([sys.executable, "-c", program], env=display.environment, timeout=60)
+            assert done.returncode == 0
+            assert [manager.stdout.readline() for _ in range(2)] == ["map 1\n", "map 2\n"]
+        finally:
+            manager.terminate()
+            manager.wait(10)

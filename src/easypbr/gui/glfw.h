@@ -11,7 +11,8 @@ namespace easypbr::gui {
 
 #define EASYPBR_GLFW_FUNCTIONS(X)                                                                           \
     X(glfwInit)                                                                                             \
-    X(glfwGetError) X(glfwWindowHint) X(glfwDefaultWindowHints) X(glfwCreateWindow) X(glfwDestroyWindow)    \
+    X(glfwGetError)                                                                                         \
+    X(glfwWindowHint) X(glfwDefaultWindowHints) X(glfwCreateWindow) X(glfwDestroyWindow)                    \
         X(glfwMakeContextCurrent) X(glfwSwapBuffers) X(glfwSwapInterval) X(glfwPollEvents)                  \
             X(glfwWaitEventsTimeout) X(glfwPostEmptyEvent) X(glfwWindowShouldClose)                         \
                 X(glfwSetWindowUserPointer) X(glfwGetWindowUserPointer) X(glfwGetFramebufferSize)           \
@@ -20,7 +21,7 @@ namespace easypbr::gui {
                             X(glfwSetMouseButtonCallback) X(glfwSetScrollCallback) X(glfwSetKeyCallback)    \
                                 X(glfwSetCharCallback) X(glfwSetDropCallback) X(glfwSetWindowFocusCallback) \
                                     X(glfwSetWindowRefreshCallback) X(glfwGetCursorPos) X(glfwGetKeyName)   \
-                                        X(glfwInitHint)
+                                        X(glfwInitHint) X(glfwShowWindow) X(glfwGetWindowAttrib)
 
 /// Its functions.
 struct Glfw {

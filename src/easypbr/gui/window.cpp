@@ -22,6 +22,8 @@ static_assert(app::key::escape == GLFW_KEY_ESCAPE && app::key::del == GLFW_KEY_D
               app::key::right == GLFW_KEY_RIGHT && app::key::end == GLFW_KEY_END &&
               app::key::f1 == GLFW_KEY_F1 && app::key::f12 == GLFW_KEY_F12);
 
+constexpr double ask_again_seconds = 0.5;
+
 /// Threads that wait for the one that waits for events.
 std::atomic<int> waiting_threads = 0;
 
@@ -120,6 +122,7 @@ Window::Window(const std::string& title, Vec2i size) {
     f.glfwWindowHint(GLFW_CONTEXT_VERSION_MAJOR, 3);
     f.glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     f.glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
+    f.glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);  // show() does it.
     window_ = f.glfwCreateWindow(size.x(), size.y(), title.c_str(), nullptr, nullptr);
     if (!window_) {
         const char* reason = nullptr;
@@ -135,6 +138,16 @@ Window::Window(const std::string& title, Vec2i size) {
     f.glfwSetDropCallback(window_, WindowCallbacks::drop);
     f.glfwSetWindowFocusCallback(window_, WindowCallbacks::focus);
     f.glfwSetWindowRefreshCallback(window_, WindowCallbacks::refresh);
+    show();
+}
+
+void Window::show() {
+    const Glfw& f = glfw();
+    // GLFW 3.3 waits without end for a window that is not mapped while other events lie unread.
+    f.glfwPollEvents();
+    f.glfwShowWindow(window_);
+    is_shown_ = f.glfwGetWindowAttrib(window_, GLFW_VISIBLE);
+    asked_to_show_ = now();
 }
 
 Window::~Window() {
@@ -149,6 +162,9 @@ std::vector<InputEvent> Window::events(double seconds) {
             glfw().glfwWaitEventsTimeout(seconds);
         else
             glfw().glfwPollEvents();
+        // A window manager that is just starting may lose the request to map a window.
+        if (!is_shown_) is_shown_ = glfw().glfwGetWindowAttrib(window_, GLFW_VISIBLE);
+        if (!is_shown_ && now() > asked_to_show_ + ask_again_seconds) show();
     }
     // Whoever asked for the mutex meanwhile gets it before this thread waits again.
     if (waiting_threads > 0) std::this_thread::sleep_for(std::chrono::microseconds(200));

@@ -44,10 +44,13 @@ class Window {
   private:
     friend struct WindowCallbacks;
     void make_target(Vec2i size);
+    void show();
 
     GLFWwindow* window_ = nullptr;
     std::vector<app::InputEvent> events_;
     bool needs_present_ = true;
+    bool is_shown_ = false;
+    double asked_to_show_ = 0;
     unsigned texture_ = 0, framebuffer_ = 0;
     Vec2i target_size_{0, 0};
 };
