@@ -342,9 +342,8 @@ def drones() -> np.ndarray:
 
 
 PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion,
-            bloom, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones]
-
-PICTURES += [viewer, viewer_slices]
+            bloom, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
+            viewer_slices]
 
 
 if __name__ == "__main__":

@@ -18,14 +18,13 @@ PYTHON_GROUPS = {
     "Geometry": ["KdTree"],
     "Ground truth and tensors": ["Instance", "Moment", "MeshLoader", "eigen2tensor", "tensor2eigen"],
     "Images": ["load_image", "save_image", "compare_images", "colormap"],
+    "Window": ["show", "Pick", "Panel", "Event"],
     "Errors": ["Error", "FileError", "FormatError", "ArgumentError", "UnknownNameError", "ContextError"],
 }
 #: Modules with names of their own.
 MODULES = {"shapes": "Shapes"}
 #: What public functions and attributes return; described below the group of what returns them.
 HELPERS = {"Drawing": ["Recorder", "Lights", "StudioLight"], "Content": ["LoadedScene", "Animations"]}
-
-PYTHON_GROUPS["Window"] = ["show", "Pick"]
 
 SETTINGS_HEAD = """# Settings
 

@@ -12,6 +12,7 @@ from ._easypbr import (
     Camera,
     CameraPath,
     Environment,
+    Event,
     Instance,
     Follow,
     KdTree,
@@ -34,6 +35,7 @@ from ._easypbr import (
 from .convert import as_mesh
 from .errors import ArgumentError, ContextError, Error, FileError, FormatError, UnknownNameError
 from .loader import MeshLoader
+from .panels import Panel
 from .rendering import render
 from .scene import Scene
 from .settings import Settings
@@ -48,6 +50,7 @@ __all__ = [
     "ContextError",
     "Environment",
     "Error",
+    "Event",
     "FileError",
     "Follow",
     "FormatError",
@@ -59,6 +62,7 @@ __all__ = [
     "Mesh",
     "MeshLoader",
     "Moment",
+    "Panel",
     "Pick",
     "Scene",
     "Settings",

@@ -2,23 +2,22 @@
 
 import atexit
 import os
-import sys
 import threading
-import traceback
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from . import _easypbr
 from .errors import ArgumentError
 from .lights import _STUDIO, Lights
+from .panels import WindowCallbacks
 from .recorder import Recorder
 from .scene import Scene
 from .settings import Settings
 from .tensors import converter
 
 
-class Viewer:
+class Viewer(WindowCallbacks):
     """Draws a scene, the default one unless another is given. Nothing is drawn, and no GL needed, before a picture is
     asked for. Threads may share a viewer; they take turns."""
 
@@ -29,7 +28,7 @@ class Viewer:
         self.recorder = Recorder(self)
         self._settings = Settings(self._handle)
         self._thread = None
-        self._before_draw, self._after_draw, self._told = [], [], set()
+        self._init_callbacks()
         if isinstance(settings, Mapping):
             self._settings.update(settings)
         elif settings is not None:
@@ -232,32 +231,6 @@ class Viewer:
     def is_open(self) -> bool:
         """Whether the window is there."""
         return self._handle.is_open()
-
-    def before_draw(self, function: Callable[[], None]) -> Callable[[], None]:
-        """Calls `function` in every update() before it draws. What it raises is shown with its traceback, and the loop
-        goes on. Also as a decorator."""
-        self._before_draw.append(function)
-        return function
-
-    def after_draw(self, function: Callable[[], None]) -> Callable[[], None]:
-        """Calls `function` in every update() after it has drawn."""
-        self._after_draw.append(function)
-        return function
-
-    def _run(self, functions: list) -> None:
-        for function in list(functions):
-            self._call(function)
-
-    def _call(self, function, *arguments):
-        """Calls a user's function; an exception is told once, on stderr with its traceback and in the window."""
-        try:
-            return function(*arguments)
-        except Exception as error:
-            text = traceback.format_exc()
-            if text not in self._told:
-                self._told.add(text)
-                print(text, file=sys.stderr, end="")
-                self._handle.notify("".join(traceback.format_exception_only(type(error), error)).strip(), True)
 
     def open(self, path) -> None:
         """Adds what a file holds, as a file dropped on the window; HDR and EXR become the environment."""

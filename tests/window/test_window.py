@@ -141,7 +141,8 @@ def test_an_exception_in_a_callback_is_shown_and_the_loop_goes_on(window, capsys
     assert len(calls) == 3
     told = capsys.readouterr().err
     assert told.count("Traceback") == 1 and "the weights are NaN" in told and "in broken" in told
-    assert "RuntimeError: the weights are NaN" in window.state["messages"]
+    message = window.state["messages"][-1]
+    assert message.startswith("Traceback") and message.endswith("RuntimeError: the weights are NaN")
 
 
 def test_a_window_that_lives_beside_the_program(display):

@@ -28,6 +28,7 @@ struct InputEvent {
         key_up,
         text,       ///< of one `code` point
         drop,       ///< files `paths` were dropped
+        resize,     ///< the picture has another `size` from now on
         focus_lost  ///< keys and buttons count as released
     };
     Kind kind = Kind::move;
@@ -38,6 +39,7 @@ struct InputEvent {
     Vec2d scroll{0, 0};  ///< y: positive away from the person
     uint32_t code = 0;
     std::vector<std::string> paths;
+    Vec2i size{0, 0};
     double time = 0;  ///< seconds, from any beginning
 };
 

@@ -4,35 +4,16 @@
 #include <imgui_internal.h>
 
 #include <algorithm>
-#include <mutex>
 #include <utility>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/hash.h"
+#include "easypbr/gui/gui_scope.h"
 #include "easypbr/gui/panels.h"
 #include "easypbr/gui/widgets.h"
 
 namespace easypbr::gui {
 namespace {
-
-std::recursive_mutex& imgui_mutex() {
-    static std::recursive_mutex mutex;
-    return mutex;
-}
-
-/// Makes a context ImGui's own for a scope, and gives back another one that was.
-class GuiScope {
-  public:
-    explicit GuiScope(ImGuiContext* context) : lock_(imgui_mutex()), previous_(ImGui::GetCurrentContext()) {
-        ImGui::SetCurrentContext(context);
-    }
-    ~GuiScope() { ImGui::SetCurrentContext(previous_); }
-    GuiScope(const GuiScope&) = delete;
-    GuiScope& operator=(const GuiScope&) = delete;
-
-  private:
-    std::lock_guard<std::recursive_mutex> lock_;
-    ImGuiContext* previous_;
-};
 
 struct Column {
     const char* id;
@@ -73,6 +54,19 @@ void draw_column(GuiState& state, const Column& column, float x, float top, floa
         for (const auto& [panel, contents] : column.panels)
             if (state.is_open(panel)) draw_panel(state, panel, contents);
     ImGui::End();
+}
+
+/// The same for frames that look the same, as long as pictures keep their contents.
+std::string hash_of(const ImDrawData& data) {
+    std::string hashes;
+    for (int i = 0; i < data.CmdListsCount; ++i) {
+        const ImDrawList& list = *data.CmdLists[i];
+        hashes += content_hash(std::as_bytes(std::span(list.VtxBuffer.Data, size_t(list.VtxBuffer.Size))));
+        hashes += content_hash(std::as_bytes(std::span(list.IdxBuffer.Data, size_t(list.IdxBuffer.Size))));
+        for (const ImDrawCmd& command : list.CmdBuffer)
+            hashes += content_hash(std::as_bytes(std::span(&command, 1)));
+    }
+    return hashes;
 }
 
 }  // namespace
@@ -189,7 +183,7 @@ void Gui::prepare(const GuiState& state, double seconds) {
     for (size_t i = 0; i < down_.size(); ++i) io.MouseDown[i] = down_[i] || std::exchange(pressed_[i], false);
 }
 
-void Gui::lay_out(GuiState& state, const std::function<void()>& more) {
+void Gui::draw_panels(GuiState& state, const std::function<void()>& more) {
     state.handles_pointer = state.show_panels && manipulate(state);
     if (state.show_panels) {
         menu_bar(state);
@@ -204,16 +198,17 @@ void Gui::lay_out(GuiState& state, const std::function<void()>& more) {
     notifications(state);
 }
 
-void Gui::draw(GuiState& state, double seconds, const gl::Texture& picture, const gl::Framebuffer& target,
-               const std::function<void()>& more) {
+bool Gui::lay_out(GuiState& state, double seconds, const gl::Texture& picture,
+                  const std::function<void()>& more) {
     const GuiScope scope(context_);
     prepare(state, seconds);
+    state.places.clear();
     ImGui::NewFrame();
     if (picture)
         ImGui::GetBackgroundDrawList()->AddImage(ImTextureID(intptr_t(picture.id())), ImVec2(0, 0),
                                                  ImGui::GetIO().DisplaySize);
     try {
-        lay_out(state, more);
+        draw_panels(state, more);
     } catch (const Error& error) {
         // What was begun is ended, so that the next frame is drawn as ever.
         ImGui::ErrorCheckEndFrameRecover(nullptr);
@@ -230,6 +225,11 @@ void Gui::draw(GuiState& state, double seconds, const gl::Texture& picture, cons
     popup_ = ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
     wants_keys_ = io.WantTextInput;
     active_ = ImGui::IsAnyItemActive();
+    return std::exchange(laid_out_, hash_of(*ImGui::GetDrawData())) != laid_out_;
+}
+
+void Gui::paint(const gl::Framebuffer& target) {
+    const GuiScope scope(context_);
     renderer_.draw(*ImGui::GetDrawData(), target);
 }
 

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "easypbr/app/input.h"
@@ -27,17 +28,21 @@ class Gui {
     /// The pointer drags a slider or the like, or a field is typed into.
     bool is_active() const { return active_; }
 
-    /// Lays out everything and draws it into `target`, over the picture (stretched over all of it; may be
-    /// empty); `more` adds windows of its own. The session's context must be current.
-    void draw(GuiState& state, double seconds, const gl::Texture& picture, const gl::Framebuffer& target,
-              const std::function<void()>& more = {});
+    /// Lays out everything over the picture (stretched over all of the window; may be empty); `more` adds
+    /// windows of its own. Returns whether it looks unlike the last time, but for what is in pictures. The
+    /// session's context must be current.
+    bool lay_out(GuiState& state, double seconds, const gl::Texture& picture,
+                 const std::function<void()>& more = {});
+    /// Draws what was laid out last. The session's context must be current.
+    void paint(const gl::Framebuffer& target);
 
   private:
     void prepare(const GuiState& state, double seconds);
-    void lay_out(GuiState& state, const std::function<void()>& more);
+    void draw_panels(GuiState& state, const std::function<void()>& more);
 
     ImGuiContext* context_ = nullptr;
     ImGuiRenderer renderer_;
+    std::string laid_out_;  ///< hash of what was laid out last
     float font_scale_ = 0, theme_scale_ = 0;
     Theme theme_ = Theme::dark;
     bool over_panel(Vec2d position) const;

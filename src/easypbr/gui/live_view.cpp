@@ -28,6 +28,10 @@ constexpr int least_frames = 4;
 constexpr double slow_seconds = 0.07, quick_seconds = 0.03;
 constexpr double lowest_reduction = 0.25;
 constexpr double watch_seconds = 0.5;
+/// Pictures after which a screenshot waits no longer for one that stays.
+constexpr uint64_t most_changes = 8;
+/// How often the panels of users are called while nothing happens.
+constexpr double panels_seconds = 0.05;
 
 double now() {
     return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
@@ -66,6 +70,46 @@ LiveView::LiveView(app::Session& session) : session_(session), state_(session) {
     auto clipboard = std::make_shared<std::string>();
     state_.read_clipboard = [clipboard] { return *clipboard; };
     state_.write_clipboard = [clipboard](const std::string& text) { *clipboard = text; };
+    state_.own_menu = [this] { panels_.menu(); };
+}
+
+void LiveView::add_panel(const std::string& name, PanelFunction function) {
+    panels_.add(name, std::move(function));
+    touch();
+}
+
+void LiveView::remove_panel(const std::string& name) {
+    panels_.remove(name);
+    touch();
+}
+
+int LiveView::on_event(EventHandler handler) {
+    if (!handler) throw ArgumentError("on_event: expected a function");
+    const int number = next_callback_number();
+    handlers_[number] = std::move(handler);
+    return number;
+}
+
+bool LiveView::guarded(const std::function<void()>& function) {
+    std::string text;
+    try {
+        function();
+        return true;
+    } catch (const std::exception& error) {
+        text = error.what();
+    } catch (...) {
+        text = "an exception that is no std::exception";
+    }
+    // The same in every frame would hide the picture.
+    if (std::exchange(last_failure_, text) != text) state_.notify(text, true);
+    return false;
+}
+
+bool LiveView::handled_by_user(const InputEvent& event) {
+    bool handled = false;
+    const auto handlers = handlers_;  // They may add and remove others.
+    for (const auto& [number, handler] : handlers) guarded([&] { handled |= handler(event); });
+    return handled;
 }
 
 bool LiveView::is_moving() const {
@@ -73,10 +117,29 @@ bool LiveView::is_moving() const {
 }
 
 bool LiveView::update(const std::vector<InputEvent>& events, Vec2i size, float scale, double seconds) {
+    if (updating_)
+        throw ArgumentError(
+            "a panel's function or a callback draws the window that it belongs to: update(), show() and "
+            "screenshot() are for the program that it is called from");
     if (size.minCoeff() < 1) return false;
+    updating_ = true;
+    struct Done {
+        bool& updating;
+        ~Done() { updating = false; }
+    } done{updating_};
+    return update_now(events, size, scale, seconds);
+}
+
+bool LiveView::update_now(const std::vector<InputEvent>& events, Vec2i size, float scale, double seconds) {
     bool changed = state_.size != size || state_.scale != scale || !events.empty();
-    state_.size = size;
+    const bool resized = std::exchange(state_.size, size) != size;
     state_.scale = scale;
+    if (resized) {
+        InputEvent event;
+        event.kind = Kind::resize;
+        event.size = size;
+        handled_by_user(event);
+    }
     keep_looks();
     reload_changed(seconds);
     for (const InputEvent& event : events) handle(event);
@@ -94,11 +157,12 @@ bool LiveView::update(const std::vector<InputEvent>& events, Vec2i size, float s
     const bool drew = draw_picture();
     changed |= std::exchange(told_, state_.notifications.size()) != state_.notifications.size();
     if (changed || drew) gui_frames_ = 3;
-    const bool draws = gui_frames_ > 0;
-    if (draws) {
-        draw_screen(seconds);
-        --gui_frames_;
-    }
+    // What a user's panel shows may change though nothing happens.
+    const bool asks_panels =
+        !panels_.empty() && state_.show_panels && (since_panels_ += seconds) >= panels_seconds;
+    bool draws = gui_frames_ > 0;
+    if (draws || asks_panels) draws = draw_screen(seconds, draws);
+    gui_frames_ = std::max(gui_frames_ - 1, 0);
     if (!is_moving() && !failed_) state_.history.note(session_.settings());
     const bool refines = !failed_ && frames_ < state_.statistics.total;
     busy_ = refines || gui_frames_ > 0 || control_.is_moving();
@@ -107,6 +171,7 @@ bool LiveView::update(const std::vector<InputEvent>& events, Vec2i size, float s
 
 void LiveView::handle(const InputEvent& event) {
     if (event.kind == Kind::drop) {
+        if (handled_by_user(event)) return;
         for (const std::string& path : event.paths) try {
                 open(path);
             } catch (const Error& error) {
@@ -121,7 +186,7 @@ void LiveView::handle(const InputEvent& event) {
         wants_hover_ = !own;
         if (own) state_.hovered.reset();
     }
-    if (own || shortcut(event)) return;
+    if (own || handled_by_user(event) || shortcut(event)) return;
     // The release of a button that the manipulator holds is the camera's as well: it forgets nothing by it.
     const bool on_handle =
         state_.handles_pointer && event.kind == Kind::press && event.button == app::MouseButton::left;
@@ -391,11 +456,18 @@ void LiveView::show_image(const Image& image) {
     shown_.upload(image.bytes());
 }
 
-void LiveView::draw_screen(double seconds) {
-    if (make_texture(screen_, state_.size)) screen_framebuffer_ = gl::Framebuffer({&screen_});
+bool LiveView::draw_screen(double seconds, bool always) {
+    const bool is_new = make_texture(screen_, state_.size);
+    if (is_new) screen_framebuffer_ = gl::Framebuffer({&screen_});
+    since_panels_ = 0;
+    const bool changed = gui_.lay_out(state_, seconds, shown_, [&] {
+        if (state_.show_panels) panels_.draw(state_);
+    });
+    if (!always && !changed && !is_new) return false;
     const float grey[4] = {0.25f, 0.25f, 0.25f, 1};
     screen_framebuffer_.clear_color(0, grey);
-    gui_.draw(state_, seconds, shown_, screen_framebuffer_);
+    gui_.paint(screen_framebuffer_);
+    return true;
 }
 
 Image LiveView::screen() {
@@ -407,8 +479,10 @@ Image LiveView::screen() {
 }
 
 Image LiveView::finished_screen(Vec2i size, float scale) {
+    touch();
+    const uint64_t begun = state_.statistics.pictures;
     do update({}, size, scale, 1.0 / 60);
-    while (busy_);
+    while (busy_ && state_.statistics.pictures < begun + most_changes);
     return screen();
 }
 

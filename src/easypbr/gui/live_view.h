@@ -12,6 +12,7 @@
 #include "easypbr/app/session.h"
 #include "easypbr/gui/gui.h"
 #include "easypbr/gui/state.h"
+#include "easypbr/gui/user_panels.h"
 
 namespace easypbr::gui {
 
@@ -23,7 +24,8 @@ class LiveView {
     explicit LiveView(app::Session& session);
 
     /// Takes what has happened in `seconds` and draws what is to be drawn. Returns whether the screen
-    /// changed. Errors in what is drawn become notifications.
+    /// changed. Errors in what is drawn become notifications. Throws ArgumentError when it is called from a
+    /// panel or callback of its own.
     bool update(const std::vector<app::InputEvent>& events, Vec2i size, float scale, double seconds);
 
     /// There is more to draw, though nothing happens.
@@ -33,8 +35,30 @@ class LiveView {
 
     /// The screen, RGBA u8, row 0 on top: picture and GUI. Throws ArgumentError before the first update().
     Image screen();
-    /// The screen when all is refined; draws until then.
+    /// The screen when all is refined; draws until then. What panels and callbacks change in every frame is
+    /// taken as it is after a few.
     Image finished_screen(Vec2i size, float scale = 1);
+
+    /// Panels of the user's own; their functions run within update(), while the panels are shown. May be
+    /// called by such a function.
+    void add_panel(const std::string& name, PanelFunction function);
+    void remove_panel(const std::string& name);
+    const UserPanels& panels() const { return panels_; }
+
+    /// Calls `handler` for whatever happens but what the panels take for themselves, before the view acts on
+    /// it; true keeps the view from that. What it throws becomes a notification. Returns a number for
+    /// remove_event_handler().
+    using EventHandler = std::function<bool(const app::InputEvent&)>;
+    int on_event(EventHandler handler);
+    void remove_event_handler(int number) { handlers_.erase(number); }
+    /// A number that no other callback has.
+    int next_callback_number() { return next_callback_++; }
+
+    /// Calls a user's function. What it throws becomes a notification, once for each text; returns whether it
+    /// threw nothing.
+    bool guarded(const std::function<void()>& function);
+    /// Within update(): in a panel's function or an event handler.
+    bool is_updating() const { return updating_; }
 
     /// Adds what a file holds under the file's name, made unique; pictures with high range become the
     /// environment. Throws FileError, FormatError.
@@ -58,6 +82,8 @@ class LiveView {
         std::filesystem::file_time_type time;
     };
     void handle(const app::InputEvent& event);
+    bool handled_by_user(const app::InputEvent& event);
+    bool update_now(const std::vector<app::InputEvent>& events, Vec2i size, float scale, double seconds);
     bool shortcut(const app::InputEvent& event);
     bool control_shortcut(int key);
     void move_camera(const app::InputEvent& event);
@@ -74,7 +100,7 @@ class LiveView {
     bool refine();
     void show_picture();
     void show_image(const Image& image);
-    void draw_screen(double seconds);
+    bool draw_screen(double seconds, bool always);
     bool is_moving() const;
     bool shows_layers() const { return state_.channel != "picture"; }
 
@@ -82,6 +108,12 @@ class LiveView {
     GuiState state_;
     app::CameraControl control_;
     Gui gui_;
+    UserPanels panels_;
+    std::map<int, EventHandler> handlers_;
+    int next_callback_ = 1;
+    bool updating_ = false;
+    double since_panels_ = 0;  ///< seconds since the user's panels were called
+    std::string last_failure_;
 
     gl::Texture shown_, screen_;
     gl::Framebuffer screen_framebuffer_;

@@ -54,6 +54,7 @@ void menu_bar(GuiState& state) {
     if (ImGui::BeginMenu("View")) {
         for (int i = 0; i < panel_count; ++i)
             ImGui::MenuItem(panel_name(Panel(i)), fmt::format("F{}", i + 1).c_str(), &state.open[size_t(i)]);
+        if (state.own_menu) state.own_menu();
         ImGui::Separator();
         ImGui::MenuItem("All panels", "H", &state.show_panels);
         bool light = state.theme == Theme::light;

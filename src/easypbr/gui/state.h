@@ -75,6 +75,9 @@ struct GuiState {
     std::map<std::string, std::map<std::string, LookChange>> looks;  ///< by object, by property
     bool close = false, fit = false, save = false;
 
+    std::map<std::string, Eigen::AlignedBox2d> places;  ///< of items in the last frame, see note_place()
+    std::function<void()> own_menu;                     ///< adds lines to the menu of panels
+
     std::function<std::string()> read_clipboard;
     std::function<void(const std::string&)> write_clipboard;
 

@@ -129,8 +129,8 @@ std::string tooltip_of(const Field& field) {
 
 bool begin_rows(const char* id, bool with_auto) {
     if (!ImGui::BeginTable(id, with_auto ? 3 : 2, ImGuiTableFlags_NoSavedSettings)) return false;
-    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 0.5f);
-    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.5f);
+    ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch, 0.55f);
+    ImGui::TableSetupColumn("value", ImGuiTableColumnFlags_WidthStretch, 0.45f);
     if (with_auto)
         ImGui::TableSetupColumn("auto", ImGuiTableColumnFlags_WidthFixed, ImGui::CalcTextSize("auto").x + 5);
     return true;
@@ -187,6 +187,11 @@ bool heading(const char* text, bool open) {
     const bool result = ImGui::CollapsingHeader(text, open ? ImGuiTreeNodeFlags_DefaultOpen : 0);
     ImGui::PopStyleColor();
     return result;
+}
+
+void note_place(GuiState& state, const std::string& name) {
+    const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
+    state.places[name] = {Vec2d(from.x, from.y), Vec2d(to.x, to.y)};
 }
 
 void dim_text(const std::string& text) {

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "easypbr/gui/state.h"
 #include "easypbr/scene/fields.h"
 
 namespace easypbr::gui {
@@ -29,6 +30,9 @@ void field_row(const Field& field, const Value& value, const std::optional<Value
 
 /// A heading that folds its panel or group.
 bool heading(const char* text, bool open = true);
+
+/// Notes where the last item is, under "panel/item", so that a test can point at it.
+void note_place(GuiState& state, const std::string& name);
 
 /// Text that is less important.
 void dim_text(const std::string& text);

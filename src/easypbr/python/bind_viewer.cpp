@@ -92,7 +92,11 @@ nb::object pick(SharedViewer& self, double x, double y, const nb::object& size) 
 nb::dict gui_state(SharedViewer& self) {
     nb::dict result;
     const auto put = [&](const char* name, const auto& value) { result[name] = nb::cast(value); };
-    gui::GuiState state = self.run([](Viewer& viewer) { return viewer.live().state(); });
+    std::map<std::string, std::string> errors;
+    const gui::GuiState state = self.run([&](Viewer& viewer) {
+        errors = viewer.live().panels().errors();
+        return viewer.live().state();
+    });
     put("object", state.object);
     put("show_panels", state.show_panels);
     put("show_keys", state.show_keys);
@@ -107,6 +111,13 @@ nb::dict gui_state(SharedViewer& self) {
     for (int i = 0; i < gui::panel_count; ++i)
         if (state.open[size_t(i)]) panels.append(gui::panel_name(gui::Panel(i)));
     for (const gui::Notification& message : state.notifications) messages.append(message.text);
+    nb::dict own_panels, places;
+    for (const auto& [name, error] : errors) own_panels[name.c_str()] = error;
+    result["own_panels"] = own_panels;
+    for (const auto& [name, box] : state.places)
+        places[name.c_str()] =
+            std::vector<double>{box.min().x(), box.min().y(), box.max().x(), box.max().y()};
+    result["places"] = places;
     result["panels"] = panels;
     result["messages"] = messages;
     return result;
@@ -136,7 +147,7 @@ void set_gui(SharedViewer& self, const std::string& name, nb::handle value) {
 using ViewerClass = nb::class_<SharedViewer>;
 
 void bind_window(ViewerClass& viewer) {
-    viewer.def("update", [](SharedViewer& self) { return self.run([](Viewer& v) { return v.update(); }); })
+    viewer.def("update", update_window)
         .def("reopen", [](SharedViewer& self) { self.run([](Viewer& v) { v.reopen(); }); })
         .def("close", [](SharedViewer& self) { self.run([](Viewer& v) { v.close(); }); })
         .def("is_open", [](SharedViewer& self) { return self.run([](Viewer& v) { return v.is_open(); }); })
@@ -145,7 +156,9 @@ void bind_window(ViewerClass& viewer) {
             "screenshot",
             [](SharedViewer& self, const nb::object& size, float scale) {
                 const std::optional<Vec2i> pixels = optional_size(size);
-                return to_numpy(self.run([&](Viewer& v) { return v.screenshot(pixels, scale); }));
+                Image screen = self.run([&](Viewer& v) { return v.screenshot(pixels, scale); });
+                raise_kept(self);
+                return to_numpy(std::move(screen));
             },
             nb::arg("size").none() = nb::none(), nb::arg("scale") = 1.0f)
         .def("open", [](SharedViewer& self,
@@ -153,10 +166,6 @@ void bind_window(ViewerClass& viewer) {
         .def("watch",
              [](SharedViewer& self, const fs::path& path, const std::string& name) {
                  self.run([&](Viewer& v) { v.live().watch(path, name); });
-             })
-        .def("notify",
-             [](SharedViewer& self, const std::string& text, bool is_error) {
-                 self.run([&](Viewer& v) { v.live().state().notify(text, is_error); });
              })
         .def("gui_state", gui_state)
         .def("set_gui", set_gui, nb::arg("name"), nb::arg("value"));
@@ -225,6 +234,7 @@ void bind_viewer(nb::module_& module) {
     bind_viewer_settings(viewer);
     bind_recorder(module, viewer);
     bind_window(viewer);
+    bind_gui(module, viewer);
     nb::class_<app::Pick>(module, "Pick", "What lies under a pixel.")
         .def_ro("object", &app::Pick::object, "Name in the scene; 'car/wheel' for a child.")
         .def_ro("part", &app::Pick::part, "Name of the part of the mesh; empty where it has none.")

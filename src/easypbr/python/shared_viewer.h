@@ -4,8 +4,12 @@
 #include <unistd.h>
 
 #include <condition_variable>
+#include <exception>
+#include <map>
 #include <mutex>
 #include <optional>
+#include <set>
+#include <thread>
 
 #include "easypbr/core/error.h"
 #include "easypbr/python/bindings.h"
@@ -14,26 +18,66 @@
 
 namespace easypbr::python {
 
-/// Lets threads in by the order in which they came: a loop that updates a window leaves others their turn.
+/// Lets threads in by the order in which they came: a loop that updates a window leaves others their turn. A
+/// thread whose turn it is comes in again at once: its callbacks use the viewer that calls them.
 class Turns {
   public:
+    /// Throws ContextError when it would wait for ever: the thread inside waits, within a callback, for a
+    /// viewer that this thread is in.
     void lock() {
-        std::unique_lock lock(mutex_);
+        const std::thread::id self = std::this_thread::get_id();
+        std::unique_lock lock(mutex());
+        if (owner_ == self) {
+            ++depth_;
+            return;
+        }
+        if (waits_for(self))
+            throw ContextError(
+                "two viewers wait for each other: callbacks of both use the other one, on two threads; "
+                "update "
+                "them on one thread");
         const uint64_t turn = next_++;
+        waiting()[self] = this;
         changed_.wait(lock, [&] { return turn == served_; });
+        waiting().erase(self);
+        owner_ = self;
+        depth_ = 1;
     }
     void unlock() {
         {
-            const std::lock_guard lock(mutex_);
+            const std::lock_guard lock(mutex());
+            if (--depth_ > 0) return;
+            owner_ = {};
             ++served_;
         }
         changed_.notify_all();
     }
 
   private:
-    std::mutex mutex_;
+    /// One for all viewers, held for moments, so that it can be seen who waits for whom.
+    static std::mutex& mutex() {
+        static std::mutex mutex;
+        return mutex;
+    }
+    static std::map<std::thread::id, const Turns*>& waiting() {
+        static std::map<std::thread::id, const Turns*> waiting;
+        return waiting;
+    }
+    /// Whether who is in here waits for a thread, perhaps by way of others.
+    bool waits_for(std::thread::id thread) const {
+        std::set<const Turns*> seen;
+        for (const Turns* turns = this; turns && seen.insert(turns).second;) {
+            if (turns->owner_ == thread) return true;
+            const auto next = waiting().find(turns->owner_);
+            turns = next == waiting().end() ? nullptr : next->second;
+        }
+        return false;
+    }
+
     std::condition_variable changed_;
     uint64_t next_ = 0, served_ = 0;
+    std::thread::id owner_;
+    int depth_ = 0;
 };
 
 /// A viewer that threads take turns in.
@@ -50,6 +94,10 @@ class SharedViewer {
         });
     }
 
+    /// Keeps an exception that a callback must not swallow (KeyboardInterrupt) until update() is over.
+    void keep_exception(std::exception_ptr exception) { kept_ = std::move(exception); }
+    std::exception_ptr take_exception() { return std::exchange(kept_, nullptr); }
+
   private:
     void require_same_process() const {
         if (getpid() != process_)
@@ -61,6 +109,7 @@ class SharedViewer {
 
     Turns mutex_;
     pid_t process_ = getpid();
+    std::exception_ptr kept_;
     Viewer viewer_;
 };
 
@@ -70,5 +119,11 @@ inline std::optional<Vec2i> optional_size(const nb::object& size) {
 }
 
 void bind_recorder(nb::module_& module, nb::class_<SharedViewer>& viewer);
+void bind_gui(nb::module_& module, nb::class_<SharedViewer>& viewer);
+
+/// Viewer::update(); then raise_kept().
+bool update_window(SharedViewer& self);
+/// Throws what a callback of the last update or screenshot threw to end the program.
+void raise_kept(SharedViewer& self);
 
 }  // namespace easypbr::python

@@ -2,6 +2,7 @@
 
 #include <chrono>
 
+#include "easypbr/core/error.h"
 #include "easypbr/gui/live_view.h"
 #include "easypbr/gui/window.h"
 
@@ -14,6 +15,20 @@ using Clock = std::chrono::steady_clock;
 constexpr double wait_seconds = 0.016;
 /// A pause of the program is no reason to fly far.
 constexpr double longest_step = 0.1;
+
+using Callbacks = std::map<int, std::function<void()>>;
+
+/// A flag that is true for a scope.
+class KeptTrue {
+  public:
+    explicit KeptTrue(bool& flag) : flag_(flag) { flag_ = true; }
+    ~KeptTrue() { flag_ = false; }
+    KeptTrue(const KeptTrue&) = delete;
+    KeptTrue& operator=(const KeptTrue&) = delete;
+
+  private:
+    bool& flag_;
+};
 
 std::string title_of(const Scene& scene) {
     std::string title;
@@ -29,8 +44,20 @@ struct Viewer::Window {
     gui::LiveView live;
     std::unique_ptr<gui::Window> window;
     std::string title;
-    bool closed = false;
+    bool closed = false, updating = false;
     std::optional<Clock::time_point> last;
+    Callbacks before, after;
+
+    void call(const Callbacks& functions) {
+        const Callbacks present = functions;  // They may add and remove others.
+        for (const auto& [number, function] : present) live.guarded(function);
+    }
+    int keep(Callbacks& functions, std::function<void()> function) {
+        if (!function) throw ArgumentError("a callback is no function");
+        const int number = live.next_callback_number();
+        functions[number] = std::move(function);
+        return number;
+    }
 
     void open(Vec2i size) {
         window = std::make_unique<gui::Window>(title, size);
@@ -49,15 +76,20 @@ struct Viewer::Window {
 
 Viewer::~Viewer() = default;
 
-gui::LiveView& Viewer::live() {
+Viewer::Window& Viewer::window() {
     if (!window_) window_ = std::make_unique<Window>(*session_);
-    return window_->live;
+    return *window_;
+}
+
+gui::LiveView& Viewer::live() {
+    return window().live;
 }
 
 bool Viewer::update() {
-    live();
-    Window& w = *window_;
+    Window& w = window();
     if (w.closed) return false;
+    if (w.updating) throw ArgumentError("update() is called from a callback of its own");
+    const KeptTrue updating(w.updating);
     const std::string title = title_of(scene());
     if (!w.window) {
         w.title = title;
@@ -70,9 +102,11 @@ bool Viewer::update() {
         recorder.add_frame();
     else
         clock_->tick();
+    w.call(w.before);
     const bool changed = w.live.update(events, w.window->size(), w.window->scale(), seconds);
+    w.call(w.after);
     if (w.window->should_close() || w.live.wants_to_close()) {
-        close();
+        shut(w);
         return false;
     }
     if ((changed || w.window->needs_present()) && w.window->size().minCoeff() > 0)
@@ -89,15 +123,49 @@ void Viewer::show() {
     while (update()) continue;
 }
 
+void Viewer::shut(Window& window) {
+    window.closed = true;
+    window.live.state().close = false;
+    window.window.reset();
+}
+
 void Viewer::close() {
     if (!window_) return;
-    window_->closed = true;
-    window_->live.state().close = false;
-    window_->window.reset();
+    // In a callback it is update() that closes, for it still needs the window.
+    if (window_->updating)
+        window_->live.state().close = true;
+    else
+        shut(*window_);
 }
 
 bool Viewer::is_open() const {
     return window_ && window_->window;
+}
+
+void Viewer::add_panel(const std::string& name, std::function<void(gui::Widgets&)> function) {
+    live().add_panel(name, std::move(function));
+}
+
+void Viewer::remove_panel(const std::string& name) {
+    live().remove_panel(name);
+}
+
+int Viewer::before_draw(std::function<void()> function) {
+    return window().keep(window().before, std::move(function));
+}
+
+int Viewer::after_draw(std::function<void()> function) {
+    return window().keep(window().after, std::move(function));
+}
+
+int Viewer::on_event(std::function<bool(const app::InputEvent&)> handler) {
+    return live().on_event(std::move(handler));
+}
+
+void Viewer::remove_callback(int number) {
+    window().before.erase(number);
+    window().after.erase(number);
+    live().remove_event_handler(number);
 }
 
 Image Viewer::screenshot(std::optional<Vec2i> size, float scale) {

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "easypbr/app/clock.h"
+#include "easypbr/app/input.h"
 #include "easypbr/app/output.h"
 #include "easypbr/app/recorder.h"
 #include "easypbr/app/session.h"
@@ -16,7 +18,8 @@ namespace easypbr {
 
 namespace gui {
 class LiveView;
-}
+class Widgets;
+}  // namespace gui
 
 /// The one scene there is without being made: what show() fills and a Viewer without a scene draws.
 Scene& default_scene();
@@ -92,6 +95,20 @@ class Viewer {
     /// What the window would show: picture and panels, refined; needs no display.
     Image screenshot(std::optional<Vec2i> size = std::nullopt, float scale = 1);
 
+    /// A panel of the user's own in the window, drawn by `function` in each of its frames:
+    /// view.add_panel("Training", [&](gui::Widgets& ui) { ui.slider("rate", rate, 0, 1); }). What it throws
+    /// is shown in the panel. It may use this viewer, but for update(), show() and screenshot().
+    void add_panel(const std::string& name, std::function<void(gui::Widgets&)> function);
+    void remove_panel(const std::string& name);
+
+    /// Functions that update() calls before and after it draws; what they throw is shown in the window and
+    /// the loop goes on. Numbers for remove_callback().
+    int before_draw(std::function<void()> function);
+    int after_draw(std::function<void()> function);
+    /// See gui::LiveView::on_event(): mouse, keys, dropped files, another size.
+    int on_event(std::function<bool(const app::InputEvent&)> handler);
+    void remove_callback(int number);
+
     /// The GUI behind window and screenshots.
     gui::LiveView& live();
 
@@ -101,6 +118,8 @@ class Viewer {
 
   private:
     struct Window;
+    Window& window();
+    static void shut(Window& window);
     std::unique_ptr<Window> window_;
 };
 

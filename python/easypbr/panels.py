@@ -1,0 +1,195 @@
+"""Panels of one's own in the window of a viewer, and functions that it calls."""
+
+import sys
+import traceback
+import weakref
+from collections.abc import Callable, Iterable, Sequence
+
+import numpy as np
+
+from . import _easypbr
+from .errors import ArgumentError
+
+_KINDS = ("move", "press", "release", "scroll", "key_down", "key_up", "text", "drop", "resize", "focus_lost")
+
+
+class Panel:
+    """What a panel's function draws with, from top to bottom: every method shows a widget and returns its value.
+
+    The value that is given is where the widget begins. From then on a widget keeps what the person chose, by its name, so
+    that `rate = ui.slider("rate", 0.1, 0, 1)` is all there is to it; give another value and the widget shows that."""
+
+    def __init__(self):
+        self._handle = None
+        self._memory = {}
+
+    def _widgets(self) -> "_easypbr._Widgets":
+        if self._handle is None:
+            raise ArgumentError("a panel's widgets can be drawn only while its function runs")
+        return self._handle
+
+    def _remembered(self, name, given, draw):
+        """Draws a widget that keeps its value while the value that is given stays the same."""
+        last_given, value = self._memory.get(name, (given, given))
+        if given != last_given:
+            value = given
+        value = draw(value)
+        self._memory[name] = (given, value)
+        return value
+
+    def text(self, text) -> None:
+        """A paragraph."""
+        self._widgets().text(str(text))
+
+    def separator(self) -> None:
+        """A line across."""
+        self._widgets().separator()
+
+    def same_line(self) -> None:
+        """The next button or text stands beside the last one."""
+        self._widgets().same_line()
+
+    def section(self, title: str, open: bool = True) -> bool:
+        """A heading that folds what follows: `if ui.section("More"): ...`"""
+        return self._widgets().section(title, open)
+
+    def button(self, name: str) -> bool:
+        """True when it was clicked: `if ui.button("Reset"): ...`"""
+        return self._widgets().button(name)
+
+    def checkbox(self, name: str, value: bool = False) -> bool:
+        widgets = self._widgets()
+        return self._remembered(name, bool(value), lambda v: widgets.checkbox(name, v))
+
+    def slider(self, name: str, value: float, low: float, high: float) -> float:
+        """A number between low and high; a whole one when all three are whole."""
+        widgets = self._widgets()
+        if all(isinstance(v, (int, np.integer)) and not isinstance(v, bool) for v in (value, low, high)):
+            return self._remembered(name, int(value), lambda v: widgets.slider_int(name, v, int(low), int(high)))
+        return self._remembered(name, float(value), lambda v: widgets.slider(name, v, low, high))
+
+    def number(self, name: str, value: float = 0.0) -> float:
+        """A number without a range: dragged, or typed after a double click."""
+        widgets = self._widgets()
+        return self._remembered(name, float(value), lambda v: widgets.number(name, v))
+
+    def combo(self, name: str, value: str, choices: Sequence[str]) -> str:
+        """One of several texts."""
+        widgets = self._widgets()
+        return self._remembered(name, value, lambda v: widgets.combo(name, v, list(choices)))
+
+    def text_field(self, name: str, value: str = "") -> str:
+        """A line that is typed."""
+        widgets = self._widgets()
+        return self._remembered(name, value, lambda v: widgets.text_field(name, v))
+
+    def color(self, name: str, value=(1.0, 1.0, 1.0)) -> tuple[float, float, float]:
+        """sRGB, 0 to 1."""
+        widgets = self._widgets()
+        return self._remembered(name, tuple(map(float, value)), lambda v: widgets.color(name, v))
+
+    def plot(self, name: str, values: Iterable[float], range: tuple[float, float] | None = None) -> None:
+        """A curve, with its last value beside the name. `range`: what its height shows, by default all values."""
+        self._widgets().plot(name, np.asarray(values, np.float32).ravel().tolist(), range)
+
+    def progress(self, fraction: float, text: str = "") -> None:
+        """A bar, `fraction` of it filled (0 to 1)."""
+        self._widgets().progress(fraction, text)
+
+
+class WindowCallbacks:
+    """The part of a Viewer that calls its user's functions. They may use the viewer, but for update(), show() and
+    screenshot(), which draw what they are called from."""
+
+    def _init_callbacks(self) -> None:
+        self._before_draw, self._after_draw, self._told = [], [], {}
+        self._panels, self._handlers, self._handler_number = {}, [], None
+
+    def add_panel(self, name: str, function: Callable[[Panel], None] | None = None):
+        """A panel in the window, drawn by function(ui) in each of its frames; see Panel. What it raises is shown in the
+        panel with its traceback, and the loop goes on. Also as a decorator: @view.add_panel("Training")."""
+        if function is None:
+            return lambda decorated: self.add_panel(name, decorated)
+        if not callable(function):
+            raise ArgumentError(f"add_panel: expected a function, got a {type(function).__name__}")
+        self._panels[name] = (function, Panel())
+        viewer = weakref.ref(self)  # The library must not keep alive who owns it.
+        self._handle.add_panel(name, lambda widgets: viewer()._draw_panel(name, widgets))
+        return function
+
+    def remove_panel(self, name: str) -> None:
+        """Removes a panel that was added."""
+        self._handle.remove_panel(name)
+        del self._panels[name]
+
+    def _draw_panel(self, name: str, widgets) -> str | None:
+        function, panel = self._panels[name]
+        panel._handle = widgets
+        try:
+            return self._call(function, panel, in_panel=True)[1]
+        finally:
+            panel._handle = None
+
+    def before_draw(self, function: Callable[[], None]) -> Callable[[], None]:
+        """Calls `function` in every update() before it draws. What it raises is shown in the window with its traceback,
+        and the loop goes on. Also as a decorator."""
+        self._before_draw.append(function)
+        return function
+
+    def after_draw(self, function: Callable[[], None]) -> Callable[[], None]:
+        """Calls `function` in every update() after it has drawn. Also as a decorator."""
+        self._after_draw.append(function)
+        return function
+
+    def on_event(self, function: Callable | None = None, kind: str | None = None):
+        """Calls function(event) for what is done with mouse and keyboard, files that are dropped and another size of the
+        window, but not for what panels take for themselves; see Event. When it returns True the viewer does nothing else about
+        it. `kind`: only events of this kind. Also as a decorator: @view.on_event(kind="key_down")."""
+        if kind is not None and kind not in _KINDS:
+            raise ArgumentError(f"on_event: expected a kind out of {', '.join(_KINDS)}, got {kind!r}")
+        if function is None:
+            return lambda decorated: self.on_event(decorated, kind)
+        if not callable(function):
+            raise ArgumentError(f"on_event: expected a function, got a {type(function).__name__}")
+        self._handlers.append((function, kind))
+        if self._handler_number is None:
+            viewer = weakref.ref(self)
+            self._handler_number = self._handle.on_event(lambda event: viewer()._dispatch(event))
+        return function
+
+    def remove_callback(self, function: Callable) -> None:
+        """Calls a function of before_draw(), after_draw() and on_event() no more."""
+        self._before_draw = [known for known in self._before_draw if known is not function]
+        self._after_draw = [known for known in self._after_draw if known is not function]
+        self._handlers = [(known, kind) for known, kind in self._handlers if known is not function]
+
+    def notify(self, text: str, error: bool = False) -> None:
+        """Shows a message in the window for a few seconds."""
+        self._handle.notify(text, error)
+
+    def _dispatch(self, event) -> bool:
+        handled = False
+        for function, kind in list(self._handlers):
+            if kind is None or kind == event.kind:
+                handled |= bool(self._call(function, event)[0])
+        return handled
+
+    def _run(self, functions: list) -> None:
+        for function in list(functions):
+            self._call(function)
+
+    def _call(self, function, *arguments, in_panel: bool = False):
+        """Calls a user's function: what it returned, and the traceback of an exception. That is written to stderr and
+        shown in the window, once, unless its panel shows it."""
+        try:
+            return function(*arguments), None
+        except Exception as error:
+            # From the user's own function on; how it was called says nothing.
+            failure = traceback.format_exception(type(error), error, error.__traceback__.tb_next)
+            text = "".join(failure).rstrip()
+            if self._told.get(id(function)) != text:
+                self._told[id(function)] = text
+                print(text, file=sys.stderr)
+                if not in_panel:
+                    self._handle.notify(text, True)
+            return None, text

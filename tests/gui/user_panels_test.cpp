@@ -1,0 +1,247 @@
+// Panels and callbacks of users, driven by events, without a window.
+#include "easypbr/gui/user_panels.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <thread>
+
+#include "easypbr/core/error.h"
+#include "easypbr/geometry/primitives.h"
+#include "easypbr/gui/live_view.h"
+
+namespace easypbr::gui {
+namespace {
+
+using app::InputEvent;
+using Kind = InputEvent::Kind;
+
+const Vec2i size(900, 600);
+
+class UserPanel : public testing::Test {
+  protected:
+    UserPanel() : session_(box_scene()) { session_.settings().image.samples = 1; }
+
+    static Scene box_scene() {
+        Scene scene;
+        scene.show(make_box({1, 1, 1}), "box");
+        return scene;
+    }
+    void step(const std::vector<InputEvent>& events = {}) { view_.update(events, size, 1, 0.1); }
+    void settle() {
+        for (int i = 0; i < 5; ++i) step();
+    }
+    /// Left and right quarter of a widget's place, and its middle.
+    Vec2d place(const std::string& name, double x = 0.5) {
+        const auto found = view_.state().places.find(name);
+        EXPECT_NE(found, view_.state().places.end()) << name;
+        if (found == view_.state().places.end()) return {0, 0};
+        const Vec2d low = found->second.min(), high = found->second.max();
+        return {low.x() + x * (high.x() - low.x()), (low.y() + high.y()) / 2};
+    }
+    static InputEvent at(Kind kind, Vec2d position) {
+        InputEvent event;
+        event.kind = kind;
+        event.position = position;
+        return event;
+    }
+    void click(Vec2d where) {
+        step({at(Kind::move, where)});
+        step({at(Kind::press, where)});
+        step({at(Kind::release, where)});
+        step();
+    }
+
+    app::Session session_;
+    LiveView view_{session_};
+};
+
+TEST_F(UserPanel, WidgetsTakeWhatIsClicked) {
+    double rate = 0.1;
+    int count = 3, clicks = 0;
+    bool on = false;
+    std::string choice = "near", name = "run";
+    view_.add_panel("Training", [&](Widgets& ui) {
+        ui.text("A paragraph");
+        ui.slider("rate", rate, 0, 1);
+        ui.slider("count", count, 0, 10);
+        ui.checkbox("on", on);
+        ui.combo("choice", choice, {"near", "far"});
+        ui.text_field("name", name);
+        clicks += ui.button("reset");
+    });
+    settle();
+    click(place("Training/on"));
+    click(place("Training/reset"));
+    // A slider's grab is centred at the pointer; its travel is the width but for the grab's own.
+    click(place("Training/rate"));
+    click(place("Training/count", 0.98));
+    EXPECT_TRUE(on);
+    EXPECT_EQ(clicks, 1);
+    EXPECT_NEAR(rate, 0.5, 0.01);
+    EXPECT_EQ(count, 10);
+    click(place("Training/choice"));
+    settle();  // The list finds its place.
+    click(place("Training/choice/far"));
+    EXPECT_EQ(choice, "far");
+    click(place("Training/name", 0.9));
+    for (const char letter : {'s', '1'}) {
+        InputEvent typed = at(Kind::text, place("Training/name"));
+        typed.code = uint32_t(letter);
+        step({typed});
+    }
+    EXPECT_EQ(name, "runs1");
+}
+
+TEST_F(UserPanel, ShowsWhatItsFunctionThrowsAndGoesOn) {
+    int calls = 0;
+    view_.add_panel("Broken", [&](Widgets& ui) {
+        ++calls;
+        ui.section("open");
+        ui.slider("empty", *std::make_unique<double>(0.5), 1, 1);
+    });
+    settle();
+    EXPECT_GT(calls, 2);
+    EXPECT_NE(view_.panels().errors().at("Broken").find("slider 'empty'"), std::string::npos);
+    EXPECT_TRUE(view_.state().notifications.empty());
+    view_.add_panel("Broken", [](Widgets& ui) { ui.text("mended"); });
+    settle();
+    EXPECT_EQ(view_.panels().errors().at("Broken"), "");
+    view_.add_panel("Other", [](Widgets&) { throw 1; });
+    settle();
+    EXPECT_NE(view_.panels().errors().at("Other"), "");
+}
+
+TEST_F(UserPanel, IsCalledWhileNothingHappensButDrawnOnlyWhenItChanges) {
+    int shown = 0;
+    view_.add_panel("Counter", [&](Widgets& ui) { ui.text(std::to_string(shown)); });
+    settle();
+    EXPECT_FALSE(view_.update({}, size, 1, 0.1));
+    shown = 1;
+    EXPECT_TRUE(view_.update({}, size, 1, 0.1));
+    EXPECT_FALSE(view_.update({}, size, 1, 0.1));
+    view_.state().show_panels = false;
+    view_.touch();
+    settle();
+    shown = 2;
+    EXPECT_FALSE(view_.update({}, size, 1, 0.1));
+}
+
+TEST_F(UserPanel, MayChangePanelsAndSceneButNotDrawItself) {
+    std::string refused;
+    view_.add_panel("Adds", [&](Widgets&) {
+        view_.add_panel("Added", [](Widgets& ui) { ui.text("here"); });
+        session_.render({Vec2i(32, 24), 1});
+        try {
+            view_.update({}, size, 1, 0);
+        } catch (const ArgumentError& error) {
+            refused = error.what();
+        }
+        view_.remove_panel("Adds");
+    });
+    settle();
+    EXPECT_EQ(view_.panels().names(), std::vector<std::string>{"Added"});
+    EXPECT_NE(refused.find("screenshot()"), std::string::npos);
+}
+
+TEST_F(UserPanel, MayUseAnotherViewThatWaitsForItsOwnTurn) {
+    app::Session other_session(box_scene());
+    other_session.settings().image.samples = 1;
+    LiveView other(other_session);
+    std::atomic<bool> inside = false, drawn = false;
+    view_.add_panel("Waits", [&](Widgets&) {
+        inside = true;
+        while (!drawn) std::this_thread::yield();
+    });
+    std::thread thread([&] {
+        while (!inside) std::this_thread::yield();
+        other.finished_screen({200, 100});
+        drawn = true;
+    });
+    step();
+    thread.join();
+    EXPECT_TRUE(drawn);
+}
+
+TEST_F(UserPanel, WrongUseIsRefused) {
+    EXPECT_THROW(view_.add_panel("", [](Widgets&) {}), ArgumentError);
+    EXPECT_THROW(view_.add_panel("x", nullptr), ArgumentError);
+    EXPECT_THROW(view_.remove_panel("x"), NameError);
+    EXPECT_THROW(view_.on_event(nullptr), ArgumentError);
+}
+
+TEST_F(UserPanel, WidgetsRefuseWhatCannotBeShown) {
+    std::vector<std::string> refused;
+    const auto expect_refused = [&](const std::function<void()>& use) {
+        try {
+            use();
+            ADD_FAILURE();
+        } catch (const ArgumentError& error) {
+            refused.push_back(error.what());
+        }
+    };
+    view_.add_panel("Bad", [&](Widgets& ui) {
+        refused.clear();
+        double nan = std::nan(""), number = 1;
+        std::string text;
+        int whole = 0;
+        expect_refused([&] { ui.slider("a", nan, 0, 1); });
+        expect_refused([&] { ui.slider("b", number, 1, 0); });
+        expect_refused([&] { ui.slider("c", whole, 0, 2000000000); });
+        expect_refused([&] { ui.number("d", nan); });
+        expect_refused([&] { ui.combo("e", text, {}); });
+        expect_refused([&] { ui.plot("f", {}, Vec2(1, 1)); });
+        expect_refused([&] { ui.progress(nan); });
+        const float values[] = {1, std::nanf(""), HUGE_VALF, 2};
+        ui.plot("gaps", values);
+        ui.plot("nothing", {});
+    });
+    settle();
+    EXPECT_EQ(refused.size(), 7u);
+    EXPECT_EQ(view_.panels().errors().at("Bad"), "");
+}
+
+TEST_F(UserPanel, HandlersSeeEventsBeforeTheViewDoes) {
+    std::vector<Kind> seen;
+    bool take = false;
+    const int number = view_.on_event([&](const InputEvent& event) {
+        seen.push_back(event.kind);
+        return take;
+    });
+    step();
+    ASSERT_EQ(seen, std::vector<Kind>{Kind::resize});
+    InputEvent h;
+    h.kind = Kind::key_down;
+    h.key = 'H';
+    step({h});
+    EXPECT_FALSE(view_.state().show_panels);
+    take = true;
+    step({h});
+    EXPECT_FALSE(view_.state().show_panels);
+    InputEvent drop;
+    drop.kind = Kind::drop;
+    drop.paths = {"/nowhere.ply"};
+    step({drop});
+    EXPECT_TRUE(view_.state().notifications.empty());
+    EXPECT_EQ(seen.size(), 4u);
+    view_.remove_event_handler(number);
+    step({h});
+    EXPECT_TRUE(view_.state().show_panels);
+    // A click on a panel is the panel's.
+    settle();
+    seen.clear();
+    view_.on_event([&](const InputEvent& event) {
+        seen.push_back(event.kind);
+        return false;
+    });
+    click({60, 60});
+    EXPECT_TRUE(seen.empty());
+    view_.on_event([](const InputEvent&) -> bool { throw ArgumentError("oh no"); });
+    step({at(Kind::move, {450, 300})});
+    step({at(Kind::move, {451, 300})});
+    ASSERT_EQ(view_.state().notifications.size(), 1u);
+    EXPECT_EQ(view_.state().notifications[0].text, "oh no");
+}
+
+}  // namespace
+}  // namespace easypbr::gui
