@@ -1,6 +1,8 @@
 // From pixels back to space. World directions have the world's axes; positions are relative to the camera's centre, so
 // that a scene far from the origin loses no precision.
 uniform vec2 u_size;              // of the targets, pixels
+uniform vec4 u_picture;           // the targets' first pixel in the picture, and the whole picture's size
+uniform float u_reach;            // screen-space effects look no farther than this, pixels: what a tile knows beyond its borders
 uniform vec4 u_unproject;         // x, y: 1 / P00, 1 / P11; z, w: P02, P12 (perspective) or -P03, -P13 (orthographic)
 uniform vec3 u_depth;             // perspective: near, 0, 0; orthographic: near, far, 1
 uniform mat3 u_world_from_view;

@@ -1,6 +1,7 @@
 // Stochastic transparency (Enderton et al. 2010): a surface is drawn where its opacity is above a random number, a new
 // one for every pixel, frame and depth, so that surfaces behind each other are left out independently.
 uniform float u_sample_index;
+uniform vec2 u_noise_origin;  // the targets' first pixel in the picture
 
 // PCG hash (Jarzynski and Olano 2020).
 uint hash(uint v) {
@@ -10,6 +11,7 @@ uint hash(uint v) {
 }
 
 float alpha_threshold() {
-    uint h = hash(uint(gl_FragCoord.x) + hash(uint(gl_FragCoord.y) + hash(uint(u_sample_index))));
+    uvec2 pixel = uvec2(gl_FragCoord.xy + u_noise_origin);
+    uint h = hash(pixel.x + hash(pixel.y + hash(uint(u_sample_index))));
     return float(hash(h + floatBitsToUint(gl_FragCoord.z)) >> 8u) / 16777216.0;
 }

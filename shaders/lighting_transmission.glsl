@@ -23,7 +23,11 @@ vec3 projected(vec3 p) {
     return vec3((ndc + vec2(1.0, -1.0)) * vec2(0.5, -0.5) * u_size, -v.z);
 }
 
-bool on_screen(vec2 pixel) { return all(greaterThanEqual(pixel, vec2(0.0))) && all(lessThan(pixel, u_size)); }
+// Whether a pixel is known here: on the screen, and no farther away than tiles reach.
+bool on_screen(vec2 pixel) {
+    return all(greaterThanEqual(pixel, vec2(0.0))) && all(lessThan(pixel, u_size)) &&
+           all(lessThan(abs(pixel - gl_FragCoord.xy), vec2(u_reach)));
+}
 
 // Distance along the optical axis of a reversed depth above 0.
 float distance_of(float d) { return -view_position(vec2(0.0), d).z; }
@@ -59,7 +63,7 @@ Exit through_volume(Surface s, vec3 normal) {
     vec2 uv = start;
     for (int i = 0; i < 4; ++i) {
         vec3 p = projected(s.position + inside * path);
-        vec2 next = clamp(p.xy / u_size, 0.0, 1.0);
+        vec2 next = clamp(clamp(p.xy, gl_FragCoord.xy - u_reach, gl_FragCoord.xy + u_reach) / u_size, 0.0, 1.0);
         float depth = textureLod(u_exit_depth, next, 0.0).r;
         if (depth <= 0.0) break;  // beside the back: keep the last point on it
         uv = next;
@@ -143,7 +147,7 @@ vec4 seen(vec3 origin, vec3 direction, bool straight, float alpha) {
     }
     vec4 picture = vec4(0.0);
     if (hit.z > 0.0) {
-        float width = min(2.0 * alpha * max(hit.z - own, 0.0) * pixels_per_unit(hit.z), u_size.y);
+        float width = min(2.0 * alpha * max(hit.z - own, 0.0) * pixels_per_unit(hit.z), min(u_picture.w, 0.25 * u_reach));
         picture = picture_at(hit.xy + turned * width, width * u_lobe_share);
     }
 #ifdef ENVIRONMENT

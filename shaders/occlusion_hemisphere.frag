@@ -20,7 +20,7 @@ float occluded(Surface s, vec3 normal, vec3 point) {
     vec2 centre = floor(pixel_of(point)) + 0.5;
     vec2 uv = centre / u_size;
     float depth = textureLod(u_depth_target, uv, 0.0).r;
-    bool known = depth > 0.0 && uv == clamp(uv, 0.0, 1.0);
+    bool known = depth > 0.0 && uv == clamp(uv, 0.0, 1.0) && distance(centre, s.pixel) <= u_reach;
     vec3 found = view_position(centre, known ? depth : 1.0);
     vec3 delta = found - s.position;
     float distance2 = dot(delta, delta);

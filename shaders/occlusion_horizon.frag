@@ -72,7 +72,8 @@ uint covered_sectors(Surface s, vec3 view, vec3 normal, Side side, vec2 pixel, f
 
 // Pixels from a place to the picture's border.
 float pixels_to_border(vec2 pixel, vec2 direction) {
-    vec2 to_border = mix(pixel, u_size - pixel, step(0.0, direction)) / max(abs(direction), 1e-6);
+    vec2 place = pixel + u_picture.xy;
+    vec2 to_border = mix(place, u_picture.zw - place, step(0.0, direction)) / max(abs(direction), 1e-6);
     return min(to_border.x, to_border.y);
 }
 
@@ -80,7 +81,7 @@ float pixels_to_border(vec2 pixel, vec2 direction) {
 float occluded(Surface s, vec3 view, vec3 normal, Side side, vec2 direction, float reach, float offset) {
     uint covered = 0u;
     float sum = 0.0, before = 0.0, dither = fract(offset * 7.31 + 0.37);
-    reach = max(min(reach, pixels_to_border(s.pixel, direction)), 1.0);
+    reach = max(min(min(reach, u_reach), pixels_to_border(s.pixel, direction)), 1.0);
     // Places lie the farther apart the farther away they are. Twice as many see four times as far equally well.
     float steps = ceil(float(u_steps) * sqrt(max(reach / reach_of_steps, 1.0)));
     for (float k = offset; k < steps; ++k) {

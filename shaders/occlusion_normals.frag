@@ -21,7 +21,7 @@ void main() {
     if (!is_eye_dome(textureLod(u_material, gl_FragCoord.xy / u_size, 0.0).w)) discard;
     float depth;
     Surface s = surface_at(gl_FragCoord.xy, depth);
-    float reach = u_radius / pixel_size(s.position);
+    float reach = min(u_radius / pixel_size(s.position), u_reach);
     vec3 sum = vec3(0.0);
     // Of all triangles with two neighbours side by side: on a plane each has its normal.
     for (int ring = 1; ring <= 3; ++ring) {

@@ -17,7 +17,7 @@ vec3 sample_point(int i) {
 #else
     // Every pixel starts elsewhere: interleaved gradient noise (Jimenez 2014) at three places.
     int k = u_frame * u_directions + i;
-    vec2 f = vec2(0.06711056, 0.00583715), p = gl_FragCoord.xy;
+    vec2 f = vec2(0.06711056, 0.00583715), p = gl_FragCoord.xy + u_picture.xy;
     vec3 start = fract(52.9829189 * fract(vec3(dot(p, f), dot(p + vec2(47.0, 17.0), f.yx), dot(p + 113.0, f + f.yx))));
 #endif
     return fract(start + float(k & 0xffff) * vec3(0.54970048, 0.61803399, 0.75487767));

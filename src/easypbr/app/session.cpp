@@ -35,6 +35,10 @@ void check_size(Vec2i size) {
     if (size.x() < 1 || size.y() < 1 || size.x() > max_image_side || size.y() > max_image_side)
         throw ArgumentError(fmt::format("picture size {}x{}: width and height must be 1 to {}", size.x(),
                                         size.y(), max_image_side));
+    if (int64_t(size.x()) * size.y() > max_picture_pixels)
+        throw ArgumentError(
+            fmt::format("picture size {}x{}: expected {} pixels at most, such as 32768x32768 or 65536x16384",
+                        size.x(), size.y(), max_picture_pixels));
 }
 
 struct NamedTexture {
@@ -195,9 +199,14 @@ Image Session::render(const PictureOptions& options) {
 }
 
 Image Session::read_annotated() {
-    Image picture = warp(renderer_->read_picture(), lens_);
+    Image picture = warp(tiled_.empty() ? renderer_->read_picture() : tiled_, lens_);
     draw_annotation(annotation_, annotation_settings_, picture);
     return picture;
+}
+
+TiledPicture Session::tiled(const Prepared& prepared) const {
+    return {prepared.scene, prepared.resolved, prepared.options, settings_images_,
+            tile_limits_.value_or(render::TileLimits::of(context_->info()))};
 }
 
 void Session::annotate(const Prepared& prepared) {
@@ -213,8 +222,13 @@ void Session::draw_frame(const PictureOptions& options) {
     render::Renderer& renderer = this->renderer();
     const gl::ContextScope scope(*context_);
     const Stopwatch watch(timing_.draw);
-    renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
-    renderer.read_picture(1, 1);
+    tiled_ = {};
+    if (const TiledPicture picture = tiled(prepared); picture.is_whole()) {
+        renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
+        renderer.read_picture(1, 1);
+    } else {
+        tiled_ = picture.draw(renderer);
+    }
     annotate(prepared);
     motion_ = std::make_shared<const Motion>(prepared.scene, prepared.resolved.camera);
     latch_from(prepared);
@@ -243,6 +257,7 @@ Session::Refinement Session::refine(const PictureOptions& options, bool finish) 
     const Stopwatch watch(timing_.draw);
     if (done.began) {
         refined_.reset();
+        tiled_ = {};
         // What is refined is shown as it is drawn: a window has no lens.
         lens_ = {};
         lens_key_.clear();
@@ -327,11 +342,16 @@ std::map<std::string, Image> Session::render_layers(const std::vector<std::strin
     render::Renderer& renderer = this->renderer();
     const gl::ContextScope scope(*context_);
     refined_.reset();
-    renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
+    std::vector<Image> drawn;
+    if (const TiledPicture picture = tiled(prepared); picture.is_whole()) {
+        renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
+        for (const render::Layer layer : layers) drawn.push_back(renderer.read_layer(layer));
+    } else {
+        drawn = picture.draw_layers(renderer, layers);
+    }
     latch_from(prepared);
     std::map<std::string, Image> images;
-    for (size_t i = 0; i < names.size(); ++i)
-        images[names[i]] = pick_nearest(renderer.read_layer(layers[i]), lens_);
+    for (size_t i = 0; i < names.size(); ++i) images[names[i]] = pick_nearest(drawn[i], lens_);
     return images;
 }
 
@@ -366,6 +386,7 @@ render::SurfaceFrame Session::draw_surfaces(const PictureOptions& options, bool 
     const gl::ContextScope scope(*context_);
     const Stopwatch watch(timing_.draw);
     refined_.reset();
+    tiled_ = {};
     if (picture && !moment)
         renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
     else

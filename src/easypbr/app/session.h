@@ -11,6 +11,7 @@
 #include "easypbr/app/annotation.h"
 #include "easypbr/app/lens.h"
 #include "easypbr/app/picking.h"
+#include "easypbr/app/tiled_picture.h"
 #include "easypbr/app/view_point.h"
 #include "easypbr/core/image.h"
 #include "easypbr/gl/context.h"
@@ -59,8 +60,9 @@ class Session {
     /// Takes settings over as they are, latched values included.
     void replace_settings(const Settings& settings);
 
-    /// Draws the scene and returns RGBA, row 0 on top. What was automatic is latched in settings().
-    /// Throws ArgumentError, FileError (images that the settings name), ContextError.
+    /// Draws the scene and returns RGBA, row 0 on top; in tiles where the picture is too large to be drawn at
+    /// once. What was automatic is latched in settings(). Throws ArgumentError (among others when the picture
+    /// has more than max_picture_pixels), FileError (images that the settings name), ContextError.
     Image render(const PictureOptions& options = {});
 
     /// The same scene, camera and size in exact values through the pixels' centres (no anti-aliasing).
@@ -156,6 +158,9 @@ class Session {
     /// What the GL context is; makes it when there is none yet.
     const gl::ContextInfo& context_info();
 
+    /// From which size on render() and render_layers() draw in tiles; without this what the context can draw.
+    void limit_tiles(const render::TileLimits& limits) { tile_limits_ = limits; }
+
     const Timing& timing() const { return timing_; }
 
     /// See render::Renderer: false leaves all triangles to the driver.
@@ -183,6 +188,7 @@ class Session {
     SceneSnapshot snapshot();
     /// The renderer's picture with its annotation.
     Image read_annotated();
+    TiledPicture tiled(const Prepared& prepared) const;
     /// What the last picture is annotated with.
     void annotate(const Prepared& prepared);
     /// Keeps what was inferred, unless there was nothing to infer it from.
@@ -215,6 +221,9 @@ class Session {
 
     Annotation annotation_;  ///< of the picture that was drawn last
     AnnotationSettings annotation_settings_;
+
+    std::optional<render::TileLimits> tile_limits_;
+    Image tiled_;  ///< the picture that was drawn last, where it was drawn in tiles
 
     std::unique_ptr<gl::Context> context_;
     std::unique_ptr<render::Renderer> renderer_;

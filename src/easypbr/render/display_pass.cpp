@@ -33,7 +33,7 @@ void DisplayPass::draw(const Frame& frame, const GBuffer& targets) {
     program.use();
     program.set("u_size", Vec2(frame.size.cast<float>()));
     program.set("u_eye_dome",
-                Vec2(eye_dome.strength, std::max(1.0f, eye_dome.radius * float(frame.size.y()) / 1080)));
+                Vec2(eye_dome.strength, std::max(1.0f, eye_dome.radius * float(frame.picture_size.y()) / 1080)));
     program.set("u_depth_scale", Vec2(float(doublings_per_depth(frame.camera)), 0));
     const gl::Texture* sources[] = {&targets.albedo, &targets.material, &targets.depth};
     const char* samplers[] = {"u_albedo", "u_material", "u_depth_target"};

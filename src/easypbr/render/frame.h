@@ -42,6 +42,9 @@ struct LitPicture {
     const gl::Texture* glow = nullptr;      ///< of BloomPass, where there is one
 };
 
+/// A picture that is drawn whole sees all of itself.
+inline constexpr double unlimited_reach = 1e9;
+
 /// One frame of an accumulated picture.
 struct Frame {
     const SceneSnapshot* scene = nullptr;
@@ -50,6 +53,7 @@ struct Frame {
     Vec2i size{0, 0};
     Vec2i picture_size{0, 0};  ///< what the camera sees: all of it, or `size` pixels of it from `origin` on
     Vec2i origin{0, 0};
+    double reach = unlimited_reach;  ///< screen-space effects look no farther than this, in pixels
     const Motion* motion = nullptr;  ///< the frames of a still are of different times, where something moved
     double time = 1;                 ///< of this frame, see shutter_time()
     bool through_lens = false;       ///< the frames of a still look through different places of the lens
@@ -85,6 +89,9 @@ double shutter_time(int index, int count, double shutter);
 /// Moves the camera to its place on the lens, and fills in the jittered projection and, from the bounds of
 /// all geometry, the covered rectangle; the whole picture where splats or lines reach beyond the vertices.
 void prepare_frame(Frame& frame, const Box3d& bounds, bool reaches_beyond);
+
+/// First pixel of the frame, for shaders/common_noise.glsl: patterns lie on the picture, not on its tiles.
+void set_noise_uniforms(const gl::Program& program, const Frame& frame);
 
 /// Sets the uniforms of shaders/common_camera.glsl.
 void set_camera_uniforms(const gl::Program& program, const Frame& frame);

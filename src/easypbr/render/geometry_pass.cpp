@@ -83,6 +83,7 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     program.set("u_first_face", item.part.first_face);
     program.set("u_object_id", int(item.object - frame.scene->objects.data()) + 1);
     program.set("u_sample_index", float(frame.sample_index));
+    set_noise_uniforms(program, frame);
     const unsigned free_unit = set_material(program, frame, item, textures_);
     if (frame.peel) set_peel_uniforms(program, *frame.peel, free_unit);
 

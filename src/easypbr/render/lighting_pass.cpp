@@ -253,6 +253,7 @@ void LightingPass::set_lights(const gl::Program& program, const Frame& frame, co
     program.set("u_cube_lights", int(block.lights.size()));
     program.set("u_shadow_resolution", float(block.maps->width()));
     program.set("u_sample_index", float(frame.sample_index));
+    set_noise_uniforms(program, frame);
 }
 
 }  // namespace easypbr::render

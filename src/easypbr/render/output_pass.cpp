@@ -53,13 +53,17 @@ Vec4 background_color(const Frame& frame) {
     return {c.x(), c.y(), c.z(), 1};
 }
 
-/// Scale and offset of texture coordinates with which an image covers the picture, centred, nothing
-/// distorted.
-Vec4 cover(const gl::Texture& image, Vec2i size) {
-    const float picture = float(size.x()) / float(size.y()),
+/// Scale and offset of the frame's texture coordinates with which an image covers the picture, centred,
+/// nothing distorted.
+Vec4 cover(const gl::Texture& image, const Frame& frame) {
+    const Vec2 whole = frame.picture_size.cast<float>();
+    const float picture = whole.x() / whole.y(),
                 own = float(image.width()) / float(image.height());
     const Vec2 scale = picture > own ? Vec2(1, own / picture) : Vec2(picture / own, 1);
-    return {scale.x(), scale.y(), (1 - scale.x()) / 2, (1 - scale.y()) / 2};
+    const Vec2 part = scale.cwiseProduct(frame.size.cast<float>().cwiseQuotient(whole));
+    const Vec2 first = (Vec2(1, 1) - scale) / 2 +
+                       scale.cwiseProduct(frame.origin.cast<float>().cwiseQuotient(whole));
+    return {part.x(), part.y(), first.x(), first.y()};
 }
 
 constexpr int overlay_unit = 2, glow_unit = 3;
@@ -170,7 +174,7 @@ void OutputPass::finish(const Frame& frame, const LitPicture& lit, const GBuffer
         bind(lit, program, frame);
     if (background_image) {
         program.set("u_background_image", 1);
-        program.set("u_background_uv", cover(*background_image, frame.size));
+        program.set("u_background_uv", cover(*background_image, frame));
         background_image->bind(1);
     }
     draw_screen_triangle();

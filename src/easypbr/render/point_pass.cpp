@@ -55,6 +55,7 @@ void PointPass::draw_items(const Frame& frame, const std::vector<DrawItem>& item
         program.set("u_material", Vec4(m.metallic, m.roughness, 1, code_of(item.kind)));
         program.set("u_object_id", int(item.object - frame.scene->objects.data()) + 1);
         program.set("u_sample_index", float(frame.sample_index));
+        set_noise_uniforms(program, frame);
         program.set("u_write", write ? 1.0f : 0.0f);
         buffers.array.bind();
         glDrawArrays(GL_POINTS, 0, int(item.mesh().V.rows()));

@@ -27,7 +27,7 @@ PointSplats splats_of(const DrawItem& item, const Frame& frame, double spacing) 
                                                                     : 0.0;
     splats.world_pixels = float(world * pixels_per_unit);
     const double least = spacing > 0 ? least_pixels_at_1080 : lonely_pixels_at_1080;
-    splats.least_pixels = style.point_size ? 1 : float(std::max(1.0, least * frame.size.y() / 1080));
+    splats.least_pixels = style.point_size ? 1 : float(std::max(1.0, least * frame.picture_size.y() / 1080));
     splats.pixels = style.point_size && world == 0 ? *style.point_size : splats.least_pixels;
     return splats;
 }

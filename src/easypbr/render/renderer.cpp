@@ -105,7 +105,10 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
     Frame& frame = picture->frame;
     frame.scene = &picture->drawable.scene;
     frame.resolved = &picture->resolved;
-    frame.size = frame.picture_size = options.size;
+    frame.size = options.size;
+    frame.picture_size = options.picture_size.isZero() ? options.size : options.picture_size;
+    frame.origin = options.origin;
+    frame.reach = options.reach;
     frame.sample_count = options.samples;
     const bool still = options.samples > 1 && !options.layers;
     frame.motion = still ? options.motion.get() : nullptr;

@@ -50,6 +50,9 @@ struct DrawOptions {
     Vec2i size{800, 600};
     int samples = 1;
     Encoding encoding = Encoding::srgb8;
+    Vec2i picture_size{0, 0};  ///< of a tile: of the whole picture that the camera sees; else 0
+    Vec2i origin{0, 0};        ///< of a tile: its first pixel in the picture, multiples of tile_grid (tiles.h)
+    double reach = unlimited_reach;  ///< of a tile: see Frame
     bool ids = false;       ///< fill the id target too
     bool layers = false;    ///< read_layer() will be called: blended surfaces stand in it where they are half
                             ///< opaque or more, and there is no picture
@@ -96,7 +99,8 @@ class Renderer {
     /// RGBA, row 0 on top: u8, u16 or f32 by the encoding.
     Image read_picture() const;
     /// The first `width` x `height` pixels only: forces the picture to be finished.
-    Image read_picture(int width, int height) const;
+    Image read_picture(int width, int height) const { return read_picture({0, 0, width, height}); }
+    Image read_picture(const PixelRect& area) const;
     Image read_layer(Layer layer) const;
     /// What the pixels' centres see; of a picture drawn with `surfaces`.
     SurfaceFrame read_surfaces() const;

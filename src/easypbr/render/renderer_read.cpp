@@ -45,13 +45,13 @@ Image Renderer::read_picture() const {
     return read_picture(output_.picture().width(), output_.picture().height());
 }
 
-Image Renderer::read_picture(int width, int height) const {
+Image Renderer::read_picture(const PixelRect& area) const {
     const gl::Format format = output_.format();
     const PixelType type = format == gl::Format::rgba8    ? PixelType::u8
                            : format == gl::Format::rgba16 ? PixelType::u16
                                                           : PixelType::f32;
-    Image image(width, height, 4, type);
-    output_.picture().read(0, format, 0, 0, width, height, image.bytes());
+    Image image(area.width, area.height, 4, type);
+    output_.picture().read(0, format, area.x, area.y, area.width, area.height, image.bytes());
     return image;
 }
 

@@ -1,0 +1,73 @@
+#include "easypbr/app/tiled_picture.h"
+
+#include <algorithm>
+
+namespace easypbr::app {
+namespace {
+
+using render::PixelRect;
+using render::Tile;
+
+/// Puts a rectangle of an image where the tile's inner part lies in the picture, which is made with the
+/// first.
+void place(const Image& from, Vec2i corner, const Tile& tile, Vec2i size, Image& picture) {
+    if (picture.empty()) picture = Image(size.x(), size.y(), from.channels(), from.type());
+    const size_t pixel = size_t(from.channels()) * size_of(from.type());
+    for (int y = 0; y < tile.inner.height; ++y) {
+        const std::byte* row = from.bytes().data() + size_t(corner.y() + y) * from.row_bytes();
+        std::copy_n(row + size_t(corner.x()) * pixel, size_t(tile.inner.width) * pixel,
+                    picture.bytes().data() + size_t(tile.inner.y + y) * picture.row_bytes() +
+                        size_t(tile.inner.x) * pixel);
+    }
+}
+
+/// Where the inner part lies in what is drawn.
+Vec2i corner_of(const Tile& tile) {
+    return {tile.inner.x - tile.outer.x, tile.inner.y - tile.outer.y};
+}
+
+}  // namespace
+
+TiledPicture::TiledPicture(const SceneSnapshot& scene_, const ResolvedSettings& resolved_,
+                           const render::DrawOptions& options_, const render::SettingsImages& images_,
+                           const render::TileLimits& limits)
+    : scene(scene_),
+      resolved(resolved_),
+      options(options_),
+      images(images_),
+      guard(render::guard_of(scene_, resolved_, options_.size)),
+      tiles(render::tiles_of(options_.size, guard.pixels, limits)) {}
+
+void TiledPicture::draw_tile(render::Renderer& renderer, const Tile& tile) const {
+    render::DrawOptions part = options;
+    part.picture_size = options.size;
+    part.size = {tile.outer.width, tile.outer.height};
+    part.origin = {tile.outer.x, tile.outer.y};
+    part.reach = guard.reach;
+    renderer.draw(scene, resolved, part, images);
+}
+
+Image TiledPicture::draw(render::Renderer& renderer) const {
+    Image picture;
+    for (const Tile& tile : tiles) {
+        draw_tile(renderer, tile);
+        const Vec2i corner = corner_of(tile);
+        const Image drawn =
+            renderer.read_picture({corner.x(), corner.y(), tile.inner.width, tile.inner.height});
+        place(drawn, {0, 0}, tile, options.size, picture);
+    }
+    return picture;
+}
+
+std::vector<Image> TiledPicture::draw_layers(render::Renderer& renderer,
+                                             const std::vector<render::Layer>& layers) const {
+    std::vector<Image> pictures(layers.size());
+    for (const Tile& tile : tiles) {
+        draw_tile(renderer, tile);
+        for (size_t i = 0; i < layers.size(); ++i)
+            place(renderer.read_layer(layers[i]), corner_of(tile), tile, options.size, pictures[i]);
+    }
+    return pictures;
+}
+
+}  // namespace easypbr::app
