@@ -47,6 +47,33 @@ TEST(Facing, EveryComponentCounts) {
     EXPECT_TRUE(is_closed_outward(points(V), faces(F)));
 }
 
+/// Each face with corners of its own, as creases have them.
+Eigen::MatrixXf unshared(const Eigen::MatrixXi& F) {
+    Eigen::MatrixXf V(F.size(), 3);
+    for (int i = 0; i < F.size(); ++i) V.row(i) = corners.row(F(i / 3, i % 3));
+    return V;
+}
+
+TEST(Facing, VerticesAtOnePlaceAreOne) {
+    Eigen::MatrixXi F(4, 3);
+    for (int i = 0; i < F.size(); ++i) F(i / 3, i % 3) = i;
+    Eigen::MatrixXf V = unshared(outward);
+    EXPECT_TRUE(is_closed_outward(points(V), faces(F)));
+    EXPECT_FALSE(is_closed_outward(points(V), faces(F.topRows(3))));
+    EXPECT_FALSE(is_closed_outward(points(unshared(outward.rowwise().reverse())), faces(F)));
+    // A zero with a sign is the same place.
+    V = V.unaryExpr([](float x) { return x == 0 ? -0.0f : x; });
+    V(0, 0) = 0.0f;
+    EXPECT_TRUE(is_closed_outward(points(V), faces(F)));
+    V(0, 0) = 0.01f;
+    EXPECT_FALSE(is_closed_outward(points(V), faces(F)));
+    // A ball whose texture coordinates have a seam, a box with a normal for each face.
+    const Mesh ball = make_sphere(1, 16), box = make_box(Vec3(1, 1, 1));
+    EXPECT_GT(ball.V().rows(), ball.F().rows() / 2 + 2);  // Euler's formula for what is closed by its indices
+    EXPECT_TRUE(is_closed_outward(ball.V(), ball.F()));
+    EXPECT_TRUE(is_closed_outward(box.V(), box.F()));
+}
+
 TEST(Facing, NormalsAgree) {
     const Mesh sphere = make_sphere(1, 16);
     const Array3f V = sphere.V(), N = sphere.N();

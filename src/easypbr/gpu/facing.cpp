@@ -1,6 +1,7 @@
 #include "easypbr/gpu/facing.h"
 
 #include <atomic>
+#include <bit>
 #include <numeric>
 #include <vector>
 
@@ -12,31 +13,56 @@ namespace {
 
 constexpr size_t face_grain = 1 << 15;
 
-/// A random-looking number for an undirected edge (splitmix64's finaliser).
-uint64_t edge_hash(uint32_t a, uint32_t b) {
-    uint64_t x = (uint64_t(a) << 32 | b) + 0x9e3779b97f4a7c15ull;
+/// A random-looking number for a number (splitmix64's finaliser).
+uint64_t scattered(uint64_t x) {
+    x += 0x9e3779b97f4a7c15ull;
     x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
     x = (x ^ (x >> 27)) * 0x94d049bb133111ebull;
     return x ^ (x >> 31);
 }
 
-uint64_t directed_edge(int32_t a, int32_t b) {
-    return a < b ? edge_hash(uint32_t(a), uint32_t(b)) : -edge_hash(uint32_t(b), uint32_t(a));
+/// The same for an undirected edge, negated for one of its directions.
+uint64_t directed_edge(uint64_t a, uint64_t b) {
+    return a < b ? scattered(scattered(a) + b) : -scattered(scattered(b) + a);
 }
 
 /// Every edge is run through as often in one direction as in the other. The sum of random numbers, negated
-/// for one direction, is zero then, and otherwise with a probability of 2^-64 only.
-bool has_no_boundary(const Array3i& F) {
+/// for one direction, is zero then, and otherwise with a probability of 2^-64 only. `key` names a vertex.
+template <class Key>
+bool has_no_boundary(const Array3i& F, const Key& key) {
     std::atomic<uint64_t> total{0};
     parallel_chunks(size_t(F.rows()), face_grain, [&](size_t begin, size_t end) {
         uint64_t sum = 0;
         for (size_t i = begin; i < end; ++i) {
             const int32_t* f = F.data() + 3 * i;
-            sum += directed_edge(f[0], f[1]) + directed_edge(f[1], f[2]) + directed_edge(f[2], f[0]);
+            const uint64_t a = key(f[0]), b = key(f[1]), c = key(f[2]);
+            sum += directed_edge(a, b) + directed_edge(b, c) + directed_edge(c, a);
         }
         total += sum;
     });
     return total == 0;
+}
+
+/// The same for all vertices at one place.
+uint64_t place_key(const Array3f& V, int32_t vertex) {
+    const float* p = V.data() + 3 * size_t(vertex);
+    uint64_t key = 0;
+    for (int k = 0; k < 3; ++k) key = scattered(key + std::bit_cast<uint32_t>(p[k] + 0.0f));  // -0 is 0.
+    return key;
+}
+
+/// For each vertex the first at its place.
+std::vector<int32_t> first_at_place(const Array3f& V) {
+    std::vector<KeyedIndex> sorted(size_t(V.rows()));
+    parallel_for(sorted.size(), 1 << 14, [&](size_t i) {
+        sorted[i] = {place_key(V, int32_t(i)), uint32_t(i)};
+    });
+    parallel_sort(sorted);
+    std::vector<int32_t> first(sorted.size());
+    for (size_t i = 0; i < sorted.size(); ++i)
+        first[sorted[i].index] = i > 0 && sorted[i].key == sorted[i - 1].key ? first[sorted[i - 1].index]
+                                                                             : int32_t(sorted[i].index);
+    return first;
 }
 
 int32_t find_root(std::vector<int32_t>& parent, int32_t i) {
@@ -47,9 +73,14 @@ int32_t find_root(std::vector<int32_t>& parent, int32_t i) {
 }  // namespace
 
 bool is_closed_outward(const Array3f& V, const Array3i& F) {
-    if (F.rows() == 0 || !has_no_boundary(F)) return false;
+    if (F.rows() == 0) return false;
     std::vector<int32_t> parent(size_t(V.rows()));
-    std::iota(parent.begin(), parent.end(), 0);
+    if (has_no_boundary(F, [](int32_t v) { return uint64_t(v); }))
+        std::iota(parent.begin(), parent.end(), 0);
+    else if (has_no_boundary(F, [&](int32_t v) { return place_key(V, v); }))
+        parent = first_at_place(V);  // Creases and seams have several vertices at one place.
+    else
+        return false;
     for (Eigen::Index i = 0; i < F.rows(); ++i)
         for (const int k : {1, 2}) {
             const int32_t a = find_root(parent, F(i, 0)), b = find_root(parent, F(i, k));

@@ -6,7 +6,8 @@
 namespace easypbr::gpu {
 
 /// True when every connected component is closed and its faces look outward: then back faces are never seen
-/// from outside, and leaving them out changes no picture. Constant memory per vertex, one pass over the faces
+/// from outside, and leaving them out changes no picture. Vertices at one place count as one, so that creases
+/// and seams of texture coordinates do not open a mesh. Constant memory per vertex, two passes over the faces
 /// for an open mesh.
 bool is_closed_outward(const Array3f& V, const Array3i& F);
 

@@ -9,8 +9,7 @@ namespace easypbr::render {
 struct MeshKnowledge {
     Array3f N;
     bool normals_agree = true;    ///< the winding tells the normals' side
-    bool closed_outward = false;  ///< back faces need not be drawn; found out when a mesh is drawn again
-    int frames = 0;
+    bool closed_outward = false;  ///< back faces need not be drawn
     bool used = false;
 };
 

@@ -203,6 +203,7 @@ void Renderer::evict_unused() {
     meshes_.evict_unused();
     textures_.evict_unused();
     software_geometry_.evict_unused();
+    closed_meshes_.evict_unused();
     point_buffers_.evict_unused();
     surfel_buffers_.evict_unused();
     spacings_.evict_unused();

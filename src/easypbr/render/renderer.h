@@ -164,12 +164,13 @@ class Renderer {
     GeometryPass geometry_{meshes_, textures_};
     SpacingCache spacings_;
     DrawableCache drawables_{spacings_};
-    SoftwareGeometryPass software_geometry_{spacings_};
+    gpu::ClosedMeshes closed_meshes_;
+    SoftwareGeometryPass software_geometry_{spacings_, closed_meshes_};
     gpu::PointCache point_buffers_;
     gpu::SurfelCache surfel_buffers_;
     PointPass points_{spacings_, point_buffers_};
     SurfelPass surfels_{spacings_, surfel_buffers_};
-    ShadowMaps shadow_maps_{meshes_, textures_, spacings_, point_buffers_, surfel_buffers_};
+    ShadowMaps shadow_maps_{meshes_, textures_, closed_meshes_, spacings_, point_buffers_, surfel_buffers_};
     AmbientOcclusionPass ambient_occlusion_;
     LightingPass lighting_;
     GroundPass ground_;

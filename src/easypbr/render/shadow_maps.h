@@ -17,9 +17,9 @@ namespace easypbr::render {
 class ShadowMaps {
   public:
     /// The caches are shared with other passes, must outlive this one, and are emptied by their owner.
-    ShadowMaps(gpu::MeshCache& meshes, gpu::TextureCache& textures, SpacingCache& spacings,
-               gpu::PointCache& points, gpu::SurfelCache& surfels)
-        : splats_(spacings, points, surfels), pass_(meshes, textures, splats_) {}
+    ShadowMaps(gpu::MeshCache& meshes, gpu::TextureCache& textures, const gpu::ClosedMeshes& closed,
+               SpacingCache& spacings, gpu::PointCache& points, gpu::SurfelCache& surfels)
+        : splats_(spacings, points, surfels), pass_(meshes, textures, closed, splats_) {}
 
     /// Takes note of a frame's lights and of what casts; `bounds` are those of its vertices. `casters` must
     /// live until its last block.

@@ -72,8 +72,12 @@ std::vector<ShadowPass::Items> ShadowPass::draw_native(const ShadowView& view,
         const MeshData& mesh = items.front().mesh();
         const Mat4 clip_from_mesh =
             (view.clip_from_world() * items.front().object->T_world_mesh.matrix()).cast<float>();
+        // What is closed casts with what faces the light: behind each of its back faces lies nothing nearer.
+        // A light within it is not drawn here, for some of its vertices are behind it.
+        const bool both_sides = !closed_.is_known(mesh),
+                   mirrored = items.front().object->T_world_mesh.linear().determinant() < 0;
         if (!suits_native(items) ||
-            !visibility_.draw(mesh.V, mesh.F, 0, int(mesh.F.rows()), clip_from_mesh, 0, true, false))
+            !visibility_.draw(mesh.V, mesh.F, 0, int(mesh.F.rows()), clip_from_mesh, 0, both_sides, mirrored))
             left.push_back(items);
     }
     for (const DrawItem& item : clouds)

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "easypbr/gl/texture.h"
+#include "easypbr/gpu/closed_meshes.h"
 #include "easypbr/gpu/mesh_buffers.h"
 #include "easypbr/gpu/texture_cache.h"
 #include "easypbr/render/draw_list.h"
@@ -21,8 +22,9 @@ inline constexpr float no_shadow_depth = -1e30f;
 class ShadowPass {
   public:
     /// The caches are shared with other passes and must outlive this one.
-    ShadowPass(gpu::MeshCache& meshes, gpu::TextureCache& textures, SplatShadows& splats)
-        : meshes_(meshes), textures_(textures), splats_(splats) {}
+    ShadowPass(gpu::MeshCache& meshes, gpu::TextureCache& textures, const gpu::ClosedMeshes& closed,
+               SplatShadows& splats)
+        : meshes_(meshes), textures_(textures), closed_(closed), splats_(splats) {}
 
     /// Fills one layer. Surfaces cast from both sides, masked ones with their holes, blended ones where
     /// frame `sample_index` of a still draws them.
@@ -45,6 +47,7 @@ class ShadowPass {
 
     gpu::MeshCache& meshes_;
     gpu::TextureCache& textures_;
+    const gpu::ClosedMeshes& closed_;
     SplatShadows& splats_;
     ProgramVariants programs_{"shadow_depth.vert", "shadow_depth.frag"};
     bool native_ = true;

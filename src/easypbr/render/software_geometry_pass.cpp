@@ -57,9 +57,7 @@ const MeshKnowledge& SoftwareGeometryPass::knowledge_of(const MeshData& mesh) {
         known.N = mesh.N.empty() ? smooth_normals(mesh) : mesh.N;
         known.normals_agree = mesh.N.empty() || gpu::normals_agree_with_winding(mesh.V, known.N, mesh.F);
     }
-    // A serial pass over the faces that a single picture would not earn back: a still of one sample goes
-    // without.
-    if (++known.frames == 2) known.closed_outward = gpu::is_closed_outward(mesh.V, mesh.F);
+    known.closed_outward = closed_.draw(mesh);
     return known;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <tuple>
 
+#include "easypbr/gpu/closed_meshes.h"
 #include "easypbr/render/draw_list.h"
 #include "easypbr/render/mesh_surface.h"
 #include "easypbr/render/point_surface.h"
@@ -16,8 +17,9 @@ namespace easypbr::render {
 /// nearest triangle or point per pixel first, then the surface of each pixel once.
 class SoftwareGeometryPass {
   public:
-    /// The cache is shared with other passes, must outlive this one, and is emptied by its owner.
-    explicit SoftwareGeometryPass(SpacingCache& spacings) : spacings_(spacings) {}
+    /// The caches are shared with other passes, must outlive this one, and are emptied by their owner.
+    SoftwareGeometryPass(SpacingCache& spacings, gpu::ClosedMeshes& closed)
+        : spacings_(spacings), closed_(closed) {}
 
     /// Whether draw() can draw these meshes and points: plain ones, without textures, emission or alpha.
     static bool handles(const DrawList& list);
@@ -46,6 +48,7 @@ class SoftwareGeometryPass {
 
     std::map<std::tuple<uint64_t, uint64_t, uint64_t>, MeshKnowledge> knowledge_;
     SpacingCache& spacings_;
+    gpu::ClosedMeshes& closed_;
     VisibilityBuffer visibility_;
     NativePixels pixels_;
     SurfaceComposite composite_;

@@ -14,7 +14,7 @@ namespace {
 constexpr int subpixel_bits = 8, subpixel = 1 << subpixel_bits, half_pixel = subpixel / 2;
 /// Pixels beyond which coordinates are not drawn here; edge functions stay far below 63 bits.
 constexpr float guard_band = 1 << 15;
-constexpr size_t vertex_grain = 1 << 14, face_grain = 1 << 13, prefetch_distance = 24;
+constexpr size_t vertex_grain = 1 << 12, face_grain = 1 << 11, prefetch_distance = 24;
 
 /// First and last pixel whose centre lies between two sub-pixel coordinates.
 int first_pixel(int32_t low) {
