@@ -1,10 +1,11 @@
 #!/usr/bin/env python3
 """Images per second of ground truth, end to end with PNG files, beside pyrender's colour and depth of the same scene.
 
-usage: bench/dataset.py [--count N] [--pyrender PYTHON]      PYTHON: an interpreter that has pyrender
+usage: bench/dataset.py [--count N] [--pyrender PYTHON] [--workers local|ray]   PYTHON: an interpreter that has pyrender
 
 Ten balls of 20,000 faces, 640 x 480, one sample: colour, depth, normals, instance ids, boxes; pyrender draws colour and
-depth and writes nothing.
+depth and writes nothing. With --workers instead: the built-in drones by one and by two workers of one core each, from a
+worker's first frame to the last frame of all.
 """
 import argparse
 import pathlib
@@ -15,6 +16,8 @@ import time
 import numpy as np
 
 from easypbr import Camera, Scene, Viewer, _easypbr, shapes
+from easypbr.dataset import DatasetSpec, generate
+from easypbr.dataset.folder import keep_memory
 
 PEER = """
 import os, sys, time
@@ -37,11 +40,28 @@ print(len(data["poses"]) / (time.time() - start))
 """
 
 
+def rate(engine: str, workers: int, count: int) -> float:
+    """Images per second without the time that workers take to start."""
+    spec = DatasetSpec.demo()
+    spec.count, spec.image.samples, spec.background.skies = count, 1, 1
+    with tempfile.TemporaryDirectory() as folder:
+        generate(spec, folder, workers, engine=engine, threads=1)
+        ends = sorted(path.stat().st_mtime for path in pathlib.Path(folder, "records").iterdir())
+    # The first frame of each worker holds the making of its context and sky.
+    return (len(ends) - workers) / (ends[-1] - ends[workers - 1])
+
+
 def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--count", type=int, default=24)
     parser.add_argument("--pyrender")
+    parser.add_argument("--workers", choices=("local", "ray"))
     arguments = parser.parse_args()
+    if arguments.workers:
+        one, two = (rate(arguments.workers, workers, arguments.count) for workers in (1, 2))
+        print(f"{arguments.workers}: one worker {one:.2f}, two {two:.2f} images/s: {two / one:.2f} times as many")
+        return
+    keep_memory()  # as the workers of `easypbr dataset` do
     random = np.random.default_rng(0)
     ball = shapes.sphere(0.3, 144)
     poses = np.tile(np.eye(4), (arguments.count, 10, 1, 1))

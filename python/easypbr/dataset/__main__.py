@@ -18,6 +18,9 @@ def main(arguments=None) -> int:
     parser.add_argument("--count", type=int, help="number of pictures")
     parser.add_argument("--seed", type=int, help="another seed gives other pictures")
     parser.add_argument("--workers", type=int, help="processes that draw")
+    parser.add_argument("--threads", type=int, help="cores of each worker")
+    parser.add_argument("--engine", choices=("local", "ray"), default="local", help="who runs the workers")
+    parser.add_argument("--address", help="of a cluster of Ray: HOST:PORT, or auto")
     parser.add_argument("--writers", help="formats, separated by commas")
     parser.add_argument("--on-error", choices=("stop", "skip"), help="of a mesh that cannot be read")
     parser.add_argument("-q", "--quiet", action="store_true", help="no progress")
@@ -33,8 +36,9 @@ def main(arguments=None) -> int:
                 setattr(spec, name, getattr(options, name))
         if options.writers:
             spec.writers = tuple(options.writers.split(","))
-        statistics = generate(spec, options.output, options.workers, options.quiet)
-    except (Error, OSError) as error:
+        engine = {"engine": options.engine, "address": options.address, "threads": options.threads}
+        statistics = generate(spec, options.output, options.workers, options.quiet, **engine)
+    except (Error, OSError, ImportError) as error:
         print(f"easypbr: error: {error}", file=sys.stderr)
         return 1
     for path in statistics["skipped"]:

@@ -1,7 +1,6 @@
 """Making a data set: frames by worker processes, resumable, the same bytes however often it is killed."""
 
 import concurrent.futures
-import dataclasses
 import json
 import multiprocessing
 import os
@@ -10,84 +9,68 @@ import time
 from pathlib import Path
 
 from .. import _easypbr
-from ..errors import ArgumentError, FileError
-from .frames import Frame, FrameMaker
+from ..errors import ArgumentError
+from .folder import FolderWriter, claim, keep_memory
+from .frames import FrameMaker
 from .report import contact_sheet, statistics_page
 from .spec import DatasetSpec
-from .writers import WRITERS, Writer
 
 #: How often a frame is given to another worker after one has died.
 _RETRIES = 3
 
 
-class FolderWriter:
-    """All files of a set. A frame's record is written last: a frame without it does not count."""
-
-    def __init__(self, spec: DatasetSpec, folder: Path, classes: list[str]):
-        self.folder = folder
-        self.base = Writer(spec.image.format, classes)
-        self.writers = [WRITERS[name](spec.image.format, classes) for name in spec.writers]
-
-    def record_path(self, index: int) -> Path:
-        return self.folder / "records" / f"{index:06d}.json"
-
-    def write_frame(self, frame: Frame) -> None:
-        picture = self.folder / self.base.picture(frame.index)
-        if picture.suffix == ".png":
-            self.put(self.base.picture(frame.index), _easypbr.encode_png(frame.picture))
-        else:
-            picture.parent.mkdir(parents=True, exist_ok=True)
-            _easypbr.save_image(frame.picture, picture)  # writes beside and renames
-        for writer in self.writers:
-            for name, data in writer.frame(frame).items():
-                self.put(name, data)
-        self.put(f"records/{frame.index:06d}.json", (json.dumps(frame.record()) + "\n").encode())
-
-    def put(self, name: str, data: bytes) -> None:
-        """The whole file or none: written under another name, then renamed."""
-        path = self.folder / name
-        temporary = self.folder / "unfinished" / f"{os.getpid()}-{path.name}"
-        try:
-            path.parent.mkdir(parents=True, exist_ok=True)
-            temporary.parent.mkdir(exist_ok=True)
-            temporary.write_bytes(data)
-            os.replace(temporary, path)
-        except OSError as error:
-            temporary.unlink(missing_ok=True)
-            raise FileError(f"cannot write {path}: {error.strerror}: free some space or choose another folder, "
-                            "then start again: what is finished is kept") from None
-
-
-def generate(spec: DatasetSpec, folder, workers: int | None = None, quiet: bool = True) -> dict:
+def generate(
+    spec: DatasetSpec,
+    folder,
+    workers: int | None = None,
+    quiet: bool = True,
+    engine: str = "local",
+    address: str | None = None,
+    threads: int | None = None,
+) -> dict:
     """Makes the data set in a folder, or what is missing of it, and returns its statistics. Worker processes are started
-    for more than one worker, so scripts need the usual `if __name__ == "__main__":`. Raises ArgumentError when the folder
-    holds another set, and what drawing and writing raise."""
+    for more than one worker, so scripts need the usual `if __name__ == "__main__":`. `engine`: "local", or "ray": frames
+    are tasks of Ray (pip install 'easypbr[ray]'), on this machine or on the cluster at `address`, whose machines share
+    the folder. `threads`: cores of each worker. Raises ArgumentError when the folder holds another set, ContextError when
+    no cluster answers, and what drawing and writing raise."""
     spec.check()
-    folder = Path(folder)
-    if workers is not None and workers < 1:
-        raise ArgumentError(f"dataset: workers: expected 1 or more, got {workers}")
-    _claim(spec, folder)
+    folder = Path(folder).absolute()
+    _check_engine(engine, address, workers, threads)
+    if engine == "ray":
+        from . import cluster  # Ray is looked for only when it is asked for, and before anything is written.
+
+        cluster.find_ray()
+    claim(spec, folder)
     for left in (folder / "unfinished").glob("*") if (folder / "unfinished").exists() else ():
         left.unlink()
     missing = [i for i in range(spec.count) if not (folder / "records" / f"{i:06d}.json").exists()]
     progress = _Progress(spec.count, spec.count - len(missing), quiet)
-    workers = min(workers or max(1, len(os.sched_getaffinity(0)) // 2), max(1, len(missing)))
-    skipped = _make_here(spec, folder, missing, progress) if workers == 1 else _make_apart(spec, folder, missing, workers, progress)
+    if not missing:
+        skipped = set()
+    elif engine == "ray":
+        skipped = cluster.make(spec, folder, missing, workers, threads or 1, address, progress)
+    else:
+        workers = min(workers or max(1, len(os.sched_getaffinity(0)) // (threads or 2)), len(missing))
+        if workers == 1 and threads is None:
+            skipped = _make_here(spec, folder, missing, progress)
+        else:
+            skipped = _make_apart(spec, folder, missing, workers, threads, progress)
     progress.end()
     statistics = _finish(spec, folder)
     statistics["skipped"] = sorted(skipped)
     return statistics
 
 
-def _claim(spec: DatasetSpec, folder: Path) -> None:
-    """Writes the spec into the folder, or compares it with the one that is there."""
-    text = json.dumps(dataclasses.asdict(spec), indent=1) + "\n"
-    path = folder / "spec.json"
-    if path.exists():
-        if path.read_text() != text:
-            raise ArgumentError(f"dataset: {folder} holds a set of another spec or count: choose another folder, or remove it")
-        return
-    FolderWriter(spec, folder, []).put("spec.json", text.encode())
+def _check_engine(engine: str, address: str | None, workers: int | None, threads: int | None) -> None:
+    if engine not in ("local", "ray"):
+        raise ArgumentError(f"dataset: engine: expected local or ray, got '{engine}'")
+    for name, value in (("workers", workers), ("threads", threads)):
+        if value is not None and value < 1:
+            raise ArgumentError(f"dataset: {name}: expected 1 or more, got {value}")
+    if address is not None and engine != "ray":
+        raise ArgumentError("dataset: address: it is of a cluster of Ray: expected engine ray with it")
+    if address is not None and workers is not None:
+        raise ArgumentError("dataset: workers: a cluster starts as many as it has cores for; expected none with an address")
 
 
 def _make_here(spec, folder, missing, progress) -> set[str]:
@@ -102,11 +85,11 @@ def _make_here(spec, folder, missing, progress) -> set[str]:
 _worker: tuple[FrameMaker, FolderWriter] | None = None
 
 
-def _begin_worker(spec: DatasetSpec, folder: Path, cores: list[int]) -> None:
+def _begin_worker(spec: DatasetSpec, folder: Path, cores: list[int], share: int) -> None:
     """Each worker keeps to its part of the cores."""
     global _worker
     number = multiprocessing.current_process()._identity[-1] - 1
-    share = max(1, len(cores) // max(1, int(os.environ.get("EASYPBR_DATASET_WORKERS", "1"))))
+    keep_memory()
     own = [cores[(number * share + k) % len(cores)] for k in range(share)]
     os.sched_setaffinity(0, own)
     os.environ["LP_NUM_THREADS"] = str(share)
@@ -120,13 +103,14 @@ def _make_one(index: int) -> list[str]:
     return maker.skipped
 
 
-def _make_apart(spec, folder, missing, workers, progress) -> set[str]:
+def _make_apart(spec, folder, missing, workers, threads, progress) -> set[str]:
     skipped: set[str] = set()
     rest = set(missing)
-    os.environ["EASYPBR_DATASET_WORKERS"] = str(workers)
+    cores = sorted(os.sched_getaffinity(0))
+    share = min(threads or max(1, len(cores) // workers), len(cores))
     for attempt in range(_RETRIES + 1):
         pool = concurrent.futures.ProcessPoolExecutor(
-            workers, multiprocessing.get_context("spawn"), _begin_worker, (spec, folder, sorted(os.sched_getaffinity(0)))
+            workers, multiprocessing.get_context("spawn"), _begin_worker, (spec, folder, cores, share)
         )
         try:
             with pool:
@@ -174,8 +158,8 @@ class _Progress:
         self.total, self.done, self.quiet = total, done, quiet
         self.start, self.first, self.shown = time.monotonic(), done, 0.0
 
-    def add(self) -> None:
-        self.done += 1
+    def add(self, count: int = 1) -> None:
+        self.done += count
         now = time.monotonic()
         if self.quiet or (now - self.shown < 0.2 and self.done < self.total):
             return

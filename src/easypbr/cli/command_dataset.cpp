@@ -14,7 +14,7 @@ namespace easypbr::cli {
 namespace {
 
 struct DatasetOptions {
-    std::string spec, output, count, seed, workers, writers, on_error;
+    std::string spec, output, count, seed, workers, threads, engine, address, writers, on_error;
     bool demo = false, quiet = false;
 };
 
@@ -28,6 +28,18 @@ void declare(CLI::App& command, DatasetOptions& o) {
     command.add_option("--seed", o.seed, "Another seed gives other pictures")->option_text("N");
     command.add_option("--workers", o.workers, "Processes that draw; one for two cores unless given")
         ->option_text("N");
+    command
+        .add_option("--threads", o.threads,
+                    "Cores of each worker; all are divided among the workers unless given, 1 with Ray")
+        ->option_text("N");
+    command
+        .add_option("--engine", o.engine, "Who runs the workers: local, or ray (pip install 'easypbr[ray]')")
+        ->option_text("local|ray");
+    command
+        .add_option("--address", o.address,
+                    "Cluster of Ray: HOST:PORT, or auto; its machines share the folder. This machine unless "
+                    "given")
+        ->option_text("ADDRESS");
     command
         .add_option("--writers", o.writers,
                     "Formats, separated by commas: coco, yolo, kitti, bop, nerfstudio, "
@@ -51,7 +63,8 @@ int run(const DatasetOptions& o) {
     if (o.quiet) arguments.emplace_back("--quiet");
     const std::pair<const char*, const std::string&> values[] = {
         {"--output", o.output},   {"--count", o.count},     {"--seed", o.seed},
-        {"--workers", o.workers}, {"--writers", o.writers}, {"--on-error", o.on_error}};
+        {"--workers", o.workers}, {"--threads", o.threads}, {"--engine", o.engine},
+        {"--address", o.address}, {"--writers", o.writers}, {"--on-error", o.on_error}};
     for (const auto& [name, value] : values)
         if (!value.empty()) arguments.push_back(fmt::format("{}={}", name, value));
     std::vector<char*> pointers;
