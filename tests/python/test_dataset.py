@@ -26,7 +26,7 @@ from easypbr.dataset import (
 from easypbr.dataset.frames import FrameMaker
 from easypbr.dataset.writers import decode_rle, quaternion
 
-ALL = ("coco", "yolo", "kitti", "bop", "nerfstudio", "colmap", "webdataset", "raw", "png")
+ALL = ("coco", "yolo", "kitti", "bop", "nerfstudio", "colmap", "webdataset", "raw", "exr", "png")
 
 
 def small(**changes) -> DatasetSpec:

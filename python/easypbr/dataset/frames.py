@@ -8,11 +8,21 @@ from pathlib import Path
 import numpy as np
 
 from .. import shapes
-from .._easypbr import Camera, Environment, Mesh, load_image, readable_mesh_extensions
+from .._easypbr import (
+    Camera,
+    Environment,
+    Light,
+    Mesh,
+    decode_image,
+    encode_jpeg,
+    load_image,
+    readable_mesh_extensions,
+)
 from ..errors import ArgumentError, Error
 from ..scene import Scene
 from ..viewer import Viewer
 from . import content
+from .poses import bounds, diameter_of, direction, draw, rotation, turn_about, vertices_of
 from .spec import DatasetSpec, ObjectSpec
 
 _LAYERS = ("color", "depth", "normal_camera", "instance_id", "instances")
@@ -30,17 +40,25 @@ class Frame:
     K: np.ndarray
     T_world_cam: np.ndarray  #: OpenCV's axes
     distortion: list
+    distortion_model: str
     objects: list[dict]
+    next: "NextFrame | None" = None  #: where things are a moment later, when the spec has motion
 
     def record(self) -> dict:
         """All but the pixels, as JSON takes it."""
         height, width = self.depth.shape
         return {"index": self.index, "width": width, "height": height, "K": self.K.tolist(),
-                "T_world_cam": self.T_world_cam.tolist(), "distortion": self.distortion, "objects": self.objects}
+                "T_world_cam": self.T_world_cam.tolist(), "distortion": self.distortion,
+                "distortion_model": self.distortion_model, "objects": self.objects}
 
 
-def _draw(random, value) -> float:
-    return float(random.uniform(*value)) if isinstance(value, tuple) else float(value)
+@dataclasses.dataclass
+class NextFrame:
+    """The picture a moment later, and how this one's pixels move until then."""
+
+    picture: np.ndarray
+    flow: np.ndarray  #: height x width x 2, pixels
+    occluded: np.ndarray  #: the point is not seen in the next picture
 
 
 class FrameMaker:
@@ -135,6 +153,7 @@ class FrameMaker:
         self._scene.clear()
         camera = self._camera(random)
         self._background(random)
+        self._lights(random)
         entries, spheres = {}, []
         for number, entry in enumerate(spec.objects):
             low, high = entry.count
@@ -152,26 +171,30 @@ class FrameMaker:
         self._view.refit()
         self._view.camera = camera
         classes = {name: self.classes.index(self.class_of(e)) + 1 for name, e in entries.items() if not e.distractor}
-        self._view.settings["tonemap.exposure_compensation"] = _draw(random, spec.sensor.exposure)
+        self._view.settings["tonemap.exposure_compensation"] = draw(random, spec.sensor.exposure)
         data = self._view.render_layers(_LAYERS, samples=spec.image.samples, classes=classes)
         return data, camera, entries
 
     def _camera(self, random) -> Camera:
         given, (width, height) = self.spec.camera, self.spec.image.size
-        azimuth, elevation = np.radians(_draw(random, given.azimuth_deg)), np.radians(_draw(random, given.elevation_deg))
+        azimuth, elevation = np.radians(draw(random, given.azimuth_deg)), np.radians(draw(random, given.elevation_deg))
         away = np.array([np.cos(elevation) * np.sin(azimuth), np.sin(elevation), np.cos(elevation) * np.cos(azimuth)])
-        camera = Camera.look_at(away * _draw(random, given.distance), (0, 0, 0))
-        fov = _draw(random, given.fov_y_deg)
+        camera = Camera.look_at(away * draw(random, given.distance), (0, 0, 0))
+        fov = draw(random, given.fov_y_deg)
         if given.K:
             K = np.array(given.K)
         else:
             focal = height / 2 / np.tan(np.radians(fov) / 2)
             K = np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1]])
-        return Camera.from_opencv(K, camera.opencv_T_world_cam, (width, height), list(given.distortion), given.distortion_model)
+        return self._lens(K, camera.opencv_T_world_cam)
+
+    def _lens(self, K: np.ndarray, T_world_cam: np.ndarray) -> Camera:
+        given = self.spec.camera
+        return Camera.from_opencv(K, T_world_cam, self.spec.image.size, list(given.distortion), given.distortion_model)
 
     def _background(self, random) -> None:
         given, settings = self.spec.background, self._view.settings
-        turn, intensity = random.uniform(-180, 180), _draw(random, given.intensity)
+        turn, intensity = random.uniform(-180, 180), draw(random, given.intensity)
         choice = int(random.integers(given.skies if given.mode == "sky" else max(len(given.files), 1)))
         settings["environment.rotation_deg"] = turn
         settings["environment.intensity"] = intensity
@@ -185,10 +208,27 @@ class FrameMaker:
                 self._skies[choice] = content.sky(own) if given.mode == "sky" else Environment(load_image(given.files[choice]))
             self._scene.environment = self._skies[choice]
 
+    def _lights(self, random) -> None:
+        for name in self._scene.light_names():
+            self._scene.remove_light(name)
+        for given in self.spec.lights:
+            low, high = given.count
+            for _ in range(int(random.integers(low, high + 1))):
+                azimuth, elevation = np.radians(draw(random, given.azimuth_deg)), np.radians(draw(random, given.elevation_deg))
+                towards = np.array([np.cos(elevation) * np.sin(azimuth), np.sin(elevation), np.cos(elevation) * np.cos(azimuth)])
+                hue = random.random(3)
+                color = 1 + draw(random, given.saturation) * (hue / hue.max() - 1)
+                strength, distance = draw(random, given.illuminance), draw(random, given.distance)
+                place = {"direction": -towards} if given.type == "directional" else {"position": towards * distance}
+                # A lamp's candela fall with the square of the distance.
+                candela = strength * (1 if given.type == "directional" else distance**2)
+                self._scene.set_light(f"light {len(self._scene.light_names())}",
+                                      Light(given.type, intensity=candela, color=color, **place))
+
     def _place(self, mesh: Mesh, entry: ObjectSpec, camera: Camera, random, spheres: list) -> None:
         """Sets the pose so that the mesh has its size and its ball meets no other's."""
         given = self.spec.placement
-        size, turn = _draw(random, entry.size), _rotation(entry, random)
+        size, turn = draw(random, entry.size), rotation(entry, random)
         low, high = bounds(mesh)
         scale = size / max(float((high - low).max()), 1e-12)
         T = np.eye(4)
@@ -216,9 +256,35 @@ class FrameMaker:
     def _in_frustum(self, camera: Camera, random) -> np.ndarray:
         given, size = self.spec.placement, np.array(self.spec.image.size)
         pixel = (given.margin + (1 - 2 * given.margin) * random.random(2)) * size - 0.5
-        depth = _draw(random, given.distance)
+        depth = draw(random, given.distance)
         T = camera.opencv_T_world_cam
         return T[:3, :3] @ (np.linalg.inv(camera.opencv_K(size)) @ [*pixel, 1] * depth) + T[:3, 3]
+
+    def _next(self, random, camera: Camera) -> NextFrame:
+        """Moves everything, draws, moves it back."""
+        spec, poses = self.spec, {}
+        for name in self._scene.names():
+            mesh = self._scene.get(name)
+            poses[name] = T = mesh.T_parent_mesh
+            axis, shift = direction(random), direction(random) * draw(random, spec.motion.translation)
+            angle = np.radians(draw(random, spec.motion.rotation_deg))
+            if name == "ground":
+                continue
+            moved, centre = T.copy(), T[:3, :3] @ np.mean(bounds(mesh), 0) + T[:3, 3]
+            turn = turn_about(axis, angle)
+            moved[:3, :3] = turn @ T[:3, :3]
+            moved[:3, 3] = centre + shift + turn @ (T[:3, 3] - centre)
+            mesh.T_parent_mesh = moved
+        T_world_cam = camera.opencv_T_world_cam
+        T_world_cam[:3, 3] += direction(random) * draw(random, spec.motion.camera)
+        self._view.camera = self._lens(camera.opencv_K(spec.image.size), T_world_cam)
+        picture = self._view.render_layers(["color"], samples=spec.image.samples)["color"][..., :3]
+        moment = self._view.moment()
+        for name, T in poses.items():
+            self._scene.get(name).T_parent_mesh = T
+        self._view.camera = camera
+        data = self._view.render_layers(["flow_forward", "occlusion_forward"], next=moment)
+        return NextFrame(sensor(picture, spec.sensor, random), data["flow_forward"], data["occlusion_forward"])
 
     def _finish(self, index: int, random, data: dict, camera: Camera, counted: dict) -> Frame:
         size = self.spec.image.size
@@ -228,46 +294,20 @@ class FrameMaker:
         objects = []
         for place, instance in enumerate(wanted):
             numbers[instance.id] = place + 1
-            objects.append(_annotation(instance, self.class_of(counted[instance.name])))
+            entry = _annotation(instance, self.class_of(counted[instance.name]))
+            if "bop" in self.spec.writers:
+                scale = np.linalg.norm(instance.T_cam_obj[:3, 0])
+                entry["diameter"] = float(diameter_of(vertices_of(self._scene.get(instance.name))) * scale)
+            objects.append(entry)
+        moved = self._next(random, camera) if self.spec.motion else None
         return Frame(index, picture, data["depth"], data["normal_camera"], numbers[data["instance_id"]],
-                     camera.opencv_K(size), camera.opencv_T_world_cam, list(camera.distortion), objects)
-
-
-def _rotation(entry: ObjectSpec, random) -> np.ndarray:
-    quaternion = random.normal(size=4)
-    yaw, tilt, towards = random.uniform(0, 2 * np.pi), np.radians(entry.tilt_deg) * random.uniform(-1, 1), random.uniform(0, 2 * np.pi)
-    if entry.rotation == "none":
-        return np.eye(3)
-    if entry.rotation == "any":
-        w, x, y, z = quaternion / np.linalg.norm(quaternion)
-        return np.array([[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
-                         [2 * (x * y + w * z), 1 - 2 * (x * x + z * z), 2 * (y * z - w * x)],
-                         [2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y)]])
-    c, s = np.cos(yaw), np.sin(yaw)
-    upright = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
-    # Tilted about a level axis (Rodrigues).
-    k = np.array([[0, 0, np.sin(towards)], [0, 0, -np.cos(towards)], [-np.sin(towards), np.cos(towards), 0]])
-    return (np.eye(3) + np.sin(tilt) * k + (1 - np.cos(tilt)) * k @ k) @ upright
-
-
-def bounds(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
-    """Least and largest coordinates of a mesh and its children in its own frame."""
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
-    if len(mesh.V):
-        low, high = mesh.V.min(0).astype(float), mesh.V.max(0).astype(float)
-    for child in mesh.children:
-        a, b = bounds(child)
-        if not np.isfinite(a).all():
-            continue
-        corners = np.array([[x, y, z] for x in (a[0], b[0]) for y in (a[1], b[1]) for z in (a[2], b[2])])
-        corners = corners @ child.T_parent_mesh[:3, :3].T + child.T_parent_mesh[:3, 3]
-        low, high = np.minimum(low, corners.min(0)), np.maximum(high, corners.max(0))
-    return low, high
+                     camera.opencv_K(size), camera.opencv_T_world_cam, list(camera.distortion),
+                     self.spec.camera.distortion_model, objects, moved)
 
 
 def sensor(picture: np.ndarray, given, random) -> np.ndarray:
-    """The picture blurred, then with noise."""
-    blur, noise = _draw(random, given.blur), _draw(random, given.noise)
+    """The picture blurred, then with noise, then through a JPEG."""
+    blur, noise = draw(random, given.blur), draw(random, given.noise)
     values = picture.astype(np.float32)
     if blur > 0.05:
         reach = int(np.ceil(3 * blur))
@@ -280,7 +320,10 @@ def sensor(picture: np.ndarray, given, random) -> np.ndarray:
             values = sum(weight * cut for weight, cut in zip(kernel, cuts))
     if noise > 0:
         values = values + random.standard_normal(values.shape, dtype=np.float32) * np.float32(255 * noise)
-    return np.clip(np.rint(values), 0, 255).astype(np.uint8)
+    picture = np.clip(np.rint(values), 0, 255).astype(np.uint8)
+    if given.jpeg_quality == 100:
+        return picture
+    return decode_image(encode_jpeg(picture, round(draw(random, given.jpeg_quality))))[..., :3]
 
 
 def _annotation(instance, class_name: str) -> dict:

@@ -1,9 +1,11 @@
 """Making a data set: frames by worker processes, resumable, the same bytes however often it is killed."""
 
 import concurrent.futures
+import ctypes
 import json
 import multiprocessing
 import os
+import signal
 import sys
 import time
 from pathlib import Path
@@ -85,9 +87,19 @@ def _make_here(spec, folder, missing, progress) -> set[str]:
 _worker: tuple[FrameMaker, FolderWriter] | None = None
 
 
+def _end_with_parent() -> None:
+    """Linux kills this process when its parent dies: one that waits for frames would wait for ever."""
+    pr_set_pdeathsig = 1
+    parent = multiprocessing.parent_process()
+    ctypes.CDLL(None).prctl(pr_set_pdeathsig, signal.SIGKILL)
+    if parent is not None and os.getppid() != parent.pid:
+        os._exit(1)  # It has died before.
+
+
 def _begin_worker(spec: DatasetSpec, folder: Path, cores: list[int], share: int) -> None:
-    """Each worker keeps to its part of the cores."""
+    """Each worker keeps to its part of the cores, and ends with the process that started it."""
     global _worker
+    _end_with_parent()
     number = multiprocessing.current_process()._identity[-1] - 1
     keep_memory()
     own = [cores[(number * share + k) % len(cores)] for k in range(share)]

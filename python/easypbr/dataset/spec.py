@@ -81,12 +81,40 @@ class BackgroundSpec:
 
 
 @dataclasses.dataclass
+class LightSpec:
+    """Lights beside the background: a number of suns, or of lamps `distance` from the origin. `illuminance` (lux) is what
+    each gives there; the hue is random, `saturation` says how far it is from white."""
+
+    type: str = "directional"
+    count: tuple[int, int] = (1, 1)
+    illuminance: Range = (1.0, 4.0)
+    azimuth_deg: Range = (-180.0, 180.0)
+    elevation_deg: Range = (15.0, 75.0)
+    distance: Range = 6.0
+    saturation: Range = (0.0, 0.3)
+
+
+@dataclasses.dataclass
+class MotionSpec:
+    """What moves until the next frame, for optical flow: objects along and about random axes, the camera along one."""
+
+    translation: Range = 0.0
+    rotation_deg: Range = 0.0
+    camera: Range = 0.0
+
+    def __bool__(self) -> bool:
+        return any(value != 0 for value in dataclasses.astuple(self))
+
+
+@dataclasses.dataclass
 class SensorSpec:
-    """What the sensor does: exposure in stops, blur and noise as standard deviations (pixels; parts of full scale)."""
+    """What the sensor does: exposure in stops, blur and noise as standard deviations (pixels; parts of full scale), and the
+    losses of a JPEG of this quality (100: none is made)."""
 
     exposure: Range = 0.0
     blur: Range = 0.0
     noise: Range = 0.0
+    jpeg_quality: Range = 100.0
 
 
 @dataclasses.dataclass
@@ -103,6 +131,8 @@ class DatasetSpec:
     placement: PlacementSpec = dataclasses.field(default_factory=PlacementSpec)
     occlusion: OcclusionSpec = dataclasses.field(default_factory=OcclusionSpec)
     background: BackgroundSpec = dataclasses.field(default_factory=BackgroundSpec)
+    lights: list[LightSpec] = dataclasses.field(default_factory=list)
+    motion: MotionSpec = dataclasses.field(default_factory=MotionSpec)
     sensor: SensorSpec = dataclasses.field(default_factory=SensorSpec)
 
     @classmethod
@@ -144,6 +174,8 @@ class DatasetSpec:
         }
         for i, entry in enumerate(self.objects):
             choices[f"objects[{i}].rotation"] = (entry.rotation, ("upright", "any", "none"))
+        for i, light in enumerate(self.lights):
+            choices[f"lights[{i}].type"] = (light.type, ("directional", "point"))
         for name in self.writers:
             choices[f"writers ({name})"] = (name, tuple(WRITERS))
         for key, (value, allowed) in choices.items():
@@ -153,6 +185,11 @@ class DatasetSpec:
             raise ArgumentError(f"dataset: count: expected 1 or more, got {self.count}")
         if not self.objects:
             raise ArgumentError("dataset: objects: expected at least one [[objects]]")
+        quality = self.sensor.jpeg_quality
+        if not all(1 <= value <= 100 for value in (quality if isinstance(quality, tuple) else (quality,))):
+            raise ArgumentError(f"dataset: sensor.jpeg_quality: expected 1 to 100, got {quality}")
+        for name in self.writers:
+            WRITERS[name].check(self)
         if self.background.mode in ("environment", "image") and not self.background.files:
             raise ArgumentError(f"dataset: background.files: expected files for mode '{self.background.mode}'")
 

@@ -19,6 +19,14 @@ def _png(array: np.ndarray) -> bytes:
     return _easypbr.encode_png(array)
 
 
+def _exr(array: np.ndarray) -> bytes:
+    return _easypbr.encode_exr(np.ascontiguousarray(array, np.float32))
+
+
+def _refuse(name: str, what: str) -> None:
+    raise ArgumentError(f"dataset: writer {name}: {what}")
+
+
 def decode_rle(rle: dict) -> np.ndarray:
     """The mask, height x width, of COCO's compressed run lengths."""
     height, width = rle["size"]
@@ -41,6 +49,10 @@ class Writer:
 
     def __init__(self, image_format: str, classes: list[str]):
         self.image_format, self.classes = image_format, classes
+
+    @classmethod
+    def check(cls, spec) -> None:
+        """Raises ArgumentError for a spec that the format cannot express."""
 
     def picture(self, index: int) -> str:
         """Where the picture of a frame is, in the set's folder."""
@@ -107,6 +119,11 @@ class Yolo(Writer):
 class Kitti(Writer):
     """label_2/*.txt and calib/*.txt of KITTI's object benchmark, depth/*.png (uint16, 1/256 m)."""
 
+    @classmethod
+    def check(cls, spec):
+        if spec.camera.distortion:
+            _refuse("kitti", "its pictures are rectified: expected no camera.distortion")
+
     def frame(self, frame):
         name = f"{frame.index:06d}"
         P = np.c_[frame.K, np.zeros(3)]
@@ -142,8 +159,32 @@ def save16(array: np.ndarray) -> bytes:
     return _easypbr.encode_png(array, deep=True)
 
 
+class Flow(Writer):
+    """Optical flow as KITTI has it: image_2/*_10.png and *_11.png, flow_occ (all points) and flow_noc (those that the second
+    picture shows too): uint16, 64 x pixels + 32768, the third channel 1 where there is a value."""
+
+    @classmethod
+    def check(cls, spec):
+        if not spec.motion:
+            _refuse("flow", "nothing moves: expected motion.translation, rotation_deg or camera")
+
+    def frame(self, frame):
+        name, base = f"{frame.index:06d}", "kitti_flow"
+        seen = frame.depth > 0
+        return {f"{base}/image_2/{name}_10.png": _png(frame.picture), f"{base}/image_2/{name}_11.png": _png(frame.next.picture),
+                f"{base}/flow_occ/{name}_10.png": save16(encode_flow(frame.next.flow, seen)),
+                f"{base}/flow_noc/{name}_10.png": save16(encode_flow(frame.next.flow, seen & ~frame.next.occluded))}
+
+
+def encode_flow(flow: np.ndarray, valid: np.ndarray) -> np.ndarray:
+    """height x width x 3 of uint16. What is 512 pixels or more cannot be said and is not valid."""
+    values = np.rint(np.asarray(flow, float) * 64 + 32768)
+    valid = valid & (values >= 0).all(-1) & (values < 65536).all(-1)
+    return np.where(valid[..., None], np.dstack([values, np.ones(valid.shape)]), 0).astype(np.uint16)
+
+
 class Bop(Writer):
-    """A scene of the BOP challenge: rgb, depth, mask, mask_visib, scene_camera, scene_gt, scene_gt_info."""
+    """A scene of the BOP challenge: rgb, depth, mask, mask_visib, scene_camera, scene_gt, scene_gt_info, models_info."""
 
     scale = 1.0  # millimetres of a unit of depth: up to 65 m
 
@@ -165,17 +206,36 @@ class Bop(Writer):
             key = str(record["index"])
             camera[key] = {"cam_K": np.ravel(record["K"]).tolist(), "depth_scale": self.scale,
                            "cam_R_w2c": T_cam_world[:3, :3].ravel().tolist(), "cam_t_w2c": (1000 * T_cam_world[:3, 3]).tolist()}
+            if record["distortion"]:  # BOP has no key for a lens: these are ours.
+                camera[key] |= {"cam_dist": record["distortion"], "cam_dist_model": record["distortion_model"]}
             truth[key] = [self._pose(entry) for entry in record["objects"]]
             info[key] = [self._info(entry) for entry in record["objects"]]
         base = "bop/000000"
         return {f"{base}/scene_camera.json": _json(camera), f"{base}/scene_gt.json": _json(truth),
-                f"{base}/scene_gt_info.json": _json(info)}
+                f"{base}/scene_gt_info.json": _json(info), "bop/models/models_info.json": _json(self._models(truth))}
 
     @staticmethod
     def _pose(entry):
         T = np.array(entry["T_cam_obj"])
-        R = T[:3, :3] / np.linalg.norm(T[:3, :3], axis=0)
-        return {"cam_R_m2c": R.ravel().tolist(), "cam_t_m2c": (1000 * T[:3, 3]).tolist(), "obj_id": entry["category_id"]}
+        scale = np.linalg.norm(T[:3, :3], axis=0)
+        size, centre = 1000 * scale * entry["box3d_size"], 1000 * scale * entry["box3d_center"]
+        # A pose has no scale: the model is in millimetres as large as it is shown.
+        model = dict(zip(("min_x", "min_y", "min_z"), (centre - size / 2).tolist()))
+        model |= dict(zip(("size_x", "size_y", "size_z"), size.tolist()))
+        return {"cam_R_m2c": (T[:3, :3] / scale).ravel().tolist(), "cam_t_m2c": (1000 * T[:3, 3]).tolist(),
+                "obj_id": entry["category_id"], "model": {"diameter": 1000 * entry["diameter"], **model}}
+
+    @staticmethod
+    def _models(truth) -> dict:
+        """Models of the classes whose objects are all of one."""
+        shown: dict[int, list] = {}
+        for entries in truth.values():
+            for entry in entries:
+                shown.setdefault(entry["obj_id"], []).append(entry["model"])
+        # The sizes of one model differ by the rounding of poses.
+        same = {key: models[0] for key, models in sorted(shown.items())
+                if np.allclose([list(m.values()) for m in models], list(models[0].values()), rtol=1e-5, atol=1e-3)}
+        return {str(key): model for key, model in same.items()}
 
     @staticmethod
     def _info(entry):
@@ -187,8 +247,21 @@ class Bop(Writer):
                 "visib_fract": entry["visible_fraction"]}
 
 
+#: The coefficients in OpenCV's order.
+_BROWN = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6")
+
+
+def _has_skew(spec) -> bool:
+    return bool(spec.camera.K) and spec.camera.K[0][1] != 0
+
+
 class Nerfstudio(Writer):
-    """transforms.json: poses with OpenGL's axes."""
+    """transforms.json: poses with OpenGL's axes, the lens's coefficients."""
+
+    @classmethod
+    def check(cls, spec):
+        if _has_skew(spec) or (spec.camera.distortion_model != "fisheye" and len(spec.camera.distortion) > 5):
+            _refuse("nerfstudio", "its cameras have no skew and at most k1, k2, p1, p2, k3: choose another camera.K or distortion")
 
     def finish(self, records, folder):
         frames = []
@@ -198,18 +271,41 @@ class Nerfstudio(Writer):
             # Its pixel edges are at integers.
             frames.append({"file_path": self.picture(record["index"]), "transform_matrix": T.tolist(), "fl_x": K[0, 0],
                            "fl_y": K[1, 1], "cx": K[0, 2] + 0.5, "cy": K[1, 2] + 0.5, "w": record["width"], "h": record["height"]})
-        return {"transforms.json": _json({"camera_model": "PINHOLE", "frames": frames})}
+        lens, model = records[0]["distortion"], records[0]["distortion_model"]
+        if not lens:
+            common = {"camera_model": "PINHOLE"}
+        elif model == "fisheye":
+            common = {"camera_model": "OPENCV_FISHEYE", **dict(zip(("k1", "k2", "k3", "k4"), lens))}
+        else:
+            common = {"camera_model": "OPENCV", **dict(zip(_BROWN, lens))}
+        return {"transforms.json": _json({**common, "frames": frames})}
 
 
 class Colmap(Writer):
     """sparse/0/cameras.txt, images.txt and an empty points3D.txt."""
 
+    @classmethod
+    def check(cls, spec):
+        if _has_skew(spec):
+            _refuse("colmap", "its cameras have no skew: expected camera.K with a zero there")
+
+    @staticmethod
+    def _model(record) -> tuple[str, list]:
+        """COLMAP's name of the camera model, and the coefficients after fx, fy, cx, cy."""
+        lens = record["distortion"]
+        if not lens:
+            return "PINHOLE", []
+        if record["distortion_model"] == "fisheye":
+            return "OPENCV_FISHEYE", lens
+        return ("OPENCV", lens) if len(lens) == 4 else ("FULL_OPENCV", lens + [0.0] * (8 - len(lens)))
+
     def finish(self, records, folder):
         cameras, images = ["# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]"], ["# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME"]
         for record in records:
             K, number = np.array(record["K"]), record["index"] + 1
-            lens = (K[0, 0], K[1, 1], K[0, 2] + 0.5, K[1, 2] + 0.5)
-            cameras.append(f"{number} PINHOLE {record['width']} {record['height']} " + " ".join(f"{v:.9f}" for v in lens))
+            model, lens = self._model(record)
+            numbers = " ".join(f"{v:.9f}" for v in (K[0, 0], K[1, 1], K[0, 2] + 0.5, K[1, 2] + 0.5, *lens))
+            cameras.append(f"{number} {model} {record['width']} {record['height']} {numbers}")
             T = np.linalg.inv(record["T_world_cam"])
             pose = " ".join(f"{value:.9f}" for value in (*quaternion(T[:3, :3]), *T[:3, 3]))
             images += [f"{number} {pose} {number} {Path(self.picture(record['index'])).name}", ""]
@@ -249,13 +345,23 @@ class WebDataset(Writer):
 
 
 class Raw(Writer):
-    """raw/*.npz: depth, normals, instance ids, K, T_world_cam."""
+    """raw/*.npz: depth, normals, instance ids, K, T_world_cam; with motion, flow and occlusion."""
 
     def frame(self, frame):
         buffer = io.BytesIO()
+        moved = {} if frame.next is None else {"flow_forward": frame.next.flow, "occlusion_forward": frame.next.occluded}
         np.savez_compressed(buffer, depth=frame.depth, normal_camera=frame.normal, instance_id=frame.instance_id, K=frame.K,
-                            T_world_cam=frame.T_world_cam)
+                            T_world_cam=frame.T_world_cam, **moved)
         return {f"raw/{frame.index:06d}.npz": buffer.getvalue()}
+
+
+class Exr(Writer):
+    """exr/depth, exr/normal, exr/id: float32, without loss."""
+
+    def frame(self, frame):
+        name = f"{frame.index:06d}.exr"
+        return {f"exr/depth/{name}": _exr(frame.depth), f"exr/normal/{name}": _exr(frame.normal),
+                f"exr/id/{name}": _exr(frame.instance_id)}
 
 
 class Png(Writer):
@@ -271,5 +377,5 @@ class Png(Writer):
                 f"ids/{name}": save16(frame.instance_id.astype(np.uint16))}
 
 
-WRITERS = {"coco": Coco, "yolo": Yolo, "kitti": Kitti, "bop": Bop, "nerfstudio": Nerfstudio, "colmap": Colmap,
-           "webdataset": WebDataset, "raw": Raw, "png": Png}
+WRITERS = {"coco": Coco, "yolo": Yolo, "kitti": Kitti, "flow": Flow, "bop": Bop, "nerfstudio": Nerfstudio, "colmap": Colmap,
+           "webdataset": WebDataset, "raw": Raw, "exr": Exr, "png": Png}

@@ -42,8 +42,8 @@ void declare(CLI::App& command, DatasetOptions& o) {
         ->option_text("ADDRESS");
     command
         .add_option("--writers", o.writers,
-                    "Formats, separated by commas: coco, yolo, kitti, bop, nerfstudio, "
-                    "colmap, webdataset, raw, png")
+                    "Formats, separated by commas: coco, yolo, kitti, flow, bop, nerfstudio, "
+                    "colmap, webdataset, raw, exr, png")
         ->option_text("NAMES");
     command.add_option("--on-error", o.on_error, "A mesh that cannot be read: stop, or skip and report it")
         ->option_text("stop|skip");

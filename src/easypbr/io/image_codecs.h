@@ -20,8 +20,10 @@ Image decode_jpeg(Bytes bytes, const std::string& name);
 Image decode_hdr(Bytes bytes, const std::string& name);
 Image decode_exr(Bytes bytes, const std::string& name);
 
-/// Quality 95, no chroma subsampling; alpha is dropped. u8 only.
-std::vector<std::byte> encode_jpeg(const Image& image);
+/// Of files that save_image() writes.
+inline constexpr int jpeg_quality = 95;
+/// Quality 1 to 100, no chroma subsampling; alpha is dropped. u8 only.
+std::vector<std::byte> encode_jpeg(const Image& image, int quality = jpeg_quality);
 /// Run-length encoded RGBE; alpha is dropped, negative and NaN become 0. f32 only.
 std::vector<std::byte> encode_hdr(const Image& image);
 /// float32 channels, ZIP-compressed scanlines. f32 only.

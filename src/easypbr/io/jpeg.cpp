@@ -82,7 +82,7 @@ Image decode_jpeg(Bytes bytes, const std::string& name) {
     return cmyk ? rgb_from_cmyk(image, has_adobe_marker(bytes)) : image;
 }
 
-std::vector<std::byte> encode_jpeg(const Image& image) {
+std::vector<std::byte> encode_jpeg(const Image& image, int quality) {
     if (image.width() > max_jpeg_side || image.height() > max_jpeg_side)
         throw ArgumentError(fmt::format("cannot encode JPEG: {}x{} pixels, the format holds at most {}",
                                         image.width(), image.height(), max_jpeg_side));
@@ -93,7 +93,7 @@ std::vector<std::byte> encode_jpeg(const Image& image) {
     unsigned long size = 0;
     const int result = tjCompress2(handle.get(), plain.pixels<uint8_t>().data(), plain.width(), 0,
                                    plain.height(), grey ? TJPF_GRAY : TJPF_RGB, &buffer, &size,
-                                   grey ? TJSAMP_GRAY : TJSAMP_444, 95, TJFLAG_ACCURATEDCT);
+                                   grey ? TJSAMP_GRAY : TJSAMP_444, quality, TJFLAG_ACCURATEDCT);
     const std::unique_ptr<unsigned char, decltype(&tjFree)> owner(buffer, tjFree);
     if (result) throw ArgumentError(fmt::format("cannot encode JPEG: {}", tjGetErrorStr2(handle.get())));
     const auto* begin = reinterpret_cast<const std::byte*>(buffer);

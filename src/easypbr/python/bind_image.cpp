@@ -1,22 +1,45 @@
 // Pictures as numpy arrays.
+#include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/app/output.h"
 #include "easypbr/core/compare.h"
+#include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/io/image_codecs.h"
 #include "easypbr/io/image_io.h"
 #include "easypbr/python/convert.h"
 
 namespace easypbr::python {
 namespace {
 
+nb::bytes to_bytes(const std::vector<std::byte>& bytes) {
+    return nb::bytes(bytes.data(), bytes.size());
+}
+
 nb::bytes png_bytes(const ArrayLike& array, bool deep) {
     const Image image = to_image(array, "image");
-    const std::vector<std::byte> bytes =
-        released([&] { return io::encode_png(deep ? image : to_u8(image)); });
-    return nb::bytes(bytes.data(), bytes.size());
+    return to_bytes(released([&] { return io::encode_png(deep ? image : to_u8(image)); }));
+}
+
+nb::bytes jpeg_bytes(const ArrayLike& array, int quality) {
+    if (quality < 1 || quality > 100)
+        throw ArgumentError(fmt::format("quality: expected 1 to 100, got {}", quality));
+    const Image image = to_u8(to_image(array, "image"));
+    return to_bytes(released([&] { return io::encode_jpeg(image, quality); }));
+}
+
+nb::bytes exr_bytes(const ArrayLike& array) {
+    const Image image = to_image(array, "image");
+    if (image.type() != PixelType::f32) throw ArgumentError("image: expected float32 or float64 values");
+    return to_bytes(released([&] { return io::encode_exr(image); }));
+}
+
+nb::object decoded(const nb::bytes& bytes) {
+    const std::span data(static_cast<const std::byte*>(bytes.data()), bytes.size());
+    return to_numpy(released([&] { return io::decode_image(data, "picture"); }));
 }
 
 nb::dict compare_images(const ArrayLike& a, const ArrayLike& b) {
@@ -50,6 +73,12 @@ void bind_image(nb::module_& module) {
         "Writes PNG, JPEG, HDR or EXR by the extension. Floating-point pictures are linear, others sRGB.");
     module.def("encode_png", png_bytes, nb::arg("image"), nb::arg("deep") = false,
                "The bytes of a PNG file of 8 bits; with `deep`, of 16 if the picture is uint16.");
+    module.def("encode_jpeg", jpeg_bytes, nb::arg("image"), nb::arg("quality") = io::jpeg_quality,
+               "The bytes of a JPEG file.");
+    module.def("encode_exr", exr_bytes, nb::arg("image"), "The bytes of an EXR file of float32.");
+    module.def("decode_image", decoded, nb::arg("bytes"),
+               nb::sig("def decode_image(bytes: bytes) -> numpy.ndarray"),
+               "What load_image() gives of a file of these bytes.");
     module.def(
         "compare_images", compare_images, nb::arg("a"), nb::arg("b"),
         "How much two pictures of the same size and type differ: max, mean, rmse, psnr, different (pixels).");

@@ -1,0 +1,197 @@
+"""Lenses, models, motion and sensors of data sets, read back as the formats' users read them."""
+
+import json
+
+import numpy as np
+import pytest
+from test_dataset import records, small
+from test_ground_truth import brown, fisheye
+
+import easypbr
+from easypbr import ArgumentError, shapes
+from easypbr.dataset import CameraSpec, DatasetSpec, LightSpec, MotionSpec, ObjectSpec, OcclusionSpec, SensorSpec, generate
+from easypbr.dataset.frames import FrameMaker
+from easypbr.dataset.poses import diameter_of
+from easypbr.dataset.writers import encode_flow
+
+LENSES = {
+    "PINHOLE": ((), "brown_conrady"),
+    "OPENCV": ((-0.2, 0.05, 0.001, -0.002), "brown_conrady"),
+    "FULL_OPENCV": ((-0.2, 0.05, 0.001, -0.002, 0.01), "brown_conrady"),
+    "OPENCV_FISHEYE": ((0.05, -0.01, 0.002, 0.001), "fisheye"),
+}
+
+
+def distorted(slopes, model, lens):
+    if model == "OPENCV_FISHEYE":
+        return fisheye(slopes, *lens)
+    if len(lens) > 4:
+        x, y = slopes.T
+        r2 = (x * x + y * y)[:, None]
+        return brown(slopes, *lens[:4]) + slopes * lens[4] * r2**3  # k3
+    return brown(slopes, *lens) if len(lens) else slopes
+
+
+@pytest.mark.parametrize("model", LENSES)
+def test_lenses_are_in_the_formats_that_have_them(tmp_path, model):
+    """The corners of the boxes, projected by what each format says of the camera, are where they are published."""
+    lens, name = LENSES[model]
+    spec = small(count=1, camera=CameraSpec(fov_y_deg=40.0, distortion=lens, distortion_model=name),
+                 writers=("nerfstudio", "colmap", "bop"))
+    generate(spec, tmp_path / "out", workers=1)
+    (record,) = records(tmp_path / "out")
+    corners = np.concatenate([entry["corners_cam"] for entry in record["objects"]])
+    published = np.concatenate([entry["corners_px"] for entry in record["objects"]])
+    slopes = corners[:, :2] / corners[:, 2:]
+
+    fields = (tmp_path / "out/sparse/0/cameras.txt").read_text().splitlines()[1].split()
+    assert fields[1:4] == [model, "96", "72"]
+    fx, fy, cx, cy, *given = map(float, fields[4:])
+    assert len(given) == {"PINHOLE": 0, "OPENCV": 4, "FULL_OPENCV": 8, "OPENCV_FISHEYE": 4}[model]
+    pixels = distorted(slopes, model, given) * (fx, fy) + (cx, cy)
+    # Pixel edges are at integers there; nine decimals are written.
+    np.testing.assert_allclose(pixels - 0.5, published, atol=1e-5)
+
+    nerf = json.loads((tmp_path / "out/transforms.json").read_text())
+    assert nerf["camera_model"] == {"FULL_OPENCV": "OPENCV"}.get(model, model)
+    order = ("k1", "k2", "k3", "k4") if name == "fisheye" else ("k1", "k2", "p1", "p2", "k3")
+    frame = nerf["frames"][0]
+    pixels = distorted(slopes, model, [nerf[key] for key in order if key in nerf])
+    pixels = pixels * (frame["fl_x"], frame["fl_y"]) + (frame["cx"], frame["cy"])
+    np.testing.assert_allclose(pixels - 0.5, published, atol=1e-9)
+
+    camera = json.loads((tmp_path / "out/bop/000000/scene_camera.json").read_text())["0"]
+    assert camera.get("cam_dist", []) == list(lens) and camera.get("cam_dist_model", name) == name
+
+
+@pytest.mark.parametrize("writer, camera, message", [
+    ("nerfstudio", {"distortion": (0.1, 0, 0, 0, 0, 0.1, 0, 0)}, "nerfstudio.*k3"),
+    ("nerfstudio", {"K": ((80, 1, 48), (0, 80, 36), (0, 0, 1))}, "nerfstudio.*skew"),
+    ("colmap", {"K": ((80, 1, 48), (0, 80, 36), (0, 0, 1))}, "colmap.*skew"),
+    ("kitti", {"distortion": (0.1, 0, 0, 0)}, "kitti.*rectified"),
+    ("flow", {}, "flow.*motion"),
+])
+def test_formats_refuse_what_they_cannot_say(tmp_path, writer, camera, message):
+    with pytest.raises(ArgumentError, match=message):
+        generate(small(writers=(writer,), camera=CameraSpec(**camera)), tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_bop_poses_are_of_models_in_millimetres(tmp_path):
+    """BOP's poses have no scale: the model of its keys, turned and moved, has the corners that are published."""
+    shapes.box((2, 1, 0.5)).save(tmp_path / "box.ply")
+    objects = [ObjectSpec(str(tmp_path / "box.ply"), "box", (2, 2), 0.5, "any"), ObjectSpec(class_name="drone")]
+    generate(small(count=2, objects=objects, writers=("bop",)), tmp_path / "out", workers=1)
+    base = tmp_path / "out/bop"
+    truth, cameras = (json.loads((base / f"000000/{name}.json").read_text()) for name in ("scene_gt", "scene_camera"))
+    for record in records(tmp_path / "out"):
+        key = str(record["index"])
+        K = np.array(cameras[key]["cam_K"]).reshape(3, 3)
+        for pose, entry in zip(truth[key], record["objects"]):
+            R, t, model = np.array(pose["cam_R_m2c"]).reshape(3, 3), pose["cam_t_m2c"], pose["model"]
+            corners = [[model[f"min_{axis}"] + (i >> k & 1) * model[f"size_{axis}"] for k, axis in enumerate("xyz")] for i in range(8)]
+            seen = corners @ R.T + t
+            np.testing.assert_allclose(seen / 1000, entry["corners_cam"], atol=1e-6)
+            pixels = seen @ K.T
+            np.testing.assert_allclose(pixels[:, :2] / pixels[:, 2:], entry["corners_px"], atol=1e-3)
+    # Boxes of 0.5 m are one model; drones, of which no two are alike, are none.
+    models = json.loads((base / "models/models_info.json").read_text())
+    assert list(models) == ["1"]
+    sizes = [models["1"][f"size_{axis}"] for axis in "xyz"]
+    np.testing.assert_allclose(sizes, [500, 250, 125], rtol=1e-5)
+    np.testing.assert_allclose(models["1"]["diameter"], np.linalg.norm(sizes), rtol=1e-5)  # of a box its diagonal
+
+
+def test_diameters():
+    points = np.random.default_rng(0).normal(size=(300, 3))
+    distances = np.linalg.norm(points[:, None] - points[None], axis=-1)
+    assert diameter_of(points) == pytest.approx(distances.max(), rel=1e-12)
+    assert diameter_of(shapes.sphere(0.5, 32).V.astype(float)) == pytest.approx(1, abs=1e-6)
+    assert diameter_of(np.zeros((3, 3))) == 0
+
+
+def test_flow_files_lead_to_the_next_picture(tmp_path):
+    """Read as KITTI's devkit reads them; a box of known motion is where they say."""
+    shapes.box().save(tmp_path / "box.ply")
+    spec = small(count=2, objects=[ObjectSpec(str(tmp_path / "box.ply"), "box", (2, 2), 0.8)], writers=("flow", "raw"),
+                 motion=MotionSpec((0.05, 0.2), (2.0, 8.0), 0.05), occlusion=OcclusionSpec(0.3, 0.5))
+    generate(spec, tmp_path / "out", workers=1)
+    for i in range(2):
+        folder = tmp_path / "out/kitti_flow"
+        every, seen = (easypbr.load_image(folder / f"flow_{name}/{i:06d}_10.png") for name in ("occ", "noc"))
+        raw = np.load(tmp_path / f"out/raw/{i:06d}.npz")
+        valid = every[..., 2] == 1
+        assert (valid == (raw["depth"] > 0)).all() and ((seen[..., 2] == 1) == (valid & ~raw["occlusion_forward"])).all()
+        flow = (every[..., :2].astype(float) - 2**15) / 64
+        # A step of the file is 1/64 pixel.
+        np.testing.assert_allclose(flow[valid], raw["flow_forward"][valid], atol=0.5 / 64 + 1e-6)
+        assert np.linalg.norm(flow[valid], axis=-1).max() > 0.5
+        assert (easypbr.load_image(folder / f"image_2/{i:06d}_10.png") == easypbr.load_image(tmp_path / f"out/images/{i:06d}.png")).all()
+        assert (easypbr.load_image(folder / f"image_2/{i:06d}_11.png") != easypbr.load_image(folder / f"image_2/{i:06d}_10.png")).any()
+
+
+def test_flow_that_does_not_fit_is_not_valid():
+    flow = np.array([[[1.5, -2], [511, 0], [512, 0], [0, -513]]], np.float32)
+    encoded = encode_flow(flow, np.array([[True, True, True, True]]))
+    # KITTI's devkit: u = (R - 2^15) / 64.
+    assert encoded.tolist() == [[[32864, 32640, 1], [65472, 32768, 1], [0, 0, 0], [0, 0, 0]]]
+    assert (encode_flow(flow, np.zeros((1, 4), bool)) == 0).all()
+
+
+def test_exr_holds_what_npz_holds(tmp_path):
+    generate(small(count=1, writers=("exr", "raw")), tmp_path / "out", workers=1)
+    raw = np.load(tmp_path / "out/raw/000000.npz")
+    for folder, name in (("depth", "depth"), ("normal", "normal_camera"), ("id", "instance_id")):
+        picture = easypbr.load_image(tmp_path / f"out/exr/{folder}/000000.exr")
+        assert picture.dtype == np.float32
+        assert (picture.squeeze() == raw[name]).all()
+
+
+def test_jpeg_loses_what_its_quality_says():
+    """The same frame: quality 100 leaves it, 90 changes it a little, 20 more, and shows the 8 x 8 blocks."""
+    spec = small()
+    spec.sensor = SensorSpec()
+    plain = FrameMaker(spec).make(0).picture.astype(float)
+    errors = []
+    for quality in (90.0, 20.0):
+        spec.sensor = SensorSpec(jpeg_quality=quality)
+        picture = FrameMaker(spec).make(0).picture
+        assert picture.shape == plain.shape and picture.dtype == np.uint8
+        errors.append(np.sqrt(np.mean((picture - plain) ** 2)))
+    assert 0.1 < errors[0] < errors[1] / 1.5 < 20
+    steps = np.abs(np.diff(picture.astype(float), axis=1)).mean((0, 2))
+    assert steps[7::8].mean() > 1.1 * np.delete(steps, np.s_[7::8]).mean()
+
+
+def test_lights_are_drawn_from_their_distribution():
+    spec = small(objects=[ObjectSpec("builtin:shapes", "thing")])
+    spec.background.mode, spec.background.intensity = "color", 0.0
+    spec.lights = [LightSpec("directional", (2, 2), 3.0), LightSpec("point", (1, 1), (1.0, 2.0), distance=(4.0, 5.0), saturation=0.8)]
+    maker = FrameMaker(spec)
+    maker.make(0)
+    lights = [maker._scene.light(name) for name in maker._scene.light_names()]
+    assert [light.type for light in lights] == ["directional", "directional", "point"]
+    for light in lights[:2]:
+        assert light.intensity == pytest.approx(3)
+        direction = np.array(light.direction) / np.linalg.norm(light.direction)
+        assert np.sin(np.radians(15)) <= -direction[1] <= np.sin(np.radians(75))
+    distance = np.linalg.norm(lights[2].position)
+    assert 4 <= distance <= 5
+    # Lux at the origin, of candela from there; the strongest channel is not weakened.
+    assert 1 <= lights[2].intensity / distance**2 <= 2
+    assert max(lights[2].color) == pytest.approx(1) and min(lights[2].color) < 0.95
+    first = [tuple(light.direction) for light in lights[:2]]
+    maker.make(1)
+    maker.make(0)
+    assert [tuple(maker._scene.light(name).direction) for name in maker._scene.light_names()][:2] == first
+
+
+@pytest.mark.parametrize("text, message", [
+    ("[[lights]]\ntype = 'spot'\n[[objects]]", r"lights\[0\].type.*directional"),
+    ("[sensor]\njpeg_quality = 0\n[[objects]]", "jpeg_quality.*1 to 100"),
+    ("[motion]\nspin = 3", "no 'spin'.*translation"),
+])
+def test_bad_lights_motion_and_sensors(tmp_path, text, message):
+    (tmp_path / "spec.toml").write_text(text)
+    with pytest.raises(ArgumentError, match=message):
+        DatasetSpec.from_toml(tmp_path / "spec.toml")
