@@ -56,7 +56,30 @@ def test_a_recording_plays_it(render, moving, tmp_path):
     assert (png.read(tmp_path / "f_0.png") != png.read(tmp_path / "f_2.png")).any()
 
 
+def test_a_still_is_blurred_like_a_frame_of_a_recording(render, moving, tmp_path):
+    """Its shutter was open since the frame before, which is 1 / fps ago, whatever a single still is drawn after."""
+    pose = np.eye(4)
+    pose[2, 3] = 6
+    (tmp_path / "rest.json").write_text(json.dumps({"keys": [pose.tolist()] * 2, "segment_s": 0.2, "mode": "linear"}))
+    (tmp_path / "pose.txt").write_text(" ".join(map(str, pose.ravel())))
+    look = ("--animation", "0", "--fps", "10", "--samples", "8", "--exposure", "1", "--set", "camera.near=0.1", "--set",
+            "lights.key.enabled=false", "--set", "lights.fill.enabled=false", "--set", "lights.rim.enabled=false")
+    blurred = ("--set", "motion_blur.enabled=true", "--set", "motion_blur.shutter=1")
+    render(moving, "--camera-path", "rest.json", "-o", "f_%d.png", *look, *blurred)
+    still = ("--animation-time", "0.2", "--camera-pose", "pose.txt", *look)
+    render(moving, "-o", "blurred.png", *still, *blurred)
+    render(moving, "-o", "sharp.png", *still)
+    np.testing.assert_array_equal(png.read(tmp_path / "f_2.png"), png.read(tmp_path / "blurred.png"))
+    assert (png.read(tmp_path / "blurred.png") != png.read(tmp_path / "sharp.png")).any()
+    # At its beginning the animation has not moved yet; it does not come from its end.
+    render(moving, "-o", "first.png", "--animation-time", "0", "--camera-pose", "pose.txt", *look, *blurred)
+    render(moving, "-o", "rest.png", "--animation-time", "0", "--camera-pose", "pose.txt", *look)
+    np.testing.assert_array_equal(png.read(tmp_path / "first.png"), png.read(tmp_path / "rest.png"))
+
+
 def test_what_is_not_there(render, moving, box):
     assert "there is no animation 'og'" in render(moving, "--animation", "og", "-o", "a.png", code=1).stderr
     assert "the files hold no animations" in render(box, "--animation", "go", "-o", "a.png", code=1).stderr
+    arguments = ("--animation", "go", "--fps", "0", "-o", "a.png")
+    assert "--fps: expected a number above 0" in render(moving, *arguments, code=2).stderr
     assert "--animation-time needs --animation" in render(moving, "--animation-time", "1", "-o", "a.png", code=2).stderr

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <set>
+#include <utility>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
@@ -216,6 +217,8 @@ void Session::annotate(const Prepared& prepared) {
 
 void Session::draw_frame(const PictureOptions& options) {
     Prepared prepared = prepare(options);
+    if (const auto begin = std::exchange(motion_begin_, std::nullopt))
+        motion_ = std::make_shared<const Motion>(*begin, prepared.resolved.camera);
     if (settings_.motion_blur.enabled) prepared.options.motion = motion_;
     apply_lens(prepared);
     refined_.reset();

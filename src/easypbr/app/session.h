@@ -94,6 +94,8 @@ class Session {
     /// With motion_blur.enabled a picture of several samples shows how things moved since the picture before.
     /// After this the next one shows none: nothing is known of before.
     void forget_motion() { motion_.reset(); }
+    /// The next picture's motion begins where things are now, as if they had been drawn from where its camera is.
+    void begin_motion() { motion_begin_ = scene_.snapshot(); }
 
     /// Names of what is visible; the layer "id" holds 1 + the place in this list.
     std::vector<std::string> object_names() const;
@@ -202,6 +204,7 @@ class Session {
     Timing timing_;
     bool warned_of_lens_ = false, warned_of_surfels_ = false;
     std::shared_ptr<const Motion> motion_;  ///< where things were in the picture that was drawn last
+    std::optional<SceneSnapshot> motion_begin_;
 
     /// What refine() adds frames to; nothing: it has to begin.
     struct Refined {

@@ -147,6 +147,7 @@ class RenderJob {
             if (options_.timing) fmt::print(stderr, "easypbr: timing: {}\n", watch.summary());
             return;
         }
+        begin_motion();
         const Image image = session_.render({std::nullopt, std::nullopt, encoding_of(picture)});
         watch.add("context", session_.timing().context);
         watch.add("images", session_.timing().images);
@@ -173,6 +174,15 @@ class RenderJob {
     void animate(double time_s) {
         if (animation_)
             animation_->first.apply(animation_->second, options_.animation_time.value_or(0) + time_s);
+    }
+
+    /// A still shows what a recording's frame shows: how the animation went on since the frame before.
+    void begin_motion() {
+        const double frame_s = 1 / recording_of(options_).fps, now_s = options_.animation_time.value_or(0);
+        if (!animation_ || !session_.settings().motion_blur.enabled) return;
+        animate(-std::min(frame_s, now_s));
+        session_.begin_motion();
+        animate(0);
     }
 
     /// The first file with animations has the one that is meant.

@@ -253,9 +253,12 @@ void check_recording_usage(const RenderOptions& options) {
     if (options.animation_time && options.animation.empty())
         throw UsageError("render: --animation-time needs --animation");
     if (!options.records()) {
-        if (options.fps || !options.codec.empty())
+        const bool fps_is_idle = options.fps && options.animation.empty();
+        if (fps_is_idle || !options.codec.empty())
             throw UsageError(fmt::format("render: {} needs --turntable or --camera-path",
-                                         options.fps ? "--fps" : "--codec"));
+                                         fps_is_idle ? "--fps" : "--codec"));
+        if (options.fps && !(*options.fps > 0))
+            throw UsageError(fmt::format("--fps: expected a number above 0, got {}", *options.fps));
         if (io::is_video(options.output))
             throw UsageError("render: a video needs --turntable or --camera-path");
         return;
