@@ -97,6 +97,45 @@ def viewer_slices() -> np.ndarray:
     return view.screenshot()[:, :, :3]
 
 
+def viewer_path() -> np.ndarray:
+    """The panels of camera path and recorder, a path of four keys around a teapot."""
+    view = Viewer((1120, 740), {"image.samples": 16}, on_floor(teapot("#c8b89a", roughness=0.6)))
+    view.scene.get("floor").scale(2.5)
+    keys = [easypbr.Camera.look_at((2 * np.sin(a), 0.4 + 0.4 * i, 2 * np.cos(a)), (0, 0.45, 0), fov_y_deg=35)
+            for i, a in enumerate(np.radians([-40, 25, 90, 160]))]
+    view._handle.set_path(easypbr.CameraPath(keys, segment_s=1.5))
+    view.camera = easypbr.Camera.look_at((2.9, 3, 5), (-0.3, 0.5, 0), fov_y_deg=35)
+    for name in ("Object", "Animations", "Effects", "Lights", "Environment", "Camera", "Channels", "Statistics"):
+        view._handle.set_gui(name, False)
+    for name in ("Camera path", "Recorder"):
+        view._handle.set_gui("unfold", name)
+        view.screenshot()
+    return view.screenshot()[:, :, :3]
+
+
+def viewer_own() -> np.ndarray:
+    """A panel of one's own, images and a camera with its image."""
+    view = window_of((1280, 760))
+    view._handle.set_gui("Effects", False)
+    random = np.random.default_rng(0)
+    losses = np.exp(-np.arange(300) / 70) + 0.04 * random.normal(size=300)
+    picture = view.render((160, 120), samples=8)[:, :, :3]
+
+    @view.add_panel("Training")
+    def training(ui):
+        ui.text("Epoch 12 of 40")
+        ui.progress(0.3, "30 %")
+        ui.slider("learning rate", 0.1, 0.0, 1.0)
+        ui.checkbox("augment", True)
+        ui.combo("optimizer", "Adam", ["SGD", "Adam"])
+        ui.plot("loss", losses)
+        ui.button("Forget")
+
+    view.show_image("prediction", picture)
+    view.show_image("error", random.random((30, 40)) ** 4, colormap="magma")
+    return view.screenshot()[:, :, :3]
+
+
 def demo() -> np.ndarray:
     """What `easypbr demo` draws, its camera included."""
     with tempfile.TemporaryDirectory() as folder:
@@ -343,7 +382,7 @@ def drones() -> np.ndarray:
 
 PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion,
             bloom, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
-            viewer_slices]
+            viewer_slices, viewer_path, viewer_own]
 
 
 if __name__ == "__main__":

@@ -18,6 +18,11 @@ def _finish_recordings() -> None:
         recorder.stop()
 
 
+def watch_recorder(recorder: "Recorder") -> None:
+    """Finishes what this recorder records when the program ends."""
+    _started.add(recorder)
+
+
 class Recorder:
     """Pictures of a viewer as files, and recordings: frames are encoded beside the drawing, all of them, in order."""
 

@@ -11,10 +11,11 @@ from . import _easypbr
 from .errors import ArgumentError
 from .lights import _STUDIO, Lights
 from .panels import WindowCallbacks
-from .recorder import Recorder
+from .recorder import Recorder, watch_recorder
 from .scene import Scene
 from .settings import Settings
-from .tensors import converter
+from .shapes import camera_frustum
+from .tensors import as_numpy, converter
 
 
 class Viewer(WindowCallbacks):
@@ -108,6 +109,33 @@ class Viewer(WindowCallbacks):
     def fixed_step(self, seconds: float | None):
         self._handle.fixed_step = seconds
 
+    def play(self, animations=None, animation: str | int = 0, speed: float = 1.0, loop: bool = True) -> None:
+        """Plays an animation of a file, by its name or number, from its start: view.play(load_scene(path).animations). It
+        follows view.time: that of the window, or of the frames that are recorded. Without arguments it goes on after
+        pause(). `speed`: below 0 backwards."""
+        if animations is None:
+            self._handle.resume(speed, loop)
+        else:
+            self._handle.play(animations, str(animation), speed, loop)
+
+    def pause(self) -> None:
+        """The animation stays as it is, until play()."""
+        self._handle.pause()
+
+    @property
+    def is_playing(self) -> bool:
+        """Whether an animation plays."""
+        return self._handle.is_playing()
+
+    @property
+    def animation_time(self) -> float:
+        """Seconds of the animation that plays; assign to put the meshes where they are then."""
+        return self._handle.animation_time
+
+    @animation_time.setter
+    def animation_time(self, seconds: float):
+        self._handle.animation_time = seconds
+
     def turntable(self, duration_s: float = 4.0) -> "_easypbr.CameraPath":
         """One turn of the camera around the content, from where it is; while it is automatic from far enough away for
         the content to stay in the picture."""
@@ -197,6 +225,7 @@ class Viewer(WindowCallbacks):
     def update(self) -> bool:
         """Opens the window at the first call; shows what has changed and does what mouse and keys ask for. Waits up to
         16 ms for something to happen. False when the window has been closed: while view.update(): ..."""
+        watch_recorder(self.recorder)  # The panel may begin a recording.
         self._run(self._before_draw)
         is_open = self._handle.update()
         self._run(self._after_draw)
@@ -215,6 +244,41 @@ class Viewer(WindowCallbacks):
         self._thread = threading.Thread(target=self._live, name="easypbr window", daemon=True)
         self._thread.start()
         atexit.register(self.close)  # A thread within the library must not outlive the interpreter.
+
+    def show_image(self, name: str, image, range: tuple[float, float] | None = None, colormap: str | None = None) -> None:
+        """Shows an image in the window, beside the scene: an array or tensor of height x width (x 1, 3 or 4), of uint8,
+        uint16, floats, bool or integers. Under the name of one that is there it takes its place, as in every iteration of a
+        training loop. Values are shown as they are: 0 to 255, of floats 0 to 1, or `range`; of a single channel all of
+        them, in a `colormap` (see colormap()). Without a window it is kept, for screenshots."""
+        array = np.asarray(as_numpy(image))
+        if array.dtype.kind not in "buif":
+            raise ArgumentError(f"show_image: expected numbers, got {array.dtype}")
+        if array.dtype == np.bool_:
+            array = array.astype(np.uint8) * 255
+        elif array.dtype not in (np.uint8, np.uint16):
+            array = array.astype(np.float32)
+        if array.ndim == 3 and array.shape[0] in (1, 3, 4) and array.shape[2] > 4:
+            raise ArgumentError(
+                f"show_image: expected height x width (x 1, 3 or 4), got {' x '.join(map(str, array.shape))}; "
+                "permute(1, 2, 0) puts the channels last"
+            )
+        low, high = (None, None) if range is None else range
+        self._handle.show_image(name, array, low, high, colormap)
+
+    def remove_image(self, name: str) -> None:
+        """Removes an image that was shown."""
+        self._handle.remove_image(name)
+
+    def image_names(self) -> list[str]:
+        """Names of the images that are shown."""
+        return self._handle.image_names()
+
+    def add_camera_frustum(self, name: str, K, T_world_cam, image=None, size=None, depth: float = 1.0) -> "_easypbr.Mesh":
+        """Shows a camera in the scene: what it sees, `depth` far, as lines, with its image in it. K and T_world_cam are
+        OpenCV's; `size` is (width, height), by default the image's. See shapes.camera_frustum()."""
+        if image is not None:
+            image = np.asarray(as_numpy(image))
+        return self.scene.show(camera_frustum((K, T_world_cam), image, size, depth), name)
 
     def _live(self) -> None:
         while self.update():

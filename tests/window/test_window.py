@@ -66,7 +66,8 @@ def test_the_wheel_zooms_and_a_click_picks(window):
 
 
 def test_keys_toggle_each_panel(window):
-    names = ["Scene", "Object", "Effects", "Lights", "Environment", "Camera", "Channels", "Statistics"]
+    names = ["Scene", "Object", "Effects", "Lights", "Environment", "Camera", "Channels", "Statistics", "Animations",
+             "Camera path", "Recorder"]
     assert window.state["panels"] == names
     pictures = [window.shown()]
     for number, name in enumerate(names, 1):

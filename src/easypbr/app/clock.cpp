@@ -26,6 +26,11 @@ void Clock::set_time(double time_s) {
 }
 
 void Clock::tick() {
+    advance();
+    if (on_tick) on_tick();
+}
+
+void Clock::advance() {
     if (step_) {
         // Counted, not added up: the thousandth frame comes after a thousand steps to the last bit.
         ++steps_;

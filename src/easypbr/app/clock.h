@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <optional>
 
 namespace easypbr::app {
@@ -12,8 +13,8 @@ class Clock {
   public:
     /// Seconds since the first frame, or since the time that was set.
     double time() const { return start_ + (step_ ? *step_ * double(steps_) : passed_); }
-    /// Seconds between the last two frames; 0 at the first one, and at the first after the time or the step was
-    /// set.
+    /// Seconds between the last two frames; 0 at the first one, and at the first after the time or the step
+    /// was set.
     double delta_time() const { return delta_; }
 
     /// From now on each frame comes this many seconds after the last; nothing: in real time. Time goes on
@@ -24,10 +25,12 @@ class Clock {
     /// Throws ArgumentError when the time is not finite.
     void set_time(double time_s);
 
-    /// A new frame begins.
+    /// A new frame begins; `on_tick` is called then.
     void tick();
+    std::function<void()> on_tick;
 
   private:
+    void advance();
     using Moment = std::chrono::steady_clock::time_point;
 
     double start_ = 0;   ///< time when counting began

@@ -6,8 +6,10 @@
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/drawable.h"
 #include "easypbr/cli/render_options.h"
+#include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/gui/live_view.h"
+#include "easypbr/io/camera_path_io.h"
 #include "easypbr/io/image_io.h"
 #include "easypbr/scene/fields.h"
 #include "easypbr/viewer/viewer.h"
@@ -17,7 +19,7 @@ namespace {
 
 struct ViewOptions {
     std::vector<std::string> files, values;
-    std::string size = "1280x720", environment, settings, screenshot;
+    std::string size = "1280x720", environment, settings, screenshot, animation, path;
     bool watch = false, light = false;
 };
 
@@ -32,6 +34,12 @@ void declare(CLI::App& command, ViewOptions& options) {
     command.add_option("--set", options.values, "Any setting, for example tonemap.exposure=2")
         ->allow_extra_args(false)
         ->option_text("KEY=VALUE");
+    command
+        .add_option("--animation", options.animation, "Play this animation of the file, by name or number")
+        ->option_text("NAME");
+    command
+        .add_option("--camera-path", options.path, "A camera path for the panel, as easypbr render takes it")
+        ->option_text("FILE");
     command.add_flag("--watch", options.watch, "Show files again when they change");
     command.add_flag("--light", options.light, "Light panels instead of dark ones");
     command
@@ -49,6 +57,14 @@ RenderOptions look_of(const ViewOptions& options) {
     return look;
 }
 
+/// Plays what the first file that has animations calls so.
+void play(Viewer& view, const std::vector<std::string>& names, const std::string& animation) {
+    if (view.player().empty())
+        throw ArgumentError(fmt::format("--animation {}: none of the files has animations", animation));
+    for (const std::string& name : names)
+        if (view.player().has(name)) return view.player().play(name, animation);
+}
+
 int run(const ViewOptions& options) {
     Viewer view{Scene()};
     if (!options.settings.empty()) app::load_settings(view.session(), options.settings);
@@ -57,9 +73,13 @@ int run(const ViewOptions& options) {
     const std::vector<std::string> names = unique_names(options.files);
     for (size_t i = 0; i < names.size(); ++i) {
         const io::LoadOptions load{.crease_angle_deg = view.settings().load.crease_deg};
-        show(view.scene(), load_drawable(options.files[i], load), names[i]);
+        const io::LoadedScene loaded = load_drawable(options.files[i], load);
+        show(view.scene(), loaded, names[i]);
+        if (!loaded.animations.empty()) view.player().add(names[i], loaded.animations);
         if (options.watch) view.live().watch(options.files[i], names[i]);
     }
+    if (!options.animation.empty()) play(view, names, options.animation);
+    if (!options.path.empty()) view.live().state().path.set(io::load_camera_path(options.path));
     if (options.light) view.live().state().theme = gui::Theme::light;
     if (options.screenshot.empty())
         view.show();

@@ -20,7 +20,12 @@ struct Column {
     std::vector<std::pair<Panel, void (*)(GuiState&)>> panels;
 };
 
-const Column left = {"##left", {{Panel::scene, scene_panel}, {Panel::object, object_panel}}};
+const Column left = {"##left",
+                     {{Panel::scene, scene_panel},
+                      {Panel::object, object_panel},
+                      {Panel::animations, animations_panel},
+                      {Panel::camera_path, camera_path_panel},
+                      {Panel::recorder, recorder_panel}}};
 const Column right = {"##right",
                       {{Panel::effects, effects_panel},
                        {Panel::lights, lights_panel},
@@ -28,10 +33,17 @@ const Column right = {"##right",
                        {Panel::camera, camera_panel},
                        {Panel::channels, channels_panel},
                        {Panel::statistics, statistics_panel}}};
-const Panel folded[] = {Panel::lights, Panel::environment, Panel::camera};
+const Panel folded[] = {Panel::lights,     Panel::environment, Panel::camera,
+                        Panel::animations, Panel::camera_path, Panel::recorder};
 
 void draw_panel(GuiState& state, Panel panel, void (*contents)(GuiState&)) {
-    if (!heading(panel_name(panel), std::ranges::find(folded, panel) == std::end(folded))) return;
+    if (state.unfold == panel) {
+        ImGui::SetNextItemOpen(true);
+        state.unfold.reset();
+    }
+    const bool open = heading(panel_name(panel), std::ranges::find(folded, panel) == std::end(folded));
+    note_place(state, panel_name(panel));
+    if (!open) return;
     ImGui::PushID(panel_name(panel));
     ImGui::Spacing();
     contents(state);
@@ -184,6 +196,8 @@ void Gui::prepare(const GuiState& state, double seconds) {
 }
 
 void Gui::draw_panels(GuiState& state, const std::function<void()>& more) {
+    state.image_value.clear();
+    if (state.show_panels) draw_path(state);
     state.handles_pointer = state.show_panels && manipulate(state);
     if (state.show_panels) {
         menu_bar(state);

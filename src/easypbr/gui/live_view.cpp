@@ -13,6 +13,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/gl/context.h"
+#include "easypbr/gui/panels.h"
 #include "easypbr/io/mesh_io.h"
 
 namespace easypbr::gui {
@@ -59,18 +60,42 @@ std::string unique_name(const Scene& scene, const std::string& stem) {
     return name;
 }
 
-void show_loaded(Scene& scene, const io::LoadedScene& loaded, const std::string& name) {
+void show_loaded(Scene& scene, app::AnimationPlayer& player, const io::LoadedScene& loaded,
+                 const std::string& name) {
     scene.show(loaded.mesh, name);
+    if (!loaded.animations.empty()) player.add(name, loaded.animations);
     for (const auto& [light, value] : loaded.lights) scene.set_light(name + "/" + light, value);
 }
 
 }  // namespace
 
-LiveView::LiveView(app::Session& session) : session_(session), state_(session) {
+struct LiveView::Own {
+    explicit Own(app::Session& session) : recorder(session, clock), player(clock) {}
+    app::Clock clock;
+    app::Recorder recorder;
+    app::AnimationPlayer player;
+};
+
+LiveView::LiveView(app::Session& session) : LiveView(session, std::make_unique<Own>(session)) {}
+
+LiveView::LiveView(app::Session& session, std::unique_ptr<Own> own)
+    : LiveView(session, own->recorder, own->player) {
+    own_ = std::move(own);
+}
+
+LiveView::~LiveView() = default;
+
+LiveView::LiveView(app::Session& session, app::Recorder& recorder, app::AnimationPlayer& player)
+    : session_(session), recorder_(recorder), recording_(session, recorder), state_(session) {
+    state_.player = &player;
+    state_.recording = &recording_;
     auto clipboard = std::make_shared<std::string>();
     state_.read_clipboard = [clipboard] { return *clipboard; };
     state_.write_clipboard = [clipboard](const std::string& text) { *clipboard = text; };
-    state_.own_menu = [this] { panels_.menu(); };
+    state_.own_menu = [this] {
+        panels_.menu();
+        images_.menu();
+    };
 }
 
 void LiveView::add_panel(const std::string& name, PanelFunction function) {
@@ -113,7 +138,8 @@ bool LiveView::handled_by_user(const InputEvent& event) {
 }
 
 bool LiveView::is_moving() const {
-    return (control_.is_moving() && control_.has_dragged()) || gui_.is_active() || state_.drag.axis >= 0;
+    return (control_.is_moving() && control_.has_dragged()) || gui_.is_active() || state_.drag.axis >= 0 ||
+           state_.path.is_playing();
 }
 
 bool LiveView::update(const std::vector<InputEvent>& events, Vec2i size, float scale, double seconds) {
@@ -152,9 +178,11 @@ bool LiveView::update_now(const std::vector<InputEvent>& events, Vec2i size, flo
     } catch (const Error& error) {
         state_.notify(error.what(), true);
     }
+    move_along_path(seconds);
     std::erase_if(state_.notifications, [&](Notification& n) { return (n.seconds_left -= seconds) <= 0; });
     const gl::ContextScope scope(session_.context());
-    const bool drew = draw_picture();
+    // While a path is recorded its frames are shown.
+    const bool drew = !recording_.is_path() && draw_picture();
     changed |= std::exchange(told_, state_.notifications.size()) != state_.notifications.size();
     if (changed || drew) gui_frames_ = 3;
     // What a user's panel shows may change though nothing happens.
@@ -163,9 +191,11 @@ bool LiveView::update_now(const std::vector<InputEvent>& events, Vec2i size, flo
     bool draws = gui_frames_ > 0;
     if (draws || asks_panels) draws = draw_screen(seconds, draws);
     gui_frames_ = std::max(gui_frames_ - 1, 0);
-    if (!is_moving() && !failed_) state_.history.note(session_.settings());
+    record();
+    if (!is_moving() && !failed_ && !recording_.is_path()) state_.history.note(session_.settings());
     const bool refines = !failed_ && frames_ < state_.statistics.total;
-    busy_ = refines || gui_frames_ > 0 || control_.is_moving();
+    busy_ = refines || gui_frames_ > 0 || control_.is_moving() || state_.path.is_playing() ||
+            recording_.is_path();
     return draws;
 }
 
@@ -205,6 +235,9 @@ bool LiveView::shortcut(const InputEvent& event) {
                 state_.show_keys = false;
             else
                 state_.close = true;
+            return true;
+        case 'K':
+            if (!guarded([&] { add_path_key(state_); })) last_failure_.clear();
             return true;
         case 'H':
             state_.show_panels = !state_.show_panels;
@@ -321,7 +354,7 @@ void LiveView::open(const fs::path& path) {
     const io::LoadedScene loaded =
         io::load_scene(path, {.crease_angle_deg = session_.settings().load.crease_deg});
     const std::string name = unique_name(session_.scene(), path.stem().string());
-    show_loaded(session_.scene(), loaded, name);
+    show_loaded(session_.scene(), *state_.player, loaded, name);
     state_.notify("Added " + name);
 }
 
@@ -337,7 +370,7 @@ void LiveView::reload_changed(double seconds) {
             const auto time = fs::last_write_time(file.path, gone);
             if (gone || time == file.time) continue;
             file.time = time;
-            show_loaded(session_.scene(),
+            show_loaded(session_.scene(), *state_.player,
                         io::load_scene(file.path, {.crease_angle_deg = session_.settings().load.crease_deg}),
                         file.name);
             state_.notify("Reloaded " + file.name);
@@ -415,7 +448,7 @@ bool LiveView::draw_quickly(bool adapt) {
     if (state_.statistics.total == 1) frames_ = 1;
     state_.resolved = session_.resolve(state_.size);
     state_.hovered.reset();
-    wants_hover_ |= !state_.hovered && pointer_.x() >= 0;
+    wants_hover_ |= pointer_.x() >= 0 || shows_path();
     return true;
 }
 
@@ -438,12 +471,12 @@ void LiveView::show_picture() {
         const std::vector<std::string> names = {"metallic", "albedo", "ambient_occlusion", "normal"};
         const auto layers = session_.render_layers(names, quick_size_);
         for (const std::string& name : names) pictures.push_back(app::layer_picture(name, layers.at(name)));
-        show_image(app::slices(pictures));
+        show_pixels(app::slices(pictures));
     } else if (shows_layers()) {
-        show_image(app::layer_picture(
+        show_pixels(app::layer_picture(
             state_.channel, session_.render_layers({state_.channel}, quick_size_).at(state_.channel)));
     } else if (annotation.legend.value_or(false) || annotation.colorbar.value_or(false)) {
-        show_image(session_.last_picture());
+        show_pixels(session_.last_picture());
     } else {
         const gl::Texture& picture = session_.renderer().picture();
         make_texture(shown_, {picture.width(), picture.height()});
@@ -451,7 +484,7 @@ void LiveView::show_picture() {
     }
 }
 
-void LiveView::show_image(const Image& image) {
+void LiveView::show_pixels(const Image& image) {
     make_texture(shown_, {image.width(), image.height()});
     shown_.upload(image.bytes());
 }
@@ -460,8 +493,11 @@ bool LiveView::draw_screen(double seconds, bool always) {
     const bool is_new = make_texture(screen_, state_.size);
     if (is_new) screen_framebuffer_ = gl::Framebuffer({&screen_});
     since_panels_ = 0;
+    state_.surfaces = surfaces_ && surfaces_version_ == version_ ? &*surfaces_ : nullptr;
     const bool changed = gui_.lay_out(state_, seconds, shown_, [&] {
-        if (state_.show_panels) panels_.draw(state_);
+        if (!state_.show_panels) return;
+        images_.draw(state_);
+        panels_.draw(state_);
     });
     if (!always && !changed && !is_new) return false;
     const float grey[4] = {0.25f, 0.25f, 0.25f, 1};

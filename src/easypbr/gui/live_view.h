@@ -11,6 +11,8 @@
 #include "easypbr/app/camera_control.h"
 #include "easypbr/app/session.h"
 #include "easypbr/gui/gui.h"
+#include "easypbr/gui/image_panels.h"
+#include "easypbr/gui/live_recording.h"
 #include "easypbr/gui/state.h"
 #include "easypbr/gui/user_panels.h"
 
@@ -21,7 +23,11 @@ namespace easypbr::gui {
 /// lower resolution.
 class LiveView {
   public:
+    /// A view with a clock, a recorder and a player of its own.
     explicit LiveView(app::Session& session);
+    /// With those of a program. All must outlive the view.
+    LiveView(app::Session& session, app::Recorder& recorder, app::AnimationPlayer& player);
+    ~LiveView();
 
     /// Takes what has happened in `seconds` and draws what is to be drawn. Returns whether the screen
     /// changed. Errors in what is drawn become notifications. Throws ArgumentError when it is called from a
@@ -44,6 +50,16 @@ class LiveView {
     void add_panel(const std::string& name, PanelFunction function);
     void remove_panel(const std::string& name);
     const UserPanels& panels() const { return panels_; }
+
+    /// Shows an image in a window beside the scene; see ImagePanels.
+    void show_image(const std::string& name, Image image, const ImageLook& look = {});
+    void remove_image(const std::string& name);
+    const ImagePanels& images() const { return images_; }
+
+    /// The recorder's panel records; its frames are those of the clock.
+    bool is_recording() const { return recording_.is_running(); }
+    /// Ends what the recorder's panel began. Errors become notifications.
+    void stop_recording();
 
     /// Calls `handler` for whatever happens but what the panels take for themselves, before the view acts on
     /// it; true keeps the view from that. What it throws becomes a notification. Returns a number for
@@ -99,16 +115,28 @@ class LiveView {
     bool draw_quickly(bool moving);
     bool refine();
     void show_picture();
-    void show_image(const Image& image);
+    void show_pixels(const Image& image);
+    void move_along_path(double seconds);
+    void record();
+    void say(const std::string& text, bool failed);
+    Image finished_now();
     bool draw_screen(double seconds, bool always);
     bool is_moving() const;
+    bool shows_path() const { return state_.show_panels && state_.show_path && !state_.path.keys().empty(); }
     bool shows_layers() const { return state_.channel != "picture"; }
 
+    struct Own;
+    LiveView(app::Session& session, std::unique_ptr<Own> own);
+
     app::Session& session_;
+    std::unique_ptr<Own> own_;
+    app::Recorder& recorder_;
+    LiveRecording recording_;
     GuiState state_;
     app::CameraControl control_;
     Gui gui_;
     UserPanels panels_;
+    ImagePanels images_;
     std::map<int, EventHandler> handlers_;
     int next_callback_ = 1;
     bool updating_ = false;

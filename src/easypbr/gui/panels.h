@@ -18,6 +18,17 @@ void camera_panel(GuiState& state);
 /// What is shown: the picture, a layer, or all of them in slices.
 void channels_panel(GuiState& state);
 void statistics_panel(GuiState& state);
+/// Which animation plays, how fast, where it is.
+void animations_panel(GuiState& state);
+/// Keys of a camera path, its shape and file; playing and scrubbing.
+void camera_path_panel(GuiState& state);
+/// What is recorded, and how far it is.
+void recorder_panel(GuiState& state);
+
+/// A key of the camera path from what is seen now, after the chosen one.
+void add_path_key(GuiState& state);
+/// The camera path over the picture.
+void draw_path(GuiState& state);
 
 /// The bar at the top.
 void menu_bar(GuiState& state);

@@ -13,8 +13,9 @@ void restore(GuiState& state, const Settings& settings) {
 }  // namespace
 
 const char* panel_name(Panel panel) {
-    constexpr const char* names[panel_count] = {"Scene",       "Object", "Effects",  "Lights",
-                                                "Environment", "Camera", "Channels", "Statistics"};
+    constexpr const char* names[panel_count] = {"Scene",       "Object",      "Effects",  "Lights",
+                                                "Environment", "Camera",      "Channels", "Statistics",
+                                                "Animations",  "Camera path", "Recorder"};
     return names[size_t(panel)];
 }
 

@@ -9,14 +9,29 @@
 #include <utility>
 #include <vector>
 
+#include "easypbr/app/animation_player.h"
 #include "easypbr/app/history.h"
+#include "easypbr/app/path_editor.h"
 #include "easypbr/app/session.h"
+#include "easypbr/gui/live_recording.h"
 #include "easypbr/gui/theme.h"
 
 namespace easypbr::gui {
 
-enum class Panel { scene, object, effects, lights, environment, camera, channels, statistics };
-inline constexpr int panel_count = 8;
+enum class Panel {
+    scene,
+    object,
+    effects,
+    lights,
+    environment,
+    camera,
+    channels,
+    statistics,
+    animations,
+    camera_path,
+    recorder
+};
+inline constexpr int panel_count = 11;
 /// Name of a panel as it stands in menus; its key is F1 and on.
 const char* panel_name(Panel panel);
 
@@ -49,6 +64,15 @@ struct HandleDrag {
 /// same name.
 using LookChange = std::function<void(MeshData&)>;
 
+/// What the recorder's panel asks for.
+enum class RecorderWish { none, picture, video, path, stop };
+
+constexpr std::array<bool, panel_count> all_panels() {
+    std::array<bool, panel_count> all{};
+    all.fill(true);
+    return all;
+}
+
 struct GuiState {
     explicit GuiState(app::Session& s) : session(s) {}
 
@@ -57,7 +81,8 @@ struct GuiState {
     Vec2i size{1, 1};                          ///< of the window
     float scale = 1;
 
-    std::array<bool, panel_count> open = {true, true, true, true, true, true, true, true};
+    std::array<bool, panel_count> open = all_panels();
+    std::optional<Panel> unfold;  ///< in the next frame
     bool show_panels = true, show_keys = false;
     Theme theme = Theme::dark;
 
@@ -71,6 +96,23 @@ struct GuiState {
     Statistics statistics;
     std::vector<Notification> notifications;
     app::History history;
+
+    app::PathEditor path;
+    std::optional<size_t> path_key;     ///< the chosen one
+    std::optional<size_t> look_at_key;  ///< the camera goes there
+    std::string path_file = "camera_path.json";
+    bool show_path = true;
+    const app::PickBuffer* surfaces = nullptr;  ///< of what is shown, where they are known
+
+    app::AnimationPlayer* player = nullptr;
+
+    RecordingForm form;
+    RecorderWish wish = RecorderWish::none;
+    const LiveRecording* recording = nullptr;
+    std::string recorder_says;  ///< of the last recording
+    bool recorder_failed = false;
+
+    std::string image_value;  ///< under the pointer, in an image beside the scene
 
     std::map<std::string, std::map<std::string, LookChange>> looks;  ///< by object, by property
     bool close = false, fit = false, save = false;

@@ -194,6 +194,14 @@ void note_place(GuiState& state, const std::string& name) {
     state.places[name] = {Vec2d(from.x, from.y), Vec2d(to.x, to.y)};
 }
 
+bool named_button(GuiState& state, const char* panel, const char* name, float width, bool enabled) {
+    ImGui::BeginDisabled(!enabled);
+    const bool clicked = ImGui::Button(name, ImVec2(width, 0));
+    ImGui::EndDisabled();
+    note_place(state, fmt::format("{}/{}", panel, name));
+    return clicked;
+}
+
 void dim_text(const std::string& text) {
     ImGui::PushStyleColor(ImGuiCol_Text, ImGui::GetStyleColorVec4(ImGuiCol_TextDisabled));
     ImGui::TextUnformatted(text.c_str());

@@ -31,6 +31,9 @@ void field_row(const Field& field, const Value& value, const std::optional<Value
 /// A heading that folds its panel or group.
 bool heading(const char* text, bool open = true);
 
+/// A button that notes its place as "panel/name".
+bool named_button(GuiState& state, const char* panel, const char* name, float width, bool enabled = true);
+
 /// Notes where the last item is, under "panel/item", so that a test can point at it.
 void note_place(GuiState& state, const std::string& name);
 

@@ -178,6 +178,50 @@ void bind_widgets(nb::module_& module) {
             nb::arg("name"), nb::arg("values"), nb::arg("range").none());
 }
 
+void show_image(SharedViewer& self, const std::string& name, const nb::object& array,
+                std::optional<float> min, std::optional<float> max,
+                const std::optional<std::string>& colormap) {
+    Image image = to_image(array, "show_image");
+    gui::ImageLook look{min, max, {}};
+    if (colormap) look.colormap = colormap_named(*colormap);
+    self.run([&](Viewer& viewer) { viewer.show_image(name, std::move(image), look); });
+}
+
+/// Calls with the viewer's player.
+template <class Work>
+auto with_player(SharedViewer& self, Work&& work) {
+    return self.run([&](Viewer& viewer) { return work(viewer.player()); });
+}
+
+void bind_player(ViewerClass& viewer) {
+    using app::AnimationPlayer;
+    viewer
+        .def("play",
+             [](SharedViewer& self, const Animations& animations, const std::string& animation, double speed,
+                bool loop) { self.run([&](Viewer& v) { v.play(animations, animation, speed, loop); }); })
+        .def("resume",
+             [](SharedViewer& self, double speed, bool loop) {
+                 with_player(self, [&](AnimationPlayer& player) {
+                     player.resume();
+                     player.set_speed(speed);
+                     player.set_loop(loop);
+                 });
+             })
+        .def("pause", [](SharedViewer& self) { self.run([](Viewer& v) { v.pause(); }); })
+        .def("is_playing",
+             [](SharedViewer& self) {
+                 return with_player(self, [](AnimationPlayer& player) { return player.is_playing(); });
+             })
+        .def_prop_rw(
+            "animation_time",
+            [](SharedViewer& self) {
+                return with_player(self, [](AnimationPlayer& player) { return player.time(); });
+            },
+            [](SharedViewer& self, double time) {
+                with_player(self, [&](AnimationPlayer& player) { player.seek(time); });
+            });
+}
+
 }  // namespace
 
 void raise_kept(SharedViewer& self) {
@@ -193,11 +237,20 @@ bool update_window(SharedViewer& self) {
 void bind_gui(nb::module_& module, ViewerClass& viewer) {
     bind_event(module);
     bind_widgets(module);
+    bind_player(viewer);
     viewer.def("add_panel", add_panel)
         .def("remove_panel",
              [](SharedViewer& self, const std::string& name) {
                  self.run([&](Viewer& v) { v.remove_panel(name); });
              })
+        .def("show_image", show_image, nb::arg("name"), nb::arg("image"), nb::arg("min").none(),
+             nb::arg("max").none(), nb::arg("colormap").none())
+        .def("remove_image",
+             [](SharedViewer& self, const std::string& name) {
+                 self.run([&](Viewer& v) { v.remove_image(name); });
+             })
+        .def("image_names",
+             [](SharedViewer& self) { return self.run([](Viewer& v) { return v.live().images().names(); }); })
         .def("on_event", on_event)
         .def("remove_callback",
              [](SharedViewer& self, int number) { self.run([&](Viewer& v) { v.remove_callback(number); }); })

@@ -100,6 +100,12 @@ nb::dict gui_state(SharedViewer& self) {
     put("object", state.object);
     put("show_panels", state.show_panels);
     put("show_keys", state.show_keys);
+    put("path_keys", state.path.keys().size());
+    put("path_time", state.path.time());
+    put("path_plays", state.path.is_playing());
+    put("records", state.recording->is_running());
+    put("recorder_says", state.recorder_says);
+    put("image_value", state.image_value);
     put("channel", state.channel);
     put("pictures", state.statistics.pictures);
     put("frames", state.statistics.frames);
@@ -139,6 +145,18 @@ void set_gui(SharedViewer& self, const std::string& name, nb::handle value) {
             state.show_panels = flag;
         else if (name == "show_keys")
             state.show_keys = flag;
+        else if (name == "picture_file")
+            state.form.picture = text;
+        else if (name == "video_file")
+            state.form.video = text;
+        else if (name == "path_file")
+            state.path_file = text;
+        else if (name == "with_panels")
+            state.form.panels = flag;
+        else if (name == "transparent")
+            state.form.transparent = flag;
+        for (int i = 0; i < gui::panel_count; ++i)
+            if (name == "unfold" && text == gui::panel_name(gui::Panel(i))) state.unfold = gui::Panel(i);
         for (int i = 0; i < gui::panel_count; ++i)
             if (name == gui::panel_name(gui::Panel(i))) state.open[size_t(i)] = flag;
     });
@@ -166,6 +184,13 @@ void bind_window(ViewerClass& viewer) {
         .def("watch",
              [](SharedViewer& self, const fs::path& path, const std::string& name) {
                  self.run([&](Viewer& v) { v.live().watch(path, name); });
+             })
+        .def("set_path",
+             [](SharedViewer& self, const CameraPath& path) {
+                 self.run([&](Viewer& v) {
+                     v.live().state().path.set(path);
+                     v.live().touch();
+                 });
              })
         .def("gui_state", gui_state)
         .def("set_gui", set_gui, nb::arg("name"), nb::arg("value"));

@@ -39,7 +39,8 @@ std::string title_of(const Scene& scene) {
 }  // namespace
 
 struct Viewer::Window {
-    explicit Window(app::Session& session) : live(session) {}
+    explicit Window(app::Session& session, app::Recorder& recorder, app::AnimationPlayer& player)
+        : live(session, recorder, player) {}
 
     gui::LiveView live;
     std::unique_ptr<gui::Window> window;
@@ -77,7 +78,7 @@ struct Viewer::Window {
 Viewer::~Viewer() = default;
 
 Viewer::Window& Viewer::window() {
-    if (!window_) window_ = std::make_unique<Window>(*session_);
+    if (!window_) window_ = std::make_unique<Window>(*session_, recorder, *player_);
     return *window_;
 }
 
@@ -98,9 +99,10 @@ bool Viewer::update() {
     if (w.title != title) w.window->set_title(w.title = title);
     const auto events = w.window->events(w.live.is_busy() ? 0 : wait_seconds);
     const double seconds = std::min(w.tick(), longest_step);
-    if (recorder.is_recording())
+    // Frames that the window's panel records let the clock tick themselves.
+    if (recorder.is_recording() && !w.live.is_recording())
         recorder.add_frame();
-    else
+    else if (!w.live.is_recording())
         clock_->tick();
     w.call(w.before);
     const bool changed = w.live.update(events, w.window->size(), w.window->scale(), seconds);
@@ -124,6 +126,7 @@ void Viewer::show() {
 }
 
 void Viewer::shut(Window& window) {
+    window.live.stop_recording();
     window.closed = true;
     window.live.state().close = false;
     window.window.reset();
@@ -180,7 +183,25 @@ Scene& default_scene() {
 Viewer::Viewer(const Scene& scene)
     : session_(std::make_unique<app::Session>(scene)),
       clock_(std::make_unique<app::Clock>()),
-      recorder(*session_, *clock_) {}
+      player_(std::make_unique<app::AnimationPlayer>(*clock_)),
+      recorder(*session_, *clock_) {
+    clock_->on_tick = [player = player_.get()] { player->update(); };
+}
+
+void Viewer::play(const Animations& animations, const std::string& animation, double speed, bool loop) {
+    player_->set_speed(speed);
+    player_->set_loop(loop);
+    player_->add("", animations);
+    player_->play("", animation);
+}
+
+void Viewer::show_image(const std::string& name, Image image, const gui::ImageLook& look) {
+    live().show_image(name, std::move(image), look);
+}
+
+void Viewer::remove_image(const std::string& name) {
+    live().remove_image(name);
+}
 
 Viewer::Viewer(Vec2i size, const std::filesystem::path& settings) : Viewer(default_scene()) {
     if (!settings.empty()) app::load_settings(*session_, settings);

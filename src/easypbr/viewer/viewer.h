@@ -8,11 +8,13 @@
 #include <optional>
 #include <string>
 
+#include "easypbr/app/animation_player.h"
 #include "easypbr/app/clock.h"
 #include "easypbr/app/input.h"
 #include "easypbr/app/output.h"
 #include "easypbr/app/recorder.h"
 #include "easypbr/app/session.h"
+#include "easypbr/gui/shown_image.h"
 
 namespace easypbr {
 
@@ -39,6 +41,7 @@ class Viewer {
     // First, because the recorder keeps references to them.
     std::unique_ptr<app::Session> session_;
     std::unique_ptr<app::Clock> clock_;
+    std::unique_ptr<app::AnimationPlayer> player_;
 
   public:
     Viewer() : Viewer(default_scene()) {}
@@ -59,6 +62,15 @@ class Viewer {
     app::Clock& clock() { return *clock_; }
     double time() const { return clock_->time(); }
     double delta_time() const { return clock_->delta_time(); }
+
+    /// Plays an animation of a file (by its name or number) from its start, by the time of the clock: that of
+    /// the window, or of the frames that are recorded. Throws NameError, ArgumentError for a speed that is
+    /// not finite.
+    void play(const Animations& animations, const std::string& animation = "0", double speed = 1,
+              bool loop = true);
+    void pause() { player_->pause(); }
+    /// What plays, and where it is.
+    app::AnimationPlayer& player() { return *player_; }
 
     /// Lights the scene with an equirectangular picture (HDR, EXR, PNG, JPEG). Throws FileError, FormatError.
     void load_environment_map(const std::filesystem::path& path);
@@ -100,6 +112,11 @@ class Viewer {
     /// is shown in the panel. It may use this viewer, but for update(), show() and screenshot().
     void add_panel(const std::string& name, std::function<void(gui::Widgets&)> function);
     void remove_panel(const std::string& name);
+
+    /// Shows an image in the window, beside the scene; headless it is kept for screenshots. Of 1, 3 or 4
+    /// channels; values are shown as they are. Under the name of one that is there it takes its place.
+    void show_image(const std::string& name, Image image, const gui::ImageLook& look = {});
+    void remove_image(const std::string& name);
 
     /// Functions that update() calls before and after it draws; what they throw is shown in the window and
     /// the loop goes on. Numbers for remove_callback().

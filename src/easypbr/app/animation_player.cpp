@@ -1,0 +1,111 @@
+#include "easypbr/app/animation_player.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/suggest.h"
+
+namespace easypbr::app {
+
+void AnimationPlayer::rebuild_names() {
+    places_.clear();
+    names_.clear();
+    for (size_t file = 0; file < files_.size(); ++file) {
+        const std::vector<std::string> names = files_[file].animations.names();
+        for (size_t index = 0; index < names.size(); ++index) {
+            places_.push_back({file, index});
+            const std::string name = names[index].empty() ? fmt::format("animation {}", index) : names[index];
+            names_.push_back(files_[file].name.empty() ? name
+                                                       : fmt::format("{}: {}", files_[file].name, name));
+        }
+    }
+}
+
+void AnimationPlayer::add(const std::string& file, const Animations& animations) {
+    const auto known = std::ranges::find(files_, file, &File::name);
+    if (known != files_.end())
+        known->animations = animations;
+    else
+        files_.push_back({file, animations});
+    rebuild_names();
+    if (current_ >= places_.size()) {
+        current_ = 0;
+        playing_ = false;
+    }
+}
+
+bool AnimationPlayer::has(const std::string& file) const {
+    return std::ranges::find(files_, file, &File::name) != files_.end();
+}
+
+double AnimationPlayer::duration_s() const {
+    if (empty()) return 0;
+    const Place place = places_[current_];
+    return files_[place.file].animations.duration_s(place.index);
+}
+
+void AnimationPlayer::play(size_t number) {
+    if (number >= places_.size())
+        throw NameError(fmt::format("no animation {}, there are {}", number, places_.size()));
+    current_ = number;
+    seek(0);
+    playing_ = true;
+}
+
+void AnimationPlayer::play(const std::string& file, const std::string& animation) {
+    std::vector<std::string> files;
+    for (const File& known : files_) files.push_back(known.name);
+    const auto found = std::ranges::find(files, file);
+    if (found == files.end())
+        throw NameError(fmt::format("no animations of '{}'{}", file, did_you_mean(file, files)));
+    const size_t number = size_t(found - files.begin());
+    const size_t index = files_[number].animations.find(animation);
+    for (size_t i = 0; i < places_.size(); ++i)
+        if (places_[i].file == number && places_[i].index == index) play(i);
+}
+
+void AnimationPlayer::resume() {
+    if (empty()) throw ArgumentError("there is no animation to play: give play() those of load_scene()");
+    clock_base_ = clock_.time();
+    playing_ = true;
+}
+
+void AnimationPlayer::pause() {
+    base_ = time();
+    playing_ = false;
+}
+
+double AnimationPlayer::time() const {
+    return playing_ ? base_ + speed_ * (clock_.time() - clock_base_) : base_;
+}
+
+void AnimationPlayer::seek(double time_s) {
+    if (empty()) throw ArgumentError("there is no animation to play: give play() those of load_scene()");
+    if (!std::isfinite(time_s))
+        throw ArgumentError(fmt::format("animation: expected finite seconds, got {}", time_s));
+    base_ = time_s;
+    clock_base_ = clock_.time();
+    apply();
+}
+
+void AnimationPlayer::set_speed(double speed) {
+    if (!std::isfinite(speed))
+        throw ArgumentError(fmt::format("animation: expected a finite speed, got {}", speed));
+    base_ = time();
+    clock_base_ = clock_.time();
+    speed_ = speed;
+}
+
+void AnimationPlayer::update() {
+    if (playing_) apply();
+}
+
+void AnimationPlayer::apply() {
+    const Place place = places_[current_];
+    files_[place.file].animations.apply(place.index, time(), loop_);
+}
+
+}  // namespace easypbr::app

@@ -1,0 +1,143 @@
+#include "easypbr/gui/live_recording.h"
+
+#include <utility>
+
+#include "easypbr/core/error.h"
+#include "easypbr/io/image_io.h"
+
+namespace easypbr::gui {
+namespace {
+
+/// After a pause as long as this a video of what happens goes on without it.
+constexpr double longest_pause = 2;
+
+/// Leaves the background out for a scope.
+class WithoutBackground {
+  public:
+    WithoutBackground(Settings& settings, bool without)
+        : settings_(settings), before_(settings.background.mode) {
+        if (without) settings_.background.mode = BackgroundMode::transparent;
+    }
+    ~WithoutBackground() { settings_.background.mode = before_; }
+    WithoutBackground(const WithoutBackground&) = delete;
+    WithoutBackground& operator=(const WithoutBackground&) = delete;
+
+  private:
+    Settings& settings_;
+    BackgroundMode before_;
+};
+
+Vec2i size_of(const RecordingForm& form, Vec2i window, const Settings& settings) {
+    if (form.panels) return window;
+    return form.size.minCoeff() > 0 ? form.size : settings.image.size;
+}
+
+}  // namespace
+
+std::string LiveRecording::picture(const RecordingForm& form, const Screen& screen) {
+    if (form.panels) {
+        app::check_picture(form.picture, session_.settings());
+        io::save_image(screen(), form.picture);
+        return form.picture;
+    }
+    const WithoutBackground without(session_.settings(), form.transparent);
+    return recorder_.record(form.picture, {size_of(form, {0, 0}, session_.settings()), {}}).string();
+}
+
+void LiveRecording::begin(const RecordingForm& form, Vec2i window) {
+    if (running_) throw ArgumentError("a recording is going on: stop it first");
+    const Vec2i size = size_of(form, window, session_.settings());
+    {
+        const WithoutBackground without(session_.settings(), form.transparent && !form.panels);
+        recorder_.start(form.video, {.fps = form.fps, .size = size});
+    }
+    running_.emplace();
+    running_->form = form;
+    running_->size = size;
+}
+
+void LiveRecording::start(const RecordingForm& form, Vec2i window) {
+    begin(form, window);
+}
+
+void LiveRecording::start_path(const RecordingForm& form, Vec2i window, const CameraPath& path) {
+    std::vector<double> times = path.frame_times(form.fps);
+    const Camera like = session_.camera();
+    begin(form, window);
+    running_->path = path;
+    running_->times = std::move(times);
+    running_->like = like;
+    running_->camera_before = session_.settings().camera;
+}
+
+Image LiveRecording::draw(const RecordingForm& form, Vec2i size, std::optional<int> samples) {
+    const WithoutBackground without(session_.settings(), form.transparent);
+    return session_.render({size, samples, app::encoding_for_recording(form.video, false)});
+}
+
+void LiveRecording::add_path_frame(const Screen& finished) {
+    const double time = running_->times[size_t(running_->frames)];
+    session_.set_camera(running_->path->camera(time, running_->like));
+    if (running_->form.panels) {
+        recorder_.add_frame(finished());
+    } else {
+        frame_ = draw(running_->form, running_->size, std::nullopt);
+        recorder_.add_frame(frame_);
+    }
+    ++running_->frames;
+}
+
+void LiveRecording::add_live_frames(const Screen& shown) {
+    const auto due = [&] {
+        const double passed = std::chrono::duration<double>(Steady::now() - running_->begun).count();
+        return int(passed * running_->form.fps) + 1 - running_->frames;
+    };
+    if (due() <= 0) return;
+    const Image frame = running_->form.panels ? shown() : draw(running_->form, running_->size, 1);
+    int count = due();
+    const int most = int(longest_pause * running_->form.fps) + 1;
+    if (count > most) {
+        running_->begun += std::chrono::duration_cast<Steady::duration>(
+            std::chrono::duration<double>((count - most) / running_->form.fps));
+        count = most;
+    }
+    for (int i = 0; i < count; ++i) {
+        recorder_.add_frame(frame);
+        ++running_->frames;
+    }
+}
+
+void LiveRecording::advance(const Screen& finished, const Screen& shown) {
+    if (!running_) return;
+    // The program may have stopped it.
+    if (!recorder_.is_recording()) return end();
+    try {
+        if (running_->path)
+            add_path_frame(finished);
+        else
+            add_live_frames(shown);
+    } catch (...) {
+        end();
+        throw;
+    }
+}
+
+void LiveRecording::end() {
+    if (running_ && running_->camera_before) session_.settings().camera = *running_->camera_before;
+    running_.reset();
+    frame_ = {};
+}
+
+int LiveRecording::stop() {
+    if (!running_) return 0;
+    end();
+    return recorder_.stop();
+}
+
+double LiveRecording::seconds_left() const {
+    if (!running_ || running_->frames == 0 || running_->times.empty()) return 0;
+    const double passed = std::chrono::duration<double>(Steady::now() - running_->begun).count();
+    return passed / running_->frames * double(running_->times.size() - size_t(running_->frames));
+}
+
+}  // namespace easypbr::gui

@@ -1,0 +1,97 @@
+// Animations by a clock: one box that goes 2 units along x in 4 seconds.
+#include "easypbr/app/animation_player.h"
+
+#include <gtest/gtest.h>
+
+#include "easypbr/core/error.h"
+#include "easypbr/geometry/primitives.h"
+
+namespace easypbr::app {
+namespace {
+
+class Player : public testing::Test {
+  protected:
+    Player() {
+        clock_.set_fixed_step(0.5);
+        clock_.on_tick = [this] { player_.update(); };
+        AnimationNode node;
+        node.mesh = box_;
+        Animation slide;
+        slide.name = "slide";
+        slide.duration_s = 4;
+        AnimationChannel channel;
+        channel.times = {0, 4};
+        channel.values = ArrayXf::Dense{{0, 0, 0}, {2, 0, 0}};
+        slide.channels = {channel};
+        Animation rest = slide;
+        rest.name = "rest";
+        rest.channels[0].values.setZero();
+        animations_ = Animations({{node}, {}, {slide, rest}});
+    }
+    double x() const { return box_.T_parent_mesh().translation().x(); }
+
+    Mesh box_ = make_box({1, 1, 1});
+    Clock clock_;
+    AnimationPlayer player_{clock_};
+    Animations animations_;
+};
+
+TEST_F(Player, FollowsTheClockFromWhereItBegan) {
+    clock_.tick();
+    player_.add("box", animations_);
+    EXPECT_EQ(player_.names(), (std::vector<std::string>{"box: slide", "box: rest"}));
+    EXPECT_FALSE(player_.is_playing());
+    player_.play("box", "slide");
+    EXPECT_EQ(x(), 0);
+    clock_.tick();
+    EXPECT_NEAR(x(), 0.25, 1e-12);
+    for (int i = 0; i < 3; ++i) clock_.tick();
+    EXPECT_NEAR(x(), 1, 1e-12);
+    EXPECT_DOUBLE_EQ(player_.duration_s(), 4);
+}
+
+TEST_F(Player, PausesScrubsAndGoesOn) {
+    player_.add("box", animations_);
+    player_.play(0);
+    clock_.tick();
+    player_.pause();
+    clock_.tick();
+    EXPECT_NEAR(x(), 0.25, 1e-12);
+    EXPECT_DOUBLE_EQ(player_.time(), 0.5);
+    player_.seek(3);
+    EXPECT_NEAR(x(), 1.5, 1e-12);
+    player_.resume();
+    clock_.tick();
+    EXPECT_NEAR(x(), 1.75, 1e-12);
+}
+
+TEST_F(Player, SpeedAndLoop) {
+    player_.add("box", animations_);
+    player_.set_speed(-1);
+    player_.play(0);
+    clock_.tick();
+    EXPECT_NEAR(x(), 1.75, 1e-12);  // half a second before the end, going around
+    player_.set_speed(4);
+    clock_.tick();
+    EXPECT_NEAR(x(), 0.75, 1e-12);  // -0.5 + 2 s
+    player_.set_loop(false);
+    for (int i = 0; i < 4; ++i) clock_.tick();
+    EXPECT_NEAR(x(), 2, 1e-12);
+}
+
+TEST_F(Player, KnowsOtherFilesAndRefusesWhatThereIsNot) {
+    EXPECT_THROW(player_.resume(), ArgumentError);
+    EXPECT_THROW(player_.seek(1), ArgumentError);
+    EXPECT_THROW(player_.play(0), NameError);
+    player_.add("box", animations_);
+    player_.add("", animations_);
+    EXPECT_EQ(player_.names()[2], "slide");
+    EXPECT_THROW(player_.play("bax", "slide"), NameError);
+    EXPECT_THROW(player_.play("box", "slid"), NameError);
+    EXPECT_THROW(player_.set_speed(NAN), ArgumentError);
+    player_.play("box", "1");
+    EXPECT_EQ(player_.current(), 1u);
+}
+
+}  // namespace
+}  // namespace easypbr::app

@@ -1,0 +1,316 @@
+// The panels of camera path, recorder and animations, driven by events, without a window.
+#include <gtest/gtest.h>
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+
+#include "easypbr/core/error.h"
+#include "easypbr/geometry/primitives.h"
+#include "easypbr/gui/live_view.h"
+#include "easypbr/io/camera_path_io.h"
+#include "easypbr/io/image_io.h"
+
+namespace easypbr::gui {
+namespace {
+
+namespace fs = std::filesystem;
+using app::InputEvent;
+using Kind = InputEvent::Kind;
+
+const Vec2i size(560, 620);
+
+class MotionPanels : public testing::Test {
+  protected:
+    MotionPanels()
+        : session_(ball_scene()),
+          recorder_(session_, clock_),
+          player_(clock_),
+          view_(session_, recorder_, player_) {
+        folder_ = fs::temp_directory_path() / ("easypbr_motion_panels_" + std::to_string(::getpid()));
+        fs::create_directories(folder_);
+        session_.settings().image.samples = 2;
+        session_.settings().image.size = {48, 32};
+        for (const Panel panel : {Panel::scene, Panel::object, Panel::effects, Panel::lights,
+                                  Panel::environment, Panel::camera, Panel::channels, Panel::statistics})
+            view_.state().is_open(panel) = false;
+    }
+    ~MotionPanels() override { fs::remove_all(folder_); }
+
+    static Scene ball_scene() {
+        Scene scene;
+        scene.show(make_sphere(1, 32), "ball");
+        return scene;
+    }
+    void step(const std::vector<InputEvent>& events = {}, double seconds = 0.05) {
+        view_.update(events, size, 1, seconds);
+    }
+    void settle() {
+        for (int i = 0; i < 100 && (view_.is_busy() || i < 3); ++i) step();
+    }
+    void unfold(Panel panel) {
+        view_.state().unfold = panel;
+        view_.touch();
+        settle();
+    }
+    void key(int code) {
+        InputEvent event;
+        event.kind = Kind::key_down;
+        event.key = code;
+        step({event});
+    }
+    void click(const std::string& name) {
+        const auto place = view_.state().places.find(name);
+        ASSERT_NE(place, view_.state().places.end()) << name;
+        InputEvent event;
+        event.position = place->second.center();
+        for (const Kind kind : {Kind::move, Kind::press, Kind::release}) {
+            event.kind = kind;
+            step({event});
+        }
+        step();
+        event.kind = Kind::move;
+        event.position = {540, 610};
+        step({event});
+    }
+    void look_from(const Vec3d& position) {
+        session_.set_view_point({Camera::look_at(position, Vec3d(0, 0, 0)), Vec3d(0, 0, 0)});
+    }
+    Vec3d position() { return session_.view_point(size).camera.position(); }
+    void three_keys() {
+        for (const Vec3d& place : {Vec3d(0, 1, 5), Vec3d(5, 1, 0), Vec3d(0, 1, -5)}) {
+            look_from(place);
+            key('K');
+        }
+    }
+
+    app::Session session_;
+    app::Clock clock_;
+    app::Recorder recorder_;
+    app::AnimationPlayer player_;
+    LiveView view_;
+    fs::path folder_;
+};
+
+TEST_F(MotionPanels, KeysArePlacedListedMovedAndRemoved) {
+    unfold(Panel::camera_path);
+    look_from({0, 1, 5});
+    click("Camera path/Add key (K)");
+    look_from({5, 1, 0});
+    click("Camera path/Add key (K)");
+    look_from({0, 1, -5});
+    key('K');
+    const app::PathEditor& path = view_.state().path;
+    ASSERT_EQ(path.keys().size(), 3u);
+    EXPECT_LT((path.keys()[2].T_world_cam.translation() - Vec3d(0, 1, -5)).norm(), 1e-12);
+    settle();
+    click("Camera path/up 3");
+    EXPECT_LT((path.keys()[1].T_world_cam.translation() - Vec3d(0, 1, -5)).norm(), 1e-12);
+    click("Camera path/key 1");
+    EXPECT_LT((position() - Vec3d(0, 1, 5)).norm(), 1e-9);
+    look_from({0, 3, 4});
+    click("Camera path/replace 2");
+    EXPECT_LT((path.keys()[1].T_world_cam.translation() - Vec3d(0, 3, 4)).norm(), 1e-12);
+    click("Camera path/remove 1");
+    EXPECT_EQ(path.keys().size(), 2u);
+    click("Camera path/closed");
+    EXPECT_TRUE(path.options().closed);
+    EXPECT_DOUBLE_EQ(path.path()->duration_s(), 2);
+}
+
+TEST_F(MotionPanels, ThePathIsPlayedScrubbedSavedAndLoaded) {
+    unfold(Panel::camera_path);
+    three_keys();
+    settle();
+    click("Camera path/time");  // its middle
+    EXPECT_NEAR(view_.state().path.time(), 1, 0.02);
+    const CameraPath before = *view_.state().path.path();
+    EXPECT_LT((position() - before.pose(view_.state().path.time()).translation()).norm(), 1e-9);
+    view_.state().path.seek(0);
+    click("Camera path/Play");
+    EXPECT_TRUE(view_.state().path.is_playing());
+    for (int i = 0; i < 20 && view_.state().path.is_playing(); ++i) step({}, 0.25);
+    EXPECT_FALSE(view_.state().path.is_playing());
+    EXPECT_LT((position() - Vec3d(0, 1, -5)).norm(), 1e-9);
+    view_.state().path_file = (folder_ / "path.json").string();
+    click("Camera path/Save");
+    EXPECT_EQ(io::load_camera_path(folder_ / "path.json").keys().size(), 3u);
+    click("Camera path/Clear");
+    EXPECT_TRUE(view_.state().path.keys().empty());
+    click("Camera path/Load");
+    EXPECT_EQ(view_.state().path.path()->pose(0.7).matrix(), before.pose(0.7).matrix());
+    view_.state().path_file = (folder_ / "nothing.json").string();
+    click("Camera path/Load");
+    EXPECT_NE(view_.state().notifications.back().text.find("nothing.json"), std::string::npos);
+    EXPECT_EQ(view_.state().path.keys().size(), 3u);
+}
+
+// The way there is one change, not one for each frame.
+TEST_F(MotionPanels, PlayingIsUndoneAtOnce) {
+    three_keys();
+    look_from({1, 2, 6});
+    settle();
+    view_.state().path.play();
+    for (int i = 0; i < 20; ++i) step({}, 0.25);
+    settle();
+    EXPECT_FALSE(view_.state().path.is_playing());
+    EXPECT_LT((position() - Vec3d(0, 1, -5)).norm(), 1e-9);
+    undo(view_.state());
+    EXPECT_LT((position() - Vec3d(1, 2, 6)).norm(), 1e-9);
+}
+
+TEST_F(MotionPanels, TheCurveIsDrawnOverThePictureAndFaintBehindSurfaces) {
+    view_.state().show_panels = true;
+    three_keys();
+    look_from({0, 16, 14});
+    view_.state().show_path = false;
+    view_.touch();
+    settle();
+    const Image without = view_.screen();
+    view_.state().show_path = true;
+    view_.touch();
+    settle();
+    const Image with = view_.screen();
+    // A point of the curve, where the orange is on the screen.
+    const CameraPath& path = *view_.state().path.path();
+    const Camera camera = session_.view_point(size).camera;
+    const auto color_at = [&](const Image& image, double time) {
+        const Vec3d p = app::pixel_of(camera, path.pose(time).translation(), size);
+        const uint8_t* c = image.at<uint8_t>(int(p.x()), int(p.y()));
+        return Vec3d(c[0], c[1], c[2]);
+    };
+    EXPECT_LT((color_at(with, 0.6) - Vec3d(255, 140, 40)).norm(), 60);
+    EXPECT_GT((color_at(without, 0.6) - Vec3d(255, 140, 40)).norm(), 150);
+    // With the ball grown around the path the same curve lies behind it.
+    session_.scene().get("ball").scale(Vec3d(6.5, 6.5, 6.5));
+    settle();
+    EXPECT_GT((color_at(view_.screen(), 0.6) - Vec3d(255, 140, 40)).norm(), 60);
+}
+
+TEST_F(MotionPanels, RecordsAPictureAndACameraPath) {
+    unfold(Panel::recorder);
+    three_keys();
+    look_from({1, 2, 6});
+    settle();
+    RecordingForm& form = view_.state().form;
+    form.picture = (folder_ / "picture.png").string();
+    form.video = (folder_ / "frame_%02d.png").string();
+    form.fps = 4;
+    click("Recorder/Picture");
+    EXPECT_EQ(io::load_image(form.picture).width(), 48);
+    const Vec3d before = position();
+    click("Recorder/Camera path");
+    for (int i = 0; i < 40 && view_.is_recording(); ++i) step();
+    EXPECT_FALSE(view_.is_recording());
+    EXPECT_FALSE(recorder_.is_recording());
+    EXPECT_LT((position() - before).norm(), 1e-12);
+    EXPECT_NE(view_.state().recorder_says.find("9 frames"), std::string::npos) << view_.state().recorder_says;
+    // Frame 4 of 2 seconds at 4 frames per second is key 2, to the bit.
+    look_from({5, 1, 0});
+    session_.set_camera(view_.state().path.path()->camera(1, session_.camera()));
+    const Image still = session_.render({Vec2i(48, 32), {}});
+    EXPECT_TRUE(std::ranges::equal(io::load_image(folder_ / "frame_04.png").bytes(),
+                                   with_channels(still, 3).bytes()) ||
+                std::ranges::equal(io::load_image(folder_ / "frame_04.png").bytes(), still.bytes()));
+    EXPECT_FALSE(fs::exists(folder_ / "frame_09.png"));
+}
+
+TEST_F(MotionPanels, RecordsTheWindowWithItsPanelsAndWithoutBackground) {
+    unfold(Panel::recorder);
+    settle();
+    RecordingForm& form = view_.state().form;
+    form.picture = (folder_ / "clear.png").string();
+    click("Recorder/transparent");
+    EXPECT_TRUE(form.transparent);
+    click("Recorder/Picture");
+    const Image clear = io::load_image(form.picture);
+    EXPECT_EQ(clear.at<uint8_t>(0, 0)[3], 0);
+    EXPECT_EQ(clear.at<uint8_t>(24, 16)[3], 255);
+    EXPECT_NE(session_.settings().background.mode, BackgroundMode::transparent);
+    click("Recorder/with panels");
+    form.picture = (folder_ / "screen.png").string();
+    click("Recorder/Picture");
+    EXPECT_EQ(io::load_image(form.picture).width(), size.x());
+}
+
+TEST_F(MotionPanels, AVideoOfWhatHappensIsAsLongAsItTook) {
+    unfold(Panel::recorder);
+    view_.state().form.video = (folder_ / "live_%03d.png").string();
+    view_.state().form.size = {32, 24};
+    const auto begun = std::chrono::steady_clock::now();
+    click("Recorder/Video");
+    ASSERT_TRUE(view_.is_recording());
+    while (std::chrono::steady_clock::now() < begun + std::chrono::milliseconds(700)) step();
+    settle();
+    click("Recorder/Stop");
+    const double passed = std::chrono::duration<double>(std::chrono::steady_clock::now() - begun).count();
+    EXPECT_FALSE(recorder_.is_recording());
+    int frames = 0;
+    while (fs::exists(folder_ / fmt::format("live_{:03}.png", frames))) ++frames;
+    EXPECT_GE(frames, 15);
+    EXPECT_LE(frames, passed * 30 + 2);
+}
+
+TEST_F(MotionPanels, WhatCannotBeRecordedIsTold) {
+    unfold(Panel::recorder);
+    three_keys();
+    settle();
+    view_.state().form.video = (folder_ / "film.xyz").string();
+    click("Recorder/Camera path");
+    EXPECT_FALSE(view_.is_recording());
+    EXPECT_TRUE(view_.state().recorder_failed);
+    EXPECT_NE(view_.state().recorder_says.find("film.xyz"), std::string::npos);
+    view_.state().form.video = "/nowhere/at/all/film_%d.png";
+    click("Recorder/Video");
+    EXPECT_TRUE(view_.state().recorder_failed);
+    view_.state().form.picture = "/nowhere/at/all.png";
+    click("Recorder/Picture");
+    EXPECT_TRUE(view_.state().recorder_failed);
+    view_.state().form.video = (folder_ / "stopped_%02d.png").string();
+    click("Recorder/Camera path");
+    ASSERT_TRUE(view_.is_recording());
+    const Vec3d before(0, 1, -5);
+    view_.stop_recording();
+    EXPECT_LT((position() - before).norm(), 1e-12);
+    EXPECT_TRUE(fs::exists(folder_ / "stopped_00.png"));
+}
+
+TEST_F(MotionPanels, AnimationsPlayPauseAndScrub) {
+    AnimationNode node;
+    node.mesh = session_.scene().get("ball");
+    Animation slide;
+    slide.name = "slide";
+    slide.duration_s = 4;
+    AnimationChannel channel;
+    channel.times = {0, 4};
+    channel.values = ArrayXf::Dense{{0, 0, 0}, {2, 0, 0}};
+    slide.channels = {channel};
+    Animation other = slide;
+    other.name = "other";
+    player_.add("ball", Animations({{node}, {}, {slide, other}}));
+    clock_.set_fixed_step(0.5);
+    clock_.on_tick = [this] { player_.update(); };
+    const auto x = [&] { return session_.scene().get("ball").T_parent_mesh().translation().x(); };
+    unfold(Panel::animations);
+    click("Animations/Play");
+    clock_.tick();
+    EXPECT_NEAR(x(), 0.25, 1e-12);
+    settle();
+    click("Animations/Pause");
+    clock_.tick();
+    EXPECT_NEAR(x(), 0.25, 1e-12);
+    click("Animations/time");
+    EXPECT_NEAR(x(), 1, 0.03);
+    click("Animations/loop");
+    EXPECT_FALSE(player_.loops());
+    click("Animations/which");
+    settle();
+    click("Animations/ball: other");
+    EXPECT_EQ(player_.current(), 1u);
+    EXPECT_TRUE(player_.is_playing());
+}
+
+}  // namespace
+}  // namespace easypbr::gui
