@@ -30,6 +30,16 @@ std::string camera_text(const Settings& settings) {
     return text;
 }
 
+std::string camera_text(Session& session, Vec2i size) {
+    Settings settings = session.settings();
+    if (std::vector<double>& pose = settings.camera.pose; pose.empty()) {
+        const Mat4d T = session.resolve(size).camera.T_world_cam.matrix();
+        for (int row = 0; row < 4; ++row)
+            for (int column = 0; column < 4; ++column) pose.push_back(T(row, column));
+    }
+    return camera_text(settings);
+}
+
 void apply_camera_text(std::string_view text, Settings& settings) {
     Settings changed = settings;
     bool found = false;

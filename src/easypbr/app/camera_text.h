@@ -4,12 +4,14 @@
 #include <string>
 #include <string_view>
 
-#include "easypbr/scene/settings.h"
+#include "easypbr/app/session.h"
 
 namespace easypbr::app {
 
 /// One "camera.NAME=VALUE" a line: what --set takes. The pose is written with all digits.
 std::string camera_text(const Settings& settings);
+/// The same of the session's next picture of this size, with its pose also where that is automatic.
+std::string camera_text(Session& session, Vec2i size);
 
 /// Takes over what camera_text() wrote; words "--set" between are skipped. The settings stay as they were
 /// when it throws: FormatError when there is no camera in the text, NameError or ArgumentError for a value

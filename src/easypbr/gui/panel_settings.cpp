@@ -81,7 +81,7 @@ void camera_panel(GuiState& state) {
     ImGui::SameLine();
     if (ImGui::Button("Save (Ctrl+S)", ImVec2(half, 0))) state.save = true;
     if (ImGui::Button("Copy pose (Ctrl+C)", ImVec2(half, 0)))
-        state.write_clipboard(app::camera_text(state.settings()));
+        state.write_clipboard(app::camera_text(state.session, state.size));
     ImGui::SameLine();
     if (ImGui::Button("Paste pose (Ctrl+V)", ImVec2(half, 0))) try {
             app::apply_camera_text(state.read_clipboard(), state.settings());
