@@ -385,6 +385,30 @@ PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, lay
             viewer_slices, viewer_path, viewer_own]
 
 
+def own_shading() -> np.ndarray:
+    """The picture of examples/07_own_shading.py."""
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([sys.executable, ROOT / "examples/07_own_shading.py"], cwd=folder, check=True)
+        return easypbr.load_image(pathlib.Path(folder) / "own_shading.png")
+
+
+def outline() -> np.ndarray:
+    """What examples/cpp/outline.cpp draws, by the same shader."""
+    scene = easypbr.Scene()
+    teapot = easypbr.shapes.teapot()
+    teapot.material.base_color = "#c8b89a"
+    scene.show(teapot, "teapot")
+    view = easypbr.Viewer((800, 600), scene=scene)
+    text = (ROOT / "examples/cpp/outline.frag").read_text()
+    # The program sets them.
+    text = text.replace("uniform vec3 u_color;", "const vec3 u_color = vec3(0.02, 0.02, 0.03);")
+    view.add_pass("outline", text.replace("uniform float u_width;", "const float u_width = 2.0;"))
+    return view.render()
+
+
+PICTURES += [own_shading, outline]
+
+
 if __name__ == "__main__":
     if len(sys.argv) > 2:
         sys.exit(__doc__)

@@ -19,7 +19,7 @@ PYTHON_GROUPS = {
     "Ground truth and tensors": ["Instance", "Moment", "MeshLoader", "eigen2tensor", "tensor2eigen"],
     "Images": ["load_image", "save_image", "compare_images", "colormap"],
     "Window": ["show", "Pick", "Panel", "Event"],
-    "Errors": ["Error", "FileError", "FormatError", "ArgumentError", "UnknownNameError", "ContextError"],
+    "Errors": ["Error", "FileError", "FormatError", "ArgumentError", "UnknownNameError", "ShaderError", "ContextError"],
 }
 #: Modules with names of their own.
 MODULES = {"shapes": "Shapes"}

@@ -19,7 +19,7 @@ in vec4 v_tangent;
 #ifndef FLAT
 in vec3 v_normal;
 #endif
-#ifdef FACE_NORMAL
+#if defined(FACE_NORMAL) || defined(SURFACE_SHADER)
 in vec3 v_position;
 #endif
 
@@ -149,16 +149,33 @@ Normals read_normals() {
 #ifdef EXTENDED
 #include "geometry_extension.glsl"
 #endif
+#ifdef SURFACE_SHADER
+#include "geometry_shader.glsl"
+#endif
+
+void discard_clear(float alpha) {
+#if defined(ALPHA_MASK)
+    if (alpha < u_surface.w) discard;
+#elif defined(ALPHA_STOCHASTIC)
+    if (alpha <= alpha_threshold()) discard;
+#endif
+#ifdef PEEL
+    if (alpha <= 0.0 || is_peeled()) discard;
+#endif
+}
+
+vec3 emission_of(vec3 color) {
+    vec3 emission = u_emissive.rgb;
+#ifdef EMISSIVE_TEXTURE
+    emission *= texture(u_emissive_texture, uv_of(5), u_lod_bias).rgb;
+#endif
+    return u_emissive.w > 0.9 ? color : emission;
+}
 
 void main() {
     vec4 color = base_color();
-#if defined(ALPHA_MASK)
-    if (color.a < u_surface.w) discard;
-#elif defined(ALPHA_STOCHASTIC)
-    if (color.a <= alpha_threshold()) discard;
-#endif
-#ifdef PEEL
-    if (color.a <= 0.0 || is_peeled()) discard;
+#ifndef SURFACE_SHADER
+    discard_clear(color.a);
 #endif
 
     float metallic = u_surface.x, roughness = u_surface.y, occlusion = 1.0;
@@ -177,27 +194,31 @@ void main() {
     occlusion = mix(1.0, dot(texture(u_occlusion_texture, uv_of(3), u_lod_bias), u_occlusion_channel), u_surface.z);
 #endif
 
+    Normals n = read_normals();
+    float kind = u_emissive.w;
+#ifdef SURFACE_SHADER
+    vec3 emission = emission_of(color.rgb);
+    shade_own(color, n, metallic, roughness, occlusion, emission, kind);
+    discard_clear(color.a);
+#endif
 #ifdef ALPHA_BLEND
     o_albedo = color;
 #else
     o_albedo = vec4(color.rgb, 1.0);
 #endif
-    Normals n = read_normals();
     o_normal = oct_encode(n.shading) * 0.5 + 0.5;
 #ifdef EXTENDED
     write_extension(n, oct_decode(round(o_normal * 65535.0) / 65535.0 * 2.0 - 1.0));
 #endif
-    o_material = vec4(metallic, roughness, occlusion, u_emissive.w);
+    o_material = vec4(metallic, roughness, occlusion, kind);
     o_depth = gl_FragCoord.z;
 #ifdef OBJECT_ID
     o_id = uint(u_object_id);
     o_element = uint(u_first_face + gl_PrimitiveID + 1);
 #endif
-#ifdef EMISSION
-    vec3 emission = u_emissive.rgb;
-#ifdef EMISSIVE_TEXTURE
-    emission *= texture(u_emissive_texture, uv_of(5), u_lod_bias).rgb;
-#endif
-    o_emission = vec4(u_emissive.w > 0.9 ? color.rgb : emission, 1.0);
+#if defined(SURFACE_SHADER)
+    o_emission = vec4(emission, 1.0);
+#elif defined(EMISSION)
+    o_emission = vec4(emission_of(color.rgb), 1.0);
 #endif
 }

@@ -15,15 +15,17 @@ out vec2 v_uv;
 layout(location = 4) in vec4 a_tangent;
 out vec4 v_tangent;
 #endif
-#ifdef FACE_NORMAL
+#if defined(FACE_NORMAL) || defined(SURFACE_SHADER)
+#define POSITION
 out vec3 v_position;
 uniform mat4 u_view_from_mesh;
 uniform mat3 u_world_from_view;
-#else
+#endif
+#ifndef FLAT
 out vec3 v_normal;
 #endif
-#if defined(FACE_NORMAL) && !defined(FLAT)
-out vec3 v_normal;
+#ifdef SURFACE_SHADER
+out vec3 v_own_position;
 #endif
 
 uniform mat4 u_clip_from_mesh;
@@ -35,7 +37,10 @@ void main() {
 #ifndef FLAT
     v_normal = u_normal_from_mesh * oct_decode(a_normal);
 #endif
-#ifdef FACE_NORMAL
+#ifdef SURFACE_SHADER
+    v_own_position = a_position;
+#endif
+#ifdef POSITION
     v_position = u_world_from_view * (u_view_from_mesh * vec4(a_position, 1.0)).xyz;
 #endif
 #ifdef VERTEX_COLOR

@@ -33,7 +33,7 @@ from ._easypbr import (
     save_image,
 )
 from .convert import as_mesh
-from .errors import ArgumentError, ContextError, Error, FileError, FormatError, UnknownNameError
+from .errors import ArgumentError, ContextError, Error, FileError, FormatError, ShaderError, UnknownNameError
 from .loader import MeshLoader
 from .panels import Panel
 from .rendering import render
@@ -48,6 +48,7 @@ __all__ = [
     "Camera",
     "CameraPath",
     "ContextError",
+    "ShaderError",
     "Environment",
     "Error",
     "Event",

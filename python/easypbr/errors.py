@@ -1,6 +1,6 @@
 """The exceptions that EasyPBR raises; each is also the built-in that fits it."""
 
-__all__ = ["Error", "FileError", "FormatError", "ArgumentError", "UnknownNameError", "ContextError"]
+__all__ = ["Error", "FileError", "FormatError", "ArgumentError", "UnknownNameError", "ShaderError", "ContextError"]
 
 
 class Error(Exception):
@@ -24,6 +24,10 @@ class UnknownNameError(Error, KeyError):
 
     # KeyError would show the message in quotes.
     __str__ = Exception.__str__
+
+
+class ShaderError(Error, ValueError):
+    """A shader text of one's own does not compile; the message names the line."""
 
 
 class ContextError(Error, RuntimeError):

@@ -296,6 +296,16 @@ class Viewer(WindowCallbacks):
         """Whether the window is there."""
         return self._handle.is_open()
 
+    def add_pass(self, name: str, shader: str | os.PathLike, stage: str = "overlay") -> None:
+        """Draws a fragment shader over every picture: GLSL text, or the path of a file (pathlib.Path), which is read
+        again whenever it changes. `stage`: "light" (linear radiance before lens and tone curve), "overlay" (linear
+        display light past it) or "picture" (the finished picture). A pass of the same name is replaced."""
+        self._handle.add_pass(name, shader, stage)
+
+    def remove_pass(self, name: str) -> None:
+        """Takes a pass away that was added."""
+        self._handle.remove_pass(name)
+
     def open(self, path) -> None:
         """Adds what a file holds, as a file dropped on the window; HDR and EXR become the environment."""
         self._handle.open(path)

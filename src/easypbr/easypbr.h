@@ -23,6 +23,7 @@
 #include "easypbr/io/camera_path_io.h"
 #include "easypbr/io/image_io.h"
 #include "easypbr/io/mesh_io.h"
+#include "easypbr/render/custom_pass.h"
 #include "easypbr/scene/animation.h"
 #include "easypbr/scene/camera.h"
 #include "easypbr/scene/camera_path.h"

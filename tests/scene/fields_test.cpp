@@ -84,7 +84,7 @@ TEST(Fields, AreComplete) {
         {"motion_blur", 2},
         {"transparency", 2},
         {"tonemap", 3},
-        {"material", 4 + 18 + 7},
+        {"material", 4 + 18 + 7 + 1},
         {"style", 24},
         {"points", 1},
         {"clip", 2},

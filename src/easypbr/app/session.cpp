@@ -83,6 +83,7 @@ render::Renderer& Session::renderer() {
         if (!context_) context_ = gl::Context::create();
         const gl::ContextScope scope(*context_);
         renderer_ = std::make_unique<render::Renderer>();
+        renderer_->set_passes(passes_);
     }
     return *renderer_;
 }
@@ -135,6 +136,7 @@ void Session::load_images() {
 SceneSnapshot Session::snapshot() {
     load_images();
     SceneSnapshot scene = scene_.snapshot();
+    load_shaders(scene);
     if (!environment_.empty()) scene.environment = environment_;
     const std::string hash = scene.environment.empty() ? "" : scene.environment.hash();
     if (environment_hash_ && hash != *environment_hash_) {
@@ -173,6 +175,9 @@ Session::Prepared Session::prepare(const PictureOptions& options) {
         log_warning("depth_of_field.enabled: an orthographic camera has no lens, so nothing is blurred");
     warned_of_lens_ = no_lens;
     warn_of_surfels(prepared.scene);
+    warn_of_shaders(prepared.scene);
+    for (const render::CustomPass& custom : passes_)
+        prepared.passes.emplace_back(custom.pass.get(), custom.pass->revision());
     return prepared;
 }
 
@@ -243,7 +248,9 @@ bool Session::Refined::is_of(const Prepared& other, const render::SettingsImages
         return (images.textures.*named.texture).image == (other_images.textures.*named.texture).image;
     };
     return a.size == b.size && a.samples == b.samples && a.encoding == b.encoding &&
-           images.background == other_images.background &&
+           images.background == other_images.background && prepared.passes == other.passes &&
+           images.textures.shader == other_images.textures.shader &&
+           images.shader_files == other_images.shader_files &&
            std::ranges::all_of(named_textures, same_texture) && same_scene(prepared.scene, other.scene) &&
            prepared.resolved.lights == other.resolved.lights &&
            same_settings(prepared.resolved.settings, other.resolved.settings);

@@ -132,6 +132,12 @@ class Session {
     /// camera.
     void set_view_point(const ViewPoint& view);
 
+    /// Draws a pass of the program's own in every picture from now on; one of the same name is replaced. See
+    /// render/custom_pass.h.
+    void add_pass(const std::string& name, render::Stage stage, std::shared_ptr<render::Pass> pass);
+    /// Throws NameError when there is none of this name.
+    void remove_pass(const std::string& name);
+
     /// The context and the renderer, made when there are none yet: to draw on from the picture.
     gl::Context& context();
     render::Renderer& renderer();
@@ -180,6 +186,7 @@ class Session {
         SceneSnapshot scene;
         ResolvedSettings resolved;
         render::DrawOptions options;
+        std::vector<std::pair<const render::Pass*, uint64_t>> passes = {};  ///< with their revisions
     };
     /// Snapshot, images, auto parameters.
     Prepared prepare(const PictureOptions& options);
@@ -188,6 +195,9 @@ class Session {
     void read_images(const std::vector<std::string>& paths);
     std::shared_ptr<const Image> image(const std::string& path);
     SceneSnapshot snapshot();
+    /// Reads the files of shaders that are new or have changed.
+    void load_shaders(const SceneSnapshot& scene);
+    const std::string& shader_text(const std::string& path);
     /// The renderer's picture with its annotation.
     Image read_annotated();
     TiledPicture tiled(const Prepared& prepared) const;
@@ -195,6 +205,8 @@ class Session {
     void annotate(const Prepared& prepared);
     /// Keeps what was inferred, unless there was nothing to infer it from.
     void latch_from(const Prepared& prepared);
+    /// Says when a material has a shader and nothing that it could act on.
+    void warn_of_shaders(const SceneSnapshot& scene);
     /// Says when surfels are asked for and a mesh has no normals to make them from: it is drawn as points.
     void warn_of_surfels(const SceneSnapshot& scene);
     Vec2i size_or(std::optional<Vec2i> size) const { return size.value_or(settings_.image.size); }
@@ -202,7 +214,7 @@ class Session {
     Scene scene_;
     Settings settings_;
     Timing timing_;
-    bool warned_of_lens_ = false, warned_of_surfels_ = false;
+    bool warned_of_lens_ = false, warned_of_surfels_ = false, warned_of_shaders_ = false;
     std::shared_ptr<const Motion> motion_;  ///< where things were in the picture that was drawn last
     std::optional<SceneSnapshot> motion_begin_;
 
@@ -241,6 +253,13 @@ class Session {
     std::optional<std::string> environment_hash_;  ///< what was latched belongs to this environment
     Environment environment_;
     render::SettingsImages settings_images_;
+    /// Files of shaders by path.
+    struct ShaderFile {
+        std::filesystem::file_time_type time;
+        std::string text;
+    };
+    std::map<std::string, ShaderFile> shader_files_;
+    std::vector<render::CustomPass> passes_;
 };
 
 }  // namespace easypbr::app

@@ -84,7 +84,8 @@ void check_files(const Picture& picture, const Settings& settings, const RenderO
     const MaterialSettings& m = settings.material;
     for (const std::string& file :
          {settings.environment.file, settings.background.image, m.base_color_texture, m.metallic_texture,
-          m.roughness_texture, m.normal_texture, m.occlusion_texture, m.emissive_texture, m.opacity_texture})
+          m.roughness_texture, m.normal_texture, m.occlusion_texture, m.emissive_texture, m.opacity_texture,
+          m.shader})
         if (!file.empty()) MappedFile{file};
 }
 
@@ -107,6 +108,7 @@ class RenderJob {
           look_(look_of(options)),
           styles_(parse_styles(options.styles, unique_names(options.files))),
           label_map_(options.label_map.empty() ? nullptr : io::find_label_map(options.label_map)) {
+        add_passes(options.passes, session_);
         if (!options.camera_path.empty()) camera_path_ = io::load_camera_path(options.camera_path);
     }
 

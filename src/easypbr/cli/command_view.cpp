@@ -18,8 +18,8 @@ namespace easypbr::cli {
 namespace {
 
 struct ViewOptions {
-    std::vector<std::string> files, values;
-    std::string size = "1280x720", environment, settings, screenshot, animation, path;
+    std::vector<std::string> files, values, passes;
+    std::string size = "1280x720", environment, settings, screenshot, shader, animation, path;
     bool watch = false, light = false;
 };
 
@@ -40,6 +40,8 @@ void declare(CLI::App& command, ViewOptions& options) {
     command
         .add_option("--camera-path", options.path, "A camera path for the panel, as easypbr render takes it")
         ->option_text("FILE");
+    command.add_option("--shader", options.shader, field("material.shader").doc)->option_text("FILE");
+    declare_passes(command, options.passes);
     command.add_flag("--watch", options.watch, "Show files again when they change");
     command.add_flag("--light", options.light, "Light panels instead of dark ones");
     command
@@ -54,6 +56,7 @@ RenderOptions look_of(const ViewOptions& options) {
     look.values = options.values;
     if (!options.environment.empty())
         look.shorthands.push_back({"--env", "environment.file", options.environment});
+    if (!options.shader.empty()) look.shorthands.push_back({"--shader", "material.shader", options.shader});
     return look;
 }
 
@@ -69,6 +72,7 @@ int run(const ViewOptions& options) {
     Viewer view{Scene()};
     if (!options.settings.empty()) app::load_settings(view.session(), options.settings);
     apply(look_of(options), view.settings());
+    add_passes(options.passes, view.session());
     if (!options.screenshot.empty()) app::encoding_for(options.screenshot);
     const std::vector<std::string> names = unique_names(options.files);
     for (size_t i = 0; i < names.size(); ++i) {

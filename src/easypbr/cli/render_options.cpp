@@ -40,6 +40,7 @@ constexpr ShorthandOption shorthand_options[] = {{"--samples", "image.samples", 
                                                  {"--color", "material.color", "COLOR"},
                                                  {"--metallic", "material.metallic", "X"},
                                                  {"--roughness", "material.roughness", "X"},
+                                                 {"--shader", "material.shader", "FILE"},
                                                  {"--crease", "load.crease_deg", "DEG"}};
 
 const std::vector<std::string> texture_names{"base_color", "metallic", "roughness", "normal",
@@ -87,6 +88,7 @@ void declare_look(CLI::App& command, RenderOptions& options) {
         .add_option("--texture", options.textures, "Texture of every material, for example base_color=FILE")
         ->allow_extra_args(false)
         ->option_text("NAME=FILE");
+    declare_passes(command, options.passes);
     command.add_flag("--smooth", options.smooth, "One normal per vertex");
     command.add_flag("--flat", options.flat, "One normal per face");
     command
@@ -230,6 +232,29 @@ std::optional<Vec2i> parse_focus(const std::string& text) {
         if (error == std::errc() && last == end) return pixel;
     }
     throw UsageError(fmt::format("--focus: expected the pixel X,Y, got '{}'", text));
+}
+
+void declare_passes(CLI::App& command, std::vector<std::string>& passes) {
+    command
+        .add_option("--pass", passes,
+                    "Fragment shader to draw over each picture; stages: light (before the tone curve), "
+                    "overlay (the default), picture (finished)")
+        ->allow_extra_args(false)
+        ->option_text("[STAGE=]FILE");
+}
+
+void add_passes(const std::vector<std::string>& passes, app::Session& session) {
+    for (const std::string& text : passes) {
+        const size_t at = text.find('=');
+        const std::string file = at == text.npos ? text : text.substr(at + 1);
+        render::Stage stage = render::Stage::overlay;
+        try {
+            if (at != text.npos) stage = render::stage_named(text.substr(0, at));
+        } catch (const NameError& error) {
+            throw UsageError(fmt::format("--pass: {}", error.what()));
+        }
+        session.add_pass(file, stage, std::make_shared<render::ShaderPass>(std::filesystem::path(file)));
+    }
 }
 
 Vec2i parse_size(const std::string& text) {

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "easypbr/app/session.h"
 #include "easypbr/core/math.h"
 #include "easypbr/scene/settings.h"
 
@@ -33,6 +34,7 @@ struct RenderOptions {
     std::vector<std::string> layers;
     std::vector<std::string> textures;  ///< "base_color=FILE"
     std::vector<std::string> values;    ///< --set: "group.name=value"
+    std::vector<std::string> passes;    ///< "FILE" or "stage=FILE"
     std::vector<std::string> styles;    ///< "key=value" or "object.key=value"
     std::string label_map;              ///< a built-in one's name or a file
 
@@ -58,6 +60,11 @@ void apply(const RenderOptions& options, Settings& settings);
 
 /// The pixel that --focus names; nothing without it. Throws UsageError when it is not X,Y.
 std::optional<Vec2i> parse_focus(const std::string& text);
+
+/// The option --pass.
+void declare_passes(CLI::App& command, std::vector<std::string>& passes);
+/// What --pass names, "FILE" or "STAGE=FILE". Throws UsageError for an unknown stage, FileError.
+void add_passes(const std::vector<std::string>& passes, app::Session& session);
 
 /// Width and height from "800x600" or "800,600". Throws UsageError when it is not of this form, ArgumentError
 /// when it is out of range.

@@ -36,6 +36,12 @@ class NameError : public Error {
     using Error::Error;
 };
 
+/// A program's own shader text does not compile, at the line that the message names. Python: ValueError.
+class ShaderError : public Error {
+  public:
+    using Error::Error;
+};
+
 /// No OpenGL context could be made, or a GL limit was met. Python: RuntimeError.
 class ContextError : public Error {
   public:

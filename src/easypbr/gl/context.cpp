@@ -126,8 +126,10 @@ EGLContext try_display(EGLDisplay display, std::string& error) {
 
 /// Errors of the driver become log messages; the exception of the failing operation follows from its own
 /// checks.
-void GLAPIENTRY debug_message(GLenum, GLenum type, GLuint, GLenum severity, GLsizei length,
+void GLAPIENTRY debug_message(GLenum source, GLenum type, GLuint, GLenum severity, GLsizei length,
                               const GLchar* text, const void*) {
+    // Program throws what compilers say.
+    if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;
     if (type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH)
         log_warning(fmt::format("OpenGL: {}", std::string_view(text, size_t(length))));
 }

@@ -22,49 +22,84 @@ constexpr EmbeddedShader embedded_shaders[] = {
 #include "easypbr_shaders.inc"
 };
 
-/// Expands includes; `files` collects names so that `#line N index` can be turned back into a file name.
-void expand(std::string_view name, std::vector<std::string>& files, std::string& out) {
-    for (const std::string& seen : files)
-        if (seen == name) return;
-    const size_t index = files.size();
-    files.emplace_back(name);
-    static const std::regex include(R"re(^\s*#include\s+"([^"]+)"\s*$)re");
-    std::istringstream lines(shader_source(name));
-    std::string line;
-    out += fmt::format("#line 1 {}\n", index);
-    for (int number = 1; std::getline(lines, line); ++number) {
-        std::smatch match;
-        if (std::regex_match(line, match, include)) {
-            expand(match[1].str(), files, out);
-            out += fmt::format("#line {} {}\n", number + 1, index);
-        } else {
-            out += line + "\n";
-        }
-    }
+bool is_path(std::string_view name) {
+    return name.find('/') != name.npos;
 }
 
-/// Puts file names in place of the source indices in a compiler log ("0:12(3): error" or "0(12) : error").
+/// A file that `includer` includes: beside it when it is one on disk, else embedded.
+std::string resolve_include(std::string_view includer, const std::string& name) {
+    if (!is_path(includer)) return name;
+    const fs::path beside = fs::path(includer).parent_path() / name;
+    return fs::exists(beside) ? beside.string() : name;
+}
+
+/// Files are told apart by their lines' numbers: Mesa forgets the source's own number in many messages.
+constexpr int lines_of_a_file = 100000;
+
+std::string line_directive(size_t file, int line) {
+    return fmt::format("#line {}\n", int(file) * lines_of_a_file + line);
+}
+
+/// A shader with all that it includes.
+struct Expanded {
+    const ShaderTexts& texts;
+    std::string text = {};
+    std::vector<std::string> files = {}, shown = {};
+    bool is_own = false;  ///< something of it is not of the library
+
+    void add(std::string_view name) {
+        for (const std::string& seen : files)
+            if (seen == name) return;
+        const size_t index = files.size();
+        const auto given = texts.find(name);
+        files.emplace_back(name);
+        shown.emplace_back(given == texts.end() ? name : given->second.name);
+        is_own |= given != texts.end() || is_path(name);
+        static const std::regex include(R"re(^\s*#include\s+"([^"]+)"\s*$)re");
+        std::istringstream lines(given == texts.end() ? shader_source(name) : given->second.text);
+        std::string line;
+        text += line_directive(index, 1);
+        for (int number = 1; std::getline(lines, line); ++number) {
+            std::smatch match;
+            if (std::regex_match(line, match, include)) {
+                add(resolve_include(name, match[1].str()));
+                text += line_directive(index, number + 1);
+            } else {
+                text += line + "\n";
+            }
+        }
+    }
+};
+
+/// Puts file names in place of the numbers in a compiler log ("0:12(3): error" or "0(12) : error").
 std::string readable_log(const std::string& log, const std::vector<std::string>& files) {
     static const std::regex place(R"(^(\d+)[:(](\d+))");
     std::istringstream lines(log);
     std::string line, out;
     while (std::getline(lines, line)) {
         std::smatch match;
-        if (std::regex_search(line, match, place) && std::stoul(match[1]) < files.size())
-            line = fmt::format("{}:{}{}", files[std::stoul(match[1])], match[2].str(), match.suffix().str());
+        if (std::regex_search(line, match, place)) {
+            const size_t number = std::stoul(match[2]);
+            if (const size_t file = number / lines_of_a_file; file < files.size())
+                line = fmt::format("{}:{}{}", files[file], number % lines_of_a_file, match.suffix().str());
+        }
         out += "\n  " + line;
     }
     return out;
 }
 
-GLuint compile(GLenum stage, std::string_view name, const std::vector<std::string>& defines) {
+[[noreturn]] void fail(bool is_own, const std::string& message) {
+    if (is_own) throw ShaderError(message);
+    throw ContextError(message);
+}
+
+GLuint compile(GLenum stage, const Expanded& source, const std::vector<std::string>& defines) {
     std::string text = "#version 450 core\n";
     for (const std::string& define : defines) text += "#define " + define + "\n";
-    std::vector<std::string> files;
-    expand(name, files, text);
+    text += source.text;
     const GLuint shader = glCreateShader(stage);
-    const char* source = text.c_str();
-    glShaderSource(shader, 1, &source, nullptr);
+    const char* pointer = text.c_str();
+    glShaderSource(shader, 1, &pointer, nullptr);
     glCompileShader(shader);
     GLint compiled = 0, length = 0;
     glGetShaderiv(shader, GL_COMPILE_STATUS, &compiled);
@@ -73,12 +108,20 @@ GLuint compile(GLenum stage, std::string_view name, const std::vector<std::strin
     std::string log(size_t(std::max(length, 1)), '\0');
     glGetShaderInfoLog(shader, length, nullptr, log.data());
     glDeleteShader(shader);
-    throw ContextError(fmt::format("shader {} does not compile:{}", name, readable_log(log.c_str(), files)));
+    fail(source.is_own, fmt::format("shader {} does not compile:{}", source.shown.front(),
+                                    readable_log(log.c_str(), source.shown)));
+}
+
+Expanded expanded(std::string_view name, const ShaderTexts& texts) {
+    Expanded source{texts};
+    source.add(name);
+    return source;
 }
 
 }  // namespace
 
 std::string shader_source(std::string_view name) {
+    if (is_path(name)) return std::string(MappedFile(fs::path(name)).text());
     if (const char* folder = std::getenv("EASYPBR_SHADER_DIR"); folder && *folder) {
         const fs::path path = fs::path(folder) / name;
         if (fs::exists(path)) return std::string(MappedFile(path).text());
@@ -88,11 +131,28 @@ std::string shader_source(std::string_view name) {
     throw ArgumentError(fmt::format("there is no shader file '{}'", name));
 }
 
-Program::Program(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines)
+std::vector<fs::path> shader_files(std::string_view name) {
+    const ShaderTexts none;
+    std::vector<fs::path> paths;
+    for (const std::string& file : expanded(name, none).files)
+        if (is_path(file)) paths.emplace_back(file);
+    return paths;
+}
+
+Program::Program(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines,
+                 const ShaderTexts& texts)
     : object_(ObjectKind::program) {
     const GLuint program = object_.id();
-    const GLuint stages[] = {compile(GL_VERTEX_SHADER, vertex, defines),
-                             compile(GL_FRAGMENT_SHADER, fragment, defines)};
+    const Expanded sources[] = {expanded(vertex, texts), expanded(fragment, texts)};
+    const GLuint vertex_stage = compile(GL_VERTEX_SHADER, sources[0], defines);
+    GLuint fragment_stage = 0;
+    try {
+        fragment_stage = compile(GL_FRAGMENT_SHADER, sources[1], defines);
+    } catch (...) {
+        glDeleteShader(vertex_stage);
+        throw;
+    }
+    const GLuint stages[] = {vertex_stage, fragment_stage};
     for (const GLuint stage : stages) glAttachShader(program, stage);
     glLinkProgram(program);
     for (const GLuint stage : stages) {
@@ -104,7 +164,9 @@ Program::Program(std::string_view vertex, std::string_view fragment, const std::
     if (!linked) {
         char log[4096] = "";
         glGetProgramInfoLog(program, sizeof log, nullptr, log);
-        throw ContextError(fmt::format("shaders {} and {} do not link: {}", vertex, fragment, log));
+        fail(sources[0].is_own || sources[1].is_own,
+             fmt::format("shaders {} and {} do not link: {}", sources[0].shown.front(),
+                         sources[1].shown.front(), log));
     }
     read_uniforms();
 }

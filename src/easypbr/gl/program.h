@@ -1,6 +1,7 @@
 // Shader programs from the embedded GLSL files.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <string_view>
@@ -11,9 +12,20 @@
 
 namespace easypbr::gl {
 
-/// Text of an embedded shader file, or of the file of that name in $EASYPBR_SHADER_DIR where that is set.
-/// Throws ArgumentError when there is none.
+/// Text of an embedded shader file, or of the file of that name in $EASYPBR_SHADER_DIR where that is set; a
+/// name with a folder in it is the path of a file. Throws ArgumentError when there is none, FileError.
 std::string shader_source(std::string_view name);
+
+/// The files on disk, and not the embedded ones, that a shader is read from, those it includes too. An
+/// included file is looked for beside the one that includes it, then among the embedded ones.
+std::vector<std::filesystem::path> shader_files(std::string_view name);
+
+/// GLSL of a program's own, and what messages call it.
+struct ShaderText {
+    std::string name, text;
+};
+/// They stand in for the shader files of these names.
+using ShaderTexts = std::map<std::string, ShaderText, std::less<>>;
 
 /// A linked vertex and fragment shader. Uniforms that the linker removed are silently ignored when they are
 /// set.
@@ -21,10 +33,14 @@ class Program {
   public:
     Program() = default;
     /// Names of shader files and `NAME` or `NAME VALUE` macros. `#include "file"` works, once per file.
-    /// Throws ContextError with file:line for every compiler message.
-    Program(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines = {});
+    /// Throws ContextError with file:line for every compiler message; ShaderError when texts or files of a
+    /// program's own are among what does not compile.
+    Program(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines = {},
+            const ShaderTexts& texts = {});
 
     void use() const;
+    /// Whether the linker left a uniform of this name.
+    bool has(std::string_view uniform) const { return location(uniform) >= 0; }
 
     void set(std::string_view uniform, int value) const;
     void set(std::string_view uniform, float value) const;

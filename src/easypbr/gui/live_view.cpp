@@ -258,7 +258,7 @@ bool LiveView::control_shortcut(int key) {
         if (key == 'Y') redo(state_);
         if (key == 'S') state_.save = true;
         if (key == 'C') {
-            state_.write_clipboard(app::camera_text(session_.settings()));
+            state_.write_clipboard(app::camera_text(session_, state_.size));
             state_.notify("The camera is on the clipboard");
         }
         if (key == 'V') app::apply_camera_text(state_.read_clipboard(), session_.settings());
@@ -390,6 +390,7 @@ void LiveView::save_settings(const fs::path& path) {
 }
 
 bool LiveView::draw_picture() {
+    uint64_t drawing = 0;  // No version: nothing had been begun when it failed.
     try {
         const uint64_t version = session_.picture_version(state_.size);
         const bool moving = is_moving();
@@ -398,6 +399,11 @@ bool LiveView::draw_picture() {
         const bool stale = version != version_ || shown_channel_ != state_.channel || failed_ ||
                            (!moving && quick_size_ != state_.size);
         bool drew = false;
+        // What failed fails again until something changes.
+        if (failed_ && version == failed_version_ && shown_channel_ == state_.channel &&
+            failed_size_ == state_.size)
+            return false;
+        drawing = version;
         if (stale) {
             version_ = version;
             shown_channel_ = state_.channel;
@@ -420,7 +426,10 @@ bool LiveView::draw_picture() {
         const bool is_new = last_error_ != error.what();
         last_error_ = error.what();
         failed_ = true;
-        if (is_new) shown_ = gl::Texture();
+        failed_version_ = drawing;
+        failed_size_ = state_.size;
+        // The last picture that there was stays, as long as there is something to show.
+        if (is_new && session_.scene().names().empty()) shown_ = gl::Texture();
         return is_new;
     }
 }

@@ -148,6 +148,8 @@ class LiveView {
     uint64_t version_ = 0;  ///< of what is shown, see Session::picture_version(); 0: nothing
     Vec2i quick_size_{0, 0};
     std::string shown_channel_;
+    uint64_t failed_version_ = 0;  ///< of what was begun last, with failed_: it could not be drawn
+    Vec2i failed_size_{0, 0};
     int frames_ = 0;        ///< refined so far
     double reduction_ = 1;  ///< of the resolution while something moves
     int gui_frames_ = 3;    ///< that are still to be drawn, so that the GUI settles

@@ -20,6 +20,8 @@ void translate(const std::exception_ptr& pointer, void*) {
         raise("ArgumentError", error);
     } catch (const NameError& error) {
         raise("UnknownNameError", error);
+    } catch (const ShaderError& error) {
+        raise("ShaderError", error);
     } catch (const ContextError& error) {
         raise("ContextError", error);
     } catch (const Error& error) {

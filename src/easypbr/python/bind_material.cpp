@@ -92,6 +92,25 @@ const char* alpha_mode(const MaterialHandle& m) {
                                         : "blend";
 }
 
+nb::object shader(const MaterialHandle& m) {
+    const SurfaceShader own = m.get().shader;
+    if (!own) return nb::none();
+    return own.path.empty() ? nb::cast(own.text) : nb::cast(std::filesystem::path(own.path));
+}
+
+void set_shader(MaterialHandle& m, nb::handle object) {
+    SurfaceShader own;
+    if (nb::isinstance<nb::str>(object))
+        own.text = nb::cast<std::string>(object);
+    else if (is_path(object))
+        own.path = nb::cast<std::filesystem::path>(object).string();
+    else if (!object.is_none())
+        throw ArgumentError("material.shader: expected GLSL as text, the path of a file or None");
+    if (!own && !object.is_none())
+        throw ArgumentError("material.shader: the text is empty; None takes a shader away");
+    m.change([&](Material& material) { material.shader = own; });
+}
+
 /// Keyword arguments are assignments to attributes; a misspelt one is an AttributeError.
 template <class Handle>
 void construct(Handle* self, const nb::kwargs& values) {
@@ -159,6 +178,13 @@ void bind_material(nb::module_& module) {
     material.def_prop_rw(
         "alpha_mode", alpha_mode, set_alpha_mode,
         "'opaque', 'mask', 'blend', or 'auto': blend where the opacity or a vertex' alpha is below 1.");
+    material.def_prop_rw("shader", shader, set_shader,
+                         nb::for_getter(nb::sig("def shader(self) -> str | os.PathLike | None")),
+                         nb::for_setter(nb::sig("def shader(self, value: str | os.PathLike | None) -> None")),
+                         nb::for_setter(nb::arg("value").none()),
+                         "GLSL with a function `void surface(inout Surface s)` that changes the surface: "
+                         "text, or the path of a "
+                         "file (pathlib.Path), which is read again whenever it changes. None: no shader.");
     bind_style(module);
 }
 

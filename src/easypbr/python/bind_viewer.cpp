@@ -162,6 +162,18 @@ void set_gui(SharedViewer& self, const std::string& name, nb::handle value) {
     });
 }
 
+void add_pass(SharedViewer& self, const std::string& name, nb::handle shader, const std::string& stage) {
+    const render::Stage at = render::stage_named(stage);
+    const bool is_text = nb::isinstance<nb::str>(shader);
+    const std::string text = is_text ? nb::cast<std::string>(shader) : "";
+    const fs::path path = is_text ? fs::path() : nb::cast<fs::path>(shader);
+    self.run([&](Viewer& viewer) {
+        viewer.add_pass(name, at,
+                        is_text ? std::make_shared<render::ShaderPass>(name, text)
+                                : std::make_shared<render::ShaderPass>(path));
+    });
+}
+
 using ViewerClass = nb::class_<SharedViewer>;
 
 void bind_window(ViewerClass& viewer) {
@@ -215,6 +227,11 @@ void bind_pictures(ViewerClass& viewer) {
                  return self.run([](Viewer& viewer) { return viewer.session().object_names(); });
              })
         .def("timing", timing)
+        .def("add_pass", add_pass, nb::arg("name"), nb::arg("shader"), nb::arg("stage"))
+        .def("remove_pass",
+             [](SharedViewer& self, const std::string& name) {
+                 self.run([&](Viewer& viewer) { viewer.remove_pass(name); });
+             })
         .def("refit", [](SharedViewer& self) { self.run([](Viewer& viewer) { viewer.refit(); }); });
 }
 

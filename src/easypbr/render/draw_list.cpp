@@ -152,7 +152,8 @@ DrawList DrawList::as_surfaces() const {
     return surfaces;
 }
 
-DrawList draw_list(const DrawableScene& drawable, const Settings& settings, const Material& textures) {
+DrawList draw_list(const DrawableScene& drawable, const Settings& settings, const Material& textures,
+                   const ShaderFiles& shader_files) {
     DrawList list;
     for (size_t i = 0; i < drawable.scene.objects.size(); ++i) {
         const SceneSnapshot::Object& object = drawable.scene.objects[i];
@@ -164,6 +165,9 @@ DrawList draw_list(const DrawableScene& drawable, const Settings& settings, cons
         if (style.mode == DrawMode::surfels) add_surfels(source, list);
         if (style.mode == DrawMode::points || style.show_points) add_points(source, list);
     }
+    for (DrawItem& item : list.meshes)
+        if (SurfaceShader& shader = item.material.shader; shader.text.empty() && !shader.path.empty())
+            shader.text = shader_files.at(shader.path);
     const bool blend_in_layers = settings.transparency.mode == TransparencyMode::layers;
     for (std::vector<DrawItem>* items : {&list.meshes, &list.points})
         for (DrawItem& item : *items)

@@ -2,6 +2,8 @@
 #pragma once
 
 #include <algorithm>
+#include <map>
+#include <string>
 #include <vector>
 
 #include "easypbr/gpu/line_segments.h"
@@ -25,7 +27,7 @@ struct DrawItem {
     bool layered = false;  ///< other surfaces are seen behind: drawn in layers over the picture
 
     const MeshData& mesh() const { return *object->mesh; }
-    bool emits() const { return material.unlit || !material.emissive.isZero(); }
+    bool emits() const { return material.unlit || !material.emissive.isZero() || material.shader; }
     bool textured() const { return material.has_textures() && !mesh().UV.empty(); }
     /// Light goes through a solid.
     bool is_volume() const { return material.transmits() && material.thickness > 0; }
@@ -84,8 +86,13 @@ struct DrawList {
     DrawList as_surfaces() const;
 };
 
-/// All items in the order of the scene. `textures` are the settings' own, which stand in for the materials'.
-DrawList draw_list(const DrawableScene& drawable, const Settings& settings, const Material& textures);
+/// What the files of the materials' shaders hold, by path.
+using ShaderFiles = std::map<std::string, std::string>;
+
+/// All items in the order of the scene. `textures` are the settings' own, which stand in for the materials',
+/// its shader too.
+DrawList draw_list(const DrawableScene& drawable, const Settings& settings, const Material& textures,
+                   const ShaderFiles& shader_files = {});
 
 /// A material with the settings' overrides applied.
 Material overridden(const Material& material, const MaterialSettings& settings, const Material& textures);

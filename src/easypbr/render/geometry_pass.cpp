@@ -1,10 +1,13 @@
 #include "easypbr/render/geometry_pass.h"
 
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <regex>
 
+#include "easypbr/core/error.h"
 #include "easypbr/render/mesh_material.h"
 
 namespace easypbr::render {
@@ -29,7 +32,30 @@ bool is_one_sided(const DrawItem& item, const gpu::MeshBuffers& buffers) {
     return !item.two_sided || (buffers.closed_outward && opaque && !item.style.flat);
 }
 
+/// How many variants with shaders of materials are kept.
+constexpr size_t most_shaders = 256;
+
+void set_shader_uniforms(const gl::Program& program, const Frame& frame) {
+    const Vec3 eye = frame.camera.position().cast<float>();
+    const Vec3 backwards = frame.camera.T_world_cam.linear().col(2).cast<float>();
+    program.set("u_eye", eye);
+    program.set("u_backwards", Vec4(backwards.x(), backwards.y(), backwards.z(), frame.orthographic()));
+}
+
 }  // namespace
+
+const gl::Program& GeometryPass::program_of(const DrawItem& item, const std::vector<std::string>& defines) {
+    const SurfaceShader& shader = item.material.shader;
+    if (!shader) return programs_.get(defines);
+    const std::string name = shader.path.empty() ? "material.shader" : shader.path;
+    static const std::regex definition(R"(\bvoid\s+surface\s*\()");
+    if (!std::regex_search(shader.text, definition))
+        throw ShaderError(
+            fmt::format("{}: expected GLSL with the function 'void surface(inout Surface s)'", name));
+    programs_.limit_texts(most_shaders);
+    return programs_.get(defines, name + '\n' + shader.text,
+                         {{"geometry_shader_own.glsl", {name, shader.text}}});
+}
 
 void GeometryPass::draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets) {
     const bool emission =
@@ -64,6 +90,7 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     if (item.with_colors) defines.emplace_back("VERTEX_COLOR");
     if (face_normal) defines.emplace_back("FACE_NORMAL");
     if (item.style.flat) defines.emplace_back("FLAT");
+    if (item.material.shader) defines.emplace_back("SURFACE_SHADER");
     if (item.two_sided) defines.emplace_back("TWO_SIDED");
     if (emission) defines.emplace_back("EMISSION");
     if (frame.with_ids) defines.emplace_back("OBJECT_ID");
@@ -72,8 +99,9 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     if (frame.peel) defines.emplace_back("PEEL");
     add_material_defines(frame, item, defines);
 
-    const gl::Program& program = programs_.get(defines);
+    const gl::Program& program = program_of(item, defines);
     program.use();
+    if (item.material.shader) set_shader_uniforms(program, frame);
     const Mat4d view_from_mesh = frame.camera.view() * mesh_matrix;
     program.set("u_clip_from_mesh", Mat4((frame.clip_from_view * view_from_mesh).cast<float>()));
     program.set("u_view_from_mesh", Mat4(view_from_mesh.cast<float>()));

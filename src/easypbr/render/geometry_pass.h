@@ -22,6 +22,8 @@ class GeometryPass {
   private:
     void draw_item(const Frame& frame, const DrawItem& item, const gpu::MeshBuffers& buffers, bool emission);
 
+    const gl::Program& program_of(const DrawItem& item, const std::vector<std::string>& defines);
+
     gpu::MeshCache& meshes_;
     gpu::TextureCache& textures_;
     ProgramVariants programs_{"geometry_mesh.vert", "geometry_mesh.frag"};

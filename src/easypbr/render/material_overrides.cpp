@@ -87,6 +87,7 @@ Material overridden(const Material& material, const MaterialSettings& settings, 
     replace(m.opacity_texture, textures.opacity_texture, [&] {
         if (m.alpha_mode.value_or(AlphaMode::opaque) == AlphaMode::opaque) m.alpha_mode = AlphaMode::mask;
     });
+    if (textures.shader) m.shader = textures.shader;
     // Said outright, it holds for textures from outside too.
     if (settings.alpha_mode.value()) m.alpha_mode = settings.alpha_mode;
     return m;

@@ -111,7 +111,7 @@ void set_extension_uniforms(const gl::Program& program, const Frame& frame, cons
 }  // namespace
 
 void add_material_defines(const Frame& frame, const DrawItem& item, std::vector<std::string>& defines) {
-    if (item.textured()) defines.emplace_back("UV");
+    if (item.textured() || (item.material.shader && !item.mesh().UV.empty())) defines.emplace_back("UV");
     if (item.needs_tangents()) defines.emplace_back("TANGENT");
     const bool extended = is_extended(frame, item);
     if (extended) defines.emplace_back("EXTENDED");

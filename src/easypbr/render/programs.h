@@ -3,6 +3,7 @@
 
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "easypbr/gl/program.h"
@@ -21,12 +22,28 @@ class ProgramVariants {
         return program;
     }
 
+    /// The same with texts in place of shader files; `text_key` says which they are.
+    const gl::Program& get(const std::vector<std::string>& defines, const std::string& text_key,
+                           const gl::ShaderTexts& texts) {
+        gl::Program& program = with_texts_[{defines, text_key}];
+        if (!program) program = gl::Program(vertex_, fragment_, defines, texts);
+        return program;
+    }
+    /// Forgets the programs with texts when they are more than a scene could have: texts come and go.
+    void limit_texts(size_t count) {
+        if (with_texts_.size() > count) with_texts_.clear();
+    }
+
     /// Forgets all programs, so that changed shader files are read again.
-    void clear() { programs_.clear(); }
+    void clear() {
+        programs_.clear();
+        with_texts_.clear();
+    }
 
   private:
     std::string vertex_, fragment_;
     std::map<std::vector<std::string>, gl::Program> programs_;
+    std::map<std::pair<std::vector<std::string>, std::string>, gl::Program> with_texts_;
 };
 
 }  // namespace easypbr::render

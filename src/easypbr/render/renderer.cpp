@@ -100,7 +100,8 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
     auto picture = std::make_unique<Picture>(scene, resolved, options, images);
     picture->drawable = drawables_.apply(picture->scene, resolved.settings);
     element_sources_ = picture->drawable.sources;
-    const DrawList all = draw_list(picture->drawable, resolved.settings, images.textures);
+    const DrawList all =
+        draw_list(picture->drawable, resolved.settings, images.textures, images.shader_files);
     picture->list = options.layers || options.ids ? all.as_surfaces() : all;
     Frame& frame = picture->frame;
     frame.scene = &picture->drawable.scene;
@@ -130,6 +131,8 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
     // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
     const bool apart = options.samples > 1 && frame.with_exact;
     picture->averaged = apart ? picture->list.without_exact() : picture->list;
+    // What a pass draws may be anywhere.
+    frame.spreads |= has_custom(Stage::light) || has_custom(Stage::overlay);
     // Layers are of the content.
     frame.with_ground = GroundPass::is_on(resolved) && !options.layers && !options.ids;
     if (frame.with_ids) targets_.add_ids();
@@ -159,6 +162,7 @@ void Renderer::finish() {
         exact.through_lens = false;
         run("exact", [&] { draw_exact(exact, picture_->list); });
     }
+    run_custom(Stage::picture, frame);
     const bool is_last = frame.sample_index + 1 == frame.sample_count;
     if (is_last && picture_->options.surfaces && !picture_->holds_surfaces)
         run("surfaces", [&] { draw_kept_surfaces(); });
@@ -183,7 +187,8 @@ void Renderer::keep_surfaces(const SceneSnapshot& scene, const ResolvedSettings&
     drawn_ =
         std::make_unique<Drawn>(Drawn{drawables_.apply(scene, resolved.settings), resolved, scene, {}, size});
     element_sources_ = drawn_->drawable.sources;
-    drawn_->surfaces = draw_list(drawn_->drawable, resolved.settings, images.textures).as_surfaces();
+    drawn_->surfaces =
+        draw_list(drawn_->drawable, resolved.settings, images.textures, images.shader_files).as_surfaces();
 }
 
 void Renderer::draw_kept_surfaces() {
@@ -286,7 +291,7 @@ void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& ca
     frame.camera = frame.motion ? between(frame.motion->camera, camera, frame.time) : camera;
     if (frame.with_ground) GroundPass::widen_depth(frame.camera, *frame.resolved, bounds_of(*frame.scene));
     prepare_frame(frame, bounds_of(*frame.scene), list.reaches_beyond_vertices() || frame.with_ground);
-    frame.with_overlay = list.needs_overlay();
+    frame.with_overlay = list.needs_overlay() || has_custom(Stage::overlay);
     if (frame.with_overlay) targets_.add_overlay();
     const bool has_layers = list.has([](const DrawItem& item) { return item.layered; });
     const PixelRect everything = frame.covered;
@@ -315,9 +320,38 @@ void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& ca
     no_attributes_.bind();
     if (with_environment && sees_environment(*frame.resolved))
         run("background", [&] { background_.draw(frame, targets_, environment_, frame.with_ground); });
-    if (!has_layers) return;
-    frame.covered = everything;
-    run("transparency", [&] { draw_layers(frame, list.layers()); });
+    if (has_layers) {
+        frame.covered = everything;
+        run("transparency", [&] { draw_layers(frame, list.layers()); });
+    }
+    if (!has_custom(Stage::light) && !has_custom(Stage::overlay)) return;
+    frame.covered = {0, 0, frame.size.x(), frame.size.y()};
+    frame.partly_covered = true;
+    run_custom(Stage::light, frame);
+    run_custom(Stage::overlay, frame);
+}
+
+bool Renderer::has_custom(Stage stage) const {
+    // Layers and surfaces alone are no pictures.
+    const bool draws = picture_ && !picture_->options.layers && !picture_->options.ids;
+    return draws && std::ranges::any_of(custom_, [&](const CustomPass& c) { return c.stage == stage; });
+}
+
+void Renderer::run_custom(Stage stage, const Frame& frame) {
+    if (!has_custom(stage)) return;
+    const gl::Texture& image = stage == Stage::light     ? targets_.radiance
+                               : stage == Stage::overlay ? targets_.overlay
+                                                         : output_.texture();
+    gl::Framebuffer own;
+    if (stage != Stage::picture) own = gl::Framebuffer({&image});
+    const PassInput input(frame, targets_, image, stage == Stage::picture ? output_.picture() : own,
+                          custom_copies_[size_t(stage)]);
+    for (const CustomPass& custom : custom_) {
+        if (custom.stage != stage) continue;
+        no_attributes_.bind();
+        run(custom.name.c_str(), [&] { draw_custom(custom, input); });
+    }
+    no_attributes_.bind();
 }
 
 void Renderer::draw_layers(Frame& frame, const DrawList& list) {
@@ -379,11 +413,12 @@ void Renderer::draw_exact(Frame& frame, const DrawList& list) {
         draw_geometry(frame, list);
     }
     if (!has_layers) {
-        frame.with_overlay = !list.lines.empty();
+        frame.with_overlay = !list.lines.empty() || has_custom(Stage::overlay);
         if (frame.with_overlay) {
             const float nothing[4] = {0, 0, 0, 0};
             targets_.display.clear_color(0, nothing);
             lines_.draw(frame, list.lines, targets_);
+            run_custom(Stage::overlay, frame);
         }
     }
     no_attributes_.bind();

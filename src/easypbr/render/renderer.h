@@ -11,6 +11,7 @@
 #include "easypbr/render/ambient_occlusion_pass.h"
 #include "easypbr/render/background_pass.h"
 #include "easypbr/render/bloom_pass.h"
+#include "easypbr/render/custom_pass.h"
 #include "easypbr/render/display_pass.h"
 #include "easypbr/render/focus_pass.h"
 #include "easypbr/render/geometry_pass.h"
@@ -64,7 +65,8 @@ struct DrawOptions {
 
 /// Images that the settings name, loaded by the caller.
 struct SettingsImages {
-    Material textures;                        ///< texture overrides
+    Material textures;                        ///< texture and shader overrides
+    ShaderFiles shader_files = {};            ///< of the materials' shaders
     std::shared_ptr<const Image> background;  ///< for background mode image
 };
 
@@ -119,6 +121,9 @@ class Renderer {
         shadow_maps_.allow_native(allow);
     }
 
+    /// Passes of the program's own, each stage's in this order. They belong to pictures, not to layers.
+    void set_passes(std::vector<CustomPass> passes) { custom_ = std::move(passes); }
+
     /// How often the shadow maps of a light have been drawn since the beginning: they are kept until the
     /// light or what casts changes.
     uint64_t shadow_maps_drawn() const { return shadow_maps_.drawn(); }
@@ -149,6 +154,8 @@ class Renderer {
     void draw_kept_surfaces();
     /// Lights a G-buffer, block by block of lights with their shadow maps.
     void draw_lights(const Frame& frame, const GBuffer& targets);
+    bool has_custom(Stage stage) const;
+    void run_custom(Stage stage, const Frame& frame);
     /// What the lens and the eye make of the frame.
     LitPicture post_process(Frame& frame);
     const Box3d& bounds_of(const SceneSnapshot& scene);
@@ -185,6 +192,8 @@ class Renderer {
     gl::Texture background_texture_;
     GBuffer over_;  ///< what is drawn over everything else
     SurfaceComposite composite_;
+    std::vector<CustomPass> custom_;
+    gl::Texture custom_copies_[3];  ///< by stage, see PassInput::before()
     Camera camera_;
     std::vector<Array1i> element_sources_;  ///< DrawableScene::sources of the last picture
     /// Of the last picture that was drawn with `surfaces`.

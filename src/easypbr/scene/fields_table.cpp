@@ -346,6 +346,8 @@ void add_overrides(Table& table) {
             "Image file for the glow (sRGB) of every material.");
     texture("opacity_texture", &MaterialSettings::opacity_texture,
             "Image file for the opacity of every material.");
+    texture("shader", &MaterialSettings::shader,
+            "File with GLSL that changes the surface of every material, read again whenever it changes.");
 }
 
 /// Each is a row of every object's style and, as a setting, overrides them all.

@@ -29,6 +29,16 @@ struct Texture {
     explicit operator bool() const { return image != nullptr; }
 };
 
+/// GLSL with a function `void surface(inout Surface s)` that changes what a surface is made of; see
+/// shaders/geometry_shader.glsl for what it finds in `s`. Empty when both are.
+struct SurfaceShader {
+    std::string text;
+    std::string path = {};  ///< of a file that is read before each picture, in place of a text
+
+    explicit operator bool() const { return !text.empty() || !path.empty(); }
+    bool operator==(const SurfaceShader&) const = default;
+};
+
 /// Factors multiply their textures. Colours are linear Rec.709. Ranges, and what each number and texture
 /// means, stand in scene/material_table.h.
 struct Material {
@@ -97,6 +107,8 @@ struct Material {
     Texture iridescence_texture;
     Texture iridescence_thickness_texture;
     Texture anisotropy_texture;  ///< rg: direction, as in a normal map; b: strength
+
+    SurfaceShader shader;  ///< of faces
 
     bool has_textures() const;
 

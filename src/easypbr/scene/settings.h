@@ -173,6 +173,7 @@ struct MaterialSettings {
     Auto<float> anisotropy, anisotropy_rotation_deg;
     std::string base_color_texture, metallic_texture, roughness_texture, normal_texture, occlusion_texture,
         emissive_texture, opacity_texture;
+    std::string shader;
 };
 
 /// What is cut away of every object, in world space.

@@ -87,8 +87,8 @@ class Viewer {
     /// Opens the window at the first call; then shows what has changed and does what mouse and keys ask for.
     /// Waits up to 16 ms for something to happen and draws nothing while nothing changes. False when the
     /// window has been closed: while (view.update()) ... Every call is a frame of the clock, and one of the
-    /// recording while the recorder records. Throws ContextError when there is no display, and as
-    /// Recorder::add_frame().
+    /// recording while the recorder records. Throws ContextError when there is no display, or when it has
+    /// gone away (a recording is finished before), and as Recorder::add_frame().
     bool update();
     /// Shows the window, again when it has been closed, until it is closed.
     void show();
@@ -129,11 +129,20 @@ class Viewer {
     /// The GUI behind window and screenshots.
     gui::LiveView& live();
 
+    /// Draws a pass of one's own in every picture from now on; one of the same name is replaced. See
+    /// render/custom_pass.h.
+    void add_pass(const std::string& name, render::Stage stage, std::shared_ptr<render::Pass> pass) {
+        session_->add_pass(name, stage, std::move(pass));
+    }
+    void remove_pass(const std::string& name) { session_->remove_pass(name); }
+
     /// Adds or replaces a light of the scene.
     void add_light(const std::string& name, const Light& light) { scene().set_light(name, light); }
     void remove_light(const std::string& name) { scene().remove_light(name); }
 
   private:
+    bool update_window();
+
     struct Window;
     Window& window();
     static void shut(Window& window);

@@ -1,0 +1,324 @@
+// Shaders and passes of a program's own. A square that fills the picture, so that every pixel is known.
+#include <epoxy/gl.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+
+#include "easypbr/core/error.h"
+#include "render/render_test.h"
+
+namespace easypbr::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr int side = 16;
+
+Session square_session(const SurfaceShader& shader, Material material = {}) {
+    material.shader = shader;
+    Scene scene;
+    scene.show(facing_square(10, material), "square");
+    Session session = plain_session(scene, side);
+    look_from(session, Vec3d(0, 0, 5));
+    return session;
+}
+
+Vec4 middle_of(const Image& image) {
+    const float* p = image.at<float>(side / 2, side / 2);
+    Vec4 v = Vec4::Zero();
+    for (int c = 0; c < image.channels(); ++c) v[c] = p[c];
+    return v;
+}
+
+/// A file that is written anew with another time each.
+class ShaderFile {
+  public:
+    ShaderFile() {
+        char name[] = "/tmp/easypbr_shaderXXXXXX";
+        folder_ = mkdtemp(name);
+    }
+    ~ShaderFile() { fs::remove_all(folder_); }
+    void write(const std::string& text) {
+        std::ofstream(path()) << text;
+        fs::last_write_time(path(), fs::file_time_type::clock::now() + std::chrono::seconds(++writes_));
+    }
+    fs::path path() const { return folder_ / "own.glsl"; }
+
+  private:
+    fs::path folder_;
+    int writes_ = 0;
+};
+
+std::string message_of(Session& session) {
+    try {
+        session.render();
+    } catch (const ShaderError& error) {
+        return error.what();
+    }
+    return "no ShaderError";
+}
+
+TEST(OwnShader, SetsWhatGoesIntoTheGBuffer) {
+    Session session =
+        square_session({"void surface(inout Surface s) {\n"
+                        "    s.base_color = vec3(0.25, s.base_color.g * 0.5, 0.75);\n"
+                        "    s.roughness = 0.2;\n"
+                        "    s.metallic = 1.0;\n"
+                        "    s.occlusion = 0.6;\n"
+                        "}\n"});
+    const auto layers = session.render_layers({"albedo", "roughness", "metallic", "occlusion"});
+    // The material's green is 0.6. Albedo has 16 bits a channel, material 8: half a step each.
+    const Vec4 albedo = middle_of(layers.at("albedo"));
+    EXPECT_NEAR(albedo.x(), 0.25, 0.5 / 65535);
+    EXPECT_NEAR(albedo.y(), 0.3, 0.5 / 65535);
+    EXPECT_NEAR(albedo.z(), 0.75, 0.5 / 65535);
+    EXPECT_NEAR(middle_of(layers.at("roughness"))[0], 0.2, 0.5 / 255);
+    EXPECT_NEAR(middle_of(layers.at("metallic"))[0], 1, 0.5 / 255);
+    EXPECT_NEAR(middle_of(layers.at("occlusion"))[0], 0.6, 0.5 / 255);
+}
+
+// Positions, directions and texture coordinates of a pixel follow from the camera: at distance 5 with 30
+// degrees a pixel's centre half a pixel off the axis lies 5 tan(15) / side off it.
+TEST(OwnShader, KnowsWhereItIs) {
+    const float off = 5 * std::tan(radians(15.0f)) / side;
+    Session session =
+        square_session({"void surface(inout Surface s) {\n"
+                        "    s.emission = s.position;\n"
+                        "    s.base_color = vec3(s.uv, s.view.z);\n"
+                        "}\n"});
+    const Vec4 position = middle_of(render_linear(session));
+    // Rounding of float32 at a distance of 5 from the eye: 5e-7, and that of the interpolation.
+    EXPECT_NEAR(position.x(), off, 3e-6);
+    EXPECT_NEAR(position.y(), -off, 3e-6);
+    EXPECT_NEAR(position.z(), 0, 3e-6);
+    const Vec4 albedo = middle_of(session.render_layers({"albedo"}).at("albedo"));
+    // The square is 20 wide.
+    EXPECT_NEAR(albedo.x(), 0.5 + off / 20, 1.0 / 65535);
+    EXPECT_NEAR(albedo.y(), 0.5 - off / 20, 1.0 / 65535);
+    EXPECT_NEAR(albedo.z(), 5 / std::sqrt(25 + 2 * off * off), 1.0 / 65535);
+}
+
+TEST(OwnShader, MovesWithTheMeshAndTurnsItsNormal) {
+    Session session =
+        square_session({"void surface(inout Surface s) {\n"
+                        "    s.emission = s.own_position;\n"
+                        "    s.normal = vec3(3.0, 0.0, 0.0);\n"
+                        "}\n"});
+    session.scene().get("square").set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(-2, 0, 0)));
+    const float off = 5 * std::tan(radians(15.0f)) / side;
+    EXPECT_NEAR(middle_of(render_linear(session)).x(), 2 + off, 3e-6);
+    const Vec4 normal = middle_of(session.render_layers({"normal"}).at("normal"));
+    EXPECT_NEAR(normal.x(), 1, 1e-4);  // 16 bits of an octahedron: 0.004 degrees
+}
+
+TEST(OwnShader, ShowsColoursUnlitWhenAskedTo) {
+    Session session =
+        square_session({"void surface(inout Surface s) {\n"
+                        "    s.unlit = true;\n"
+                        "    s.base_color = vec3(0.125, 0.5, 1.0);\n"
+                        "}\n"});
+    session.settings().environment.enabled = true;
+    session.scene().set_environment(constant_environment(3));
+    const Vec4 shown = middle_of(render_linear(session));
+    EXPECT_EQ(shown, Vec4(0.125f, 0.5f, 1, 1));
+}
+
+TEST(OwnShader, CutsHolesWhereTheAlphaModeIsMask) {
+    Material material;
+    material.alpha_mode = AlphaMode::mask;
+    Session session = square_session(
+        {"void surface(inout Surface s) { s.opacity = s.position.x < 0.0 ? 0.0 : 1.0; }"}, material);
+    const Image picture = render_linear(session);
+    EXPECT_EQ(picture.at<float>(side / 2 - 1, 3)[3], 0);
+    EXPECT_EQ(picture.at<float>(side / 2, 3)[3], 1);
+}
+
+// Dense meshes are drawn natively without a GPU; with a shader of their own they are not.
+TEST(OwnShader, ActsOnDenseMeshesToo) {
+    Material material;
+    material.shader.text = "void surface(inout Surface s) { s.base_color = vec3(0.5, 0.0, 1.0); }";
+    Mesh ball = make_sphere(1, 128);
+    ball.set_material(material);
+    Scene scene;
+    scene.show(ball, "ball");
+    Session session = plain_session(scene, side);
+    EXPECT_NEAR(middle_of(session.render_layers({"albedo"}).at("albedo")).x(), 0.5, 0.5 / 65535);
+}
+
+TEST(OwnShader, SaysInWhichLineItIsWrong) {
+    Session session =
+        square_session({"// the first line\n"
+                        "void surface(inout Surface s) {\n"
+                        "    s.base_color = colour;\n"
+                        "}\n"});
+    const std::string message = message_of(session);
+    EXPECT_NE(message.find("material.shader:3"), message.npos) << message;
+    EXPECT_NE(message.find("colour"), message.npos) << message;
+}
+
+TEST(OwnShader, SaysWhatIsMissing) {
+    Session empty = square_session({"float unused = 1.0;"});
+    EXPECT_NE(message_of(empty).find("void surface(inout Surface s)"), std::string::npos);
+    Session lost = square_session({"", "/tmp/easypbr/there/is/no/such.glsl"});
+    EXPECT_THROW(lost.render(), FileError);
+}
+
+TEST(OwnShader, IsReadAgainWhenTheFileChanges) {
+    ShaderFile file;
+    file.write("void surface(inout Surface s) { s.base_color = vec3(0.25); }");
+    Session session = square_session({"", file.path().string()});
+    const auto red = [&] { return middle_of(session.render_layers({"albedo"}).at("albedo")).x(); };
+    EXPECT_NEAR(red(), 0.25, 0.5 / 65535);
+    const uint64_t version = session.picture_version();
+    EXPECT_EQ(session.picture_version(), version);
+    file.write("void surface(inout Surface s) {\n s.base_color = vec3(0.5)\n}");
+    EXPECT_GT(session.picture_version(), version);
+    EXPECT_NE(message_of(session).find(file.path().string() + ":3"), std::string::npos);
+    file.write("void surface(inout Surface s) { s.base_color = vec3(0.75); }");
+    EXPECT_NEAR(red(), 0.75, 0.5 / 65535);
+    // A file that is being replaced may be missing for a moment.
+    fs::remove(file.path());
+    EXPECT_NEAR(red(), 0.75, 0.5 / 65535);
+}
+
+TEST(OwnShader, OfTheSettingsIsForAllMaterials) {
+    ShaderFile file;
+    file.write("void surface(inout Surface s) { s.base_color = vec3(0.25, 0.5, 1.0); }");
+    Session session = square_session({});
+    session.settings().material.shader = file.path().string();
+    EXPECT_NEAR(middle_of(session.render_layers({"albedo"}).at("albedo")).x(), 0.25, 0.5 / 65535);
+}
+
+std::shared_ptr<render::Pass> pass_of(const std::string& body, render::Blend blend = render::Blend::over) {
+    const std::string head =
+        "#include \"common_camera.glsl\"\n#include \"common_encoding.glsl\"\n"
+        "uniform sampler2D u_albedo, u_normal, u_material, u_depth_target, u_image;\n"
+        "layout(location = 0) out vec4 o_color;\n"
+        "vec4 at(sampler2D target) { return textureLod(target, gl_FragCoord.xy / u_size, 0.0); }\n";
+    return std::make_shared<render::ShaderPass>("body", head + "void main() { " + body + " }", blend);
+}
+
+// Each target of the G-buffer is bound under its name.
+TEST(OwnPass, ReadsTheGBuffer) {
+    Material material;
+    material.base_color = Vec3(0.25f, 0.5f, 0.75f);
+    material.roughness = 0.4f;
+    material.shader = {};
+    Session session = square_session({}, material);
+    const auto show = [&](const std::string& body) {
+        session.add_pass("own", render::Stage::light, pass_of(body, render::Blend::replace));
+        return middle_of(render_linear(session));
+    };
+    EXPECT_NEAR(show("o_color = at(u_albedo);").x(), 0.25, 0.5 / 65535);
+    EXPECT_NEAR(show("o_color = at(u_material);").y(), 0.4, 0.5 / 255);
+    EXPECT_NEAR(show("o_color = vec4(oct_decode(at(u_normal).rg * 2.0 - 1.0), 1.0);").z(), 1, 1e-4);
+    const std::string position = "view_position(gl_FragCoord.xy, at(u_depth_target).r)";
+    EXPECT_NEAR(show("o_color = vec4(" + position + ", 1.0);").z(), -5, 1e-5);
+}
+
+// In stage light the tone curve comes after the pass; in stage overlay it does not touch it.
+TEST(OwnPass, DrawsBeforeOrPastTheToneCurve) {
+    Session session = square_session({"void surface(inout Surface s) { s.emission = vec3(0.125); }"});
+    session.settings().tone.exposure = 2.0f;
+    session.add_pass("own", render::Stage::light, pass_of("o_color = vec4(0.25, 0.0, 0.0, 0.5);"));
+    // 0.25 + (1 - 0.5) 0.125 = 0.3125, times the exposure.
+    const auto encoded = [](double linear) {
+        return 255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055);
+    };
+    const auto red = [&] { return double(session.render().at<uint8_t>(side / 2, side / 2)[0]); };
+    EXPECT_NEAR(red(), encoded(0.625), 0.51);  // half a step of 8 bits
+    session.add_pass("own", render::Stage::overlay, pass_of("o_color = vec4(0.25, 0.0, 0.0, 0.5);"));
+    EXPECT_NEAR(red(), encoded(0.25 + 0.5 * 0.25), 0.51);
+    session.add_pass("own", render::Stage::picture,
+                     pass_of("o_color = vec4(1.0 - at(u_image).rgb, 1.0);", render::Blend::replace));
+    EXPECT_NEAR(red(), 255 - encoded(0.25), 1.01);  // two roundings to 8 bits
+    session.remove_pass("own");
+    EXPECT_NEAR(red(), encoded(0.25), 0.51);
+}
+
+// What is drawn past the content's edges belongs to the picture too, also on a background that has no
+// radiance.
+TEST(OwnPass, DrawsWhereNothingIs) {
+    Scene scene;
+    scene.show(facing_square(0.1f), "square");
+    Session session = plain_session(scene, side);
+    look_from(session, Vec3d(0, 0, 5));
+    for (const int samples : {1, 4})
+        for (const render::Stage stage : {render::Stage::light, render::Stage::overlay}) {
+            session.add_pass("own", stage, pass_of("o_color = vec4(0.0, 1.0, 0.0, 1.0);"));
+            const Image picture = session.render({std::nullopt, samples});
+            EXPECT_EQ(picture.at<uint8_t>(0, 0)[1], 255) << samples;
+            EXPECT_EQ(picture.at<uint8_t>(0, 0)[3], 255) << samples;
+        }
+}
+
+TEST(OwnPass, IsNotForLayers) {
+    Session session = square_session({});
+    const Vec4 before = middle_of(session.render_layers({"albedo"}).at("albedo"));
+    session.add_pass("own", render::Stage::light, pass_of("o_color = vec4(1.0);"));
+    session.render();
+    EXPECT_EQ(middle_of(session.render_layers({"albedo"}).at("albedo")), before);
+}
+
+/// Leaves OpenGL in a state that would spoil whatever comes after.
+class RudePass : public render::Pass {
+  public:
+    void draw(const render::PassInput& input) override {
+        input.target.bind();
+        glEnable(GL_SCISSOR_TEST);
+        glScissor(0, 0, 1, 1);
+        glEnable(GL_CULL_FACE);
+        glCullFace(GL_FRONT_AND_BACK);
+        glEnable(GL_BLEND);
+        glBlendFunc(GL_ZERO, GL_ZERO);
+        glColorMask(GL_FALSE, GL_TRUE, GL_FALSE, GL_TRUE);
+        glDepthMask(GL_FALSE);
+        glClipControl(GL_LOWER_LEFT, GL_NEGATIVE_ONE_TO_ONE);
+        glBindVertexArray(0);
+        if (fails) throw std::runtime_error("not today");
+    }
+    bool fails = false;
+};
+
+TEST(OwnPass, FailsUnderItsNameAndLeavesTheSessionUsable) {
+    Session session = square_session({"void surface(inout Surface s) { s.emission = vec3(0.5); }"});
+    const Image before = session.render();
+    const auto pass = std::make_shared<RudePass>();
+    session.add_pass("rude", render::Stage::overlay, pass);
+    pass->fails = true;
+    try {
+        session.render();
+        FAIL();
+    } catch (const Error& error) {
+        EXPECT_EQ(std::string(error.what()), "pass 'rude': not today");
+    }
+    pass->fails = false;
+    for (int times = 0; times < 2; ++times)
+        EXPECT_EQ(session.render().at<uint8_t>(3, 3)[0], before.at<uint8_t>(3, 3)[0]);
+    EXPECT_THROW(session.remove_pass("ruse"), NameError);
+    EXPECT_THROW(session.add_pass("none", render::Stage::light, nullptr), ArgumentError);
+}
+
+TEST(OwnPass, OfAFileIsReadAgainWhenItChanges) {
+    ShaderFile file;
+    const std::string head = "layout(location = 0) out vec4 o_color;\nvoid main() {\n";
+    file.write(head + "o_color = vec4(1.0, 0.0, 0.0, 1.0); }");
+    Session session = square_session({});
+    session.add_pass("own", render::Stage::overlay, std::make_shared<render::ShaderPass>(file.path()));
+    const auto first = [&] { return int(session.render().at<uint8_t>(3, 3)[0]); };
+    EXPECT_EQ(first(), 255);
+    const uint64_t version = session.picture_version();
+    file.write(head + "o_color = vec4(nothing); }");
+    EXPECT_GT(session.picture_version(), version);
+    const std::string message = message_of(session);
+    EXPECT_NE(message.find("pass 'own'"), message.npos) << message;
+    EXPECT_NE(message.find("own.glsl:3"), message.npos) << message;
+    file.write(head + "o_color = vec4(0.0, 0.0, 0.0, 1.0); }");
+    EXPECT_EQ(first(), 0);
+    EXPECT_THROW(render::ShaderPass(fs::path("/tmp/easypbr/no/such.frag")), FileError);
+}
+
+}  // namespace
+}  // namespace easypbr::app
