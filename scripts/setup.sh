@@ -11,7 +11,7 @@ packages=(
   libspng-dev libturbojpeg0-dev libtinyexr-dev zlib1g-dev libmeshoptimizer-dev libnanoflann-dev libassimp-dev libyaml-cpp-dev
   libstb-dev fonts-dejavu-core libglfw3-dev libimgui-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev ffmpeg
-  xvfb openbox xdotool wmctrl
+  xvfb openbox xdotool wmctrl xclip
   libgtest-dev python3-dev python3-venv python3-torch
   libembree-dev
 )

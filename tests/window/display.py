@@ -8,7 +8,7 @@ import time
 
 import numpy as np
 
-TOOLS = ("Xvfb", "openbox", "xdotool", "wmctrl")
+TOOLS = ("Xvfb", "openbox", "xdotool", "wmctrl", "xclip")
 
 
 def missing_tools():

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "easypbr/core/error.h"
+#include "easypbr/gui/display.h"
 
 namespace easypbr::gui {
 namespace {
@@ -44,6 +45,7 @@ const Glfw& glfw() {
         throw ContextError(
             fmt::format("no window: {}; {}", reason ? reason : "GLFW does not start", without_window));
     }
+    if (!started) watch_display();
     started = true;
     return functions;
 }

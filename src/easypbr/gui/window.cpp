@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "easypbr/core/error.h"
+#include "easypbr/gui/display.h"
 #include "easypbr/gui/glfw.h"
 
 namespace easypbr::gui {
@@ -116,6 +117,7 @@ struct WindowCallbacks {
 Window::Window(const std::string& title, Vec2i size) {
     const GlfwLock lock;
     const Glfw& f = GlfwLock::functions();
+    require_display();
     f.glfwDefaultWindowHints();
     // EGL as everywhere else in the library, so that one process never mixes two ways to make contexts.
     f.glfwWindowHint(GLFW_CONTEXT_CREATION_API, GLFW_EGL_CONTEXT_API);
@@ -152,16 +154,27 @@ void Window::show() {
 
 Window::~Window() {
     const GlfwLock lock;
-    glfw().glfwDestroyWindow(window_);
+    // On a lost display there is nothing to destroy, and GLFW would wait for answers.
+    if (!display_is_lost()) glfw().glfwDestroyWindow(window_);
+}
+
+bool Window::poll_events() {
+    const GlfwLock lock;
+    glfw().glfwPollEvents();
+    return !events_.empty();
 }
 
 std::vector<InputEvent> Window::events(double seconds) {
+    require_display();
+    // What lies in GLFW's own queue does not show on the connection.
+    if (seconds > 0 && !poll_events() && wait_for_display(seconds)) seconds = 0;
     {
         const GlfwLock lock;
-        if (seconds > 0)
+        if (seconds > 0 && events_.empty())
             glfw().glfwWaitEventsTimeout(seconds);
         else
             glfw().glfwPollEvents();
+        require_display();
         // A window manager that is just starting may lose the request to map a window.
         if (!is_shown_) is_shown_ = glfw().glfwGetWindowAttrib(window_, GLFW_VISIBLE);
         if (!is_shown_ && now() > asked_to_show_ + ask_again_seconds) show();
@@ -176,6 +189,7 @@ Vec2i Window::size() const {
     const GlfwLock lock;
     Vec2i size(0, 0);
     glfw().glfwGetFramebufferSize(window_, &size.x(), &size.y());
+    require_display();  // Without one GLFW leaves numbers that mean nothing.
     return size;
 }
 
@@ -241,6 +255,7 @@ void Window::set_title(const std::string& title) {
 }
 
 void wake_windows() {
+    wake_display();
     if (GlfwLock::started()) glfw().glfwPostEmptyEvent();
 }
 

@@ -23,7 +23,8 @@ class Window {
     Window(const Window&) = delete;
     Window& operator=(const Window&) = delete;
 
-    /// What has happened since the last call; waits up to `seconds` for something.
+    /// What has happened since the last call; waits up to `seconds` for something. Throws ContextError when
+    /// the display has gone away.
     std::vector<app::InputEvent> events(double seconds);
 
     /// Size in pixels; 0 while it is minimised.
@@ -45,6 +46,8 @@ class Window {
     friend struct WindowCallbacks;
     void make_target(Vec2i size);
     void show();
+    /// Whether something has happened.
+    bool poll_events();
 
     GLFWwindow* window_ = nullptr;
     std::vector<app::InputEvent> events_;

@@ -3,6 +3,7 @@
 #include <chrono>
 
 #include "easypbr/core/error.h"
+#include "easypbr/gui/display.h"
 #include "easypbr/gui/live_view.h"
 #include "easypbr/gui/window.h"
 
@@ -86,7 +87,14 @@ gui::LiveView& Viewer::live() {
     return window().live;
 }
 
-bool Viewer::update() {
+bool Viewer::update() try { return update_window(); } catch (const Error&) {
+    if (!gui::display_is_lost()) throw;
+    close();
+    recorder.stop();
+    throw;
+}
+
+bool Viewer::update_window() {
     Window& w = window();
     if (w.closed) return false;
     if (w.updating) throw ArgumentError("update() is called from a callback of its own");

@@ -1,0 +1,257 @@
+"""What goes wrong around a window: interrupts, displays that go away, closing in the middle, files and text from outside."""
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+import easypbr
+from display import Display, wait_until
+
+HERE = pathlib.Path(__file__).parent
+
+#: A program with a window that records what it shows, told line by line.
+RECORDING = """
+import sys, easypbr
+scene = easypbr.Scene()
+ball = easypbr.shapes.sphere(1, 16)
+scene.show(ball, "ball")
+view = easypbr.Viewer((160, 120), {"image": {"samples": 1}}, scene=scene)
+view.recorder.start(sys.argv[1], fps=25)
+frames = 0
+try:
+    while view.update():
+        frames += 1
+        print(frames, flush=True)
+        ball.rotate_axis_angle((0, 1, 0), 5)
+except BaseException as error:
+    print("ended by", type(error).__name__ + ":", error, flush=True)
+else:
+    print("closed", flush=True)
+"""
+
+
+class Program:
+    """A program of its own process; its lines are read as they come."""
+
+    def __init__(self, display, code, *arguments):
+        self.process = subprocess.Popen([sys.executable, "-c", code, *map(str, arguments)], env=display.environment,
+                                        stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+
+    def until_frame(self, number):
+        for line in self.process.stdout:
+            if line.strip() == str(number):
+                return
+        raise AssertionError(self.process.stderr.read())
+
+    def rest(self):
+        """What it prints until its end, which must be an orderly one."""
+        out, error = self.process.communicate(timeout=60)
+        assert self.process.returncode == 0, f"{self.process.returncode}: {error}"
+        return out, error
+
+
+def frames_of(path):
+    """How many frames a player finds; each is decoded."""
+    command = ["ffprobe", "-v", "error", "-count_frames", "-show_entries", "stream=nb_read_frames", "-of", "csv=p=0", path]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=60)
+    assert done.returncode == 0 and not done.stderr, done.stderr
+    return int(done.stdout)
+
+
+def told_frames(out, before):
+    numbers = [int(line) for line in out.splitlines() if line.isdigit()]
+    return max(numbers, default=before)
+
+
+def test_ctrl_c_ends_a_loop_and_the_recording_is_whole(display, tmp_path):
+    program = Program(display, RECORDING, tmp_path / "out.mp4")
+    program.until_frame(5)
+    program.process.send_signal(signal.SIGINT)
+    out, _ = program.rest()
+    assert "ended by KeyboardInterrupt" in out
+    # The interrupt may come within the update whose frame was added already.
+    assert 0 <= frames_of(tmp_path / "out.mp4") - told_frames(out, 5) <= 1
+
+
+def test_ctrl_c_ends_show(display):
+    code = "import easypbr\nprint(1, flush=True)\neasypbr.show(easypbr.shapes.box(), size=(160, 120))"
+    program = Program(display, code)
+    program.until_frame(1)
+    wait_until(lambda: any("EasyPBR" in title for title in display.windows()))
+    program.process.send_signal(signal.SIGINT)
+    _, error = program.process.communicate(timeout=30)
+    assert program.process.returncode == -signal.SIGINT and "KeyboardInterrupt" in error
+
+
+def test_closing_the_window_keeps_the_recording(display, tmp_path):
+    program = Program(display, RECORDING, tmp_path / "out.mp4")
+    program.until_frame(4)
+    wait_until(lambda: any("ball" in title for title in display.windows()))
+    display.run("wmctrl", "-c", "ball - EasyPBR")
+    out, _ = program.rest()
+    assert "closed" in out
+    assert 0 <= frames_of(tmp_path / "out.mp4") - told_frames(out, 4) <= 1
+
+
+AFTERWARDS = """
+print("open", view.is_open, "recording", view.recorder.is_recording, flush=True)
+print("update", view.update(), flush=True)
+print("still", view.render((16, 12)).shape, flush=True)
+try:
+    easypbr.show(easypbr.shapes.box())
+except easypbr.ContextError as error:
+    print("again:", error, flush=True)
+"""
+
+
+@pytest.mark.parametrize("how", ["kill", "terminate"])
+def test_a_display_that_goes_away_is_an_error_and_loses_nothing(tmp_path, how):
+    (tmp_path / "display").mkdir()
+    with Display(tmp_path / "display") as display:
+        program = Program(display, RECORDING + AFTERWARDS, tmp_path / "out.mp4")
+        program.until_frame(5)
+        getattr(display._processes[0], how)()
+        out, error = program.rest()
+    assert "ended by ContextError: the display that the window was on has gone away" in out
+    # Drawing goes on without a window, and nobody waits for one.
+    assert "open False recording False" in out and "update False" in out and "still (12, 16, 4)" in out
+    assert "again: the display" in out
+    assert "XIO" not in error
+    assert 0 <= frames_of(tmp_path / "out.mp4") - told_frames(out, 5) <= 1
+
+
+def test_an_exception_in_a_callback_does_not_harm_a_recording(window, tmp_path, capsys):
+    window.view.before_draw(lambda: 1 / 0)
+    window.view.recorder.start(tmp_path / "out.mp4", fps=25)
+    window.update(4)
+    assert window.view.recorder.stop() == 4 == frames_of(tmp_path / "out.mp4")
+    assert "ZeroDivisionError" in capsys.readouterr().err
+
+
+def test_an_exception_that_ends_the_loop_flushes_the_recording(window, tmp_path):
+    with pytest.raises(RuntimeError, match="diverged"), window.view.recorder.start(tmp_path / "out.mp4", fps=25):
+        for step in range(10):
+            window.update()
+            if step == 2:
+                raise RuntimeError("the training diverged")
+    assert frames_of(tmp_path / "out.mp4") == 3
+
+
+def test_watched_files_are_shown_again(window, tmp_path):
+    path = tmp_path / "thing.ply"
+    easypbr.shapes.box().save(path)
+    window.view.scene.show(easypbr.Mesh(path), "thing")
+    window.view._handle.watch(path, "thing")
+    window.settle()
+    faces = len(window.view.scene.get("thing").F)
+    easypbr.shapes.sphere(1, 16).save(tmp_path / "other.ply")
+    os.utime(tmp_path / "other.ply", ns=(time.time_ns() + 10**9,) * 2)
+    os.replace(tmp_path / "other.ply", path)
+    wait_until(lambda: window.update() and "Reloaded thing" in window.state["messages"])
+    shown = window.view.scene.get("thing")
+    assert sum(len(m.F) for m in [shown, *shown.children]) > faces
+
+
+def test_an_edited_shader_is_shown_at_once(window, tmp_path):
+    path = tmp_path / "own.glsl"
+    text = "void surface(inout Surface s) { s.base_color = vec3(1.0, 0.0, 0.0); s.unlit = true; }"
+
+    def write(words):
+        path.write_text(words)
+        write.time += 10**9
+        os.utime(path, ns=(write.time, write.time))
+
+    write.time = time.time_ns()
+    write(text)
+    window.view._handle.set_gui("show_panels", False)
+    window.view.scene.get("ball").material.shader = path
+    window.settle()
+    middle = lambda: window.shown()[300, 400].astype(int)  # noqa: E731
+    assert middle()[0] > 150 > middle()[2]
+    write(text.replace("1.0, 0.0, 0.0", "0.0, 0.0, 1.0"))
+    window.settle()
+    wait_until(lambda: window.update() and middle()[2] > 150 > middle()[0])
+    good = middle()
+    write(text.replace("vec3", "colour"))
+    wait_until(lambda: window.update() and any("own.glsl:1" in m for m in window.state["messages"]))
+    window.update(5)
+    assert np.array_equal(middle(), good)
+
+
+def drop(window, position, *files):
+    x, y = window.left + position[0], window.top + position[1]
+    source = subprocess.Popen([sys.executable, HERE / "drop.py", str(x), str(y), *map(str, files)],
+                              env=window.display.environment, stdout=subprocess.PIPE, text=True)
+    wait_until(lambda: window.update() and source.poll() is not None)
+    assert source.returncode == 0 and source.stdout.read().strip() == "dropped"
+    window.settle()
+
+
+def test_files_dropped_on_the_window_are_added(window, tmp_path):
+    # A name with a blank and one beyond ASCII: uri-lists escape them.
+    names = ["my box.ply", "schüssel.obj"]
+    for name in names:
+        easypbr.shapes.box().save(tmp_path / name)
+    drop(window, (400, 300), *(tmp_path / name for name in names))
+    assert sorted(window.view.scene.names()) == ["ball", "my box", "schüssel"]
+    drop(window, (400, 300), tmp_path / "my box.ply")
+    assert "my box-2" in window.view.scene.names()
+    (tmp_path / "broken.ply").write_text("ply\nthis is none\n")
+    drop(window, (400, 300), tmp_path / "broken.ply")
+    assert any("broken.ply" in message for message in window.state["messages"])
+
+
+def test_an_environment_dropped_on_the_window_lights(window, tmp_path):
+    easypbr.save_image(np.full((8, 16, 3), 2, np.float32), tmp_path / "sky.hdr")
+    drop(window, (400, 300), tmp_path / "sky.hdr")
+    assert window.view.settings.environment.file == str(tmp_path / "sky.hdr")
+
+
+def test_the_camera_goes_by_the_clipboard(window):
+    window.key("h")
+    before = window.view.camera.position.copy()
+    window.key("ctrl+c")
+    reader = subprocess.Popen(["xclip", "-selection", "clipboard", "-o"], env=window.display.environment,
+                              stdout=subprocess.PIPE, text=True)
+    wait_until(lambda: window.update() and reader.poll() is not None)
+    text = reader.stdout.read()
+    assert "camera." in text
+    window.mouse("mousemove", 400, 300, "click", 4)
+    assert np.any(window.view.camera.position != before)
+    subprocess.run(["xclip", "-selection", "clipboard", "-i"], env=window.display.environment, input=text, text=True,
+                   timeout=30, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    window.key("ctrl+v")
+    wait_until(lambda: window.update() and np.allclose(window.view.camera.position, before, atol=1e-6))
+
+
+def test_text_that_is_no_camera_is_told(window):
+    subprocess.run(["xclip", "-selection", "clipboard", "-i"], env=window.display.environment, input="a recipe", text=True,
+                   timeout=30, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    before = window.view.camera.position.copy()
+    told = len(window.state["messages"])
+    window.key("ctrl+v")
+    wait_until(lambda: window.update() and len(window.state["messages"]) > told)
+    assert np.array_equal(window.view.camera.position, before)
+
+
+def test_two_viewers_at_once(display):
+    """Each shows its own scene and hears its own keys."""
+    views = []
+    for name in ("left", "right"):
+        scene = easypbr.Scene()
+        scene.show(easypbr.shapes.box(), name)
+        views.append(easypbr.Viewer((320, 240), {"image": {"samples": 1}}, scene=scene))
+    for _ in range(30):
+        assert all([view.update() for view in views])
+    wait_until(lambda: all(view.update() for view in views)
+               and {"left - EasyPBR", "right - EasyPBR"} <= set(display.windows()))
+    display.run("wmctrl", "-c", "left - EasyPBR")
+    wait_until(lambda: not views[0].update() and views[1].update())
+    for _ in range(5):
+        assert views[1].update()
+    views[1].close()
