@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# Soaks: all loaders on 10,000 mutated files each, and all C++ tests, under AddressSanitizer and UBSan; a picture of
-# 16384 x 9216 pixels in tiles. usage: check_long.sh
+# Soaks: 10,000 updates of a cloud, whose memory must not grow; all loaders on 10,000 mutated files each, and all C++ tests,
+# under AddressSanitizer and UBSan; a picture of 16384 x 9216 pixels in tiles. usage: check_long.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
+.venv/bin/python bench/cloud_updates.py
 cmake --preset asan
 cmake --build build-asan
 # Mesa and its JIT keep memory until the process ends; what leaks is theirs.
