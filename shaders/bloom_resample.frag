@@ -25,15 +25,16 @@ vec3 resampled(vec2 at) {
     return 0.125 * (light_at(at) + inner) + 0.0625 * sides + 0.03125 * corners;
 }
 #else
-// A tent of 3 x 3 taps.
+// A tent of 3 x 3 taps between texels: of the four texels along an axis that it reaches, each two are one tap.
 vec3 resampled(vec2 at) {
 #ifdef UP
     at *= 0.5;
 #endif
-    vec3 sum = vec3(0.0);
-    for (int y = -1; y <= 1; ++y)
-        for (int x = -1; x <= 1; ++x) sum += float((2 - abs(x)) * (2 - abs(y))) * light_at(at + vec2(x, y));
-    return sum / 16.0;
+    vec2 base = floor(at - 0.5), f = at - 0.5 - base;
+    vec2 low = base - 0.5 + (2.0 - f) / (3.0 - 2.0 * f), high = base + 1.5 + f / (1.0 + 2.0 * f);
+    vec2 of_low = (3.0 - 2.0 * f) / 4.0, of_high = 1.0 - of_low;
+    return of_low.y * (of_low.x * light_at(low) + of_high.x * light_at(vec2(high.x, low.y))) +
+           of_high.y * (of_low.x * light_at(vec2(low.x, high.y)) + of_high.x * light_at(high));
 }
 #endif
 

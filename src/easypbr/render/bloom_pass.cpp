@@ -41,6 +41,10 @@ void BloomPass::make_levels(Vec2i size, int count) {
         level.extent = size.cast<float>() / float(texel);
         levels_.push_back(std::move(level));
     }
+    const gl::Texture& first = levels_.front().light;
+    for (gl::Texture& sum : sums_)
+        sum = gl::Texture(gl::Format::rgba32f, first.width() + 1, first.height() + 1);
+    summed_ = gl::Framebuffer({&sums_[0], &sums_[1], &sums_[2], &sums_[3]});
 }
 
 void BloomPass::draw(const Frame& frame, const gl::Texture& radiance) {
@@ -69,18 +73,29 @@ void BloomPass::gather(const Frame& frame, const gl::Texture& radiance) {
     const Level& first = levels_.front();
     const float black[4] = {0, 0, 0, 0};
     first.lit.clear_color(0, black);
-    first.lit.bind();
     const PixelRect area = lit_texels(frame, first.light);
-    std::vector<std::string> defines;
-    if (frame.resolved->suppress_fireflies) defines.emplace_back("SUPPRESS_FIREFLIES");
-    const gl::Program& program = gather_.get(defines);
-    program.use();
-    set_bloom_uniforms(program, frame);
-    program.set("u_size", Vec2(frame.size.cast<float>()));
-    program.set("u_radiance", 0);
-    radiance.bind(0);
     glEnable(GL_SCISSOR_TEST);
+    // A texel lies between the block of its own index and the next.
+    glScissor(area.x, area.y, area.width + 1, area.height + 1);
+    std::vector<std::string> defines = {"BLOCKS"};
+    if (frame.resolved->suppress_fireflies) defines.emplace_back("SUPPRESS_FIREFLIES");
+    const gl::Program& blocks = gather_.get(defines);
+    summed_.bind();
+    blocks.use();
+    set_bloom_uniforms(blocks, frame);
+    blocks.set("u_size", Vec2(frame.size.cast<float>()));
+    blocks.set("u_radiance", 0);
+    radiance.bind(0);
+    draw_screen_triangle();
     glScissor(area.x, area.y, area.width, area.height);
+    const gl::Program& texels = gather_.get({});
+    first.lit.bind();
+    texels.use();
+    const char* samplers[] = {"u_rise_rise", "u_fall_rise", "u_rise_fall", "u_fall_fall"};
+    for (unsigned i = 0; i < 4; ++i) {
+        sums_[i].bind(i);
+        texels.set(samplers[i], int(i));
+    }
     draw_screen_triangle();
     glDisable(GL_SCISSOR_TEST);
 }

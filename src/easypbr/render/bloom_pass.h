@@ -32,6 +32,8 @@ class BloomPass {
 
     Vec2i size_{0, 0};
     std::vector<Level> levels_;
+    gl::Texture sums_[4];  ///< of the blocks of pixels around the first level's texels
+    gl::Framebuffer summed_;
     ProgramVariants gather_{"screen_triangle.vert", "bloom_gather.frag"};
     ProgramVariants resample_{"screen_triangle.vert", "bloom_resample.frag"};
 };
