@@ -141,18 +141,33 @@ float lit_part(Receiver r, bool needed) {
 }
 #endif
 
-// Part of a light that reaches a surface, for a light with one map.
-float shadow_single(int index, vec3 position, vec3 normal, bool needed) {
+// Part of a light that reaches a receiver: a number, or a colour where casters let some of it through.
+#ifdef SHADOW_TINTS
+#include "common_shadow_tint.glsl"
+#define PART vec3
+PART part_of_light(Receiver r, bool needed) {
+    float lit = lit_part(r, needed);
+    return lit * tint_part(r, needed && lit > 0.0);
+}
+float brightness(vec3 part) { return luminance(part); }
+#else
+#define PART float
+PART part_of_light(Receiver r, bool needed) { return lit_part(r, needed); }
+float brightness(float part) { return part; }
+#endif
+
+// For a light with one map.
+PART shadow_single(int index, vec3 position, vec3 normal, bool needed) {
     ShadowMap map = u_shadows[index];
     vec3 p = vec3(dot(map.x.xyz, position) + map.x.w, dot(map.y.xyz, position) + map.y.w,
                   dot(map.z.xyz, position) + map.z.w);
     vec3 n = vec3(dot(map.x.xyz, normal), dot(map.y.xyz, normal), dot(map.z.xyz, normal));
-    return lit_part(receive(map, p, n, map.depth.w), needed);
+    return part_of_light(receive(map, p, n, map.depth.w), needed);
 }
 
 #ifdef SHADOW_CUBES
 // The same for a cube: the face that the largest component names.
-float shadow_cube(int index, vec3 position, vec3 normal, bool needed) {
+PART shadow_cube(int index, vec3 position, vec3 normal, bool needed) {
     ShadowMap map = u_shadows[index];
     vec3 p = position + vec3(map.x.w, map.y.w, map.z.w), a = abs(p);
     float face = a.x >= a.y && a.x >= a.z ? 0.0 : a.y >= a.z ? 2.0 : 4.0;
@@ -161,6 +176,6 @@ float shadow_cube(int index, vec3 position, vec3 normal, bool needed) {
     float side = q.z < 0.0 ? -1.0 : 1.0;
     q.z *= side;
     n.z *= side;
-    return lit_part(receive(map, q, n, map.depth.w + face + (side < 0.0 ? 1.0 : 0.0)), needed);
+    return part_of_light(receive(map, q, n, map.depth.w + face + (side < 0.0 ? 1.0 : 0.0)), needed);
 }
 #endif

@@ -43,12 +43,12 @@ void main() {
 #ifdef SHADOWS
     for (int i = u_plain_lights; i < u_single_lights; ++i) {
         float arrives = arriving_at(u_lights[i], position, normal);
-        light += arrives * vec2(shadow_single(i - u_plain_lights, position, normal, arrives > 0.0), 1.0);
+        light += arrives * vec2(brightness(shadow_single(i - u_plain_lights, position, normal, arrives > 0.0)), 1.0);
     }
 #ifdef SHADOW_CUBES
     for (int i = u_single_lights; i < u_cube_lights; ++i) {
         float arrives = arriving_at(u_lights[i], position, normal);
-        light += arrives * vec2(shadow_cube(i - u_plain_lights, position, normal, arrives > 0.0), 1.0);
+        light += arrives * vec2(brightness(shadow_cube(i - u_plain_lights, position, normal, arrives > 0.0)), 1.0);
     }
 #endif
 #endif

@@ -1,9 +1,14 @@
-// The depth of a caster, larger towards the light; holes where a surface is cut out or, in this frame, seen through.
-#ifdef ALPHA_BLEND
-#include "common_stochastic.glsl"
+// The depth of a caster, larger towards the light, with holes where a surface is cut out; or what a transparent one takes
+// from the light.
+#ifdef TINT
+#include "common_tint.glsl"
+uniform vec3 u_through;  // part of light that goes through what is covered
+uniform float u_root;    // on the colours that vary: light crosses the faces of a volume twice
+#else
+layout(location = 0) out float o_depth;
 #endif
 #ifdef VERTEX_COLOR
-in float v_alpha;
+in vec4 v_color;
 #endif
 #ifdef UV
 in vec2 v_uv;
@@ -17,10 +22,13 @@ uniform sampler2D u_opacity_texture;
 uniform mat3 u_opacity_uv;
 uniform vec4 u_opacity_channel;
 #endif
+#ifdef TRANSMISSION_TEXTURE
+uniform sampler2D u_transmission_texture;
+uniform mat3 u_transmission_uv;
+uniform vec4 u_transmission_channel;
+#endif
 uniform float u_opacity;
 uniform float u_alpha_cutoff;
-
-layout(location = 0) out float o_depth;
 
 #ifdef UV
 // Images have row 0 on top and texture coordinates have v upwards.
@@ -31,20 +39,30 @@ vec2 uv_of(mat3 transform) {
 #endif
 
 void main() {
-    float alpha = u_opacity;
+    vec4 color = vec4(1.0);
 #ifdef VERTEX_COLOR
-    alpha *= v_alpha;
+    color *= v_color;
 #endif
 #ifdef BASE_COLOR_TEXTURE
-    alpha *= texture(u_base_color_texture, uv_of(u_base_color_uv)).a;
+    color *= texture(u_base_color_texture, uv_of(u_base_color_uv));
 #endif
+    float alpha = u_opacity * color.a;
 #ifdef OPACITY_TEXTURE
     alpha *= dot(texture(u_opacity_texture, uv_of(u_opacity_uv)), u_opacity_channel);
 #endif
-#if defined(ALPHA_MASK)
+#ifdef ALPHA_MASK
     if (alpha < u_alpha_cutoff) discard;
-#elif defined(ALPHA_BLEND)
-    if (alpha <= alpha_threshold()) discard;
 #endif
+#ifdef TINT
+    float transmission = 1.0;
+#ifdef TRANSMISSION_TEXTURE
+    transmission = dot(texture(u_transmission_texture, uv_of(u_transmission_uv)), u_transmission_channel);
+#endif
+#ifdef COVERS
+    alpha = 1.0;
+#endif
+    write_tint(1.0 - alpha + alpha * u_through * pow(color.rgb * transmission, vec3(u_root)));
+#else
     o_depth = gl_FragCoord.z;
+#endif
 }

@@ -2,7 +2,8 @@
 layout(location = 0) in vec3 a_position;
 #ifdef VERTEX_COLOR
 layout(location = 2) in vec4 a_color;
-out float v_alpha;
+out vec4 v_color;
+#include "common_encoding.glsl"
 #endif
 #ifdef UV
 layout(location = 3) in vec2 a_uv;
@@ -14,7 +15,7 @@ uniform mat4 u_clip_from_mesh;
 void main() {
     gl_Position = u_clip_from_mesh * vec4(a_position, 1.0);
 #ifdef VERTEX_COLOR
-    v_alpha = a_color.a;
+    v_color = vec4(srgb_decode(a_color.rgb), a_color.a);
 #endif
 #ifdef UV
     v_uv = a_uv;

@@ -1,6 +1,8 @@
-// The depth of a splat that casts, larger towards the light.
-#ifdef ALPHA_BLEND
-#include "common_stochastic.glsl"
+// The depth of a splat that casts, larger towards the light; or what a transparent one takes from the light.
+#ifdef TINT
+#include "common_tint.glsl"
+#else
+layout(location = 0) out float o_depth;
 #endif
 flat in float v_alpha;
 #ifdef SURFEL
@@ -9,8 +11,6 @@ in vec2 v_place;
 flat in vec2 v_extent;
 #endif
 uniform float u_alpha_cutoff;
-
-layout(location = 0) out float o_depth;
 
 void main() {
 #ifdef SURFEL
@@ -25,8 +25,10 @@ void main() {
 #endif
 #if defined(ALPHA_MASK)
     if (v_alpha < u_alpha_cutoff) discard;
-#elif defined(ALPHA_BLEND)
-    if (v_alpha <= alpha_threshold()) discard;
 #endif
+#ifdef TINT
+    write_tint(vec3(1.0 - v_alpha));
+#else
     o_depth = gl_FragCoord.z;
+#endif
 }

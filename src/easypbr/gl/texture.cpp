@@ -171,9 +171,16 @@ Framebuffer::Framebuffer(std::initializer_list<const Texture*> colors, const Tex
     require_complete();
 }
 
-Framebuffer::Framebuffer(const Texture& array, int layer)
-    : object_(ObjectKind::framebuffer), width_(array.width()), height_(array.height()) {
-    glNamedFramebufferTextureLayer(object_.id(), GL_COLOR_ATTACHMENT0, array.id(), 0, layer);
+Framebuffer::Framebuffer(std::initializer_list<const Texture*> arrays, int layer)
+    : object_(ObjectKind::framebuffer),
+      width_((*arrays.begin())->width()),
+      height_((*arrays.begin())->height()) {
+    std::vector<GLenum> targets;
+    for (const Texture* array : arrays) {
+        targets.push_back(GL_COLOR_ATTACHMENT0 + GLenum(targets.size()));
+        glNamedFramebufferTextureLayer(object_.id(), targets.back(), array->id(), 0, layer);
+    }
+    glNamedFramebufferDrawBuffers(object_.id(), GLsizei(targets.size()), targets.data());
     require_complete();
 }
 

@@ -75,8 +75,10 @@ class Framebuffer {
     Framebuffer() = default;
     /// Throws ContextError when the driver cannot draw to this set of textures.
     Framebuffer(std::initializer_list<const Texture*> colors, const Texture* depth = nullptr);
-    /// One layer of an array. Throws ContextError when the driver cannot draw to it.
-    Framebuffer(const Texture& array, int layer);
+    /// One layer of an array, or the same layer of several. Throws ContextError when the driver cannot draw
+    /// to it.
+    Framebuffer(const Texture& array, int layer) : Framebuffer({&array}, layer) {}
+    Framebuffer(std::initializer_list<const Texture*> arrays, int layer);
 
     /// One mip level, with the viewport on it. Throws ContextError when the driver cannot draw to it.
     static Framebuffer of_level(const Texture& texture, int level);

@@ -29,6 +29,10 @@ struct DrawItem {
     const MeshData& mesh() const { return *object->mesh; }
     bool emits() const { return material.unlit || !material.emissive.isZero() || material.shader; }
     bool textured() const { return material.has_textures() && !mesh().UV.empty(); }
+    /// Its shadow is a tint: it weakens light instead of stopping it.
+    bool casts_tint() const {
+        return alpha == AlphaMode::blend || (kind == SurfaceKind::lit && material.transmits());
+    }
     /// Light goes through a solid.
     bool is_volume() const { return material.transmits() && material.thickness > 0; }
     /// What is seen through it is blurred.

@@ -17,6 +17,15 @@ struct LightShadow {
     double radius = 0;
 };
 
+/// What surfaces that let light through take from it, in arrays beside that of the maps, per channel of the
+/// light; see shaders/common_tint.glsl.
+struct ShadowTints {
+    gl::Texture absorption;  ///< rgb: sum of -ln(transmittance); a: depth of the first caster
+    gl::Texture moment;      ///< rgb: sum of -ln(transmittance) times depth; a: minus the last caster's depth
+
+    explicit operator bool() const { return bool(absorption); }
+};
+
 /// As the blocks in shaders/lighting_surface.frag.
 inline constexpr size_t lights_per_block = 64;
 
@@ -26,7 +35,8 @@ struct LightBlock {
     std::vector<LightShadow> shadows;  ///< of the last of the lights
     size_t cubes = 0;                  ///< how many of the shadows are cubes
     const gl::Texture* maps = nullptr;
-    bool first = true;  ///< of the frame's blocks
+    const ShadowTints* tints = nullptr;  ///< where casters let light through
+    bool first = true;                   ///< of the frame's blocks
 
     size_t plain() const { return lights.size() - shadows.size(); }
 };

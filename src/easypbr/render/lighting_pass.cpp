@@ -11,6 +11,7 @@
 namespace easypbr::render {
 namespace {
 
+constexpr unsigned tint_unit = 9;
 constexpr int extension_unit = 12;
 constexpr int behind_unit = 20;
 
@@ -91,6 +92,7 @@ std::vector<std::string> light_defines(const Frame& frame, const GBuffer& target
         defines.emplace_back(modes[size_t(frame.resolved->settings.shadows.mode)]);
     }
     if (block.cubes > 0) defines.emplace_back("SHADOW_CUBES");
+    if (!block.shadows.empty() && block.tints) defines.emplace_back("SHADOW_TINTS");
     if (with_environment) defines.emplace_back("ENVIRONMENT");
     if (with_environment && targets.ambient_occlusion) defines.emplace_back("AMBIENT_OCCLUSION");
     return defines;
@@ -249,6 +251,12 @@ void LightingPass::set_lights(const gl::Program& program, const Frame& frame, co
     shadows_.update(0, gl::bytes_of(shadows));
     shadows_.bind_uniform(1);
     block.maps->bind(7);
+    if (block.tints) {
+        block.tints->absorption.bind(tint_unit);
+        block.tints->moment.bind(tint_unit + 1);
+        program.set("u_tint_absorption", int(tint_unit));
+        program.set("u_tint_moment", int(tint_unit + 1));
+    }
     program.set("u_single_lights", int(block.lights.size() - block.cubes));
     program.set("u_cube_lights", int(block.lights.size()));
     program.set("u_shadow_resolution", float(block.maps->width()));

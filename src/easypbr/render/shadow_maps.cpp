@@ -13,8 +13,11 @@ constexpr size_t memory_limit = size_t(512) << 20;
 /// Every driver's least limit of layers in an array.
 constexpr size_t layer_limit = 2048;
 
-int most_layers(int resolution) {
-    const size_t bytes = size_t(resolution) * size_t(resolution) * gl::pixel_bytes(gl::Format::r32f);
+constexpr gl::Format map_format = gl::Format::r32f, tint_format = gl::Format::rgba32f;
+
+int most_layers(int resolution, bool tinted) {
+    const size_t texel = gl::pixel_bytes(map_format) + (tinted ? 2 * gl::pixel_bytes(tint_format) : 0);
+    const size_t bytes = size_t(resolution) * size_t(resolution) * texel;
     return int(std::clamp(memory_limit / bytes, size_t(6), layer_limit));
 }
 
@@ -26,7 +29,7 @@ double extent_of(const Light& light) {
 
 }  // namespace
 
-ShadowMaps::Caster ShadowMaps::caster_of(const DrawItem& item, int sample_index) {
+ShadowMaps::Caster ShadowMaps::caster_of(const DrawItem& item) {
     const MeshData& mesh = item.mesh();
     const Material& m = item.material;
     Caster caster{};
@@ -35,19 +38,22 @@ ShadowMaps::Caster ShadowMaps::caster_of(const DrawItem& item, int sample_index)
     caster.first_face = item.part.first_face;
     caster.face_count = item.part.face_count;
     caster.T_world_mesh = item.object->T_world_mesh.matrix().topRows<3>();
-    if (item.alpha == AlphaMode::opaque) return caster;
+    if (item.alpha == AlphaMode::opaque && !item.casts_tint()) return caster;
     caster.revisions[2] = mesh.UV.revision();
     caster.revisions[3] = item.with_colors ? mesh.C.revision() : 0;
     caster.revisions[4] = uint64_t(item.alpha);
     caster.images = {m.base_color_texture.image.get(), m.opacity_texture.image.get()};
     caster.alpha = {m.opacity, m.alpha_cutoff, float(m.opacity_texture.channel)};
-    caster.frame = item.alpha == AlphaMode::blend ? sample_index : 0;
+    if (!item.casts_tint()) return caster;
+    caster.images[2] = m.transmission_texture.image.get();
+    caster.through = m.transmittance(AlphaMode::opaque);
+    caster.thickness = {m.thickness, float(m.transmission_texture.channel)};
     return caster;
 }
 
-ShadowMaps::Caster ShadowMaps::splat_of(const DrawItem& item, bool surfels, int sample_index) {
+ShadowMaps::Caster ShadowMaps::splat_of(const DrawItem& item, bool surfels) {
     const MeshData& mesh = item.mesh();
-    Caster caster = caster_of(item, sample_index);
+    Caster caster = caster_of(item);
     // Points have no faces: what the kind of splat and its light depend on instead.
     caster.revisions[1] = 0;
     caster.revisions[5] = mesh.N.revision();
@@ -66,12 +72,12 @@ Box3d ShadowMaps::caster_bounds(const DrawList& list, const Box3d& bounds) {
     return {bounds.min() - Vec3d::Constant(reach), bounds.max() + Vec3d::Constant(reach)};
 }
 
-void ShadowMaps::note_casters(const DrawList& list, const Box3d& bounds, int sample_index) {
+void ShadowMaps::note_casters(const DrawList& list, const Box3d& bounds) {
     std::vector<Caster> casters;
     casters.reserve(list.meshes.size());
-    for (const DrawItem& item : list.meshes) casters.push_back(caster_of(item, sample_index));
-    for (const DrawItem& item : list.points) casters.push_back(splat_of(item, false, sample_index));
-    for (const DrawItem& item : list.surfels) casters.push_back(splat_of(item, true, sample_index));
+    for (const DrawItem& item : list.meshes) casters.push_back(caster_of(item));
+    for (const DrawItem& item : list.points) casters.push_back(splat_of(item, false));
+    for (const DrawItem& item : list.surfels) casters.push_back(splat_of(item, true));
     const bool same_bounds = bounds.min() == bounds_.min() && bounds.max() == bounds_.max();
     if (casters == casters_ && same_bounds && casters_generation_ != 0) return;
     casters_ = std::move(casters);
@@ -105,22 +111,25 @@ void ShadowMaps::set_resolution(int resolution) {
     entries_.clear();
     taken_.clear();
     framebuffers_.clear();
+    tint_framebuffers_.clear();
     maps_ = gl::Texture();
+    tints_ = {};
     resolution_ = resolution;
 }
 
 void ShadowMaps::begin(const Frame& frame, const DrawList& casters, const Box3d& vertices) {
     const Box3d bounds = caster_bounds(casters, vertices);
     splats_.evict_unused();
-    note_casters(casters, bounds, frame.sample_index);
+    note_casters(casters, bounds);
     list_ = &casters;
-    sample_index_ = frame.sample_index;
     ++frame_;
     requests_.clear();
     next_ = 0;
     for (const Light& light : frame.resolved->lights) requests_.push_back(request_of(light, frame, bounds));
     const bool any = std::ranges::any_of(requests_, &Request::shadowed);
     set_resolution(any ? frame.resolved->settings.shadows.resolution : 0);
+    tinted_ = casters.has(&DrawItem::casts_tint);
+    prepare_tints();
     const auto rank = [](const Request& r) { return !r.shadowed ? 0 : r.projection.is_cube() ? 2 : 1; };
     std::ranges::stable_sort(requests_, {}, rank);
     for (const Request& request : requests_)
@@ -142,6 +151,7 @@ LightBlock ShadowMaps::next_block() {
         block.lights.push_back(request.light);
     }
     block.maps = &maps_;
+    if (tints_) block.tints = &tints_;
     return block;
 }
 
@@ -169,9 +179,12 @@ const ShadowMaps::Entry* ShadowMaps::acquire(const Request& request) {
 }
 
 void ShadowMaps::draw(const Request& request, const Entry& entry) {
-    for (int i = 0; i < entry.layers; ++i)
-        pass_.draw(request.projection.views[size_t(i)], *list_, sample_index_, maps_, entry.first_layer + i,
-                   framebuffers_[size_t(entry.first_layer + i)]);
+    for (int i = 0; i < entry.layers; ++i) {
+        const ShadowView& view = request.projection.views[size_t(i)];
+        const int layer = entry.first_layer + i;
+        pass_.draw(view, *list_, maps_, layer, framebuffers_[size_t(layer)]);
+        if (tints_) pass_.draw_tints(view, *list_, tint_framebuffers_[size_t(layer)]);
+    }
     ++drawn_;
 }
 
@@ -211,16 +224,39 @@ bool ShadowMaps::evict_before(uint64_t frame, uint64_t block) {
 }
 
 bool ShadowMaps::grow(int layers) {
-    const int before = maps_ ? maps_.layers() : 0, most = most_layers(resolution_);
+    const int before = maps_ ? maps_.layers() : 0, most = most_layers(resolution_, tinted_);
     if (before >= most) return false;
     const int after = std::min(most, std::max(before + layers, before * 3 / 2));
-    gl::Texture larger = gl::Texture::layered(gl::Format::r32f, resolution_, resolution_, after);
-    if (before > 0) gl::copy_layers(maps_, larger, before);
-    maps_ = std::move(larger);
+    const auto enlarge = [&](gl::Texture& texture, gl::Format format) {
+        gl::Texture larger = gl::Texture::layered(format, resolution_, resolution_, after);
+        if (before > 0) gl::copy_layers(texture, larger, before);
+        texture = std::move(larger);
+    };
+    enlarge(maps_, map_format);
+    if (tinted_) enlarge(tints_.absorption, tint_format);
+    if (tinted_) enlarge(tints_.moment, tint_format);
     taken_.resize(size_t(after), false);
-    framebuffers_.clear();
-    for (int layer = 0; layer < after; ++layer) framebuffers_.emplace_back(maps_, layer);
+    make_framebuffers();
     return true;
+}
+
+void ShadowMaps::prepare_tints() {
+    if (!tinted_ || resolution_ == 0) tints_ = {};
+    if (tinted_ == bool(tints_) || !maps_) return;
+    // What casts has changed, so that all maps are drawn anew.
+    tints_.absorption = gl::Texture::layered(tint_format, resolution_, resolution_, maps_.layers());
+    tints_.moment = gl::Texture::layered(tint_format, resolution_, resolution_, maps_.layers());
+    make_framebuffers();
+}
+
+void ShadowMaps::make_framebuffers() {
+    framebuffers_.clear();
+    tint_framebuffers_.clear();
+    for (int layer = 0; layer < maps_.layers(); ++layer) {
+        framebuffers_.emplace_back(maps_, layer);
+        if (tints_)
+            tint_framebuffers_.push_back(gl::Framebuffer({&tints_.absorption, &tints_.moment}, layer));
+    }
 }
 
 void ShadowMaps::take(int first, int layers, bool taken) {

@@ -57,19 +57,21 @@ class ShadowMaps {
     /// A part of an object as far as its shadow is concerned.
     struct Caster {
         std::array<uint64_t, 8> revisions;
-        std::array<const void*, 2> images;
+        std::array<const void*, 3> images;
         std::array<float, 3> alpha;
+        Vec3 through{0, 0, 0};
+        std::array<float, 2> thickness;
         std::array<double, 2> splat;  ///< radius, factor on it
-        int first_face, face_count, frame;
+        int first_face, face_count;
         Eigen::Matrix<double, 3, 4> T_world_mesh;
         bool operator==(const Caster&) const = default;
     };
 
-    static Caster caster_of(const DrawItem& item, int sample_index);
-    Caster splat_of(const DrawItem& item, bool surfels, int sample_index);
+    static Caster caster_of(const DrawItem& item);
+    Caster splat_of(const DrawItem& item, bool surfels);
     /// The vertices' bounds and the splats around them.
     Box3d caster_bounds(const DrawList& list, const Box3d& bounds);
-    void note_casters(const DrawList& list, const Box3d& bounds, int sample_index);
+    void note_casters(const DrawList& list, const Box3d& bounds);
     static Request request_of(const Light& light, const Frame& frame, const Box3d& bounds);
     /// Forgets all maps of another size; 0: no maps.
     void set_resolution(int resolution);
@@ -84,20 +86,25 @@ class ShadowMaps {
     /// since a frame and block.
     bool evict_before(uint64_t frame, uint64_t block);
     bool grow(int layers);
+    void make_framebuffers();
+    /// Keeps tints beside the maps only while something needs them.
+    void prepare_tints();
     void take(int first, int layers, bool taken);
 
     SplatShadows splats_;
     ShadowPass pass_;
     gl::Texture maps_;
-    std::vector<gl::Framebuffer> framebuffers_;  ///< of each layer
-    std::vector<bool> taken_;                    ///< layers
+    ShadowTints tints_;  ///< beside the maps while some casters weaken light
+    std::vector<gl::Framebuffer> framebuffers_, tint_framebuffers_;  ///< of each layer
+    std::vector<bool> taken_;                                        ///< layers
     std::map<LightKey, Entry> entries_;
     std::vector<Caster> casters_;
     Box3d bounds_;
     uint64_t casters_generation_ = 0;  ///< changes with what casts and its bounds
 
     const DrawList* list_ = nullptr;
-    int sample_index_ = 0, resolution_ = 0;
+    int resolution_ = 0;
+    bool tinted_ = false;  ///< some casters weaken light instead of stopping it
     uint64_t frame_ = 0, block_ = 0, drawn_ = 0;
     std::vector<Request> requests_;
     size_t next_ = 0;

@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/gl/context.h"
@@ -10,11 +11,13 @@
 namespace easypbr::render {
 namespace {
 
-enum Slot { base_color_slot, opacity_slot };
+enum Slot { base_color_slot, opacity_slot, transmission_slot };
 
 bool reads_uv(const DrawItem& item) {
     const Material& m = item.material;
-    return item.alpha != AlphaMode::opaque && item.textured() && (m.base_color_texture || m.opacity_texture);
+    const bool any =
+        m.base_color_texture || m.opacity_texture || (item.casts_tint() && m.transmission_texture);
+    return (item.alpha != AlphaMode::opaque || item.casts_tint()) && item.textured() && any;
 }
 
 /// Smaller objects are left to the driver, which fills large triangles in parallel; where exactly the two
@@ -22,25 +25,38 @@ bool reads_uv(const DrawItem& item) {
 constexpr Eigen::Index smallest_face_count = 5000;
 
 bool suits_native(std::span<const DrawItem> items) {
-    const auto solid = [](const DrawItem& item) { return item.alpha == AlphaMode::opaque; };
-    return items.front().mesh().F.rows() >= smallest_face_count && std::ranges::all_of(items, solid);
+    const auto opaque = [](const DrawItem& item) { return item.alpha == AlphaMode::opaque; };
+    return items.front().mesh().F.rows() >= smallest_face_count && std::ranges::all_of(items, opaque);
 }
 
-/// The items of each object, which follow each other.
-std::vector<std::span<const DrawItem>> objects_of(std::span<const DrawItem> items) {
+/// The solid items of each object, or those that tint; they follow each other.
+std::vector<std::span<const DrawItem>> objects_of(std::span<const DrawItem> items, bool tints) {
     std::vector<std::span<const DrawItem>> objects;
     for (size_t first = 0, last; first < items.size(); first = last) {
-        for (last = first; last < items.size() && items[last].object == items[first].object;) ++last;
-        objects.push_back(items.subspan(first, last - first));
+        const auto same = [&](const DrawItem& item) {
+            return item.object == items[first].object && item.casts_tint() == items[first].casts_tint();
+        };
+        for (last = first; last < items.size() && same(items[last]);) ++last;
+        if (items[first].casts_tint() == tints) objects.push_back(items.subspan(first, last - first));
     }
     return objects;
 }
 
+/// Part of light that goes through what is covered, but for colours that vary over the surface. Light crosses
+/// the faces of a volume twice, and each takes the root.
+Vec3 light_through(const DrawItem& item) {
+    if (item.kind != SurfaceKind::lit) return Vec3::Zero();
+    Material m = item.material;
+    m.thickness *= float(std::cbrt(std::abs(item.object->T_world_mesh.linear().determinant())));
+    const Vec3 through = m.transmittance(AlphaMode::opaque);
+    return m.thickness > 0 ? Vec3(through.cwiseSqrt()) : through;
+}
+
 }  // namespace
 
-void ShadowPass::draw(const ShadowView& view, const DrawList& casters, int sample_index, gl::Texture& maps,
-                      int layer, const gl::Framebuffer& framebuffer) {
-    std::vector<Items> objects = objects_of(casters.meshes);
+void ShadowPass::draw(const ShadowView& view, const DrawList& casters, gl::Texture& maps, int layer,
+                      const gl::Framebuffer& framebuffer) {
+    std::vector<Items> objects = objects_of(casters.meshes, false);
     const bool native = native_ && gl::Context::current().info().software;
     const bool native_points = native && std::ranges::any_of(casters.points, SplatShadows::suits_native);
     if (native && (native_points || std::ranges::any_of(objects, suits_native))) {
@@ -56,9 +72,27 @@ void ShadowPass::draw(const ShadowView& view, const DrawList& casters, int sampl
     glDisable(GL_CULL_FACE);
     glEnable(GL_BLEND);
     glBlendEquation(GL_MAX);
-    for (const Items& items : objects) draw_object(view, items, sample_index);
-    draw_splats(view, casters, sample_index, native, maps.width());
+    for (const Items& items : objects) draw_object(view, items);
+    draw_splats(view, casters, false, native, maps.width());
     glBlendEquation(GL_FUNC_ADD);
+    glDisable(GL_BLEND);
+}
+
+void ShadowPass::draw_tints(const ShadowView& view, const DrawList& casters,
+                            const gl::Framebuffer& framebuffer) {
+    const float nothing[4] = {0, 0, 0, no_shadow_depth};
+    framebuffer.clear_color(0, nothing);
+    framebuffer.clear_color(1, nothing);
+    framebuffer.bind();
+    glDisable(GL_DEPTH_TEST);
+    glDisable(GL_CULL_FACE);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE);
+    glBlendEquationSeparate(GL_FUNC_ADD, GL_MAX);
+    for (const Items& items : objects_of(casters.meshes, true)) draw_object(view, items);
+    draw_splats(view, casters, true, false, framebuffer.width());
+    glBlendEquation(GL_FUNC_ADD);
+    glBlendFunc(GL_ONE, GL_ZERO);
     glDisable(GL_BLEND);
 }
 
@@ -91,38 +125,42 @@ std::vector<ShadowPass::Items> ShadowPass::draw_native(const ShadowView& view,
     return left;
 }
 
-void ShadowPass::draw_splats(const ShadowView& view, const DrawList& casters, int sample_index, bool native,
+void ShadowPass::draw_splats(const ShadowView& view, const DrawList& casters, bool tints, bool native,
                              int resolution) {
     for (const DrawItem& item : casters.points)
-        if (!native || !SplatShadows::suits_native(item))
-            splats_.draw_points(view, item, sample_index, resolution);
-    for (const DrawItem& item : casters.surfels) splats_.draw_surfels(view, item, sample_index);
+        if (item.casts_tint() == tints && (!native || !SplatShadows::suits_native(item)))
+            splats_.draw_points(view, item, resolution);
+    for (const DrawItem& item : casters.surfels)
+        if (item.casts_tint() == tints) splats_.draw_surfels(view, item);
 }
 
-void ShadowPass::draw_object(const ShadowView& view, Items items, int sample_index) {
+void ShadowPass::draw_object(const ShadowView& view, Items items) {
     // The buffers that the geometry pass draws an object from serve here too.
     const bool tangents = std::ranges::any_of(items, &DrawItem::needs_tangents);
     meshes_.get(items.front().mesh(), tangents).array.bind();
-    for (const DrawItem& item : items) draw_item(view, item, sample_index);
+    for (const DrawItem& item : items) draw_item(view, item);
 }
 
-void ShadowPass::draw_item(const ShadowView& view, const DrawItem& item, int sample_index) {
+void ShadowPass::draw_item(const ShadowView& view, const DrawItem& item) {
     const Material& m = item.material;
-    const bool with_uv = reads_uv(item);
+    const bool with_uv = reads_uv(item), tints = item.casts_tint();
     std::vector<std::string> defines;
     if (item.alpha == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
-    if (item.alpha == AlphaMode::blend) defines.emplace_back("ALPHA_BLEND");
-    if (item.alpha != AlphaMode::opaque && item.with_colors) defines.emplace_back("VERTEX_COLOR");
+    if (item.alpha == AlphaMode::opaque) defines.emplace_back("COVERS");
+    if (tints) defines.emplace_back("TINT");
+    if ((item.alpha != AlphaMode::opaque || tints) && item.with_colors) defines.emplace_back("VERTEX_COLOR");
     if (with_uv) defines.emplace_back("UV");
     if (with_uv && m.base_color_texture) defines.emplace_back("BASE_COLOR_TEXTURE");
     if (with_uv && m.opacity_texture) defines.emplace_back("OPACITY_TEXTURE");
+    if (with_uv && tints && m.transmission_texture) defines.emplace_back("TRANSMISSION_TEXTURE");
     const gl::Program& program = programs_.get(defines);
     program.use();
     const Mat4d clip_from_mesh = view.clip_from_world() * item.object->T_world_mesh.matrix();
     program.set("u_clip_from_mesh", Mat4(clip_from_mesh.cast<float>()));
     program.set("u_opacity", m.opacity);
     program.set("u_alpha_cutoff", m.alpha_cutoff);
-    program.set("u_sample_index", float(sample_index));
+    program.set("u_through", light_through(item));
+    program.set("u_root", item.is_volume() ? 0.5f : 1.0f);
     const auto bind = [&](const Texture& texture, Slot slot, const char* sampler, const char* transform) {
         textures_.get(texture, slot == base_color_slot).bind(slot);
         program.set(sampler, int(slot));
@@ -133,6 +171,11 @@ void ShadowPass::draw_item(const ShadowView& view, const DrawItem& item, int sam
     if (with_uv && m.opacity_texture) {
         bind(m.opacity_texture, opacity_slot, "u_opacity_texture", "u_opacity_uv");
         program.set("u_opacity_channel", Vec4(Vec4::Unit(std::clamp(m.opacity_texture.channel, 0, 3))));
+    }
+    if (with_uv && tints && m.transmission_texture) {
+        bind(m.transmission_texture, transmission_slot, "u_transmission_texture", "u_transmission_uv");
+        program.set("u_transmission_channel",
+                    Vec4(Vec4::Unit(std::clamp(m.transmission_texture.channel, 0, 3))));
     }
     glDrawElements(GL_TRIANGLES, item.part.face_count * 3, GL_UNSIGNED_INT,
                    reinterpret_cast<const void*>(size_t(item.part.first_face) * 12));

@@ -1,4 +1,5 @@
-// Draws what a light sees: the depth of the caster that is nearest to it.
+// Draws what a light sees: the depth of the caster that is nearest to it, and what weakens the light on its
+// way.
 #pragma once
 
 #include <span>
@@ -26,10 +27,14 @@ class ShadowPass {
                SplatShadows& splats)
         : meshes_(meshes), textures_(textures), closed_(closed), splats_(splats) {}
 
-    /// Fills one layer. Surfaces cast from both sides, masked ones with their holes, blended ones where
-    /// frame `sample_index` of a still draws them.
-    void draw(const ShadowView& view, const DrawList& casters, int sample_index, gl::Texture& maps, int layer,
+    /// Fills one layer with the casters that stop light. Surfaces cast from both sides, masked ones with
+    /// their holes.
+    void draw(const ShadowView& view, const DrawList& casters, gl::Texture& maps, int layer,
               const gl::Framebuffer& framebuffer);
+
+    /// Fills one layer of the tints with the others, see shaders/common_tint.glsl: what all of them take from
+    /// the light, and where. `framebuffer` has both as attachments.
+    void draw_tints(const ShadowView& view, const DrawList& casters, const gl::Framebuffer& framebuffer);
 
     /// Without a GPU, large opaque meshes and points are rasterised natively; false leaves them to the
     /// driver.
@@ -40,10 +45,11 @@ class ShadowPass {
     /// Draws what can be drawn natively and uploads the layer; the objects that are left.
     std::vector<Items> draw_native(const ShadowView& view, const std::vector<Items>& objects, Items clouds,
                                    gl::Texture& maps, int layer);
-    void draw_splats(const ShadowView& view, const DrawList& casters, int sample_index, bool native,
+    /// Of solid casters or of the others; without the points that have been drawn natively.
+    void draw_splats(const ShadowView& view, const DrawList& casters, bool tints, bool native,
                      int resolution);
-    void draw_object(const ShadowView& view, Items items, int sample_index);
-    void draw_item(const ShadowView& view, const DrawItem& item, int sample_index);
+    void draw_object(const ShadowView& view, Items items);
+    void draw_item(const ShadowView& view, const DrawItem& item);
 
     gpu::MeshCache& meshes_;
     gpu::TextureCache& textures_;

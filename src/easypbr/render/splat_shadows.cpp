@@ -32,16 +32,15 @@ bool is_pushed(const DrawItem& item) {
     return item.kind == SurfaceKind::lit && !item.mesh().N.empty();
 }
 
-void set_alpha(const gl::Program& program, const DrawItem& item, int sample_index) {
+void set_alpha(const gl::Program& program, const DrawItem& item) {
     program.set("u_opacity", item.material.opacity);
     program.set("u_alpha_cutoff", item.material.alpha_cutoff);
-    program.set("u_sample_index", float(sample_index));
 }
 
 std::vector<std::string> alpha_defines(const DrawItem& item) {
     std::vector<std::string> defines;
     if (item.alpha == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
-    if (item.alpha == AlphaMode::blend) defines.emplace_back("ALPHA_BLEND");
+    if (item.casts_tint()) defines.emplace_back("TINT");
     if (item.alpha != AlphaMode::opaque && item.with_colors) defines.emplace_back("VERTEX_COLOR");
     return defines;
 }
@@ -84,8 +83,7 @@ void SplatShadows::evict_unused() {
     for (auto& [key, known] : reaches_) known.used = false;
 }
 
-void SplatShadows::draw_points(const ShadowView& view, const DrawItem& item, int sample_index,
-                               int resolution) {
+void SplatShadows::draw_points(const ShadowView& view, const DrawItem& item, int resolution) {
     const gpu::PointBuffers& buffers = points_.get(item.mesh());
     std::vector<std::string> defines = alpha_defines(item);
     if (is_pushed(item) && buffers.normals) defines.emplace_back("PUSHED");
@@ -97,14 +95,14 @@ void SplatShadows::draw_points(const ShadowView& view, const DrawItem& item, int
     program.set("u_diameter", Vec2((2 * radius * resolution * view.scale).cast<float>()));
     program.set("u_light", light_in_mesh(view, item));
     program.set("u_push", Vec3(float(radius / scale_of(item)), steepest, push));
-    set_alpha(program, item, sample_index);
+    set_alpha(program, item);
     buffers.array.bind();
     glEnable(GL_PROGRAM_POINT_SIZE);
     glDrawArrays(GL_POINTS, 0, int(item.mesh().V.rows()));
     glDisable(GL_PROGRAM_POINT_SIZE);
 }
 
-void SplatShadows::draw_surfels(const ShadowView& view, const DrawItem& item, int sample_index) {
+void SplatShadows::draw_surfels(const ShadowView& view, const DrawItem& item) {
     const gpu::SurfelBuffers& buffers = surfels_.get(item.mesh());
     std::vector<std::string> defines = alpha_defines(item);
     defines.emplace_back("SURFEL");
@@ -113,7 +111,7 @@ void SplatShadows::draw_surfels(const ShadowView& view, const DrawItem& item, in
     program.set("u_clip_from_mesh", clip_from_mesh(view, item));
     program.set("u_light", light_in_mesh(view, item));
     program.set("u_surfel", Vec2(item.style.surfel_scale, float(surfel_radius(item))));
-    set_alpha(program, item, sample_index);
+    set_alpha(program, item);
     buffers.array.bind();
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, int(item.mesh().V.rows()));
 }

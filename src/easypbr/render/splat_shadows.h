@@ -30,10 +30,12 @@ class SplatShadows {
     double reach(const DrawItem& item, bool surfels);
 
     /// Into the bound layer of a map of `resolution` texels.
-    void draw_points(const ShadowView& view, const DrawItem& item, int sample_index, int resolution);
-    void draw_surfels(const ShadowView& view, const DrawItem& item, int sample_index);
+    void draw_points(const ShadowView& view, const DrawItem& item, int resolution);
+    void draw_surfels(const ShadowView& view, const DrawItem& item);
 
-    static bool suits_native(const DrawItem& item) { return item.alpha == AlphaMode::opaque; }
+    static bool suits_native(const DrawItem& item) {
+        return item.alpha == AlphaMode::opaque && !item.casts_tint();
+    }
     void draw_points_natively(const ShadowView& view, const DrawItem& item, VisibilityBuffer& visibility);
 
     void evict_unused();

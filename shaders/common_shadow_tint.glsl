@@ -1,0 +1,84 @@
+// What transparent casters take from the light on its way to a receiver, from the sums that common_tint.glsl leaves. Exact
+// before the first caster of a texel, behind the last one, and between two; between more than two it is what two at the
+// same ends with the same mean depth would take.
+uniform sampler2DArray u_tint_absorption;
+uniform sampler2DArray u_tint_moment;
+
+// Light of a texel: casters that do not reach `least` do not count.
+vec3 tint_texel(ivec2 texel, Receiver r, float plane, float least) {
+    ivec3 at = ivec3(clamp(texel, ivec2(0), ivec2(int(u_shadow_resolution) - 1)), int(r.at.z));
+    vec4 absorption = texelFetch(u_tint_absorption, at, 0);
+    if (absorption.a <= max(plane, least)) return vec3(1.0);
+    vec4 moment = texelFetch(u_tint_moment, at, 0);
+    float last = -moment.a;
+    if (last > plane) return exp(-absorption.rgb);
+    // The casters before the receiver, if there are two: the first one's part of the moment.
+    vec3 before = (moment.rgb - last * absorption.rgb) / max(absorption.a - last, 1e-20);
+    return exp(-clamp(before, vec3(0.0), absorption.rgb));
+}
+
+// The surface's depth at the middle of a texel.
+float plane_at(Receiver r, ivec2 texel) {
+    return r.depth + dot(r.slope, (vec2(texel) + 0.5) / u_shadow_resolution - r.at.xy);
+}
+
+#ifdef SHADOWS_HARD
+vec3 tint_part(Receiver r, bool needed) {
+    ivec2 texel = ivec2(floor(r.at.xy * u_shadow_resolution));
+    return needed ? tint_texel(texel, r, plane_at(r, texel), 0.0) : vec3(1.0);
+}
+#endif
+
+#ifdef SHADOWS_PCF
+// The mean of 3x3 texels, interpolated between texels, as lit_part().
+vec3 tint_part(Receiver r, bool needed) {
+    vec2 at = r.at.xy * u_shadow_resolution - 0.5, base = floor(at), f = at - base;
+    vec3 lost = vec3(0.0);  // nothing lost is exactly all light, whatever the weights round to
+    for (int y = -1; y <= 2; ++y)
+        for (int x = -1; x <= 2; ++x) {
+            vec2 weight = mix(vec2(1.0), mix(1.0 - f, f, lessThan(vec2(0.0), vec2(x, y))),
+                              notEqual(abs(vec2(x, y) - 0.5), vec2(0.5)));
+            ivec2 texel = ivec2(base) + ivec2(x, y);
+            lost += weight.x * weight.y * (1.0 - tint_texel(texel, r, plane_at(r, texel), 0.0));
+        }
+    return 1.0 - lost / 9.0;
+}
+#endif
+
+#ifdef SHADOWS_SOFT
+const int tint_taps = 12;
+
+vec3 tint_part(Receiver r, bool needed) {
+    float texel = 1.0 / u_shadow_resolution;
+    float turn = 6.28318531 * frame_noise(gl_FragCoord.xy, u_sample_index);
+    float reach = min(r.reach, widest / max(r.light.x, r.light.y));
+    float sum = 0.0, count = 0.0;
+    for (int i = 0; needed && i < 4 + search_taps; ++i) {
+        // The texels around the point, then those of the cone between the point and the light.
+        float rho = max(float(i - 4) + 0.5, 0.0) / float(search_taps), angle = turn + golden_angle * float(i - 4);
+        vec2 at = r.at.xy + (i < 4 ? texel * (vec2(i & 1, i >> 1) - 0.5) : r.light * reach * (rho * vec2(cos(angle), sin(angle))));
+        ivec2 place = clamp(ivec2(floor(at * u_shadow_resolution)), ivec2(0), ivec2(int(u_shadow_resolution) - 1));
+        float caster = texelFetch(u_tint_absorption, ivec3(place, int(r.at.z)), 0).a;
+        float limit = dot(r.slope, (vec2(place) + 0.5) * texel - r.at.xy);
+        float blocked = step(r.depth + (i < 4 ? limit : max(rho * reach, limit)), caster);
+        sum += blocked * caster;
+        count += blocked;
+    }
+    if (count == 0.0) return vec3(1.0);
+    float height = sum / count - r.depth;
+    vec2 radius = clamp(r.light * height, vec2(0.5 * texel), vec2(widest));
+    vec3 lost = vec3(0.0);
+    for (int i = 0; i < tint_taps; ++i) {
+        float rho = sqrt((float(i) + 0.5) / float(tint_taps)), angle = turn + golden_angle * float(i);
+        vec2 at = (r.at.xy + radius * (rho * vec2(cos(angle), sin(angle)))) * u_shadow_resolution - 0.5;
+        vec2 base = floor(at), f = at - base;
+        for (int k = 0; k < 4; ++k) {
+            ivec2 corner = ivec2(k & 1, k >> 1), place = ivec2(base) + corner;
+            vec2 weight = mix(1.0 - f, f, vec2(corner));
+            float cone = r.depth + 0.5 * rho * height;
+            lost += weight.x * weight.y * (1.0 - tint_texel(place, r, plane_at(r, place), cone));
+        }
+    }
+    return 1.0 - lost / float(tint_taps);
+}
+#endif

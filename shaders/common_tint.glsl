@@ -1,0 +1,12 @@
+// What a caster that lets light through leaves in a shadow map: sums, and largest alphas, which do not depend on the order of
+// drawing. See common_shadow_tint.glsl for how they are read.
+layout(location = 0) out vec4 o_absorption;  // rgb: -ln(transmittance); a: depth
+layout(location = 1) out vec4 o_moment;      // rgb: -ln(transmittance) times depth; a: minus depth
+
+void write_tint(vec3 through) {
+    // e^-16 is nothing.
+    vec3 absorption = -log(clamp(through, 1.125e-7, 1.0));
+    if (absorption == vec3(0.0)) discard;
+    o_absorption = vec4(absorption, gl_FragCoord.z);
+    o_moment = vec4(absorption * gl_FragCoord.z, -gl_FragCoord.z);
+}
