@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <future>
@@ -14,6 +15,7 @@
 #include "easypbr/cli/object_styles.h"
 #include "easypbr/cli/render_options.h"
 #include "easypbr/cli/stopwatch.h"
+#include "easypbr/cli/truth_layers.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/camera_path_io.h"
@@ -78,7 +80,7 @@ void check_files(const Picture& picture, const Settings& settings, const RenderO
         app::check_recording(picture.output, settings, recording_of(options));
     else if (picture.output != "-")
         app::check_picture(picture.output, settings);
-    for (const std::string& layer : options.layers) check_writable(app::layer_path(picture.output, layer));
+    for (const std::string& layer : options.layers) check_writable(truth_path(picture.output, layer));
     if (!picture.save_settings.empty()) check_writable(picture.save_settings);
     for (const std::string& file : picture.files) MappedFile{file};
     const MaterialSettings& m = settings.material;
@@ -238,8 +240,17 @@ class RenderJob {
             write_to_stdout(image);
         else
             io::save_image(image, picture.output);
-        if (!options_.layers.empty()) app::layers_to_files(session_, picture.output, options_.layers);
+        write_layers(picture);
         save_settings(picture);
+    }
+
+    void write_layers(const Picture& picture) {
+        const std::vector<std::string> truth = truth_layers_of(options_.layers);
+        std::vector<std::string> own = options_.layers;
+        std::erase_if(own,
+                      [&](const std::string& name) { return std::ranges::find(truth, name) != truth.end(); });
+        if (!own.empty()) app::layers_to_files(session_, picture.output, own);
+        if (!truth.empty()) write_truth(session_, picture.output, truth);
     }
 
     void save_settings(const Picture& picture) {

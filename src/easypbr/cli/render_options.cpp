@@ -11,6 +11,7 @@
 #include "easypbr/cli/drawable.h"
 #include "easypbr/cli/object_styles.h"
 #include "easypbr/cli/pose_file.h"
+#include "easypbr/cli/truth_layers.h"
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
@@ -70,7 +71,8 @@ void declare_output(CLI::App& command, RenderOptions& options) {
         ->check(CLI::IsMember({8, 16}));
     command
         .add_option("--layers", options.layers,
-                    "Also write OUT_LAYER.exr for each of albedo, normal, depth, ...")
+                    "Also write OUT_LAYER.exr for each of albedo, normal, depth, instance_id, ..., and "
+                    "OUT_instances.json for instances")
         ->delimiter(',')
         ->allow_extra_args(false)
         ->option_text("A,B");
@@ -317,11 +319,7 @@ void check_usage(const RenderOptions& options) {
     for (const std::string& file : {options.output, options.save_settings})
         if (options.batch && !file.empty() && file.find("{name}") == file.npos)
             throw UsageError(fmt::format("render: with --batch, '{}' must contain '{{name}}'", file));
-    for (const std::string& layer : options.layers) try {
-            render::layer_named(layer);
-        } catch (const NameError& error) {
-            throw UsageError(fmt::format("--layers: {}", error.what()));
-        }
+    for (const std::string& layer : options.layers) check_layer(layer);
 }
 
 void apply(const RenderOptions& options, Settings& settings) {
