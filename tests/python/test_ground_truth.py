@@ -124,6 +124,28 @@ def test_lenses_distort_every_layer(view, model, formula, coefficients):
     assert (alpha != (data["depth"] > 0)).sum() < 400
 
 
+@pytest.mark.parametrize("model, formula, coefficients", [
+    ("brown_conrady", brown, (-0.1, 0.01, 0.001, -0.002)),
+    ("fisheye", fisheye, (0.05, -0.01, 0.002, 0.0)),
+])
+def test_amodal_boxes_of_lenses_reach_beyond_the_picture(model, formula, coefficients):
+    """Points all over a ball that the picture's left and lower edges cut, through the lens's formula: the box holds them to
+    within the two pixels that the nearest pixel of the drawn picture and that of the box can be off together."""
+    scene = Scene()
+    scene.show(moved(shapes.sphere(0.5), -1.1, -1.5, -4), "ball")
+    view = Viewer(SIZE, scene=scene)
+    view.camera = Camera.from_opencv(K, T_WORLD_CAM, SIZE, coefficients, model)
+    (ball,) = view.annotations()
+    assert 0.1 < ball.truncation < 0.9
+    points = (scene.get("ball").V + (-1.1, -1.5, -4)) * (1, -1, -1)
+    slopes = formula(points[:, :2] / points[:, 2:], *coefficients)
+    pixels = slopes * (K[0, 0], K[1, 1]) + (K[0, 2], K[1, 2])
+    x, y, width, height = ball.box_amodal
+    assert x < -5 and y + height > SIZE[1] + 5
+    found = [x, y, x + width - 1, y + height - 1]
+    np.testing.assert_allclose(found, [*pixels.min(0), *pixels.max(0)], atol=2)
+
+
 def test_flow_warps_one_frame_onto_the_other(view):
     view.settings.image.samples = 1
     before = view.moment()

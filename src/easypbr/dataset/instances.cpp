@@ -139,6 +139,20 @@ Bitmap inside_picture(const PixelBox& area, const std::vector<uint8_t>& alone, V
     return bitmap;
 }
 
+/// The slope up to which the lens moves points outward the further out they are. Beyond, its polynomial says
+/// nothing of a real lens.
+double growing_reach(const Distortion& lens) {
+    constexpr double step = 1.01, largest = 100;
+    double before = 0, reach = 0;
+    for (double slope = 1e-3; slope < largest; slope *= step) {
+        const double now = lens.distort(Vec2d(slope, 0)).norm();
+        if (!(now > before)) break;
+        before = now;
+        reach = slope;
+    }
+    return reach;
+}
+
 /// The same through a lens: what is inside is looked up in the picture that was drawn.
 void count_warped(Instance& instance, const PixelBox& area, const std::vector<uint8_t>& alone,
                   const app::LensMap& lens, const Surfaces& s) {
@@ -153,9 +167,9 @@ void count_warped(Instance& instance, const PixelBox& area, const std::vector<ui
         ++instance.pixels_amodal_inside;
         extent.add(int(i) % lens.size.x(), int(i) / lens.size.x());
     }
-    if (instance.pixels_amodal_inside) instance.box_amodal = extent.box();
-    // Outside of the picture the lens's polynomial means nothing: parts are compared in the drawn picture.
+    // Outside of the picture pixels are of another size: parts are compared in the drawn picture.
     int all = 0, inside = 0;
+    const double reach = s.camera.distortion ? growing_reach(*s.camera.distortion) : 1e30;
     const Intrinsics& k = *lens.drawn.intrinsics;
     for (size_t i = 0; i < alone.size(); ++i) {
         if (!alone[i]) continue;
@@ -163,11 +177,15 @@ void count_warped(Instance& instance, const PixelBox& area, const std::vector<ui
         const Vec3d ray((area.x + int(i) % area.width - k.cx) / k.fx,
                         (area.y + int(i) / area.width - k.cy) / k.fy, 1);
         const Vec2d pixel = project(s.camera, s.size, ray);
+        const bool in_picture = pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < s.size.x() - 0.5 &&
+                                pixel.y() < s.size.y() - 0.5;
         const bool in_drawn =
             contains(lens.drawn_size, {area.x + int(i) % area.width, area.y + int(i) / area.width, 1, 1});
-        inside += in_drawn && pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < s.size.x() - 0.5 &&
-                  pixel.y() < s.size.y() - 0.5;
+        inside += in_drawn && in_picture;
+        if (!in_picture && ray.head<2>().norm() < reach)
+            extent.add(int(std::lround(pixel.x())), int(std::lround(pixel.y())));
     }
+    if (all) instance.box_amodal = extent.box();
     instance.pixels_amodal =
         inside ? int(std::lround(double(instance.pixels_amodal_inside) * all / inside)) : all;
 }
