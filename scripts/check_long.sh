@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# Soaks: 10,000 updates of a cloud, whose memory must not grow; all loaders on 10,000 mutated files each, and all C++ tests,
-# under AddressSanitizer and UBSan; a picture of 16384 x 9216 pixels in tiles. usage: check_long.sh
+# Soaks: 10,000 updates of a cloud and data sets of 5,000 frames, whose memory must not grow; data sets killed 200 times; all
+# loaders on 10,000 mutated files each, and all C++ tests, under AddressSanitizer and UBSan; a picture of 16384 x 9216 pixels
+# in tiles. usage: check_long.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
 .venv/bin/python bench/cloud_updates.py
+.venv/bin/python -m pytest -q -s tests/long
 cmake --preset asan
 cmake --build build-asan
 # Mesa and its JIT keep memory until the process ends; what leaks is theirs.
-.venv/bin/python bench/large_picture.py
 export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1
 ctest --test-dir build-asan --output-on-failure -j "$(nproc)" -E Fuzz
 EASYPBR_FUZZ_COUNT=10000 ctest --test-dir build-asan --output-on-failure -j "$(nproc)" -R Fuzz --timeout 7200
