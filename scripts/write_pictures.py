@@ -380,9 +380,15 @@ def drones() -> np.ndarray:
         return easypbr.load_image(pathlib.Path(folder) / "contact_sheet.png")
 
 
-PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion,
-            bloom, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
-            viewer_slices, viewer_path, viewer_own]
+def trained(script: str, name: str) -> np.ndarray:
+    """What an example of examples/training draws in the end."""
+    with tempfile.TemporaryDirectory() as folder:
+        subprocess.run([sys.executable, ROOT / "examples/training" / script], cwd=folder, check=True, stdout=subprocess.DEVNULL)
+        return easypbr.load_image(pathlib.Path(folder) / name)
+
+
+def detection() -> np.ndarray:
+    return trained("detect_drones.py", "detection.png")
 
 
 def own_shading() -> np.ndarray:
@@ -406,7 +412,9 @@ def outline() -> np.ndarray:
     return view.render()
 
 
-PICTURES += [own_shading, outline]
+PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion,
+            bloom, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
+            viewer_slices, viewer_path, viewer_own, detection, own_shading, outline]
 
 
 if __name__ == "__main__":

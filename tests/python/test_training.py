@@ -26,6 +26,15 @@ def test_a_network_learns_parts_of_clouds(tmp_path):
     assert np.ptp(easypbr.load_image(tmp_path / "segmentation.png")[..., :3]) > 100
 
 
+def test_a_detector_learns_drones(tmp_path):
+    """An untrained network finds next to nothing: boxes must overlap by a half, and there are 300 places for them."""
+    said = run("training/detect_drones.py", tmp_path, "--pictures", "80", "--steps", "70")
+    assert float(re.match(r"average precision ([\d.]+) at", said)[1]) > 0.15
+    picture = easypbr.load_image(tmp_path / "detection.png")
+    assert picture.shape == (480, 640, 3)
+    assert (picture == (255, 255, 255)).all(-1).sum() > 50  # the true boxes' lines
+
+
 @pytest.mark.parametrize("count", [1])
 def test_figure_7_shows_boxes(tmp_path, count):
     run("figures/figure_07_drone_boxes.py", tmp_path, "--count", str(count))
