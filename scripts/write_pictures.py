@@ -46,7 +46,8 @@ def figure(name: str):
 
 
 FIGURES = [figure(name) for name in ("eye_dome_lighting", "surfel_steps", "bunny_surfels", "labelled_street", "plants",
-                                     "all_kinds", "scalar_field", "slices", "shadows_and_occlusion", "gltf_materials")]
+                                     "all_kinds", "scalar_field", "slices", "shadows_and_occlusion", "gltf_materials",
+                                     "figure_10")]
 
 def row(pictures) -> np.ndarray:
     """Pictures side by side with a white gap."""
@@ -103,13 +104,9 @@ def viewer_path() -> np.ndarray:
     view.scene.get("floor").scale(2.5)
     keys = [easypbr.Camera.look_at((2 * np.sin(a), 0.4 + 0.4 * i, 2 * np.cos(a)), (0, 0.45, 0), fov_y_deg=35)
             for i, a in enumerate(np.radians([-40, 25, 90, 160]))]
-    view._handle.set_path(easypbr.CameraPath(keys, segment_s=1.5))
+    view.camera_path = easypbr.CameraPath(keys, segment_s=1.5)
     view.camera = easypbr.Camera.look_at((2.9, 3, 5), (-0.3, 0.5, 0), fov_y_deg=35)
-    for name in ("Object", "Animations", "Effects", "Lights", "Environment", "Camera", "Channels", "Statistics"):
-        view._handle.set_gui(name, False)
-    for name in ("Camera path", "Recorder"):
-        view._handle.set_gui("unfold", name)
-        view.screenshot()
+    view.show_panels("Scene", "Camera path", "Recorder")
     return view.screenshot()[:, :, :3]
 
 

@@ -265,6 +265,29 @@ class Viewer(WindowCallbacks):
         low, high = (None, None) if range is None else range
         self._handle.show_image(name, array, low, high, colormap)
 
+    @property
+    def camera_path(self) -> "_easypbr.CameraPath | None":
+        """The path of the window's panel, drawn over the picture; assign one to see and edit it. None without two keys."""
+        return self._handle.get_path()
+
+    @camera_path.setter
+    def camera_path(self, path: "_easypbr.CameraPath"):
+        if not isinstance(path, _easypbr.CameraPath):
+            raise ArgumentError(f"camera_path: expected a CameraPath, got a {type(path).__name__}")
+        self._handle.set_path(path)
+
+    def show_panels(self, *names: str) -> None:
+        """Shows these of the window's own panels alone, unfolded: "Scene", "Object", "Effects", "Lights", "Environment",
+        "Camera", "Channels", "Statistics", "Animations", "Camera path", "Recorder"."""
+        known = self._handle.panel_names()
+        for name in names:
+            if name not in known:
+                raise ArgumentError(f"show_panels: expected names out of {', '.join(known)}, got {name!r}")
+        for name in known:
+            self._handle.set_gui(name, name in names)
+        for name in names:
+            self._handle.set_gui("unfold", name)
+
     def remove_image(self, name: str) -> None:
         """Removes an image that was shown."""
         self._handle.remove_image(name)

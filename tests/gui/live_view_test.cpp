@@ -197,6 +197,43 @@ TEST_F(Live, TheManipulatorMovesTheObjectAlongItsAxis) {
     EXPECT_LT((camera_position() - Vec3d(0, 0, 6)).norm(), 1e-12);
 }
 
+TEST_F(Live, UndoTakesPosesAndMaterialsBackAndLeavesTheProgramsOwn) {
+    view_.state().show_panels = true;
+    view_.state().object = "ball";
+    session_.set_view_point({Camera::look_at(Vec3d(0, 0, 6), Vec3d(0, 0, 0)), Vec3d(0, 0, 0)});
+    settle();
+    const auto ball = [&] { return session_.scene().get("ball"); };
+    const float roughness = ball().material().roughness;
+    change_look(view_.state(), "ball", "material.roughness", [](MeshData& data) {
+        data.materials.resize(1);
+        data.materials[0].roughness = 0.125f;
+    });
+    settle();
+    // The program moves it: that is no change of a person's.
+    ball().translate(Vec3d(0, 0.1, 0));
+    settle();
+    const Vec2d centre = app::pixel_of(session_.view_point(size).camera, Vec3d(0, 0.1, 0), size).head<2>();
+    drag(centre + Vec2d(60, 0), centre + Vec2d(120, 0));
+    settle();
+    const Vec3d moved = ball().T_parent_mesh().translation();
+    EXPECT_GT(moved.x(), 0.2);
+    step({key('Z', true)});
+    EXPECT_LT((ball().T_parent_mesh().translation() - Vec3d(0, 0.1, 0)).norm(), 1e-12);
+    EXPECT_EQ(ball().material().roughness, 0.125f);
+    ball().translate(Vec3d(0, 0.2, 0));
+    step({key('Z', true)});
+    EXPECT_EQ(ball().material().roughness, roughness);
+    EXPECT_LT((ball().T_parent_mesh().translation() - Vec3d(0, 0.3, 0)).norm(), 1e-12);
+    // What was undone is not made again with other data.
+    session_.scene().show(make_sphere(1, 12), "ball");
+    settle();
+    EXPECT_EQ(ball().material().roughness, roughness);
+    step({key('Y', true)});
+    EXPECT_EQ(ball().material().roughness, 0.125f);
+    step({key('Y', true)});
+    EXPECT_LT((ball().T_parent_mesh().translation() - moved).norm(), 1e-12);
+}
+
 TEST_F(Live, EveryChannelIsShown) {
     std::vector<Image> seen;
     for (const char* channel : {"picture", "slices", "normal", "depth", "albedo", "id"}) {
@@ -267,15 +304,15 @@ TEST(History, ForgetsWhatWasUndoneWhenSomethingNewIsDone) {
     history.note(settings);
     settings.image.samples = 3;
     history.note(settings);
-    EXPECT_EQ(history.undo().image.samples, 2);
-    EXPECT_EQ(history.undo().image.samples, Settings().image.samples);
+    EXPECT_EQ(history.undo().settings.image.samples, 2);
+    EXPECT_EQ(history.undo().settings.image.samples, Settings().image.samples);
     EXPECT_FALSE(history.can_undo());
     EXPECT_THROW(history.undo(), ArgumentError);
-    EXPECT_EQ(history.redo().image.samples, 2);
+    EXPECT_EQ(history.redo().settings.image.samples, 2);
     settings.image.samples = 9;
     history.note(settings);
     EXPECT_FALSE(history.can_redo());
-    EXPECT_EQ(history.undo().image.samples, 2);
+    EXPECT_EQ(history.undo().settings.image.samples, 2);
 }
 
 TEST(Slices, CutThePictureIntoSlantedParts) {

@@ -51,7 +51,7 @@ class MotionPanels : public testing::Test {
         for (int i = 0; i < 100 && (view_.is_busy() || i < 3); ++i) step();
     }
     void unfold(Panel panel) {
-        view_.state().unfold = panel;
+        view_.state().unfold.insert(panel);
         view_.touch();
         settle();
     }

@@ -93,6 +93,23 @@ def test_a_camera_is_shown_with_its_image(view):
         view.add_camera_frustum("right", K, np.eye(4))
 
 
+def test_the_panels_path_and_the_panels_that_are_shown(view):
+    assert view.camera_path is None
+    path = easypbr.CameraPath([easypbr.Camera.look_at((x, 1, 5), (0, 0, 0)) for x in (0, 1, 2)])
+    before = view.screenshot()
+    view.camera_path = path
+    assert np.array_equal(view.camera_path.pose(1.3), path.pose(1.3))
+    assert np.any(view.screenshot() != before)
+    view.show_panels("Camera path", "Recorder")
+    view.screenshot()
+    state = view._handle.gui_state()
+    assert state["panels"] == ["Camera path", "Recorder"] and "Camera path/key 3" in state["places"]
+    assert "Recorder/Picture" in state["places"]
+    for wrong in (lambda: view.show_panels("Camera paths"), lambda: setattr(view, "camera_path", [1])):
+        with pytest.raises(easypbr.ArgumentError):
+            wrong()
+
+
 def animated(tmp_path):
     """A triangle that goes 2 units along x in a second, as glTF."""
     import base64

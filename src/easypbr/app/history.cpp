@@ -1,8 +1,10 @@
 #include "easypbr/app/history.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/hash.h"
 #include "easypbr/scene/fields.h"
 
 namespace easypbr::app {
@@ -14,22 +16,62 @@ bool same_choices(const Settings& a, const Settings& b) {
     });
 }
 
-void History::note(const Settings& settings) {
-    if (!states_.empty() && same_choices(states_[present_], settings)) return;
-    if (!states_.empty()) states_.resize(present_ + 1);
-    states_.push_back(settings);
+void History::note(const Settings& settings, const ObjectStates& changed) {
+    if (!states_.empty() && changed.empty() && same_choices(states_[present_].settings, settings)) return;
+    Step state{settings, {}};
+    if (!states_.empty()) {
+        state.objects = states_[present_].objects;
+        states_.resize(present_ + 1);
+    }
+    for (const auto& [name, object] : changed) {
+        ObjectState& known = state.objects[name];
+        if (object.T_parent_mesh) known.T_parent_mesh = object.T_parent_mesh;
+        if (!object.materials) continue;
+        known.materials = object.materials;
+        known.style = object.style;
+        known.changes = object.changes;
+        known.look = next_revision();
+    }
+    states_.push_back(std::move(state));
     if (states_.size() > most_states) states_.erase(states_.begin());
     present_ = states_.size() - 1;
 }
 
-const Settings& History::undo() {
-    if (!can_undo()) throw ArgumentError("nothing to undo");
-    return states_[--present_];
+void History::know(const std::string& object, const ObjectState& before) {
+    for (Step& state : states_) {
+        ObjectState& known = state.objects[object];
+        if (!known.T_parent_mesh) known.T_parent_mesh = before.T_parent_mesh;
+        if (!known.materials) known.materials = before.materials;
+        if (!known.style) known.style = before.style;
+    }
 }
 
-const Settings& History::redo() {
+History::Step History::go(size_t to) {
+    Step step = states_[to];
+    const ObjectStates& now = states_[present_].objects;
+    for (auto& [name, object] : step.objects) {
+        const auto known = now.find(name);
+        if (known == now.end()) continue;
+        // What is the same in both is left as the program may have changed it since.
+        const auto& pose = known->second.T_parent_mesh;
+        if (pose && object.T_parent_mesh && pose->matrix() == object.T_parent_mesh->matrix())
+            object.T_parent_mesh.reset();
+        if (known->second.look != object.look) continue;
+        object.materials.reset();
+        object.style.reset();
+    }
+    present_ = to;
+    return step;
+}
+
+History::Step History::undo() {
+    if (!can_undo()) throw ArgumentError("nothing to undo");
+    return go(present_ - 1);
+}
+
+History::Step History::redo() {
     if (!can_redo()) throw ArgumentError("nothing to redo");
-    return states_[++present_];
+    return go(present_ + 1);
 }
 
 }  // namespace easypbr::app

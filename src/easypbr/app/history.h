@@ -1,8 +1,13 @@
-// Undo and redo of settings, the camera among them.
+// Undo and redo of settings, the camera among them, and of what a person did to objects.
 #pragma once
 
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
 #include <vector>
 
+#include "easypbr/scene/mesh.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
@@ -10,22 +15,49 @@ namespace easypbr::app {
 /// Whether a person would see a difference: what is inferred does not count.
 bool same_choices(const Settings& a, const Settings& b);
 
-/// States of the settings, oldest first. What is noted after undo() drops what was undone.
+/// A change to an object's look, by the property that it sets; made again when other data are shown under the
+/// same name.
+using LookChange = std::function<void(MeshData&)>;
+
+/// What a person changed of an object; what was never changed is not known, and stays the program's.
+struct ObjectState {
+    std::optional<Eigen::Affine3d> T_parent_mesh;
+    std::optional<std::vector<Material>> materials;
+    std::optional<Style> style;
+    std::map<std::string, LookChange> changes;
+    uint64_t look = 0;  ///< tells looks of one object apart
+};
+/// By the object's name.
+using ObjectStates = std::map<std::string, ObjectState>;
+
+/// States of settings and objects, oldest first. What is noted after undo() drops what was undone.
 class History {
   public:
-    /// Notes a state, unless it is the present one but for what is inferred.
-    void note(const Settings& settings);
+    /// Notes the settings, unless they are the present ones but for what is inferred, and the objects that
+    /// were changed since the last note.
+    void note(const Settings& settings, const ObjectStates& changed = {});
+    /// What an object was before a person changed it for the first time: it was so in all states.
+    void know(const std::string& object, const ObjectState& before);
 
     bool can_undo() const { return present_ > 0; }
     bool can_redo() const { return present_ + 1 < states_.size(); }
-    /// The state before or after the present one, which it then is. Throws ArgumentError when there is none.
-    const Settings& undo();
-    const Settings& redo();
+
+    /// What has to be restored.
+    struct Step {
+        Settings settings;
+        ObjectStates objects;  ///< what is another way than now
+    };
+    /// To the state before or after the present one, which it then is. Throws ArgumentError when there is
+    /// none.
+    Step undo();
+    Step redo();
 
     static constexpr size_t most_states = 200;
 
   private:
-    std::vector<Settings> states_;
+    Step go(size_t to);
+
+    std::vector<Step> states_;  ///< with all objects that are known
     size_t present_ = 0;
 };
 

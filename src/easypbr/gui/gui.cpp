@@ -37,10 +37,7 @@ const Panel folded[] = {Panel::lights,     Panel::environment, Panel::camera,
                         Panel::animations, Panel::camera_path, Panel::recorder};
 
 void draw_panel(GuiState& state, Panel panel, void (*contents)(GuiState&)) {
-    if (state.unfold == panel) {
-        ImGui::SetNextItemOpen(true);
-        state.unfold.reset();
-    }
+    if (state.unfold.erase(panel)) ImGui::SetNextItemOpen(true);
     const bool open = heading(panel_name(panel), std::ranges::find(folded, panel) == std::end(folded));
     note_place(state, panel_name(panel));
     if (!open) return;

@@ -192,7 +192,7 @@ bool LiveView::update_now(const std::vector<InputEvent>& events, Vec2i size, flo
     if (draws || asks_panels) draws = draw_screen(seconds, draws);
     gui_frames_ = std::max(gui_frames_ - 1, 0);
     record();
-    if (!is_moving() && !failed_ && !recording_.is_path()) state_.history.note(session_.settings());
+    if (!is_moving() && !failed_ && !recording_.is_path()) note_history(state_);
     const bool refines = !failed_ && frames_ < state_.statistics.total;
     busy_ = refines || gui_frames_ > 0 || control_.is_moving() || state_.path.is_playing() ||
             recording_.is_path();

@@ -73,7 +73,9 @@ std::optional<Subject> selected_object(GuiState& state) {
     Subject subject;
     subject.centre = box.center();
     const Eigen::Affine3d parent = parent_pose(scene, state.object), own = node->T_parent_mesh();
-    subject.apply = [mesh = *node, parent, own](const Eigen::Affine3d& change) mutable {
+    subject.apply = [&state, name = state.object, mesh = *node, parent,
+                     own](const Eigen::Affine3d& change) mutable {
+        will_move(state, name, mesh);
         mesh.set_T_parent_mesh(parent.inverse(Eigen::Affine) * change * parent * own);
     };
     return subject;

@@ -33,7 +33,9 @@ constexpr KeyLine key_lines[] = {{"Left drag", "turn about the target"},
 
 void statistics_panel(GuiState& state) {
     const Statistics& now = state.statistics;
-    if (!ImGui::BeginTable("statistics", 2, ImGuiTableFlags_NoSavedSettings)) return;
+    if (!ImGui::BeginTable("statistics", 2,
+                           ImGuiTableFlags_NoSavedSettings | ImGuiTableFlags_SizingStretchSame))
+        return;
     const auto line = [](const std::string& name, const std::string& value) {
         ImGui::TableNextRow();
         ImGui::TableNextColumn();

@@ -1,13 +1,33 @@
 #include "easypbr/gui/state.h"
 
+#include <utility>
+
 #include "easypbr/core/error.h"
 
 namespace easypbr::gui {
 namespace {
 
-void restore(GuiState& state, const Settings& settings) {
-    // What is shown how large is not a matter of the settings' history.
-    state.session.replace_settings(settings);
+void restore(GuiState& state, const app::History::Step& step) {
+    state.session.replace_settings(step.settings);
+    for (const auto& [name, object] : step.objects) {
+        std::optional<Mesh> node = node_named(state.session.scene(), name);
+        if (!node) continue;
+        if (object.T_parent_mesh) node->set_T_parent_mesh(*object.T_parent_mesh);
+        if (object.materials && object.style)
+            node->edit([&look = object](MeshData& data) {
+                data.materials = *look.materials;
+                data.style = *look.style;
+            });
+        if (object.materials) state.looks[name] = object.changes;
+    }
+}
+
+app::ObjectState look_of(const Mesh& node) {
+    const auto data = node.snapshot();
+    app::ObjectState object;
+    object.materials = data->materials;
+    object.style = data->style;
+    return object;
 }
 
 }  // namespace
@@ -46,11 +66,34 @@ void change_look(GuiState& state, const std::string& object, const std::string& 
     std::optional<Mesh> node = node_named(state.session.scene(), object);
     if (!node) return;
     try {
+        state.history.know(object, look_of(*node));
         node->edit(change);
+        state.changed_looks.insert(object);
         state.looks[object][property] = change;
     } catch (const Error& error) {
         state.notify(error.what(), true);
     }
+}
+
+void will_move(GuiState& state, const std::string& object, const Mesh& node) {
+    app::ObjectState before;
+    before.T_parent_mesh = node.T_parent_mesh();
+    state.history.know(object, before);
+    state.changed_poses.insert(object);
+}
+
+void note_history(GuiState& state) {
+    app::ObjectStates changed;
+    for (const std::string& name : std::exchange(state.changed_looks, {})) {
+        const std::optional<Mesh> node = node_named(state.session.scene(), name);
+        if (!node) continue;
+        changed[name] = look_of(*node);
+        changed[name].changes = state.looks[name];
+    }
+    for (const std::string& name : std::exchange(state.changed_poses, {}))
+        if (const std::optional<Mesh> node = node_named(state.session.scene(), name))
+            changed[name].T_parent_mesh = node->T_parent_mesh();
+    state.history.note(state.settings(), changed);
 }
 
 void undo(GuiState& state) {

@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -60,9 +61,7 @@ struct HandleDrag {
     std::function<void(const Eigen::Affine3d& change)> apply;  ///< to what it was when the drag began
 };
 
-/// A change to an object's look, by the property that it sets; made again when other data are shown under the
-/// same name.
-using LookChange = std::function<void(MeshData&)>;
+using app::LookChange;
 
 /// What the recorder's panel asks for.
 enum class RecorderWish { none, picture, video, path, stop };
@@ -82,7 +81,7 @@ struct GuiState {
     float scale = 1;
 
     std::array<bool, panel_count> open = all_panels();
-    std::optional<Panel> unfold;  ///< in the next frame
+    std::set<Panel> unfold;  ///< in the next frame
     bool show_panels = true, show_keys = false;
     Theme theme = Theme::dark;
 
@@ -115,6 +114,7 @@ struct GuiState {
     std::string image_value;  ///< under the pointer, in an image beside the scene
 
     std::map<std::string, std::map<std::string, LookChange>> looks;  ///< by object, by property
+    std::set<std::string> changed_looks, changed_poses;              ///< objects, since the history was noted
     bool close = false, fit = false, save = false;
 
     std::map<std::string, Eigen::AlignedBox2d> places;  ///< of items in the last frame, see note_place()
@@ -136,6 +136,11 @@ std::optional<Mesh> node_named(const Scene& scene, const std::string& name);
 /// Changes a node's look now and whenever other data are shown under its name. Errors become notifications.
 void change_look(GuiState& state, const std::string& object, const std::string& property,
                  const LookChange& change);
+
+/// Before an object is moved: undo() puts it back.
+void will_move(GuiState& state, const std::string& object, const Mesh& node);
+/// Notes settings and changed objects for undo().
+void note_history(GuiState& state);
 
 /// Undo or redo; nothing happens when there is nothing to.
 void undo(GuiState& state);

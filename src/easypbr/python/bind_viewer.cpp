@@ -156,7 +156,8 @@ void set_gui(SharedViewer& self, const std::string& name, nb::handle value) {
         else if (name == "transparent")
             state.form.transparent = flag;
         for (int i = 0; i < gui::panel_count; ++i)
-            if (name == "unfold" && text == gui::panel_name(gui::Panel(i))) state.unfold = gui::Panel(i);
+            if (name == "unfold" && text == gui::panel_name(gui::Panel(i)))
+                state.unfold.insert(gui::Panel(i));
         for (int i = 0; i < gui::panel_count; ++i)
             if (name == gui::panel_name(gui::Panel(i))) state.open[size_t(i)] = flag;
     });
@@ -203,6 +204,16 @@ void bind_window(ViewerClass& viewer) {
                      v.live().state().path.set(path);
                      v.live().touch();
                  });
+             })
+        .def("get_path",
+             [](SharedViewer& self) {
+                 return self.run([](Viewer& v) { return v.live().state().path.path(); });
+             })
+        .def("panel_names",
+             [](SharedViewer&) {
+                 std::vector<std::string> names;
+                 for (int i = 0; i < gui::panel_count; ++i) names.push_back(gui::panel_name(gui::Panel(i)));
+                 return names;
              })
         .def("gui_state", gui_state)
         .def("set_gui", set_gui, nb::arg("name"), nb::arg("value"));
