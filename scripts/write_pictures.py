@@ -47,7 +47,8 @@ def figure(name: str):
 
 FIGURES = [figure(name) for name in ("eye_dome_lighting", "surfel_steps", "bunny_surfels", "labelled_street", "plants",
                                      "all_kinds", "scalar_field", "slices", "shadows_and_occlusion", "gltf_materials",
-                                     "figure_10")]
+                                     "figure_10", "transparent_shadows")]
+
 
 def row(pictures) -> np.ndarray:
     """Pictures side by side with a white gap."""
