@@ -55,7 +55,7 @@ def test_figure_draws_its_picture(figure, tmp_path):
     done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=300, env=environment)
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     picture = easypbr.load_image(tmp_path / f"{figure.stem}.png")[:, :, :3].astype(int)
-    assert 40 < picture.shape[0] < 120 < picture.shape[1]
+    assert 40 < picture.shape[0] < 160 and 120 < picture.shape[1]
     drawn = (picture != 0x40).any(axis=2) & (picture != 0xff).any(axis=2)
     assert 0.1 < drawn.mean() < 1
     assert np.ptp(picture[drawn]) > 60

@@ -7,13 +7,14 @@
 namespace easypbr::render {
 namespace {
 
-/// From this many frames on their mean is smooth without a blur.
-constexpr int frames_without_blur = 8;
+/// From this many frames on their mean shows what half the resolution would lose, and from as many more on it
+/// is smooth without a blur.
+constexpr int frames_at_full_resolution = 8, frames_without_blur = 48;
 
 bool at_half_resolution(const Frame& frame) {
     const OcclusionResolution resolution = frame.resolved->settings.ssao.resolution;
     return resolution == OcclusionResolution::half ||
-           (resolution == OcclusionResolution::adaptive && frame.sample_count < frames_without_blur);
+           (resolution == OcclusionResolution::adaptive && frame.sample_count < frames_at_full_resolution);
 }
 
 void limit_to(const PixelRect& r, int scale) {
