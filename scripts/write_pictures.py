@@ -111,6 +111,14 @@ def viewer_path() -> np.ndarray:
     return view.screenshot()[:, :, :3]
 
 
+def viewer_lights() -> np.ndarray:
+    """The panels of lights, environment, camera and statistics."""
+    view = window_of((1120, 900))
+    view.scene.set_light("lamp", easypbr.Light("point", position=(1.2, 1.6, 1.4), intensity=14))
+    view.show_panels("Lights", "Environment", "Camera", "Statistics")
+    return view.screenshot()[:, :, :3]
+
+
 def viewer_own() -> np.ndarray:
     """A panel of one's own, images and a camera with its image."""
     view = window_of((1280, 760))
@@ -412,7 +420,7 @@ def outline() -> np.ndarray:
 
 PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion,
             bloom, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
-            viewer_slices, viewer_path, viewer_own, detection, own_shading, outline]
+            viewer_slices, viewer_path, viewer_lights, viewer_own, detection, own_shading, outline]
 
 
 if __name__ == "__main__":
