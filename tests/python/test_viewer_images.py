@@ -95,7 +95,7 @@ def test_a_camera_is_shown_with_its_image(view):
 
 def test_the_panels_path_and_the_panels_that_are_shown(view):
     assert view.camera_path is None
-    path = easypbr.CameraPath([easypbr.Camera.look_at((x, 1, 1.5), (0, 0, 0)) for x in (0, 1, 2)])
+    path = easypbr.CameraPath([easypbr.Camera.look_at((x, 0.2, 0.8), (0, 0, 0)) for x in (-0.3, 0, 0.3)])
     before = view.screenshot()
     view.camera_path = path
     assert np.array_equal(view.camera_path.pose(1.3), path.pose(1.3))

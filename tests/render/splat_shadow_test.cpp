@@ -219,5 +219,22 @@ TEST(SplatShadow, MapsAreKept) {
     EXPECT_EQ(session.shadow_maps_drawn(), first + 2);
 }
 
+// A cloud without normals keeps its own colours: no map is drawn until something stands by that light falls on.
+TEST(SplatShadow, NothingIsDrawnForWhatReceivesNone) {
+    Scene scene;
+    Mesh cloud;
+    cloud.set_V(make_sphere(0.5f, 32).V());
+    scene.show(cloud, "cloud");
+    scene.set_light("sun", directional(Vec3(0, 0, -1)));
+    app::Session session(scene);
+    session.settings().shadows.enabled = true;
+    session.settings().image.size = {64, 64};
+    render_linear(session);
+    EXPECT_EQ(session.shadow_maps_drawn(), 0u);
+    scene.show(make_sphere(0.5f, 32), "lit");
+    render_linear(session);
+    EXPECT_GT(session.shadow_maps_drawn(), 0u);
+}
+
 }  // namespace
 }  // namespace easypbr

@@ -33,6 +33,8 @@ struct DrawItem {
     bool casts_tint() const {
         return alpha == AlphaMode::blend || (kind == SurfaceKind::lit && material.transmits());
     }
+    /// Lights fall on it. A shader of its own may light what the material does not.
+    bool receives_shadows() const { return kind == SurfaceKind::lit && (!material.unlit || material.shader); }
     /// Light goes through a solid.
     bool is_volume() const { return material.transmits() && material.thickness > 0; }
     /// What is seen through it is blurred.

@@ -308,7 +308,8 @@ void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& ca
     }
     if (*frame.resolved->settings.ssao.enabled)
         run("ambient occlusion", [&] { ambient_occlusion_.draw(frame, targets_); });
-    shadow_maps_.begin(frame, casters, bounds_of(*frame.scene));
+    const bool received = frame.with_ground || list.has(&DrawItem::receives_shadows);
+    shadow_maps_.begin(frame, casters, bounds_of(*frame.scene), received);
     draw_lights(frame, targets_);
     if (frame.with_ground) {
         run("ground", [&] { ground_.finish(frame, targets_, bounds_of(*frame.scene)); });

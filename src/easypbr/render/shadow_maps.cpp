@@ -117,7 +117,7 @@ void ShadowMaps::set_resolution(int resolution) {
     resolution_ = resolution;
 }
 
-void ShadowMaps::begin(const Frame& frame, const DrawList& casters, const Box3d& vertices) {
+void ShadowMaps::begin(const Frame& frame, const DrawList& casters, const Box3d& vertices, bool received) {
     const Box3d bounds = caster_bounds(casters, vertices);
     splats_.evict_unused();
     note_casters(casters, bounds);
@@ -125,7 +125,10 @@ void ShadowMaps::begin(const Frame& frame, const DrawList& casters, const Box3d&
     ++frame_;
     requests_.clear();
     next_ = 0;
-    for (const Light& light : frame.resolved->lights) requests_.push_back(request_of(light, frame, bounds));
+    for (const Light& light : frame.resolved->lights) {
+        requests_.push_back(request_of(light, frame, bounds));
+        requests_.back().shadowed &= received;
+    }
     const bool any = std::ranges::any_of(requests_, &Request::shadowed);
     set_resolution(any ? frame.resolved->settings.shadows.resolution : 0);
     tinted_ = casters.has(&DrawItem::casts_tint);

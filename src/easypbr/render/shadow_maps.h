@@ -21,9 +21,10 @@ class ShadowMaps {
                SpacingCache& spacings, gpu::PointCache& points, gpu::SurfelCache& surfels)
         : splats_(spacings, points, surfels), pass_(meshes, textures, closed, splats_) {}
 
-    /// Takes note of a frame's lights and of what casts; `bounds` are those of its vertices. `casters` must
-    /// live until its last block.
-    void begin(const Frame& frame, const DrawList& casters, const Box3d& bounds);
+    /// Takes note of a frame's lights and of what casts; `bounds` are those of its vertices. Nothing is drawn
+    /// when no surface receives a shadow: a bare cloud, labels in their own colours. `casters` must live
+    /// until its last block.
+    void begin(const Frame& frame, const DrawList& casters, const Box3d& bounds, bool received);
 
     /// Goes back to the first block.
     void rewind() { next_ = 0; }
