@@ -39,7 +39,9 @@ class Program:
     """A program of its own process; its lines are read as they come."""
 
     def __init__(self, display, code, *arguments):
+        # Whoever starts the tests in the background switches interrupts off, for their children too.
         self.process = subprocess.Popen([sys.executable, "-c", code, *map(str, arguments)], env=display.environment,
+                                        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
                                         stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
     def until_frame(self, number):
