@@ -7,7 +7,6 @@ sky, path traced. The picture and helmet.json beside this file are committed.
 """
 import argparse
 import base64
-import hashlib
 import json
 import os
 import pathlib
@@ -15,6 +14,8 @@ import pathlib
 import mitsuba as mi
 import numpy as np
 import OpenEXR
+
+from file_hash import hash_of
 
 mi.set_variant("llvm_ad_rgb")
 HERE = pathlib.Path(__file__).resolve().parent
@@ -124,10 +125,6 @@ def render(data, samples):
         picture[:, :, :3] += np.array(mi.render(glowing, spp=samples // passes, seed=2 * i + 1))[:, :, :3]
         total = total + picture / passes
     return total
-
-
-def hash_of(file):
-    return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
 def main():

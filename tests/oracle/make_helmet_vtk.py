@@ -9,7 +9,6 @@ multiplied by it. Environments cast no shadows in VTK: its screen-space ambient 
 of 0.05, 0.1, 0.2, 0.4 and 0.8 of the ground's side. helmet_vtk.png and helmet_vtk.json beside this file are committed.
 """
 import argparse
-import hashlib
 import json
 import os
 import pathlib
@@ -17,6 +16,8 @@ import tempfile
 
 import vtk
 from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+
+from file_hash import hash_of
 
 HERE = pathlib.Path(__file__).resolve().parent
 SCENE = json.loads((HERE / "helmet.json").read_text())
@@ -118,7 +119,7 @@ def main():
     writer.SetInputConnection(grab.GetOutputPort())
     writer.Write()
     about = {"vtk": vtk.vtkVersion.GetVTKVersion(), "exposure": chosen.exposure,
-             "sha256": hashlib.sha256(path.read_bytes()).hexdigest()}
+             "sha256": hash_of(path)}
     (chosen.output / "helmet_vtk.json").write_text(json.dumps(about, indent=1) + "\n")
 
 

@@ -19,6 +19,8 @@ import mitsuba as mi
 import numpy as np
 import OpenEXR
 
+from file_hash import hash_of
+
 VARIANT = "llvm_ad_rgb"
 mi.set_variant(VARIANT)
 import unoccluded  # noqa: E402, F401  (registers the integrator; needs the variant)
@@ -98,10 +100,6 @@ def write(path, pixels):
     """As halves, compressed by ZIP: Mitsuba itself writes PIZ, which few readers know."""
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     OpenEXR.File(header, {"RGBA": pixels.astype(np.float16)}).write(str(path))
-
-
-def hash_of(path):
-    return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
 def scene_hash(picture, inputs):

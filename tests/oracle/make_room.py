@@ -6,7 +6,6 @@ FOLDER holds room_scene.obj. Its faces are lit by two point lights, directly: wh
 room.json beside this file are committed.
 """
 import argparse
-import hashlib
 import json
 import os
 import pathlib
@@ -14,6 +13,8 @@ import pathlib
 import mitsuba as mi
 import numpy as np
 import OpenEXR
+
+from file_hash import hash_of
 
 mi.set_variant("llvm_ad_rgb")
 HERE = pathlib.Path(__file__).resolve().parent
@@ -45,10 +46,6 @@ def render(data):
         scene[f"light{number}"] = {"type": "point", "position": light["position"],
                                    "intensity": {"type": "rgb", "value": light["intensity"]}}
     return np.array(mi.render(mi.load_dict(scene), spp=SCENE["samples"], seed=1))
-
-
-def hash_of(file):
-    return hashlib.sha256(file.read_bytes()).hexdigest()
 
 
 def main():
