@@ -5,6 +5,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
+#include "scene/slide.h"
 
 namespace easypbr::app {
 namespace {
@@ -16,17 +17,9 @@ class Player : public testing::Test {
         clock_.on_tick = [this] { player_.update(); };
         AnimationNode node;
         node.mesh = box_;
-        Animation slide;
-        slide.name = "slide";
-        slide.duration_s = 4;
-        AnimationChannel channel;
-        channel.times = {0, 4};
-        channel.values = ArrayXf::Dense{{0, 0, 0}, {2, 0, 0}};
-        slide.channels = {channel};
-        Animation rest = slide;
-        rest.name = "rest";
+        Animation rest = slide("rest");
         rest.channels[0].values.setZero();
-        animations_ = Animations({{node}, {}, {slide, rest}});
+        animations_ = Animations({{node}, {}, {slide("slide"), rest}});
     }
     double x() const { return box_.T_parent_mesh().translation().x(); }
 

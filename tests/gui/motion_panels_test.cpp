@@ -12,6 +12,7 @@
 #include "easypbr/gui/live_view.h"
 #include "easypbr/io/camera_path_io.h"
 #include "easypbr/io/image_io.h"
+#include "scene/slide.h"
 
 namespace easypbr::gui {
 namespace {
@@ -280,16 +281,7 @@ TEST_F(MotionPanels, WhatCannotBeRecordedIsTold) {
 TEST_F(MotionPanels, AnimationsPlayPauseAndScrub) {
     AnimationNode node;
     node.mesh = session_.scene().get("ball");
-    Animation slide;
-    slide.name = "slide";
-    slide.duration_s = 4;
-    AnimationChannel channel;
-    channel.times = {0, 4};
-    channel.values = ArrayXf::Dense{{0, 0, 0}, {2, 0, 0}};
-    slide.channels = {channel};
-    Animation other = slide;
-    other.name = "other";
-    player_.add("ball", Animations({{node}, {}, {slide, other}}));
+    player_.add("ball", Animations({{node}, {}, {slide("slide"), slide("other")}}));
     clock_.set_fixed_step(0.5);
     clock_.on_tick = [this] { player_.update(); };
     const auto x = [&] { return session_.scene().get("ball").T_parent_mesh().translation().x(); };
