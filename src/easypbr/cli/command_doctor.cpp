@@ -53,8 +53,8 @@ void print_context(const gl::ContextInfo& info) {
     print("vendor", info.vendor);
     print("renderer", info.renderer + (info.software ? " (software: draws on the CPU)" : ""));
     print("OpenGL", info.version);
-    print("limits", fmt::format("textures up to {0}x{0}, pictures up to {1}x{1}", info.max_texture_size,
-                                std::min(info.max_texture_size, info.max_viewport)));
+    print("limits", fmt::format("textures up to {0}x{0}, pictures in one piece up to {1}x{1}",
+                                info.max_texture_size, std::min(info.max_texture_size, info.max_viewport)));
 }
 
 int run(const DoctorOptions&) {
