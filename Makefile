@@ -4,7 +4,7 @@ BUILD := build
 ROOMS := core|scene|io|gl|gpu|render|app|viewer|cli
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 
-.PHONY: demo test build setup bench check-long docs format lint clean
+.PHONY: demo test build setup setup-tests bench check-long docs format lint clean
 
 build: setup
 	@echo "build, $$(date -u +%T)"
@@ -15,10 +15,13 @@ build: setup
 setup:
 	@scripts/setup.sh
 
+setup-tests: setup
+	@scripts/setup.sh tests
+
 demo: build
 	$(BUILD)/easypbr demo -o demo.png
 
-test: build
+test: setup-tests build
 	@scripts/oracle.sh
 	python3 scripts/check_includes.py
 	scripts/test.sh
@@ -26,10 +29,10 @@ test: build
 bench: build
 	scripts/bench.sh
 
-check-long: build
+check-long: setup-tests build
 	scripts/check_long.sh
 
-docs: build
+docs: setup-tests build
 	scripts/docs.sh
 
 format:

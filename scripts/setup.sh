@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Installs what the build needs and this machine lacks: Debian packages (as root or with sudo) and .venv.
-# usage: setup.sh
+# Installs what the build needs and this machine lacks: Debian packages (as root or with sudo) and .venv. With `tests` also
+# what only tests, documentation and examples need (PyTorch and Ray are large). usage: setup.sh [tests]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -10,11 +10,15 @@ packages=(
   libepoxy-dev libegl1 libegl-mesa0 libopengl0 libgl1-mesa-dri
   libspng-dev libturbojpeg0-dev libtinyexr-dev zlib1g-dev libmeshoptimizer-dev libnanoflann-dev libassimp-dev libyaml-cpp-dev
   libstb-dev fonts-dejavu-core libglfw3-dev libimgui-dev
-  libavcodec-dev libavformat-dev libavutil-dev libswscale-dev ffmpeg
-  xvfb openbox xdotool wmctrl xclip
-  libgtest-dev python3-dev python3-venv python3-torch
+  libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
+  libgtest-dev python3-dev python3-venv
   libembree-dev
 )
+requirements=(scripts/requirements.txt)
+if [ "${1:-}" = tests ]; then
+  packages+=(ffmpeg xvfb openbox xdotool wmctrl xclip python3-torch)
+  requirements+=(scripts/requirements-test.txt)
+fi
 missing=()
 for package in "${packages[@]}"; do
   [ "$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null)" = installed ] || missing+=("$package")
@@ -33,10 +37,11 @@ if [ ${#missing[@]} -gt 0 ]; then
 fi
 
 # Debian's Python with its own packages in sight, so that its torch can be used; that torch needs numpy below 2.
-stamp=.venv/requirements
-if ! cmp -s scripts/requirements.txt "$stamp" 2>/dev/null; then
-  echo "making .venv"
+for file in "${requirements[@]}"; do
+  stamp=.venv/$(basename "$file" .txt)
+  cmp -s "$file" "$stamp" && continue
+  echo "installing the Python packages of $file into .venv"
   [ -x .venv/bin/python ] || /usr/bin/python3 -m venv --system-site-packages .venv
-  .venv/bin/python -m pip install --quiet --disable-pip-version-check -r scripts/requirements.txt
-  cp scripts/requirements.txt "$stamp"
-fi
+  .venv/bin/python -m pip install --quiet --disable-pip-version-check -r scripts/requirements.txt -r "$file"
+  cp "$file" "$stamp"
+done

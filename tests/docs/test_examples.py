@@ -32,7 +32,7 @@ def test_example_draws_its_picture(example, tmp_path):
     assert len(promised) == 1, "the first lines of an example say what it writes"
     names = [f"{promised[0][:-1]}{n}.png" for n in range(4)] if promised[0].endswith("_N") else [f"{promised[0]}.png"]
     if re.search("^import igl$", example.read_text(), re.MULTILINE):
-        pytest.importorskip("igl", reason="libigl is not installed: scripts/setup.sh does")
+        pytest.importorskip("igl", reason="libigl is not installed: `scripts/setup.sh tests` does")
     code = SMALL.format(size=(96, 72))
     done = subprocess.run([sys.executable, "-c", code, example], cwd=tmp_path, capture_output=True, text=True,
                           timeout=300)

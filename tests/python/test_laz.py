@@ -9,7 +9,7 @@ import pytest
 import easypbr
 from easypbr import Mesh
 
-lazrs = pytest.importorskip("lazrs", reason="lazrs is not installed: scripts/setup.sh does")
+lazrs = pytest.importorskip("lazrs", reason="lazrs is not installed: `scripts/setup.sh tests` does")
 
 POINT_FORMAT, RECORD = 2, np.dtype([("xyz", "<i4", 3), ("intensity", "<u2"), ("returns", "u1"), ("label", "u1"),
                                     ("angle", "i1"), ("user", "u1"), ("source", "<u2"), ("rgb", "<u2", 3)])

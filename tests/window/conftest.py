@@ -14,7 +14,7 @@ from display import Display, missing_tools  # noqa: E402
 @pytest.fixture(scope="session")
 def display(tmp_path_factory):
     missing = missing_tools()
-    assert not missing, f"not installed: {missing} (scripts/setup.sh installs them)"
+    assert not missing, f"not installed: {missing} (`scripts/setup.sh tests` installs them)"
     display = Display(tmp_path_factory.mktemp("display"))
     os.environ["DISPLAY"] = display.name
     yield display
