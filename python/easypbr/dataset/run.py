@@ -76,11 +76,22 @@ def _check_engine(engine: str, address: str | None, workers: int | None, threads
 
 
 def _make_here(spec, folder, missing, progress) -> set[str]:
+    """Each frame is written while the next one is drawn: compressing pictures keeps a single core busy."""
     maker = FrameMaker(spec)
     writer = FolderWriter(spec, folder, maker.classes)
-    for index in missing:
-        writer.write_frame(maker.make(index))
-        progress.add()
+
+    def finish(frames) -> None:
+        for frame in frames:
+            frame.result()
+            progress.add()
+
+    with concurrent.futures.ThreadPoolExecutor(1) as pool:
+        written: list[concurrent.futures.Future] = []
+        for index in missing:
+            frame = maker.make(index)
+            finish(written)
+            written = [pool.submit(writer.write_frame, frame)]
+        finish(written)
     return set(maker.skipped)
 
 

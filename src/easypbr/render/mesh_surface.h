@@ -22,8 +22,6 @@ class MeshSurface {
     /// albedo, normal, depth, element.
     SurfacePixel at(uint32_t face, double ndc_x, double ndc_y) const;
 
-    bool mirrored() const { return mirrored_; }
-
   private:
     struct Hit;
     Hit intersect(const float* const (&corner)[3], double ndc_x, double ndc_y) const;

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "easypbr/core/parallel.h"
 #include "easypbr/gl/context.h"
 
 namespace easypbr::render {
@@ -100,7 +99,7 @@ std::vector<ShadowPass::Items> ShadowPass::draw_native(const ShadowView& view,
                                                        const std::vector<Items>& objects, Items clouds,
                                                        gl::Texture& maps, int layer) {
     const int size = maps.width();
-    visibility_.clear(Vec2i(size, size), {0, 0, size, size});
+    depths_.clear(Vec2i(size, size), no_shadow_depth);
     std::vector<Items> left;
     for (const Items& items : objects) {
         const MeshData& mesh = items.front().mesh();
@@ -111,17 +110,16 @@ std::vector<ShadowPass::Items> ShadowPass::draw_native(const ShadowView& view,
         const bool both_sides = !closed_.is_known(mesh),
                    mirrored = items.front().object->T_world_mesh.linear().determinant() < 0;
         if (!suits_native(items) ||
-            !visibility_.draw(mesh.V, mesh.F, 0, int(mesh.F.rows()), clip_from_mesh, 0, both_sides, mirrored))
+            !depths_.draw({mesh.V, mesh.F, 0, int(mesh.F.rows()), clip_from_mesh, both_sides, mirrored}))
             left.push_back(items);
     }
-    for (const DrawItem& item : clouds)
-        if (SplatShadows::suits_native(item)) splats_.draw_points_natively(view, item, visibility_);
-    depths_.resize(visibility_.pixels().size());
-    parallel_for(depths_.size(), 1 << 14, [&](size_t i) {
-        const uint64_t pixel = visibility_.pixels()[i];
-        depths_[i] = pixel == 0 ? no_shadow_depth : VisibilityBuffer::depth_of(pixel);
-    });
-    maps.upload(std::as_bytes(std::span(depths_)), 0, layer);
+    if (std::ranges::any_of(clouds, SplatShadows::suits_native)) {
+        points_.clear(Vec2i(size, size), {0, 0, size, size});
+        for (const DrawItem& item : clouds)
+            if (SplatShadows::suits_native(item)) splats_.draw_points_natively(view, item, points_);
+        depths_.add(points_);
+    }
+    maps.upload(std::as_bytes(depths_.bits()), 0, layer);
     return left;
 }
 

@@ -57,8 +57,8 @@ class ShadowPass {
     SplatShadows& splats_;
     ProgramVariants programs_{"shadow_depth.vert", "shadow_depth.frag"};
     bool native_ = true;
-    VisibilityBuffer visibility_;
-    std::vector<float> depths_;
+    DepthBuffer depths_;
+    VisibilityBuffer points_;
 };
 
 }  // namespace easypbr::render

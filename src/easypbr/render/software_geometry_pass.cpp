@@ -23,6 +23,18 @@ PixelRect with_margin(const PixelRect& r, Vec2i size) {
             std::min(size.y(), r.y + r.height + margin) - y0};
 }
 
+Mat4d clip_from(const Frame& frame, const DrawItem& item) {
+    return frame.clip_from_view * frame.camera.view() * item.object->T_world_mesh.matrix();
+}
+
+ScreenTriangles triangles_of(const DrawItem& item, const MeshKnowledge& known, const Mat4d& clip_from_mesh) {
+    const MeshData& mesh = item.mesh();
+    const bool both_sides = item.two_sided && (item.style.flat || !known.closed_outward);
+    const bool mirrored = item.object->T_world_mesh.linear().determinant() < 0;
+    return {mesh.V,     mesh.F,  item.part.first_face, item.part.face_count, clip_from_mesh.cast<float>(),
+            both_sides, mirrored};
+}
+
 }  // namespace
 
 /// An item and the numbers of its primitives.
@@ -70,16 +82,10 @@ bool SoftwareGeometryPass::add_meshes(const Frame& frame, const DrawList& list,
                                       std::vector<Surface>& surfaces) {
     uint32_t next_id = 0;
     for (const DrawItem& item : list.meshes) {
-        const MeshData& mesh = item.mesh();
-        const MeshKnowledge& known = knowledge_of(mesh);
-        const Mat4d clip_from_mesh =
-            frame.clip_from_view * frame.camera.view() * item.object->T_world_mesh.matrix();
-        const MeshSurface surface(item, known, clip_from_mesh);
-        const bool both_sides = item.two_sided && (item.style.flat || !known.closed_outward);
-        if (!visibility_.draw(mesh.V, mesh.F, item.part.first_face, item.part.face_count,
-                              clip_from_mesh.cast<float>(), next_id, both_sides, surface.mirrored()))
-            return false;
-        surfaces.push_back({next_id, &item, surface, std::nullopt});
+        const MeshKnowledge& known = knowledge_of(item.mesh());
+        const Mat4d clip_from_mesh = clip_from(frame, item);
+        if (!visibility_.draw(triangles_of(item, known, clip_from_mesh), next_id)) return false;
+        surfaces.push_back({next_id, &item, MeshSurface(item, known, clip_from_mesh), std::nullopt});
         next_id += uint32_t(item.part.face_count);
     }
     return true;
@@ -135,11 +141,20 @@ void SoftwareGeometryPass::draw_points_over(const Frame& frame, const DrawList& 
 bool SoftwareGeometryPass::cover(const Frame& frame, const DrawList& list, std::vector<uint8_t>& covered) {
     const auto shaped_by_alpha = [](const DrawItem& item) { return item.alpha != AlphaMode::opaque; };
     if (!list.surfels.empty() || list.has(shaped_by_alpha)) return false;
-    visibility_.clear(frame.size, {0, 0, frame.size.x(), frame.size.y()});
+    const PixelRect area{0, 0, frame.size.x(), frame.size.y()};
+    TriangleRaster raster;
+    raster.set_area(frame.size, area);
+    for (const DrawItem& item : list.meshes)
+        if (!render::cover(raster, triangles_of(item, knowledge_of(item.mesh()), clip_from(frame, item)),
+                           covered)) {
+            std::ranges::fill(covered, uint8_t(0));
+            return false;
+        }
+    if (list.points.empty()) return true;
+    visibility_.clear(frame.size, area);
     std::vector<Surface> surfaces;
-    if (!add_meshes(frame, list, surfaces)) return false;
     add_points(frame, list, surfaces);
-    for (size_t i = 0; i < covered.size(); ++i) covered[i] = visibility_.pixels()[i] != 0;
+    for (size_t i = 0; i < covered.size(); ++i) covered[i] |= visibility_.pixels()[i] != 0;
     return true;
 }
 

@@ -11,6 +11,7 @@
 #include "easypbr/core/math.h"
 #include "easypbr/render/frame.h"
 #include "easypbr/render/point_splats.h"
+#include "easypbr/render/triangle_raster.h"
 #include "easypbr/scene/array.h"
 
 namespace easypbr::render {
@@ -22,11 +23,9 @@ class VisibilityBuffer {
     /// Nothing is visible. `size` is that of the whole picture, `area` the part that is kept.
     void clear(Vec2i size, const PixelRect& area);
 
-    /// Draws triangles numbered from `first_id`. Faces whose winding is clockwise on the screen are left out
-    /// unless `both_sides`; `mirrored` swaps the two. Returns false, with nothing drawn, when a vertex is
-    /// before the near plane or so far outside of the picture that triangles would have to be clipped.
-    bool draw(const Array3f& V, const Array3i& F, int first_face, int face_count, const Mat4& clip_from_mesh,
-              uint32_t first_id, bool both_sides, bool mirrored);
+    /// Draws triangles numbered from `first_id`. Returns false, with nothing drawn, where TriangleRaster
+    /// does.
+    bool draw(const ScreenTriangles& triangles, uint32_t first_id);
 
     /// Draws points numbered from `first_id` as discs or squares that face the viewer; each covers at least
     /// the pixel that it lies in. Points before the near plane or outside of the picture are left out. Of
@@ -35,7 +34,7 @@ class VisibilityBuffer {
     void draw_points(const Array3f& V, const PointSplats& splats, uint32_t first_id,
                      const std::function<uint64_t(uint32_t id)>& content);
 
-    const PixelRect& area() const { return area_; }
+    const PixelRect& area() const { return raster_.area(); }
     /// Pixels of the area, row by row: 0 where there is nothing.
     std::span<const uint64_t> pixels() const { return {pixels_.data(), pixels_.size()}; }
 
@@ -47,21 +46,29 @@ class VisibilityBuffer {
     static float depth_of(uint64_t pixel) { return std::bit_cast<float>(uint32_t(pixel >> 32)); }
 
   private:
-    /// A vertex on the screen, x to the right and y downwards.
-    struct ScreenVertex {
-        int32_t x, y;  ///< 1/256 of a pixel
-        float depth;   ///< reversed, (0, 1]
-    };
-    void draw_triangle(const ScreenVertex& a, const ScreenVertex& b, const ScreenVertex& c, uint32_t id,
-                       const PixelRect& box);
-    template <class Integer>
-    void fill(const ScreenVertex& a, const ScreenVertex& b, const ScreenVertex& c, uint32_t id, int x0,
-              int x1, int y0, int y1);
-
-    Vec2i size_{0, 0};
-    PixelRect area_;
+    TriangleRaster raster_;
     std::vector<uint64_t> pixels_;  ///< depth in the upper, complement of the id in the lower half
-    std::vector<ScreenVertex> screen_;
 };
+
+/// The depth of what is nearest in each pixel, and no more: half the memory, and nothing to convert before it
+/// is uploaded.
+class DepthBuffer {
+  public:
+    /// Every pixel holds `nothing`, which is less than 0.
+    void clear(Vec2i size, float nothing);
+    /// See TriangleRaster.
+    bool draw(const ScreenTriangles& triangles);
+    /// Adds what another buffer of the same size and area holds.
+    void add(const VisibilityBuffer& other);
+    /// Row by row, reversed depths as floats' bits.
+    std::span<const int32_t> bits() const { return pixels_; }
+
+  private:
+    TriangleRaster raster_;
+    std::vector<int32_t> pixels_;  ///< floats' bits: those of positive ones are in the order of their values
+};
+
+/// Sets the pixels of the raster's area to 1 that triangles cover. See TriangleRaster.
+bool cover(TriangleRaster& raster, const ScreenTriangles& triangles, std::span<uint8_t> covered);
 
 }  // namespace easypbr::render
