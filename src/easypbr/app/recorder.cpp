@@ -71,13 +71,15 @@ void Recorder::start(const fs::path& path, const RecordingOptions& options) {
                           encoding_for_recording(path, options.deep)};
     recording->queue =
         std::make_unique<FrameQueue>(make_frame_writer(path, *recording->picture.size, options));
+    recording->ring = std::make_unique<PictureRing>(
+        session_, [to = recording.get()](Image drawn, int times) { to->take(std::move(drawn), times); });
     recording->step_before = clock_.fixed_step();
     clock_.set_fixed_step(1 / options.fps);
     recording_ = std::move(recording);
 }
 
 int Recorder::frame_count() const {
-    return recording_ ? recording_->queue->count() : 0;
+    return recording_ ? recording_->queue->count() + recording_->ring->count() : 0;
 }
 
 Recorder::Recording& Recorder::require_recording() {
@@ -85,8 +87,48 @@ Recorder::Recording& Recorder::require_recording() {
     return *recording_;
 }
 
-void Recorder::add_frame() {
-    add_frame(session_.render(require_recording().picture));
+void Recorder::Recording::take(Image picture, int times) {
+    if (watcher) watcher(picture);
+    for (int i = 1; i < times; ++i) queue->push(picture);
+    queue->push(std::move(picture));
+}
+
+void Recorder::Recording::finish() {
+    std::exception_ptr failure;
+    try {
+        ring->drain();
+    } catch (...) {
+        failure = std::current_exception();
+    }
+    try {
+        queue->finish();
+    } catch (...) {
+        if (!failure) failure = std::current_exception();
+    }
+    if (failure) std::rethrow_exception(failure);
+}
+
+void Recorder::add_guarded(const std::function<void()>& add) {
+    try {
+        add();
+    } catch (...) {
+        // What failed once is over; what finishing it reports would be the same again.
+        const std::exception_ptr failure = std::current_exception();
+        try {
+            end()->finish();
+        } catch (...) {
+        }
+        std::rethrow_exception(failure);
+    }
+}
+
+void Recorder::add_frame(int times) {
+    Recording& recording = require_recording();
+    if (times < 1) throw ArgumentError(fmt::format("add_frame: expected 1 time or more, got {}", times));
+    add_guarded([&] { recording.ring->make_room(); });
+    recording.ring->draw(recording.picture, times);
+    add_guarded([&] { recording.ring->take_read(); });
+    for (int i = 0; i < times; ++i) clock_.tick();
 }
 
 void Recorder::add_frame(Image picture) {
@@ -95,17 +137,10 @@ void Recorder::add_frame(Image picture) {
     if (picture.width() != size.x() || picture.height() != size.y())
         throw ArgumentError(fmt::format("{}: expected frames of {}x{}, got {}x{}", recording.path.string(),
                                         size.x(), size.y(), picture.width(), picture.height()));
-    try {
+    add_guarded([&] {
+        recording.ring->drain();
         recording.queue->push(picture.channels() == 4 ? std::move(picture) : with_channels(picture, 4));
-    } catch (...) {
-        // What failed once is over; the queue's own report would be the same again.
-        const std::exception_ptr failure = std::current_exception();
-        try {
-            end()->queue->finish();
-        } catch (...) {
-        }
-        std::rethrow_exception(failure);
-    }
+    });
     clock_.tick();
 }
 
@@ -117,7 +152,7 @@ std::unique_ptr<Recorder::Recording> Recorder::end() {
 int Recorder::stop() {
     if (!recording_) return 0;
     const std::unique_ptr<Recording> recording = end();
-    recording->queue->finish();
+    recording->finish();
     return recording->queue->count();
 }
 

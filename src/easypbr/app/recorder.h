@@ -7,14 +7,15 @@
 
 #include "easypbr/app/clock.h"
 #include "easypbr/app/output.h"
+#include "easypbr/app/picture_ring.h"
 #include "easypbr/app/recording_target.h"
 #include "easypbr/scene/camera_path.h"
 
 namespace easypbr::app {
 
-/// Frames are encoded and written by threads beside the drawing, in the order they were added, all of them:
-/// stop(), the recorder's end and an exception in between finish the file. While it records, the clock makes
-/// steps of 1 / fps.
+/// Frames are read back while the next ones are drawn, and encoded and written by threads beside it, in the
+/// order they were added, all of them: stop(), the recorder's end and an exception in between finish the
+/// file. While it records, the clock makes steps of 1 / fps.
 class Recorder {
   public:
     /// Both must outlive the recorder.
@@ -37,11 +38,17 @@ class Recorder {
     /// Frames added since start().
     int frame_count() const;
 
-    /// Draws the scene as it is as the next frame, and lets the clock make its step. Throws ArgumentError
-    /// when nothing is recorded; what writing an earlier frame threw, whereupon the recording ends.
-    void add_frame();
+    /// Draws the scene as it is as the next frame, or the next `times` frames, and lets the clock make as
+    /// many steps. Throws ArgumentError when nothing is recorded; what writing an earlier frame threw,
+    /// whereupon the recording ends.
+    void add_frame(int times = 1);
     /// A picture as the next frame: of the recording's size, u8 with 3 or 4 channels for a video.
     void add_frame(Image picture);
+
+    /// Calls `watcher` with every picture of the recording that is going on, once it has been read, before it
+    /// is handed on to be written.
+    using Watcher = std::function<void(const Image& picture)>;
+    void watch(Watcher watcher) { require_recording().watcher = std::move(watcher); }
 
     /// Waits until all frames are written and finishes the file. Returns how many there are; 0 when nothing
     /// was being recorded. Throws what writing threw.
@@ -61,10 +68,18 @@ class Recorder {
         std::filesystem::path path;
         PictureOptions picture;
         std::unique_ptr<FrameQueue> queue;
+        std::unique_ptr<PictureRing> ring;  ///< what is drawn, and not in the queue yet
+        Watcher watcher;
         std::optional<double> step_before;  ///< the clock's, before the recording
+
+        void take(Image picture, int times);
+        /// All that is drawn is written, and the file finished. Throws the first failure.
+        void finish();
     };
     Recording& require_recording();
     std::unique_ptr<Recording> end();
+    /// What `add` throws ends the recording.
+    void add_guarded(const std::function<void()>& add);
 
     Session& session_;
     Clock& clock_;

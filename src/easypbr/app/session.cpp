@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <chrono>
 #include <set>
 #include <utility>
 
+#include "easypbr/app/stopwatch.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
@@ -16,21 +16,6 @@
 
 namespace easypbr::app {
 namespace {
-
-/// Adds the time from construction to destruction to a total.
-class Stopwatch {
-  public:
-    explicit Stopwatch(double& seconds) : seconds_(seconds) {}
-    ~Stopwatch() {
-        seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    }
-    Stopwatch(const Stopwatch&) = delete;
-    Stopwatch& operator=(const Stopwatch&) = delete;
-
-  private:
-    double& seconds_;
-    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 void check_size(Vec2i size) {
     if (size.x() < 1 || size.y() < 1 || size.x() > max_image_side || size.y() > max_image_side)
@@ -197,19 +182,6 @@ void Session::warn_of_surfels(const SceneSnapshot& scene) {
     warned_of_surfels_ = lacking;
 }
 
-Image Session::render(const PictureOptions& options) {
-    draw_frame(options);
-    const gl::ContextScope scope(*context_);
-    const Stopwatch watch(timing_.read);
-    return read_annotated();
-}
-
-Image Session::read_annotated() {
-    Image picture = warp(tiled_.empty() ? renderer_->read_picture() : tiled_, lens_);
-    draw_annotation(annotation_, annotation_settings_, picture);
-    return picture;
-}
-
 TiledPicture Session::tiled(const Prepared& prepared) const {
     return {prepared.scene, prepared.resolved, prepared.options, settings_images_,
             tile_limits_.value_or(render::TileLimits::of(context_->info()))};
@@ -221,6 +193,13 @@ void Session::annotate(const Prepared& prepared) {
 }
 
 void Session::draw_frame(const PictureOptions& options) {
+    begin_frame(options);
+    const gl::ContextScope scope(*context_);
+    const Stopwatch watch(timing_.draw);
+    if (tiled_.empty()) renderer_->read_picture(1, 1);
+}
+
+void Session::begin_frame(const PictureOptions& options) {
     Prepared prepared = prepare(options);
     if (const auto begin = std::exchange(motion_begin_, std::nullopt))
         motion_ = std::make_shared<const Motion>(*begin, prepared.resolved.camera);
@@ -233,7 +212,6 @@ void Session::draw_frame(const PictureOptions& options) {
     tiled_ = {};
     if (const TiledPicture picture = tiled(prepared); picture.is_whole()) {
         renderer.draw(prepared.scene, prepared.resolved, prepared.options, settings_images_);
-        renderer.read_picture(1, 1);
     } else {
         tiled_ = picture.draw(renderer);
     }
@@ -269,7 +247,7 @@ Session::Refinement Session::refine(const PictureOptions& options, bool finish) 
         refined_.reset();
         tiled_ = {};
         // What is refined is shown as it is drawn: a window has no lens.
-        lens_ = {};
+        lens_ = std::make_shared<const LensMap>();
         lens_key_.clear();
         renderer.begin(prepared.scene, prepared.resolved, prepared.options, settings_images_);
         annotate(prepared);
@@ -326,12 +304,6 @@ gl::Context& Session::context() {
     return *context_;
 }
 
-Image Session::last_picture() {
-    if (!renderer_) throw ArgumentError("nothing has been drawn yet");
-    const gl::ContextScope scope(*context_);
-    return read_annotated();
-}
-
 std::vector<std::pair<std::string, double>> Session::measure_passes(const PictureOptions& options) {
     renderer().measure_passes(true);
     draw_frame(options);
@@ -361,7 +333,7 @@ std::map<std::string, Image> Session::render_layers(const std::vector<std::strin
     }
     latch_from(prepared);
     std::map<std::string, Image> images;
-    for (size_t i = 0; i < names.size(); ++i) images[names[i]] = pick_nearest(drawn[i], lens_);
+    for (size_t i = 0; i < names.size(); ++i) images[names[i]] = pick_nearest(drawn[i], *lens_);
     return images;
 }
 
@@ -377,13 +349,13 @@ void Session::apply_lens(Prepared& prepared) {
         }
     }
     if (key != lens_key_) {
-        lens_ = lens_map(camera, prepared.options.size);
+        lens_ = std::make_shared<const LensMap>(lens_map(camera, prepared.options.size));
         lens_key_ = key;
     }
     if (!camera.is_warped()) return;
-    prepared.options.size = lens_.drawn_size;
+    prepared.options.size = lens_->drawn_size;
     prepared.resolved.camera.distortion.reset();
-    prepared.resolved.camera.intrinsics = lens_.drawn.intrinsics;
+    prepared.resolved.camera.intrinsics = lens_->drawn.intrinsics;
 }
 
 render::SurfaceFrame Session::draw_surfaces(const PictureOptions& options, bool picture,
@@ -405,11 +377,6 @@ render::SurfaceFrame Session::draw_surfaces(const PictureOptions& options, bool 
     annotate(prepared);
     if (!moment) latch_from(prepared);
     return renderer.read_surfaces();
-}
-
-Image Session::drawn_picture() {
-    const gl::ContextScope scope(*context_);
-    return read_annotated();
 }
 
 Image Session::drawn_layer(render::Layer layer) {

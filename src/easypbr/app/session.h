@@ -15,6 +15,7 @@
 #include "easypbr/app/view_point.h"
 #include "easypbr/core/image.h"
 #include "easypbr/gl/context.h"
+#include "easypbr/gl/readback.h"
 #include "easypbr/render/renderer.h"
 #include "easypbr/scene/motion.h"
 #include "easypbr/scene/resolve.h"
@@ -65,6 +66,21 @@ class Session {
     /// has more than max_picture_pixels), FileError (images that the settings name), ContextError.
     Image render(const PictureOptions& options = {});
 
+    /// A picture on its way to memory.
+    struct Pending {
+        Image picture;        ///< as it is drawn; filled by `pixels`, where that is pending
+        gl::Readback pixels;  ///< may be handed to the next render_later(), which uses its memory
+        std::shared_ptr<const LensMap> lens;
+        Annotation annotation;
+        AnnotationSettings annotation_settings;
+    };
+    /// render() that waits for nothing: finish() has the picture, bit for bit, whatever is drawn meanwhile.
+    /// What is drawn in tiles is read at once. Throws as render() does.
+    Pending render_later(const PictureOptions& options = {}, gl::Readback memory = {});
+    /// Whether finish() would not have to wait for the driver.
+    bool is_read(const Pending& pending);
+    Image finish(Pending& pending);
+
     /// The same scene, camera and size in exact values through the pixels' centres (no anti-aliasing).
     std::map<std::string, Image> render_layers(const std::vector<std::string>& names,
                                                std::optional<Vec2i> size = std::nullopt);
@@ -75,7 +91,7 @@ class Session {
     render::SurfaceFrame draw_surfaces(const PictureOptions& options, bool picture,
                                        const Moment* moment = nullptr);
     /// From the pixels of the picture drawn last to what was drawn.
-    const LensMap& lens() const { return lens_; }
+    const LensMap& lens() const { return *lens_; }
     /// The picture of the last draw_surfaces().
     Image drawn_picture();
     /// A layer of the last draw_surfaces(), as it was drawn.
@@ -94,7 +110,8 @@ class Session {
     /// With motion_blur.enabled a picture of several samples shows how things moved since the picture before.
     /// After this the next one shows none: nothing is known of before.
     void forget_motion() { motion_.reset(); }
-    /// The next picture's motion begins where things are now, as if they had been drawn from where its camera is.
+    /// The next picture's motion begins where things are now, as if they had been drawn from where its camera
+    /// is.
     void begin_motion() { motion_begin_ = scene_.snapshot(); }
 
     /// Names of what is visible; the layer "id" holds 1 + the place in this list.
@@ -200,6 +217,8 @@ class Session {
     const std::string& shader_text(const std::string& path);
     /// The renderer's picture with its annotation.
     Image read_annotated();
+    /// draw_frame(), but that the driver may still be busy with it.
+    void begin_frame(const PictureOptions& options);
     TiledPicture tiled(const Prepared& prepared) const;
     /// What the last picture is annotated with.
     void annotate(const Prepared& prepared);
@@ -231,7 +250,7 @@ class Session {
 
     /// Replaces a camera that is warped, and the size, by what has to be drawn.
     void apply_lens(Prepared& prepared);
-    LensMap lens_;
+    std::shared_ptr<const LensMap> lens_ = std::make_shared<const LensMap>();
     std::vector<double> lens_key_;
 
     Annotation annotation_;  ///< of the picture that was drawn last

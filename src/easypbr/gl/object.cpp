@@ -7,7 +7,8 @@
 namespace easypbr::gl {
 namespace {
 
-void delete_name(ObjectKind kind, GLuint id) {
+void delete_name(ObjectKind kind, uintptr_t handle) {
+    const GLuint id = GLuint(handle);
     switch (kind) {
         case ObjectKind::buffer:
             glDeleteBuffers(1, &id);
@@ -27,10 +28,13 @@ void delete_name(ObjectKind kind, GLuint id) {
         case ObjectKind::query:
             glDeleteQueries(1, &id);
             break;
+        case ObjectKind::fence:
+            glDeleteSync(reinterpret_cast<GLsync>(handle));
+            break;
     }
 }
 
-GLuint create_name(ObjectKind kind, GLenum target) {
+uintptr_t create_name(ObjectKind kind, GLenum target) {
     GLuint id = 0;
     switch (kind) {
         case ObjectKind::buffer:
@@ -51,19 +55,21 @@ GLuint create_name(ObjectKind kind, GLenum target) {
         case ObjectKind::query:
             glCreateQueries(target, 1, &id);
             break;
+        case ObjectKind::fence:
+            return reinterpret_cast<uintptr_t>(glFenceSync(GL_SYNC_GPU_COMMANDS_COMPLETE, 0));
     }
     return id;
 }
 
 }  // namespace
 
-void DeletionQueue::push(ObjectKind kind, uint32_t id) {
+void DeletionQueue::push(ObjectKind kind, uintptr_t id) {
     std::lock_guard lock(mutex_);
     if (!closed_) waiting_.emplace_back(kind, id);
 }
 
 void DeletionQueue::flush() {
-    std::vector<std::pair<ObjectKind, uint32_t>> taken;
+    std::vector<std::pair<ObjectKind, uintptr_t>> taken;
     {
         std::lock_guard lock(mutex_);
         taken.swap(waiting_);

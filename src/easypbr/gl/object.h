@@ -9,12 +9,13 @@
 
 namespace easypbr::gl {
 
-enum class ObjectKind { buffer, texture, framebuffer, vertex_array, program, query };
+/// `fence` is a point in the stream of commands; its handle is a pointer.
+enum class ObjectKind { buffer, texture, framebuffer, vertex_array, program, query, fence };
 
 /// Names of objects whose handles died elsewhere; emptied whenever the context is current.
 class DeletionQueue {
   public:
-    void push(ObjectKind kind, uint32_t id);
+    void push(ObjectKind kind, uintptr_t id);
     /// Deletes all waiting names; the context must be current.
     void flush();
     /// From now on names are forgotten: the context is gone.
@@ -23,7 +24,7 @@ class DeletionQueue {
   private:
     std::mutex mutex_;
     bool closed_ = false;
-    std::vector<std::pair<ObjectKind, uint32_t>> waiting_;
+    std::vector<std::pair<ObjectKind, uintptr_t>> waiting_;
 };
 
 /// Owns one OpenGL name. Empty by default and after a move. May be destroyed on any thread.
@@ -42,13 +43,15 @@ class Object {
         return *this;
     }
 
-    uint32_t id() const { return id_; }
+    uint32_t id() const { return uint32_t(id_); }
+    /// A fence's.
+    void* pointer() const { return reinterpret_cast<void*>(id_); }
     explicit operator bool() const { return id_ != 0; }
     void reset();
 
   private:
     std::shared_ptr<DeletionQueue> queue_;
-    uint32_t id_ = 0;
+    uintptr_t id_ = 0;
     ObjectKind kind_ = ObjectKind::buffer;
 };
 

@@ -223,15 +223,25 @@ void Framebuffer::allow_depth_writes() {
     glDepthMask(GL_TRUE);
 }
 
-void Framebuffer::read(unsigned index, Format format, int x, int y, int width, int height,
-                       std::span<std::byte> pixels) const {
+void Framebuffer::read_to(unsigned index, Format format, int x, int y, int width, int height,
+                          void* to) const {
     const FormatInfo f = info(format);
-    if (pixels.size() < size_t(width) * height * f.bytes)
-        throw ArgumentError("framebuffer read: the buffer is too small");
     glBindFramebuffer(GL_READ_FRAMEBUFFER, object_.id());
     glReadBuffer(GL_COLOR_ATTACHMENT0 + index);
     glPixelStorei(GL_PACK_ALIGNMENT, 1);
-    glReadPixels(x, y, width, height, f.layout, f.type, pixels.data());
+    glReadPixels(x, y, width, height, f.layout, f.type, to);
+}
+
+void Framebuffer::read(unsigned index, Format format, int x, int y, int width, int height,
+                       std::span<std::byte> pixels) const {
+    if (pixels.size() < size_t(width) * height * pixel_bytes(format))
+        throw ArgumentError("framebuffer read: the buffer is too small");
+    read_to(index, format, x, y, width, height, pixels.data());
+}
+
+void Framebuffer::read_to_bound_buffer(unsigned index, Format format, int x, int y, int width,
+                                       int height) const {
+    read_to(index, format, x, y, width, height, nullptr);
 }
 
 void copy_layers(const Texture& from, const Texture& to, int layers) {

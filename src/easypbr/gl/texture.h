@@ -96,6 +96,8 @@ class Framebuffer {
     /// width * height * pixel_bytes(format).
     void read(unsigned index, Format format, int x, int y, int width, int height,
               std::span<std::byte> pixels) const;
+    /// The same into the buffer that is bound to GL_PIXEL_PACK_BUFFER, which is large enough: for Readback.
+    void read_to_bound_buffer(unsigned index, Format format, int x, int y, int width, int height) const;
 
     int width() const { return width_; }
     int height() const { return height_; }
@@ -103,6 +105,7 @@ class Framebuffer {
 
   private:
     void require_complete() const;
+    void read_to(unsigned index, Format format, int x, int y, int width, int height, void* to) const;
 
     Object object_;
     int width_ = 0, height_ = 0;

@@ -44,12 +44,12 @@ std::string LiveRecording::picture(const RecordingForm& form, const Screen& scre
     return recorder_.record(form.picture, {size_of(form, {0, 0}, session_.settings()), {}}).string();
 }
 
-void LiveRecording::begin(const RecordingForm& form, Vec2i window) {
+void LiveRecording::begin(const RecordingForm& form, Vec2i window, std::optional<int> samples) {
     if (running_) throw ArgumentError("a recording is going on: stop it first");
     const Vec2i size = size_of(form, window, session_.settings());
     {
         const WithoutBackground without(session_.settings(), form.transparent && !form.panels);
-        recorder_.start(form.video, {.fps = form.fps, .size = size});
+        recorder_.start(form.video, {.fps = form.fps, .size = size, .samples = samples});
     }
     running_.emplace();
     running_->form = form;
@@ -57,33 +57,32 @@ void LiveRecording::begin(const RecordingForm& form, Vec2i window) {
 }
 
 void LiveRecording::start(const RecordingForm& form, Vec2i window) {
-    begin(form, window);
+    begin(form, window, 1);
 }
 
 void LiveRecording::start_path(const RecordingForm& form, Vec2i window, const CameraPath& path) {
     std::vector<double> times = path.frame_times(form.fps);
     const Camera like = session_.camera();
-    begin(form, window);
+    begin(form, window, std::nullopt);
+    recorder_.watch([this](const Image& frame) { frame_ = frame; });
     running_->path = path;
     running_->times = std::move(times);
     running_->like = like;
     running_->camera_before = session_.settings().camera;
 }
 
-Image LiveRecording::draw(const RecordingForm& form, Vec2i size, std::optional<int> samples) {
-    const WithoutBackground without(session_.settings(), form.transparent);
-    return session_.render({size, samples, app::encoding_for_recording(form.video, false)});
+void LiveRecording::draw_frame(int times) {
+    const WithoutBackground without(session_.settings(), running_->form.transparent);
+    recorder_.add_frame(times);
 }
 
 void LiveRecording::add_path_frame(const Screen& finished) {
     const double time = running_->times[size_t(running_->frames)];
     session_.set_camera(running_->path->camera(time, running_->like));
-    if (running_->form.panels) {
+    if (running_->form.panels)
         recorder_.add_frame(finished());
-    } else {
-        frame_ = draw(running_->form, running_->size, std::nullopt);
-        recorder_.add_frame(frame_);
-    }
+    else
+        draw_frame(1);
     ++running_->frames;
 }
 
@@ -92,19 +91,18 @@ void LiveRecording::add_live_frames(const Screen& shown) {
         const double passed = std::chrono::duration<double>(Steady::now() - running_->begun).count();
         return int(passed * running_->form.fps) + 1 - running_->frames;
     };
-    if (due() <= 0) return;
-    const Image frame = running_->form.panels ? shown() : draw(running_->form, running_->size, 1);
     int count = due();
+    if (count <= 0) return;
     const int most = int(longest_pause * running_->form.fps) + 1;
     if (count > most) {
         running_->begun += std::chrono::duration_cast<Steady::duration>(
             std::chrono::duration<double>((count - most) / running_->form.fps));
         count = most;
     }
-    for (int i = 0; i < count; ++i) {
-        recorder_.add_frame(frame);
-        ++running_->frames;
-    }
+    running_->frames += count;
+    if (!running_->form.panels) return draw_frame(count);
+    const Image frame = shown();
+    for (int i = 0; i < count; ++i) recorder_.add_frame(frame);
 }
 
 void LiveRecording::advance(const Screen& finished, const Screen& shown) {

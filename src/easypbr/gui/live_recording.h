@@ -47,7 +47,7 @@ class LiveRecording {
     /// Of a path; 0 of what has no end.
     int total() const { return running_ ? int(running_->times.size()) : 0; }
     double seconds_left() const;
-    /// The frame recorded last of a path without panels, to be shown meanwhile.
+    /// The newest frame of a path without panels that has been read back, to be shown meanwhile.
     const Image& frame() const { return frame_; }
 
   private:
@@ -62,10 +62,10 @@ class LiveRecording {
         int frames = 0;
         Steady::time_point begun = Steady::now();
     };
-    void begin(const RecordingForm& form, Vec2i window);
+    void begin(const RecordingForm& form, Vec2i window, std::optional<int> samples);
     void add_path_frame(const Screen& finished);
     void add_live_frames(const Screen& shown);
-    Image draw(const RecordingForm& form, Vec2i size, std::optional<int> samples);
+    void draw_frame(int times);
     void end();
 
     app::Session& session_;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "easypbr/core/image.h"
+#include "easypbr/gl/readback.h"
 #include "easypbr/render/ambient_occlusion_pass.h"
 #include "easypbr/render/background_pass.h"
 #include "easypbr/render/bloom_pass.h"
@@ -52,9 +53,9 @@ struct DrawOptions {
     int samples = 1;
     Encoding encoding = Encoding::srgb8;
     Vec2i picture_size{0, 0};  ///< of a tile: of the whole picture that the camera sees; else 0
-    Vec2i origin{0, 0};        ///< of a tile: its first pixel in the picture, multiples of tile_grid (tiles.h)
+    Vec2i origin{0, 0};  ///< of a tile: its first pixel in the picture, multiples of tile_grid (tiles.h)
     double reach = unlimited_reach;  ///< of a tile: see Frame
-    bool ids = false;       ///< fill the id target too
+    bool ids = false;                ///< fill the id target too
     bool layers = false;    ///< read_layer() will be called: blended surfaces stand in it where they are half
                             ///< opaque or more, and there is no picture
     bool surfaces = false;  ///< read_surfaces() and read_layer() will be called: where the picture's last
@@ -103,6 +104,9 @@ class Renderer {
     /// The first `width` x `height` pixels only: forces the picture to be finished.
     Image read_picture(int width, int height) const { return read_picture({0, 0, width, height}); }
     Image read_picture(const PixelRect& area) const;
+    /// Begins to read the picture back, as it is now: an image of its size and kind, whose bytes
+    /// readback.finish() fills.
+    Image begin_reading(gl::Readback& readback) const;
     Image read_layer(Layer layer) const;
     /// What the pixels' centres see; of a picture drawn with `surfaces`.
     SurfaceFrame read_surfaces() const;

@@ -23,6 +23,12 @@ std::vector<T> read(const gl::Framebuffer& framebuffer, unsigned index, gl::Form
     return values;
 }
 
+PixelType pixel_type(gl::Format format) {
+    return format == gl::Format::rgba8    ? PixelType::u8
+           : format == gl::Format::rgba16 ? PixelType::u16
+                                          : PixelType::f32;
+}
+
 }  // namespace
 
 const std::vector<std::string>& layer_names() {
@@ -46,13 +52,15 @@ Image Renderer::read_picture() const {
 }
 
 Image Renderer::read_picture(const PixelRect& area) const {
-    const gl::Format format = output_.format();
-    const PixelType type = format == gl::Format::rgba8    ? PixelType::u8
-                           : format == gl::Format::rgba16 ? PixelType::u16
-                                                          : PixelType::f32;
-    Image image(area.width, area.height, 4, type);
-    output_.picture().read(0, format, area.x, area.y, area.width, area.height, image.bytes());
+    Image image(area.width, area.height, 4, pixel_type(output_.format()));
+    output_.picture().read(0, output_.format(), area.x, area.y, area.width, area.height, image.bytes());
     return image;
+}
+
+Image Renderer::begin_reading(gl::Readback& readback) const {
+    const gl::Framebuffer& from = output_.picture();
+    readback.begin(from, 0, output_.format(), 0, 0, from.width(), from.height());
+    return {from.width(), from.height(), 4, pixel_type(output_.format())};
 }
 
 Image Renderer::read_layer(Layer layer) const {

@@ -1,0 +1,43 @@
+#include "easypbr/app/picture_ring.h"
+
+#include <numeric>
+#include <utility>
+
+namespace easypbr::app {
+
+void PictureRing::make_room() {
+    while (slots_.size() >= most_pending) take_oldest();
+}
+
+void PictureRing::draw(const PictureOptions& options, int times) {
+    make_room();
+    gl::Readback memory;
+    if (!spare_.empty()) {
+        memory = std::move(spare_.back());
+        spare_.pop_back();
+    }
+    slots_.push_back({session_.render_later(options, std::move(memory)), times});
+}
+
+void PictureRing::take_read() {
+    while (!slots_.empty() && session_.is_read(slots_.front().pending)) take_oldest();
+}
+
+void PictureRing::drain() {
+    while (!slots_.empty()) take_oldest();
+}
+
+void PictureRing::take_oldest() {
+    Slot slot = std::move(slots_.front());
+    slots_.pop_front();
+    Image picture = session_.finish(slot.pending);
+    spare_.push_back(std::move(slot.pending.pixels));
+    take_(std::move(picture), slot.times);
+}
+
+int PictureRing::count() const {
+    return std::accumulate(slots_.begin(), slots_.end(), 0,
+                           [](int sum, const Slot& slot) { return sum + slot.times; });
+}
+
+}  // namespace easypbr::app

@@ -1,0 +1,23 @@
+// Stopwatch: what a scope takes.
+#pragma once
+
+#include <chrono>
+
+namespace easypbr::app {
+
+/// Adds the time from construction to destruction to a total, in seconds.
+class Stopwatch {
+  public:
+    explicit Stopwatch(double& seconds) : seconds_(seconds) {}
+    ~Stopwatch() {
+        seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    }
+    Stopwatch(const Stopwatch&) = delete;
+    Stopwatch& operator=(const Stopwatch&) = delete;
+
+  private:
+    double& seconds_;
+    std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+}  // namespace easypbr::app
