@@ -44,6 +44,6 @@ void main() {
     v_normal = normalize(dot(n, u_world_from_view * to_viewer) < 0.0 ? -n : n);
 #endif
 #ifdef OBJECT_ID
-    v_element = uint(gl_VertexID + 1);
+    v_element = uint(gl_VertexID + 1) | 0x80000000u;  // a point: render/gbuffer.h
 #endif
 }

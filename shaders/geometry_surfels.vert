@@ -85,6 +85,6 @@ void main() {
     v_color *= srgb_decode(a_color.rgb);
 #endif
 #ifdef OBJECT_ID
-    v_element = uint(gl_InstanceID + 1);
+    v_element = uint(gl_InstanceID + 1) | 0x80000000u;  // a point: render/gbuffer.h
 #endif
 }

@@ -334,8 +334,8 @@ class Viewer(WindowCallbacks):
         self._handle.open(path)
 
     def pick(self, x: float, y: float, size=None) -> "_easypbr.Pick | None":
-        """What lies under a pixel of a picture of `size`, counted from the top left corner: object, part, face or point,
-        position. None where there is no surface."""
+        """What lies under a pixel of a picture of `size`, counted from the top left corner: object, part, face or vertex,
+        position. None where there is no surface; lines are none."""
         return self._handle.pick(x, y, size)
 
     def screenshot(self, size=None, scale: float = 1) -> np.ndarray:

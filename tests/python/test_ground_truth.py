@@ -182,3 +182,20 @@ def test_parts_and_bad_input(view):
     view.camera = Camera.from_opencv(K, T_WORLD_CAM, SIZE, [-3.0, 0, 0, 0])
     with pytest.raises(ArgumentError, match="folds"):
         view.render(samples=1)
+
+
+def test_elements_of_points_on_top_of_faces():
+    mesh = shapes.plane(2)
+    mesh.style.show_points = True
+    mesh.style.point_size = 20
+    scene = Scene()
+    scene.show(mesh, "plane")
+    view = Viewer((90, 90), scene=scene)
+    data = view.render_layers(["face_id", "barycentrics", "depth"])
+    seen, on_face = data["depth"] > 0, (data["barycentrics"] != 0).any(-1)
+    assert ((data["face_id"] >= 0) == seen).all()
+    assert set(np.unique(data["face_id"][on_face])) == {0, 1}
+    assert set(np.unique(data["face_id"][seen & ~on_face])) == {0, 1, 2, 3}
+    for y, x in [*np.argwhere(on_face)[::500], *np.argwhere(seen & ~on_face)[::50]]:
+        pick = view.pick(x + 0.5, y + 0.5, size=(90, 90))
+        assert (pick.element, pick.is_face) == (data["face_id"][y, x], on_face[y, x])

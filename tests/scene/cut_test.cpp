@@ -36,11 +36,15 @@ double area(const MeshData& mesh) {
 }
 
 TEST(Cut, LeavesWhatIsOnThePositiveSide) {
-    Array1i source;
-    const MeshData rest = cut(square(), {keep_positive_x}, false, source);
+    Array1i source, vertices;
+    const MeshData rest = cut(square(), {keep_positive_x}, false, source, vertices);
     EXPECT_NEAR(area(rest), 6, 1e-6);
     EXPECT_GE(rest.V.col(0).minCoeff(), 0);
     EXPECT_EQ(source.rows(), rest.F.rows());
+    // The square's corners are at x = -1 and 3: where it is cut at 0 those at the left have the larger part.
+    ASSERT_EQ(vertices.rows(), rest.V.rows());
+    for (Eigen::Index i = 0; i < rest.V.rows(); ++i)
+        EXPECT_EQ(square().V(vertices(i), 0), rest.V(i, 0) < 1 ? -1 : 3) << i;
     // Colour grows linearly from x = -1 to 3.
     for (Eigen::Index i = 0; i < rest.V.rows(); ++i) EXPECT_NEAR(rest.C(i, 0), (rest.V(i, 0) + 1) / 4, 1e-6);
     // The winding stays.
@@ -52,10 +56,10 @@ TEST(Cut, LeavesWhatIsOnThePositiveSide) {
 
 TEST(Cut, ByABoxLeavesItsArea) {
     std::vector<Eigen::Vector4d> planes = {keep_positive_x, {-1, 0, 0, 1}, {0, 1, 0, 0.5}, {0, -1, 0, 0.25}};
-    Array1i source;
-    EXPECT_NEAR(area(cut(square(), planes, false, source)), 0.75, 1e-6);
+    Array1i source, vertices;
+    EXPECT_NEAR(area(cut(square(), planes, false, source, vertices)), 0.75, 1e-6);
     planes.emplace_back(0, 0, 1, -1);
-    const MeshData nothing = cut(square(), planes, false, source);
+    const MeshData nothing = cut(square(), planes, false, source, vertices);
     EXPECT_TRUE(nothing.F.empty());
     EXPECT_NO_THROW(validate(nothing));
 }
@@ -63,11 +67,11 @@ TEST(Cut, ByABoxLeavesItsArea) {
 TEST(Cut, KeepsWholePoints) {
     MeshData points = square();
     points.F = {};
-    Array1i source;
-    const MeshData rest = cut(points, {keep_positive_x}, true, source);
+    Array1i source, vertices;
+    const MeshData rest = cut(points, {keep_positive_x}, true, source, vertices);
     ASSERT_EQ(rest.V.rows(), 2);
-    EXPECT_EQ(source(0), 1);
-    EXPECT_EQ(source(1), 2);
+    EXPECT_EQ(vertices(0), 1);
+    EXPECT_EQ(vertices(1), 2);
 }
 
 TEST(Cut, CutsEdges) {
@@ -76,8 +80,8 @@ TEST(Cut, CutsEdges) {
     Array2i::Dense E(2, 2);
     E << 0, 1, 0, 3;
     line.E = Array2i(E);
-    Array1i source;
-    const MeshData rest = cut(line, {keep_positive_x}, false, source);
+    Array1i source, vertices;
+    const MeshData rest = cut(line, {keep_positive_x}, false, source, vertices);
     ASSERT_EQ(rest.E.rows(), 1);
     EXPECT_NEAR((rest.V.row(rest.E(0, 0)) - rest.V.row(rest.E(0, 1))).norm(), 3, 1e-6);
 }
@@ -86,8 +90,8 @@ TEST(Cut, KeepsParts) {
     MeshData mesh = square();
     mesh.materials.resize(2);
     mesh.parts = {{"a", 0, 1, 0}, {"b", 1, 1, 1}};
-    Array1i source;
-    const MeshData rest = cut(mesh, {keep_positive_x}, false, source);
+    Array1i source, vertices;
+    const MeshData rest = cut(mesh, {keep_positive_x}, false, source, vertices);
     ASSERT_EQ(rest.parts.size(), 2u);
     EXPECT_EQ(rest.parts[0].face_count + rest.parts[1].face_count, rest.F.rows());
     EXPECT_NO_THROW(validate(rest));

@@ -277,10 +277,7 @@ PickBuffer Session::pick_buffer(std::optional<Vec2i> size) {
     const gl::ContextScope scope(*context_);
     renderer.draw_surfaces(prepared.scene, prepared.resolved, prepared.options.size, settings_images_);
     latch_from(prepared);
-    using render::Layer;
-    return PickBuffer(prepared.scene, prepared.resolved.settings.style, prepared.resolved.camera,
-                      renderer.read_layer(Layer::id), renderer.read_layer(Layer::element),
-                      renderer.read_layer(Layer::depth));
+    return PickBuffer(renderer.read_surfaces());
 }
 
 ViewPoint Session::view_point(std::optional<Vec2i> size) {

@@ -34,13 +34,14 @@ struct LayerArray {
 ///   albedo              f32 x 3, linear
 ///   roughness, metallic f32
 ///   instance_id         i32, Instance::id
-///   semantic_id         i32: label of the face or point if the mesh has labels (of the nearest corner, where
-///   they
-///                       belong to vertices), else the instance's
-///   object_coordinates  f32 x 3: (p - centre of the box) / its diagonal + 0.5, in the instance's frame
-///   (NOCS) face_id             i32, index of the face, or of the point or voxel, in the user's arrays; -1
-///   where there is none barycentrics        f32 x 3, weights of the face's corners; 0 on what is no face uv
-///   f32 x 2 flow_forward        f32 x 2, from the pixel to where its point is in the next frame, pixels
+///   semantic_id         i32: label of the face or vertex that is seen if the mesh has labels (of the nearest
+///                       corner, where they belong to vertices), else the instance's
+///   object_coordinates  f32 x 3, NOCS: (p - centre) / diagonal + 0.5 of the instance's box, in its frame
+///   face_id             i32, index in the user's F of the face that is seen; in V of points and surfels, of
+///                       vertices on top of faces and of the first vertex in a voxel; -1 of nothing
+///   barycentrics        f32 x 3, weights of the face's corners; 0 on what is no face
+///   uv                  f32 x 2
+///   flow_forward        f32 x 2, from the pixel to where its point is in the next frame, pixels
 ///   occlusion_forward   u8, 1 where that point is not seen in the next frame
 ///   flow_backward, occlusion_backward   the same of the previous frame
 const std::vector<std::string>& truth_layer_names();

@@ -293,7 +293,7 @@ std::vector<Instance> annotate(app::Session& session, const Surfaces& s, const I
     Camera drawn = lens.is_identity() ? s.camera : lens.drawn;
     std::vector<bool> splats(instances.size());
     for (size_t o = 0; o < s.scene.objects.size(); ++o)
-        if (!s.has_faces[o]) splats[table.of(o, 0)] = true;
+        if (!s.only_faces[o]) splats[table.of(o, 0)] = true;
     std::vector<PixelBox> reaches;
     for (size_t k = 0; k < instances.size(); ++k)
         reaches.push_back(reach_of(instances[k], lens, drawn, splats[k]));

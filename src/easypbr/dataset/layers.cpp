@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "easypbr/core/parallel.h"
+#include "easypbr/scene/element_colors.h"
 
 namespace easypbr::dataset {
 namespace {
@@ -34,15 +35,26 @@ const Instance& instance_at(const Surfaces& s, const InstanceTable& table, size_
     return table.instances()[table.of(s.object[i] - 1, s.part[i])];
 }
 
-int semantic_id(const Surfaces& s, const InstanceTable& table, size_t i) {
+/// `of_vertices`: for each object the labels of its vertices, where points of it may be seen.
+int semantic_id(const Surfaces& s, const InstanceTable& table, const std::vector<Array1i>& of_vertices,
+                size_t i) {
     const MeshData& mesh = s.mesh_of(i);
-    const size_t element = s.element_of(i);
+    const auto element = Eigen::Index(s.element_of(i));
     if (mesh.L.empty()) return instance_at(s, table, i).semantic_id;
-    if (!s.on_face(i) || element_of(mesh, mesh.L.rows()) == PerElement::face)
-        return Eigen::Index(element) < mesh.L.rows() ? mesh.L(Eigen::Index(element)) : 0;
+    if (!s.on_face(i)) return of_vertices[s.object[i] - 1](element);
+    if (element_of(mesh, mesh.L.rows()) == PerElement::face) return mesh.L(element);
     Eigen::Index corner;
     s.barycentrics[i].maxCoeff(&corner);
-    return mesh.L(mesh.F(Eigen::Index(element), corner));
+    return mesh.L(mesh.F(element, corner));
+}
+
+LayerArray semantic_ids(const Surfaces& s, const InstanceTable& table) {
+    std::vector<Array1i> of_vertices;
+    for (size_t o = 0; o < s.scene.objects.size(); ++o) {
+        const MeshData& mesh = *s.scene.objects[o].mesh;
+        of_vertices.push_back(s.only_faces[o] || mesh.L.empty() ? Array1i() : vertex_labels(mesh));
+    }
+    return scalars<int32_t>(s, 0, [&](size_t i) { return semantic_id(s, table, of_vertices, i); });
 }
 
 Vec2 uv(const Surfaces& s, size_t i) {
@@ -105,8 +117,7 @@ std::optional<LayerArray> surface_layer(const std::string& name, const Surfaces&
     }
     if (name == "instance_id")
         return scalars<int32_t>(s, 0, [&](size_t i) { return instance_at(s, table, i).id; });
-    if (name == "semantic_id")
-        return scalars<int32_t>(s, 0, [&](size_t i) { return semantic_id(s, table, i); });
+    if (name == "semantic_id") return semantic_ids(s, table);
     if (name == "face_id") return scalars<int32_t>(s, -1, [&](size_t i) { return int32_t(s.element_of(i)); });
     if (name == "barycentrics") return vectors<3>(s, [&](size_t i) { return s.barycentrics[i]; });
     if (name == "uv") return vectors<2>(s, [&](size_t i) { return uv(s, i); });

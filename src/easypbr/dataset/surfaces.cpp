@@ -91,11 +91,12 @@ Surfaces surfaces_of(render::SurfaceFrame frame, const Camera& camera, const app
     s.camera = camera;
     s.slopes = slopes_of(camera, s.size, lens);
     s.scene = std::move(frame.scene);
-    s.has_faces = std::move(frame.has_faces);
+    s.only_faces = std::move(frame.only_faces);
     const size_t count = s.slopes.size();
     s.object.resize(count);
     s.element.resize(count);
     s.part.resize(count);
+    s.is_face.resize(count);
     s.position.assign(count, Vec3::Zero());
     s.barycentrics.assign(count, Vec3::Zero());
     std::vector<Eigen::Affine3d> T_cv_mesh;
@@ -105,6 +106,7 @@ Surfaces surfaces_of(render::SurfaceFrame frame, const Camera& camera, const app
         s.object[i] = frame.object[drawn];
         s.element[i] = frame.element[drawn];
         s.part[i] = frame.part[drawn];
+        s.is_face[i] = frame.is_face[drawn];
         if (!s.covered(i)) return;
         const double depth = frame.depth[drawn];
         if (s.on_face(i)) return meet_face(s, i, T_cv_mesh[s.object[i] - 1], depth);

@@ -11,17 +11,18 @@ namespace easypbr::dataset {
 /// through each pixel's centre meets. Row 0 on top.
 struct Surfaces {
     Vec2i size{0, 0};
-    Camera camera;                                ///< of the picture, with its distortion
-    SceneSnapshot scene;                          ///< with the objects' own data
-    std::vector<bool> has_faces;                  ///< for each object: its elements are faces
-    std::vector<uint32_t> object, element, part;  ///< as in render::SurfaceFrame
+    Camera camera;                 ///< of the picture, with its distortion
+    SceneSnapshot scene;           ///< with the objects' own data
+    std::vector<bool> only_faces;  ///< as in render::SurfaceFrame, like the next four
+    std::vector<uint32_t> object, element, part;
+    std::vector<uint8_t> is_face;
     std::vector<Vec3> position;      ///< in the camera's frame, OpenCV's axes; z is 0 where there is nothing
     std::vector<Vec3> barycentrics;  ///< weights of the corners of the face; 0 where there is none
     std::vector<Vec2> slopes;        ///< x/z and y/z of the ray; for orthographic cameras x and y
 
     bool covered(size_t pixel) const { return object[pixel] != 0; }
     const MeshData& mesh_of(size_t pixel) const { return *scene.objects[object[pixel] - 1].mesh; }
-    bool on_face(size_t pixel) const { return covered(pixel) && has_faces[object[pixel] - 1]; }
+    bool on_face(size_t pixel) const { return covered(pixel) && is_face[pixel]; }
     size_t element_of(size_t pixel) const { return element[pixel] - 1; }
 };
 

@@ -175,20 +175,33 @@ std::vector<Eigen::Vector4d> planes_of(const ClipSettings& clip, const Eigen::Af
 /// Where `second` says what `first` came from.
 Array1i composed(const Array1i& second, const Array1i& first) {
     if (first.empty()) return second;
+    if (second.empty()) return first;
     Array1i::Dense both(second.rows());
     for (Eigen::Index i = 0; i < both.size(); ++i) both[i] = first(second(i));
     return Array1i(std::move(both));
+}
+
+Array1i flattened(const Array3i& F) {
+    return Array1i(Array1i::Dense(Eigen::Map<const Array1i::Dense>(F.data(), F.size())));
+}
+
+/// The points that the faces and corners of voxels came from.
+ElementSources of_voxels(const MeshData& cubes) {
+    Array1i::Dense corners(cubes.V.rows());
+    for (Eigen::Index f = 0; f < cubes.F.rows(); ++f)
+        for (int k = 0; k < 3; ++k) corners[cubes.F(f, k)] = cubes.source_face(f);
+    return {cubes.source_face, Array1i(std::move(corners))};
 }
 
 }  // namespace
 
 template <class Make>
 std::shared_ptr<const MeshData> DrawableCache::get(const std::string& key, const MeshData& current,
-                                                   Array1i& source, Make&& make) {
+                                                   ElementSources& sources, Make&& make) {
     Entry& entry = entries_[key];
     if (!entry.arrays) entry.arrays = std::make_shared<const MeshData>(make(entry));
     entry.used = true;
-    if (!entry.source.empty()) source = composed(entry.source, source);
+    sources = {composed(entry.sources.faces, sources.faces), composed(entry.sources.points, sources.points)};
     auto mesh = std::make_shared<MeshData>(current);
     replace_arrays(*mesh, *entry.arrays);
     if (!entry.table) return mesh;
@@ -200,14 +213,14 @@ std::shared_ptr<const MeshData> DrawableCache::get(const std::string& key, const
 DrawableScene DrawableCache::apply(const SceneSnapshot& scene, const Settings& settings) {
     require_colors(scene, settings.style);
     DrawableScene drawable{scene, std::vector<ColorMeaning>(scene.objects.size()),
-                           std::vector<Array1i>(scene.objects.size())};
+                           std::vector<ElementSources>(scene.objects.size())};
     for (size_t i = 0; i < scene.objects.size(); ++i)
         apply(drawable.scene.objects[i], settings, drawable.meanings[i], drawable.sources[i]);
     return drawable;
 }
 
 void DrawableCache::apply(SceneSnapshot::Object& object, const Settings& settings, ColorMeaning& meaning,
-                          Array1i& source) {
+                          ElementSources& sources) {
     const MeshData own = *object.mesh;
     const DrawStyle style = resolve_style(own, settings.style);
     const ColorPlan plan =
@@ -221,7 +234,11 @@ void DrawableCache::apply(SceneSnapshot::Object& object, const Settings& setting
     if (meaning.from_data)
         object.mesh =
             get(fmt::format("{} {} {} {}", own.V.revision(), own.F.revision(), own.N.revision(), plan.key),
-                own, source, [&](Entry& entry) { return with_colors(own, plan, entry.table); });
+                own, sources, [&](Entry& entry) {
+                    MeshData made = with_colors(own, plan, entry.table);
+                    if (made.V.revision() != own.V.revision()) entry.sources.points = flattened(own.F);
+                    return made;
+                });
     // Materials of the object as it is drawn so far: a table of values has replaced them.
     const auto key = [&](const char* what, const auto&... values) {
         const MeshData& m = *object.mesh;
@@ -236,18 +253,21 @@ void DrawableCache::apply(SceneSnapshot::Object& object, const Settings& setting
         for (const Eigen::Vector4d& plane : planes) numbers += fmt::format("{}", fmt::join(plane, " ")) + " ";
         const std::shared_ptr<const MeshData> whole = object.mesh;
         const bool by_vertex = style.mode != DrawMode::mesh && style.mode != DrawMode::lines;
-        object.mesh = get(key("cut", by_vertex, numbers), *whole, source,
-                          [&](Entry& entry) { return cut(*whole, planes, by_vertex, entry.source); });
+        object.mesh = get(key("cut", by_vertex, numbers), *whole, sources, [&](Entry& entry) {
+            return cut(*whole, planes, by_vertex, entry.sources.faces, entry.sources.points);
+        });
     }
     if (style.mode == DrawMode::voxels && !object.mesh->V.empty()) {
         const std::shared_ptr<const MeshData> centres = object.mesh;
         const double spacing = style.voxel_size ? 0 : spacings_.get(own.V);
         const double size = style.voxel_size ? double(*style.voxel_size) : spacing > 0 ? spacing : 1;
-        object.mesh = get(key("voxels", size), *centres, source, [&](Entry& entry) {
-            MeshData cubes = voxel_mesh(*centres, size);
-            entry.source = cubes.source_face;
-            return cubes;
+        ElementSources cubes;
+        object.mesh = get(key("voxels", size), *centres, cubes, [&](Entry& entry) {
+            MeshData mesh = voxel_mesh(*centres, size);
+            entry.sources = of_voxels(mesh);
+            return mesh;
         });
+        sources = {composed(cubes.faces, sources.points), composed(cubes.points, sources.points)};
     }
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "easypbr/render/gbuffer.h"
 #include "easypbr/scene/element_colors.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/scene/settings.h"
@@ -23,12 +24,23 @@ struct ColorMeaning {
     bool vertex_colors = true;
 };
 
+/// Where what is drawn of an object came from, in the object's own data. Empty: the same.
+struct ElementSources {
+    Array1i faces;   ///< for each face its face, or, of voxels, the first vertex in the voxel
+    Array1i points;  ///< for each vertex its vertex; where a cut made one, that with the largest part in it
+
+    /// What the element target holds (see GBuffer::element), as 1 + index in the object's own data.
+    uint32_t own(uint32_t drawn) const {
+        const Array1i& source = drawn & point_element ? points : faces;
+        const uint32_t place = drawn & ~point_element;
+        return source.empty() ? place : uint32_t(source(Eigen::Index(place) - 1)) + 1;
+    }
+};
+
 struct DrawableScene {
     SceneSnapshot scene;  ///< the same objects in the same order, their data replaced where that is needed
-    std::vector<ColorMeaning> meanings;  ///< one for each object
-    /// For each object and each of its faces or points as they are drawn, the face, point or voxel of its own
-    /// data; empty: the same.
-    std::vector<Array1i> sources;
+    std::vector<ColorMeaning> meanings;   ///< one for each object
+    std::vector<ElementSources> sources;  ///< one for each object
 };
 
 /// Makes and keeps what is as large as the data.
@@ -46,16 +58,16 @@ class DrawableCache {
   private:
     struct Entry {
         std::shared_ptr<const MeshData> arrays;
-        Array1i source;  ///< see DrawableScene::sources
-        Texture table;   ///< of values; empty for colours
+        ElementSources sources;  ///< of the arrays that they were made of
+        Texture table;           ///< of values; empty for colours
         bool used = false;
     };
     /// The entry's arrays as the current object's; made by make(entry) when there are none.
     template <class Make>
-    std::shared_ptr<const MeshData> get(const std::string& key, const MeshData& current, Array1i& source,
-                                        Make&& make);
+    std::shared_ptr<const MeshData> get(const std::string& key, const MeshData& current,
+                                        ElementSources& sources, Make&& make);
     void apply(SceneSnapshot::Object& object, const Settings& settings, ColorMeaning& meaning,
-               Array1i& source);
+               ElementSources& sources);
 
     SpacingCache& spacings_;
     std::map<std::string, Entry> entries_;

@@ -6,6 +6,9 @@
 
 namespace easypbr::render {
 
+/// Set in GBuffer::element where a point or a surfel is seen; the same number stands in the shaders.
+inline constexpr uint32_t point_element = 1u << 31;
+
 /// The paper's four targets in better packings: 16 bits for linear albedo (8 would band), octahedral normals
 /// (0.004 degrees instead of 0.4), and the depth that the depth test used. Pixels without geometry hold depth
 /// 0, else garbage.
@@ -21,7 +24,7 @@ struct GBuffer {
 
     gl::Texture
         id;  ///< R32UI, when asked for: 1 + place of the object in the snapshot, 0 where there is nothing
-    gl::Texture element;  ///< R32UI, with id: 1 + index of the face or point in its object
+    gl::Texture element;  ///< R32UI, with id: 1 + index of the face or, with point_element, the vertex
 
     gl::Texture extension[2];  ///< RGBA32UI, when asked for: values of glTF's material extensions, as
                                ///< shaders/common_extension.glsl packs them, where the kind is extended

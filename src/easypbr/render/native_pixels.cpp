@@ -43,7 +43,7 @@ void NativePixels::put(size_t i, const SurfacePixel& p) {
     std::copy_n(material, 4, &material_[4 * i]);
     if (!with_ids_) return;
     id_[i] = p.object + 1;
-    element_[i] = p.element + 1;
+    element_[i] = (p.element + 1) | (p.is_point ? point_element : 0);
 }
 
 void NativePixels::put_nothing(size_t i) {

@@ -17,9 +17,10 @@ struct SurfacePixel {
     Vec3 normal{0, 0, 1};  ///< unit, world, on the side that is seen
     float metallic = 0, roughness = 0;
     SurfaceKind kind = SurfaceKind::lit;
-    float depth = 0;       ///< reversed; 0: nothing
-    uint32_t object = 0;   ///< place in the snapshot
-    uint32_t element = 0;  ///< of its object: the face or the point
+    float depth = 0;        ///< reversed; 0: nothing
+    uint32_t object = 0;    ///< place in the snapshot
+    uint32_t element = 0;   ///< of its object: the face or the vertex
+    bool is_point = false;  ///< a vertex
 };
 
 /// Pixels of a rectangle in the targets' formats.

@@ -28,6 +28,7 @@ SurfacePixel PointSurface::at(uint32_t point, float depth) const {
     pixel.albedo = linear_from_srgb(color(point)).cwiseProduct(item_->material.base_color);
     pixel.depth = depth;
     pixel.element = point;
+    pixel.is_point = true;
     const Vec3 p = mesh.V.row(point);
     const Vec3 to_viewer = orthographic_ ? view_direction_ : Vec3(view_position_ - p);
     Vec3 n = mesh.N.empty() ? Vec3(0, 0, 0) : Vec3(mesh.N.row(point));

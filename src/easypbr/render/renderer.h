@@ -199,7 +199,7 @@ class Renderer {
     std::vector<CustomPass> custom_;
     gl::Texture custom_copies_[3];  ///< by stage, see PassInput::before()
     Camera camera_;
-    std::vector<Array1i> element_sources_;  ///< DrawableScene::sources of the last picture
+    std::vector<ElementSources> element_sources_;  ///< DrawableScene::sources of the last picture
     /// Of the last picture that was drawn with `surfaces`.
     struct Drawn {
         DrawableScene drawable;

@@ -102,8 +102,7 @@ Image Renderer::read_layer(Layer layer) const {
             // Elements of the user's own data, not of what was made of them to be drawn.
             const auto objects = read<uint32_t>(targets_.surface_ids, 5, gl::Format::r32ui);
             for_each_covered([&](size_t i) {
-                const Array1i& source = element_sources_[objects[i] - 1];
-                to[i] = source.empty() ? float(texels[i]) : float(source(Eigen::Index(texels[i]) - 1) + 1);
+                to[i] = float(element_sources_[objects[i] - 1].own(texels[i]));
             });
         }
     } else if (layer == Layer::ambient_occlusion) {

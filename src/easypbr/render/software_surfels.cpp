@@ -166,6 +166,7 @@ void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<Source>& s
             pixel.depth = reversed_depth(frame, t.limit[i] * (1 - mean(distance)));
             pixel.object = uint32_t(source.item->object - frame.scene->objects.data());
             pixel.element = uint32_t(t.nearest[i]);
+            pixel.is_point = true;
             pixels.put(to, pixel);
         }
 }

@@ -53,11 +53,14 @@ SurfaceFrame Renderer::read_surfaces() const {
     frame.object = read_target<uint32_t>(targets_.surface_ids, 5, gl::Format::r32ui);
     frame.element = read_target<uint32_t>(targets_.surface_ids, 6, gl::Format::r32ui);
     frame.part.resize(frame.depth.size());
+    frame.is_face.resize(frame.depth.size());
     std::vector<std::vector<uint32_t>> parts;
     for (const auto& object : drawn_->drawable.scene.objects) parts.push_back(parts_of_faces(*object.mesh));
+    std::vector<uint8_t> as_mesh;
     for (const auto& object : frame.scene.objects) {
         const DrawStyle style = resolve_style(*object.mesh, drawn_->resolved.settings.style);
-        frame.has_faces.push_back(style.mode == DrawMode::mesh && !style.show_points);
+        as_mesh.push_back(style.mode == DrawMode::mesh);
+        frame.only_faces.push_back(style.mode == DrawMode::mesh && !style.show_points);
     }
     const float near = float(camera_.near), far = float(camera_.far);
     const bool orthographic = camera_.projection == Projection::orthographic;
@@ -68,10 +71,11 @@ SurfaceFrame Renderer::read_surfaces() const {
             return;
         }
         frame.depth[i] = orthographic ? far + (near - far) * frame.depth[i] : near / frame.depth[i];
-        const size_t object = frame.object[i] - 1, element = frame.element[i] - 1;
-        if (!parts[object].empty()) frame.part[i] = parts[object][element];
-        const Array1i& source = element_sources_[object];
-        if (!source.empty()) frame.element[i] = uint32_t(source(Eigen::Index(element))) + 1;
+        const size_t object = frame.object[i] - 1;
+        const uint32_t drawn = frame.element[i];
+        frame.is_face[i] = as_mesh[object] && !(drawn & point_element);
+        if (frame.is_face[i] && !parts[object].empty()) frame.part[i] = parts[object][drawn - 1];
+        frame.element[i] = element_sources_[object].own(drawn);
     });
     return frame;
 }

@@ -16,10 +16,12 @@ struct SurfaceFrame {
     Camera camera;
     std::vector<float> depth;       ///< distance along the optical axis, 0 where there is nothing
     std::vector<uint32_t> object;   ///< 1 + place in `scene`, 0 where there is nothing
-    std::vector<uint32_t> element;  ///< 1 + index of the face, point or voxel in the object's own data
-    std::vector<uint32_t> part;     ///< of meshes, index into MeshData::parts, else 0
+    std::vector<uint32_t> element;  ///< 1 + index of the face in the object's own data, or of the
+                                    ///< vertex: of a voxel the first one in it
+    std::vector<uint8_t> is_face;   ///< 1: the element is a face; else a point, a surfel or a voxel
+    std::vector<uint32_t> part;     ///< of faces, index into MeshData::parts; 0 of all else
     SceneSnapshot scene;            ///< with the objects' own data
-    std::vector<bool> has_faces;    ///< for each object: its elements are faces
+    std::vector<bool> only_faces;   ///< for each object: nothing of it reaches beyond its vertices
 };
 
 }  // namespace easypbr::render

@@ -60,13 +60,22 @@ MeshData with_vertices(const MeshData& mesh, const std::vector<Mixture>& vertice
     return out;
 }
 
+/// For each vertex the one that it came from, or that it has most of.
+Array1i sources_of(const std::vector<Mixture>& vertices) {
+    Array1i::Dense from(Eigen::Index(vertices.size()));
+    for (size_t i = 0; i < vertices.size(); ++i) {
+        Eigen::Index most;
+        vertices[i].weight.maxCoeff(&most);
+        from[Eigen::Index(i)] = vertices[i].vertex[size_t(most)];
+    }
+    return Array1i(std::move(from));
+}
+
 MeshData cut_points(const MeshData& mesh, const std::vector<uint8_t>& kept, Array1i& source) {
     std::vector<Mixture> vertices;
     for (size_t i = 0; i < kept.size(); ++i)
         if (kept[i]) vertices.push_back({{int32_t(i), 0, 0}, Vec3(1, 0, 0)});
-    Array1i::Dense from(Eigen::Index(vertices.size()));
-    for (size_t i = 0; i < vertices.size(); ++i) from[Eigen::Index(i)] = vertices[i].vertex[0];
-    source = Array1i(std::move(from));
+    source = sources_of(vertices);
     return with_vertices(mesh, vertices);
 }
 
@@ -152,7 +161,7 @@ ArrayType rows_of(const std::vector<int32_t>& values) {
 }
 
 MeshData cut_surface(const MeshData& given, const std::vector<Eigen::Vector4d>& planes,
-                     const std::vector<uint8_t>& kept, Array1i& source) {
+                     const std::vector<uint8_t>& kept, Array1i& source, Array1i& vertices) {
     MeshData mesh = given;
     if (mesh.N.empty() && !mesh.F.empty()) mesh.N = smooth_normals(mesh);
     Cutter cutter(mesh, planes, kept);
@@ -178,6 +187,7 @@ MeshData cut_surface(const MeshData& given, const std::vector<Eigen::Vector4d>& 
     out.E = rows_of<Array2i>(cutter.edges());
     out.parts = std::move(parts);
     source = rows_of<Array1i>(from);
+    vertices = sources_of(cutter.vertices());
     // Pieces of a face are one polygon, so that a wireframe shows no edges between them.
     Array1i::Dense polygon = source;
     if (!mesh.source_face.empty())
@@ -188,10 +198,10 @@ MeshData cut_surface(const MeshData& given, const std::vector<Eigen::Vector4d>& 
 
 }  // namespace
 
-MeshData cut(const MeshData& mesh, const std::vector<Eigen::Vector4d>& planes, bool by_vertex,
-             Array1i& source) {
+MeshData cut(const MeshData& mesh, const std::vector<Eigen::Vector4d>& planes, bool by_vertex, Array1i& faces,
+             Array1i& vertices) {
     const std::vector<uint8_t> kept = which_are_kept(mesh.V, planes);
-    return by_vertex ? cut_points(mesh, kept, source) : cut_surface(mesh, planes, kept, source);
+    return by_vertex ? cut_points(mesh, kept, vertices) : cut_surface(mesh, planes, kept, faces, vertices);
 }
 
 }  // namespace easypbr

@@ -102,6 +102,10 @@ Array1f heights(const Array3f& V, const Eigen::Vector4d& height) {
 
 }  // namespace
 
+Array1i vertex_labels(const MeshData& mesh) {
+    return element_of(mesh, mesh.L.rows()) == PerElement::face ? labels_of_vertices(mesh) : mesh.L;
+}
+
 Array1f plan_values(const MeshData& mesh, const ColorPlan& plan) {
     if (plan.by == ColorBy::scalar) return scalar_named(mesh, plan.scalar).values;
     if (plan.by == ColorBy::height) return heights(mesh.V, plan.height);

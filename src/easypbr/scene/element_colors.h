@@ -69,6 +69,9 @@ struct ElementColors {
 /// where vertices are drawn: a vertex has the mean of its faces' values, the label of its first face.
 ElementColors element_colors(const MeshData& mesh, const ColorPlan& plan);
 
+/// A label for each vertex of a mesh with labels: those of faces as element_colors() hands them on.
+Array1i vertex_labels(const MeshData& mesh);
+
 /// The values that a plan maps to colours (scalars, heights or intensities), one for each element of the
 /// array they come from.
 Array1f plan_values(const MeshData& mesh, const ColorPlan& plan);
