@@ -13,10 +13,12 @@ uniform mat4 u_clip_from_mesh;
 uniform mat4 u_view_from_mesh;
 uniform mat3 u_normal_from_mesh;
 uniform vec2 u_size;
-uniform vec3 u_base_color;
+uniform vec4 u_base_color;  // linear, opacity in w
 uniform vec3 u_eye;         // in the mesh's frame; ORTHOGRAPHIC: direction towards the viewer
 uniform vec4 u_surfel;      // factor on the size, radius without a tangent, near, scale of the pose
 uniform float u_least_radius;
+uniform float u_alpha_cutoff;
+uniform float u_pixel;      // its height, at distance 1 or anywhere (ORTHOGRAPHIC)
 
 flat out vec2 v_centre;     // pixels
 flat out vec4 v_axes;       // tx, ty, bx, by
@@ -24,7 +26,7 @@ flat out vec4 v_plane;      // t x b; wc
 flat out vec4 v_distance;   // axial distance along t and b and of the centre; band
 flat out float v_least;     // half the side of the smallest square it covers, pixels
 flat out vec3 v_normal;
-flat out vec3 v_color;
+flat out vec4 v_color;
 #ifdef OBJECT_ID
 flat out uint v_element;
 #endif
@@ -39,7 +41,25 @@ vec2 extent(float t, float b, vec3 w, float q_ww, float least) {
     return vec2(min((q_kw + root) / q_ww, -least), max((q_kw - root) / q_ww, least));
 }
 
+void leave_out() { gl_Position = vec4(2.0, 2.0, 0.0, 1.0); }
+
 void main() {
+    v_color = u_base_color;
+#ifdef VERTEX_COLOR
+    v_color *= vec4(srgb_decode(a_color.rgb), a_color.a);
+#endif
+#ifdef ALPHA_MASK
+    if (v_color.a < u_alpha_cutoff) {
+        leave_out();
+        return;
+    }
+#endif
+#ifdef PEEL
+    if (v_color.a <= 0.0) {
+        leave_out();
+        return;
+    }
+#endif
 #ifdef ORTHOGRAPHIC
     vec3 to_viewer = u_eye;
 #else
@@ -60,7 +80,7 @@ void main() {
                    (u_view_from_mesh * vec4(a_position, 1.0)).z);
     float q_ww = w.x * w.x + w.y * w.y - w.z * w.z;
     if (!(w.z > 0.0 && q_ww < 0.0 && z.z - length(z.xy) > u_surfel.z * 0.999)) {
-        gl_Position = vec4(2.0, 2.0, 0.0, 1.0);
+        leave_out();
         return;
     }
     v_centre = (vec2(c4.x, -c4.y) / c4.w + 1.0) * 0.5 * u_size;
@@ -71,6 +91,16 @@ void main() {
     v_distance = vec4(z, max(length(t), length(b)) * u_surfel.w);
     // As least_radius() in render/surfel_projection.h.
     float facing = dot(a_normal, a_normal) > 0.0 ? dot(n, normalize(to_viewer)) : 1.0;
+#ifdef PEEL
+    // Surfels smaller than a pixel lie as far behind each other as the surface falls away within it.
+    float slope = sqrt(max(0.0, 1.0 - facing * facing)) / max(abs(facing), 0.1);
+#ifdef ORTHOGRAPHIC
+    float footprint = u_pixel;
+#else
+    float footprint = u_pixel * z.z;
+#endif
+    v_distance.w = max(v_distance.w, footprint * (1.0 + slope));
+#endif
     v_least = facing < 0.0 ? max(1e-3, -facing * u_least_radius) : u_least_radius;
     vec2 x = extent(t2.x, b2.x, w, q_ww, v_least), y = extent(t2.y, b2.y, w, q_ww, v_least);
     // Half a pixel more: the centres of all pixels that count are inside whatever the driver rounds.
@@ -80,10 +110,6 @@ void main() {
     gl_Position = vec4(ndc.x, -ndc.y, 0.5, 1.0);
 
     v_normal = normalize(u_normal_from_mesh * (dot(n, to_viewer) < 0.0 ? -n : n));
-    v_color = u_base_color;
-#ifdef VERTEX_COLOR
-    v_color *= srgb_decode(a_color.rgb);
-#endif
 #ifdef OBJECT_ID
     v_element = uint(gl_InstanceID + 1) | 0x80000000u;  // a point: render/gbuffer.h
 #endif

@@ -142,7 +142,7 @@ ExtensionSet DrawList::extensions() const {
 
 DrawList DrawList::as_surfaces() const {
     DrawList surfaces = *this;
-    for (std::vector<DrawItem>* items : {&surfaces.meshes, &surfaces.points})
+    for (std::vector<DrawItem>* items : {&surfaces.meshes, &surfaces.points, &surfaces.surfels})
         for (DrawItem& item : *items) {
             item.layered = false;
             if (item.alpha != AlphaMode::blend) continue;
@@ -173,6 +173,8 @@ DrawList draw_list(const DrawableScene& drawable, const Settings& settings, cons
         for (DrawItem& item : *items)
             item.layered = (item.alpha == AlphaMode::blend && blend_in_layers) ||
                            (item.kind == SurfaceKind::lit && item.material.transmits());
+    // Splats that overlap are one surface: a random number for each would draw them all.
+    for (DrawItem& item : list.surfels) item.layered = item.alpha == AlphaMode::blend;
     return list;
 }
 

@@ -364,10 +364,13 @@ void Renderer::draw_layers(Frame& frame, const DrawList& list) {
     const Box3d& bounds = bounds_of(*frame.scene);
     const double reach = (bounds.center() - frame.camera.position()).norm() + bounds.diagonal().norm() / 2;
     transparency_.begin(frame, targets_);
+    surfel_layers_.begin(frame, list.surfels, targets_.depth);
     while (transparency_.open_layer(frame)) {
         geometry_.draw(frame, list.meshes, transparency_.layer());
         points_.draw(frame, list.points, transparency_.layer());
+        surfel_layers_.draw(frame, list.surfels, transparency_.layer());
         if (!transparency_.close_layer(frame)) break;
+        surfel_layers_.take(list.surfels);
         no_attributes_.bind();
         if (see_through) transparency_.look_behind(frame, targets_, rough, reach);
         if (!volumes.meshes.empty()) {

@@ -24,6 +24,7 @@
 #include "easypbr/render/shadow_maps.h"
 #include "easypbr/render/software_geometry_pass.h"
 #include "easypbr/render/surface_frame.h"
+#include "easypbr/render/surfel_layers.h"
 #include "easypbr/render/surfel_pass.h"
 #include "easypbr/render/transparency_pass.h"
 
@@ -180,7 +181,9 @@ class Renderer {
     gpu::PointCache point_buffers_;
     gpu::SurfelCache surfel_buffers_;
     PointPass points_{spacings_, point_buffers_};
-    SurfelPass surfels_{spacings_, surfel_buffers_};
+    SurfelSplats surfel_splats_{spacings_, surfel_buffers_};
+    SurfelPass surfels_{surfel_splats_};
+    SurfelLayers surfel_layers_{surfel_splats_};
     ShadowMaps shadow_maps_{meshes_, textures_, closed_meshes_, spacings_, point_buffers_, surfel_buffers_};
     AmbientOcclusionPass ambient_occlusion_;
     LightingPass lighting_;

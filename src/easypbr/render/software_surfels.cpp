@@ -35,6 +35,14 @@ int64_t quantised(float value) {
     return int64_t(std::lrintf(value * (1 / quantum)));
 }
 
+/// Not cut out by its opacity.
+bool is_there(const DrawItem& item, Eigen::Index i) {
+    if (item.alpha != AlphaMode::mask) return true;
+    const ArrayXf& C = item.mesh().C;
+    const float own = item.with_colors && C.cols() == 4 ? C(i, 3) : 1.0f;
+    return item.material.opacity * own >= item.material.alpha_cutoff;
+}
+
 /// First and one past the last pixel of a row or column whose centres lie in [low, high].
 std::pair<int, int> pixels_between(float low, float high, int begin, int end) {
     return {std::max(begin, int(std::ceil(low - 0.5f))), std::min(end, int(std::floor(high - 0.5f)) + 1)};
@@ -74,6 +82,7 @@ void SoftwareSurfels::bin(const std::vector<Source>& sources, Vec2i tiles) {
     const auto for_each_surfel = [&](auto&& body) {
         for (size_t k = 0; k < sources.size(); ++k)
             parallel_for(size_t(sources[k].item->mesh().V.rows()), grain, [&](size_t i) {
+                if (!is_there(*sources[k].item, Eigen::Index(i))) return;
                 if (const auto s = sources[k].projector.project(Eigen::Index(i)))
                     for_each_tile(*s, [&](size_t tile) { body(tile, uint64_t(k) << 32 | i); });
             });
