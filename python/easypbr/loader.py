@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 from . import _easypbr
 from .errors import ArgumentError, Error
-from .tensors import eigen2tensor
+from .tensors import check_device, eigen2tensor
 
 #: What a sample holds when no transform is given: those of these arrays that the mesh has.
 _ARRAYS = ("V", "N", "C", "F", "L", "I", "UV")
@@ -32,6 +32,8 @@ class MeshLoader:
     ):
         if on_error not in ("raise", "skip"):
             raise ArgumentError(f"on_error: expected 'raise' or 'skip', got '{on_error}'")
+        if device != "cpu":
+            check_device(device)
         self.paths = [os.fspath(path) for path in paths]
         self.transform = transform
         self.workers, self.prefetch = workers, prefetch
@@ -85,4 +87,8 @@ def _moved(sample, device: str):
         return {name: _moved(value, device) for name, value in sample.items()}
     if isinstance(sample, (tuple, list)):
         return type(sample)(_moved(value, device) for value in sample)
-    return sample.to(device, non_blocking=True) if hasattr(sample, "to") else sample
+    if not hasattr(sample, "to"):
+        return sample
+    # From pinned memory the copy runs while the next sample is made.
+    pinned = sample.pin_memory() if device.startswith("cuda") and hasattr(sample, "pin_memory") else sample
+    return pinned.to(device, non_blocking=True)

@@ -4,16 +4,81 @@ from collections.abc import Callable
 
 import numpy as np
 
-from .errors import ArgumentError
+from .errors import ArgumentError, ContextError
 
 
-def converter(name: str) -> Callable:
+def converter(name: str, device: str = "cpu") -> Callable:
     """What turns a numpy array into one of the library of this name, without a copy: "numpy" or "torch"."""
     if name == "numpy":
+        if device != "cpu":
+            raise ArgumentError(f"device: numpy's arrays are the CPU's: expected as_='torch' with device '{device}'")
         return lambda array: array
     if name == "torch":
         return _torch().from_numpy
     raise ArgumentError(f"as_: expected 'numpy' or 'torch', got '{name}'")
+
+
+def check_device(device: str):
+    """The torch device of this name. Raises ArgumentError for a name that is none, ContextError where PyTorch sees no such
+    device."""
+    torch = _torch()
+    try:
+        found = torch.device(device)
+    except RuntimeError as error:
+        raise ArgumentError(f"device: expected 'cpu', 'cuda' or 'cuda:1', got '{device}': {error}") from None
+    if found.type == "cuda":
+        count = torch.cuda.device_count() if torch.cuda.is_available() else 0
+        if (found.index or 0) >= count:
+            built = "" if torch.version.cuda else ", and is built without CUDA"
+            raise ContextError(f"device '{device}': PyTorch sees {count} CUDA devices{built}: choose another, or 'cpu'")
+    return found
+
+
+def from_dlpack(capsule):
+    """A torch tensor of a capsule of DLPack, without a copy."""
+    return _torch().utils.dlpack.from_dlpack(capsule)
+
+
+def layers_of_targets(raw: dict, names, from_dlpack: Callable) -> dict:
+    """The layers of these names, tensors on the GPU, of what Viewer.render_layers() finds there: `raw` is cuda_layers()'s."""
+    torch = _torch()
+    targets = {name: from_dlpack(target) for name, target in raw["targets"].items()}
+    result = {name: targets[name] if name == "color" else targets[name].float() for name in names if name in ("color", "hdr")}
+    if "depth" not in targets:
+        return result
+    inverse = targets["depth"][..., 0]
+    seen = inverse > 0
+    near, far = raw["near"], raw["far"]
+    depth = far + (near - far) * inverse if raw["orthographic"] else near / inverse
+
+    def shown(values):
+        return torch.where(seen if values.dim() == 2 else seen[..., None], values, torch.zeros_like(values))
+
+    def fractions(name):  # 16 bits without a sign
+        return (targets[name].int() & 0xFFFF).float()
+
+    if "normal" in targets:
+        normal = _octahedral(torch, fractions("normal") / 32767.5 - 1)
+        turn = torch.as_tensor(raw["R_cam_world"], dtype=torch.float32, device=normal.device)
+    make = {
+        "depth": lambda: depth,
+        "normal_world": lambda: normal,
+        "normal_camera": lambda: normal @ turn.T,
+        "albedo": lambda: fractions("albedo")[..., :3] / 65535,
+        "metallic": lambda: targets["material"][..., 0].float() / 255,
+        "roughness": lambda: targets["material"][..., 1].float() / 255,
+        "instance_id": lambda: torch.as_tensor(raw["instance_ids"], dtype=torch.int32, device=inverse.device)[
+            torch.where(seen, targets["id"][..., 0], torch.zeros_like(targets["id"][..., 0])).long()
+        ],
+    }
+    return result | {name: shown(make[name]()).contiguous() for name in names if name in make}
+
+
+def _octahedral(torch, p):
+    """Unit vectors of points of the octahedron's map (Cigolle et al. 2014)."""
+    z = 1 - p.abs().sum(-1, keepdim=True)
+    fold = (-z).clamp(min=0)
+    return torch.nn.functional.normalize(torch.cat([p - torch.where(p >= 0, fold, -fold), z], -1), dim=-1)
 
 
 def _torch():
@@ -46,7 +111,7 @@ def as_numpy(what):
 def eigen2tensor(array, device=None):
     """A torch tensor of a mesh's array (or any other): a copy, so that training may write to it."""
     torch = _torch()
-    return torch.from_numpy(np.array(as_numpy(array))).to(device or "cpu")
+    return torch.from_numpy(np.array(as_numpy(array))).to(check_device(device or "cpu"))
 
 
 def tensor2eigen(tensor) -> np.ndarray:

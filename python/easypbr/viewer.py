@@ -15,7 +15,7 @@ from .recorder import Recorder, watch_recorder
 from .scene import Scene
 from .settings import Settings
 from .shapes import camera_frustum
-from .tensors import as_numpy, converter
+from .tensors import as_numpy, check_device, converter, from_dlpack, layers_of_targets
 
 
 class Viewer(WindowCallbacks):
@@ -166,6 +166,7 @@ class Viewer(WindowCallbacks):
         next: "_easypbr.Moment | None" = None,
         amodal: bool = True,
         as_: str = "numpy",
+        device: str = "cpu",
     ) -> dict:
         """The picture and exact ground truth of the same frame by name, all of the same height and width: color, hdr,
         depth, distance, position, normal_world, normal_camera, albedo, roughness, metallic, instance_id, semantic_id,
@@ -174,10 +175,14 @@ class Viewer(WindowCallbacks):
 
         `instances_by`: "object" (with all its children), "node" or "part". `classes`: semantic ids by the objects'
         names. Flow needs the `next` or `previous` frame's moment(). Without `amodal` what is hidden of the instances is
-        not measured. `as_`: "numpy" or "torch"."""
+        not measured. `as_`: "numpy" or "torch", whose tensors are made on `device`: with "cuda", color, hdr, depth,
+        normals, albedo, roughness, metallic and instance_id never leave the GPU when OpenGL draws on it too (depth then has
+        the rasteriser's rounding); what else is asked for is copied there."""
         if isinstance(names, str):
             names = [names]
-        convert = converter(as_)
+        convert = converter(as_, device)
+        if device != "cpu":
+            return self._layers_on(device, names, size, samples, instances_by, classes, previous, next, amodal)
         data = _easypbr.ground_truth(
             self._handle,
             [name for name in names if name != "instances"],
@@ -191,6 +196,21 @@ class Viewer(WindowCallbacks):
             amodal,
         )
         return {name: value if name == "instances" else convert(value) for name, value in data.items()}
+
+    def _layers_on(self, device, names, size, samples, instances_by, classes, *options) -> dict:
+        """render_layers() with tensors of another device."""
+        stays = [name for name in names if name in _easypbr.cuda_layer_names()]
+        data = {}
+        if check_device(device).type == "cuda" and stays:
+            raw = _easypbr.cuda_layers(self._handle, stays, size, samples, instances_by, dict(classes or {}))
+            stays = stays if raw else []
+            data = layers_of_targets(raw, stays, from_dlpack) if raw else {}
+        else:
+            stays = []
+        rest = [name for name in names if name not in stays]
+        if rest:
+            data |= self.render_layers(rest, size, samples, instances_by, classes, *options, as_="torch")
+        return {name: data[name] if name == "instances" else data[name].to(device) for name in names}
 
     def annotations(self, size=None, **options) -> "list[_easypbr.Instance]":
         """Masks, boxes, poses and visibility of all instances; options as render_layers() has them."""

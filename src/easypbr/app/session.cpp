@@ -355,8 +355,7 @@ void Session::apply_lens(Prepared& prepared) {
     prepared.resolved.camera.intrinsics = lens_->drawn.intrinsics;
 }
 
-render::SurfaceFrame Session::draw_surfaces(const PictureOptions& options, bool picture,
-                                            const Moment* moment) {
+void Session::draw_centres(const PictureOptions& options, bool picture, const Moment* moment) {
     Prepared prepared = prepare(options);
     prepared.options.surfaces = true;
     if (moment) prepared.resolved.camera = moment->camera;
@@ -373,7 +372,13 @@ render::SurfaceFrame Session::draw_surfaces(const PictureOptions& options, bool 
                                prepared.options.size, settings_images_);
     annotate(prepared);
     if (!moment) latch_from(prepared);
-    return renderer.read_surfaces();
+}
+
+render::SurfaceFrame Session::draw_surfaces(const PictureOptions& options, bool picture,
+                                            const Moment* moment) {
+    draw_centres(options, picture, moment);
+    const gl::ContextScope scope(*context_);
+    return renderer_->read_surfaces();
 }
 
 Image Session::drawn_layer(render::Layer layer) {

@@ -90,6 +90,10 @@ class Session {
     /// `moment` is drawn in place of the session's scene and camera (no picture then).
     render::SurfaceFrame draw_surfaces(const PictureOptions& options, bool picture,
                                        const Moment* moment = nullptr);
+    /// The same without reading anything: renderer() has the targets.
+    void draw_centres(const PictureOptions& options, bool picture, const Moment* moment = nullptr);
+    /// A legend or colour bar belongs to the picture drawn last, and is drawn into it as it is read.
+    bool is_annotated() const { return !annotation_.empty(); }
     /// From the pixels of the picture drawn last to what was drawn.
     const LensMap& lens() const { return *lens_; }
     /// The picture of the last draw_surfaces().

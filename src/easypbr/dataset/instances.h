@@ -1,6 +1,7 @@
 // Annotations of what is in a picture, one for each instance: masks, boxes, pose, visibility.
 #pragma once
 
+#include <algorithm>
 #include <map>
 #include <string>
 #include <vector>
@@ -63,6 +64,10 @@ class InstanceTable {
         return row[part < row.size() ? part : row.size() - 1];
     }
     size_t count() const { return instances_.size(); }
+    /// Some object's parts are instances of their own.
+    bool has_parts() const {
+        return std::ranges::any_of(table_, [](const auto& row) { return row.size() > 1; });
+    }
     /// Names, ids, poses of the objects; nothing of a picture yet.
     const std::vector<Instance>& instances() const { return instances_; }
 

@@ -5,6 +5,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include "easypbr/dataset/cuda_layers.h"
 #include "easypbr/dataset/ground_truth.h"
 #include "easypbr/dataset/rle.h"
 #include "easypbr/python/shared_viewer.h"
@@ -77,6 +78,59 @@ nb::dict ground_truth(SharedViewer& self, const std::vector<std::string>& layers
             truth.layers.erase(name);
         }
     if (instances) result["instances"] = truth.instances;
+    return result;
+}
+
+/// What torch knows of a target's pixels: 16-bit fractions and whole numbers are given with a sign.
+nb::object target_to_dlpack(gl::CudaPixels pixels) {
+    struct Kind {
+        size_t channels;
+        nb::dlpack::dtype type;
+    };
+    const auto kind = [&]() -> Kind {
+        switch (pixels.format()) {
+            case gl::Format::rgba8:
+                return {4, nb::dtype<uint8_t>()};
+            case gl::Format::rg16:
+                return {2, nb::dtype<int16_t>()};
+            case gl::Format::rgba16:
+                return {4, nb::dtype<int16_t>()};
+            case gl::Format::r32f:
+                return {1, nb::dtype<float>()};
+            case gl::Format::r32ui:
+                return {1, nb::dtype<int32_t>()};
+            case gl::Format::rgba16f:
+                return {4, {uint8_t(nb::dlpack::dtype_code::Float), 16, 1}};
+            default:
+                return {4, nb::dtype<float>()};
+        }
+    }();
+    auto* held = new gl::CudaPixels(std::move(pixels));
+    nb::capsule owner(held, [](void* p) noexcept { delete static_cast<gl::CudaPixels*>(p); });
+    const size_t shape[3] = {size_t(held->height()), size_t(held->width()), kind.channels};
+    return nb::cast(nb::ndarray<>(reinterpret_cast<void*>(held->address()), 3, shape, owner, nullptr,
+                                  kind.type, nb::device::cuda::value, held->device()));
+}
+
+nb::object cuda_layers(SharedViewer& self, const std::vector<std::string>& layers, const nb::object& size,
+                       std::optional<int> samples, const std::string& instances_by,
+                       const std::map<std::string, int>& classes) {
+    dataset::TruthOptions options;
+    options.size = optional_size(size);
+    options.samples = samples;
+    options.instances_by = dataset::instances_by_named(instances_by);
+    options.classes = classes;
+    auto found =
+        self.run([&](Viewer& viewer) { return dataset::cuda_layers(viewer.session(), layers, options); });
+    if (!found) return nb::none();
+    nb::dict targets, result;
+    for (auto& [name, pixels] : found->targets) targets[name.c_str()] = target_to_dlpack(std::move(pixels));
+    result["targets"] = targets;
+    result["near"] = found->near;
+    result["far"] = found->far;
+    result["orthographic"] = found->orthographic;
+    result["R_cam_world"] = matrix_to_numpy(found->R_cam_world.cast<double>());
+    result["instance_ids"] = found->instance_ids;
     return result;
 }
 
@@ -181,6 +235,9 @@ void bind_ground_truth(nb::module_& module) {
                nb::arg("instances_by") = "object", nb::arg("classes") = std::map<std::string, int>(),
                nb::arg("previous").none() = nb::none(), nb::arg("next").none() = nb::none(),
                nb::arg("instances") = false, nb::arg("amodal") = true);
+    module.def("cuda_layers", cuda_layers, nb::arg("viewer"), nb::arg("layers"), nb::arg("size").none(),
+               nb::arg("samples").none(), nb::arg("instances_by"), nb::arg("classes"));
+    module.def("cuda_layer_names", [] { return dataset::cuda_layer_names(); });
     module.def("truth_layer_names", [] { return dataset::truth_layer_names(); });
     module.def(
         "rle_encode",

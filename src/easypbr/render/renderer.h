@@ -100,6 +100,9 @@ class Renderer {
     /// The picture as a texture, until another one is drawn; row 0 is the top.
     const gl::Texture& picture() const { return output_.texture(); }
 
+    /// What read_layer() reads, until something else is drawn.
+    const GBuffer& targets() const { return targets_; }
+
     /// RGBA, row 0 on top: u8, u16 or f32 by the encoding.
     Image read_picture() const;
     /// The first `width` x `height` pixels only: forces the picture to be finished.

@@ -1,0 +1,87 @@
+#include "easypbr/dataset/cuda_layers.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "easypbr/core/log.h"
+#include "easypbr/gl/context.h"
+
+namespace easypbr::dataset {
+namespace {
+
+/// Why the last picture's targets are not the layers; empty when they are.
+std::string obstacle(app::Session& session, const InstanceTable& table) {
+    if (!session.lens().is_identity()) return "the camera's lens distorts";
+    if (session.is_annotated()) return "a legend or colour bar is drawn into the picture";
+    if (table.has_parts()) return "instances are parts of objects";
+    return "";
+}
+
+std::vector<std::string> targets_of(const std::vector<std::string>& layers) {
+    static const std::map<std::string, std::string> targets = {
+        {"normal_camera", "normal"}, {"normal_world", "normal"}, {"albedo", "albedo"},
+        {"roughness", "material"},   {"metallic", "material"},   {"instance_id", "id"}};
+    std::vector<std::string> names;
+    for (const std::string& layer : layers)
+        if (const auto found = targets.find(layer); found != targets.end()) names.push_back(found->second);
+    if (!names.empty() || std::ranges::find(layers, "depth") != layers.end()) names.emplace_back("depth");
+    return names;
+}
+
+const gl::Texture& target(const render::GBuffer& targets, const std::string& name) {
+    return name == "normal"     ? targets.normal
+           : name == "albedo"   ? targets.albedo
+           : name == "material" ? targets.material
+           : name == "id"       ? targets.id
+                                : targets.depth;
+}
+
+}  // namespace
+
+const std::vector<std::string>& cuda_layer_names() {
+    static const std::vector<std::string> names = {"color",         "hdr",          "depth",
+                                                   "normal_camera", "normal_world", "albedo",
+                                                   "roughness",     "metallic",     "instance_id"};
+    return names;
+}
+
+std::optional<CudaLayers> cuda_layers(app::Session& session, const std::vector<std::string>& layers,
+                                      const TruthOptions& options) {
+    const gl::ContextScope scope(session.context());
+    const auto leave = [](const std::string& why) -> std::optional<CudaLayers> {
+        log_warning(fmt::format("CUDA: {}: layers are made on the CPU and copied to the GPU", why));
+        return std::nullopt;
+    };
+    if (!gl::cuda_device())
+        return leave(fmt::format("OpenGL draws on '{}', which is no CUDA device",
+                                 gl::Context::current().info().renderer));
+    CudaLayers result;
+    const app::Moment now = session.moment(options.size);
+    const InstanceTable table(now.scene, session.scene().names(), options.instances_by, options.classes);
+    app::PictureOptions picture{options.size, options.samples, app::Encoding::srgb8};
+    bool drawn = false;
+    for (const std::string name : {"hdr", "color"}) {
+        if (std::ranges::find(layers, name) == layers.end()) continue;
+        picture.encoding = name == "hdr" ? app::Encoding::scene_linear : app::Encoding::srgb8;
+        session.draw_centres(picture, true);
+        drawn = true;
+        if (const std::string why = obstacle(session, table); !why.empty()) return leave(why);
+        result.targets.emplace(name, gl::copy_to_cuda(session.renderer().picture()));
+    }
+    if (!drawn) session.draw_centres(picture, false);
+    if (const std::string why = obstacle(session, table); !why.empty()) return leave(why);
+    for (const std::string& name : targets_of(layers))
+        if (!result.targets.contains(name))
+            result.targets.emplace(name, gl::copy_to_cuda(target(session.renderer().targets(), name)));
+    result.near = now.camera.near;
+    result.far = now.camera.far;
+    result.orthographic = now.camera.projection == Projection::orthographic;
+    result.R_cam_world = now.camera.opencv_T_world_cam().topLeftCorner<3, 3>().transpose().cast<float>();
+    result.instance_ids.push_back(0);
+    for (size_t i = 0; i < now.scene.objects.size(); ++i)
+        result.instance_ids.push_back(table.instances()[table.of(i, 0)].id);
+    return result;
+}
+
+}  // namespace easypbr::dataset
