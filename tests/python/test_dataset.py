@@ -220,11 +220,34 @@ def test_impossible_specs_name_the_constraint():
     ("count = 0\n[[objects]]", "count: expected 1 or more"),
     ("count = ", "spec.toml"),
     ("[[objects]]\nrotation = 'sideways'", "rotation.*upright"),
+    ("seed = -1\n[[objects]]", "seed: expected 0 or more, got -1"),
+    ("[[objects]]\ncount = [3, 1]", r"objects\[0\].count: expected \[least, largest\], got \[3, 1\]"),
+    ("[[objects]]\n[[objects]]\nsize = -1.0", r"objects\[1\].size: expected more than 0, got -1"),
+    ("[[objects]]\nsize = nan", r"objects\[0\].size: expected more than 0, got nan"),
+    ("[image]\nsize = [0, 10]\n[[objects]]", r"image.size: expected 1 to 65536, got \[0, 10\]"),
+    ("[camera]\nfov_y_deg = 200.0\n[[objects]]", "camera.fov_y_deg: expected 0.001 to 179, got 200"),
+    ("[camera]\nK = [[nan, 0, 1], [0, 1, 1], [0, 0, 1]]\n[[objects]]", "camera: K: expected finite"),
+    ("[camera]\nK = [[0, 0, 1], [0, 1, 1], [0, 0, 1]]\n[[objects]]", "camera: expected K = .* with fx, fy > 0"),
+    ("[camera]\nK = [600, 0, 320, 0, 600, 240, 0, 0, 1]", "camera: K: expected rows of numbers"),
+    ("[camera]\ndistortion = [0.1]\n[[objects]]", "camera distortion: expected 4, 5 or 8"),
+    ("[occlusion]\ntries = 0\n[[objects]]", "occlusion.tries: expected 1 or more"),
+    ("[sensor]\nnoise = [-0.1, 0.1]\n[[objects]]", r"sensor.noise: expected 0 to 10, got \[-0.1, 0.1\]"),
+    ("writers = ['png']\n[[objects]]\ncount = [1, 65535]\n[[objects]]", "up to 65535 instances.*allows for 65536"),
 ])
 def test_bad_specs_say_what_is_wrong(tmp_path, text, message):
     (tmp_path / "spec.toml").write_text(text)
     with pytest.raises(ArgumentError, match=message):
         DatasetSpec.from_toml(tmp_path / "spec.toml")
+
+
+def test_files_that_are_no_specs_or_folders_are_named(tmp_path):
+    with pytest.raises(FileError, match="cannot read .*none.toml: No such file"):
+        DatasetSpec.from_toml(tmp_path / "none.toml")
+    (tmp_path / "spec.toml").write_bytes(b"\xff\xfe")
+    with pytest.raises(ArgumentError, match="spec.toml: .*utf-8"):
+        DatasetSpec.from_toml(tmp_path / "spec.toml")
+    with pytest.raises(FileError, match="cannot write .*spec.toml"):
+        generate(small(), tmp_path / "spec.toml", workers=1)
 
 
 def test_specs_are_files(tmp_path):

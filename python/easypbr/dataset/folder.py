@@ -1,5 +1,6 @@
 """The folder of a data set: files that are whole or not there."""
 
+import contextlib
 import ctypes
 import dataclasses
 import json
@@ -56,7 +57,8 @@ class FolderWriter:
             temporary.write_bytes(data)
             os.replace(temporary, path)
         except OSError as error:
-            temporary.unlink(missing_ok=True)
+            with contextlib.suppress(OSError):
+                temporary.unlink(missing_ok=True)
             raise FileError(f"cannot write {path}: {error.strerror}: free some space or choose another folder, "
                             "then start again: what is finished is kept") from None
 

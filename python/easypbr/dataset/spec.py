@@ -6,7 +6,7 @@ import tomllib
 import typing
 from pathlib import Path
 
-from ..errors import ArgumentError
+from ..errors import ArgumentError, FileError
 
 #: A number, or the least and the largest of a uniform distribution.
 Range = float | tuple[float, float]
@@ -145,11 +145,13 @@ class DatasetSpec:
 
     @classmethod
     def from_toml(cls, path) -> "DatasetSpec":
-        """Reads a spec; files in it are relative to the TOML file's folder. Raises ArgumentError naming the key."""
+        """Reads a spec; files in it are relative to the TOML file's folder. Raises ArgumentError naming the key, FileError."""
         path = Path(path)
         try:
-            values = tomllib.loads(path.read_text())
-        except tomllib.TOMLDecodeError as error:
+            values = tomllib.loads(path.read_text(encoding="utf-8"))
+        except OSError as error:
+            raise FileError(f"cannot read {path}: {error.strerror}") from None
+        except ValueError as error:  # of TOML, or of UTF-8
             raise ArgumentError(f"{path}: {error}") from None
         spec = _from_dict(cls, values, str(path))
         spec._resolve_files(path.parent)
@@ -164,6 +166,7 @@ class DatasetSpec:
 
     def check(self) -> None:
         """Raises ArgumentError naming the first value that cannot be."""
+        from .limits import check_camera, check_numbers
         from .writers import WRITERS
 
         choices = {
@@ -181,13 +184,10 @@ class DatasetSpec:
         for key, (value, allowed) in choices.items():
             if value not in allowed:
                 raise ArgumentError(f"dataset: {key}: expected {', '.join(allowed)}, got '{value}'{_nearest(value, allowed)}")
-        if self.count < 1:
-            raise ArgumentError(f"dataset: count: expected 1 or more, got {self.count}")
+        check_numbers(self)
+        check_camera(self)
         if not self.objects:
             raise ArgumentError("dataset: objects: expected at least one [[objects]]")
-        quality = self.sensor.jpeg_quality
-        if not all(1 <= value <= 100 for value in (quality if isinstance(quality, tuple) else (quality,))):
-            raise ArgumentError(f"dataset: sensor.jpeg_quality: expected 1 to 100, got {quality}")
         for name in self.writers:
             WRITERS[name].check(self)
         if self.background.mode in ("environment", "image") and not self.background.files:
@@ -251,7 +251,10 @@ def _tuple(hint, value, where: str) -> tuple:
     if kinds:
         kind = kinds[0]
         return tuple(_value(kind, item, where) for item in value)
-    return tuple(tuple(map(float, row)) for row in value)
+    try:
+        return tuple(tuple(map(float, row)) for row in value)
+    except (TypeError, ValueError):
+        raise ArgumentError(f"{where}: expected rows of numbers [[fx, 0, cx], [0, fy, cy], [0, 0, 1]], got {value!r}") from None
 
 
 def _word(hint) -> str:

@@ -367,11 +367,15 @@ class Exr(Writer):
 class Png(Writer):
     """depth/*.png (uint16, millimetres), normals/*.png and ids/*.png (uint16): what a fast loader reads."""
 
+    @classmethod
+    def check(cls, spec):
+        most = sum(entry.count[1] for entry in spec.objects if not entry.distractor)
+        if most > 65535:
+            _refuse("png", f"its 16 bits hold up to 65535 instances, and objects.count allows for {most}: choose exr or raw")
+
     def frame(self, frame):
         name = f"{frame.index:06d}.png"
         depth = np.rint(frame.depth * 1000)
-        if len(frame.objects) > 65535:
-            raise ArgumentError(f"dataset: writer png: 16 bits hold up to 65535 instances, frame {frame.index} has {len(frame.objects)}")
         return {f"depth/{name}": save16(np.where(depth < 65536, depth, 0).astype(np.uint16)),
                 f"normals/{name}": _png(np.rint(127.5 * (frame.normal + 1)).astype(np.uint8)),
                 f"ids/{name}": save16(frame.instance_id.astype(np.uint16))}
