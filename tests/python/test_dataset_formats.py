@@ -1,16 +1,19 @@
 """Lenses, models, motion and sensors of data sets, read back as the formats' users read them."""
 
+import io
 import json
 
 import numpy as np
 import pytest
+import trimesh
 from test_dataset import records, small
 from test_ground_truth import brown, fisheye
 
 import easypbr
-from easypbr import ArgumentError, shapes
+from easypbr import ArgumentError, Mesh, shapes
 from easypbr.dataset import CameraSpec, DatasetSpec, LightSpec, MotionSpec, ObjectSpec, OcclusionSpec, SensorSpec, generate
 from easypbr.dataset.frames import FrameMaker
+from easypbr.dataset.models import model_ply
 from easypbr.dataset.poses import diameter_of
 from easypbr.dataset.writers import encode_flow
 
@@ -100,6 +103,30 @@ def test_bop_poses_are_of_models_in_millimetres(tmp_path):
     sizes = [models["1"][f"size_{axis}"] for axis in "xyz"]
     np.testing.assert_allclose(sizes, [500, 250, 125], rtol=1e-5)
     np.testing.assert_allclose(models["1"]["diameter"], np.linalg.norm(sizes), rtol=1e-5)  # of a box its diagonal
+    assert [path.name for path in sorted((base / "models").iterdir())] == ["models_info.json", "obj_000001.ply"]
+    model = trimesh.load(base / "models/obj_000001.ply", process=False)  # another reader of PLY
+    low = [models["1"][f"min_{axis}"] for axis in "xyz"]
+    np.testing.assert_allclose(model.bounds, [low, np.add(low, sizes)], atol=1e-3)
+    assert (base / "models/obj_000001.ply").read_bytes().startswith(b"ply\nformat ascii 1.0\n")
+    box = shapes.box((2, 1, 0.5))
+    np.testing.assert_array_equal(model.faces, box.F)
+    np.testing.assert_allclose(model.vertex_normals, box.N, atol=1e-6)
+
+
+def test_bop_models_of_several_nodes_have_normals_and_colours(tmp_path):
+    """A pyramid without normals above another one, half as large: normals by hand, where four faces of equal angles meet."""
+    V = np.array([[1, 0, 1], [1, 0, -1], [-1, 0, -1], [-1, 0, 1], [0, 1, 0]], float)
+    F = np.array([[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]])
+    root, child = Mesh(V, F), Mesh(V / 2 + (0, 3, 0), F)
+    root.C = child.C = np.tile([1.0, 0.5, 0.0], (5, 1))
+    root.add_child(child)
+    root.save(tmp_path / "two.glb")
+    model = trimesh.load(io.BytesIO(model_ply(str(tmp_path / "two.glb"), 0.7)), file_type="ply", process=False)
+    assert len(model.faces) == 8
+    np.testing.assert_allclose(model.extents, [400, 700, 400], rtol=1e-6)  # 2 x 3.5 x 2 shown 0.7 m high
+    tops = model.vertices[:, 1] > model.vertices[:, 1].max() - 1e-3
+    np.testing.assert_allclose(model.vertex_normals[tops], [[0, 1, 0]], atol=1e-6)
+    np.testing.assert_array_equal(model.visual.vertex_colors[:, :3], np.tile([255, 128, 0], (len(model.vertices), 1)))
 
 
 def test_diameters():

@@ -30,7 +30,7 @@ class FolderWriter:
     def __init__(self, spec: DatasetSpec, folder: Path, classes: list[str]):
         self.folder = folder
         self.base = Writer(spec.image.format, classes)
-        self.writers = [WRITERS[name](spec.image.format, classes) for name in spec.writers]
+        self.writers = [WRITERS[name](spec.image.format, classes, spec) for name in spec.writers]
 
     def record_path(self, index: int) -> Path:
         return self.folder / "records" / f"{index:06d}.json"

@@ -61,6 +61,28 @@ class NextFrame:
     occluded: np.ndarray  #: the point is not seen in the next picture
 
 
+def class_of(entry: ObjectSpec) -> str:
+    """Its name, or that of its source."""
+    return entry.class_name or Path(entry.source.removeprefix("builtin:")).stem
+
+
+def files_of(entry: ObjectSpec) -> list[str]:
+    """The meshes that a source names; none for what is built in."""
+    if entry.source.startswith("builtin:"):
+        name = entry.source.removeprefix("builtin:")
+        if name not in content.BUILTIN:
+            raise ArgumentError(f"dataset: there is no builtin '{name}': expected {', '.join(content.BUILTIN)}")
+        return []
+    if os.path.isdir(entry.source):
+        known = {"." + extension.lstrip(".") for extension in readable_mesh_extensions()}
+        files = [str(p) for p in sorted(Path(entry.source).rglob("*")) if p.suffix.lower() in known]
+    else:
+        files = sorted(glob.glob(entry.source, recursive=True)) or [entry.source]
+    if not files:
+        raise ArgumentError(f"dataset: {entry.source}: the folder holds no mesh")
+    return files
+
+
 class FrameMaker:
     """Draws frames of a spec. Meshes and skies are kept from frame to frame; nothing else is."""
 
@@ -69,34 +91,14 @@ class FrameMaker:
         self.spec = spec
         self.classes = []
         for entry in spec.objects:
-            if not entry.distractor and self.class_of(entry) not in self.classes:
-                self.classes.append(self.class_of(entry))
+            if not entry.distractor and class_of(entry) not in self.classes:
+                self.classes.append(class_of(entry))
         self.skipped: list[str] = []
-        self._files = [self._find(entry) for entry in spec.objects]
+        self._files = [files_of(entry) for entry in spec.objects]
         self._meshes: dict[str, Mesh | None] = {}
         self._skies: dict[int, Environment] = {}
         self._scene = Scene()
         self._view = Viewer(spec.image.size, scene=self._scene)
-
-    @staticmethod
-    def class_of(entry: ObjectSpec) -> str:
-        """Its name, or that of its source."""
-        return entry.class_name or Path(entry.source.removeprefix("builtin:")).stem
-
-    def _find(self, entry: ObjectSpec) -> list[str]:
-        if entry.source.startswith("builtin:"):
-            name = entry.source.removeprefix("builtin:")
-            if name not in content.BUILTIN:
-                raise ArgumentError(f"dataset: there is no builtin '{name}': expected {', '.join(content.BUILTIN)}")
-            return []
-        if os.path.isdir(entry.source):
-            known = {"." + extension.lstrip(".") for extension in readable_mesh_extensions()}
-            files = [str(p) for p in sorted(Path(entry.source).rglob("*")) if p.suffix.lower() in known]
-        else:
-            files = sorted(glob.glob(entry.source, recursive=True)) or [entry.source]
-        if not files:
-            raise ArgumentError(f"dataset: {entry.source}: the folder holds no mesh")
-        return files
 
     def _mesh(self, path: str) -> Mesh | None:
         """The file's mesh; None when it cannot be read and that is to be skipped."""
@@ -170,7 +172,7 @@ class FrameMaker:
             self._scene.show(ground, "ground")
         self._view.refit()
         self._view.camera = camera
-        classes = {name: self.classes.index(self.class_of(e)) + 1 for name, e in entries.items() if not e.distractor}
+        classes = {name: self.classes.index(class_of(e)) + 1 for name, e in entries.items() if not e.distractor}
         self._view.settings["tonemap.exposure_compensation"] = draw(random, spec.sensor.exposure)
         data = self._view.render_layers(_LAYERS, samples=spec.image.samples, classes=classes)
         return data, camera, entries
@@ -248,7 +250,7 @@ class FrameMaker:
                 mesh.T_parent_mesh = T
                 return
         raise ArgumentError(
-            f"dataset: placement.collisions = false: no room for another '{self.class_of(entry)}' of {size:.3g} m in "
+            f"dataset: placement.collisions = false: no room for another '{class_of(entry)}' of {size:.3g} m in "
             f"{given.tries} tries: enlarge placement.{'distance' if given.mode == 'frustum' else 'radius'}, or show fewer or "
             "smaller objects"
         )
@@ -294,7 +296,7 @@ class FrameMaker:
         objects = []
         for place, instance in enumerate(wanted):
             numbers[instance.id] = place + 1
-            entry = _annotation(instance, self.class_of(counted[instance.name]))
+            entry = _annotation(instance, class_of(counted[instance.name]))
             if "bop" in self.spec.writers:
                 scale = np.linalg.norm(instance.T_cam_obj[:3, 0])
                 entry["diameter"] = float(diameter_of(vertices_of(self._scene.get(instance.name))) * scale)

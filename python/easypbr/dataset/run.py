@@ -13,7 +13,7 @@ from pathlib import Path
 from .. import _easypbr
 from ..errors import ArgumentError
 from .folder import FolderWriter, claim, keep_memory
-from .frames import FrameMaker
+from .frames import FrameMaker, class_of
 from .report import contact_sheet, statistics_page
 from .spec import DatasetSpec
 
@@ -160,8 +160,8 @@ def _finish(spec: DatasetSpec, folder: Path) -> dict:
     records = [json.loads((folder / "records" / f"{i:06d}.json").read_text()) for i in range(spec.count)]
     classes: list[str] = []
     for entry in spec.objects:
-        if not entry.distractor and FrameMaker.class_of(entry) not in classes:
-            classes.append(FrameMaker.class_of(entry))
+        if not entry.distractor and class_of(entry) not in classes:
+            classes.append(class_of(entry))
     writer = FolderWriter(spec, folder, classes)
     for format_writer in writer.writers:
         for name, data in format_writer.finish(records, folder).items():

@@ -9,6 +9,7 @@ import numpy as np
 
 from .. import _easypbr
 from ..errors import ArgumentError
+from .models import model_ply, single_model
 
 
 def _json(value) -> bytes:
@@ -47,8 +48,8 @@ def decode_rle(rle: dict) -> np.ndarray:
 class Writer:
     """The base of all: nothing is written."""
 
-    def __init__(self, image_format: str, classes: list[str]):
-        self.image_format, self.classes = image_format, classes
+    def __init__(self, image_format: str, classes: list[str], spec=None):
+        self.image_format, self.classes, self.spec = image_format, classes, spec
 
     @classmethod
     def check(cls, spec) -> None:
@@ -212,7 +213,7 @@ class Bop(Writer):
             info[key] = [self._info(entry) for entry in record["objects"]]
         base = "bop/000000"
         return {f"{base}/scene_camera.json": _json(camera), f"{base}/scene_gt.json": _json(truth),
-                f"{base}/scene_gt_info.json": _json(info), "bop/models/models_info.json": _json(self._models(truth))}
+                f"{base}/scene_gt_info.json": _json(info), **self._models(truth)}
 
     @staticmethod
     def _pose(entry):
@@ -225,17 +226,13 @@ class Bop(Writer):
         return {"cam_R_m2c": (T[:3, :3] / scale).ravel().tolist(), "cam_t_m2c": (1000 * T[:3, 3]).tolist(),
                 "obj_id": entry["category_id"], "model": {"diameter": 1000 * entry["diameter"], **model}}
 
-    @staticmethod
-    def _models(truth) -> dict:
-        """Models of the classes whose objects are all of one."""
-        shown: dict[int, list] = {}
-        for entries in truth.values():
-            for entry in entries:
-                shown.setdefault(entry["obj_id"], []).append(entry["model"])
-        # The sizes of one model differ by the rounding of poses.
-        same = {key: models[0] for key, models in sorted(shown.items())
-                if np.allclose([list(m.values()) for m in models], list(models[0].values()), rtol=1e-5, atol=1e-3)}
-        return {str(key): model for key, model in same.items()}
+    def _models(self, truth) -> dict[str, bytes]:
+        """models_info.json and the meshes of the classes whose objects are all of one file and size."""
+        info = {entry["obj_id"]: entry["model"] for entries in truth.values() for entry in entries}
+        sources = {number: single_model(self.spec, name) for number, name in enumerate(self.classes, 1)}
+        files = {f"bop/models/obj_{number:06d}.ply": model_ply(*source) for number, source in sources.items() if source and number in info}
+        known = {str(number): info[number] for number, source in sources.items() if source and number in info}
+        return {"bop/models/models_info.json": _json(known), **files}
 
     @staticmethod
     def _info(entry):
