@@ -397,6 +397,10 @@ def detection() -> np.ndarray:
     return trained("detect_drones.py", "detection.png")
 
 
+def segmentation() -> np.ndarray:
+    return trained("segment_clouds.py", "segmentation.png")
+
+
 def own_shading() -> np.ndarray:
     """The picture of examples/07_own_shading.py."""
     with tempfile.TemporaryDirectory() as folder:
@@ -420,7 +424,7 @@ def outline() -> np.ndarray:
 
 PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion,
             bloom, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
-            viewer_slices, viewer_path, viewer_lights, viewer_own, detection, own_shading, outline]
+            viewer_slices, viewer_path, viewer_lights, viewer_own, segmentation, detection, own_shading, outline]
 
 
 if __name__ == "__main__":
