@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from easypbr import ArgumentError, Camera, Scene, UnknownNameError, Viewer, shapes
+from easypbr import ArgumentError, Camera, ContextError, Scene, UnknownNameError, Viewer, shapes
 
 K = np.array([[210, 0, 70.3], [0, 190, 41.9], [0, 0, 1.0]])
 #: At the origin, looking along the world's -z, y up.
@@ -199,3 +199,15 @@ def test_elements_of_points_on_top_of_faces():
     for y, x in [*np.argwhere(on_face)[::500], *np.argwhere(seen & ~on_face)[::50]]:
         pick = view.pick(x + 0.5, y + 0.5, size=(90, 90))
         assert (pick.element, pick.is_face) == (data["face_id"][y, x], on_face[y, x])
+
+
+def test_layers_are_as_large_as_the_driver_draws():
+    """Tiles are of pictures: what is beyond one piece is refused with the limit, and what is within is whole."""
+    scene = Scene()
+    scene.show(shapes.sphere(), "ball")
+    view = Viewer((64, 48), scene=scene)
+    # Wider than a tile of pictures (8192).
+    data = view.render_layers(["depth", "instances"], size=(9000, 16), samples=1)
+    assert data["instances"][0].pixels_visible == (data["depth"] > 0).sum() > 0
+    with pytest.raises(ContextError, match="40000x16 is beyond this driver's limit of [0-9]+x[0-9]+"):
+        view.render_layers(["depth"], size=(40000, 16))
