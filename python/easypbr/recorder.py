@@ -84,8 +84,12 @@ class Recorder:
         before = self._handle.camera_state
         camera = viewer.camera
         try:
+            times = path.frame_times(fps) if frames is None else path.times(frames)
             with self.start(out, fps, size, samples, codec):
-                for number, seconds in enumerate(path.frame_times(fps) if frames is None else path.times(frames)):
+                # A closed path was on its way before the first frame; on an open one the camera rests until then.
+                step = times[1] - times[0] if len(times) > 1 else 1 / fps
+                self._handle.begin_motion(path.camera(times[0] - step, camera))
+                for number, seconds in enumerate(times):
                     if on_frame is not None:
                         on_frame(number, seconds)
                     viewer.camera = path.camera(seconds, camera)

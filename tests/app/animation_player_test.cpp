@@ -72,6 +72,29 @@ TEST_F(Player, SpeedAndLoop) {
     EXPECT_NEAR(x(), 2, 1e-12);
 }
 
+TEST_F(Player, TellsHowThingsMoved) {
+    EXPECT_TRUE(player_.motion(1).empty());
+    player_.add("box", animations_);
+    player_.play(0);
+    const auto moved = [&](double seconds) {
+        const auto motion = player_.motion(seconds);
+        EXPECT_EQ(motion.size(), 1u);
+        EXPECT_TRUE(motion[0].first == box_);
+        return motion[0].second.translation().x();
+    };
+    player_.pause();
+    player_.seek(2);
+    EXPECT_NEAR(moved(1), -0.5, 1e-12);  // at half a unit a second
+    player_.set_speed(0.5);
+    EXPECT_NEAR(moved(1), -0.25, 1e-12);
+    player_.set_speed(1);
+    player_.seek(0.5);
+    EXPECT_NEAR(moved(1), -0.25, 1e-12);  // It began half a second ago.
+    player_.seek(4.5);
+    EXPECT_NEAR(moved(1), 1.5, 1e-12);  // It went around: a second ago it was at 1.75, now it is at 0.25.
+    EXPECT_NEAR(x(), 0.25, 1e-12);      // Nothing was moved by the question.
+}
+
 TEST_F(Player, KnowsOtherFilesAndRefusesWhatThereIsNot) {
     EXPECT_THROW(player_.resume(), ArgumentError);
     EXPECT_THROW(player_.seek(1), ArgumentError);

@@ -42,6 +42,27 @@ TEST_P(ViewPoints, PixelsAndPointsAreInverse) {
     }
 }
 
+TEST(ViewPoints, ALensAndItsInverse) {
+    Camera camera = Camera::look_at(Vec3d(1, 2, 6), Vec3d(0, 0, 0));
+    camera.intrinsics = Intrinsics{300, 310, 190, 140, 400, 300, 5};
+    camera.distortion =
+        Distortion::from_coefficients(DistortionModel::brown_conrady, {-0.3, 0.1, 0.01, 0.02});
+    const Vec2i size(800, 600);
+    for (const Vec2d& pixel : {Vec2d(0, 0), Vec2d(400, 300), Vec2d(799, 20), Vec2d(100, 580)})
+        EXPECT_LT(
+            (pixel_of(camera, point_at(camera, pixel, size, 3.5), size) - Vec3d(pixel.x(), pixel.y(), 3.5))
+                .norm(),
+            1e-8);
+    // A lens moves what is off its axis, and a fold of it is no error.
+    Camera pinhole = camera;
+    pinhole.distortion.reset();
+    EXPECT_GT((point_at(camera, {0, 0}, size, 1) - point_at(pinhole, {0, 0}, size, 1)).norm(), 0.01);
+    camera.distortion = Distortion::from_coefficients(DistortionModel::brown_conrady, {-1, 0, 0, 0});
+    EXPECT_TRUE(point_at(camera, {0, 0}, size, 1).allFinite());
+    EXPECT_TRUE(pixel_of(camera, camera.T_world_cam * Vec3d(3, 0, -1), size).allFinite());
+    EXPECT_TRUE(pixel_of(camera, camera.T_world_cam * Vec3d(0, 0, 1), size).allFinite());
+}
+
 TEST_P(ViewPoints, TheMiddleOfThePictureIsTheTarget) {
     const ViewPoint view = with_projection(GetParam());
     EXPECT_LT((point_at(view.camera, Vec2d(400, 300), size, 5) - view.target).norm(), exact);

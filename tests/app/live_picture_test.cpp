@@ -68,6 +68,58 @@ TEST(Refine, BeginsAnewWhenAnythingChanges) {
     EXPECT_TRUE(began_after([&] { session.pick({1, 1}); }));
 }
 
+void distort(Session& session) {
+    Camera camera = Camera::look_at(Vec3d(0, 0, 5), Vec3d(0, 0, 0));
+    camera.intrinsics = Intrinsics{80, 80, 32, 24, 64, 48, 4};
+    camera.distortion =
+        Distortion::from_coefficients(DistortionModel::brown_conrady, {-0.3, 0.1, 0.01, 0.02});
+    session.set_camera(camera);
+}
+
+TEST(Refine, ShowsTheLensAsTheStillDoes) {
+    Session session = ball_session(), plain = ball_session();
+    distort(session);
+    const Image still = session.render();
+    while (session.refine().frames < 4) continue;
+    EXPECT_EQ(session.last_picture().width(), 64);
+    EXPECT_TRUE(same(session.last_picture(), still));
+    EXPECT_FALSE(session.refine().drew);
+    // Also when something is looked up meanwhile, and when the lens is taken off again.
+    session.pick({32, 24});
+    EXPECT_TRUE(same(session.last_picture(), still));
+    EXPECT_FALSE(session.refine().drew);
+    const Camera pinhole = Camera::look_at(Vec3d(0, 0, 5), Vec3d(0, 0, 0));
+    session.set_camera(pinhole);
+    plain.set_camera(pinhole);
+    while (session.refine().frames < 4) continue;
+    EXPECT_TRUE(same(session.last_picture(), plain.render()));
+}
+
+TEST(Refine, ShowsMotionAsTheStillDoes) {
+    const auto blurred_session = [] {
+        Session session = ball_session();
+        session.settings().motion_blur.enabled = true;
+        session.settings().motion_blur.shutter = 1;
+        session.set_camera(Camera::look_at(Vec3d(0, 0, 5), Vec3d(0, 0, 0)));
+        return session;
+    };
+    Session session = blurred_session(), other = blurred_session();
+    const Camera from = Camera::look_at(Vec3d(0.5, 0, 5), Vec3d(0.5, 0, 0));
+    other.begin_motion(from);
+    const Image still = other.render(), sharp = other.render();
+    ASSERT_FALSE(same(still, sharp));
+    const auto motion = std::make_shared<const Motion>(session.scene().snapshot(), from);
+    while (session.refine({}, true, motion).frames < 4) continue;
+    EXPECT_TRUE(same(session.last_picture(), still));
+    EXPECT_FALSE(session.refine({}, true, motion).drew);
+    EXPECT_TRUE(session.refine({}, true).began);
+    while (session.refine().frames < 4) continue;
+    EXPECT_TRUE(same(session.last_picture(), sharp));
+    session.settings().motion_blur.enabled = false;
+    while (session.refine({}, true, motion).frames < 4) continue;
+    EXPECT_TRUE(same(session.last_picture(), sharp));
+}
+
 TEST(Refine, PickingLeavesAFinishedPictureAlone) {
     Session session = ball_session();
     while (session.refine().frames < 4) continue;
@@ -100,6 +152,32 @@ TEST(Pick, FindsTheFaceAndThePositionOnTheBall) {
     EXPECT_LT(outside.norm(), 1e-5);
     EXPECT_FALSE(session.pick({1, 1}, size));
     EXPECT_FALSE(session.pick({-5, 900}, size));
+}
+
+// The plane z = 0 is 5 before the camera everywhere: what is picked has to lie where the lens's own formula
+// brings it back to the pixel's centre from.
+TEST(Pick, FindsPositionsThroughTheLens) {
+    Session session;
+    session.scene().show(make_plane(20), "plane");
+    session.scene().get("plane").set_T_parent_mesh(
+        Eigen::Affine3d(Eigen::AngleAxisd(pi / 2, Vec3d::UnitX())));
+    distort(session);
+    const Camera camera = session.camera();
+    int picked = 0;
+    for (const Vec2d& pixel : {Vec2d(32, 24), Vec2d(3.5, 2.5), Vec2d(60.5, 40.5), Vec2d(10.5, 44.5)}) {
+        const std::optional<Pick> pick = session.pick(pixel, Vec2i(64, 48));
+        ASSERT_TRUE(pick);
+        ++picked;
+        EXPECT_NEAR(pick->position.z(), 0, 1e-5);  // the depth's float32
+        const Vec2d seen =
+            camera.distortion->distort(pick->position.head<2>().cwiseProduct(Vec2d(1, -1)) / 5);
+        // 80 pixels of focal length, a skew of 4; from pixel centres at integers to our count.
+        const Vec2d back(80 * seen.x() + 4 * seen.y() + 32.5, 80 * seen.y() + 24.5);
+        const Vec2d centre(std::floor(pixel.x()) + 0.5, std::floor(pixel.y()) + 0.5);
+        EXPECT_LT((back - centre).norm(), 1e-3) << pixel.transpose();
+        EXPECT_LT((pixel_of(camera, pick->position, Vec2i(64, 48)).head<2>() - centre).norm(), 1e-6);
+    }
+    EXPECT_EQ(picked, 4);
 }
 
 TEST(Pick, NamesPartsAndPoints) {

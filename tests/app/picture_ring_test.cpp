@@ -17,7 +17,8 @@ class PictureRings : public testing::Test {
     PictureRings() {
         Mesh ball = make_sphere(1, 16);
         const Eigen::Index faces = ball.F().rows();
-        ball.set_labels(Array1i(Array1i::Dense::Constant(faces, 1, 10)), built_in_label_map("semantic_kitti"));
+        ball.set_labels(Array1i(Array1i::Dense::Constant(faces, 1, 10)),
+                        built_in_label_map("semantic_kitti"));
         scene_.show(ball, "ball");
         session_.settings().image.size = Vec2i(64, 48);
         session_.settings().image.samples = 2;

@@ -126,6 +126,38 @@ TEST_F(Recordings, FramesAreTheStills) {
     EXPECT_FALSE(fs::exists(folder_ / "f_05.png"));
 }
 
+// Whatever was drawn before: the camera of a closed path comes from the frame that would be before the first,
+// on an open one it rests.
+TEST_F(Recordings, TheFirstFrameIsBlurredLikeTheOthers) {
+    session_.settings().motion_blur.enabled = true;
+    session_.settings().image.samples = 8;
+    const Camera start = session_.camera();
+    Camera elsewhere = start;
+    elsewhere.T_world_cam.translation() += Vec3d(0.5, 0, 0);
+    const auto first_frame = [&](const CameraPath& path) {
+        session_.set_camera(elsewhere);
+        session_.render();
+        session_.set_camera(start);
+        recorder_.record_path(path, folder_ / "b_%d.png", {}, 6);
+        return io::load_image(folder_ / "b_0.png");
+    };
+    const auto still_after = [&](const Camera& before) {
+        session_.set_camera(before);
+        session_.render();
+        session_.set_camera(start);
+        return session_.render();
+    };
+    const auto same = [](const Image& a, const Image& b) { return std::ranges::equal(a.bytes(), b.bytes()); };
+    const Mesh box = make_box();  // A ball looks the same from everywhere.
+    scene_.show(box, "sphere");
+    const CameraPath closed = CameraPath::orbit(start, Vec3d::Zero());
+    const CameraPath open = CameraPath::orbit(start, Vec3d::Zero(), Vec3d::UnitY(), 90);
+    const Image sharp = still_after(start), blurred = still_after(closed.camera(closed.times(6)[5], start));
+    EXPECT_FALSE(same(sharp, blurred));
+    EXPECT_TRUE(same(first_frame(closed), blurred));
+    EXPECT_TRUE(same(first_frame(open), sharp));
+}
+
 TEST_F(Recordings, TheClockMakesStepsOfAFrame) {
     recorder_.start(folder_ / "a", {.fps = 10});
     EXPECT_TRUE(recorder_.is_recording());

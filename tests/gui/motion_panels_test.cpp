@@ -304,5 +304,71 @@ TEST_F(MotionPanels, AnimationsPlayPauseAndScrub) {
     EXPECT_TRUE(player_.is_playing());
 }
 
+/// The still of the view's size that comes after a picture of what `before` has done, which `after` undoes.
+Image still_after(app::Session& session, const std::function<void()>& before,
+                  const std::function<void()>& after) {
+    before();
+    session.render({size, 1});
+    after();
+    return session.render({size, session.settings().image.samples});
+}
+
+bool same(const Image& a, const Image& b) {
+    return std::ranges::equal(a.bytes(), b.bytes());
+}
+
+// At rest the view shows what a recording's frame shows at this time: what happened since the frame before.
+TEST_F(MotionPanels, AnAnimationAtRestIsBlurred) {
+    view_.state().show_panels = false;
+    look_from({0, 1, 5});
+    AnimationNode node;
+    node.mesh = session_.scene().get("ball");
+    player_.add("ball", Animations({{node}, {}, {slide("slide")}}));
+    session_.settings().motion_blur.enabled = true;
+    session_.settings().motion_blur.shutter = 1;
+    session_.settings().image.samples = 6;
+    view_.state().form.fps = 2;  // A frame before the ball was a quarter of a unit to the left.
+    player_.play(0);
+    player_.pause();
+    player_.seek(2);
+    settle();
+    const Image shown = session_.last_picture();
+    const auto put = [&](double time) { return [this, time] { player_.seek(time); }; };
+    EXPECT_TRUE(same(shown, still_after(session_, put(1.5), put(2))));
+    const Image sharp = still_after(session_, put(2), put(2));
+    EXPECT_FALSE(same(shown, sharp));
+    // Twice as fast is twice as far.
+    player_.set_speed(2);
+    step();
+    settle();
+    EXPECT_TRUE(same(session_.last_picture(), still_after(session_, put(1), put(2))));
+    session_.settings().motion_blur.enabled = false;
+    settle();
+    const Image off = session_.last_picture();
+    EXPECT_TRUE(same(off, session_.render({size, 6})));
+}
+
+TEST_F(MotionPanels, ACameraThatRestsOnItsPathIsBlurred) {
+    session_.scene().show(make_box(), "ball");
+    three_keys();
+    session_.settings().motion_blur.enabled = true;
+    session_.settings().image.samples = 4;
+    const CameraPath path = *view_.state().path.path();
+    view_.state().form.fps = 4;
+    view_.state().path.seek(0.7);
+    settle();
+    const Image shown = session_.last_picture();
+    const auto look = [&](double time) {
+        return [this, time, &path] { session_.set_camera(path.camera(time, session_.camera())); };
+    };
+    EXPECT_TRUE(same(shown, still_after(session_, look(0.45), look(0.7))));
+    // Elsewhere it has not come along the path.
+    look_from({1, 1, 5});
+    settle();
+    const Image sharp = session_.last_picture();
+    const auto nothing = [] {};
+    EXPECT_TRUE(same(sharp, still_after(session_, nothing, nothing)));
+}
+
 }  // namespace
 }  // namespace easypbr::gui

@@ -92,6 +92,22 @@ def test_path_as_a_shape():
     np.testing.assert_allclose(np.linalg.norm(mesh.V, axis=1), 5, rtol=1e-6)
 
 
+def test_the_first_frame_of_a_turn_is_blurred_like_the_others(view, size, tmp_path):
+    view.settings.motion_blur.enabled = True
+    path, camera = view.turntable(1), view.camera
+    times = path.times(6)
+    view.recorder.record_path(path, tmp_path / "f_%d.png", frames=6, samples=8)
+    stills = []
+    for before in (times[-1], times[0]):
+        view.camera = path.camera(before, camera)
+        view.render(samples=1)
+        view.camera = path.camera(times[0], camera)
+        stills.append(view.render(samples=8))
+    frame = load_image(tmp_path / "f_0.png")
+    np.testing.assert_array_equal(frame, stills[0])
+    assert (frame != stills[1]).any()
+
+
 def test_record_path(view, size, tmp_path):
     before = view.camera.T_world_cam
     seen = []

@@ -99,6 +99,14 @@ void AnimationPlayer::set_speed(double speed) {
     speed_ = speed;
 }
 
+std::vector<std::pair<Mesh, Eigen::Affine3d>> AnimationPlayer::motion(double seconds) const {
+    if (empty()) return {};
+    const Place place = places_[current_];
+    const double now = time(), before = now - seconds * speed_;
+    return files_[place.file].animations.motion(place.index, now >= 0 ? std::max(before, 0.0) : before, now,
+                                                loop_);
+}
+
 void AnimationPlayer::update() {
     if (playing_) apply();
 }

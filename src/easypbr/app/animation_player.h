@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "easypbr/app/clock.h"
@@ -49,6 +50,10 @@ class AnimationPlayer {
     /// Whether it goes around; else it rests at its end.
     void set_loop(bool loop) { loop_ = loop; }
     bool loops() const { return loop_; }
+
+    /// How the animation's meshes moved in the `seconds` of the clock before now, playing or not; see
+    /// Animations::motion(). At its beginning the animation has not moved.
+    std::vector<std::pair<Mesh, Eigen::Affine3d>> motion(double seconds) const;
 
     /// After the clock's tick: puts the meshes where they are now, while it plays.
     void update();

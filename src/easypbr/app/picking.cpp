@@ -9,7 +9,8 @@ namespace easypbr::app {
 std::optional<Pick> PickBuffer::at(Vec2d pixel) const {
     const int x = int(std::floor(pixel.x())), y = int(std::floor(pixel.y()));
     if (x < 0 || y < 0 || x >= size().x() || y >= size().y()) return {};
-    const size_t at = size_t(y) * size_t(size().x()) + size_t(x);
+    size_t at = size_t(y) * size_t(size().x()) + size_t(x);
+    if (!lens_->is_identity()) at = lens_->nearest(at);
     if (frame_.object[at] == 0) return {};
     const SceneSnapshot::Object& seen = frame_.scene.objects[frame_.object[at] - 1];
     Pick pick;
@@ -22,7 +23,7 @@ std::optional<Pick> PickBuffer::at(Vec2d pixel) const {
     }
     pick.depth = double(frame_.depth[at]);
     // Depths are those of the pixels' centres.
-    pick.position = point_at(frame_.camera, Vec2d(x + 0.5, y + 0.5), size(), pick.depth);
+    pick.position = point_at(camera_, Vec2d(x + 0.5, y + 0.5), size(), pick.depth);
     return pick;
 }
 

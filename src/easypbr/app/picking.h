@@ -1,9 +1,11 @@
 // What is seen where: objects, their parts and elements, and positions, pixel by pixel.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 
+#include "easypbr/app/lens.h"
 #include "easypbr/render/surface_frame.h"
 
 namespace easypbr::app {
@@ -22,16 +24,20 @@ struct Pick {
 /// The surfaces of one view, kept so that a pointer that moves over them asks for no drawing.
 class PickBuffer {
   public:
-    explicit PickBuffer(render::SurfaceFrame frame) : frame_(std::move(frame)) {}
+    /// What was drawn for the camera's lens, and the camera that the picture shows.
+    PickBuffer(render::SurfaceFrame frame, Camera camera, std::shared_ptr<const LensMap> lens)
+        : frame_(std::move(frame)), camera_(std::move(camera)), lens_(std::move(lens)) {}
 
     /// What is seen in the pixel that the point lies in, counted from the picture's top left corner; nothing
     /// where there is no surface or outside of the picture. Lines are no surface: what is behind them counts.
     std::optional<Pick> at(Vec2d pixel) const;
 
-    Vec2i size() const { return frame_.size; }
+    Vec2i size() const { return lens_->is_identity() ? frame_.size : lens_->size; }
 
   private:
     render::SurfaceFrame frame_;
+    Camera camera_;
+    std::shared_ptr<const LensMap> lens_;
 };
 
 }  // namespace easypbr::app

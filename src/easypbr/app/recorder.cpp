@@ -163,6 +163,9 @@ int Recorder::record_path(const CameraPath& path, const fs::path& file, const Re
     const Camera camera = session_.resolve(options.size).camera;
     start(file, options);
     FrameProgress progress(file, int(times.size()));
+    // A closed path was on its way before the first frame; on an open one the camera rests until then.
+    const double step = times.size() > 1 ? times[1] - times[0] : 1 / options.fps;
+    session_.begin_motion(path.camera(times[0] - step, camera));
     try {
         for (size_t i = 0; i < times.size(); ++i) {
             progress.report(int(i));

@@ -57,8 +57,10 @@ class Recorder {
     /// Called before a frame is drawn with its number, how many there are, and its time on the path.
     using BeforeFrame = std::function<void(int frame, int count, double time_s)>;
     /// Records the camera on its way: path.frame_times(fps), or `frames` times evenly over the path. The
-    /// camera is afterwards what it was. Progress with the time left is reported (report_progress()). Returns
-    /// the number of frames. Throws as start() and add_frame() do; what was recorded until then is finished.
+    /// camera is afterwards what it was. The first frame's motion is that of a closed path, and of objects
+    /// that before_frame() moves; an open path begins at rest. Progress with the time left is reported
+    /// (report_progress()). Returns the number of frames. Throws as start() and add_frame() do; what was
+    /// recorded until then is finished.
     int record_path(const CameraPath& path, const std::filesystem::path& file,
                     const RecordingOptions& options = {}, std::optional<int> frames = std::nullopt,
                     const BeforeFrame& before_frame = {});

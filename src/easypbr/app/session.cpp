@@ -202,7 +202,8 @@ void Session::draw_frame(const PictureOptions& options) {
 void Session::begin_frame(const PictureOptions& options) {
     Prepared prepared = prepare(options);
     if (const auto begin = std::exchange(motion_begin_, std::nullopt))
-        motion_ = std::make_shared<const Motion>(*begin, prepared.resolved.camera);
+        motion_ =
+            std::make_shared<const Motion>(begin->first, begin->second.value_or(prepared.resolved.camera));
     if (settings_.motion_blur.enabled) prepared.options.motion = motion_;
     apply_lens(prepared);
     refined_.reset();
@@ -225,7 +226,7 @@ bool Session::Refined::is_of(const Prepared& other, const render::SettingsImages
     const auto same_texture = [&](const NamedTexture& named) {
         return (images.textures.*named.texture).image == (other_images.textures.*named.texture).image;
     };
-    return a.size == b.size && a.samples == b.samples && a.encoding == b.encoding &&
+    return a.size == b.size && a.samples == b.samples && a.encoding == b.encoding && a.motion == b.motion &&
            images.background == other_images.background && prepared.passes == other.passes &&
            images.textures.shader == other_images.textures.shader &&
            images.shader_files == other_images.shader_files &&
@@ -234,8 +235,9 @@ bool Session::Refined::is_of(const Prepared& other, const render::SettingsImages
            same_settings(prepared.resolved.settings, other.resolved.settings);
 }
 
-Session::Refinement Session::refine(const PictureOptions& options, bool finish) {
+Session::Refinement Session::refine(const PictureOptions& options, bool finish, const RefinedMotion& motion) {
     Prepared prepared = prepare(options);
+    if (settings_.motion_blur.enabled) prepared.options.motion = motion;
     Refinement done;
     done.total = prepared.options.samples;
     done.began = !refined_ || !refined_->is_of(prepared, settings_images_);
@@ -246,12 +248,12 @@ Session::Refinement Session::refine(const PictureOptions& options, bool finish) 
     if (done.began) {
         refined_.reset();
         tiled_ = {};
-        // What is refined is shown as it is drawn: a window has no lens.
-        lens_ = std::make_shared<const LensMap>();
-        lens_key_.clear();
+        const Vec2i asked = prepared.options.size;
+        apply_lens(prepared);
         renderer.begin(prepared.scene, prepared.resolved, prepared.options, settings_images_);
         annotate(prepared);
         latch_from(prepared);
+        prepared.options.size = asked;  // What the next call compares with.
         refined_ = std::make_unique<Refined>(std::move(prepared), settings_images_);
     }
     done.drew = true;
@@ -270,14 +272,22 @@ uint64_t Session::picture_version(std::optional<Vec2i> size) {
 }
 
 PickBuffer Session::pick_buffer(std::optional<Vec2i> size) {
-    const Prepared prepared = prepare({size, 1, Encoding::srgb8});
-    // A complete picture stays what it is; one that is being refined has to begin again.
+    Prepared prepared = prepare({size, 1, Encoding::srgb8});
+    const Camera camera = prepared.resolved.camera;
+    // A complete picture stays what it is, and with it its lens; one that is being refined has to begin
+    // again.
     if (refined_ && refined_->frames < refined_->prepared.options.samples) refined_.reset();
+    const auto lens_before = lens_;
+    const auto key_before = lens_key_;
+    apply_lens(prepared);
     render::Renderer& renderer = this->renderer();
     const gl::ContextScope scope(*context_);
     renderer.draw_surfaces(prepared.scene, prepared.resolved, prepared.options.size, settings_images_);
     latch_from(prepared);
-    return PickBuffer(renderer.read_surfaces());
+    PickBuffer surfaces(renderer.read_surfaces(), camera, lens_);
+    lens_ = lens_before;
+    lens_key_ = key_before;
+    return surfaces;
 }
 
 ViewPoint Session::view_point(std::optional<Vec2i> size) {

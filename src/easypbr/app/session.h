@@ -114,9 +114,11 @@ class Session {
     /// With motion_blur.enabled a picture of several samples shows how things moved since the picture before.
     /// After this the next one shows none: nothing is known of before.
     void forget_motion() { motion_.reset(); }
-    /// The next picture's motion begins where things are now, as if they had been drawn from where its camera
-    /// is.
-    void begin_motion() { motion_begin_ = scene_.snapshot(); }
+    /// The next picture's motion begins where things are now, as if they had been drawn from this camera;
+    /// none: from where the picture's own is.
+    void begin_motion(const std::optional<Camera>& from = std::nullopt) {
+        motion_begin_.emplace(scene_.snapshot(), from);
+    }
 
     /// Names of what is visible; the layer "id" holds 1 + the place in this list.
     std::vector<std::string> object_names() const;
@@ -128,13 +130,16 @@ class Session {
     /// A picture that gets better with every call: one more frame of draw_frame()'s, whose picture it is, bit
     /// for bit, after the last. Begins anew when anything that is drawn has changed, or when something else
     /// was drawn meanwhile; does nothing when all frames are there. Without `finish`, the frame is added but
-    /// the picture stays as it was.
+    /// the picture stays as it was. What it shows of motion is `motion`, not what was drawn before; another
+    /// object begins anew.
+    using RefinedMotion = std::shared_ptr<const Motion>;
     struct Refinement {
         int frames = 0, total = 0;
         bool began = false;  ///< with this call
         bool drew = false;   ///< in this call
     };
-    Refinement refine(const PictureOptions& options = {}, bool finish = true);
+    Refinement refine(const PictureOptions& options = {}, bool finish = true,
+                      const RefinedMotion& motion = {});
 
     /// A number that grows whenever a picture of this size would be another one.
     uint64_t picture_version(std::optional<Vec2i> size = std::nullopt);
@@ -239,7 +244,7 @@ class Session {
     Timing timing_;
     bool warned_of_lens_ = false, warned_of_surfels_ = false, warned_of_shaders_ = false;
     std::shared_ptr<const Motion> motion_;  ///< where things were in the picture that was drawn last
-    std::optional<SceneSnapshot> motion_begin_;
+    std::optional<std::pair<SceneSnapshot, std::optional<Camera>>> motion_begin_;
 
     /// What refine() adds frames to; nothing: it has to begin.
     struct Refined {

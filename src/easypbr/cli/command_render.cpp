@@ -171,6 +171,7 @@ class RenderJob {
             camera_path_ ? *camera_path_
                          : app::turntable(session_, options_.turntable.value_or(1) / recording.fps);
         const auto play = [&](int frame, int, double) { animate(frame / recording.fps); };
+        animate_frame_before();
         recorder.record_path(path, picture.output, recording, options_.turntable, play);
     }
 
@@ -182,11 +183,15 @@ class RenderJob {
 
     /// A still shows what a recording's frame shows: how the animation went on since the frame before.
     void begin_motion() {
-        const double frame_s = 1 / recording_of(options_).fps, now_s = options_.animation_time.value_or(0);
         if (!animation_ || !session_.settings().motion_blur.enabled) return;
-        animate(-std::min(frame_s, now_s));
+        animate_frame_before();
         session_.begin_motion();
         animate(0);
+    }
+
+    /// At its beginning an animation has not moved.
+    void animate_frame_before() {
+        animate(-std::min(1 / recording_of(options_).fps, options_.animation_time.value_or(0)));
     }
 
     /// The first file with animations has the one that is meant.

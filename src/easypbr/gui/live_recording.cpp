@@ -69,6 +69,7 @@ void LiveRecording::start_path(const RecordingForm& form, Vec2i window, const Ca
     running_->times = std::move(times);
     running_->like = like;
     running_->camera_before = session_.settings().camera;
+    session_.begin_motion(camera_before());
 }
 
 void LiveRecording::draw_frame(int times) {
@@ -130,6 +131,12 @@ int LiveRecording::stop() {
     if (!running_) return 0;
     end();
     return recorder_.stop();
+}
+
+std::optional<Camera> LiveRecording::camera_before() const {
+    if (!is_path() || running_->frames >= total()) return {};
+    return running_->path->camera(running_->times[size_t(running_->frames)] - 1 / running_->form.fps,
+                                  running_->like);
 }
 
 double LiveRecording::seconds_left() const {

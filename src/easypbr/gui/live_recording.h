@@ -47,6 +47,8 @@ class LiveRecording {
     /// Of a path; 0 of what has no end.
     int total() const { return running_ ? int(running_->times.size()) : 0; }
     double seconds_left() const;
+    /// Where the camera of a path is a frame before the next one.
+    std::optional<Camera> camera_before() const;
     /// The newest frame of a path without panels that has been read back, to be shown meanwhile.
     const Image& frame() const { return frame_; }
 

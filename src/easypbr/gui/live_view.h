@@ -113,6 +113,9 @@ class LiveView {
 
     bool draw_picture();
     bool draw_quickly(bool moving);
+    /// How things moved in the time of a recording's frame before what is shown: along the animation and the
+    /// camera path that rest there.
+    app::Session::RefinedMotion shown_motion();
     bool refine();
     void show_picture();
     void show_pixels(const Image& image);
@@ -150,9 +153,11 @@ class LiveView {
     std::string shown_channel_;
     uint64_t failed_version_ = 0;  ///< of what was begun last, with failed_: it could not be drawn
     Vec2i failed_size_{0, 0};
-    int frames_ = 0;        ///< refined so far
-    double reduction_ = 1;  ///< of the resolution while something moves
-    int gui_frames_ = 3;    ///< that are still to be drawn, so that the GUI settles
+    app::Session::RefinedMotion motion_;      ///< that is refined, with motion_blur.enabled
+    std::pair<double, double> motion_key_{};  ///< speed and frame rate that it is of
+    int frames_ = 0;                          ///< refined so far
+    double reduction_ = 1;                    ///< of the resolution while something moves
+    int gui_frames_ = 3;                      ///< that are still to be drawn, so that the GUI settles
     bool busy_ = true, wants_hover_ = false, failed_ = false;
     Vec2d pointer_{-1, -1}, pressed_{0, 0};
     std::optional<app::PickBuffer> surfaces_;

@@ -7,6 +7,29 @@
 #include "easypbr/gui/live_view.h"
 
 namespace easypbr::gui {
+namespace {
+
+using Moved = std::vector<std::pair<Mesh, Eigen::Affine3d>>;
+
+/// Where a node was, "car/wheel" and T_world_mesh, before it and what it hangs from moved.
+Eigen::Affine3d pose_before(const Scene& scene, const std::string& name, const Eigen::Affine3d& T_world_mesh,
+                            const Moved& moved) {
+    Eigen::Affine3d now = Eigen::Affine3d::Identity(), before = now;
+    for (size_t at = 0; at != name.npos;) {
+        at = name.find('/', at + 1);
+        const std::optional<Mesh> node = node_named(scene, name.substr(0, at));
+        if (!node) continue;
+        const Eigen::Affine3d own = node->T_parent_mesh();
+        const auto motion = std::ranges::find(moved, *node, &Moved::value_type::first);
+        now = now * own;
+        before = before * own * (motion == moved.end() ? Eigen::Affine3d::Identity() : motion->second);
+    }
+    if (before.matrix() == now.matrix()) return T_world_mesh;
+    // By what it moved in the world, so that the scene's origin does not matter.
+    return before * now.inverse(Eigen::Affine) * T_world_mesh;
+}
+
+}  // namespace
 
 void LiveView::show_image(const std::string& name, Image image, const ImageLook& look) {
     images_.show(name, std::move(image), look);
@@ -30,6 +53,21 @@ void LiveView::move_along_path(double seconds) {
         view.camera = state_.path.path()->camera(state_.path.time(), view.camera);
     view.target = view.camera.position() - distance * view.camera.T_world_cam.linear().col(2);
     session_.set_view_point(view);
+}
+
+app::Session::RefinedMotion LiveView::shown_motion() {
+    if (!state_.resolved || !(state_.form.fps > 0)) return nullptr;
+    const double frame_s = 1 / state_.form.fps;
+    Motion motion(session_.scene().snapshot(), state_.resolved->camera);
+    const auto moved = state_.player->motion(frame_s);
+    for (auto& [name, pose] : motion.poses) pose = pose_before(session_.scene(), name, pose, moved);
+    const auto& path = state_.path.path();
+    const Eigen::Isometry3d& now = state_.resolved->camera.T_world_cam;
+    if (const auto before = recording_.camera_before())
+        motion.camera = *before;
+    else if (path && now.isApprox(path->pose(state_.path.time()), 1e-9))
+        motion.camera = path->camera(state_.path.time() - frame_s, state_.resolved->camera);
+    return std::make_shared<const Motion>(std::move(motion));
 }
 
 void LiveView::say(const std::string& text, bool failed) {

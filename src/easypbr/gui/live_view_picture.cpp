@@ -44,8 +44,10 @@ bool LiveView::draw_picture() {
         const bool moving = is_moving();
         const bool software = session_.context_info().software;
         const Vec2i wanted = moving && software ? reduced(state_.size, reduction_) : state_.size;
+        const std::pair motion_key(state_.player->speed(), state_.form.fps);
+        const bool other_motion = session_.settings().motion_blur.enabled && motion_key != motion_key_;
         const bool stale = version != version_ || shown_channel_ != state_.channel || failed_ ||
-                           (!moving && quick_size_ != state_.size);
+                           other_motion || (!moving && quick_size_ != state_.size);
         bool drew = false;
         // What failed fails again until something changes.
         if (failed_ && version == failed_version_ && shown_channel_ == state_.channel &&
@@ -54,6 +56,7 @@ bool LiveView::draw_picture() {
         drawing = version;
         if (stale) {
             version_ = version;
+            motion_key_ = motion_key;
             shown_channel_ = state_.channel;
             quick_size_ = wanted;
             failed_ = false;
@@ -104,6 +107,7 @@ bool LiveView::draw_quickly(bool adapt) {
     state_.statistics.frames = layer ? 0 : 1;
     if (state_.statistics.total == 1) frames_ = 1;
     state_.resolved = session_.resolve(state_.size);
+    motion_ = session_.settings().motion_blur.enabled ? shown_motion() : nullptr;
     state_.hovered.reset();
     wants_hover_ |= pointer_.x() >= 0 || shows_path();
     return true;
@@ -113,7 +117,7 @@ bool LiveView::refine() {
     const double start = now();
     const int total = state_.statistics.total;
     const bool show = frames_ + 1 >= std::min(least_frames, total);
-    const app::Session::Refinement done = session_.refine({state_.size, total}, show);
+    const app::Session::Refinement done = session_.refine({state_.size, total}, show, motion_);
     frames_ = state_.statistics.frames = done.frames;
     if (show && (state_.channel == "picture" || frames_ == total)) show_picture();
     glFinish();
@@ -132,7 +136,8 @@ void LiveView::show_picture() {
     } else if (shows_layers()) {
         show_pixels(app::layer_picture(
             state_.channel, session_.render_layers({state_.channel}, quick_size_).at(state_.channel)));
-    } else if (annotation.legend.value_or(false) || annotation.colorbar.value_or(false)) {
+    } else if (annotation.legend.value_or(false) || annotation.colorbar.value_or(false) ||
+               !session_.lens().is_identity()) {
         show_pixels(session_.last_picture());
     } else {
         const gl::Texture& picture = session_.renderer().picture();

@@ -227,6 +227,12 @@ void bind_pictures(ViewerClass& viewer) {
         .def("forget_motion",
              [](SharedViewer& self) { self.run([](Viewer& viewer) { viewer.session().forget_motion(); }); })
         .def(
+            "begin_motion",
+            [](SharedViewer& self, const Camera& from) {
+                self.run([&](Viewer& viewer) { viewer.session().begin_motion(from); });
+            },
+            nb::arg("from_camera"))
+        .def(
             "focus_at",
             [](SharedViewer& self, int x, int y, const nb::object& size) {
                 const std::optional<Vec2i> pixels = optional_size(size);

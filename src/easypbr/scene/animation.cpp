@@ -222,12 +222,31 @@ std::vector<Animations::Pose> Animations::pose(const Animation& animation, doubl
     return poses;
 }
 
-void Animations::apply(size_t index, double time_s, bool loop) {
+std::vector<Animations::Pose> Animations::pose_at(size_t index, double time_s, bool loop) const {
     const double duration = duration_s(index);
     if (!std::isfinite(time_s))
         throw ArgumentError(fmt::format("animation: expected a finite time, got {}", time_s));
     if (loop && duration > 0) time_s -= duration * std::floor(time_s / duration);
-    const std::vector<Pose> poses = pose(rig_.animations[index], time_s);
+    return pose(rig_.animations[index], time_s);
+}
+
+std::vector<std::pair<Mesh, Eigen::Affine3d>> Animations::motion(size_t index, double from_s, double to_s,
+                                                                 bool loop) const {
+    const std::vector<Pose> from = pose_at(index, from_s, loop), to = pose_at(index, to_s, loop);
+    std::vector<std::pair<Mesh, Eigen::Affine3d>> motion;
+    for (size_t i = 0; i < rig_.nodes.size(); ++i) {
+        const AnimationNode& node = rig_.nodes[i];
+        if (!node.mesh || node.matrix) continue;
+        const Eigen::Affine3d end = to[i].matrix();
+        // What is scaled to nothing is nowhere.
+        if (std::abs(end.linear().determinant()) < 1e-30) continue;
+        motion.emplace_back(*node.mesh, end.inverse(Eigen::Affine) * from[i].matrix());
+    }
+    return motion;
+}
+
+void Animations::apply(size_t index, double time_s, bool loop) {
+    const std::vector<Pose> poses = pose_at(index, time_s, loop);
     std::vector<Eigen::Affine3d> T_world_nodes(rig_.nodes.size());
     for (const size_t i : order_) {
         AnimationNode& node = rig_.nodes[i];

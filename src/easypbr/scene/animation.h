@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "easypbr/scene/mesh.h"
@@ -92,9 +93,17 @@ class Animations {
     /// time that is not finite.
     void apply(size_t index, double time_s, bool loop = true);
 
+    /// How each node's mesh moved between two times of an animation, as poses in the mesh's own frame: where
+    /// it is at `to_s`, T_parent_mesh, it was T_parent_mesh * pose at `from_s`. Vertices apart. Throws as
+    /// apply().
+    std::vector<std::pair<Mesh, Eigen::Affine3d>> motion(size_t index, double from_s, double to_s,
+                                                         bool loop = true) const;
+
   private:
     struct Pose;
     std::vector<Pose> pose(const Animation& animation, double time_s) const;
+    /// The poses at a time, brought into the animation's duration with `loop`.
+    std::vector<Pose> pose_at(size_t index, double time_s, bool loop) const;
     void deform(AnimationNode& node, const Eigen::Affine3d& T_world_node, const std::vector<float>& weights,
                 const std::vector<Eigen::Affine3d>& T_world_nodes);
 
