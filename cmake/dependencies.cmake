@@ -6,6 +6,7 @@ find_package(TBB REQUIRED)
 find_package(nlohmann_json REQUIRED)
 find_package(meshoptimizer REQUIRED)
 find_package(nanoflann REQUIRED)
+find_package(embree 3 REQUIRED)
 pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET spng)
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
@@ -24,7 +25,7 @@ find_file(EASYPBR_FONT DejaVuSans.ttf PATHS /usr/share/fonts PATH_SUFFIXES truet
 
 add_library(easypbr_dependencies INTERFACE)
 target_link_libraries(easypbr_dependencies INTERFACE Eigen3::Eigen fmt::fmt TBB::tbb nlohmann_json::nlohmann_json
-  meshoptimizer::meshoptimizer nanoflann::nanoflann PkgConfig::EPOXY PkgConfig::SPNG PkgConfig::TURBOJPEG tinyexr::tinyexr ZLIB::ZLIB yaml-cpp ${CMAKE_DL_LIBS})
+  meshoptimizer::meshoptimizer nanoflann::nanoflann embree PkgConfig::EPOXY PkgConfig::SPNG PkgConfig::TURBOJPEG tinyexr::tinyexr ZLIB::ZLIB yaml-cpp ${CMAKE_DL_LIBS})
 # What the room gui alone uses.
 add_library(easypbr_gui_dependencies INTERFACE)
 target_link_libraries(easypbr_gui_dependencies INTERFACE ${IMGUI_LIBRARY} ${STB_LIBRARY})

@@ -242,6 +242,23 @@ def ambient_occlusion() -> np.ndarray:
     return row([view.render(), with_occlusion, np.repeat(grey.astype(np.uint8)[:, :, None], 3, axis=2)])
 
 
+def rays() -> np.ndarray:
+    """Ambient occlusion, and rays."""
+    scene = on_floor(teapot("#e8e4da", 1, 0.1))
+    for name, place, color, metallic in (("ball", (-0.85, 0.22, 0.45), "#c03020", 0), ("box", (0.55, 0.25, -0.75), "#3878c0", 0)):
+        mesh = shapes.sphere(0.22) if name == "ball" else shapes.box((0.9, 0.5, 0.3))
+        mesh.material = Material(base_color=color, metallic=metallic, roughness=0.6)
+        mesh.translate(place)
+        scene.show(mesh, name)
+    view = Viewer((430, 320), scene=scene)
+    view.load_environment_map(sky())
+    pictures = []
+    for traced in (False, True):
+        view.settings.rays.enabled = traced
+        pictures.append(view.render(samples=64))
+    return row(pictures)
+
+
 def bloom() -> np.ndarray:
     """Without, with a threshold, with a tenth of all light spread."""
     scene = on_floor(teapot("#ffe29b", 1, 0.2))
@@ -422,7 +439,7 @@ def outline() -> np.ndarray:
     return view.render()
 
 
-PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion,
+PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion, rays,
             bloom, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
             viewer_slices, viewer_path, viewer_lights, viewer_own, segmentation, detection, own_shading, outline]
 

@@ -15,6 +15,9 @@ uniform float u_env_intensity;
 #ifdef AMBIENT_OCCLUSION
 uniform sampler2D u_ambient_occlusion;
 #endif
+#ifdef TRACED
+uniform sampler2D u_open;  // see render/ray_pass.h
+#endif
 #endif
 
 layout(location = 0) out vec4 o_light;  // r: with shadows, g: without
@@ -34,7 +37,11 @@ void main() {
     vec3 normal = oct_decode(textureLod(u_normal, uv, 0.0).rg * 2.0 - 1.0);
     vec2 light = vec2(0.0);
 #ifdef ENVIRONMENT
-    light = vec2(u_env_intensity * luminance(textureLod(u_irradiance, u_env_from_world * normal, 0.0).rgb));
+    vec3 sky = u_env_intensity * textureLod(u_irradiance, u_env_from_world * normal, 0.0).rgb;
+    light = vec2(luminance(sky));
+#ifdef TRACED
+    light.r = luminance(sky * texelFetch(u_open, ivec2(gl_FragCoord.xy), 0).rgb);
+#endif
 #ifdef AMBIENT_OCCLUSION
     light.r *= textureLod(u_ambient_occlusion, uv, 0.0).r;
 #endif

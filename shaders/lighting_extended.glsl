@@ -187,25 +187,24 @@ vec3 sheen_radiance(Surface s) {
 #endif
 
 vec3 indirect(Surface s, float visibility) {
-    vec3 irradiance = textureLod(u_irradiance, u_env_from_world * s.normal, 0.0).rgb;
 #ifdef ANISOTROPY
     vec3 lobe = anisotropic_radiance(s);
 #else
     vec3 lobe = lobe_radiance(s.normal, s.view, s.n_dot_v, s.roughness, s.alpha);
 #endif
-    vec3 result = s.energy.single * lobe * specular_visibility(s.n_dot_v, s.alpha, visibility, s.f0) +
-                  (s.energy.multiple + s.diffuse) * irradiance * diffuse_visibility(visibility, s.diffuse);
+    vec3 result = s.energy.single * mirrored_light(lobe, s.n_dot_v, s.alpha, visibility, s.f0) +
+                  (s.energy.multiple + s.diffuse) * diffuse_light(s.normal, visibility, s.diffuse);
     Extension e = s.extension;
 #ifdef SHEEN
     if (max_channel(e.sheen_color) > 0.0)
-        result = result * s.sheen_keep + e.sheen_color * min(s.sheen_albedo, 1.0) * sheen_radiance(s) * visibility;
+        result = result * s.sheen_keep + e.sheen_color * min(s.sheen_albedo, 1.0) * sheen_light(sheen_radiance(s), visibility);
 #endif
 #ifdef CLEARCOAT
     float coat_alpha = e.coat_roughness * e.coat_roughness;
+    vec3 coat = lobe_radiance(e.coat_normal, s.view, s.coat_n_dot_v, e.coat_roughness, coat_alpha);
     result = result * (1.0 - s.coat_albedo) +
-             s.coat_albedo * lobe_radiance(e.coat_normal, s.view, s.coat_n_dot_v, e.coat_roughness, coat_alpha) *
-                 specular_visibility(s.coat_n_dot_v, coat_alpha, visibility, vec3(0.04));
+             s.coat_albedo * mirrored_light(coat, s.coat_n_dot_v, coat_alpha, visibility, vec3(0.04));
 #endif
-    return u_env_intensity * result;
+    return result;
 }
 #endif

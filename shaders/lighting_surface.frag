@@ -82,21 +82,7 @@ vec3 lobe_radiance(vec3 normal, vec3 view, float n_dot_v, float roughness, float
 #endif
 }
 
-// Visibility with what surfaces of this albedo reflect into each other's recesses (Jimenez et al. 2016, a fit).
-vec3 diffuse_visibility(float visibility, vec3 albedo) {
-#ifdef MULTI_BOUNCE
-    vec3 a = 2.0404 * albedo - 0.3324, b = -4.7951 * albedo + 0.6417, c = 2.7552 * albedo + 0.6903;
-    return max(vec3(visibility), ((visibility * a + b) * visibility + c) * visibility);
-#else
-    return vec3(visibility);
-#endif
-}
-
-// Part of the specular lobe that a surface sees (Lagarde and de Rousiers 2014).
-vec3 specular_visibility(float n_dot_v, float alpha, float visibility, vec3 f0) {
-    float part = clamp(pow(n_dot_v + visibility, exp2(-16.0 * alpha - 1.0)) - 1.0 + visibility, 0.0, 1.0);
-    return diffuse_visibility(part, f0);
-}
+#include "lighting_sky.glsl"
 #endif
 
 #ifdef EXTENDED
@@ -129,10 +115,9 @@ vec3 direct(Light light, Surface s) {
 #if defined(ENVIRONMENT) && !defined(EXTENDED)
 // Light of the environment on a surface that sees a part of it.
 vec3 indirect(Surface s, float visibility) {
-    vec3 irradiance = textureLod(u_irradiance, u_env_from_world * s.normal, 0.0).rgb;
-    return u_env_intensity * (s.energy.single * lobe_radiance(s.normal, s.view, s.n_dot_v, s.roughness, s.alpha) *
-                                  specular_visibility(s.n_dot_v, s.alpha, visibility, s.f0) +
-                              (s.energy.multiple + s.diffuse) * irradiance * diffuse_visibility(visibility, s.diffuse));
+    vec3 lobe = lobe_radiance(s.normal, s.view, s.n_dot_v, s.roughness, s.alpha);
+    return s.energy.single * mirrored_light(lobe, s.n_dot_v, s.alpha, visibility, s.f0) +
+           (s.energy.multiple + s.diffuse) * diffuse_light(s.normal, visibility, s.diffuse);
 }
 #endif
 
@@ -185,6 +170,9 @@ void main() {
     vec3 radiance = vec3(0.0);
 #ifdef ENVIRONMENT
     float visibility = material.z;
+#ifdef TRACED
+    visibility = texelFetch(u_open, ivec2(gl_FragCoord.xy), 0).a;
+#endif
 #ifdef AMBIENT_OCCLUSION
     // What the material's own occlusion says of recesses and what the depth buffer says overlap: the darker counts.
     visibility = min(visibility, textureLod(u_ambient_occlusion, uv, 0.0).r);

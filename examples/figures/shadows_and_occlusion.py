@@ -28,7 +28,7 @@ def draw(data: pathlib.Path | None, scale: float) -> np.ndarray:
         mesh.material = Material(base_color="#d8d4cc", roughness=0.9)
         scene.show(mesh, f"mesh {number}")
     view = Viewer(sized(400, 280, scale), {"camera": {"azimuth_deg": 35, "elevation_deg": 28}, "ssao": {"radius": 0.6},
-                              "environment": {"intensity": 0.35}}, scene)
+                              "environment": {"intensity": 0.35}, "rays": {"enabled": False}}, scene)
     pictures = []
     for shadows in (False, True):
         for occlusion in (False, True):

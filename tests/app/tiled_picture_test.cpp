@@ -232,6 +232,12 @@ const Case cases[] = {
          s.environment.enabled = false;
          s.background.mode = BackgroundMode::color;
      }},
+    {"rays", solids,
+     [](Settings& s) {
+         s.rays.enabled = true;
+         s.rays.count = 8;
+     },
+     2},
     {"bloom", solids,
      [](Settings& s) {
          s.bloom.enabled = true;

@@ -69,7 +69,7 @@ def transmission(roughness):
 
 def depth_of_field(samples):
     return drawn(still_life(), {"depth_of_field.enabled": True, "depth_of_field.f_number": 1.4,
-                                "depth_of_field.sensor_height": 0.3}, samples)
+                                "depth_of_field.sensor_height": 0.3, "rays.enabled": False}, samples)
 
 
 def motion_blur():

@@ -79,6 +79,7 @@ TEST(Fields, AreComplete) {
         {"shading", 3},
         {"edl", 3},
         {"ssao", 9},
+        {"rays", 2},
         {"bloom", 6},
         {"depth_of_field", 4},
         {"motion_blur", 2},

@@ -42,6 +42,8 @@ struct LitPicture {
     const gl::Texture* glow = nullptr;      ///< of BloomPass, where there is one
 };
 
+struct TracedLight;
+
 /// A picture that is drawn whole sees all of itself.
 inline constexpr double unlimited_reach = 1e9;
 
@@ -68,6 +70,7 @@ struct Frame {
     bool partly_covered = false;               ///< the radiance may hold coverages between 0 and 1
     const Peel* peel = nullptr;                ///< set while a layer is drawn
     const Behind* behind = nullptr;            ///< set while a layer is lit through which light goes
+    const TracedLight* traced = nullptr;       ///< set while surfaces are lit whose sky rays have looked for
     Mat4d clip_from_view = Mat4d::Identity();  ///< jittered
     PixelRect covered;                         ///< all surfaces and lines are inside
 

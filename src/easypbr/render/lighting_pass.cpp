@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "easypbr/gpu/dfg.h"
+#include "easypbr/render/traced_light.h"
 
 namespace easypbr::render {
 namespace {
@@ -14,6 +15,7 @@ namespace {
 constexpr unsigned tint_unit = 9;
 constexpr int extension_unit = 12;
 constexpr int behind_unit = 20;
+constexpr int traced_unit = 24;
 
 /// As the blocks in shaders/lighting_surface.frag and common_shadow.glsl.
 struct LightUniforms {
@@ -94,7 +96,10 @@ std::vector<std::string> light_defines(const Frame& frame, const GBuffer& target
     if (block.cubes > 0) defines.emplace_back("SHADOW_CUBES");
     if (!block.shadows.empty() && block.tints) defines.emplace_back("SHADOW_TINTS");
     if (with_environment) defines.emplace_back("ENVIRONMENT");
-    if (with_environment && targets.ambient_occlusion) defines.emplace_back("AMBIENT_OCCLUSION");
+    if (with_environment && frame.traced)
+        defines.emplace_back("TRACED");
+    else if (with_environment && targets.ambient_occlusion)
+        defines.emplace_back("AMBIENT_OCCLUSION");
     return defines;
 }
 
@@ -232,6 +237,14 @@ void LightingPass::set_environment(const gl::Program& program, const Frame& fram
     if (frame.sample_count > 1)
         program.set("u_lobe_slope", lobe_slope(frame.sample_index, frame.sample_count));
     program.set("u_env_intensity", frame.resolved->settings.environment.intensity);
+    if (!frame.traced) return;
+    const std::pair<const char*, const gl::Texture*> sources[] = {{"u_open", &frame.traced->open},
+                                                                  {"u_bounced", &frame.traced->bounced},
+                                                                  {"u_mirrored", &frame.traced->mirrored}};
+    for (int i = 0; i < 3; ++i) {
+        program.set(sources[i].first, traced_unit + i);
+        sources[i].second->bind(unsigned(traced_unit + i));
+    }
 }
 
 void LightingPass::set_lights(const gl::Program& program, const Frame& frame, const LightBlock& block) {

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <utility>
 
+#include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
 #include "easypbr/gl/context.h"
 
@@ -17,6 +18,17 @@ namespace {
 bool sees_environment(const ResolvedSettings& resolved) {
     const BackgroundMode mode = resolved.settings.background.mode;
     return mode == BackgroundMode::environment || mode == BackgroundMode::blur;
+}
+
+std::optional<RayGround> ray_ground(const Frame& frame) {
+    if (!frame.with_ground) return std::nullopt;
+    const GroundSettings& ground = frame.resolved->settings.ground;
+    return RayGround{.up = parse_up(frame.resolved->settings.camera.up),
+                     .height = *ground.height,
+                     .radius = double(*ground.radius),
+                     .color = linear_from_srgb(ground.color),
+                     .roughness = ground.roughness,
+                     .catches = GroundPass::catches(*frame.resolved)};
 }
 
 }  // namespace
@@ -306,10 +318,16 @@ void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& ca
         frame.covered = everything;
         run("ground", [&] { ground_.draw(frame, targets_); });
     }
-    if (*frame.resolved->settings.ssao.enabled)
+    const bool traced = traces(frame);
+    if (*frame.resolved->settings.ssao.enabled && !traced)
         run("ambient occlusion", [&] { ambient_occlusion_.draw(frame, targets_); });
     const bool received = frame.with_ground || list.has(&DrawItem::receives_shadows);
     shadow_maps_.begin(frame, casters, bounds_of(*frame.scene), received);
+    if (traced)
+        run("rays", [&] {
+            ray_scene_.update(casters, shadow_maps_.caster_bounds(), shadow_maps_.casters_generation(),
+                              shadow_maps_.splats(), ray_ground(frame));
+        });
     draw_lights(frame, targets_);
     if (frame.with_ground) {
         run("ground", [&] { ground_.finish(frame, targets_, bounds_of(*frame.scene)); });
@@ -384,8 +402,17 @@ void Renderer::draw_layers(Frame& frame, const DrawList& list) {
     transparency_.end(frame);
 }
 
-void Renderer::draw_lights(const Frame& frame, const GBuffer& targets) {
+bool Renderer::traces(const Frame& frame) const {
+    // Layers are not lit.
+    return RayPass::is_on(*frame.resolved, frame.sample_count) && !picture_->options.layers;
+}
+
+void Renderer::draw_lights(Frame& frame, const GBuffer& targets) {
     shadow_maps_.rewind();
+    if (traces(frame)) {
+        run("rays", [&] { rays_.draw(frame, targets, ray_scene_); });
+        frame.traced = &rays_.light();
+    }
     const bool catches = frame.with_ground && &targets == &targets_ && GroundPass::catches(*frame.resolved);
     if (catches) ground_.begin_light(frame, targets);
     LightBlock block;
@@ -401,6 +428,7 @@ void Renderer::draw_lights(const Frame& frame, const GBuffer& targets) {
             run("ground", [&] { lighting_.draw_caught(frame, targets, block, maps, ground_.light()); });
         first = false;
     } while (shadow_maps_.has_more());
+    frame.traced = nullptr;
 }
 
 void Renderer::draw_exact(Frame& frame, const DrawList& list) {

@@ -21,6 +21,7 @@
 #include "easypbr/render/line_pass.h"
 #include "easypbr/render/output_pass.h"
 #include "easypbr/render/point_pass.h"
+#include "easypbr/render/ray_pass.h"
 #include "easypbr/render/shadow_maps.h"
 #include "easypbr/render/software_geometry_pass.h"
 #include "easypbr/render/surface_frame.h"
@@ -161,7 +162,9 @@ class Renderer {
                        const SettingsImages& images);
     void draw_kept_surfaces();
     /// Lights a G-buffer, block by block of lights with their shadow maps.
-    void draw_lights(const Frame& frame, const GBuffer& targets);
+    void draw_lights(Frame& frame, const GBuffer& targets);
+    /// Whether rays are sent for this frame.
+    bool traces(const Frame& frame) const;
     bool has_custom(Stage stage) const;
     void run_custom(Stage stage, const Frame& frame);
     /// What the lens and the eye make of the frame.
@@ -189,6 +192,8 @@ class Renderer {
     SurfelLayers surfel_layers_{surfel_splats_};
     ShadowMaps shadow_maps_{meshes_, textures_, closed_meshes_, spacings_, point_buffers_, surfel_buffers_};
     AmbientOcclusionPass ambient_occlusion_;
+    RayScene ray_scene_;
+    RayPass rays_;
     LightingPass lighting_;
     GroundPass ground_;
     DisplayPass display_;

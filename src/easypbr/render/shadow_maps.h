@@ -36,6 +36,11 @@ class ShadowMaps {
     /// See ShadowPass.
     void allow_native(bool allow) { pass_.allow_native(allow); }
 
+    /// Changes with what casts shadows and its bounds; of the last frame, as are the bounds.
+    uint64_t casters_generation() const { return casters_generation_; }
+    const Box3d& caster_bounds() const { return bounds_; }
+    SplatShadows& splats() { return splats_; }
+
     /// How often the maps of a light have been drawn since the beginning; a cube counts once.
     uint64_t drawn() const { return drawn_; }
 

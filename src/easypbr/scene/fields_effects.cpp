@@ -51,6 +51,18 @@ void add_ssao(Table& table) {
              "own recesses."));
 }
 
+void add_rays(Table& table) {
+    const auto rays = [](auto member) { return at(&Settings::rays, member); };
+    table.push_back(
+        make("rays.enabled", rays(&RaySettings::enabled),
+             "Whether rays find what hides the sky from a surface and what surfaces mirror and light each "
+             "other, in place of ambient occlusion; automatic: in pictures of 32 samples or more "
+             "where ambient occlusion is on."));
+    table.push_back(make("rays.count", rays(&RaySettings::count),
+                         "Rays that all samples of a picture together send into the sky from a pixel.", "",
+                         {1, 65536}));
+}
+
 void add_ground(Table& table) {
     const auto ground = [](auto member) { return at(&Settings::ground, member); };
     table.push_back(make("ground.mode", ground(&GroundSettings::mode),
@@ -128,6 +140,7 @@ void add_lens(Table& table) {
 void add_effects(Table& table) {
     add_ground(table);
     add_ssao(table);
+    add_rays(table);
     add_bloom(table);
     add_lens(table);
 }

@@ -123,6 +123,12 @@ struct SsaoSettings {
     bool multi_bounce = true;
 };
 
+/// Light of the sky past what stands in its way, and reflections of the scene, by rays on the CPU.
+struct RaySettings {
+    Auto<bool> enabled;
+    int count = 256;
+};
+
 /// Light that spreads in lens and eye.
 struct BloomSettings {
     bool enabled = false;
@@ -211,6 +217,7 @@ struct Settings {
     EyeDomeSettings eye_dome;
     TransparencySettings transparency;
     SsaoSettings ssao;
+    RaySettings rays;
     BloomSettings bloom;
     DepthOfFieldSettings depth_of_field;
     MotionBlurSettings motion_blur;
