@@ -120,4 +120,17 @@ bool normals_agree_with_winding(const Array3f& V, const Array3f& N, const Array3
     return agree;
 }
 
+Box3d box_of(const Array3f& V) {
+    if (V.empty()) return {};
+    return {Vec3d(V.colwise().minCoeff().transpose().cast<double>()),
+            Vec3d(V.colwise().maxCoeff().transpose().cast<double>())};
+}
+
+bool beyond_near_plane(const Camera& camera, const Eigen::Affine3d& T_world_mesh, const Box3d& box) {
+    const Eigen::Affine3d T_cam_mesh(camera.view() * T_world_mesh.matrix());
+    for (int i = 0; i < 8; ++i)
+        if (!((T_cam_mesh * box.corner(Box3d::CornerType(i))).z() < -camera.near)) return false;
+    return true;
+}
+
 }  // namespace easypbr::gpu

@@ -1,7 +1,9 @@
 // What may be said about the sides of a mesh's faces without drawing them.
 #pragma once
 
+#include "easypbr/core/math.h"
 #include "easypbr/scene/array.h"
+#include "easypbr/scene/camera.h"
 
 namespace easypbr::gpu {
 
@@ -13,5 +15,12 @@ bool is_closed_outward(const Array3f& V, const Array3i& F);
 
 /// True when every given vertex normal is on the same side as the winding of the faces around it.
 bool normals_agree_with_winding(const Array3f& V, const Array3f& N, const Array3i& F);
+
+/// The box of the vertices.
+Box3d box_of(const Array3f& V);
+
+/// Whether all of a box lies before the camera, beyond its near plane. Else the camera may be within what the
+/// box holds, or the near plane may cut it open: the back faces of a closed mesh may be seen.
+bool beyond_near_plane(const Camera& camera, const Eigen::Affine3d& T_world_mesh, const Box3d& box);
 
 }  // namespace easypbr::gpu

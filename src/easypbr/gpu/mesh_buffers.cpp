@@ -85,6 +85,7 @@ MeshBuffers make_buffers(const MeshData& mesh, bool with_tangents) {
     const Array3f N = mesh.N.empty() ? smooth_normals(mesh) : mesh.N;
     buffers.normals_agree = mesh.N.empty() || normals_agree_with_winding(mesh.V, N, mesh.F);
     buffers.closed_outward = is_closed_outward(mesh.V, mesh.F);
+    if (buffers.closed_outward) buffers.box = box_of(mesh.V);
     SplitMesh split;
     if (with_tangents) {
         split = split_by_tangent(mesh.V, N, mesh.UV, mesh.F);

@@ -8,6 +8,7 @@
 #include <regex>
 
 #include "easypbr/core/error.h"
+#include "easypbr/gpu/facing.h"
 #include "easypbr/render/mesh_material.h"
 
 namespace easypbr::render {
@@ -24,12 +25,13 @@ void set_culling(bool cull, bool fronts, bool mirrored) {
 }
 
 /// Whether back faces are left out.
-bool is_one_sided(const DrawItem& item, const gpu::MeshBuffers& buffers) {
+bool is_one_sided(const Frame& frame, const DrawItem& item, const gpu::MeshBuffers& buffers) {
     const Material& m = item.material;
     // Of a volume the back is a part of what happens behind the front.
     if (item.is_volume()) return true;
     const bool opaque = item.alpha == AlphaMode::opaque && !m.transmits();
-    return !item.two_sided || (buffers.closed_outward && opaque && !item.style.flat);
+    return !item.two_sided || (buffers.closed_outward && opaque && !item.style.flat &&
+                               gpu::beyond_near_plane(frame.camera, item.object->T_world_mesh, buffers.box));
 }
 
 /// How many variants with shaders of materials are kept.
@@ -115,7 +117,7 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     const unsigned free_unit = set_material(program, frame, item, textures_);
     if (frame.peel) set_peel_uniforms(program, *frame.peel, free_unit);
 
-    set_culling(is_one_sided(item, buffers), frame.peel && frame.peel->backs, mirrored);
+    set_culling(is_one_sided(frame, item, buffers), frame.peel && frame.peel->backs, mirrored);
     buffers.array.bind();
     glDrawElements(GL_TRIANGLES, item.part.face_count * 3, GL_UNSIGNED_INT,
                    reinterpret_cast<const void*>(size_t(item.part.first_face) * 12));

@@ -9,7 +9,8 @@ namespace easypbr::render {
 struct MeshKnowledge {
     Array3f N;
     bool normals_agree = true;    ///< the winding tells the normals' side
-    bool closed_outward = false;  ///< back faces need not be drawn
+    bool closed_outward = false;  ///< from outside, back faces need not be drawn
+    Box3d box;                    ///< of the vertices, when it is closed
     bool used = false;
 };
 

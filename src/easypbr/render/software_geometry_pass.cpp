@@ -27,9 +27,12 @@ Mat4d clip_from(const Frame& frame, const DrawItem& item) {
     return frame.clip_from_view * frame.camera.view() * item.object->T_world_mesh.matrix();
 }
 
-ScreenTriangles triangles_of(const DrawItem& item, const MeshKnowledge& known, const Mat4d& clip_from_mesh) {
+ScreenTriangles triangles_of(const Frame& frame, const DrawItem& item, const MeshKnowledge& known,
+                             const Mat4d& clip_from_mesh) {
     const MeshData& mesh = item.mesh();
-    const bool both_sides = item.two_sided && (item.style.flat || !known.closed_outward);
+    const bool both_sides =
+        item.two_sided && (item.style.flat || !known.closed_outward ||
+                           !gpu::beyond_near_plane(frame.camera, item.object->T_world_mesh, known.box));
     const bool mirrored = item.object->T_world_mesh.linear().determinant() < 0;
     return {mesh.V,     mesh.F,  item.part.first_face, item.part.face_count, clip_from_mesh.cast<float>(),
             both_sides, mirrored};
@@ -70,6 +73,7 @@ const MeshKnowledge& SoftwareGeometryPass::knowledge_of(const MeshData& mesh) {
         known.normals_agree = mesh.N.empty() || gpu::normals_agree_with_winding(mesh.V, known.N, mesh.F);
     }
     known.closed_outward = closed_.draw(mesh);
+    if (known.closed_outward && known.box.isEmpty()) known.box = gpu::box_of(mesh.V);
     return known;
 }
 
@@ -84,7 +88,7 @@ bool SoftwareGeometryPass::add_meshes(const Frame& frame, const DrawList& list,
     for (const DrawItem& item : list.meshes) {
         const MeshKnowledge& known = knowledge_of(item.mesh());
         const Mat4d clip_from_mesh = clip_from(frame, item);
-        if (!visibility_.draw(triangles_of(item, known, clip_from_mesh), next_id)) return false;
+        if (!visibility_.draw(triangles_of(frame, item, known, clip_from_mesh), next_id)) return false;
         surfaces.push_back({next_id, &item, MeshSurface(item, known, clip_from_mesh), std::nullopt});
         next_id += uint32_t(item.part.face_count);
     }
@@ -145,7 +149,8 @@ bool SoftwareGeometryPass::cover(const Frame& frame, const DrawList& list, std::
     TriangleRaster raster;
     raster.set_area(frame.size, area);
     for (const DrawItem& item : list.meshes)
-        if (!render::cover(raster, triangles_of(item, knowledge_of(item.mesh()), clip_from(frame, item)),
+        if (!render::cover(raster,
+                           triangles_of(frame, item, knowledge_of(item.mesh()), clip_from(frame, item)),
                            covered)) {
             std::ranges::fill(covered, uint8_t(0));
             return false;
