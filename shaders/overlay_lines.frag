@@ -1,9 +1,18 @@
-// Lines over the tone-mapped picture, hidden by the surfaces in the G-buffer.
+// Lines over the tone-mapped picture, hidden by the surfaces in the G-buffer. AFTER, BEFORE: those only that lie before one
+// layer of surfaces that light passes, and behind the next.
 #include "common_encoding.glsl"
 #include "common_camera.glsl"
 
 uniform sampler2D u_depth_target;
 uniform sampler2D u_normal;
+#ifdef AFTER
+uniform sampler2D u_last_depth;  // 0: all lines have been drawn
+uniform sampler2D u_last_normal;
+#endif
+#ifdef BEFORE
+uniform sampler2D u_next_depth;  // 0: there is nothing more before this pixel's lines
+uniform sampler2D u_next_normal;
+#endif
 uniform sampler2D u_nearest_line;  // depth that the first pass found
 uniform float u_half_width;   // pixels
 uniform float u_dash;         // pixels, 0: solid
@@ -26,8 +35,8 @@ float axial(float depth) {
 }
 
 // How much the surface's distance changes over a pixel, by its plane: a line on it must not be cut by its slope.
-float change_per_pixel(vec2 pixel, float z) {
-    vec3 n = transpose(u_world_from_view) * oct_decode(textureLod(u_normal, pixel / u_size, 0.0).rg * 2.0 - 1.0);
+float change_per_pixel(vec2 pixel, float z, vec2 normal) {
+    vec3 n = transpose(u_world_from_view) * oct_decode(normal * 2.0 - 1.0);
     vec2 scale = u_unproject.xy * 2.0 / u_size;
 #ifdef ORTHOGRAPHIC
     float facing = max(abs(n.z), 0.05);
@@ -39,12 +48,31 @@ float change_per_pixel(vec2 pixel, float z) {
 #endif
 }
 
-bool is_hidden(vec2 pixel, float depth) {
-    float surface = textureLod(u_depth_target, pixel / u_size, 0.0).r;
-    if (surface <= 0.0 || u_always > 0.5) return false;
+bool is_behind(float surface, vec2 normal, vec2 pixel, float depth) {
+    if (surface <= 0.0) return false;
     float z = axial(surface);
-    float tolerance = change_per_pixel(pixel, z) * (u_half_width + 1.0) + 1e-5 * z;
+    float tolerance = change_per_pixel(pixel, z, normal) * (u_half_width + 1.0) + 1e-5 * z;
     return axial(depth) > z + tolerance;
+}
+
+bool is_hidden(vec2 pixel, float depth) {
+    if (u_always > 0.5) return false;
+    vec2 uv = pixel / u_size;
+    return is_behind(textureLod(u_depth_target, uv, 0.0).r, textureLod(u_normal, uv, 0.0).rg, pixel, depth);
+}
+
+// Drawn with another layer, before or after.
+bool is_elsewhere(vec2 pixel, float depth) {
+    vec2 uv = pixel / u_size;
+#ifdef AFTER
+    float last = textureLod(u_last_depth, uv, 0.0).r;
+    if (last <= 0.0 || is_behind(last, textureLod(u_last_normal, uv, 0.0).rg, pixel, depth)) return true;
+#endif
+#ifdef BEFORE
+    float next = textureLod(u_next_depth, uv, 0.0).r;
+    if (next > 0.0 && !is_behind(next, textureLod(u_next_normal, uv, 0.0).rg, pixel, depth)) return true;
+#endif
+    return false;
 }
 
 #ifndef DEPTH_ONLY
@@ -79,6 +107,7 @@ void main() {
     o_color = vec4(0.0);
 #else
     if (coverage <= 0.0 || is_hidden(gl_FragCoord.xy, depth) || is_behind_line(gl_FragCoord.xy, depth)) discard;
+    if (is_elsewhere(gl_FragCoord.xy, depth)) discard;
     vec4 color = mix(v_start_color, v_end_color, place);
     float alpha = coverage * color.a;
     o_color = vec4(color.rgb * alpha, alpha);

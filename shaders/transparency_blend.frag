@@ -11,6 +11,9 @@ uniform vec2 u_size;
 #ifdef OVERLAY
 uniform sampler2D u_overlay;
 #endif
+#ifdef EYE_DOME
+uniform sampler2D u_shade;
+#endif
 
 #if defined(INTO_OVERLAY) || defined(WEAKEN_OVERLAY)
 layout(location = 0) out vec4 o_color;
@@ -24,7 +27,8 @@ void main() {
     vec4 albedo = textureLod(u_albedo, uv, 0.0);
     float opacity = albedo.a;
 #if defined(OVERLAY) || defined(WEAKEN_OVERLAY) || defined(INTO_OVERLAY)
-    bool display = is_display(textureLod(u_material, uv, 0.0).w);
+    float code = textureLod(u_material, uv, 0.0).w;
+    bool display = is_display(code);
 #ifdef INTO_OVERLAY
     if (!display) discard;
 #else
@@ -32,6 +36,9 @@ void main() {
 #endif
 #endif
 #ifdef INTO_OVERLAY
+#ifdef EYE_DOME
+    if (is_eye_dome(code)) albedo.rgb *= textureLod(u_shade, uv, 0.0).r;
+#endif
     o_color = vec4(albedo.rgb * opacity, opacity);
 #else
     vec4 light = textureLod(u_radiance, uv, 0.0);

@@ -117,7 +117,7 @@ void add_lines(const Source& source, DrawList& list) {
 }  // namespace
 
 DrawList DrawList::without_exact() const {
-    return without([](const DrawItem& item) { return item.kind == SurfaceKind::exact; });
+    return without([](const DrawItem& item) { return item.kind == SurfaceKind::exact && !item.layered; });
 }
 
 DrawList DrawList::layers() const {

@@ -46,6 +46,11 @@ struct DrawItem {
     ExtensionSet extensions() const { return kind == SurfaceKind::lit ? extensions_of(material) : 0; }
 };
 
+/// Drawn over everything else.
+inline bool is_over(const DrawItem& item) {
+    return item.style.overlay;
+}
+
 /// Lines of an object, drawn over the picture.
 struct LineItem {
     const SceneSnapshot::Object* object = nullptr;
@@ -80,7 +85,8 @@ struct DrawList {
         return rest;
     }
     bool empty() const { return meshes.empty() && points.empty() && surfels.empty(); }
-    /// The items whose colours may be averaged.
+    /// The items whose colours may be averaged: others are mixed with them in any case where they are
+    /// layers.
     DrawList without_exact() const;
     /// The items that light passes, which are drawn in layers, and the others.
     DrawList layers() const;

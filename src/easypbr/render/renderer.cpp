@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <functional>
 #include <utility>
 
 #include "easypbr/core/color.h"
@@ -138,8 +139,8 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
             options.samples == 1 && !all.has(sees_more) && !all.extensions() && !GroundPass::is_on(resolved);
         frame.with_ids |= picture->holds_surfaces;
     }
-    frame.with_exact =
-        picture->list.has([](const DrawItem& item) { return item.kind == SurfaceKind::exact; });
+    frame.with_exact = picture->list.has(
+        [](const DrawItem& item) { return item.kind == SurfaceKind::exact && !item.layered; });
     // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
     const bool apart = options.samples > 1 && frame.with_exact;
     picture->averaged = apart ? picture->list.without_exact() : picture->list;
@@ -285,7 +286,6 @@ void Renderer::draw_geometry(Frame& frame, const DrawList& list, const GBuffer& 
 }
 
 void Renderer::draw_geometry(Frame& frame, const DrawList& list) {
-    const auto is_over = [](const DrawItem& item) { return item.style.overlay; };
     if (!list.has(is_over)) return draw_geometry(frame, list, targets_);
     const PixelRect everything = frame.covered;
     draw_geometry(frame, list.without(is_over), targets_);
@@ -293,7 +293,7 @@ void Renderer::draw_geometry(Frame& frame, const DrawList& list) {
     if (!over_.albedo || over_.size() != frame.size) over_ = GBuffer(frame.size);
     if (frame.with_ids) over_.add_ids();
     if (frame.extensions) over_.add_extensions();
-    draw_geometry(frame, list.without([&](const DrawItem& item) { return !is_over(item); }), over_);
+    draw_geometry(frame, list.without(std::not_fn(is_over)), over_);
     frame.covered = everything;
     composite_.draw_over(frame, over_, targets_);
 }
@@ -335,13 +335,13 @@ void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& ca
     }
     const bool with_environment = !frame.resolved->environment.empty();
     if (frame.with_overlay) run("display", [&] { display_.draw(frame, targets_); });
-    if (!list.lines.empty()) run("lines", [&] { lines_.draw(frame, list.lines, targets_); });
+    if (!has_layers) run("lines", [&] { draw_lines(frame, list); });
     no_attributes_.bind();
     if (with_environment && sees_environment(*frame.resolved))
         run("background", [&] { background_.draw(frame, targets_, environment_, frame.with_ground); });
     if (has_layers) {
         frame.covered = everything;
-        run("transparency", [&] { draw_layers(frame, list.layers()); });
+        run("transparency", [&] { draw_transparent(frame, list); });
     }
     if (!has_custom(Stage::light) && !has_custom(Stage::overlay)) return;
     frame.covered = {0, 0, frame.size.x(), frame.size.y()};
@@ -371,35 +371,6 @@ void Renderer::run_custom(Stage stage, const Frame& frame) {
         run(custom.name.c_str(), [&] { draw_custom(custom, input); });
     }
     no_attributes_.bind();
-}
-
-void Renderer::draw_layers(Frame& frame, const DrawList& list) {
-    frame.extensions = list.extensions();
-    const bool see_through = frame.extensions & transmission_bit;
-    const bool rough = std::ranges::any_of(list.meshes, &DrawItem::blurs_behind);
-    DrawList volumes = list;
-    std::erase_if(volumes.meshes, [](const DrawItem& item) { return !item.is_volume(); });
-    const Box3d& bounds = bounds_of(*frame.scene);
-    const double reach = (bounds.center() - frame.camera.position()).norm() + bounds.diagonal().norm() / 2;
-    transparency_.begin(frame, targets_);
-    surfel_layers_.begin(frame, list.surfels, targets_.depth);
-    while (transparency_.open_layer(frame)) {
-        geometry_.draw(frame, list.meshes, transparency_.layer());
-        points_.draw(frame, list.points, transparency_.layer());
-        surfel_layers_.draw(frame, list.surfels, transparency_.layer());
-        if (!transparency_.close_layer(frame)) break;
-        surfel_layers_.take(list.surfels);
-        no_attributes_.bind();
-        if (see_through) transparency_.look_behind(frame, targets_, rough, reach);
-        if (!volumes.meshes.empty()) {
-            transparency_.open_exits(frame);
-            geometry_.draw(frame, volumes.meshes, transparency_.exits());
-            transparency_.close_exits(frame);
-        }
-        draw_lights(frame, transparency_.layer());
-        transparency_.blend(frame, targets_);
-    }
-    transparency_.end(frame);
 }
 
 bool Renderer::traces(const Frame& frame) const {
@@ -449,7 +420,7 @@ void Renderer::draw_exact(Frame& frame, const DrawList& list) {
         if (frame.with_overlay) {
             const float nothing[4] = {0, 0, 0, 0};
             targets_.display.clear_color(0, nothing);
-            lines_.draw(frame, list.lines, targets_);
+            draw_lines(frame, list);
             run_custom(Stage::overlay, frame);
         }
     }

@@ -153,8 +153,17 @@ class Renderer {
     /// Fills the G-buffer by the faster way that can draw these items.
     void draw_geometry(Frame& frame, const DrawList& list);
     void draw_geometry(Frame& frame, const DrawList& list, const GBuffer& targets);
-    /// Draws the layered items over the picture.
-    void draw_layers(Frame& frame, const DrawList& list);
+    /// Draws the lines where there are no layers.
+    void draw_lines(const Frame& frame, const DrawList& list);
+    /// Draws the layered items over the picture, before and behind each other and the lines.
+    void draw_transparent(Frame& frame, const DrawList& list);
+    /// Draws layers, and the lines between them, before the surfaces of which `opaque` is the depth.
+    void draw_layers(Frame& frame, const DrawList& layers, const std::vector<LineItem>& lines,
+                     const gl::Texture& opaque);
+    /// Depth that hides lines and layers: of what is drawn over everything else too.
+    const gl::Texture& hiding_depth(const Frame& frame, const DrawList& list);
+    /// The eye-dome lighting of the layers' points; nothing where there are none.
+    const gl::Texture* shade_points(const Frame& frame, const DrawList& layers, const gl::Texture& opaque);
     /// Draws what must not be averaged or smoothed into the finished picture.
     void draw_exact(Frame& frame, const DrawList& list);
     /// Keeps what surfaces are drawn of in `drawn_`, and draws it.
@@ -206,6 +215,9 @@ class Renderer {
     std::shared_ptr<const Image> background_image_;
     gl::Texture background_texture_;
     GBuffer over_;  ///< what is drawn over everything else
+    gl::Texture hiding_depth_;
+    gl::Framebuffer hiding_;
+    ProgramVariants hiding_programs_{"screen_triangle.vert", "opaque_limit.frag"};
     SurfaceComposite composite_;
     std::vector<CustomPass> custom_;
     gl::Texture custom_copies_[3];  ///< by stage, see PassInput::before()

@@ -4,7 +4,7 @@
 
 namespace easypbr::render {
 
-void TransparencyPass::begin(Frame& frame, const GBuffer& targets) {
+void TransparencyPass::begin(Frame& frame, const GBuffer& targets, const gl::Texture& opaque) {
     if (!query_) query_ = gl::OcclusionQuery::make();
     if (!layer_.albedo || layer_.size() != frame.size) {
         layer_ = GBuffer(frame.size);
@@ -23,7 +23,7 @@ void TransparencyPass::begin(Frame& frame, const GBuffer& targets) {
         overlay_ = gl::Framebuffer({&targets.overlay}, &layer_.depth_test);
         overlay_id_ = targets.overlay.id();
     }
-    peel_ = {&targets.depth, true};
+    peel_ = {&opaque, true};
     count_ = 0;
 }
 
@@ -123,13 +123,13 @@ void TransparencyPass::bind_layer(const gl::Program& program, const Frame& frame
     }
 }
 
-void TransparencyPass::blend(const Frame& frame, const GBuffer& targets) {
+void TransparencyPass::blend(const Frame& frame, const GBuffer& targets, const gl::Texture* eye_dome) {
     glEnable(GL_SCISSOR_TEST);
     glScissor(frame.covered.x, frame.covered.y, frame.covered.width, frame.covered.height);
     glEnable(GL_BLEND);
     layer_.test_covered();
     blend_radiance(frame, targets);
-    if (frame.with_overlay) blend_overlay(frame);
+    if (frame.with_overlay) blend_overlay(frame, eye_dome);
     layer_.reset_depth_range();
     glDisable(GL_BLEND);
     glBlendFunc(GL_ONE, GL_ZERO);  // a second source is an error where there are several targets, even unused
@@ -152,13 +152,16 @@ void TransparencyPass::blend_radiance(const Frame& frame, const GBuffer& targets
     draw_screen_triangle();
 }
 
-void TransparencyPass::blend_overlay(const Frame& frame) {
+void TransparencyPass::blend_overlay(const Frame& frame, const gl::Texture* eye_dome) {
     overlay_.bind();
     glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     for (const char* define : {"INTO_OVERLAY", "WEAKEN_OVERLAY"}) {
-        const gl::Program& program = programs_.get({define});
+        const gl::Program& program = programs_.get(eye_dome ? std::vector<std::string>{define, "EYE_DOME"}
+                                                            : std::vector<std::string>{define});
         program.use();
         bind_layer(program, frame);
+        if (eye_dome) eye_dome->bind(3);
+        program.set("u_shade", 3);
         draw_screen_triangle();
         glBlendFunc(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
     }

@@ -12,7 +12,7 @@ namespace easypbr::render {
 /// Depth peeling (Everitt 2001) from behind. Each layer has a G-buffer of its own, which the geometry passes
 /// fill while frame.peel is set, and which is lit like any other:
 ///
-///     begin(frame, targets);
+///     begin(frame, targets, opaque);
 ///     while (open_layer(frame)) {
 ///         ... geometry passes draw the layered items into layer() ...
 ///         if (!close_layer(frame)) break;
@@ -21,7 +21,7 @@ namespace easypbr::render {
 ///             ... geometry pass draws the volumes into exits() ...
 ///             close_exits(frame);
 ///         ... lighting of layer() ...
-///         blend(frame, targets);
+///         blend(frame, targets, eye_dome);
 ///     }
 ///     end(frame);
 ///
@@ -30,7 +30,8 @@ namespace easypbr::render {
 class TransparencyPass {
   public:
     /// The picture in `targets` is finished but for the layers.
-    void begin(Frame& frame, const GBuffer& targets);
+    /// Nothing behind `opaque` (R32F, reversed depth, 0 infinitely far) is drawn, which stays as it is.
+    void begin(Frame& frame, const GBuffer& targets, const gl::Texture& opaque);
     /// Makes the next layer ready for drawing; false when the last allowed one has been drawn.
     bool open_layer(Frame& frame);
     /// Whether anything was drawn since open_layer().
@@ -41,8 +42,9 @@ class TransparencyPass {
     /// Makes the targets ready for the volumes' back faces behind the layer.
     void open_exits(Frame& frame);
     void close_exits(Frame& frame);
-    /// Puts the lit layer over the picture.
-    void blend(const Frame& frame, const GBuffer& targets);
+    /// Puts the lit layer over the picture. `eye_dome`: the shade of points without normals, where there are
+    /// any.
+    void blend(const Frame& frame, const GBuffer& targets, const gl::Texture* eye_dome);
     void end(Frame& frame);
 
     const GBuffer& layer() const { return layer_; }
@@ -53,7 +55,7 @@ class TransparencyPass {
   private:
     void merge_overlay(const Frame& frame, const GBuffer& targets);
     void blend_radiance(const Frame& frame, const GBuffer& targets);
-    void blend_overlay(const Frame& frame);
+    void blend_overlay(const Frame& frame, const gl::Texture* eye_dome);
     void bind_layer(const gl::Program& program, const Frame& frame) const;
 
     GBuffer layer_, exits_;
