@@ -23,6 +23,9 @@ in vec3 v_normal;
 in vec3 v_position;
 #endif
 
+#ifdef SHADOW
+#include "shadow_shaded.glsl"
+#else
 layout(location = 0) out vec4 o_albedo;
 layout(location = 1) out vec2 o_normal;
 layout(location = 2) out vec4 o_material;
@@ -35,6 +38,7 @@ layout(location = 5) out uint o_id;
 layout(location = 6) out uint o_element;
 uniform int u_object_id;
 uniform int u_first_face;
+#endif
 #endif
 
 uniform vec4 u_base_color;  // linear, opacity in w
@@ -201,6 +205,9 @@ void main() {
     shade_own(color, n, metallic, roughness, occlusion, emission, kind);
     discard_clear(color.a);
 #endif
+#ifdef SHADOW
+    write_shadow(color);
+#else
 #ifdef ALPHA_BLEND
     o_albedo = color;
 #else
@@ -220,5 +227,6 @@ void main() {
     o_emission = vec4(emission, 1.0);
 #elif defined(EMISSION)
     o_emission = vec4(emission_of(color.rgb), 1.0);
+#endif
 #endif
 }

@@ -147,6 +147,79 @@ TEST(OwnShader, ActsOnDenseMeshesToo) {
     EXPECT_NEAR(middle_of(session.render_layers({"albedo"}).at("albedo")).x(), 0.5, 0.5 / 65535);
 }
 
+// A stripe that the shader cuts is a hole for light, picking and masks too: `discard`, an opacity below the
+// cutoff, and a blended opacity of 0; from a light beside it and from one far away; of few faces and of many,
+// which are drawn natively.
+TEST(OwnShader, CutsHolesForLightAndPickingToo) {
+    const char* cut = "void surface(inout Surface s) { if (abs(s.own_position.x) < 0.3) %; }";
+    const auto with = [&](const std::string& what) {
+        std::string text = cut;
+        return text.replace(text.find('%'), 1, what);
+    };
+    for (const auto& [mode, text] :
+         {std::pair(AlphaMode::opaque, with("discard")), std::pair(AlphaMode::mask, with("s.opacity = 0.2")),
+          std::pair(AlphaMode::blend, with("s.opacity = 0.0"))})
+        for (const bool directional : {true, false})
+            for (const bool dense : {false, true}) {
+                const std::string what =
+                    fmt::format("mode {}, directional {}, dense {}", int(mode), directional, dense);
+                Material matt;
+                matt.base_color = Vec3::Ones();
+                matt.roughness = 1;
+                Scene scene;
+                scene.show(facing_square(4, matt), "floor");
+                Mesh caster = dense ? make_sphere(1, 64) : facing_square(1);
+                if (dense)
+                    caster.edit([](MeshData& data) {  // a disc
+                        Array3f::Dense V = data.V;
+                        V.col(2).setZero();
+                        data.V = Array3f(V);
+                        data.N = {};
+                    });
+                Material m;
+                m.alpha_mode = mode;
+                m.shader.text = text;
+                caster.set_material(m);
+                caster.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, 1)));
+                scene.show(caster, "caster");
+                Light light;
+                light.type = directional ? LightType::directional : LightType::point;
+                light.direction = Vec3(0, -0.8f, -1).normalized();
+                light.position = 20 * Vec3(0, 0.8f, 1).normalized();
+                light.intensity = directional ? 3 : 1200;
+                scene.set_light("light", light);
+                Session session = plain_session(scene, 64);
+                session.settings().shadows.enabled = true;
+                session.settings().shadows.mode = ShadowMode::pcf;
+                session.settings().camera.projection = Projection::orthographic;
+                session.settings().camera.ortho_height = 4.0;
+                look_from(session, Vec3d(0, 0, 6));
+                // The shadow's middle is at y = -0.8, row 44.8: below the caster's picture from row 48 on.
+                const Image image = render_linear(session);
+                const float lit = image.at<float>(4, 52)[0];
+                EXPECT_GT(lit, 0.3f) << what;
+                EXPECT_NEAR(image.at<float>(32, 52)[0], lit, 0.15f * lit) << what;
+                EXPECT_LT(image.at<float>(40, 52)[0], 0.02f * lit) << what;
+                const PickBuffer picks = session.pick_buffer(Vec2i(64, 64));
+                EXPECT_EQ(picks.at({32.5, 32.5})->object, "floor") << what;
+                EXPECT_EQ(picks.at({42.5, 32.5})->object, "caster") << what;
+                session.render({std::nullopt, 1});
+                // Alone: what ground truth measures amodal masks with.
+                session.draw_surfaces({Vec2i(64, 64), 1}, false);
+                const std::vector<std::string> names = session.object_names();
+                const auto covered = session.coverage(
+                    {0, 32, 64, 1}, [&](size_t object, int) { return names[object] == "caster"; });
+                EXPECT_FALSE(covered[32]) << what;
+                EXPECT_TRUE(covered[42]) << what;
+                // Another text, other holes: the map is drawn anew.
+                m.shader.text = "void surface(inout Surface s) { if (abs(s.own_position.x) > 0.3) discard; }";
+                session.scene().get("caster").set_material(m);
+                const Image other = render_linear(session);
+                EXPECT_LT(other.at<float>(32, 52)[0], 0.02f * lit) << what;
+                EXPECT_NEAR(other.at<float>(40, 52)[0], lit, 0.15f * lit) << what;
+            }
+}
+
 TEST(OwnShader, SaysInWhichLineItIsWrong) {
     Session session =
         square_session({"// the first line\n"

@@ -1,15 +1,13 @@
 #include "easypbr/render/geometry_pass.h"
 
 #include <epoxy/gl.h>
-#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <regex>
 
-#include "easypbr/core/error.h"
 #include "easypbr/gpu/facing.h"
 #include "easypbr/render/mesh_material.h"
+#include "easypbr/render/own_shader.h"
 
 namespace easypbr::render {
 namespace {
@@ -34,9 +32,6 @@ bool is_one_sided(const Frame& frame, const DrawItem& item, const gpu::MeshBuffe
                                gpu::beyond_near_plane(frame.camera, item.object->T_world_mesh, buffers.box));
 }
 
-/// How many variants with shaders of materials are kept.
-constexpr size_t most_shaders = 256;
-
 void set_shader_uniforms(const gl::Program& program, const Frame& frame) {
     const Vec3 eye = frame.camera.position().cast<float>();
     const Vec3 backwards = frame.camera.T_world_cam.linear().col(2).cast<float>();
@@ -49,14 +44,7 @@ void set_shader_uniforms(const gl::Program& program, const Frame& frame) {
 const gl::Program& GeometryPass::program_of(const DrawItem& item, const std::vector<std::string>& defines) {
     const SurfaceShader& shader = item.material.shader;
     if (!shader) return programs_.get(defines);
-    const std::string name = shader.path.empty() ? "material.shader" : shader.path;
-    static const std::regex definition(R"(\bvoid\s+surface\s*\()");
-    if (!std::regex_search(shader.text, definition))
-        throw ShaderError(
-            fmt::format("{}: expected GLSL with the function 'void surface(inout Surface s)'", name));
-    programs_.limit_texts(most_shaders);
-    return programs_.get(defines, name + '\n' + shader.text,
-                         {{"geometry_shader_own.glsl", {name, shader.text}}});
+    return with_shader(programs_, shader, defines);
 }
 
 void GeometryPass::draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets) {

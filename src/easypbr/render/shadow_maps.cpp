@@ -38,7 +38,16 @@ ShadowMaps::Caster ShadowMaps::caster_of(const DrawItem& item) {
     caster.first_face = item.part.first_face;
     caster.face_count = item.part.face_count;
     caster.T_world_mesh = item.object->T_world_mesh.matrix().topRows<3>();
-    if (item.alpha == AlphaMode::opaque && !item.casts_tint()) return caster;
+    if (m.shader)
+        caster.shaded = {
+            m.shader.text,
+            {m.base_color[0], m.base_color[1], m.base_color[2], m.metallic, m.roughness, m.occlusion_strength,
+             m.normal_scale, m.emissive[0], m.emissive[1], m.emissive[2], m.unlit ? 1.0f : 0.0f,
+             item.style.flat ? 1.0f : 0.0f},
+            {m.metallic_texture.image.get(), m.roughness_texture.image.get(), m.normal_texture.image.get(),
+             m.occlusion_texture.image.get(), m.emissive_texture.image.get(),
+             m.base_color_texture.image.get(), m.opacity_texture.image.get()}};
+    if (item.alpha == AlphaMode::opaque && !item.casts_tint() && !m.shader) return caster;
     caster.revisions[2] = mesh.UV.revision();
     caster.revisions[3] = item.with_colors ? mesh.C.revision() : 0;
     caster.revisions[4] = uint64_t(item.alpha);

@@ -61,7 +61,15 @@ class ShadowMaps {
         double radius = 0;
     };
     /// A part of an object as far as its shadow is concerned.
+    /// What the shader of a caster sees of its material.
+    struct Shaded {
+        std::string text;
+        std::array<float, 12> numbers{};
+        std::array<const void*, 7> images{};
+        bool operator==(const Shaded&) const = default;
+    };
     struct Caster {
+        Shaded shaded;
         std::array<uint64_t, 8> revisions;
         std::array<const void*, 3> images;
         std::array<float, 3> alpha;

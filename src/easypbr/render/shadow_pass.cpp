@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "easypbr/gl/context.h"
+#include "easypbr/render/mesh_material.h"
+#include "easypbr/render/own_shader.h"
 
 namespace easypbr::render {
 namespace {
@@ -24,8 +26,15 @@ bool reads_uv(const DrawItem& item) {
 constexpr Eigen::Index smallest_face_count = 5000;
 
 bool suits_native(std::span<const DrawItem> items) {
-    const auto opaque = [](const DrawItem& item) { return item.alpha == AlphaMode::opaque; };
+    const auto opaque = [](const DrawItem& item) {
+        return item.alpha == AlphaMode::opaque && !item.material.shader;
+    };
     return items.front().mesh().F.rows() >= smallest_face_count && std::ranges::all_of(items, opaque);
+}
+
+void draw_faces(const DrawItem& item) {
+    glDrawElements(GL_TRIANGLES, item.part.face_count * 3, GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(size_t(item.part.first_face) * 12));
 }
 
 /// The solid items of each object, or those that tint; they follow each other.
@@ -140,6 +149,7 @@ void ShadowPass::draw_object(const ShadowView& view, Items items) {
 }
 
 void ShadowPass::draw_item(const ShadowView& view, const DrawItem& item) {
+    if (item.material.shader) return draw_shaded(view, item);
     const Material& m = item.material;
     const bool with_uv = reads_uv(item), tints = item.casts_tint();
     std::vector<std::string> defines;
@@ -175,8 +185,51 @@ void ShadowPass::draw_item(const ShadowView& view, const DrawItem& item) {
         program.set("u_transmission_channel",
                     Vec4(Vec4::Unit(std::clamp(m.transmission_texture.channel, 0, 3))));
     }
-    glDrawElements(GL_TRIANGLES, item.part.face_count * 3, GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(size_t(item.part.first_face) * 12));
+    draw_faces(item);
+}
+
+void ShadowPass::draw_shaded(const ShadowView& view, const DrawItem& item) {
+    const Material& m = item.material;
+    const bool tints = item.casts_tint();
+    const bool varies = tints && item.textured() && m.transmission_texture;
+    const Frame frame;  // of the core model
+    // The face's side by its derivatives: nothing is known of the winding here.
+    std::vector<std::string> defines = {"SHADOW", "SURFACE_SHADER", "FACE_NORMAL"};
+    if (item.style.flat) defines.emplace_back("FLAT");
+    if (item.with_colors) defines.emplace_back("VERTEX_COLOR");
+    if (item.alpha == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
+    if (item.alpha == AlphaMode::opaque) defines.emplace_back("COVERS");
+    if (tints) defines.emplace_back("TINT");
+    if (varies) defines.emplace_back("SHADOW_TRANSMISSION");
+    add_material_defines(frame, item, defines);
+    const gl::Program& program = with_shader(shaded_, m.shader, defines);
+    program.use();
+    const Eigen::Affine3d& T = item.object->T_world_mesh;
+    const Vec3d along = view.R_light_world.row(2);
+    // A parallel view is from so far before all casters that it looks nearly straight at each.
+    const Vec3d eye = view.perspective
+                          ? view.position
+                          : Vec3d(view.position + along * (view.near - 8 * (view.far - view.near)));
+    const Mat4d view_from_mesh = (Eigen::Translation3d(-eye) * T).matrix();
+    program.set("u_clip_from_mesh", Mat4((view.clip_from_world() * T.matrix()).cast<float>()));
+    program.set("u_view_from_mesh", Mat4(view_from_mesh.cast<float>()));
+    program.set("u_world_from_view", Mat3(Mat3::Identity()));
+    program.set("u_normal_from_mesh", Mat3(T.linear().inverse().transpose().cast<float>()));
+    program.set("u_tangent_from_mesh", Mat3(T.linear().cast<float>()));
+    program.set("u_eye", Vec3(eye.cast<float>()));
+    program.set("u_backwards",
+                Vec4(float(-along.x()), float(-along.y()), float(-along.z()), view.perspective ? 0 : 1));
+    program.set("u_through", light_through(item));
+    program.set("u_root", item.is_volume() ? 0.5f : 1.0f);
+    const unsigned unit = set_material(program, frame, item, textures_);
+    if (varies) {
+        textures_.get(m.transmission_texture, false).bind(unit);
+        program.set("u_transmission_texture", int(unit));
+        program.set("u_transmission_uv", m.transmission_texture.uv_transform);
+        program.set("u_transmission_channel",
+                    Vec4(Vec4::Unit(std::clamp(m.transmission_texture.channel, 0, 3))));
+    }
+    draw_faces(item);
 }
 
 }  // namespace easypbr::render

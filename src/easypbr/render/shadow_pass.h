@@ -50,12 +50,15 @@ class ShadowPass {
                      int resolution);
     void draw_object(const ShadowView& view, Items items);
     void draw_item(const ShadowView& view, const DrawItem& item);
+    /// The same of an item with a shader of its own, whose holes are holes in its shadow.
+    void draw_shaded(const ShadowView& view, const DrawItem& item);
 
     gpu::MeshCache& meshes_;
     gpu::TextureCache& textures_;
     const gpu::ClosedMeshes& closed_;
     SplatShadows& splats_;
     ProgramVariants programs_{"shadow_depth.vert", "shadow_depth.frag"};
+    ProgramVariants shaded_{"geometry_mesh.vert", "geometry_mesh.frag"};
     bool native_ = true;
     DepthBuffer depths_;
     VisibilityBuffer points_;

@@ -143,8 +143,10 @@ void SoftwareGeometryPass::draw_points_over(const Frame& frame, const DrawList& 
 }
 
 bool SoftwareGeometryPass::cover(const Frame& frame, const DrawList& list, std::vector<uint8_t>& covered) {
-    const auto shaped_by_alpha = [](const DrawItem& item) { return item.alpha != AlphaMode::opaque; };
-    if (!list.surfels.empty() || list.has(shaped_by_alpha)) return false;
+    const auto has_holes = [](const DrawItem& item) {
+        return item.alpha != AlphaMode::opaque || item.material.shader;
+    };
+    if (!list.surfels.empty() || list.has(has_holes)) return false;
     const PixelRect area{0, 0, frame.size.x(), frame.size.y()};
     TriangleRaster raster;
     raster.set_area(frame.size, area);
