@@ -77,6 +77,13 @@ Mesh cloud() {
     return Mesh(data);
 }
 
+Mesh see_through(Mesh mesh) {
+    Material m = colored({0.9f, 0.6f, 0.3f});
+    m.opacity = 0.5f;
+    mesh.set_material(m);
+    return mesh;
+}
+
 Scene showing(const Mesh& mesh) {
     Scene scene;
     scene.show(mesh, "shown");
@@ -268,6 +275,15 @@ const Case cases[] = {
      }},
     {"blurred_background", solids, [](Settings& s) { s.background.mode = BackgroundMode::blur; }},
     {"points", [] { return showing(cloud()); }, [](Settings& s) { s.eye_dome.radius = 8.5f; }},
+    // Its widest ring is 93 pixels from the middle, much farther than splats of 3 pixels ask a tile to see.
+    {"points_shaded_widely", [] { return showing(cloud()); },
+     [](Settings& s) {
+         s.style.point_size = 3.0f;
+         s.eye_dome.radius = 60;
+     },
+     1, 100},
+    {"points_blended", [] { return showing(see_through(cloud())); },
+     [](Settings& s) { s.transparency.max_layers = 2; }, 1, 300},
     {"points_occluded", [] { return showing(cloud()); }, occluded},
     {"points_filled", [] { return showing(cloud()); },
      [](Settings& s) {
@@ -276,6 +292,8 @@ const Case cases[] = {
      },
      1, 300},
     {"surfels", [] { return showing(estimate_surfels(cloud())); }, [](Settings&) {}, 1, 100},
+    {"surfels_blended", [] { return showing(see_through(estimate_surfels(cloud()))); },
+     [](Settings& s) { s.transparency.max_layers = 2; }, 1, 300},
     {"lines", solids,
      [](Settings& s) {
          s.style.show_wireframe = true;

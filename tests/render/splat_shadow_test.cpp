@@ -152,6 +152,33 @@ TEST(SplatShadow, DoesNotFallOnItself) {
         }
 }
 
+// Surfels so large that the ball bends by a hundredth of its radius within one: pushed back by a quarter of
+// their size they do not shadow their neighbours.
+TEST(SplatShadow, OfLargeSurfelsDoesNotFallOnTheirNeighbours) {
+    const Mesh ball = make_sphere(1, 24);
+    Mesh cloud;
+    cloud.set_V(ball.V());
+    cloud.set_N(ball.N());
+    Scene scene;
+    scene.show(drawn_as(cloud, DrawMode::surfels), "ball");
+    scene.set_light("light", directional(Vec3(-0.6f, 0, -0.8f)));
+    app::Session session = shadow_session(scene, ShadowMode::hard, size);
+    look_from(session, Vec3d(2, -3, 2.5), 36);
+    const LitParts lit = lit_parts(session);
+    double sum = 0;
+    int count = 0;
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+            if (lit.at(x, y) < 0) continue;
+            const Vec3d n = lit.position(x, y).normalized();
+            if (n.dot(Vec3d(0.6, 0, 0.8)) < std::cos(radians(60))) continue;
+            sum += lit.at(x, y);
+            ++count;
+        }
+    EXPECT_GT(count, 2000);
+    EXPECT_GT(sum / count, 0.99);
+}
+
 // A card of a mesh over a cloud that is lit: what lies under it is dark.
 TEST(SplatShadow, FallsOnPointsAndSurfels) {
     for (const DrawMode mode : {DrawMode::points, DrawMode::surfels}) {
@@ -219,7 +246,8 @@ TEST(SplatShadow, MapsAreKept) {
     EXPECT_EQ(session.shadow_maps_drawn(), first + 2);
 }
 
-// A cloud without normals keeps its own colours: no map is drawn until something stands by that light falls on.
+// A cloud without normals keeps its own colours: no map is drawn until something stands by that light falls
+// on.
 TEST(SplatShadow, NothingIsDrawnForWhatReceivesNone) {
     Scene scene;
     Mesh cloud;
