@@ -16,6 +16,7 @@ find_package(yaml-cpp REQUIRED)
 find_path(STB_FOLDER stb/stb_truetype.h REQUIRED)
 # The window's library is loaded when the first window is opened: only its header is needed here.
 find_path(GLFW_FOLDER GLFW/glfw3.h REQUIRED)
+find_path(XCB_FOLDER xcb/xcb.h REQUIRED)
 find_path(IMGUI_FOLDER imgui.h PATH_SUFFIXES imgui REQUIRED)
 # As archives, so that nothing of them has to be installed where the library runs.
 find_library(IMGUI_LIBRARY libimgui.a REQUIRED)

@@ -231,6 +231,41 @@ def test_the_camera_goes_by_the_clipboard(window):
     wait_until(lambda: window.update() and np.allclose(window.view.camera.position, before, atol=1e-6))
 
 
+def test_an_owner_of_the_clipboard_that_does_not_answer_is_told(window):
+    before = window.view.camera.position.copy()
+    owner = subprocess.Popen(["xclip", "-selection", "clipboard", "-i", "-quiet"], env=window.display.environment, text=True,
+                             stdin=subprocess.PIPE, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    owner.stdin.write("camera.fov_y_deg=20")
+    owner.stdin.close()
+    # It holds the clipboard as soon as what it holds can be read.
+    wait_until(lambda: window.display.run("xclip", "-selection", "clipboard", "-o", check=False).stdout.startswith("camera.fov"))
+    owner.send_signal(signal.SIGSTOP)
+    try:
+        start = time.monotonic()
+        window.key("ctrl+v")
+        wait_until(lambda: window.update() and any("did not answer" in text for text in window.state["messages"]))
+        assert time.monotonic() - start < 20  # a second, and what a busy machine adds
+        assert window.view.settings.camera.fov_y_deg != 20
+        # It reads what comes next.
+        subprocess.run(["xclip", "-selection", "clipboard", "-i"], env=window.display.environment, input="camera.fov_y_deg=20",
+                       text=True, timeout=30, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        window.key("ctrl+v")
+        wait_until(lambda: window.update() and window.view.settings.camera.fov_y_deg == 20)
+    finally:
+        owner.kill()
+        owner.wait()
+    assert np.allclose(window.view.camera.position, before)
+
+
+def test_the_windows_own_text_comes_back_from_the_clipboard(window):
+    before = window.view.camera.position.copy()
+    window.key("ctrl+c")
+    window.mouse("mousemove", 400, 300, "click", 4)
+    assert np.any(window.view.camera.position != before)
+    window.key("ctrl+v")
+    wait_until(lambda: window.update() and np.allclose(window.view.camera.position, before, atol=1e-6))
+
+
 def test_text_that_is_no_camera_is_told(window):
     subprocess.run(["xclip", "-selection", "clipboard", "-i"], env=window.display.environment, input="a recipe", text=True,
                    timeout=30, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)

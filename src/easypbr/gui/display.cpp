@@ -20,6 +20,7 @@ using IoErrorHandler = int (*)(Display*);
 using ExitHandler = void (*)(Display*, void*);
 
 Display* display = nullptr;
+const char* name_of_display = nullptr;
 std::atomic<int> connection = -1;
 int wake_file = -1;
 std::atomic<bool> lost = false;
@@ -48,11 +49,13 @@ void watch_display() {
     if (!glfw_library || !x11) return;
     const auto get_display = find<Display* (*)()>(glfw_library, "glfwGetX11Display");
     const auto number = find<int (*)(Display*)>(x11, "XConnectionNumber");
+    const auto name = find<const char* (*)(Display*)>(x11, "XDisplayString");
     const auto set_exit = find<void (*)(Display*, ExitHandler, void*)>(x11, "XSetIOErrorExitHandler");
     const auto set_handler = find<IoErrorHandler (*)(IoErrorHandler)>(x11, "XSetIOErrorHandler");
-    if (!get_display || !number || !set_exit || !set_handler) return;
+    if (!get_display || !number || !name || !set_exit || !set_handler) return;
     display = get_display();
     if (!display) return;
+    name_of_display = name(display);
     set_exit(display, on_exit, nullptr);
     handler_before = set_handler(on_io_error);
     wake_file = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
@@ -78,6 +81,10 @@ bool wait_for_display(double seconds) {
     if (files[1].revents) [[maybe_unused]]
         const ssize_t ignored = read(wake_file, &count, sizeof count);
     return true;
+}
+
+const char* display_name() {
+    return name_of_display;
 }
 
 void wake_display() {

@@ -21,4 +21,8 @@ bool wait_for_display(double seconds);
 
 void wake_display();
 
+/// The name of the X display that windows are on, for a connection of one's own; null where they are not
+/// X11's.
+const char* display_name();
+
 }  // namespace easypbr::gui

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "easypbr/core/error.h"
+#include "easypbr/gui/clipboard.h"
 #include "easypbr/gui/display.h"
 #include "easypbr/gui/glfw.h"
 
@@ -24,6 +25,8 @@ static_assert(app::key::escape == GLFW_KEY_ESCAPE && app::key::del == GLFW_KEY_D
               app::key::f1 == GLFW_KEY_F1 && app::key::f12 == GLFW_KEY_F12);
 
 constexpr double ask_again_seconds = 0.5;
+/// How long the owner of the clipboard has to answer.
+constexpr double clipboard_seconds = 1;
 
 /// Threads that wait for the one that waits for events.
 std::atomic<int> waiting_threads = 0;
@@ -125,6 +128,8 @@ Window::Window(const std::string& title, Vec2i size) {
     f.glfwWindowHint(GLFW_CONTEXT_VERSION_MINOR, 3);
     f.glfwWindowHint(GLFW_OPENGL_PROFILE, GLFW_OPENGL_CORE_PROFILE);
     f.glfwWindowHint(GLFW_VISIBLE, GLFW_FALSE);  // show() does it.
+    // The size is meant in plain pixels, as the panels' is: on a HiDPI screen the window has more.
+    f.glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
     window_ = f.glfwCreateWindow(size.x(), size.y(), title.c_str(), nullptr, nullptr);
     if (!window_) {
         const char* reason = nullptr;
@@ -240,6 +245,9 @@ void Window::present(const Image& picture) {
 
 std::string Window::clipboard() const {
     const GlfwLock lock;
+    // GLFW 3.3 waits without end for an owner that does not answer.
+    if (const char* display = display_name())
+        return read_clipboard(display, clipboard_seconds, glfw().glfwPollEvents);
     const char* text = glfw().glfwGetClipboardString(window_);
     return text ? text : "";
 }

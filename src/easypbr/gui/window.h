@@ -17,7 +17,8 @@ namespace easypbr::gui {
 /// thread.
 class Window {
   public:
-    /// Throws ContextError when there is no GLFW or no display.
+    /// The size is in plain pixels: on a HiDPI screen it is multiplied by the screen's scale. Throws
+    /// ContextError when there is no GLFW or no display.
     Window(const std::string& title, Vec2i size);
     ~Window();
     Window(const Window&) = delete;
@@ -38,6 +39,7 @@ class Window {
     /// The window system lost what was shown.
     bool needs_present() const { return needs_present_; }
 
+    /// Throws ContextError when the program that holds the clipboard does not answer within a second.
     std::string clipboard() const;
     void set_clipboard(const std::string& text);
     void set_title(const std::string& title);
