@@ -296,6 +296,15 @@ class Viewer(WindowCallbacks):
             raise ArgumentError(f"camera_path: expected a CameraPath, got a {type(path).__name__}")
         self._handle.set_path(path)
 
+    @property
+    def panel_scale(self) -> float:
+        """How large panels, text and handles are, 0.5 to 4; 1 is as the screen asks for."""
+        return self._handle.panel_scale
+
+    @panel_scale.setter
+    def panel_scale(self, scale: float):
+        self._handle.panel_scale = scale
+
     def show_panels(self, *names: str) -> None:
         """Shows these of the window's own panels alone, unfolded: "Scene", "Object", "Effects", "Lights", "Environment",
         "Camera", "Channels", "Statistics", "Animations", "Camera path", "Recorder"."""

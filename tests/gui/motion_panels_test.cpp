@@ -304,6 +304,39 @@ TEST_F(MotionPanels, AnimationsPlayPauseAndScrub) {
     EXPECT_TRUE(player_.is_playing());
 }
 
+// Frames of 48 x 32 in a window of 560 x 620: 560 x 373, with bars of 123 above and below.
+TEST_F(MotionPanels, ARecordedPathKeepsItsShapeInTheWindow) {
+    view_.state().show_panels = false;
+    session_.settings().background.mode = BackgroundMode::color;
+    session_.settings().background.color = Vec3(0, 1, 0);
+    three_keys();
+    settle();
+    const auto green_rows = [&] {
+        const Image screen = view_.screen();
+        int first = -1, count = 0;
+        for (int y = 0; y < screen.height(); ++y)
+            if (screen.at<uint8_t>(2, y)[1] > 100) {
+                if (first < 0) first = y;
+                ++count;
+            }
+        return std::pair(first, count);
+    };
+    EXPECT_EQ(green_rows(), std::pair(0, size.y()));
+    view_.state().form.video = (folder_ / "f_%03d.png").string();
+    view_.state().wish = RecorderWish::path;
+    step();
+    step();
+    step();
+    ASSERT_TRUE(view_.is_recording());
+    const auto [first, count] = green_rows();
+    EXPECT_NEAR(first, (620 - 373.3) / 2, 1);
+    EXPECT_NEAR(count, 373.3, 2);
+    EXPECT_EQ(int(view_.screen().at<uint8_t>(280, 20)[1]), 0);
+    view_.stop_recording();
+    settle();
+    EXPECT_EQ(green_rows(), std::pair(0, size.y()));
+}
+
 /// The still of the view's size that comes after a picture of what `before` has done, which `after` undoes.
 Image still_after(app::Session& session, const std::function<void()>& before,
                   const std::function<void()>& after) {

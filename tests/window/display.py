@@ -1,4 +1,5 @@
 """A display without a screen: Xvfb with a window manager, mouse and keyboard by xdotool, pictures of the screen."""
+import ctypes
 import os
 import pathlib
 import shutil
@@ -18,7 +19,7 @@ def missing_tools():
 class Display:
     """Closed at the end of a with block."""
 
-    def __init__(self, folder: pathlib.Path, manager: bool = True):
+    def __init__(self, folder: pathlib.Path, manager: bool = True, dpi: int | None = None):
         reader, writer = os.pipe()
         self.framebuffer = folder / "Xvfb_screen0"
         self._processes = [subprocess.Popen(
@@ -28,6 +29,8 @@ class Display:
         with os.fdopen(reader) as numbers:
             self.name = ":" + numbers.readline().strip()
         self.environment = {**os.environ, "DISPLAY": self.name}
+        if dpi:
+            set_resources(self.name, f"Xft.dpi:\t{dpi}\n")
         if manager:
             # It names itself before it is ready, and loses what programs ask of it in between.
             ready = folder / "ready"
@@ -73,6 +76,21 @@ class Display:
         for process in reversed(self._processes):
             process.terminate()
             process.wait(10)
+
+
+def set_resources(display: str, text: str) -> None:
+    """What xrdb does: programs read the resources from a property of the root window."""
+    x11 = ctypes.CDLL("libX11.so.6")
+    x11.XOpenDisplay.restype = ctypes.c_void_p
+    x11.XDefaultRootWindow.argtypes = x11.XCloseDisplay.argtypes = [ctypes.c_void_p]
+    x11.XDefaultRootWindow.restype = ctypes.c_ulong
+    x11.XChangeProperty.argtypes = [ctypes.c_void_p, *[ctypes.c_ulong] * 3, ctypes.c_int, ctypes.c_int, ctypes.c_char_p,
+                                    ctypes.c_int]
+    resource_manager, string, replace = 23, 31, 0  # Xatom.h
+    connection = x11.XOpenDisplay(display.encode())
+    x11.XChangeProperty(connection, x11.XDefaultRootWindow(connection), resource_manager, string, 8, replace, text.encode(),
+                        len(text))
+    x11.XCloseDisplay(connection)
 
 
 def wait_until(condition, seconds=30):

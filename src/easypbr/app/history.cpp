@@ -16,11 +16,14 @@ bool same_choices(const Settings& a, const Settings& b) {
     });
 }
 
-void History::note(const Settings& settings, const ObjectStates& changed) {
-    if (!states_.empty() && changed.empty() && same_choices(states_[present_].settings, settings)) return;
-    Step state{settings, {}};
+void History::note(const Settings& settings, const ObjectStates& changed, const LightStates& lights) {
+    if (!states_.empty() && changed.empty() && lights.empty() &&
+        same_choices(states_[present_].settings, settings))
+        return;
+    Step state{settings, {}, {}};
     if (!states_.empty()) {
         state.objects = states_[present_].objects;
+        state.lights = states_[present_].lights;
         states_.resize(present_ + 1);
     }
     for (const auto& [name, object] : changed) {
@@ -32,6 +35,7 @@ void History::note(const Settings& settings, const ObjectStates& changed) {
         known.changes = object.changes;
         known.look = next_revision();
     }
+    for (const auto& [name, light] : lights) state.lights[name] = light;
     states_.push_back(std::move(state));
     if (states_.size() > most_states) states_.erase(states_.begin());
     present_ = states_.size() - 1;
@@ -46,8 +50,15 @@ void History::know(const std::string& object, const ObjectState& before) {
     }
 }
 
+void History::know_light(const std::string& name, const std::optional<Light>& before) {
+    for (Step& state : states_) state.lights.try_emplace(name, before);
+}
+
 History::Step History::go(size_t to) {
     Step step = states_[to];
+    std::erase_if(step.lights, [&](const auto& light) {
+        return states_[present_].lights.at(light.first) == light.second;
+    });
     const ObjectStates& now = states_[present_].objects;
     for (auto& [name, object] : step.objects) {
         const auto known = now.find(name);

@@ -1,4 +1,4 @@
-// Undo and redo of settings, the camera among them, and of what a person did to objects.
+// Undo and redo of settings, the camera among them, and of what a person did to objects and lights.
 #pragma once
 
 #include <functional>
@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "easypbr/scene/light.h"
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/settings.h"
 
@@ -29,15 +30,18 @@ struct ObjectState {
 };
 /// By the object's name.
 using ObjectStates = std::map<std::string, ObjectState>;
+/// Lights of the scene by name; none: there is no such light.
+using LightStates = std::map<std::string, std::optional<Light>>;
 
-/// States of settings and objects, oldest first. What is noted after undo() drops what was undone.
+/// States of settings, objects and lights, oldest first. What is noted after undo() drops what was undone.
 class History {
   public:
-    /// Notes the settings, unless they are the present ones but for what is inferred, and the objects that
-    /// were changed since the last note.
-    void note(const Settings& settings, const ObjectStates& changed = {});
+    /// Notes the settings, unless they are the present ones but for what is inferred, and the objects and
+    /// lights that were changed since the last note.
+    void note(const Settings& settings, const ObjectStates& changed = {}, const LightStates& lights = {});
     /// What an object was before a person changed it for the first time: it was so in all states.
     void know(const std::string& object, const ObjectState& before);
+    void know_light(const std::string& name, const std::optional<Light>& before);
 
     bool can_undo() const { return present_ > 0; }
     bool can_redo() const { return present_ + 1 < states_.size(); }
@@ -46,6 +50,7 @@ class History {
     struct Step {
         Settings settings;
         ObjectStates objects;  ///< what is another way than now
+        LightStates lights;    ///< the same
     };
     /// To the state before or after the present one, which it then is. Throws ArgumentError when there is
     /// none.
@@ -57,7 +62,7 @@ class History {
   private:
     Step go(size_t to);
 
-    std::vector<Step> states_;  ///< with all objects that are known
+    std::vector<Step> states_;  ///< with all objects and lights that are known
     size_t present_ = 0;
 };
 

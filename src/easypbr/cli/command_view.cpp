@@ -21,6 +21,7 @@ struct ViewOptions {
     std::vector<std::string> files, values, passes;
     std::string size = "1280x720", environment, settings, screenshot, shader, animation, path;
     bool watch = false, light = false;
+    float panel_scale = 1;
 };
 
 void declare(CLI::App& command, ViewOptions& options) {
@@ -43,6 +44,10 @@ void declare(CLI::App& command, ViewOptions& options) {
     command.add_option("--shader", options.shader, field("material.shader").doc)->option_text("FILE");
     declare_passes(command, options.passes);
     command.add_flag("--watch", options.watch, "Show files again when they change");
+    command
+        .add_option("--ui-scale", options.panel_scale,
+                    "How large panels and text are, 0.5 to 4; 1 is as the screen asks for")
+        ->option_text("X");
     command.add_flag("--light", options.light, "Light panels instead of dark ones");
     command
         .add_option("--screenshot", options.screenshot,
@@ -84,6 +89,7 @@ int run(const ViewOptions& options) {
     }
     if (!options.animation.empty()) play(view, names, options.animation);
     if (!options.path.empty()) view.live().state().path.set(io::load_camera_path(options.path));
+    view.live().set_panel_scale(options.panel_scale);
     if (options.light) view.live().state().theme = gui::Theme::light;
     if (options.screenshot.empty())
         view.show();

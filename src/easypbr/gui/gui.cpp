@@ -65,6 +65,20 @@ void draw_column(GuiState& state, const Column& column, float x, float top, floa
     ImGui::End();
 }
 
+/// Over all of the window; a recording's frame as large as fits, with bars beside it.
+void show_picture(const GuiState& state, const gl::Texture& picture) {
+    const ImVec2 window = ImGui::GetIO().DisplaySize;
+    ImDrawList& list = *ImGui::GetBackgroundDrawList();
+    ImVec2 size = window;
+    if (state.shows_recording) {
+        const float fit = std::min(window.x / float(picture.width()), window.y / float(picture.height()));
+        size = ImVec2(fit * float(picture.width()), fit * float(picture.height()));
+        list.AddRectFilled(ImVec2(0, 0), window, IM_COL32_BLACK);
+    }
+    const ImVec2 from((window.x - size.x) / 2, (window.y - size.y) / 2);
+    list.AddImage(ImTextureID(intptr_t(picture.id())), from, ImVec2(from.x + size.x, from.y + size.y));
+}
+
 /// The same for frames that look the same, as long as pictures keep their contents.
 std::string hash_of(const ImDrawData& data) {
     std::string hashes;
@@ -189,7 +203,10 @@ void Gui::prepare(const GuiState& state, double seconds) {
     }
     io.DisplaySize = ImVec2(float(state.size.x()), float(state.size.y()));
     io.DeltaTime = float(std::max(seconds, 1e-4));
-    for (size_t i = 0; i < down_.size(); ++i) io.MouseDown[i] = down_[i] || std::exchange(pressed_[i], false);
+    for (size_t i = 0; i < down_.size(); ++i) {
+        const bool pressed = std::exchange(pressed_[i], false);
+        io.MouseDown[i] = down_[i] || pressed;
+    }
 }
 
 void Gui::draw_panels(GuiState& state, const std::function<void()>& more) {
@@ -215,9 +232,7 @@ bool Gui::lay_out(GuiState& state, double seconds, const gl::Texture& picture,
     prepare(state, seconds);
     state.places.clear();
     ImGui::NewFrame();
-    if (picture)
-        ImGui::GetBackgroundDrawList()->AddImage(ImTextureID(intptr_t(picture.id())), ImVec2(0, 0),
-                                                 ImGui::GetIO().DisplaySize);
+    if (picture) show_picture(state, picture);
     try {
         draw_panels(state, more);
     } catch (const Error& error) {

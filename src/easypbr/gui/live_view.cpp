@@ -130,7 +130,16 @@ bool LiveView::update(const std::vector<InputEvent>& events, Vec2i size, float s
     return update_now(events, size, scale, seconds);
 }
 
+void LiveView::set_panel_scale(float scale) {
+    if (!(scale >= least_panel_scale && scale <= most_panel_scale))
+        throw ArgumentError(fmt::format("panel scale: expected {} to {}, got {}", least_panel_scale,
+                                        most_panel_scale, scale));
+    state_.panel_scale = scale;
+    touch();
+}
+
 bool LiveView::update_now(const std::vector<InputEvent>& events, Vec2i size, float scale, double seconds) {
+    scale *= state_.panel_scale;
     bool changed = state_.size != size || state_.scale != scale || !events.empty();
     const bool resized = std::exchange(state_.size, size) != size;
     state_.scale = scale;

@@ -82,6 +82,10 @@ class LiveView {
     /// Shows the file again under `name` whenever it changes.
     void watch(const std::filesystem::path& path, const std::string& name);
 
+    /// How large panels, text and handles are, 1 as the screen asks for. Throws ArgumentError unless it is
+    /// from 0.5 to 4.
+    void set_panel_scale(float scale);
+
     /// After a change to it call touch(), which has the GUI drawn again.
     GuiState& state() { return state_; }
     void touch() { gui_frames_ = 3; }

@@ -93,7 +93,10 @@ void LiveView::record() {
         if (!recording_.is_running()) return;
         recording_.advance(finished, shown);
         gui_frames_ = std::max(gui_frames_, 1);
-        if (!recording_.frame().empty()) show_pixels(with_channels(to_u8(recording_.frame()), 4));
+        if (!recording_.frame().empty()) {
+            show_pixels(with_channels(to_u8(recording_.frame()), 4));
+            state_.shows_recording = true;
+        }
         if (recording_.is_path() && recording_.frames() == recording_.total()) stop_recording();
     } catch (const std::exception& error) {
         say(error.what(), true);

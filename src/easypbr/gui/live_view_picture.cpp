@@ -46,8 +46,9 @@ bool LiveView::draw_picture() {
         const Vec2i wanted = moving && software ? reduced(state_.size, reduction_) : state_.size;
         const std::pair motion_key(state_.player->speed(), state_.form.fps);
         const bool other_motion = session_.settings().motion_blur.enabled && motion_key != motion_key_;
-        const bool stale = version != version_ || shown_channel_ != state_.channel || failed_ ||
-                           other_motion || (!moving && quick_size_ != state_.size);
+        const bool stale = version != version_ || state_.shows_recording ||
+                           shown_channel_ != state_.channel || failed_ || other_motion ||
+                           (!moving && quick_size_ != state_.size);
         bool drew = false;
         // What failed fails again until something changes.
         if (failed_ && version == failed_version_ && shown_channel_ == state_.channel &&
@@ -126,6 +127,7 @@ bool LiveView::refine() {
 }
 
 void LiveView::show_picture() {
+    state_.shows_recording = false;
     const AnnotationSettings& annotation = session_.settings().annotation;
     if (state_.channel == "slices") {
         std::vector<Image> pictures = {session_.last_picture()};

@@ -96,15 +96,16 @@ std::optional<Subject> selected_light(GuiState& state) {
         };
         return subject;
     }
-    Scene& scene = state.session.scene();
+    const Scene& scene = state.session.scene();
     const auto names = scene.light_names();
     if (std::ranges::find(names, state.light) == names.end()) return {};
     const Light light = scene.light(state.light);
     subject.centre = light.position.cast<double>();
-    subject.apply = [&scene, light, name = state.light](const Eigen::Affine3d& change) {
+    subject.apply = [&state, light, name = state.light](const Eigen::Affine3d& change) {
         Light moved = light;
         moved.position = (change * light.position.cast<double>()).cast<float>();
-        scene.set_light(name, moved);
+        will_change_light(state, name);
+        state.session.scene().set_light(name, moved);
     };
     return subject;
 }

@@ -1,4 +1,7 @@
+#include <fmt/format.h>
 #include <imgui.h>
+
+#include <algorithm>
 
 #include "easypbr/core/color.h"
 #include "easypbr/gui/panels.h"
@@ -10,7 +13,9 @@ namespace {
 /// A button that selects a light, so that it can be moved in the scene.
 void select_button(GuiState& state, const std::string& name) {
     const bool chosen = state.light == name;
-    if (ImGui::Button(chosen ? "Stop moving" : "Move in the scene", ImVec2(-FLT_MIN, 0))) {
+    const bool pressed = ImGui::Button(chosen ? "Stop moving" : "Move in the scene", ImVec2(-FLT_MIN, 0));
+    note_place(state, "Lights/move " + name);
+    if (pressed) {
         state.light = chosen ? "" : name;
         state.object.clear();
     }
@@ -31,14 +36,40 @@ bool direction_row(const char* name, Vec3& value) {
     return changed;
 }
 
+/// Half the view's distance beside, above and before the target, as bright there as 3 lux.
+Light new_light(GuiState& state) {
+    const app::ViewPoint view = state.session.view_point(state.size);
+    Light light;
+    const Vec3d offset = view.camera.T_world_cam.linear() * Vec3d(0.5, 0.5, 0.5) * view.distance();
+    light.position = (view.target + offset).cast<float>();
+    light.intensity = float(3 * offset.squaredNorm());
+    return light;
+}
+
+void add_button(GuiState& state) {
+    if (!named_button(state, "Lights", "Add a light", -FLT_MIN)) return;
+    const std::vector<std::string> names = state.session.scene().light_names();
+    std::string name = "light";
+    for (int number = 2; std::ranges::find(names, name) != names.end(); ++number)
+        name = fmt::format("light-{}", number);
+    const Light light = new_light(state);
+    will_change_light(state, name);
+    state.session.scene().set_light(name, light);
+    state.light = name;
+    state.object.clear();
+}
+
 void scene_light(GuiState& state, const std::string& name) {
-    if (!ImGui::TreeNodeEx(name.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth)) return;
+    const bool open = ImGui::TreeNodeEx(name.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth);
+    note_place(state, "Lights/" + name);
+    if (!open) return;
     Light light = state.session.scene().light(name);
     if (light.type != LightType::directional) select_button(state, name);
     bool changed = false;
     if (begin_rows("light", false)) {
         begin_row("enabled");
         changed |= ImGui::Checkbox("##enabled", &light.enabled);
+        note_place(state, "Lights/enabled " + name);
         begin_row("intensity", light.type == LightType::directional ? "lux" : "candela");
         changed |= ImGui::DragFloat("##intensity", &light.intensity, std::max(light.intensity, 1e-3f) * 0.01f,
                                     0, 1e9f, "%.3g", ImGuiSliderFlags_AlwaysClamp);
@@ -61,7 +92,17 @@ void scene_light(GuiState& state, const std::string& name) {
         changed |= ImGui::Checkbox("##shadows", &light.casts_shadows);
         end_rows();
     }
-    if (changed) state.session.scene().set_light(name, light);
+    if (changed) {
+        will_change_light(state, name);
+        state.session.scene().set_light(name, light);
+    }
+    const bool removed = ImGui::Button("Remove", ImVec2(-FLT_MIN, 0));
+    note_place(state, "Lights/remove " + name);
+    if (removed) {
+        will_change_light(state, name);
+        state.session.scene().remove_light(name);
+        if (state.light == name) state.light.clear();
+    }
     ImGui::TreePop();
 }
 
@@ -78,6 +119,7 @@ void lights_panel(GuiState& state) {
     studio_light(state, "fill", "Fill");
     studio_light(state, "rim", "Rim");
     for (const std::string& name : state.session.scene().light_names()) scene_light(state, name);
+    add_button(state);
 }
 
 }  // namespace easypbr::gui

@@ -62,6 +62,13 @@ void menu_bar(GuiState& state) {
         ImGui::MenuItem("All panels", "H", &state.show_panels);
         bool light = state.theme == Theme::light;
         if (ImGui::MenuItem("Light theme", nullptr, &light)) state.theme = light ? Theme::light : Theme::dark;
+        if (ImGui::BeginMenu("Size of the panels")) {
+            for (const int percent : {75, 100, 125, 150, 200})
+                if (const float scale = float(percent) / 100; ImGui::MenuItem(
+                        fmt::format("{} %", percent).c_str(), nullptr, state.panel_scale == scale))
+                    state.panel_scale = scale;
+            ImGui::EndMenu();
+        }
         ImGui::EndMenu();
     }
     if (ImGui::BeginMenu("Edit")) {

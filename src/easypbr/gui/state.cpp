@@ -1,11 +1,18 @@
 #include "easypbr/gui/state.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "easypbr/core/error.h"
 
 namespace easypbr::gui {
 namespace {
+
+std::optional<Light> light_named(const Scene& scene, const std::string& name) {
+    const auto names = scene.light_names();
+    if (std::ranges::find(names, name) == names.end()) return {};
+    return scene.light(name);
+}
 
 void restore(GuiState& state, const app::History::Step& step) {
     state.session.replace_settings(step.settings);
@@ -19,6 +26,12 @@ void restore(GuiState& state, const app::History::Step& step) {
                 data.style = *look.style;
             });
         if (object.materials) state.looks[name] = object.changes;
+    }
+    for (const auto& [name, light] : step.lights) {
+        if (light)
+            state.session.scene().set_light(name, *light);
+        else if (light_named(state.session.scene(), name))
+            state.session.scene().remove_light(name);
     }
 }
 
@@ -82,6 +95,11 @@ void will_move(GuiState& state, const std::string& object, const Mesh& node) {
     state.changed_poses.insert(object);
 }
 
+void will_change_light(GuiState& state, const std::string& name) {
+    state.history.know_light(name, light_named(state.session.scene(), name));
+    state.changed_lights.insert(name);
+}
+
 void note_history(GuiState& state) {
     app::ObjectStates changed;
     for (const std::string& name : std::exchange(state.changed_looks, {})) {
@@ -93,7 +111,10 @@ void note_history(GuiState& state) {
     for (const std::string& name : std::exchange(state.changed_poses, {}))
         if (const std::optional<Mesh> node = node_named(state.session.scene(), name))
             changed[name].T_parent_mesh = node->T_parent_mesh();
-    state.history.note(state.settings(), changed);
+    app::LightStates lights;
+    for (const std::string& name : std::exchange(state.changed_lights, {}))
+        lights[name] = light_named(state.session.scene(), name);
+    state.history.note(state.settings(), changed, lights);
 }
 
 void undo(GuiState& state) {

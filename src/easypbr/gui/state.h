@@ -33,6 +33,7 @@ enum class Panel {
     recorder
 };
 inline constexpr int panel_count = 11;
+inline constexpr float least_panel_scale = 0.5f, most_panel_scale = 4;
 /// Name of a panel as it stands in menus; its key is F1 and on.
 const char* panel_name(Panel panel);
 
@@ -78,7 +79,8 @@ struct GuiState {
     app::Session& session;
     std::optional<ResolvedSettings> resolved;  ///< of the last frame
     Vec2i size{1, 1};                          ///< of the window
-    float scale = 1;
+    float scale = 1;                           ///< of the panels: of the screen times panel_scale
+    float panel_scale = 1;                     ///< chosen by a person
 
     std::array<bool, panel_count> open = all_panels();
     std::set<Panel> unfold;  ///< in the next frame
@@ -108,13 +110,15 @@ struct GuiState {
     RecordingForm form;
     RecorderWish wish = RecorderWish::none;
     const LiveRecording* recording = nullptr;
-    std::string recorder_says;  ///< of the last recording
+    bool shows_recording = false;  ///< the picture is a recording's frame, whose shape is its own
+    std::string recorder_says;     ///< of the last recording
     bool recorder_failed = false;
 
     std::string image_value;  ///< under the pointer, in an image beside the scene
 
     std::map<std::string, std::map<std::string, LookChange>> looks;  ///< by object, by property
     std::set<std::string> changed_looks, changed_poses;              ///< objects, since the history was noted
+    std::set<std::string> changed_lights;                            ///< the same
     bool close = false, fit = false, save = false;
 
     std::map<std::string, Eigen::AlignedBox2d> places;  ///< of items in the last frame, see note_place()
@@ -139,7 +143,9 @@ void change_look(GuiState& state, const std::string& object, const std::string& 
 
 /// Before an object is moved: undo() puts it back.
 void will_move(GuiState& state, const std::string& object, const Mesh& node);
-/// Notes settings and changed objects for undo().
+/// Before a light of the scene is added, changed or removed.
+void will_change_light(GuiState& state, const std::string& name);
+/// Notes settings and what was changed for undo().
 void note_history(GuiState& state);
 
 /// Undo or redo; nothing happens when there is nothing to.

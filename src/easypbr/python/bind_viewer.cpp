@@ -107,6 +107,8 @@ nb::dict gui_state(SharedViewer& self) {
     put("recorder_says", state.recorder_says);
     put("image_value", state.image_value);
     put("channel", state.channel);
+    put("scale", state.scale);
+    put("light", state.light);
     put("pictures", state.statistics.pictures);
     put("frames", state.statistics.frames);
     put("total", state.statistics.total);
@@ -216,6 +218,14 @@ void bind_window(ViewerClass& viewer) {
                  return names;
              })
         .def("gui_state", gui_state)
+        .def_prop_rw(
+            "panel_scale",
+            [](SharedViewer& self) {
+                return self.run([](Viewer& v) { return v.live().state().panel_scale; });
+            },
+            [](SharedViewer& self, float scale) {
+                self.run([&](Viewer& v) { v.live().set_panel_scale(scale); });
+            })
         .def("set_gui", set_gui, nb::arg("name"), nb::arg("value"));
 }
 
