@@ -4,6 +4,7 @@
 usage: write_pictures.py [OUTPUT_FOLDER]      default: docs/images; the easypbr package must be importable
 """
 import importlib
+import json
 import pathlib
 import subprocess
 import sys
@@ -108,6 +109,53 @@ def viewer_path() -> np.ndarray:
     view.camera_path = easypbr.CameraPath(keys, segment_s=1.5)
     view.camera = easypbr.Camera.look_at((2.9, 3, 5), (-0.3, 0.5, 0), fov_y_deg=35)
     view.show_panels("Scene", "Camera path", "Recorder")
+    return view.screenshot()[:, :, :3]
+
+
+def pot_with_animations(folder: str) -> str:
+    """A glTF file with a teapot and two animations of it."""
+    pot = teapot("#c8b89a")
+    times = np.linspace(0, 2, 9, dtype=np.float32)
+    half = np.radians(45) * np.arange(9) / 2
+    turn = np.stack([0 * half, np.sin(half), 0 * half, np.cos(half)], axis=1)
+    lean = np.radians(-25) * np.sin(np.pi * times / 2) ** 2
+    pour = np.stack([0 * lean, 0 * lean, np.sin(lean / 2), np.cos(lean / 2)], axis=1)
+    arrays = [np.asarray(pot.V, np.float32), np.asarray(pot.N, np.float32), np.asarray(pot.F, np.uint32).reshape(-1, 1), times[:, None],
+              turn.astype(np.float32), pour.astype(np.float32)]
+    kinds = [("VEC3", 5126), ("VEC3", 5126), ("SCALAR", 5125), ("SCALAR", 5126), ("VEC4", 5126), ("VEC4", 5126)]
+    starts = np.cumsum([0] + [a.nbytes for a in arrays])
+    document = {
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "scene": 0, "nodes": [{"mesh": 0, "name": "pot"}],
+        "materials": [{"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.05, 0.03, 1], "metallicFactor": 0, "roughnessFactor": 0.3}}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 1}, "indices": 2, "material": 0}]}],
+        "animations": [
+            {"name": name, "samplers": [{"input": 3, "output": output}],
+             "channels": [{"sampler": 0, "target": {"node": 0, "path": "rotation"}}]}
+            for name, output in (("Turn", 4), ("Pour", 5))],
+        "accessors": [
+            {"bufferView": i, "componentType": component, "count": len(array), "type": kind,
+             **({"min": array.min(0).tolist(), "max": array.max(0).tolist()} if i in (0, 3) else {})}
+            for i, (array, (kind, component)) in enumerate(zip(arrays, kinds))],
+        "bufferViews": [{"buffer": 0, "byteOffset": int(start), "byteLength": array.nbytes} for start, array in zip(starts, arrays)],
+        "buffers": [{"byteLength": int(starts[-1]), "uri": "pot.bin"}],
+    }
+    pathlib.Path(folder, "pot.bin").write_bytes(b"".join(array.tobytes() for array in arrays))
+    pathlib.Path(folder, "pot.gltf").write_text(json.dumps(document))
+    return f"{folder}/pot.gltf"
+
+
+def viewer_animations() -> np.ndarray:
+    """The panel of animations, one of a file's two going on."""
+    with tempfile.TemporaryDirectory() as folder:
+        pot = easypbr.load_scene(pot_with_animations(folder))
+    view = Viewer((1120, 560), {"image.samples": 16}, on_floor(pot.mesh))
+    view.scene.get("floor").scale(2.5)
+    view.camera = easypbr.Camera.look_at((1.1, 1.5, 3.6), (-0.25, 0.3, 0), fov_y_deg=35)
+    view.play(pot.animations, "Pour")
+    view.fixed_step = 0.25
+    for _ in range(3):
+        view._handle.tick()
+    view.show_panels("Scene", "Object", "Animations")
     return view.screenshot()[:, :, :3]
 
 
@@ -441,7 +489,8 @@ def outline() -> np.ndarray:
 
 PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion, rays,
             bloom, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
-            viewer_slices, viewer_path, viewer_lights, viewer_own, segmentation, detection, own_shading, outline]
+            viewer_slices, viewer_path, viewer_animations, viewer_lights, viewer_own, segmentation, detection, own_shading,
+            outline]
 
 
 if __name__ == "__main__":

@@ -131,14 +131,18 @@ void scene_panel(GuiState& state) {
         dim_text("Nothing is shown yet: drop a file on the window.");
         return;
     }
+    // As high as what is in it was, which is one frame late when a node is opened.
     const float height =
-        std::min(0.4f * float(state.size.y()), float(names.size() + 2) * ImGui::GetFrameHeight());
+        std::min(0.4f * float(state.size.y()), std::max(state.tree_height, ImGui::GetFrameHeight()));
     if (!ImGui::BeginTable("tree", 2, ImGuiTableFlags_ScrollY | ImGuiTableFlags_NoSavedSettings,
                            ImVec2(0, height)))
         return;
     ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch);
     ImGui::TableSetupColumn("seen", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFrameHeight());
     for (const std::string& name : names) node_row(state, state.session.scene().get(name), name, name, 0);
+    ImGui::TableNextRow();
+    state.tree_height =
+        ImGui::GetCursorPosY() + 2 * ImGui::GetStyle().CellPadding.y + ImGui::GetStyle().ItemSpacing.y;
     ImGui::EndTable();
 }
 

@@ -55,6 +55,12 @@ bool edit_color(std::vector<double>& value) {
     return true;
 }
 
+/// As many decimals for all of a vector as its largest number leaves room for.
+const char* format_for(double largest) {
+    if (largest < 0.01 || largest >= 1000) return "%.3g";
+    return largest < 10 ? "%.3f" : largest < 100 ? "%.2f" : "%.1f";
+}
+
 bool edit_list(const Field& field, std::vector<double>& value) {
     if (value.size() < 2 || value.size() > 4) {
         ImGui::AlignTextToFramePadding();
@@ -64,9 +70,17 @@ bool edit_list(const Field& field, std::vector<double>& value) {
     double largest = 1e-4;
     for (const double v : value) largest = std::max(largest, std::abs(v));
     const bool whole = field.whole;
-    return ImGui::DragScalarN("##value", ImGuiDataType_Double, value.data(), int(value.size()),
-                              whole ? 1.0f : float(largest) * 0.005f, &field.min, &field.max,
-                              whole ? "%.0f" : "%.3g", ImGuiSliderFlags_AlwaysClamp);
+    // Three numbers side by side need the room.
+    const ImGuiStyle& style = ImGui::GetStyle();
+    ImGui::PushStyleVar(ImGuiStyleVar_ItemInnerSpacing,
+                        ImVec2(style.ItemInnerSpacing.x / 3, style.ItemInnerSpacing.y));
+    ImGui::PushStyleVar(ImGuiStyleVar_FramePadding, ImVec2(style.FramePadding.x / 3, style.FramePadding.y));
+    const bool changed =
+        ImGui::DragScalarN("##value", ImGuiDataType_Double, value.data(), int(value.size()),
+                           whole ? 1.0f : float(largest) * 0.005f, &field.min, &field.max,
+                           whole ? "%.0f" : format_for(largest), ImGuiSliderFlags_AlwaysClamp);
+    ImGui::PopStyleVar(2);
+    return changed;
 }
 
 /// The widget of a field's type. Returns whether the person changed the data.
