@@ -52,9 +52,9 @@ TEST(Resolve, LeavesNothingToInfer) {
     for (const Field& field : fields()) {
         const bool is_override = field.name.starts_with("material.") || field.name.starts_with("style.");
         // What is inferred for every picture anew stands beside the settings.
-        const bool is_anew =
-            std::set<std::string>{"bloom.levels", "bloom.suppress_fireflies", "depth_of_field.focus_distance"}
-                .contains(field.name);
+        const bool is_anew = std::set<std::string>{"bloom.levels", "bloom.suppress_fireflies",
+                                                   "depth_of_field.focus_distance", "rays.enabled"}
+                                 .contains(field.name);
         if (!field.can_be_automatic || is_override || is_anew) continue;
         const Value value = field.get(resolved.settings);
         EXPECT_TRUE(value.latched) << field.name;
