@@ -33,6 +33,7 @@ void node_row(GuiState& state, const Mesh& node, const std::string& path, const 
     if (data->children.empty()) flags |= ImGuiTreeNodeFlags_Leaf | ImGuiTreeNodeFlags_NoTreePushOnOpen;
     if (depth < 2) flags |= ImGuiTreeNodeFlags_DefaultOpen;
     if (path == state.object) flags |= ImGuiTreeNodeFlags_Selected;
+    ImGui::AlignTextToFramePadding();
     const bool open = ImGui::TreeNodeEx("node", flags, "%s", name.empty() ? "(unnamed)" : name.c_str());
     if (ImGui::IsItemClicked() && !ImGui::IsItemToggledOpen()) {
         state.object = state.object == path ? "" : path;
@@ -131,18 +132,17 @@ void scene_panel(GuiState& state) {
         dim_text("Nothing is shown yet: drop a file on the window.");
         return;
     }
-    // As high as what is in it was, which is one frame late when a node is opened.
+    // As high as its rows, whose number is one frame late when a node is opened.
+    const float row = ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().CellPadding.y;
     const float height =
-        std::min(0.4f * float(state.size.y()), std::max(state.tree_height, ImGui::GetFrameHeight()));
+        std::min(0.4f * float(state.size.y()), float(std::max(state.tree_rows, int(names.size()))) * row);
     if (!ImGui::BeginTable("tree", 2, ImGuiTableFlags_ScrollY | ImGuiTableFlags_NoSavedSettings,
                            ImVec2(0, height)))
         return;
     ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch);
     ImGui::TableSetupColumn("seen", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFrameHeight());
     for (const std::string& name : names) node_row(state, state.session.scene().get(name), name, name, 0);
-    ImGui::TableNextRow();
-    state.tree_height =
-        ImGui::GetCursorPosY() + 2 * ImGui::GetStyle().CellPadding.y + ImGui::GetStyle().ItemSpacing.y;
+    state.tree_rows = ImGui::TableGetRowIndex() + 1;
     ImGui::EndTable();
 }
 

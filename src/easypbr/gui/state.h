@@ -87,9 +87,9 @@ struct GuiState {
     bool show_panels = true, show_keys = false;
     Theme theme = Theme::dark;
 
-    float tree_height = 0;  ///< of the objects' list in the last frame
-    std::string object;     ///< selected, "car/wheel" for a child; empty: none
-    std::string light;      ///< selected: a light's name, or "key", "fill", "rim"
+    int tree_rows = 0;   ///< of the objects' list in the last frame
+    std::string object;  ///< selected, "car/wheel" for a child; empty: none
+    std::string light;   ///< selected: a light's name, or "key", "fill", "rim"
     Handle handle = Handle::move;
     HandleDrag drag;
     bool handles_pointer = false;  ///< the pointer is on the manipulator
