@@ -164,8 +164,7 @@ Vec3 RayLight::from_lights(const Vec3& at, const Vec3& normal) const {
 }
 
 Vec3 RayLight::caught(const RayHit& hit, const Vec3& direction, RayRandom& random) const {
-    const float first = random.next();
-    const Vec3 up = cosine_direction(RayFrame(hit.normal), {first, random.next()});
+    const Vec3 up = cosine_direction(RayFrame(hit.normal), random.next().tail<2>());
     const bool open =
         !scene_->blocked(off_surface(hit.position, hit.normal), up, std::numeric_limits<float>::infinity());
     return open ? sky(direction) : Vec3(Vec3::Zero());
@@ -188,9 +187,9 @@ Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, 
         // One way goes on, as likely as it brings light.
         const float likely = mirrors / (mirrors + scatters);
         const RayFrame frame(s.normal);
-        const float choice = random.next();
-        const Vec2 u(random.next(), random.next());
-        const bool mirrored = choice < likely;
+        const Vec3 chosen = random.next();
+        const Vec2 u = chosen.tail<2>();
+        const bool mirrored = chosen.x() < likely;
         const Vec3 next =
             mirrored ? mirrored_direction(frame, -direction, s.roughness * s.roughness, u).normalized()
                      : cosine_direction(frame, u);

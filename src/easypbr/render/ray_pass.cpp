@@ -159,7 +159,7 @@ void send_diffuse(const Seen& seen, const RayScene& scene, const RayLight& rays,
         all += sky;
         around += weight;
         if (const auto hit = scene.trace(seen.from, direction)) {
-            RayRandom random(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(i));
+            RayRandom random(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(i), 0);
             bounced += weight * rays.radiance(*hit, direction, true, random);
         } else {
             arrives += sky;
@@ -185,7 +185,7 @@ void send_mirrored(const Seen& seen, const RayScene& scene, const RayLight& rays
         const auto hit = scene.trace(seen.from, direction);
         if (!hit) continue;
         sent.covered += 1;
-        RayRandom random(uint32_t(pixel.x()), uint32_t(pixel.y()), ~uint32_t(i));
+        RayRandom random(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(i), 1);
         sent.mirrored += rays.radiance(*hit, direction, false, random);
     }
     if (used == 0) return;

@@ -3,21 +3,38 @@
 
 #include <cmath>
 #include <cstdint>
+#include <utility>
 
 #include "easypbr/core/math.h"
 
 namespace easypbr::render {
 
-/// Permuted congruential hash (Jarzynski and Olano 2020, "Hash Functions for GPU Rendering"), of numbers one
-/// after the other.
+inline float fraction(double x) {
+    return float(x - std::floor(x));
+}
+
+/// Numbers for the path of one of a pixel's rays: three for each surface that it meets. Those for the first
+/// are points of a sequence that fills the cube evenly over the pixel's rays (Roberts 2018), whose noise is a
+/// fraction of that of independent numbers; those after it come from a permuted congruential hash (Jarzynski
+/// and Olano 2020, "Hash Functions for GPU Rendering").
 class RayRandom {
   public:
-    RayRandom(uint32_t x, uint32_t y, uint32_t index) : state_(hash(x + hash(y + hash(index)))) {}
+    /// Rays of different streams have nothing to do with each other.
+    RayRandom(uint32_t x, uint32_t y, uint32_t index, uint32_t stream) {
+        constexpr double g = 1.22074408460575947536;
+        state_ = hash(x + hash(y + hash(stream)));
+        const Vec3 shift = next();
+        state_ = hash(state_ + hash(index));
+        first_ = {fraction(shift.x() + index / g), fraction(shift.y() + index / (g * g)),
+                  fraction(shift.z() + index / (g * g * g))};
+        is_first_ = true;
+    }
 
-    /// In [0, 1).
-    float next() {
-        state_ = state_ * 747796405u + 2891336453u;
-        return float(output(state_) >> 8) * 0x1p-24f;
+    /// Each in [0, 1).
+    Vec3 next() {
+        if (std::exchange(is_first_, false)) return first_;
+        const float x = number(), y = number();
+        return {x, y, number()};
     }
 
   private:
@@ -27,12 +44,15 @@ class RayRandom {
     }
     static uint32_t hash(uint32_t value) { return output(value * 747796405u + 2891336453u); }
 
-    uint32_t state_;
-};
+    float number() {
+        state_ = state_ * 747796405u + 2891336453u;
+        return float(output(state_) >> 8) * 0x1p-24f;
+    }
 
-inline float fraction(double x) {
-    return float(x - std::floor(x));
-}
+    uint32_t state_ = 0;
+    Vec3 first_{0, 0, 0};
+    bool is_first_ = false;
+};
 
 /// Interleaved gradient noise (Jimenez 2014), as in shaders/common_noise.glsl.
 inline double gradient_noise(double x, double y) {
