@@ -494,7 +494,7 @@ PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, lay
 
 
 if __name__ == "__main__":
-    if len(sys.argv) > 2:
+    if len(sys.argv) > 2 or sys.argv[1:] in (["-h"], ["--help"]):
         sys.exit(__doc__)
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) == 2 else ROOT / "docs/images"
     folder.mkdir(parents=True, exist_ok=True)
