@@ -191,10 +191,11 @@ def viewer_own() -> np.ndarray:
 
 
 def demo() -> np.ndarray:
-    """What `easypbr demo` draws, its camera included."""
+    """What `easypbr demo` draws, its camera included, smaller."""
     with tempfile.TemporaryDirectory() as folder:
         path = pathlib.Path(folder) / "demo.png"
-        subprocess.run([sys.executable, "-m", "easypbr", "demo", "-o", path], check=True, stdout=subprocess.DEVNULL)
+        command = [sys.executable, "-m", "easypbr", "demo", "-o", path, "--size", "960x540"]
+        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
         return easypbr.load_image(path)
 
 
