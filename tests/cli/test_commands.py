@@ -137,3 +137,10 @@ def test_demo_never_writes_what_it_cannot(easypbr, tmp_path):
     easypbr("demo", "-o", "missing/demo.png", code=1)
     easypbr("demo", "-o", "demo.png", "--size", "0x0", code=1)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_data_sets_need_no_variable_in_a_built_tree(easypbr, environment, tmp_path, monkeypatch):
+    monkeypatch.delitem(environment, "EASYPBR_PYTHON", raising=False)
+    monkeypatch.setitem(environment, "PATH", "/usr/bin:/bin")  # Whose Python has no package of ours.
+    easypbr("dataset", "--demo", "-o", "drones", "--count", "1", "--workers", "1", "--writers", "coco", "--quiet")
+    assert (tmp_path / "drones/records/000000.json").exists()

@@ -9,6 +9,7 @@
 
 #include "easypbr/cli/command.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
 
 namespace easypbr::cli {
 namespace {
@@ -50,10 +51,15 @@ void declare(CLI::App& command, DatasetOptions& o) {
     command.add_flag("-q,--quiet", o.quiet, "No progress");
 }
 
-/// Python's path; the package sets it when it runs the command line itself.
+/// Python's path. The package sets the variable when it runs the command line itself; where `make build` has
+/// made this program, its environment stands beside the build folder.
 std::string python() {
     const char* given = std::getenv("EASYPBR_PYTHON");
-    return given && *given ? given : "python3";
+    if (given && *given) return given;
+    std::error_code error;
+    const fs::path own =
+        fs::read_symlink("/proc/self/exe", error).parent_path().parent_path() / ".venv/bin/python";
+    return !error && fs::exists(own, error) ? own.string() : "python3";
 }
 
 int run(const DatasetOptions& o) {
