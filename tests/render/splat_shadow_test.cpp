@@ -120,6 +120,22 @@ TEST(SplatShadow, OfADenseCloud) {
             }
 }
 
+/// Mean lit part of a unit ball where it faces the light to `degrees`, of more than 2000 pixels.
+double mean_lit(const LitParts& lit, double degrees) {
+    double sum = 0;
+    int count = 0;
+    for (int y = 0; y < size; ++y)
+        for (int x = 0; x < size; ++x) {
+            if (lit.at(x, y) < 0) continue;
+            const Vec3d n = lit.position(x, y).normalized();
+            if (n.dot(Vec3d(0.6, 0, 0.8)) < std::cos(radians(degrees))) continue;
+            sum += lit.at(x, y);
+            ++count;
+        }
+    EXPECT_GT(count, 2000);
+    return sum / count;
+}
+
 // A cloud in the round, lit by a light: the half that faces it is lit, the other is not, and it does not
 // shadow itself. The same of surfels.
 TEST(SplatShadow, DoesNotFallOnItself) {
@@ -135,20 +151,8 @@ TEST(SplatShadow, DoesNotFallOnItself) {
             app::Session session = shadow_session(scene, ShadowMode::soft, size);
             session.allow_native_geometry(native);
             look_from(session, Vec3d(2, -3, 2.5), 36);
-            const LitParts lit = lit_parts(session);
-            double sum = 0;
-            int count = 0;
-            for (int y = 0; y < size; ++y)
-                for (int x = 0; x < size; ++x) {
-                    if (lit.at(x, y) < 0) continue;
-                    const Vec3d n = lit.position(x, y).normalized();
-                    // Up to 70 degrees from the light.
-                    if (n.dot(Vec3d(0.6, 0, 0.8)) < std::cos(radians(70))) continue;
-                    sum += lit.at(x, y);
-                    ++count;
-                }
-            EXPECT_GT(count, 2000);
-            EXPECT_GT(sum / count, 0.99) << "mode " << int(mode) << ", native " << native;
+            EXPECT_GT(mean_lit(lit_parts(session), 70), 0.99)
+                << "mode " << int(mode) << ", native " << native;
         }
 }
 
@@ -164,19 +168,7 @@ TEST(SplatShadow, OfLargeSurfelsDoesNotFallOnTheirNeighbours) {
     scene.set_light("light", directional(Vec3(-0.6f, 0, -0.8f)));
     app::Session session = shadow_session(scene, ShadowMode::hard, size);
     look_from(session, Vec3d(2, -3, 2.5), 36);
-    const LitParts lit = lit_parts(session);
-    double sum = 0;
-    int count = 0;
-    for (int y = 0; y < size; ++y)
-        for (int x = 0; x < size; ++x) {
-            if (lit.at(x, y) < 0) continue;
-            const Vec3d n = lit.position(x, y).normalized();
-            if (n.dot(Vec3d(0.6, 0, 0.8)) < std::cos(radians(60))) continue;
-            sum += lit.at(x, y);
-            ++count;
-        }
-    EXPECT_GT(count, 2000);
-    EXPECT_GT(sum / count, 0.99);
+    EXPECT_GT(mean_lit(lit_parts(session), 60), 0.99);
 }
 
 // A card of a mesh over a cloud that is lit: what lies under it is dark.

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "easypbr/render/ray_surface.h"
+#include "easypbr/scene/light_falloff.h"
 
 namespace easypbr::render {
 namespace {
@@ -13,23 +14,6 @@ namespace {
 constexpr int widest_sky = 128;
 /// Roundings of positions, in RayScene::unit().
 constexpr float rounding = 2e-5f;
-
-float window_of(const Light& light, float squared) {
-    if (light.range <= 0) return 1;
-    const float part = squared / (light.range * light.range),
-                window = std::clamp(1 - part * part, 0.0f, 1.0f);
-    return window * window;
-}
-
-/// KHR_lights_punctual.
-float cone_of(const Light& light, const Vec3& to_light) {
-    if (light.type != LightType::spot) return 1;
-    const float inner = float(std::cos(radians(light.inner_cone_deg))),
-                outer = float(std::cos(radians(light.outer_cone_deg)));
-    const float c = -to_light.dot(light.direction.normalized());
-    const float part = std::clamp((c - outer) / std::max(1e-3f, inner - outer), 0.0f, 1.0f);
-    return part * part;
-}
 
 Vec3 fresnel(const RaySurface& s, float n_dot_v) {
     const Vec3 grazing = s.f0.cwiseMax(s.f0.isZero() ? 0.0f : 1 - s.roughness);
@@ -151,8 +135,7 @@ Vec3 RayLight::from_lights(const Vec3& at, const Vec3& normal) const {
         const Vec3 l = towards / distance;
         const float cosine = normal.dot(l), world = distance * unit;
         if (cosine <= 0) continue;
-        const float falls =
-            parallel ? 1 : window_of(light, world * world) * cone_of(light, l) / (world * world);
+        const float falls = parallel ? 1.0f : float(falloff(light, -l.cast<double>(), double(world)));
         if (falls <= 0) continue;
         const float reach = parallel ? std::numeric_limits<float>::infinity() : distance;
         if (light.casts_shadows && resolved_->settings.shadows.enabled &&

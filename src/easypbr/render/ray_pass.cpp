@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "easypbr/core/octahedral.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/render/surface_kind.h"
 
@@ -23,16 +24,6 @@ Half4 half4(const Vec3& rgb, float a) {
     return {half(rgb.x()), half(rgb.y()), half(rgb.z()), half(a)};
 }
 
-/// As shaders/common_encoding.glsl.
-Vec3 oct_decode(uint16_t x, uint16_t y) {
-    Vec2 p(float(x) / 32767.5f - 1, float(y) / 32767.5f - 1);
-    Vec3 n(p.x(), p.y(), 1 - std::abs(p.x()) - std::abs(p.y()));
-    const float fold = std::max(-n.z(), 0.0f);
-    n.x() -= n.x() >= 0 ? fold : -fold;
-    n.y() -= n.y() >= 0 ? fold : -fold;
-    return n.normalized();
-}
-
 /// Of what a material's own occlusion says and what rays find the darker counts: the factor that is left.
 float recesses(float visibility, uint8_t material) {
     const float own = float(material) / 255;
@@ -40,7 +31,7 @@ float recesses(float visibility, uint8_t material) {
 }
 
 bool is_lit(uint8_t kind) {
-    return kind < 26 || kind == uint8_t(SurfaceKind::ground_catcher);
+    return kind < uint8_t(SurfaceKind::display) || kind == uint8_t(SurfaceKind::ground_catcher);
 }
 
 }  // namespace
@@ -222,7 +213,8 @@ void RayPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& s
         const Vec3d position = pixels.view_position(x, y, pixels.depth[at]);
         const Vec3d towards = frame.orthographic() ? Vec3d(0, 0, 1) : Vec3d(-position.normalized());
         Seen seen;
-        seen.normal = oct_decode(pixels.normal[at * 2], pixels.normal[at * 2 + 1]);
+        seen.normal =
+            oct_decode(Vec2(pixels.normal[at * 2], pixels.normal[at * 2 + 1]) / 32767.5f - Vec2(1, 1));
         seen.view = (pixels.world_from_view * towards).cast<float>();
         const Vec3 place = ((pixels.world_from_view * position + eye) / scene.unit()).cast<float>();
         seen.face = face_at(place, seen, scene);

@@ -13,6 +13,27 @@ inline float fraction(double x) {
     return float(x - std::floor(x));
 }
 
+/// The next state of a permuted congruential generator (Jarzynski and Olano 2020, "Hash Functions for GPU
+/// Rendering").
+inline uint32_t pcg_advance(uint32_t state) {
+    return state * 747796405u + 2891336453u;
+}
+
+/// The number that belongs to a state of the generator.
+inline uint32_t pcg_output(uint32_t state) {
+    const uint32_t word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
+    return (word >> 22u) ^ word;
+}
+
+inline uint32_t pcg_hash(uint32_t value) {
+    return pcg_output(pcg_advance(value));
+}
+
+/// In [0, 1), of 24 bits.
+inline float unit_number(uint32_t bits) {
+    return float(bits >> 8) * 0x1p-24f;
+}
+
 /// Numbers for the path of one of a pixel's rays: three for each surface that it meets. Those for the first
 /// are points of a sequence that fills the cube evenly over the pixel's rays (Roberts 2018), whose noise is a
 /// fraction of that of independent numbers; those after it come from a permuted congruential hash (Jarzynski
@@ -22,9 +43,9 @@ class RayRandom {
     /// Rays of different streams have nothing to do with each other.
     RayRandom(uint32_t x, uint32_t y, uint32_t index, uint32_t stream) {
         constexpr double g = 1.22074408460575947536;
-        state_ = hash(x + hash(y + hash(stream)));
+        state_ = pcg_hash(x + pcg_hash(y + pcg_hash(stream)));
         const Vec3 shift = next();
-        state_ = hash(state_ + hash(index));
+        state_ = pcg_hash(state_ + pcg_hash(index));
         first_ = {fraction(shift.x() + index / g), fraction(shift.y() + index / (g * g)),
                   fraction(shift.z() + index / (g * g * g))};
         is_first_ = true;
@@ -38,15 +59,9 @@ class RayRandom {
     }
 
   private:
-    static uint32_t output(uint32_t state) {
-        const uint32_t word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
-        return (word >> 22u) ^ word;
-    }
-    static uint32_t hash(uint32_t value) { return output(value * 747796405u + 2891336453u); }
-
     float number() {
-        state_ = state_ * 747796405u + 2891336453u;
-        return float(output(state_) >> 8) * 0x1p-24f;
+        state_ = pcg_advance(state_);
+        return unit_number(pcg_output(state_));
     }
 
     uint32_t state_ = 0;

@@ -2,13 +2,15 @@
 
 #include <embree3/rtcore.h>
 
+#include <bit>
 #include <cmath>
-#include <cstring>
 #include <limits>
+#include <map>
 #include <numbers>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/render/ray_random.h"
 #include "easypbr/render/ray_surface.h"
 
 namespace easypbr::render {
@@ -17,17 +19,12 @@ namespace {
 /// Corners of the polygon that a surfel's ellipse is drawn as; its area is that of the ellipse.
 constexpr int surfel_corners = 8;
 
-/// Well-spread number in [0, 1) of a ray and the element it meets (Jarzynski and Olano 2020, pcg).
+/// Well-spread number in [0, 1) of a ray and the element it meets.
 float hash_of(const RTCRay& ray, unsigned element) {
-    uint32_t state = element * 747796405u + 2891336453u;
-    for (const float value : {ray.dir_x, ray.dir_y, ray.dir_z, ray.org_x, ray.org_y, ray.org_z}) {
-        uint32_t bits;
-        std::memcpy(&bits, &value, sizeof bits);
-        state = (state ^ bits) * 747796405u + 2891336453u;
-        state = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
-        state = (state >> 22u) ^ state;
-    }
-    return float(state >> 8) * 0x1p-24f;
+    uint32_t state = pcg_advance(element);
+    for (const float value : {ray.dir_x, ray.dir_y, ray.dir_z, ray.org_x, ray.org_y, ray.org_z})
+        state = pcg_hash(state ^ std::bit_cast<uint32_t>(value));
+    return unit_number(state);
 }
 
 RTCRay ray_of(const Vec3& from, const Vec3& direction, float farthest) {
@@ -93,15 +90,24 @@ struct RayScene::Scene {
         rtcReleaseGeometry(geometry);
     }
 
+    /// Of the parts of an object the same.
+    const std::vector<Vec3>& vertices_of(const DrawItem& item, const Eigen::Affine3d& T) {
+        std::vector<Vec3>& V = vertices[item.object];
+        if (!V.empty()) return V;
+        const MeshData& mesh = item.mesh();
+        V.resize(size_t(mesh.V.rows()) + 1);  // Embree reads whole vectors of four.
+        parallel_for(size_t(mesh.V.rows()), 1 << 14, [&](size_t i) {
+            V[i] = (T * Vec3d(mesh.V.row(Eigen::Index(i)).transpose().cast<double>())).cast<float>();
+        });
+        return V;
+    }
+
     void add_faces(const DrawItem& item, const Eigen::Affine3d& T) {
         const MeshData& mesh = item.mesh();
         RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        const auto V = buffer<std::array<float, 3>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
-                                                    size_t(mesh.V.rows()));
-        parallel_for(V.size(), 1 << 14, [&](size_t i) {
-            const Vec3 p = (T * Vec3d(mesh.V.row(Eigen::Index(i)).transpose().cast<double>())).cast<float>();
-            V[i] = {p.x(), p.y(), p.z()};
-        });
+        const auto& V = vertices_of(item, T);
+        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, V.data(), 0,
+                                   sizeof(Vec3), size_t(mesh.V.rows()));
         const auto F = buffer<std::array<uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
                                                        size_t(item.part.face_count));
         for (size_t i = 0; i < F.size(); ++i)
@@ -168,6 +174,7 @@ struct RayScene::Scene {
     RTCDevice device;
     RTCScene scene = nullptr;
     std::vector<std::unique_ptr<Element>> elements;
+    std::map<const SceneSnapshot::Object*, std::vector<Vec3>> vertices;
 };
 
 RayScene::RayScene() = default;

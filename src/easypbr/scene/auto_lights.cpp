@@ -3,6 +3,7 @@
 
 #include "easypbr/core/color.h"
 #include "easypbr/scene/auto_parameters.h"
+#include "easypbr/scene/light_falloff.h"
 
 namespace easypbr::detail {
 namespace {
@@ -41,23 +42,6 @@ Vec3d placed_direction(const Placement& placement, const Vec3d& level, const Vec
            std::sin(elevation) * up;
 }
 
-/// Falloff of KHR_lights_punctual: a smooth cone, and a window that ends the light at its range.
-double attenuation(const Light& light, const Vec3d& from_light, double distance) {
-    double factor = 1;
-    if (light.range > 0) {
-        const double window = std::clamp(1 - std::pow(distance / light.range, 4), 0.0, 1.0);
-        factor *= window * window;
-    }
-    if (light.type == LightType::spot) {
-        const double inner = std::cos(radians(light.inner_cone_deg)),
-                     outer = std::cos(radians(light.outer_cone_deg));
-        const double angle = from_light.dot(light.direction.cast<double>().normalized());
-        const double cone = std::clamp((angle - outer) / std::max(inner - outer, 1e-4), 0.0, 1.0);
-        factor *= cone * cone;
-    }
-    return factor;
-}
-
 /// What a light sends to a point: irradiance (luminance-weighted) on a surface facing it, and the direction
 /// to it.
 struct Incidence {
@@ -72,7 +56,7 @@ Incidence incidence_at(const Light& light, const Vec3d& point) {
     const double distance = to_light.norm();
     if (!(distance > 0)) return {Vec3d::Zero(), 0};
     const Vec3d direction = to_light / distance;
-    return {direction, power * attenuation(light, -direction, distance) / (distance * distance)};
+    return {direction, power * falloff(light, -direction, distance)};
 }
 
 /// Unit normal k of a fixed spiral over the hemisphere around +z, evenly spread (Fibonacci lattice).
