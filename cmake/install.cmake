@@ -9,7 +9,7 @@ if(TARGET easypbr_ffmpeg)
 endif()
 install(TARGETS easypbr_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT library)
 install(DIRECTORY src/easypbr DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library
-        FILES_MATCHING PATTERN "*.h" PATTERN cli EXCLUDE PATTERN python EXCLUDE PATTERN tools EXCLUDE PATTERN assimp EXCLUDE
+        FILES_MATCHING PATTERN "*.h" PATTERN cli EXCLUDE PATTERN python EXCLUDE PATTERN tools EXCLUDE PATTERN module EXCLUDE
         PATTERN ffmpeg EXCLUDE)
 install(EXPORT easypbrTargets NAMESPACE easypbr:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/easypbr COMPONENT library)
 configure_package_config_file(cmake/easypbrConfig.cmake.in ${PROJECT_BINARY_DIR}/easypbrConfig.cmake

@@ -1,6 +1,6 @@
 # Optional parts that are loaded at run time, so that the library does not depend on what they need.
-function(easypbr_add_module name)
-  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/easypbr/io/${name}/*.cpp)
+function(easypbr_add_module name folder)
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/easypbr/io/${folder}/*.cpp)
   add_library(easypbr_${name} MODULE ${sources})
   target_link_libraries(easypbr_${name} PRIVATE easypbr easypbr_options easypbr_dependencies ${ARGN})
   # Beside libeasypbr.so, in the build tree and where both are installed.
@@ -10,7 +10,7 @@ endfunction()
 
 find_package(assimp QUIET)
 if(assimp_FOUND)
-  easypbr_add_module(assimp assimp::assimp)
+  easypbr_add_module(assimp mesh/assimp/module assimp::assimp)
 else()
   message(STATUS "assimp not found: FBX, DAE, 3DS and the like are not read (Debian: libassimp-dev)")
 endif()
@@ -18,7 +18,7 @@ endif()
 # Videos.
 pkg_check_modules(FFMPEG QUIET IMPORTED_TARGET libavcodec libavformat libavutil libswscale)
 if(FFMPEG_FOUND)
-  easypbr_add_module(ffmpeg PkgConfig::FFMPEG)
+  easypbr_add_module(ffmpeg video/ffmpeg PkgConfig::FFMPEG)
 else()
   message(STATUS "FFmpeg not found: videos are not written "
                  "(Debian: libavcodec-dev libavformat-dev libavutil-dev libswscale-dev)")

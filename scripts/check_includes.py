@@ -1,13 +1,16 @@
 #!/usr/bin/env python3
-"""Checks that every room includes only the rooms it may use: never upward, never sideways.
+"""Checks who includes whom: rooms use only what they may, sub-rooms only those below them, the Python package no circle.
 
 usage: check_includes.py [ROOT]      exit code 1 and one line per violation
 """
+import ast
+import graphlib
 import pathlib
 import re
 import sys
+from collections.abc import Iterator
 
-MAY_USE = {
+ROOMS = {
     "core": set(),
     "scene": {"core"},
     "gl": {"core"},
@@ -22,23 +25,97 @@ MAY_USE = {
     "cli": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "gui", "dataset", "viewer"},
     "python": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "gui", "dataset", "viewer", "cli"},
 }
-INCLUDE = re.compile(r'#include\s+["<]easypbr/(\w+)/')
+
+# Sub-rooms from the ground up. A sub-room may use those above its own line in this list; folders below one of the
+# names ("mesh/ply", "effects/bloom") stand side by side: they may use the sub-room's own files, not each other.
+SUBROOMS = {
+    "render": ["frame", "drawables", "raster", "primitives", "shadow", "raytrace", "lighting", "transparency", "effects",
+               "output", "pipeline"],
+    "io": ["source", "archive", "tables", "image", "video", "settings", "mesh"],
+}
+# The face of a sub-room lists what stands in its folders: the one direction from a sub-room down into them.
+FACES = {"io/mesh/mesh_io.cpp", "io/video/video_loader.cpp"}
+INCLUDE = re.compile(r'#include\s+["<]easypbr/([\w/]+)\.h')
 
 
-def violations(root: pathlib.Path):
-    for room, allowed in MAY_USE.items():
-        for path in sorted((root / "src/easypbr" / room).glob("*.*")):
-            for number, line in enumerate(path.read_text().splitlines(), 1):
-                match = INCLUDE.match(line)
-                if match and match[1] != room and match[1] not in allowed:
-                    yield f"{path.relative_to(root)}:{number}: {room} may not include {match[1]}"
-                if match and room == "render" and path.stem.endswith("_pass"):
-                    other = re.search(r"render/(\w+_pass)\.h", line)
-                    if other and other[1] != path.stem:
-                        yield f"{path.relative_to(root)}:{number}: a pass may not include another pass"
+def place_of(path: str) -> tuple[str, str, str]:
+    """Room, sub-room and folder inside it: "render/effects/bloom/bloom_pass" -> ("render", "effects", "bloom")."""
+    parts = path.split("/")[:-1]
+    return parts[0] if parts else "", parts[1] if len(parts) > 1 else "", "/".join(parts[2:])
+
+
+def fault(source: str, target: str) -> str | None:
+    """What is wrong with a file of src/easypbr including another; None: nothing."""
+    room, subroom, folder = place_of(source)
+    other, other_subroom, other_folder = place_of(target)
+    if not other:
+        return None if not room else f"{room} may not include the face of the library"
+    if room != other:
+        return None if not room or other in ROOMS[room] else f"{room} may not include {other}"
+    order = SUBROOMS.get(room)
+    if not order:
+        return None
+    if subroom != other_subroom:
+        below = order.index(other_subroom) < order.index(subroom)
+        return None if below else f"{room}/{subroom} may not include {room}/{other_subroom}"
+    if folder != other_folder and other_folder and source not in FACES and not folder.startswith(other_folder + "/") \
+            and not other_folder.startswith(folder + "/"):
+        return f"{room}/{subroom}/{folder} may not include its neighbour {other_folder}"
+    return None
+
+
+def include_faults(root: pathlib.Path) -> Iterator[str]:
+    sources = root / "src/easypbr"
+    for path in sorted([*sources.rglob("*.h"), *sources.rglob("*.cpp")]):
+        source = str(path.relative_to(sources))
+        room, subroom, _ = place_of(source)
+        if room and room not in ROOMS or room in SUBROOMS and subroom not in SUBROOMS[room]:
+            yield f"{path.relative_to(root)}: no room of this name is known"
+            continue
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            if match := INCLUDE.match(line):
+                if what := fault(source, match[1]):
+                    yield f"{path.relative_to(root)}:{number}: {what}"
+
+
+def module_imports(package: pathlib.Path, path: pathlib.Path, modules: set[str]) -> Iterator[str]:
+    """Modules of the package that a file imports, at its top or inside its functions."""
+    parts = path.relative_to(package.parent).with_suffix("").parts
+    if parts[-1] == "__init__":
+        parts, here = parts[:-1], parts[:-1]
+    else:
+        here = parts[:-1]
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names if alias.name in modules)
+        elif isinstance(node, ast.ImportFrom):
+            base = ".".join(here[: len(here) - node.level + 1]) if node.level else ""
+            name = ".".join(filter(None, [base, node.module]))
+            for alias in node.names:
+                inner = f"{name}.{alias.name}"
+                if inner in modules:
+                    yield inner
+                elif name in modules:
+                    yield name
+
+
+def import_faults(root: pathlib.Path) -> Iterator[str]:
+    """Circles among the modules of the Python package; a package's __init__ lists its modules, which may not use it."""
+    package = root / "python/easypbr"
+    paths = {}
+    for path in sorted(package.rglob("*.py")):
+        parts = path.relative_to(package.parent).with_suffix("").parts
+        paths[".".join(parts[:-1] if parts[-1] == "__init__" else parts)] = path
+    known = {*paths, "easypbr._easypbr"}
+    graph = {name: set(module_imports(package, path, known)) - {name} for name, path in paths.items()}
+    try:
+        graphlib.TopologicalSorter(graph).prepare()
+    except graphlib.CycleError as error:
+        yield "python: modules import each other in a circle: " + " <- ".join(error.args[1])
 
 
 if __name__ == "__main__":
-    found = list(violations(pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()))
+    base = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
+    found = [*include_faults(base), *import_faults(base)]
     print("\n".join(found) or "includes: every room uses only what it may")
     sys.exit(1 if found else 0)

@@ -1,5 +1,5 @@
-// libigl takes a mesh's matrices as they are: curvature of a ring as a scalar. Writes curvature.png. Built where CMake
-// finds libigl (2.5 or newer).
+// libigl takes a mesh's matrices as they are: curvature of a ring as a scalar. Writes curvature.png. Built
+// where CMake finds libigl (2.5 or newer).
 #include <easypbr/easypbr.h>
 #include <igl/gaussian_curvature.h>
 

@@ -8,8 +8,8 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
 #include "easypbr/geometry/primitives.h"
-#include "easypbr/io/image_io.h"
-#include "easypbr/io/video.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/video/video.h"
 #include "io/temporary_folder.h"
 
 namespace easypbr::app {

@@ -10,7 +10,7 @@
 #include "easypbr/app/output.h"
 #include "easypbr/core/compare.h"
 #include "easypbr/geometry/primitives.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
 
 namespace easypbr::app {
 namespace {

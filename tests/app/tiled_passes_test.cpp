@@ -3,7 +3,7 @@
 
 #include "easypbr/app/session.h"
 #include "easypbr/geometry/primitives.h"
-#include "easypbr/render/custom_pass.h"
+#include "easypbr/render/pipeline/custom_pass.h"
 
 namespace easypbr::app {
 namespace {

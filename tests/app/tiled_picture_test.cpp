@@ -14,7 +14,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/geometry/surfels.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
 
 namespace easypbr::app {
 namespace {

@@ -8,7 +8,7 @@
 #include "easypbr/geometry/distance.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/geometry/repair.h"
-#include "easypbr/io/mesh_io.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/scene/merge.h"
 #include "geometry/measure.h"
 #include "test_data.h"

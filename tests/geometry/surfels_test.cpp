@@ -7,7 +7,7 @@
 
 #include "easypbr/geometry/kd_tree.h"
 #include "easypbr/geometry/primitives.h"
-#include "easypbr/io/mesh_io.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/scene/merge.h"
 #include "easypbr/scene/normals.h"
 #include "geometry/measure.h"

@@ -10,8 +10,8 @@
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/gui/live_view.h"
-#include "easypbr/io/camera_path_io.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/settings/camera_path_io.h"
 #include "scene/slide.h"
 
 namespace easypbr::gui {

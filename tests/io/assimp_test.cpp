@@ -2,7 +2,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
-#include "easypbr/io/assimp_loader.h"
+#include "easypbr/io/mesh/assimp/assimp_loader.h"
 #include "io/temporary_folder.h"
 
 using namespace easypbr;

@@ -1,4 +1,4 @@
-#include "easypbr/io/camera_path_io.h"
+#include "easypbr/io/settings/camera_path_io.h"
 
 #include <gtest/gtest.h>
 

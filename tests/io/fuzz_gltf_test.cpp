@@ -1,5 +1,5 @@
-#include "easypbr/io/gltf_reader.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "io/fuzz.h"
 #include "io/gltf_builder.h"
 

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "easypbr/core/file.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
 #include "io/fuzz.h"
 #include "io/temporary_folder.h"
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "easypbr/core/error.h"
-#include "easypbr/io/mesh_readers.h"
-#include "easypbr/io/mtl_reader.h"
+#include "easypbr/io/mesh/mesh_readers.h"
+#include "easypbr/io/mesh/obj/mtl_reader.h"
 #include "io/las_builder.h"
 #include "io/npy_builder.h"
 #include "io/ply_builder.h"

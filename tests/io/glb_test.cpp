@@ -2,8 +2,8 @@
 
 #include "easypbr/core/compare.h"
 #include "easypbr/core/error.h"
-#include "easypbr/io/glb_writer.h"
-#include "easypbr/io/gltf_reader.h"
+#include "easypbr/io/mesh/gltf/glb_writer.h"
+#include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "io/temporary_folder.h"
 #include "test_data.h"
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "easypbr/core/error.h"
-#include "easypbr/io/gltf_reader.h"
+#include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "io/gltf_builder.h"
 #include "test_data.h"
 

@@ -6,9 +6,9 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
-#include "easypbr/io/glb_writer.h"
-#include "easypbr/io/gltf_reader.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/mesh/gltf/glb_writer.h"
+#include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "easypbr/scene/material_table.h"
 #include "io/gltf_builder.h"
 

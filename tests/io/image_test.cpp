@@ -12,7 +12,7 @@
 
 #include "easypbr/core/compare.h"
 #include "easypbr/core/file.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
 #include "easypbr/scene/environment.h"
 #include "io/temporary_folder.h"
 #include "test_data.h"

@@ -2,7 +2,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
-#include "easypbr/io/label_map_io.h"
+#include "easypbr/io/settings/label_map_io.h"
 #include "easypbr/scene/label_colors.h"
 #include "io/temporary_folder.h"
 

@@ -1,7 +1,7 @@
 #include <cmath>
 #include <string>
 
-#include "easypbr/io/mesh_readers.h"
+#include "easypbr/io/mesh/mesh_readers.h"
 #include "io/las_builder.h"
 
 using namespace easypbr;

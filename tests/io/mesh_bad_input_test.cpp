@@ -3,7 +3,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
-#include "easypbr/io/mesh_io.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "io/bytes.h"
 #include "io/las_builder.h"
 #include "io/npy_builder.h"

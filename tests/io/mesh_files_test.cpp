@@ -3,7 +3,7 @@
 #include <string>
 
 #include "easypbr/core/file.h"
-#include "easypbr/io/mesh_io.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "test_data.h"
 
 using namespace easypbr;

@@ -1,4 +1,4 @@
-#include "easypbr/io/mesh_queue.h"
+#include "easypbr/io/mesh/mesh_queue.h"
 
 #include <gtest/gtest.h>
 

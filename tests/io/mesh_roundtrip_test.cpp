@@ -4,8 +4,8 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
-#include "easypbr/io/image_io.h"
-#include "easypbr/io/mesh_io.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "io/temporary_folder.h"
 
 using namespace easypbr;

@@ -4,7 +4,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
-#include "easypbr/io/mesh_readers.h"
+#include "easypbr/io/mesh/mesh_readers.h"
 #include "io/npy_builder.h"
 
 using namespace easypbr;

@@ -5,8 +5,8 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
-#include "easypbr/io/image_io.h"
-#include "easypbr/io/mesh_readers.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/mesh/mesh_readers.h"
 #include "io/temporary_folder.h"
 
 using namespace easypbr;

@@ -1,7 +1,7 @@
 #include <string>
 
 #include "easypbr/core/error.h"
-#include "easypbr/io/mesh_readers.h"
+#include "easypbr/io/mesh/mesh_readers.h"
 
 using namespace easypbr;
 

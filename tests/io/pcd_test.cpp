@@ -4,9 +4,9 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
-#include "easypbr/io/lzf.h"
-#include "easypbr/io/mesh_io.h"
-#include "easypbr/io/mesh_readers.h"
+#include "easypbr/io/archive/lzf.h"
+#include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/io/mesh/mesh_readers.h"
 #include "io/bytes.h"
 #include "test_data.h"
 

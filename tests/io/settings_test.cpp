@@ -4,7 +4,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
-#include "easypbr/io/settings_io.h"
+#include "easypbr/io/settings/settings_io.h"
 #include "easypbr/scene/fields.h"
 #include "io/temporary_folder.h"
 

@@ -5,8 +5,8 @@
 #include <cstring>
 #include <limits>
 
-#include "easypbr/render/bloom_pass.h"
-#include "easypbr/render/output_pass.h"
+#include "easypbr/render/effects/bloom/bloom_pass.h"
+#include "easypbr/render/output/output_pass.h"
 #include "render_test.h"
 
 namespace easypbr {

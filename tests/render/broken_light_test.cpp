@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "easypbr/core/log.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
 #include "render_test.h"
 
 namespace easypbr {

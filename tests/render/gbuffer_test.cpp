@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "easypbr/core/compare.h"
-#include "easypbr/render/frame.h"
+#include "easypbr/render/frame/frame.h"
 #include "render_test.h"
 
 namespace easypbr {

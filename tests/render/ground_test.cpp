@@ -159,9 +159,9 @@ TEST(Ground, ShadowsTouchTheContent) {
     }
 }
 
-// A ball on the ground under an even sky: what it hides from a point of the ground at distance s from where they
-// touch is the cosine-weighted part of the sky that a ball at distance sqrt(s^2 + R^2) covers, (R / D)^3. With
-// nothing near the ground is open, to the horizon.
+// A ball on the ground under an even sky: what it hides from a point of the ground at distance s from where
+// they touch is the cosine-weighted part of the sky that a ball at distance sqrt(s^2 + R^2) covers, (R /
+// D)^3. With nothing near the ground is open, to the horizon.
 TEST(Ground, CatchesTheOcclusionOfTheSky) {
     Scene scene;
     Mesh ball = make_sphere(0.5f, 64);

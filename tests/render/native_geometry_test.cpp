@@ -2,8 +2,8 @@
 #include <cmath>
 
 #include "easypbr/gl/context.h"
-#include "easypbr/render/renderer.h"
-#include "easypbr/render/visibility.h"
+#include "easypbr/render/pipeline/renderer.h"
+#include "easypbr/render/raster/visibility.h"
 #include "render_test.h"
 
 namespace easypbr::render {

@@ -5,7 +5,7 @@
 #include <random>
 
 #include "easypbr/gl/context.h"
-#include "easypbr/render/renderer.h"
+#include "easypbr/render/pipeline/renderer.h"
 #include "easypbr/scene/spacing.h"
 #include "render_test.h"
 

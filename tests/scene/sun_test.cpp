@@ -7,7 +7,7 @@
 #include <functional>
 
 #include "easypbr/geometry/primitives.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
 #include "easypbr/scene/environment.h"
 #include "easypbr/scene/resolve.h"
 

@@ -8,8 +8,8 @@
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/suggest.h"
-#include "easypbr/io/image_io.h"
-#include "easypbr/io/settings_io.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/settings/settings_io.h"
 
 namespace easypbr::app {
 

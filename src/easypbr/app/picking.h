@@ -6,7 +6,7 @@
 #include <string>
 
 #include "easypbr/app/lens.h"
-#include "easypbr/render/surface_frame.h"
+#include "easypbr/render/pipeline/surface_frame.h"
 
 namespace easypbr::app {
 

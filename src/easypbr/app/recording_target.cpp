@@ -9,8 +9,8 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/parallel.h"
-#include "easypbr/io/image_io.h"
-#include "easypbr/io/video.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/video/video.h"
 
 namespace easypbr::app {
 namespace {

@@ -10,7 +10,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
 #include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/fields.h"
 

@@ -16,7 +16,7 @@
 #include "easypbr/core/image.h"
 #include "easypbr/gl/context.h"
 #include "easypbr/gl/readback.h"
-#include "easypbr/render/renderer.h"
+#include "easypbr/render/pipeline/renderer.h"
 #include "easypbr/scene/motion.h"
 #include "easypbr/scene/resolve.h"
 #include "easypbr/scene/scene.h"

@@ -4,8 +4,8 @@
 #include <vector>
 
 #include "easypbr/core/image.h"
-#include "easypbr/render/renderer.h"
-#include "easypbr/render/tiles.h"
+#include "easypbr/render/pipeline/renderer.h"
+#include "easypbr/render/pipeline/tiles.h"
 
 namespace easypbr::app {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "easypbr/core/file.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
 
 namespace easypbr::cli {
 

@@ -5,7 +5,7 @@
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/console.h"
 #include "easypbr/core/compare.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
 
 namespace easypbr::cli {
 namespace {

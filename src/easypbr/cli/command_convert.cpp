@@ -1,8 +1,8 @@
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/mesh_steps.h"
 #include "easypbr/core/file.h"
-#include "easypbr/io/image_io.h"
-#include "easypbr/io/mesh_io.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/mesh/mesh_io.h"
 
 namespace easypbr::cli {
 namespace {

@@ -9,7 +9,7 @@
 #include "easypbr/cli/stopwatch.h"
 #include "easypbr/core/file.h"
 #include "easypbr/geometry/primitives.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
 
 namespace easypbr::cli {
 namespace {

@@ -10,7 +10,7 @@
 #include "easypbr/core/cache.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
-#include "easypbr/io/assimp_loader.h"
+#include "easypbr/io/mesh/assimp/assimp_loader.h"
 
 namespace easypbr::cli {
 namespace {

@@ -8,8 +8,8 @@
 #include <set>
 
 #include "easypbr/cli/command.h"
-#include "easypbr/io/image_io.h"
-#include "easypbr/io/mesh_io.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/scene/material_table.h"
 
 namespace easypbr::cli {

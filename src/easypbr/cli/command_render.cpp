@@ -18,9 +18,9 @@
 #include "easypbr/cli/truth_layers.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
-#include "easypbr/io/camera_path_io.h"
-#include "easypbr/io/image_io.h"
-#include "easypbr/io/label_map_io.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/settings/camera_path_io.h"
+#include "easypbr/io/settings/label_map_io.h"
 
 namespace easypbr::cli {
 namespace {

@@ -9,8 +9,8 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/gui/live_view.h"
-#include "easypbr/io/camera_path_io.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/scene/fields.h"
 #include "easypbr/viewer/viewer.h"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "easypbr/io/mesh_io.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/scene/scene.h"
 
 namespace easypbr::cli {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "easypbr/io/mesh_io.h"
+#include "easypbr/io/mesh/mesh_io.h"
 
 namespace easypbr::cli {
 

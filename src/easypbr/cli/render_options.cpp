@@ -16,8 +16,8 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/suggest.h"
-#include "easypbr/io/video.h"
-#include "easypbr/render/renderer.h"
+#include "easypbr/io/video/video.h"
+#include "easypbr/render/pipeline/renderer.h"
 #include "easypbr/scene/fields.h"
 
 namespace easypbr::cli {

@@ -13,8 +13,8 @@
 #include "easypbr/core/suggest.h"
 #include "easypbr/dataset/ground_truth.h"
 #include "easypbr/dataset/rle.h"
-#include "easypbr/io/image_io.h"
-#include "easypbr/render/renderer.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/render/pipeline/renderer.h"
 
 namespace easypbr::cli {
 namespace {

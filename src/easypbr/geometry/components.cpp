@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
+#include "easypbr/geometry/disjoint_sets.h"
 #include "easypbr/geometry/gather.h"
 #include "easypbr/geometry/require.h"
-#include "easypbr/geometry/disjoint_sets.h"
 #include "easypbr/geometry/weld.h"
 
 namespace easypbr {

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "easypbr/core/error.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
 
 namespace easypbr::gui {
 namespace {

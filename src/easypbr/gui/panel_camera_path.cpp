@@ -5,7 +5,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/gui/panels.h"
 #include "easypbr/gui/widgets.h"
-#include "easypbr/io/camera_path_io.h"
+#include "easypbr/io/settings/camera_path_io.h"
 
 namespace easypbr::gui {
 namespace {

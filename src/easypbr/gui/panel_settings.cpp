@@ -7,7 +7,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/gui/panels.h"
 #include "easypbr/gui/widgets.h"
-#include "easypbr/render/renderer.h"
+#include "easypbr/render/pipeline/renderer.h"
 
 namespace easypbr::gui {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/camera_path_shape.h"
-#include "easypbr/io/camera_path_io.h"
+#include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/scene/camera_path.h"
 

@@ -8,8 +8,8 @@
 #include "easypbr/core/compare.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
-#include "easypbr/io/image_codecs.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_codecs.h"
+#include "easypbr/io/image/image_io.h"
 #include "easypbr/python/convert.h"
 
 namespace easypbr::python {

@@ -7,7 +7,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
-#include "easypbr/io/label_map_io.h"
+#include "easypbr/io/settings/label_map_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
 #include "easypbr/scene/colormap.h"

@@ -1,6 +1,6 @@
 // Gives the readers a decompressor of LAZ: easypbr.laz, which asks lazrs.
 #include "easypbr/core/error.h"
-#include "easypbr/io/laz.h"
+#include "easypbr/io/mesh/las/laz.h"
 #include "easypbr/python/bindings.h"
 
 namespace easypbr::python {

@@ -5,7 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/core/error.h"
-#include "easypbr/io/image_io.h"
+#include "easypbr/io/image/image_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
 #include "easypbr/python/settings_value.h"

@@ -5,7 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/app/recorder.h"
-#include "easypbr/io/video.h"
+#include "easypbr/io/video/video.h"
 #include "easypbr/python/shared_viewer.h"
 
 namespace easypbr::python {

@@ -5,7 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/geometry/primitives.h"
-#include "easypbr/io/mesh_io.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/python/bindings.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/scene/scene.h"

@@ -4,7 +4,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/core/error.h"
-#include "easypbr/io/settings_io.h"
+#include "easypbr/io/settings/settings_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/settings_value.h"
 

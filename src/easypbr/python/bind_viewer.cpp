@@ -8,7 +8,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/gui/live_view.h"
-#include "easypbr/io/settings_io.h"
+#include "easypbr/io/settings/settings_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/settings_value.h"
 #include "easypbr/python/shared_viewer.h"

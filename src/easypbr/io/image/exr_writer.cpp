@@ -1,0 +1,75 @@
+#include <fmt/format.h>
+#include <tinyexr.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+
+#include "easypbr/io/image/image_codecs.h"
+
+namespace easypbr::io {
+namespace {
+
+void check_encode(bool good, const char* message) {
+    if (good) return;
+    const std::string what = message ? message : "unknown reason";
+    FreeEXRErrorMessage(message);
+    throw ArgumentError(fmt::format("cannot encode EXR: {}", what));
+}
+
+/// One plane of floats for each channel of the picture, in the order of `channels`.
+std::vector<std::vector<float>> planes_of(const Image& image, const std::vector<int>& channels) {
+    std::vector<std::vector<float>> planes;
+    const float* pixels = image.pixels<float>().data();
+    for (const int channel : channels) {
+        std::vector<float>& plane = planes.emplace_back(image.pixel_count());
+        for (size_t i = 0; i < plane.size(); ++i)
+            plane[i] = pixels[i * size_t(image.channels()) + size_t(channel)];
+    }
+    return planes;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_exr(const Image& image) {
+    // The format sorts channels by name.
+    struct Channels {
+        std::vector<const char*> names;
+        std::vector<int> indices;
+    };
+    static const Channels layouts[] = {{{"Y"}, {0}},
+                                       {{"A", "Y"}, {1, 0}},
+                                       {{"B", "G", "R"}, {2, 1, 0}},
+                                       {{"A", "B", "G", "R"}, {3, 2, 1, 0}}};
+    const Channels& channels = layouts[image.channels() - 1];
+    std::vector<std::vector<float>> planes = planes_of(image, channels.indices);
+    std::vector<unsigned char*> pointers;
+    for (std::vector<float>& plane : planes)
+        pointers.push_back(reinterpret_cast<unsigned char*>(plane.data()));
+    std::vector<EXRChannelInfo> infos(planes.size());
+    for (size_t c = 0; c < infos.size(); ++c) std::strcpy(infos[c].name, channels.names[c]);
+    std::vector<int> types(planes.size(), TINYEXR_PIXELTYPE_FLOAT);
+
+    EXRHeader header;
+    InitEXRHeader(&header);
+    header.compression_type = TINYEXR_COMPRESSIONTYPE_ZIP;
+    header.num_channels = image.channels();
+    header.channels = infos.data();
+    header.pixel_types = header.requested_pixel_types = types.data();
+    EXRImage picture;
+    InitEXRImage(&picture);
+    picture.images = pointers.data();
+    picture.width = image.width();
+    picture.height = image.height();
+    picture.num_channels = image.channels();
+
+    unsigned char* buffer = nullptr;
+    const char* message = nullptr;
+    const size_t size = SaveEXRImageToMemory(&picture, &header, &buffer, &message);
+    const std::unique_ptr<unsigned char, decltype(&std::free)> owner(buffer, std::free);
+    check_encode(size > 0, message);
+    const auto* begin = reinterpret_cast<const std::byte*>(buffer);
+    return {begin, begin + size};
+}
+
+}  // namespace easypbr::io

@@ -1,0 +1,75 @@
+#include "easypbr/io/image/image_io.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstring>
+#include <string_view>
+
+#include "easypbr/core/file.h"
+#include "easypbr/io/image/image_codecs.h"
+
+namespace easypbr::io {
+namespace {
+
+bool starts_with(Bytes bytes, std::string_view magic) {
+    return bytes.size() >= magic.size() && std::memcmp(bytes.data(), magic.data(), magic.size()) == 0;
+}
+
+}  // namespace
+
+void fail_image(const std::string& name, std::string_view what) {
+    throw FormatError(fmt::format("cannot read {}: {}", name, what));
+}
+
+void check_image_size(long long width, long long height, const std::string& name) {
+    if (width < 1 || height < 1 || width > max_image_side || height > max_image_side)
+        fail_image(name, fmt::format("image size {}x{}: width and height must be 1 to {}", width, height,
+                                     max_image_side));
+}
+
+void check_plausible(size_t pixel_bytes, size_t file_bytes, size_t bytes_per_byte, const std::string& name) {
+    if (pixel_bytes / bytes_per_byte > file_bytes)
+        fail_image(
+            name, fmt::format("its header promises {} bytes of pixels, more than a file of {} bytes can hold",
+                              pixel_bytes, file_bytes));
+}
+
+Image decode_image(std::span<const std::byte> bytes, const std::string& name) {
+    if (bytes.empty()) fail_image(name, "the file is empty");
+    if (starts_with(bytes, "\x89PNG")) return decode_png(bytes, name);
+    if (starts_with(bytes, "\xff\xd8\xff")) return decode_jpeg(bytes, name);
+    if (starts_with(bytes, "#?")) return decode_hdr(bytes, name);
+    if (starts_with(bytes, "\x76\x2f\x31\x01")) return decode_exr(bytes, name);
+    fail_image(name,
+               "its first bytes are of no known image format (expected PNG, JPEG, Radiance HDR or OpenEXR)");
+}
+
+Image load_image(const std::filesystem::path& path) {
+    const MappedFile file(path);
+    return decode_image(file.bytes(), path.string());
+}
+
+void save_image(const Image& image, const std::filesystem::path& path) {
+    const std::string extension = extension_of(path);
+    const std::vector<std::string> known = writable_image_extensions();
+    if (std::find(known.begin(), known.end(), extension) == known.end())
+        throw ArgumentError(fmt::format("cannot write {}: unknown image extension '{}' (expected {})",
+                                        path.string(), extension, fmt::join(known, ", ")));
+    if (image.empty()) throw ArgumentError(fmt::format("cannot write {}: the image is empty", path.string()));
+    if (extension == "png")
+        write_file(path, encode_png(image.type() == PixelType::f32 ? to_u8(image) : image));
+    else if (extension == "hdr")
+        write_file(path, encode_hdr(to_linear_f32(image)));
+    else if (extension == "exr")
+        write_file(path, encode_exr(to_linear_f32(image)));
+    else
+        write_file(path, encode_jpeg(to_u8(image)));
+}
+
+std::vector<std::string> writable_image_extensions() {
+    return {"png", "jpg", "jpeg", "hdr", "exr"};
+}
+
+}  // namespace easypbr::io

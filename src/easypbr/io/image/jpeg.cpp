@@ -1,0 +1,103 @@
+#include <fmt/format.h>
+#include <turbojpeg.h>
+
+#include <cstring>
+#include <memory>
+#include <string_view>
+
+#include "easypbr/core/parallel.h"
+#include "easypbr/io/image/image_codecs.h"
+
+namespace easypbr::io {
+namespace {
+
+/// At least one bit for a block of 64 samples (512 per byte), doubled to be safe, times the 4 channels of
+/// CMYK.
+constexpr size_t most_bytes_per_byte = 1024 * 4;
+/// The format's own limit.
+constexpr int max_jpeg_side = 65500;
+
+struct Destroy {
+    void operator()(void* handle) const { tjDestroy(handle); }
+};
+using Handle = std::unique_ptr<void, Destroy>;
+
+const unsigned char* data_of(Bytes bytes) {
+    return reinterpret_cast<const unsigned char*>(bytes.data());
+}
+
+/// Whether an Adobe segment (APP14) stands before the first scan: it means that CMYK is stored inverted.
+bool has_adobe_marker(Bytes bytes) {
+    const unsigned char* data = data_of(bytes);
+    for (size_t at = 2; at + 9 <= bytes.size() && data[at] == 0xff;) {
+        const unsigned char marker = data[at + 1];
+        if (marker == 0xda) return false;
+        if (marker == 0xee && std::memcmp(data + at + 4, "Adobe", 5) == 0) return true;
+        at += 2 + (size_t(data[at + 2]) << 8 | data[at + 3]);
+    }
+    return false;
+}
+
+Image rgb_from_cmyk(const Image& cmyk, bool inverted) {
+    Image out(cmyk.width(), cmyk.height(), 3, PixelType::u8);
+    const uint8_t* in = cmyk.pixels<uint8_t>().data();
+    uint8_t* to = out.pixels<uint8_t>().data();
+    const unsigned flip = inverted ? 0 : 255;
+    parallel_for(cmyk.pixel_count(), 1 << 14, [&](size_t i) {
+        const unsigned key = in[4 * i + 3] ^ flip;
+        for (int c = 0; c < 3; ++c) to[3 * i + c] = uint8_t(((in[4 * i + c] ^ flip) * key + 127) / 255);
+    });
+    return out;
+}
+
+/// Padding between segments is harmless; every other complaint of the decoder means that pixels are missing
+/// or wrong.
+void check_decoded(int result, const Handle& handle, const std::string& name) {
+    if (result == 0) return;
+    const std::string_view message = tjGetErrorStr2(handle.get());
+    const bool harmless = tjGetErrorCode(handle.get()) == TJERR_WARNING &&
+                          message.find("extraneous bytes") != std::string_view::npos;
+    if (!harmless) fail_image(name, fmt::format("damaged JPEG: {}", message));
+}
+
+}  // namespace
+
+Image decode_jpeg(Bytes bytes, const std::string& name) {
+    const Handle handle(tjInitDecompress());
+    int width = 0, height = 0, subsampling = 0, colorspace = 0;
+    if (tjDecompressHeader3(handle.get(), data_of(bytes), bytes.size(), &width, &height, &subsampling,
+                            &colorspace))
+        fail_image(name, fmt::format("damaged JPEG: {}", tjGetErrorStr2(handle.get())));
+    check_image_size(width, height, name);
+    const bool cmyk = colorspace == TJCS_CMYK || colorspace == TJCS_YCCK;
+    const bool grey = colorspace == TJCS_GRAY;
+    const int channels = cmyk ? 4 : grey ? 1 : 3;
+    const int format = cmyk ? TJPF_CMYK : grey ? TJPF_GRAY : TJPF_RGB;
+    check_plausible(size_t(width) * height * channels, bytes.size(), most_bytes_per_byte, name);
+    Image image(width, height, channels, PixelType::u8);
+    // A progressive file may hold thousands of empty scans, each of which costs time for the whole picture.
+    check_decoded(tjDecompress2(handle.get(), data_of(bytes), bytes.size(), image.pixels<uint8_t>().data(),
+                                width, 0, height, format, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS),
+                  handle, name);
+    return cmyk ? rgb_from_cmyk(image, has_adobe_marker(bytes)) : image;
+}
+
+std::vector<std::byte> encode_jpeg(const Image& image, int quality) {
+    if (image.width() > max_jpeg_side || image.height() > max_jpeg_side)
+        throw ArgumentError(fmt::format("cannot encode JPEG: {}x{} pixels, the format holds at most {}",
+                                        image.width(), image.height(), max_jpeg_side));
+    const bool grey = image.channels() <= 2;
+    const Image plain = with_channels(image, grey ? 1 : 3);
+    const Handle handle(tjInitCompress());
+    unsigned char* buffer = nullptr;
+    unsigned long size = 0;
+    const int result = tjCompress2(handle.get(), plain.pixels<uint8_t>().data(), plain.width(), 0,
+                                   plain.height(), grey ? TJPF_GRAY : TJPF_RGB, &buffer, &size,
+                                   grey ? TJSAMP_GRAY : TJSAMP_444, quality, TJFLAG_ACCURATEDCT);
+    const std::unique_ptr<unsigned char, decltype(&tjFree)> owner(buffer, tjFree);
+    if (result) throw ArgumentError(fmt::format("cannot encode JPEG: {}", tjGetErrorStr2(handle.get())));
+    const auto* begin = reinterpret_cast<const std::byte*>(buffer);
+    return {begin, begin + size};
+}
+
+}  // namespace easypbr::io

@@ -1,0 +1,14 @@
+// What the module exports; libeasypbr finds the functions by name.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "easypbr/io/mesh/mesh_io.h"
+
+extern "C" {
+/// Throws FileError, FormatError.
+void easypbr_assimp_load(const std::filesystem::path& path, easypbr::io::LoadedScene& out);
+void easypbr_assimp_extensions(std::vector<std::string>& out);
+}

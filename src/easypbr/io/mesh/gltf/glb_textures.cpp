@@ -1,0 +1,262 @@
+#include "easypbr/io/mesh/gltf/glb_textures.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/mesh/gltf/gltf_extensions.h"
+
+namespace easypbr::io {
+namespace {
+
+/// One channel of an image, as 8 bits.
+struct Plane {
+    Image image;
+    int channel = 0;
+
+    uint8_t at(int x, int y, int width, int height) const {
+        const int column = int((long long)x * image.width() / width),
+                  row = int((long long)y * image.height() / height);
+        return image.at<uint8_t>(column, row)[channel];
+    }
+};
+
+Plane plane_of(const Texture& texture, int channel) {
+    const Image image = to_u8(*texture.image);
+    return {image, std::min(channel, image.channels() - 1)};
+}
+
+/// A texture like `like`, of the larger of its planes' sizes; a channel without an image is 255.
+Texture merged(const Texture& like, const std::vector<Plane>& planes) {
+    int width = 1, height = 1;
+    for (const Plane& plane : planes) {
+        width = std::max(width, plane.image.width());
+        height = std::max(height, plane.image.height());
+    }
+    auto image = std::make_shared<Image>(width, height, int(planes.size()), PixelType::u8);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (size_t c = 0; c < planes.size(); ++c)
+                image->at<uint8_t>(x, y)[c] =
+                    planes[c].image.empty() ? 255 : planes[c].at(x, y, width, height);
+    Texture out = like;
+    out.image = std::move(image);
+    out.channel = 0;
+    return out;
+}
+
+/// glTF's one texture for both: roughness in green, metallic in blue.
+Texture metallic_roughness(const Material& material) {
+    const Texture& metallic = material.metallic_texture;
+    const Texture& roughness = material.roughness_texture;
+    if (!metallic && !roughness) return {};
+    if (metallic.image == roughness.image && metallic.channel == 2 && roughness.channel == 1) return metallic;
+    std::vector<Plane> planes(3);
+    if (roughness) planes[1] = plane_of(roughness, roughness.channel);
+    if (metallic) planes[2] = plane_of(metallic, metallic.channel);
+    return merged(metallic ? metallic : roughness, planes);
+}
+
+Texture base_color(const Material& material) {
+    const Texture& color = material.base_color_texture;
+    const Texture& opacity = material.opacity_texture;
+    if (!opacity) return color;
+    std::vector<Plane> planes(4);
+    if (color)
+        for (int c = 0; c < 3; ++c) planes[size_t(c)] = plane_of(color, color.image->channels() < 3 ? 0 : c);
+    planes[3] = plane_of(opacity, opacity.channel);
+    return merged(color ? color : opacity, planes);
+}
+
+/// A texture whose values stand in the given channel.
+Texture in_channel(const Texture& texture, int channel) {
+    if (!texture || texture.channel == channel) return texture;
+    std::vector<Plane> planes(size_t(channel) + 1);
+    planes.back() = plane_of(texture, texture.channel);
+    return merged(texture, planes);
+}
+
+int wrap_code(Wrap wrap) {
+    return wrap == Wrap::clamp ? 33071 : wrap == Wrap::mirror ? 33648 : 10497;
+}
+
+/// KHR_texture_transform of a transform, which can only be scaling, then turning, then shifting; v goes down
+/// in glTF.
+OrderedJson transform_json(const Mat3& ours) {
+    Mat3d flip = Mat3d::Identity();
+    flip.row(1) << 0, -1, 1;
+    const Mat3d T = flip * ours.cast<double>() * flip;
+    const double angle = std::atan2(-T(1, 0), T(0, 0));
+    const double scale_x = std::hypot(T(0, 0), T(1, 0));
+    const double scale_y = T(0, 1) * std::sin(angle) + T(1, 1) * std::cos(angle);
+    return {{"offset", {T(0, 2), T(1, 2)}}, {"rotation", angle}, {"scale", {scale_x, scale_y}}};
+}
+
+OrderedJson json_of(const Vec3& v) {
+    return {v[0], v[1], v[2]};
+}
+
+}  // namespace
+
+size_t GlbContent::add_view(const void* data, size_t size, int target) {
+    binary.resize((binary.size() + 3) / 4 * 4, '\0');
+    OrderedJson view = {{"buffer", 0}, {"byteOffset", binary.size()}, {"byteLength", size}};
+    if (target) view["target"] = target;
+    binary.append(static_cast<const char*>(data), size);
+    json["bufferViews"].push_back(std::move(view));
+    return json["bufferViews"].size() - 1;
+}
+
+size_t GlbMaterials::image_index(const std::shared_ptr<const Image>& image) {
+    const auto [found, is_new] = images_.try_emplace(image, images_.size());
+    if (is_new) {
+        const auto png = encode_png(image->type() == PixelType::f32 ? to_u8(*image) : *image);
+        const size_t view = content_.add_view(png.data(), png.size());
+        content_.json["images"].push_back({{"bufferView", view}, {"mimeType", "image/png"}});
+    }
+    return found->second;
+}
+
+size_t GlbMaterials::texture_index(const Texture& texture) {
+    const bool nearest = texture.filter == Filter::nearest;
+    const OrderedJson sampler = {{"magFilter", nearest ? 9728 : 9729},
+                                 {"minFilter", nearest ? 9728 : 9987},
+                                 {"wrapS", wrap_code(texture.wrap_u)},
+                                 {"wrapT", wrap_code(texture.wrap_v)}};
+    const auto index_in = [&](const char* array, const OrderedJson& value) {
+        OrderedJson& values = content_.json[array];
+        for (size_t i = 0; i < values.size(); ++i)
+            if (values[i] == value) return i;
+        values.push_back(value);
+        return values.size() - 1;
+    };
+    const size_t source = image_index(texture.image);
+    return index_in("textures", {{"sampler", index_in("samplers", sampler)}, {"source", source}});
+}
+
+OrderedJson GlbMaterials::texture_info(const Texture& texture) {
+    OrderedJson info = {{"index", texture_index(texture)}};
+    if (texture.uv_transform != Mat3::Identity())
+        extend(info, "KHR_texture_transform") = transform_json(texture.uv_transform);
+    return info;
+}
+
+void GlbMaterials::add_surface(const Material& material, OrderedJson& json) {
+    OrderedJson& surface = json["pbrMetallicRoughness"];
+    surface["baseColorFactor"] = {material.base_color[0], material.base_color[1], material.base_color[2],
+                                  material.opacity};
+    surface["metallicFactor"] = material.metallic;
+    surface["roughnessFactor"] = material.roughness;
+    if (const Texture texture = base_color(material)) surface["baseColorTexture"] = texture_info(texture);
+    if (const Texture texture = metallic_roughness(material))
+        surface["metallicRoughnessTexture"] = texture_info(texture);
+    if (const Texture& texture = material.normal_texture) {
+        json["normalTexture"] = texture_info(texture);
+        json["normalTexture"]["scale"] = material.normal_scale;
+    }
+    if (const Texture texture = in_channel(material.occlusion_texture, 0)) {
+        json["occlusionTexture"] = texture_info(texture);
+        json["occlusionTexture"]["strength"] = material.occlusion_strength;
+    }
+}
+
+void GlbMaterials::add_emission(const Material& material, OrderedJson& json) {
+    if (const Texture& texture = material.emissive_texture) json["emissiveTexture"] = texture_info(texture);
+    // The factor ends at 1; what is brighter goes into the strength.
+    const float strength = std::max(1.0f, material.emissive.maxCoeff());
+    json["emissiveFactor"] = json_of(material.emissive / strength);
+    if (strength > 1) extend(json, khr_emissive_strength)["emissiveStrength"] = strength;
+}
+
+void GlbMaterials::add_texture(OrderedJson& extension, const char* key, const Texture& texture) {
+    if (texture) extension[key] = texture_info(texture);
+}
+
+void GlbMaterials::add_channel(OrderedJson& extension, const char* key, const Texture& texture, int channel) {
+    add_texture(extension, key, in_channel(texture, channel));
+}
+
+void GlbMaterials::add_layers(const Material& material, OrderedJson& json) {
+    if (material.clearcoat > 0) {
+        OrderedJson e = {{"clearcoatFactor", material.clearcoat},
+                         {"clearcoatRoughnessFactor", material.clearcoat_roughness}};
+        add_channel(e, "clearcoatTexture", material.clearcoat_texture, 0);
+        add_channel(e, "clearcoatRoughnessTexture", material.clearcoat_roughness_texture, 1);
+        add_texture(e, "clearcoatNormalTexture", material.clearcoat_normal_texture);
+        if (material.clearcoat_normal_texture)
+            e["clearcoatNormalTexture"]["scale"] = material.clearcoat_normal_scale;
+        extend(json, khr_clearcoat) = std::move(e);
+    }
+    if (!material.sheen_color.isZero()) {
+        OrderedJson e = {{"sheenColorFactor", json_of(material.sheen_color)},
+                         {"sheenRoughnessFactor", material.sheen_roughness}};
+        add_texture(e, "sheenColorTexture", material.sheen_color_texture);
+        add_channel(e, "sheenRoughnessTexture", material.sheen_roughness_texture, 3);
+        extend(json, khr_sheen) = std::move(e);
+    }
+    if (material.iridescence > 0) {
+        OrderedJson e = {{"iridescenceFactor", material.iridescence},
+                         {"iridescenceIor", material.iridescence_ior},
+                         {"iridescenceThicknessMinimum", material.iridescence_thickness_min},
+                         {"iridescenceThicknessMaximum", material.iridescence_thickness_max}};
+        add_channel(e, "iridescenceTexture", material.iridescence_texture, 0);
+        add_channel(e, "iridescenceThicknessTexture", material.iridescence_thickness_texture, 1);
+        extend(json, khr_iridescence) = std::move(e);
+    }
+    if (material.anisotropy > 0) {
+        OrderedJson e = {{"anisotropyStrength", material.anisotropy},
+                         {"anisotropyRotation", radians(double(material.anisotropy_rotation_deg))}};
+        add_texture(e, "anisotropyTexture", material.anisotropy_texture);
+        extend(json, khr_anisotropy) = std::move(e);
+    }
+}
+
+void GlbMaterials::add_dielectric(const Material& material, OrderedJson& json) {
+    if (material.ior != Material().ior) extend(json, khr_ior) = {{"ior", material.ior}};
+    if (material.specular != 1 || material.specular_color != Vec3::Ones() || material.specular_texture ||
+        material.specular_color_texture) {
+        OrderedJson e = {{"specularFactor", material.specular},
+                         {"specularColorFactor", json_of(material.specular_color)}};
+        add_channel(e, "specularTexture", material.specular_texture, 3);
+        add_texture(e, "specularColorTexture", material.specular_color_texture);
+        extend(json, khr_specular) = std::move(e);
+    }
+    if (material.transmission > 0) {
+        OrderedJson e = {{"transmissionFactor", material.transmission}};
+        add_channel(e, "transmissionTexture", material.transmission_texture, 0);
+        extend(json, khr_transmission) = std::move(e);
+    }
+    if (material.thickness > 0) {
+        OrderedJson e = {{"thicknessFactor", material.thickness},
+                         {"attenuationColor", json_of(material.attenuation_color)}};
+        if (std::isfinite(material.attenuation_distance))
+            e["attenuationDistance"] = material.attenuation_distance;
+        add_channel(e, "thicknessTexture", material.thickness_texture, 1);
+        extend(json, khr_volume) = std::move(e);
+    }
+}
+
+OrderedJson& GlbMaterials::extend(OrderedJson& json, const char* extension) {
+    OrderedJson& used = content_.json["extensionsUsed"];
+    if (std::find(used.begin(), used.end(), extension) == used.end()) used.push_back(extension);
+    return json["extensions"][extension];
+}
+
+size_t GlbMaterials::add(const Material& material, bool transparent_vertices) {
+    OrderedJson json;
+    if (!material.name.empty()) json["name"] = material.name;
+    add_surface(material, json);
+    add_emission(material, json);
+    add_layers(material, json);
+    add_dielectric(material, json);
+    if (material.unlit) extend(json, khr_unlit) = OrderedJson::object();
+    const char* modes[] = {"OPAQUE", "MASK", "BLEND"};
+    const AlphaMode mode = material.alpha_mode_for(transparent_vertices);
+    json["alphaMode"] = modes[int(mode)];
+    if (mode == AlphaMode::mask) json["alphaCutoff"] = material.alpha_cutoff;
+    json["doubleSided"] = material.double_sided;
+    content_.json["materials"].push_back(std::move(json));
+    return content_.json["materials"].size() - 1;
+}
+
+}  // namespace easypbr::io

@@ -1,0 +1,196 @@
+#include "easypbr/io/mesh/gltf/glb_writer.h"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "easypbr/core/color.h"
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/io/mesh/gltf/glb_textures.h"
+#include "easypbr/scene/merge.h"
+#include "easypbr/scene/normals.h"
+
+namespace easypbr::io {
+namespace {
+
+enum Target { array_buffer = 34962, element_buffer = 34963 };
+enum ComponentType { unsigned_int = 5125, floating = 5126 };
+enum PrimitiveMode { mode_points = 0, mode_lines = 1, mode_triangles = 4 };
+
+class GlbBuilder {
+  public:
+    std::string build(const Mesh& mesh) {
+        content_.json["asset"] = {{"version", "2.0"}, {"generator", "EasyPBR"}};
+        content_.json["scene"] = 0;
+        origin_ = offset_of_tree(mesh);
+        content_.json["scenes"] = OrderedJson::array({{{"nodes", placed_nodes(mesh)}}});
+        if (!content_.json.contains("meshes"))
+            throw ArgumentError("cannot write GLB: the mesh has no vertices");
+        return packed();
+    }
+
+  private:
+    /// The tree's offset is the translation of a node around all others: JSON holds it in double precision.
+    OrderedJson placed_nodes(const Mesh& mesh) {
+        OrderedJson nodes = root_nodes(mesh);
+        if (origin_.isZero(0)) return nodes;
+        OrderedJson around{{"name", mesh.name()}, {"translation", {origin_.x(), origin_.y(), origin_.z()}}};
+        around["children"] = std::move(nodes);
+        return OrderedJson::array({add(std::move(around))});
+    }
+
+    /// What a reader put around a file's nodes is left out again.
+    OrderedJson root_nodes(const Mesh& mesh) {
+        const auto data = mesh.snapshot();
+        OrderedJson nodes = OrderedJson::array();
+        if (data->V.empty() && data->T_parent_mesh.matrix() == Mat4d::Identity())
+            for (const Mesh& child : data->children) nodes.push_back(add_node(child, 1));
+        else
+            nodes.push_back(add_node(mesh, 1));
+        return nodes;
+    }
+
+    size_t add_node(const Mesh& mesh, int depth) {
+        require_mesh_depth(depth);
+        const auto data = mesh.snapshot();
+        OrderedJson node;
+        node["name"] = data->name;
+        const Mat4d pose = data->T_parent_mesh.matrix();
+        if (pose != Mat4d::Identity()) node["matrix"] = std::vector<double>(pose.data(), pose.data() + 16);
+        OrderedJson children = OrderedJson::array();
+        if (!data->V.empty()) {
+            const Vec3d shift = data->offset - origin_;
+            // The shift is that of the node's own vertices, not of its children.
+            if (shift.isZero(0))
+                node["mesh"] = add_mesh(*data);
+            else
+                children.push_back(add({{"name", data->name},
+                                        {"translation", {shift.x(), shift.y(), shift.z()}},
+                                        {"mesh", add_mesh(*data)}}));
+        }
+        for (const Mesh& child : data->children) children.push_back(add_node(child, depth + 1));
+        if (!children.empty()) node["children"] = std::move(children);
+        return add(std::move(node));
+    }
+
+    size_t add(OrderedJson node) {
+        content_.json["nodes"].push_back(std::move(node));
+        return content_.json["nodes"].size() - 1;
+    }
+
+    size_t add_mesh(const MeshData& data) {
+        const OrderedJson attributes = add_attributes(data);
+        OrderedJson primitives = OrderedJson::array();
+        if (!data.F.empty()) add_parts(data, attributes, primitives);
+        if (!data.E.empty()) {
+            const size_t indices = add_indices(data.E.data(), size_t(data.E.size()));
+            primitives.push_back(
+                {{"attributes", attributes}, {"indices", indices}, {"mode", int(mode_lines)}});
+        }
+        if (primitives.empty())
+            primitives.push_back({{"attributes", attributes}, {"mode", int(mode_points)}});
+        content_.json["meshes"].push_back({{"name", data.name}, {"primitives", std::move(primitives)}});
+        return content_.json["meshes"].size() - 1;
+    }
+
+    void add_parts(const MeshData& data, const OrderedJson& attributes, OrderedJson& primitives) {
+        std::vector<size_t> materials;
+        const bool transparent = has_transparent_colors(data.C);
+        for (const Material& material : data.materials)
+            materials.push_back(materials_.add(material, transparent));
+        if (materials.empty()) materials.push_back(materials_.add(Material(), transparent));
+        std::vector<MeshPart> parts = data.parts;
+        if (parts.empty()) parts.push_back({"", 0, int(data.F.rows()), 0});
+        for (const MeshPart& part : parts) {
+            if (part.face_count == 0) continue;
+            const size_t indices =
+                add_indices(data.F.data() + 3 * Eigen::Index(part.first_face), 3 * size_t(part.face_count));
+            primitives.push_back({{"attributes", attributes},
+                                  {"indices", indices},
+                                  {"material", materials[size_t(part.material)]},
+                                  {"mode", int(mode_triangles)}});
+        }
+    }
+
+    OrderedJson add_attributes(const MeshData& data) {
+        OrderedJson attributes;
+        attributes["POSITION"] = add_floats(data.V.data(), size_t(data.V.rows()), 3);
+        OrderedJson& position = content_.json["accessors"].back();
+        const Vec3 least = data.V.colwise().minCoeff(), most = data.V.colwise().maxCoeff();
+        position["min"] = {least[0], least[1], least[2]};
+        position["max"] = {most[0], most[1], most[2]};
+        // A reader shades a file without normals flat.
+        const bool smooth = data.N.empty() && !data.F.empty() && !data.style.flat.value_or(false);
+        const Array3f N = smooth ? smooth_normals(data) : data.N;
+        if (!N.empty()) attributes["NORMAL"] = add_floats(N.data(), size_t(N.rows()), 3);
+        if (!data.UV.empty()) {
+            Array2f::Dense UV = data.UV;
+            UV.col(1).array() = 1 - UV.col(1).array();
+            attributes["TEXCOORD_0"] = add_floats(UV.data(), size_t(UV.rows()), 2);
+        }
+        if (!data.C.empty()) {
+            ArrayXf::Dense C = data.C;
+            for (Eigen::Index i = 0; i < C.rows(); ++i)
+                for (int c = 0; c < 3; ++c) C(i, c) = linear_from_srgb(C(i, c));
+            attributes["COLOR_0"] = add_floats(C.data(), size_t(C.rows()), int(C.cols()));
+        }
+        return attributes;
+    }
+
+    size_t add_floats(const float* data, size_t rows, int columns) {
+        const size_t view = content_.add_view(data, rows * size_t(columns) * sizeof(float), array_buffer);
+        return add_accessor(view, floating, rows, fmt::format("VEC{}", columns));
+    }
+
+    size_t add_indices(const int32_t* data, size_t count) {
+        return add_accessor(content_.add_view(data, count * 4, element_buffer), unsigned_int, count,
+                            "SCALAR");
+    }
+
+    size_t add_accessor(size_t view, ComponentType type, size_t count, const std::string& shape) {
+        content_.json["accessors"].push_back(
+            {{"bufferView", view}, {"componentType", int(type)}, {"count", count}, {"type", shape}});
+        return content_.json["accessors"].size() - 1;
+    }
+
+    std::string packed() {
+        content_.binary.resize((content_.binary.size() + 3) / 4 * 4, '\0');
+        content_.json["buffers"] = OrderedJson::array({{{"byteLength", content_.binary.size()}}});
+        // Names may hold any bytes: what is no UTF-8 is replaced.
+        std::string json = content_.json.dump(-1, ' ', false, OrderedJson::error_handler_t::replace);
+        json.resize((json.size() + 3) / 4 * 4, ' ');
+        const size_t total = 12 + 8 + json.size() + 8 + content_.binary.size();
+        if (total > std::numeric_limits<uint32_t>::max())
+            throw ArgumentError(
+                fmt::format("cannot write GLB: {} bytes, the format holds at most 4 GiB", total));
+        std::string out = "glTF";
+        const auto append = [&](size_t value) {
+            const uint32_t word = uint32_t(value);
+            out.append(reinterpret_cast<const char*>(&word), 4);
+        };
+        append(2);
+        append(total);
+        append(json.size());
+        out += "JSON" + json;
+        append(content_.binary.size());
+        out += std::string("BIN\0", 4);
+        return out + content_.binary;
+    }
+
+    Vec3d origin_ = Vec3d::Zero();
+    GlbContent content_;
+    GlbMaterials materials_{content_};
+};
+
+}  // namespace
+
+std::string encode_glb(const Mesh& mesh) {
+    return GlbBuilder().build(mesh);
+}
+
+void save_glb(const Mesh& mesh, const std::filesystem::path& path) {
+    write_file(path, encode_glb(mesh));
+}
+
+}  // namespace easypbr::io

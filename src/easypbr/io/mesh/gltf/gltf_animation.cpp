@@ -1,0 +1,169 @@
+#include "easypbr/io/mesh/gltf/gltf_animation.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "easypbr/core/log.h"
+#include "easypbr/io/mesh/gltf/gltf_accessor.h"
+
+namespace easypbr::io {
+namespace {
+
+/// What the sampler of a channel holds.
+struct Sampler {
+    Interpolation interpolation = Interpolation::linear;
+    std::vector<float> times;
+    size_t output = 0;
+};
+
+class AnimationReader {
+  public:
+    AnimationReader(GltfDocument& document, const Json& json, size_t index)
+        : document_(document), json_(json), name_(fmt::format("animations[{}]", index)) {}
+
+    Animation read() {
+        Animation animation;
+        animation.name = document_.text(json_, "name", name_);
+        const Json* channels = member(json_, "channels");
+        if (!channels || !channels->is_array()) fail("has no channels");
+        for (const Json& channel : *channels)
+            if (auto read = read_channel(channel)) {
+                animation.duration_s = std::max(animation.duration_s, double(read->times.back()));
+                animation.channels.push_back(std::move(*read));
+            }
+        return animation;
+    }
+
+  private:
+    [[noreturn]] void fail(const std::string& what) const { document_.fail(name_ + " " + what); }
+
+    std::optional<AnimationChannel> read_channel(const Json& json) {
+        const Json* target = member(json, "target");
+        if (!target) fail("has a channel without a target");
+        const auto node = document_.optional_integer(*target, "node");
+        const std::string path = document_.text(*target, "path");
+        constexpr const char* properties[] = {"translation", "rotation", "scale", "weights"};
+        const auto known = std::ranges::find(properties, path);
+        if (known == std::end(properties))
+            log_warning(fmt::format("{}: {} animates '{}', which is not known; it is left out",
+                                    document_.path().string(), name_, path));
+        if (!node || known == std::end(properties)) return {};
+        document_.item("nodes", *node);
+        AnimationChannel channel;
+        channel.node = int(*node);
+        channel.property = AnimatedProperty(known - std::begin(properties));
+        Sampler sampler = read_sampler(document_.integer(json, "sampler"));
+        channel.interpolation = sampler.interpolation;
+        channel.times = std::move(sampler.times);
+        channel.values = read_values(channel, sampler.output);
+        return channel;
+    }
+
+    Sampler read_sampler(size_t index) {
+        const Json* samplers = member(json_, "samplers");
+        if (!samplers || !samplers->is_array() || index >= samplers->size())
+            fail(fmt::format("has no sampler {}", index));
+        const Json& json = (*samplers)[index];
+        Sampler sampler;
+        const std::string kind = document_.text(json, "interpolation", "LINEAR");
+        constexpr const char* kinds[] = {"LINEAR", "STEP", "CUBICSPLINE"};
+        const auto known = std::ranges::find(kinds, kind);
+        if (known == std::end(kinds)) fail(fmt::format("has a sampler of unknown interpolation '{}'", kind));
+        sampler.interpolation = Interpolation(known - std::begin(kinds));
+        const ArrayXf::Dense times = read_floats(document_, document_.integer(json, "input"), 1, 1);
+        sampler.times.assign(times.data(), times.data() + times.size());
+        const bool rising = std::adjacent_find(sampler.times.begin(), sampler.times.end(),
+                                               std::greater_equal<>()) == sampler.times.end();
+        if (sampler.times.empty() || !times.allFinite() || !rising)
+            fail(fmt::format("has a sampler whose times are none, not finite or do not rise (sampler {})",
+                             index));
+        sampler.output = document_.integer(json, "output");
+        return sampler;
+    }
+
+    /// One row for each key, or three.
+    ArrayXf::Dense read_values(const AnimationChannel& channel, size_t accessor) {
+        const bool weights = channel.property == AnimatedProperty::weights;
+        const int columns = weights ? 1 : channel.property == AnimatedProperty::rotation ? 4 : 3;
+        ArrayXf::Dense values = read_floats(document_, accessor, columns, columns);
+        const auto keys = Eigen::Index(channel.times.size()) *
+                          (channel.interpolation == Interpolation::cubic_spline ? 3 : 1);
+        const bool fits = weights ? values.rows() > 0 && values.rows() % keys == 0 : values.rows() == keys;
+        if (!fits || !values.allFinite())
+            fail(fmt::format("has {} keys, but accessors[{}] has {} values, or some that are not finite",
+                             keys, accessor, values.rows()));
+        if (!weights) return values;
+        return Eigen::Map<const ArrayXf::Dense>(values.data(), keys, values.rows() / keys);
+    }
+
+    GltfDocument& document_;
+    const Json& json_;
+    std::string name_;
+};
+
+Skin read_skin(GltfDocument& document, size_t index) {
+    const Json& json = document.item("skins", index);
+    Skin skin;
+    for (const size_t joint : document.integers(json, "joints")) {
+        document.item("nodes", joint);
+        skin.joints.push_back(int(joint));
+    }
+    skin.T_joint_at_rest.assign(skin.joints.size(), Eigen::Affine3d::Identity());
+    const auto accessor = document.optional_integer(json, "inverseBindMatrices");
+    if (!accessor) return skin;
+    const ArrayXf::Dense rows = read_floats(document, *accessor, 16, 16);
+    if (rows.rows() < Eigen::Index(skin.joints.size()) || !rows.allFinite())
+        document.fail(fmt::format(
+            "skins[{}] has {} joints, but accessors[{}] has {} matrices, or some that are not finite", index,
+            skin.joints.size(), *accessor, rows.rows()));
+    for (size_t i = 0; i < skin.joints.size(); ++i) {
+        // Column by column.
+        const Eigen::Map<const Eigen::Matrix4f> matrix(rows.data() + 16 * i);
+        skin.T_joint_at_rest[i].matrix() = matrix.cast<double>();
+        skin.T_joint_at_rest[i].makeAffine();
+    }
+    return skin;
+}
+
+}  // namespace
+
+AnimationNode read_gltf_pose(const GltfDocument& document, size_t index) {
+    const Json& json = document.item("nodes", index);
+    AnimationNode node;
+    if (const auto m = document.numbers(json, "matrix", 16)) {
+        node.matrix = Eigen::Affine3d(Mat4d(Eigen::Map<const Mat4d>(m->data())));
+        if (node.matrix->matrix().row(3) != Eigen::RowVector4d(0, 0, 0, 1))
+            document.fail(fmt::format("nodes[{}].matrix is not affine: its last row must be 0 0 0 1", index));
+        return node;
+    }
+    if (const auto t = document.numbers(json, "translation", 3)) node.translation = Vec3d(t->data());
+    if (const auto s = document.numbers(json, "scale", 3)) node.scale = Vec3d(s->data());
+    if (const auto r = document.numbers(json, "rotation", 4)) {
+        const Eigen::Quaterniond rotation(Eigen::Vector4d(r->data()));
+        if (rotation.norm() > 0) node.rotation = rotation.normalized();
+    }
+    return node;
+}
+
+AnimationRig read_gltf_rig(GltfDocument& document) {
+    AnimationRig rig;
+    const size_t animations = document.count("animations");
+    if (animations == 0) return rig;
+    for (size_t i = 0; i < document.count("nodes"); ++i) {
+        rig.nodes.push_back(read_gltf_pose(document, i));
+        if (const auto skin = document.optional_integer(document.item("nodes", i), "skin")) {
+            document.item("skins", *skin);
+            rig.nodes.back().skin = int(*skin);
+        }
+    }
+    for (size_t i = 0; i < rig.nodes.size(); ++i)
+        for (const size_t child : document.integers(document.item("nodes", i), "children"))
+            if (child < rig.nodes.size()) rig.nodes[child].parent = int(i);
+    for (size_t i = 0; i < document.count("skins"); ++i) rig.skins.push_back(read_skin(document, i));
+    for (size_t i = 0; i < animations; ++i)
+        rig.animations.push_back(AnimationReader(document, document.item("animations", i), i).read());
+    return rig;
+}
+
+}  // namespace easypbr::io

@@ -1,0 +1,316 @@
+#include "easypbr/io/mesh/gltf/gltf_mesh.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+#include <numeric>
+
+#include "easypbr/core/color.h"
+#include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/io/mesh/gltf/gltf_accessor.h"
+#include "easypbr/scene/normals.h"
+
+namespace easypbr::io {
+namespace {
+
+constexpr size_t row_grain = 1 << 15;
+
+enum class Mode : size_t { points, lines, line_loop, line_strip, triangles, triangle_strip, triangle_fan };
+
+/// Vertices that primitives with the same accessors share. Absent attributes have no rows.
+struct Block {
+    Eigen::Index first = 0;
+    ArrayXf::Dense V, N, UV, C, joints, weights;
+    std::vector<ArrayXf::Dense> targets_V, targets_N;  ///< of morph targets; without rows where one has none
+    std::vector<int32_t> triangles;                    ///< of all primitives; indices into the block
+};
+
+void encode_colors(ArrayXf::Dense& C) {
+    parallel_for(size_t(C.rows()), row_grain, [&](size_t i) {
+        for (int c = 0; c < 3; ++c) {
+            float& value = C(Eigen::Index(i), c);
+            value = value > 0 ? srgb_from_linear(std::min(value, 1.0f)) : 0.0f;
+        }
+    });
+}
+
+/// Normals that are unit vectors keep their bits; quantised ones are brought to unit length.
+void normalize_rows(ArrayXf::Dense& N) {
+    parallel_for(size_t(N.rows()), row_grain, [&](size_t i) {
+        auto row = N.row(Eigen::Index(i));
+        const float length = row.norm();
+        if (!(length > 1e-20f && length < 1e20f))
+            row << 0, 0, 1;
+        else if (std::abs(length - 1) > 1e-3f)
+            row /= length;
+    });
+}
+
+void flip_v(ArrayXf::Dense& UV) {
+    parallel_for(size_t(UV.rows()), row_grain, [&](size_t i) {
+        auto row = UV.row(Eigen::Index(i));
+        if (!row.allFinite()) row.setZero();
+        row[1] = 1 - row[1];
+    });
+}
+
+/// Triangle corners of a list of `count` indices, by the winding rules of the specification, section 3.7.2.1.
+template <class Index>
+std::vector<int32_t> triangle_corners(Mode mode, size_t count, Index&& index) {
+    std::vector<int32_t> out;
+    if (mode == Mode::triangles) {
+        out.resize(count / 3 * 3);
+        parallel_for(out.size(), row_grain, [&](size_t i) { out[i] = index(i); });
+        return out;
+    }
+    for (size_t i = 0; i + 2 < count; ++i) {
+        const bool strip = mode == Mode::triangle_strip;
+        const int32_t a = strip ? index(i) : index(i + 1);
+        const int32_t b = strip ? index(i + 1 + i % 2) : index(i + 2);
+        const int32_t c = strip ? index(i + 2 - i % 2) : index(0);
+        // Strips are stitched together by triangles without area.
+        if (a != b && b != c && c != a) out.insert(out.end(), {a, b, c});
+    }
+    return out;
+}
+
+class MeshBuilder {
+  public:
+    MeshBuilder(GltfDocument& document, const GltfMaterials& materials, size_t index)
+        : document_(document), materials_(materials), name_(fmt::format("meshes[{}]", index)) {}
+
+    GltfMesh build(const Json& json) {
+        const Json* primitives = member(json, "primitives");
+        if (!primitives || !primitives->is_array() || primitives->empty()) fail("has no primitives");
+        out_.name = document_.text(json, "name");
+        for (const Json& primitive : *primitives) add(primitive);
+        merge_vertices();
+        out_.F = Array3i(Eigen::Map<const Array3i::Dense>(faces_.data(), Eigen::Index(faces_.size() / 3), 3));
+        if (!edges_.empty())
+            out_.E =
+                Array2i(Eigen::Map<const Array2i::Dense>(edges_.data(), Eigen::Index(edges_.size() / 2), 2));
+        GltfMesh mesh{std::move(out_), {}, {}};
+        read_deformation(json, mesh);
+        return mesh;
+    }
+
+  private:
+    using BlockKey = std::vector<std::optional<size_t>>;
+
+    [[noreturn]] void fail(const std::string& what) const { document_.fail(name_ + " " + what); }
+
+    void add(const Json& json) {
+        const Json* attributes = member(json, "attributes");
+        if (!attributes || !member(*attributes, "POSITION")) fail("has a primitive without POSITION");
+        check_not_compressed(json, *attributes);
+        const size_t mode = document_.optional_integer(json, "mode").value_or(size_t(Mode::triangles));
+        if (mode > size_t(Mode::triangle_fan)) fail(fmt::format("has a primitive of unknown mode {}", mode));
+        const auto material = document_.optional_integer(json, "material");
+        Block& block = block_of(json, *attributes, materials_.uv_set(material));
+        add_elements(json, Mode(mode), material, block);
+    }
+
+    void check_not_compressed(const Json& json, const Json& attributes) const {
+        if (!extension(json, "KHR_draco_mesh_compression")) return;
+        const Json& position = document_.item("accessors", document_.integer(attributes, "POSITION"));
+        if (!member(position, "bufferView"))
+            fail(
+                "is compressed with KHR_draco_mesh_compression, which is not supported: save it without "
+                "compression");
+    }
+
+    Block& block_of(const Json& primitive, const Json& attributes, int uv_set) {
+        const std::string wanted_uv = fmt::format("TEXCOORD_{}", uv_set);
+        const char* uv = member(attributes, wanted_uv.c_str()) ? wanted_uv.c_str() : "TEXCOORD_0";
+        BlockKey key;
+        for (const char* name :
+             {"POSITION", "NORMAL", uv, "COLOR_0", "JOINTS_0", "WEIGHTS_0", "JOINTS_1", "WEIGHTS_1"})
+            key.push_back(document_.optional_integer(attributes, name));
+        if (const Json* targets = member(primitive, "targets"); targets && targets->is_array())
+            for (const Json& target : *targets)
+                for (const char* name : {"POSITION", "NORMAL"})
+                    key.push_back(document_.optional_integer(target, name));
+        const auto [found, is_new] = block_index_.try_emplace(key, blocks_.size());
+        if (is_new) blocks_.push_back(read_block(key));
+        return blocks_[found->second];
+    }
+
+    Block read_block(const BlockKey& key) {
+        Block block;
+        block.first = vertex_count_;
+        block.V = read_floats(document_, *key[0], 3, 3);
+        const auto read = [&](std::optional<size_t> accessor, int least, int most, ArrayXf::Dense& to) {
+            if (!accessor) return;
+            to = read_floats(document_, *accessor, least, most);
+            if (to.rows() != block.V.rows())
+                fail(fmt::format("has {} positions, but accessors[{}] has {} rows", block.V.rows(), *accessor,
+                                 to.rows()));
+        };
+        read(key[1], 3, 3, block.N);
+        read(key[2], 2, 2, block.UV);
+        read(key[3], 3, 4, block.C);
+        for (size_t set : {4, 6}) {
+            if (!key[set] || !key[set + 1]) break;
+            ArrayXf::Dense joints, weights;
+            read(key[set], 4, 4, joints);
+            read(key[set + 1], 4, 4, weights);
+            append_columns(block.joints, joints);
+            append_columns(block.weights, weights);
+        }
+        for (size_t target = 8; target + 1 < key.size(); target += 2) {
+            read(key[target], 3, 3, block.targets_V.emplace_back());
+            read(key[target + 1], 3, 3, block.targets_N.emplace_back());
+        }
+        normalize_rows(block.N);
+        flip_v(block.UV);
+        encode_colors(block.C);
+        vertex_count_ += block.V.rows();
+        if (vertex_count_ > std::numeric_limits<int32_t>::max()) fail("has more than 2^31 vertices");
+        return block;
+    }
+
+    void add_elements(const Json& json, Mode mode, std::optional<size_t> material, Block& block) {
+        const auto accessor = document_.optional_integer(json, "indices");
+        std::vector<uint32_t> indices;
+        if (accessor) indices = read_indices(document_, *accessor);
+        for (const uint32_t index : indices)
+            if (index >= size_t(block.V.rows()))
+                fail(fmt::format("has index {} of {} vertices (accessors[{}])", index, block.V.rows(),
+                                 *accessor));
+        const size_t count = accessor ? indices.size() : size_t(block.V.rows());
+        const auto index = [&](size_t i) { return accessor ? int32_t(indices[i]) : int32_t(i); };
+        if (mode >= Mode::triangles)
+            add_part(triangle_corners(mode, count, index), material, block);
+        else if (mode != Mode::points)
+            add_lines(mode, count, index, int32_t(block.first));
+    }
+
+    void add_part(const std::vector<int32_t>& corners, std::optional<size_t> material, Block& block) {
+        block.triangles.insert(block.triangles.end(), corners.begin(), corners.end());
+        if ((faces_.size() + corners.size()) / 3 > size_t(std::numeric_limits<int32_t>::max()))
+            fail("has more than 2^31 faces");
+        MeshPart part;
+        part.first_face = int(faces_.size() / 3);
+        part.face_count = int(corners.size() / 3);
+        part.material = material_index(material);
+        part.name = out_.materials[size_t(part.material)].name;
+        out_.parts.push_back(part);
+        for (const int32_t corner : corners) faces_.push_back(corner + int32_t(block.first));
+    }
+
+    int material_index(std::optional<size_t> material) {
+        const auto [found, is_new] = material_index_.try_emplace(material, int(out_.materials.size()));
+        if (is_new) out_.materials.push_back(materials_.material(material));
+        return found->second;
+    }
+
+    template <class Index>
+    void add_lines(Mode mode, size_t count, Index&& index, int32_t first) {
+        const size_t step = mode == Mode::lines ? 2 : 1;
+        for (size_t i = 0; i + 1 < count; i += step)
+            edges_.insert(edges_.end(), {first + index(i), first + index(i + 1)});
+        if (mode == Mode::line_loop && count > 2)
+            edges_.insert(edges_.end(), {first + index(count - 1), first + index(0)});
+    }
+
+    static void append_columns(ArrayXf::Dense& to, const ArrayXf::Dense& more) {
+        const Eigen::Index before = to.cols();
+        to.conservativeResize(more.rows(), before + more.cols());
+        to.rightCols(more.cols()) = more;
+    }
+
+    /// One column block of all vertices, of(block) of each; rows of blocks that lack it have `fallback`.
+    template <class Of>
+    ArrayXf::Dense merged_of(float fallback, Of&& of) {
+        Eigen::Index columns = 0;
+        for (Block& block : blocks_)
+            if (of(block).rows()) columns = std::max(columns, of(block).cols());
+        if (columns == 0) return ArrayXf::Dense(0, 0);
+        if (blocks_.size() == 1) return std::move(of(blocks_[0]));
+        ArrayXf::Dense out = ArrayXf::Dense::Constant(vertex_count_, columns, fallback);
+        for (Block& block : blocks_) {
+            const ArrayXf::Dense& from = of(block);
+            if (from.rows()) out.block(block.first, 0, from.rows(), from.cols()) = from;
+        }
+        return out;
+    }
+    ArrayXf::Dense merged(ArrayXf::Dense Block::*attribute, float fallback) {
+        return merged_of(fallback, [&](Block& block) -> ArrayXf::Dense& { return block.*attribute; });
+    }
+
+    void read_deformation(const Json& json, GltfMesh& mesh) {
+        Deformation& out = mesh.deformation;
+        out.joints = ArrayXf(merged(&Block::joints, 0));
+        out.weights = ArrayXf(merged(&Block::weights, 0));
+        size_t targets = 0;
+        for (const Block& block : blocks_) targets = std::max(targets, block.targets_V.size());
+        for (size_t k = 0; k < targets; ++k) {
+            const auto target = [&](std::vector<ArrayXf::Dense> Block::*list) {
+                return merged_of(0, [&](Block& block) -> ArrayXf::Dense& {
+                    return k < (block.*list).size() ? (block.*list)[k] : none_;
+                });
+            };
+            const ArrayXf::Dense V = target(&Block::targets_V), N = target(&Block::targets_N);
+            out.targets_V.push_back(V.rows() ? Array3f(V) : Array3f(Array3f::Dense::Zero(vertex_count_, 3)));
+            out.targets_N.push_back(N.rows() ? Array3f(N) : Array3f());
+        }
+        if (const Json* weights = member(json, "weights"); weights && weights->is_array()) {
+            if (weights->size() != targets)
+                fail(fmt::format("has {} morph targets and {} weights", targets, weights->size()));
+            for (const Json& weight : *weights) mesh.weights.push_back(weight.get<float>());
+        }
+        mesh.weights.resize(targets, 0);
+        if (out.empty()) return;
+        out.V = mesh.data.V;
+        out.N = mesh.data.N;
+    }
+
+    void compute_missing_normals() {
+        const auto has_normals = [](const Block& block) { return block.N.rows() > 0; };
+        if (std::none_of(blocks_.begin(), blocks_.end(), has_normals)) {
+            // Section 3.7.2.1 of the specification: without normals, flat ones.
+            out_.style.flat = true;
+            return;
+        }
+        for (Block& block : blocks_)
+            if (!has_normals(block))
+                block.N =
+                    vertex_normals(Array3f(block.V),
+                                   Array3i(Eigen::Map<const Array3i::Dense>(
+                                       block.triangles.data(), Eigen::Index(block.triangles.size() / 3), 3)));
+    }
+
+    void merge_vertices() {
+        for (const Block& block : blocks_)
+            if (!block.V.allFinite()) fail("has positions that are not finite");
+        compute_missing_normals();
+        if (ArrayXf::Dense V = merged(&Block::V, 0); V.rows()) out_.V = Array3f(V);
+        if (ArrayXf::Dense N = merged(&Block::N, 0); N.rows()) out_.N = Array3f(N);
+        if (ArrayXf::Dense UV = merged(&Block::UV, 0); UV.rows()) out_.UV = Array2f(UV);
+        if (ArrayXf::Dense C = merged(&Block::C, 1); C.rows()) out_.C = ArrayXf(std::move(C));
+    }
+
+    GltfDocument& document_;
+    const GltfMaterials& materials_;
+    std::string name_;
+    MeshData out_;
+    std::vector<Block> blocks_;
+    ArrayXf::Dense none_;  ///< what a block has of a morph target that it lacks
+    std::map<BlockKey, size_t> block_index_;
+    std::map<std::optional<size_t>, int> material_index_;
+    Eigen::Index vertex_count_ = 0;
+    std::vector<int32_t> faces_, edges_;
+};
+
+}  // namespace
+
+GltfMesh read_gltf_mesh(GltfDocument& document, const GltfMaterials& materials, size_t index) {
+    const Json& json = document.item("meshes", index);
+    return MeshBuilder(document, materials, index).build(json);
+}
+
+}  // namespace easypbr::io

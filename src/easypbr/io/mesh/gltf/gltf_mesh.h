@@ -1,0 +1,22 @@
+// One mesh of a glTF file: its primitives as parts of a single vertex and face list.
+#pragma once
+
+#include "easypbr/io/mesh/gltf/gltf_document.h"
+#include "easypbr/io/mesh/gltf/gltf_materials.h"
+#include "easypbr/scene/animation.h"
+#include "easypbr/scene/mesh.h"
+
+namespace easypbr::io {
+
+struct GltfMesh {
+    MeshData data;
+    Deformation deformation;     ///< empty without joints and morph targets
+    std::vector<float> weights;  ///< of the morph targets at rest
+};
+
+/// Triangles, strips and fans become F with a part for each primitive, lines E, points plain vertices.
+/// Primitives with the same attributes share their vertices. Where only some primitives have normals, the
+/// others' are computed. Throws FormatError as load_gltf() does.
+GltfMesh read_gltf_mesh(GltfDocument& document, const GltfMaterials& materials, size_t index);
+
+}  // namespace easypbr::io

@@ -1,0 +1,230 @@
+#include "easypbr/io/mesh/gltf/gltf_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
+#include "easypbr/io/mesh/gltf/gltf_animation.h"
+#include "easypbr/io/mesh/gltf/gltf_document.h"
+#include "easypbr/io/mesh/gltf/gltf_extensions.h"
+#include "easypbr/io/mesh/gltf/gltf_materials.h"
+#include "easypbr/io/mesh/gltf/gltf_mesh.h"
+
+namespace easypbr::io {
+namespace {
+
+constexpr const char* known_extensions[] = {khr_unlit,
+                                            khr_emissive_strength,
+                                            khr_clearcoat,
+                                            khr_sheen,
+                                            khr_specular,
+                                            khr_ior,
+                                            khr_transmission,
+                                            khr_volume,
+                                            khr_iridescence,
+                                            khr_anisotropy,
+                                            "KHR_texture_transform",
+                                            "KHR_lights_punctual",
+                                            "KHR_mesh_quantization"};
+
+/// A name that the map does not have yet.
+template <class Value>
+std::string free_name(const std::map<std::string, Value>& taken, const std::string& name) {
+    std::string free = name;
+    for (int i = 2; taken.count(free); ++i) free = fmt::format("{} {}", name, i);
+    return free;
+}
+
+class SceneReader {
+  public:
+    explicit SceneReader(GltfDocument& document)
+        : document_(document),
+          materials_(document),
+          meshes_(document.count("meshes")),
+          visited_(document.count("nodes")) {}
+
+    LoadedScene read() {
+        warn_of_extensions();
+        rig_ = read_gltf_rig(document_);
+        MeshData root;
+        root.name = document_.path().stem().string();
+        root.source = document_.path();
+        for (const size_t node : root_nodes())
+            if (auto mesh = read_node(node, Eigen::Affine3d::Identity(), 1)) root.children.push_back(*mesh);
+        if (root.children.empty()) document_.fail("there is no mesh in its scene");
+        out_.mesh = Mesh(std::move(root));
+        if (!rig_.animations.empty()) out_.animations = Animations(std::move(rig_));
+        return std::move(out_);
+    }
+
+  private:
+    void warn_of_extensions() const {
+        const Json* used = member(document_.root(), "extensionsUsed");
+        if (!used || !used->is_array()) return;
+        for (const Json& entry : *used) {
+            const std::string name = entry.is_string() ? entry.get<std::string>() : std::string();
+            if (std::find(std::begin(known_extensions), std::end(known_extensions), name) ==
+                std::end(known_extensions))
+                log_warning(fmt::format("{}: the extension {} is not known; it is drawn without",
+                                        document_.path().string(), name));
+        }
+    }
+
+    std::vector<size_t> root_nodes() const {
+        if (document_.count("scenes")) {
+            const size_t scene = document_.optional_integer(document_.root(), "scene").value_or(0);
+            return document_.integers(document_.item("scenes", scene), "nodes");
+        }
+        std::vector<bool> is_child(visited_.size(), false);
+        for (size_t i = 0; i < is_child.size(); ++i)
+            for (const size_t child : document_.integers(document_.item("nodes", i), "children"))
+                if (child < is_child.size()) is_child[child] = true;
+        std::vector<size_t> roots;
+        for (size_t i = 0; i < is_child.size(); ++i)
+            if (!is_child[i]) roots.push_back(i);
+        return roots;
+    }
+
+    /// The node as a mesh; nothing when neither it nor what hangs below it has one.
+    std::optional<Mesh> read_node(size_t index, const Eigen::Affine3d& T_world_parent, int depth) {
+        const Json& json = document_.item("nodes", index);
+        if (visited_[index])
+            document_.fail(fmt::format("nodes[{}] has two parents or is part of a circle", index));
+        if (depth > max_mesh_depth - 1)
+            document_.fail(fmt::format("nodes[{}] lies more than {} levels deep", index, max_mesh_depth - 1));
+        visited_[index] = true;
+
+        const auto mesh = document_.optional_integer(json, "mesh");
+        MeshData data = mesh ? mesh_of(*mesh).data : MeshData();
+        data.name =
+            document_.text(json, "name", data.name.empty() ? fmt::format("node {}", index) : data.name);
+        data.T_parent_mesh = pose_of(index);
+        const Eigen::Affine3d T_world_node = T_world_parent * data.T_parent_mesh;
+        add_camera(json, document_.text(json, "name", ""), data.name, T_world_node);
+        add_light(json, data.name, T_world_node);
+        for (const size_t child : document_.integers(json, "children"))
+            if (auto below = read_node(child, T_world_node, depth + 1)) data.children.push_back(*below);
+        if (!mesh && data.children.empty()) return std::nullopt;
+        const Mesh node(std::move(data));
+        if (!rig_.animations.empty()) animate(index, json, node, mesh);
+        return node;
+    }
+
+    /// Tells the animations which mesh is the node's.
+    void animate(size_t index, const Json& json, const Mesh& mesh, std::optional<size_t> mesh_index) {
+        AnimationNode& node = rig_.nodes[index];
+        node.mesh = mesh;
+        if (!mesh_index) return;
+        const GltfMesh& source = mesh_of(*mesh_index);
+        node.deformation = source.deformation;
+        node.weights = source.weights;
+        if (const auto weights = document_.numbers(json, "weights", source.weights.size()))
+            node.weights.assign(weights->begin(), weights->end());
+    }
+
+    const GltfMesh& mesh_of(size_t index) {
+        document_.item("meshes", index);
+        auto& mesh = meshes_[index];
+        if (!mesh) mesh = read_gltf_mesh(document_, materials_, index);
+        return *mesh;
+    }
+
+    Eigen::Affine3d pose_of(size_t index) const {
+        const AnimationNode node = read_gltf_pose(document_, index);
+        if (node.matrix) return *node.matrix;
+        return Eigen::Translation3d(node.translation) * node.rotation * Eigen::Scaling(node.scale);
+    }
+
+    /// Named after its node, as viewers show it, else after the camera itself.
+    void add_camera(const Json& node, const std::string& node_name, const std::string& fallback,
+                    const Eigen::Affine3d& T_world_node) {
+        const auto index = document_.optional_integer(node, "camera");
+        if (!index) return;
+        const Json& json = document_.item("cameras", *index);
+        Camera camera;
+        camera.T_world_cam.translation() = T_world_node.translation();
+        camera.T_world_cam.linear() = rigid(T_world_node);
+        if (const Json* view = member(json, "perspective")) {
+            camera.fov_y_deg = degrees(document_.number(*view, "yfov", 0.5));
+            camera.near = document_.number(*view, "znear", camera.near);
+        } else if (const Json* box = member(json, "orthographic")) {
+            camera.projection = Projection::orthographic;
+            camera.ortho_height = 2 * document_.number(*box, "ymag", 1);
+            camera.near = document_.number(*box, "znear", camera.near);
+            camera.far = document_.number(*box, "zfar", camera.far);
+        }
+        const std::string name = node_name.empty() ? document_.text(json, "name", fallback) : node_name;
+        out_.cameras.emplace(free_name(out_.cameras, name), camera);
+    }
+
+    /// The node's axes as a rotation: scaling and shear are no part of a camera's pose.
+    static Mat3d rigid(const Eigen::Affine3d& T) {
+        Vec3d z = T.linear().col(2), y = T.linear().col(1);
+        if (!(z.norm() > 0)) return Mat3d::Identity();
+        z.normalize();
+        y -= z * z.dot(y);
+        if (!(y.norm() > 0)) y = z.unitOrthogonal();
+        y.normalize();
+        Mat3d out;
+        out << y.cross(z), y, z;
+        return out;
+    }
+
+    void add_light(const Json& node, const std::string& name, const Eigen::Affine3d& T_world_node) {
+        const Json* reference = extension(node, "KHR_lights_punctual");
+        const Json* lists = extension(document_.root(), "KHR_lights_punctual");
+        const Json* list = lists ? member(*lists, "lights") : nullptr;
+        if (!reference) return;
+        const size_t index = document_.integer(*reference, "light");
+        if (!list || !list->is_array() || index >= list->size())
+            document_.fail(fmt::format("KHR_lights_punctual.lights[{}] does not exist", index));
+        const Json& json = (*list)[index];
+        Light light;
+        const std::string type = document_.text(json, "type");
+        light.type = type == "directional" ? LightType::directional
+                     : type == "spot"      ? LightType::spot
+                                           : LightType::point;
+        light.position = T_world_node.translation().cast<float>();
+        light.direction = -rigid(T_world_node).col(2).cast<float>();
+        const auto color = document_.numbers(json, "color", 3).value_or(std::vector<double>{1, 1, 1});
+        light.color = Vec3d(color[0], color[1], color[2]).cast<float>();
+        light.intensity = float(document_.number(json, "intensity", 1));
+        light.range = float(document_.number(json, "range", 0));
+        if (const Json* spot = member(json, "spot")) {
+            light.inner_cone_deg = float(degrees(document_.number(*spot, "innerConeAngle", 0)));
+            light.outer_cone_deg = float(degrees(document_.number(*spot, "outerConeAngle", pi / 4)));
+        }
+        out_.lights.emplace(free_name(out_.lights, document_.text(json, "name", name)), light);
+    }
+
+    GltfDocument& document_;
+    GltfMaterials materials_;
+    std::vector<std::optional<GltfMesh>> meshes_;
+    AnimationRig rig_;
+    std::vector<bool> visited_;
+    LoadedScene out_;
+};
+
+}  // namespace
+
+LoadedScene load_gltf(const std::filesystem::path& path) {
+    const MappedFile file(path);
+    return decode_gltf(file.bytes(), path);
+}
+
+LoadedScene decode_gltf(std::span<const std::byte> bytes, const std::filesystem::path& path) {
+    try {
+        GltfDocument document(bytes, path);
+        return SceneReader(document).read();
+    } catch (const ArgumentError& error) {
+        throw FormatError(fmt::format("cannot read {}: {}", path.string(), error.what()));
+    } catch (const Json::exception& error) {
+        throw FormatError(fmt::format("cannot read {}: {}", path.string(), error.what()));
+    }
+}
+
+}  // namespace easypbr::io

@@ -1,0 +1,79 @@
+// Scans of KITTI and SemanticKITTI (Behley et al., "SemanticKITTI: A Dataset for Semantic Scene Understanding
+// of LiDAR Sequences", 2019): x y z and remission as float32, and labels beside them, whose lower 16 bits are
+// the class and whose upper 16 bits the instance.
+#include <fmt/format.h>
+
+#include <cstring>
+
+#include "easypbr/core/log.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/io/mesh/cloud_reader.h"
+#include "easypbr/io/mesh/mesh_readers.h"
+#include "easypbr/scene/label_map.h"
+
+namespace easypbr::io {
+namespace {
+
+constexpr size_t point_size = 16, label_size = 4, grain = 1 << 16;
+
+/// The scan's labels: sequences/00/velodyne/000000.bin has sequences/00/labels/000000.label; or beside it.
+std::optional<fs::path> find_labels(const fs::path& scan) {
+    const fs::path folder = scan.parent_path(), name = scan.stem().string() + ".label";
+    for (const fs::path& path : {fs::absolute(folder).parent_path() / "labels" / name, folder / name})
+        if (fs::exists(path)) return path;
+    return {};
+}
+
+void set_label_map(const fs::path& path, MeshData& mesh) {
+    const auto map = built_in_label_map("semantic_kitti");
+    for (const int32_t label : mesh.L)
+        if (!map->accepts(label)) {
+            log_warning(fmt::format("{}: label {} is none of SemanticKITTI's: generated colours are used",
+                                    path.string(), label));
+            return;
+        }
+    mesh.label_map = map;
+}
+
+void read_labels(const fs::path& path, MeshData& mesh) {
+    const MappedFile file(path);
+    const Source source(file, path);
+    const size_t count = size_t(mesh.V.rows());
+    if (file.size() != count * label_size)
+        fail(
+            source,
+            fmt::format("{} labels of {} bytes expected, one for each point of {}, but the file has {} bytes",
+                        count, label_size, mesh.source.filename().string(), file.size()));
+    Array1i::Dense labels{Eigen::Index(count)};
+    Array1f::Dense instances{Eigen::Index(count)};
+    parallel_for(count, grain, [&](size_t i) {
+        uint32_t code;
+        std::memcpy(&code, source.begin() + i * label_size, label_size);
+        labels[Eigen::Index(i)] = int32_t(code & 0xffff);
+        instances[Eigen::Index(i)] = float(code >> 16);
+    });
+    const bool has_instances = (instances.array() != 0).any();
+    mesh.L = std::move(labels);
+    if (has_instances) mesh.scalars.push_back({"instance", std::move(instances)});
+    set_label_map(path, mesh);
+}
+
+}  // namespace
+
+MeshData read_kitti(const Source& source) {
+    if (source.bytes.empty()) fail(source, "the file is empty");
+    if (source.bytes.size() % point_size)
+        fail(source,
+             fmt::format("no KITTI scan: {} bytes are not a multiple of {} (x, y, z, intensity as float32)",
+                         source.bytes.size(), point_size));
+    Element points{"point", source.bytes.size() / point_size, {}};
+    for (const char* name : {"x", "y", "z", "intensity"})
+        points.properties.push_back({name, ScalarType::float32, {}, 1, 0});
+    MeshData mesh = read_binary_cloud(source, {{source, source.begin(), std::endian::little, {points}}});
+    mesh.source = source.path;
+    if (const auto labels = find_labels(source.path)) read_labels(*labels, mesh);
+    drop_points_without_position(source, mesh);
+    return mesh;
+}
+
+}  // namespace easypbr::io

@@ -1,0 +1,135 @@
+#include "easypbr/io/mesh/mesh_io.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
+#include "easypbr/core/suggest.h"
+#include "easypbr/io/mesh/assimp/assimp_loader.h"
+#include "easypbr/io/mesh/cloud_writers.h"
+#include "easypbr/io/mesh/gltf/glb_writer.h"
+#include "easypbr/io/mesh/gltf/gltf_reader.h"
+#include "easypbr/io/mesh/mesh_readers.h"
+#include "easypbr/scene/merge.h"
+
+namespace easypbr::io {
+namespace {
+
+const std::vector<std::string> writable_extensions{"ply", "obj", "glb", "pcd", "xyz",
+                                                   "txt", "asc", "csv", "npy", "npz"};
+
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+[[noreturn]] void fail_extension(const fs::path& path, const std::string& verb,
+                                 const std::vector<std::string>& known) {
+    const std::string extension = extension_of(path);
+    throw FormatError(fmt::format("{}: files with extension '{}' cannot be {}{}; expected one of {}",
+                                  path.string(), extension, verb, did_you_mean(extension, known),
+                                  fmt::join(known, ", ")));
+}
+
+using Reader = std::function<MeshData(const Source&, const LoadOptions&)>;
+
+Reader without_options(MeshData (*read)(const Source&)) {
+    return [read](const Source& source, const LoadOptions&) { return read(source); };
+}
+
+/// The readers of formats that hold a single mesh.
+const std::map<std::string, Reader>& readers() {
+    static const std::map<std::string, Reader> all{{"ply", without_options(read_ply)},
+                                                   {"obj", without_options(read_obj)},
+                                                   {"stl", read_stl},
+                                                   {"off", without_options(read_off)},
+                                                   {"pcd", without_options(read_pcd)},
+                                                   {"xyz", without_options(read_xyz)},
+                                                   {"pts", without_options(read_xyz)},
+                                                   {"csv", without_options(read_xyz)},
+                                                   {"txt", without_options(read_xyz)},
+                                                   {"asc", without_options(read_xyz)},
+                                                   {"npy", without_options(read_npy)},
+                                                   {"npz", without_options(read_npz)},
+                                                   {"bin", without_options(read_kitti)},
+                                                   {"las", without_options(read_las)},
+                                                   {"laz", without_options(read_las)}};
+    return all;
+}
+
+LoadedScene load_by_reader(const fs::path& path, const std::string& extension, const LoadOptions& options) {
+    const MappedFile file(path);
+    MeshData data = readers().at(extension)(Source(file, path), options);
+    data.name = path.stem().string();
+    data.source = path;
+    return {Mesh(std::move(data)), {}, {}};
+}
+
+/// Formats that have points only leave out faces, and say so.
+void warn_of_faces(const MeshData& mesh, const fs::path& path) {
+    if (!mesh.F.empty() || !mesh.E.empty())
+        log_warning(fmt::format("{}: the format has points only: {} faces and {} edges are left out",
+                                path.string(), mesh.F.rows(), mesh.E.rows()));
+}
+
+std::string encode(const MeshData& mesh, const fs::path& path, const std::string& extension) {
+    if (extension == "ply") return encode_ply(mesh, fs::absolute(path).parent_path());
+    if (extension == "npz") return encode_npz(mesh);
+    warn_of_faces(mesh, path);
+    if (extension == "pcd") return encode_pcd(mesh);
+    if (extension == "npy") return encode_npy(mesh);
+    return encode_xyz(mesh, extension == "csv" ? ',' : ' ');
+}
+
+void save_obj(const Mesh& mesh, const fs::path& path) {
+    const fs::path library = fs::path(path).replace_extension(".mtl");
+    const ObjText text =
+        encode_obj(flatten(mesh), library.filename().string(), fs::absolute(path).parent_path());
+    if (!text.mtl.empty()) write_file(library, text.mtl);
+    write_file(path, text.obj);
+}
+
+}  // namespace
+
+LoadedScene load_scene(const fs::path& path, const LoadOptions& options) {
+    const std::string extension = extension_of(path);
+    if (extension == "gltf" || extension == "glb") return load_gltf(path);
+    if (readers().contains(extension)) return load_by_reader(path, extension, options);
+    if (contains(assimp_extensions(), extension)) return load_assimp(path);
+    fail_extension(path, "read", readable_extensions());
+}
+
+Mesh load_mesh(const fs::path& path, const LoadOptions& options) {
+    return load_scene(path, options).mesh;
+}
+
+void save_mesh(const Mesh& mesh, const fs::path& path) {
+    const std::string extension = extension_of(path);
+    if (!contains(writable_extensions, extension)) fail_extension(path, "written", writable_extensions);
+    check_writable(path);
+    if (extension == "glb") return save_glb(mesh, path);
+    if (extension == "obj") return save_obj(mesh, path);
+    write_file(path, encode(flatten(mesh), path, extension));
+}
+
+std::vector<std::string> readable_extensions() {
+    std::vector<std::string> all{"gltf", "glb"};
+    for (const auto& [extension, reader] : readers()) all.push_back(extension);
+    for (const std::string& extension : assimp_extensions())
+        if (!contains(all, extension)) all.push_back(extension);
+    return all;
+}
+
+}  // namespace easypbr::io
+
+namespace easypbr {
+
+Mesh::Mesh(const fs::path& path) : Mesh(io::load_mesh(path)) {}
+
+void Mesh::save(const fs::path& path) const {
+    io::save_mesh(*this, path);
+}
+
+}  // namespace easypbr

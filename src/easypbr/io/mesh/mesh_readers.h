@@ -1,0 +1,39 @@
+// Readers and writers of the mesh formats, over bytes; mesh_io.h chooses among them by extension.
+#pragma once
+
+#include <string>
+
+#include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/io/source/source.h"
+
+namespace easypbr::io {
+
+/// Each throws FormatError as load_scene() does. The result passes validate() and has no name yet.
+MeshData read_ply(const Source& source);
+MeshData read_obj(const Source& source);
+MeshData read_stl(const Source& source, const LoadOptions& options);
+MeshData read_off(const Source& source);
+
+/// The same for point clouds. Points whose positions are not finite are left out with a warning.
+MeshData read_pcd(const Source& source);
+/// XYZ, PTS, CSV: the extension of the source's path tells PTS.
+MeshData read_xyz(const Source& source);
+/// One array; an archive of named arrays, which may have faces.
+MeshData read_npy(const Source& source);
+MeshData read_npz(const Source& source);
+/// A scan of KITTI; the labels of SemanticKITTI are looked for beside the source's path and in ../labels.
+MeshData read_kitti(const Source& source);
+MeshData read_las(const Source& source);
+
+/// Binary little-endian PLY: V, N, C (as uchar), UV (as s, t), L, I, F, E, and the base colour texture of a
+/// mesh with one material, by its path relative to `folder`.
+std::string encode_ply(const MeshData& mesh, const fs::path& folder);
+
+/// OBJ, and MTL named `mtl_name`, with the textures' paths relative to `folder`; MTL is empty without
+/// materials.
+struct ObjText {
+    std::string obj, mtl;
+};
+ObjText encode_obj(const MeshData& mesh, const std::string& mtl_name, const fs::path& folder);
+
+}  // namespace easypbr::io

@@ -1,0 +1,220 @@
+#include "easypbr/io/mesh/obj/mtl_reader.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <optional>
+
+#include "easypbr/core/log.h"
+#include "easypbr/io/source/text_scanner.h"
+
+namespace easypbr::io {
+namespace {
+
+std::string lower(std::string_view word) {
+    std::string text(word);
+    std::transform(text.begin(), text.end(), text.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return text;
+}
+
+/// What a material's lines say, before defaults are filled in.
+struct MtlEntry {
+    Material material;
+    std::optional<Vec3> diffuse, emission;
+    std::optional<float> roughness, metallic, exponent;
+};
+
+/// An image with the options that stand before its name.
+struct MapLine {
+    Texture texture;
+    float bump = 1;
+};
+
+class MtlParser {
+  public:
+    MtlParser(const Source& source, TextureLoader& textures)
+        : source_(source), textures_(textures), end_(source.end()) {}
+
+    std::map<std::string, Material> parse() {
+        for (p_ = source_.begin(); p_ != end_; p_ = next_line(p_, end_)) {
+            const std::string keyword = lower(read_word(p_, end_));
+            if (keyword == "newmtl") {
+                finish();
+                entry_.emplace();
+                entry_->material.name = read_rest(p_, end_);
+            } else if (entry_ && !keyword.empty() && keyword[0] != '#') {
+                parse_line(keyword);
+            }
+        }
+        finish();
+        return std::move(materials_);
+    }
+
+  private:
+    void parse_line(const std::string& keyword) {
+        if (keyword.starts_with("map_") || keyword == "bump" || keyword == "norm" || keyword == "disp" ||
+            keyword == "decal" || keyword == "refl") {
+            parse_map(keyword);
+        } else if (keyword == "kd") {
+            entry_->diffuse = color();
+        } else if (keyword == "ke") {
+            entry_->emission = color();
+        } else {
+            parse_number_line(keyword);
+        }
+    }
+
+    void parse_number_line(const std::string& keyword) {
+        if (keyword == "pr") entry_->roughness = number();
+        if (keyword == "pm") entry_->metallic = number();
+        if (keyword == "ns") entry_->exponent = number();
+        if (keyword == "d") set_opacity(dissolve());
+        if (keyword == "tr") set_opacity(1 - number().value_or(0));
+        if (keyword == "illum") entry_->material.unlit = number() == 0.0f;
+    }
+
+    void set_opacity(std::optional<float> opacity) {
+        if (opacity) entry_->material.opacity = std::clamp(*opacity, 0.0f, 1.0f);
+    }
+
+    /// The next number; nothing when there is none or it is not finite.
+    std::optional<float> number() {
+        float value = 0;
+        if (!read_number(p_, end_, value) || !std::isfinite(value)) return {};
+        return value;
+    }
+
+    /// "d 0.5", or "d -halo 0.5" for an opacity that depends on the direction, which is taken as constant.
+    std::optional<float> dissolve() {
+        const char* after = p_;
+        if (read_word(after, end_) == "-halo") p_ = after;
+        return number();
+    }
+
+    /// One number stands for all three.
+    std::optional<Vec3> color() {
+        const auto r = number(), g = number(), b = number();
+        if (!r) return {};
+        return Vec3(*r, g.value_or(*r), b.value_or(*r)).cwiseMax(0.0f);
+    }
+
+    void parse_map(const std::string& keyword) {
+        Material& material = entry_->material;
+        if (keyword == "map_kd") {
+            material.base_color_texture = map_line().texture;
+        } else if (keyword == "map_pr") {
+            material.roughness_texture = map_line().texture;
+        } else if (keyword == "map_pm") {
+            material.metallic_texture = map_line().texture;
+        } else if (keyword == "map_ke") {
+            material.emissive_texture = map_line().texture;
+        } else if (keyword == "map_d") {
+            material.opacity_texture = map_line().texture;
+        } else if (keyword == "norm" || keyword == "bump" || keyword == "map_bump") {
+            parse_normal_map(keyword);
+        } else if (keyword != "map_ka") {
+            log_warning(
+                fmt::format("{}: '{}' is not supported and left out", source_.path.string(), keyword));
+        }
+    }
+
+    /// Exporters write normal maps under the keywords of height maps as well; a height map is grey.
+    void parse_normal_map(const std::string& keyword) {
+        const MapLine map = map_line();
+        if (!map.texture) return;
+        if (keyword != "norm" && map.texture.image->channels() < 3) {
+            log_warning(fmt::format("{}: height maps are not supported, '{}' is left out",
+                                    source_.path.string(), map.texture.path));
+            return;
+        }
+        entry_->material.normal_texture = map.texture;
+        entry_->material.normal_scale = map.bump;
+    }
+
+    MapLine map_line() {
+        MapLine map;
+        Eigen::Vector2f scale(1, 1), offset(0, 0);
+        bool clamp = false;
+        int channel = 0;
+        for (p_ = skip_blanks(p_, end_); p_ != end_ && *p_ == '-'; p_ = skip_blanks(p_, end_)) {
+            const std::string option = lower(read_word(p_, end_));
+            if (option == "-s")
+                scale = pair(scale);
+            else if (option == "-o")
+                offset = pair(offset);
+            else if (option == "-t")
+                pair(offset);
+            else if (option == "-bm")
+                map.bump = number().value_or(1);
+            else if (option == "-mm")
+                pair(offset);
+            else if (option == "-clamp")
+                clamp = read_word(p_, end_) == "on";
+            else if (option == "-imfchan")
+                channel = channel_index(read_word(p_, end_));
+            else
+                read_word(p_, end_);
+        }
+        map.texture = textures_.load(std::string(read_rest(p_, end_)));
+        if (!map.texture) return map;
+        map.texture.channel = std::min(channel, map.texture.image->channels() - 1);
+        if (clamp) map.texture.wrap_u = map.texture.wrap_v = Wrap::clamp;
+        map.texture.uv_transform << scale.x(), 0, offset.x(), 0, scale.y(), offset.y(), 0, 0, 1;
+        return map;
+    }
+
+    /// One to three numbers of which the third (w) is of no use to an image.
+    Eigen::Vector2f pair(const Eigen::Vector2f& otherwise) {
+        Eigen::Vector2f value = otherwise;
+        for (int i = 0; i < 3; ++i) {
+            const auto next = number();
+            if (!next) break;
+            if (i < 2) value[i] = *next;
+        }
+        return value;
+    }
+
+    static int channel_index(std::string_view name) {
+        return name == "g" ? 1 : name == "b" ? 2 : name == "m" ? 3 : 0;
+    }
+
+    void finish() {
+        if (!entry_) return;
+        Material& m = entry_->material;
+        const Vec3 diffuse = entry_->diffuse.value_or(m.base_color_texture ? Vec3(1, 1, 1) : m.base_color);
+        // Many exporters write black beside a map and mean the map alone.
+        m.base_color = m.base_color_texture && diffuse.isZero() ? Vec3(1, 1, 1) : diffuse;
+        const Vec3 emission = entry_->emission.value_or(Vec3(0, 0, 0));
+        m.emissive = m.emissive_texture && emission.isZero() ? Vec3(1, 1, 1) : emission;
+        m.metallic = std::clamp(entry_->metallic.value_or(m.metallic_texture ? 1.0f : 0.0f), 0.0f, 1.0f);
+        m.roughness = std::clamp(roughness(), 0.0f, 1.0f);
+        if (m.opacity < 1) m.alpha_mode = AlphaMode::blend;
+        if (m.opacity_texture) m.alpha_mode = AlphaMode::mask;
+        materials_.try_emplace(m.name, m);
+    }
+
+    float roughness() const {
+        if (entry_->roughness) return *entry_->roughness;
+        if (entry_->material.roughness_texture) return 1;
+        if (!entry_->exponent) return entry_->material.roughness;
+        return std::sqrt(std::sqrt(2 / (std::max(0.0f, *entry_->exponent) + 2)));
+    }
+
+    const Source& source_;
+    TextureLoader& textures_;
+    const char* p_ = nullptr;
+    const char* end_;
+    std::optional<MtlEntry> entry_;
+    std::map<std::string, Material> materials_;
+};
+
+}  // namespace
+
+std::map<std::string, Material> read_mtl(const Source& source, TextureLoader& textures) {
+    return MtlParser(source, textures).parse();
+}
+
+}  // namespace easypbr::io

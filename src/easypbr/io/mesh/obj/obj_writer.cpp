@@ -1,0 +1,151 @@
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+#include "easypbr/core/parallel.h"
+#include "easypbr/io/image/texture_loader.h"
+#include "easypbr/io/mesh/mesh_readers.h"
+
+namespace easypbr::io {
+namespace {
+
+constexpr size_t grain = 1 << 14;
+
+/// Lines made in parallel: write(row, out) appends those of one row.
+template <class Write>
+void append_lines(size_t count, std::string& out, Write&& write) {
+    std::vector<std::string> parts((count + grain - 1) / grain);
+    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
+        for (size_t row = begin; row < end; ++row) write(Eigen::Index(row), parts[begin / grain]);
+    });
+    for (const std::string& part : parts) out += part;
+}
+
+/// Numbers are written with the fewest digits that read back as the same float.
+template <class Row>
+void append_numbers(const Row& row, std::string& line) {
+    for (Eigen::Index k = 0; k < row.size(); ++k)
+        fmt::format_to(std::back_inserter(line), " {}", float(row(k)));
+}
+
+/// The same for double precision.
+void append_position(const Eigen::RowVector3d& position, std::string& line) {
+    for (const double value : position) fmt::format_to(std::back_inserter(line), " {}", value);
+}
+
+void append_vertices(const MeshData& mesh, std::string& out) {
+    append_lines(size_t(mesh.V.rows()), out, [&](Eigen::Index row, std::string& text) {
+        text += "v";
+        if (mesh.offset.isZero(0))
+            append_numbers(mesh.V.row(row), text);
+        else
+            append_position(mesh.V.row(row).cast<double>() + mesh.offset.transpose(), text);
+        if (!mesh.C.empty()) append_numbers(mesh.C.row(row).template head<3>(), text);
+        text += '\n';
+    });
+    append_lines(size_t(mesh.UV.rows()), out, [&](Eigen::Index row, std::string& text) {
+        text += "vt";
+        append_numbers(mesh.UV.row(row), text);
+        text += '\n';
+    });
+    append_lines(size_t(mesh.N.rows()), out, [&](Eigen::Index row, std::string& text) {
+        text += "vn";
+        append_numbers(mesh.N.row(row), text);
+        text += '\n';
+    });
+}
+
+void append_faces(const MeshData& mesh, const MeshPart& part, std::string& out) {
+    const bool has_uv = !mesh.UV.empty(), has_normal = !mesh.N.empty();
+    append_lines(size_t(part.face_count), out, [&](Eigen::Index row, std::string& text) {
+        text += "f";
+        for (Eigen::Index k = 0; k < 3; ++k) {
+            const int32_t v = mesh.F(part.first_face + row, k) + 1;
+            const auto to = std::back_inserter(text);
+            if (has_uv && has_normal) fmt::format_to(to, " {0}/{0}/{0}", v);
+            if (has_uv && !has_normal) fmt::format_to(to, " {0}/{0}", v);
+            if (!has_uv && has_normal) fmt::format_to(to, " {0}//{0}", v);
+            if (!has_uv && !has_normal) fmt::format_to(to, " {0}", v);
+        }
+        text += '\n';
+    });
+}
+
+/// Names as OBJ and MTL can hold them: one line, never empty, never the same twice.
+std::vector<std::string> material_names(const MeshData& mesh) {
+    std::vector<std::string> names;
+    for (const Material& material : mesh.materials) {
+        std::string name = material.name;
+        for (char& c : name)
+            if (std::isspace(static_cast<unsigned char>(c)) || c == '#' || c == '\\') c = '_';
+        if (name.empty() || std::find(names.begin(), names.end(), name) != names.end())
+            name += fmt::format("material_{}", names.size());
+        names.push_back(name);
+    }
+    return names;
+}
+
+class MtlWriter {
+  public:
+    explicit MtlWriter(const fs::path& folder) : folder_(folder) {}
+
+    void append(const Material& m, const std::string& name) {
+        line("newmtl {}\n", name);
+        line("Kd {} {} {}\n", m.base_color.x(), m.base_color.y(), m.base_color.z());
+        line("Ke {} {} {}\n", m.emissive.x(), m.emissive.y(), m.emissive.z());
+        line("Pr {}\nPm {}\nd {}\nillum {}\n", m.roughness, m.metallic, m.opacity, m.unlit ? 0 : 2);
+        map("map_Kd", m.base_color_texture);
+        map("map_Ke", m.emissive_texture);
+        map("map_Pr", m.roughness_texture);
+        map("map_Pm", m.metallic_texture);
+        map("map_d", m.opacity_texture);
+        map("norm", m.normal_texture, m.normal_scale == 1 ? "" : fmt::format(" -bm {}", m.normal_scale));
+    }
+
+    std::string take() { return std::move(text_); }
+
+  private:
+    template <class... Values>
+    void line(fmt::format_string<Values...> format, Values&&... values) {
+        fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
+    }
+
+    /// A texture without a file (made in memory, embedded in a GLB) cannot be referred to.
+    void map(const char* keyword, const Texture& texture, const std::string& option = {}) {
+        if (texture.path.empty()) return;
+        text_ += keyword + option;
+        if (texture.channel > 0) line(" -imfchan {}", "rgbm"[texture.channel]);
+        if (texture.wrap_u == Wrap::clamp) text_ += " -clamp on";
+        const Mat3& M = texture.uv_transform;
+        if (!M.isIdentity(0)) line(" -s {} {} -o {} {}", M(0, 0), M(1, 1), M(0, 2), M(1, 2));
+        line(" {}\n", path_from_folder(texture.path, folder_));
+    }
+
+    fs::path folder_;
+    std::string text_;
+};
+
+}  // namespace
+
+ObjText encode_obj(const MeshData& mesh, const std::string& mtl_name, const fs::path& folder) {
+    ObjText text;
+    const std::vector<std::string> names = material_names(mesh);
+    MtlWriter writer(folder);
+    for (size_t i = 0; i < names.size(); ++i) writer.append(mesh.materials[i], names[i]);
+    text.mtl = writer.take();
+    if (!names.empty()) text.obj = fmt::format("mtllib {}\n", mtl_name);
+    append_vertices(mesh, text.obj);
+    std::vector<MeshPart> parts = mesh.parts;
+    if (parts.empty()) parts.push_back({{}, 0, int(mesh.F.rows()), 0});
+    for (const MeshPart& part : parts) {
+        if (!names.empty()) text.obj += fmt::format("usemtl {}\n", names[size_t(part.material)]);
+        append_faces(mesh, part, text.obj);
+    }
+    append_lines(size_t(mesh.E.rows()), text.obj, [&](Eigen::Index row, std::string& out) {
+        fmt::format_to(std::back_inserter(out), "l {} {}\n", mesh.E(row, 0) + 1, mesh.E(row, 1) + 1);
+    });
+    return text;
+}
+
+}  // namespace easypbr::io

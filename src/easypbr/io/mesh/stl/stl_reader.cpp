@@ -1,0 +1,145 @@
+#include <fmt/format.h>
+#include <meshoptimizer.h>
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <numeric>
+
+#include "easypbr/core/parallel.h"
+#include "easypbr/io/mesh/crease.h"
+#include "easypbr/io/mesh/mesh_readers.h"
+#include "easypbr/io/source/text_scanner.h"
+#include "easypbr/io/tables/polygons.h"
+
+namespace easypbr::io {
+namespace {
+
+constexpr size_t header_bytes = 84;
+constexpr size_t facet_bytes = 50;
+constexpr size_t grain = 1 << 15;
+constexpr size_t chunk_bytes = 1 << 20;
+
+/// Positions of triangle corners, three floats each.
+using Corners = Eigen::VectorXf;
+
+size_t declared_facets(const Source& source) {
+    if (source.bytes.size() < header_bytes) return 0;
+    uint32_t count = 0;
+    std::memcpy(&count, source.begin() + 80, sizeof count);
+    return count;
+}
+
+bool starts_with_word(const char* p, const char* end, std::string_view word) {
+    p = skip_blanks(p, end);
+    return size_t(end - p) >= word.size() && std::equal(word.begin(), word.end(), p, [](char a, char b) {
+               return a == std::tolower(static_cast<unsigned char>(b));
+           });
+}
+
+/// Binary files may begin with "solid" as well, so the size decides first.
+bool is_text(const Source& source) {
+    if (source.bytes.size() == header_bytes + facet_bytes * declared_facets(source)) return false;
+    return starts_with_word(source.begin(), source.end(), "solid");
+}
+
+Corners read_binary(const Source& source) {
+    const size_t count = declared_facets(source);
+    if (source.bytes.size() < header_bytes || count > (source.bytes.size() - header_bytes) / facet_bytes)
+        fail(source, fmt::format("truncated: {} facets take {} bytes, but the file has {}", count,
+                                 header_bytes + facet_bytes * count, source.bytes.size()));
+    if (count > INT32_MAX / 3) fail(source, "more facets than a mesh can hold");
+    Corners corners(Eigen::Index(count * 9));
+    Progress progress(source, source.bytes.size());
+    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            std::memcpy(corners.data() + i * 9, source.begin() + header_bytes + i * facet_bytes + 12, 36);
+        progress.advance((end - begin) * facet_bytes);
+    });
+    return corners;
+}
+
+/// Pieces of about `chunk_bytes` that begin with a line "facet ...".
+std::vector<size_t> facet_chunks(const Source& source) {
+    std::vector<size_t> starts = line_chunks(source.bytes, chunk_bytes);
+    for (size_t i = 1; i + 1 < starts.size(); ++i) {
+        const char* p = source.begin() + std::max(starts[i], starts[i - 1]);
+        while (p != source.end() && !starts_with_word(p, source.end(), "facet"))
+            p = next_line(p, source.end());
+        starts[i] = size_t(p - source.begin());
+    }
+    return starts;
+}
+
+/// Corners of the facets in [p, end); a facet must have three.
+std::vector<float> read_facets(const Source& source, const char* p, const char* end) {
+    std::vector<float> corners;
+    size_t in_facet = 0;
+    for (; p != end; p = next_line(p, end)) {
+        if (starts_with_word(p, end, "vertex")) {
+            const char* line = p;
+            read_word(p, end);
+            for (int k = 0; k < 3; ++k) {
+                corners.emplace_back();
+                if (!read_number(p, end, corners.back()))
+                    fail_at_line(source, line, "'vertex' needs three numbers");
+            }
+            ++in_facet;
+        } else if (starts_with_word(p, end, "endfacet")) {
+            if (in_facet != 3)
+                fail_at_line(source, p, fmt::format("a facet has {} vertices, expected 3", in_facet));
+            in_facet = 0;
+        }
+    }
+    if (in_facet != 0) fail_at_line(source, end, "the file ends inside a facet");
+    return corners;
+}
+
+Corners read_text(const Source& source) {
+    const std::vector<size_t> starts = facet_chunks(source);
+    std::vector<std::vector<float>> parts(starts.size() - 1);
+    Progress progress(source, source.bytes.size());
+    parallel_for(parts.size(), 1, [&](size_t i) {
+        parts[i] = read_facets(source, source.begin() + starts[i], source.begin() + starts[i + 1]);
+        progress.advance(starts[i + 1] - starts[i]);
+    });
+    std::vector<size_t> begin{0};
+    for (const auto& part : parts) begin.push_back(begin.back() + part.size());
+    if (begin.back() / 3 > INT32_MAX) fail(source, "more facets than a mesh can hold");
+    Corners corners(Eigen::Index(begin.back()));
+    parallel_for(parts.size(), 1,
+                 [&](size_t i) { std::copy(parts[i].begin(), parts[i].end(), corners.data() + begin[i]); });
+    return corners;
+}
+
+/// Makes one vertex of all corners at exactly the same position, in the order of their first appearance.
+void weld(Corners&& corners, MeshData& mesh) {
+    const size_t count = size_t(corners.size()) / 3;
+    // Adding zero makes -0 and 0 the same.
+    parallel_for(size_t(corners.size()), grain, [&](size_t i) { corners[Eigen::Index(i)] += 0.0f; });
+    Array3i::Dense F(Eigen::Index(count / 3), 3);
+    auto* remap = reinterpret_cast<unsigned*>(F.data());
+    const size_t vertices =
+        meshopt_generateVertexRemap(remap, nullptr, count, corners.data(), count, 3 * sizeof(float));
+    Array3f::Dense V(Eigen::Index(vertices), 3);
+    meshopt_remapVertexBuffer(V.data(), corners.data(), count, 3 * sizeof(float), remap);
+    mesh.V = std::move(V);
+    mesh.F = std::move(F);
+}
+
+}  // namespace
+
+MeshData read_stl(const Source& source, const LoadOptions& options) {
+    if (source.bytes.empty()) fail(source, "the file is empty");
+    Corners corners = is_text(source) ? read_text(source) : read_binary(source);
+    if (corners.size() == 0) fail(source, "no facets");
+    MeshData mesh;
+    weld(std::move(corners), mesh);
+    check_positions(source, mesh.V);
+    split_creases(mesh, options.crease_angle_deg);
+    return mesh;
+}
+
+}  // namespace easypbr::io

@@ -1,0 +1,43 @@
+#include "easypbr/io/source/source.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
+
+namespace easypbr::io {
+
+void fail_at_byte(const Source& source, const char* place, std::string_view message) {
+    throw FormatError(fmt::format("{}: byte {}: {}", source.path.string(), place - source.begin(), message));
+}
+
+void fail_at_line(const Source& source, const char* place, std::string_view message) {
+    const auto line = 1 + std::count(source.begin(), place, '\n');
+    throw FormatError(fmt::format("{}:{}: {}", source.path.string(), line, message));
+}
+
+void fail(const Source& source, std::string_view message) {
+    throw FormatError(fmt::format("{}: {}", source.path.string(), message));
+}
+
+Progress::Progress(const Source& source, size_t total_bytes)
+    : what_(fmt::format("reading {}", source.path.filename().string())), total_(total_bytes) {}
+
+void Progress::advance(size_t bytes) {
+    constexpr size_t smallest_reported = 50'000'000;
+    const size_t done = done_ += bytes;
+    if (total_ < smallest_reported) return;
+    // The end is always reported, what lies between a few times per second.
+    const bool at_end = done >= total_;
+    std::unique_lock lock(mutex_, std::defer_lock);
+    if (at_end)
+        lock.lock();
+    else if (!lock.try_lock() || Clock::now() - last_ < std::chrono::milliseconds(250))
+        return;
+    last_ = Clock::now();
+    report_progress(what_, std::min(1.0, double(done) / double(total_)));
+}
+
+}  // namespace easypbr::io

@@ -1,0 +1,48 @@
+#include "easypbr/io/tables/attributes.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/parallel.h"
+
+namespace easypbr::io {
+namespace {
+
+constexpr size_t grain = 1 << 16;
+
+}  // namespace
+
+void tidy_normals(Array3f::Dense& N) {
+    parallel_for(size_t(N.rows()), grain, [&](size_t i) {
+        auto normal = N.row(Eigen::Index(i));
+        const float squared = normal.squaredNorm();
+        if (std::abs(squared - 1) < 2e-3f) return;
+        const Vec3d direction = normal.cast<double>().transpose();
+        const double length = direction.norm();
+        if (std::isfinite(length) && length > 0) {
+            normal = (direction / length).cast<float>().transpose();
+        } else {
+            normal << 0, 0, 1;
+        }
+    });
+}
+
+void tidy_colors(ArrayXf::Dense& C) {
+    parallel_for(size_t(C.size()), grain, [&](size_t i) {
+        float& value = C.data()[i];
+        value = value > 0 ? std::min(value, 1.0f) : 0.0f;
+    });
+}
+
+void tidy_uv(Array2f::Dense& UV) {
+    parallel_for(size_t(UV.size()), grain, [&](size_t i) {
+        if (!std::isfinite(UV.data()[i])) UV.data()[i] = 0;
+    });
+}
+
+void follow_split(const CornerSplit& split, std::span<int32_t> indices) {
+    const auto begin = split.source_vertex.begin(), end = split.source_vertex.end();
+    for (int32_t& index : indices) index = int32_t(std::lower_bound(begin, end, index) - begin);
+}
+
+}  // namespace easypbr::io

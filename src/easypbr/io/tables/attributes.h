@@ -1,0 +1,22 @@
+// Attributes from files brought into the ranges that MeshData promises.
+#pragma once
+
+#include "easypbr/io/tables/polygons.h"
+#include "easypbr/scene/mesh.h"
+
+namespace easypbr::io {
+
+/// Normals that are off unit length by more than 0.1 % are normalised, others keep their bits; a normal
+/// without a direction becomes (0, 0, 1).
+void tidy_normals(Array3f::Dense& N);
+
+/// Colours are clamped to [0, 1]; NaN becomes 0.
+void tidy_colors(ArrayXf::Dense& C);
+
+/// Texture coordinates that are not finite become 0.
+void tidy_uv(Array2f::Dense& UV);
+
+/// Lets indices point to the first vertex that each file's vertex became.
+void follow_split(const CornerSplit& split, std::span<int32_t> indices);
+
+}  // namespace easypbr::io

@@ -1,0 +1,65 @@
+// Polygons as files have them, and the way from them to triangles.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "easypbr/io/source/source.h"
+#include "easypbr/scene/mesh.h"
+
+namespace easypbr::io {
+
+/// Rows of numbers, all of `width` numbers, or (when `first` is not empty) of different lengths.
+template <class T>
+struct List {
+    size_t rows = 0;
+    size_t width = 0;
+    std::vector<uint32_t> first;  ///< rows + 1 entries; empty when all rows are equally long
+    Eigen::Matrix<T, Eigen::Dynamic, 1> values;
+
+    size_t begin_of(size_t row) const { return first.empty() ? row * width : first[row]; }
+    size_t size_of(size_t row) const { return first.empty() ? width : first[row + 1] - first[row]; }
+    size_t value_count() const { return size_t(values.size()); }
+};
+
+/// A row of vertex indices per polygon.
+using Polygons = List<int32_t>;
+
+/// Throws FormatError unless all indices are in [0, count). The message counts from `base`, as the file does.
+void check_indices(const Source& source, std::span<const int32_t> indices, size_t count,
+                   std::string_view what, int base = 0);
+
+/// Throws FormatError, naming the first one, unless all positions are finite.
+void check_positions(const Source& source, const Array3f::Dense& V);
+
+/// Fills F and source_face of a mesh whose V is set. A polygon of n corners gives n - 2 triangles, as a fan;
+/// a concave quad is cut along its other diagonal where only that one lies inside. Polygons with less than
+/// three corners give none.
+void triangulate(Polygons&& polygons, MeshData& mesh);
+
+/// Triangles of strips with indices in the order of the winding; -1 starts a new strip, degenerate triangles
+/// are left out.
+std::vector<int32_t> triangles_of_strips(const Polygons& strips);
+
+/// One vertex per different pair of vertex and key.
+struct CornerSplit {
+    std::vector<int32_t> source_vertex;  ///< ascending
+    std::vector<uint64_t> key;           ///< `no_key` for a vertex that no corner uses
+};
+inline constexpr uint64_t no_key = ~uint64_t(0);
+
+/// Makes one vertex of each different (vertex, key) of the corners and lets `corner_vertices` point to them.
+/// The new vertices are in the order of their source, then of their key.
+CornerSplit split_corners(std::span<int32_t> corner_vertices, std::span<const uint64_t> keys,
+                          size_t vertex_count);
+
+/// Repeats the rows of all arrays of the vertices by the sources of the new vertices, and sets source_vertex.
+void gather_vertices(const CornerSplit& split, MeshData& mesh);
+
+/// Sorts the triangles by material (stable) and fills `parts`: one for each material that is used.
+/// `material_of_polygon` has an entry for each polygon of the file.
+void assign_materials(std::span<const int32_t> material_of_polygon, MeshData& mesh);
+
+}  // namespace easypbr::io

@@ -1,0 +1,305 @@
+#include "easypbr/io/tables/vertex_arrays.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <set>
+
+#include "easypbr/core/log.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/io/tables/attributes.h"
+#include "easypbr/scene/offset.h"
+
+namespace easypbr::io {
+namespace {
+
+constexpr size_t grain = 1 << 15;
+
+using Names = std::vector<std::string_view>;
+using Spellings = std::vector<Names>;
+
+const Spellings position_names{{"x", "y", "z"},
+                               {"easting", "northing", "height"},
+                               {"easting", "northing", "elevation"},
+                               {"points:0", "points:1", "points:2"}};
+const Spellings normal_names{
+    {"nx", "ny", "nz"}, {"normal_x", "normal_y", "normal_z"}, {"normals:0", "normals:1", "normals:2"}};
+const Spellings tangent_names{{"tx", "ty", "tz"}};
+const Spellings bitangent_names{{"bitangent_length"}};
+const Spellings uv_names{{"u", "v"}, {"s", "t"}, {"texture_u", "texture_v"}};
+const Spellings color_names{{"red", "green", "blue", "alpha"},
+                            {"red", "green", "blue"},
+                            {"diffuse_red", "diffuse_green", "diffuse_blue", "diffuse_alpha"},
+                            {"diffuse_red", "diffuse_green", "diffuse_blue"},
+                            {"r", "g", "b", "a"},
+                            {"r", "g", "b"}};
+const Spellings label_names{{"label"},          {"labels"},         {"class"},
+                            {"classification"}, {"semantic_label"}, {"semantic"}};
+const Spellings intensity_names{{"intensity"}, {"intensities"}, {"reflectance"}, {"i"}};
+
+std::string lower(std::string_view text) {
+    std::string result(text);
+    for (char& c : result) c = char(std::tolower(static_cast<unsigned char>(c)));
+    return result;
+}
+
+/// What a field is called without CloudCompare's prefix.
+std::string plain_name(std::string_view name) {
+    constexpr std::string_view prefix = "scalar_";
+    return std::string(name.size() > prefix.size() && lower(name.substr(0, prefix.size())) == prefix
+                           ? name.substr(prefix.size())
+                           : name);
+}
+
+bool has_name(const Spellings& spellings, std::string_view name) {
+    const std::string plain = lower(plain_name(name));
+    return std::ranges::any_of(
+        spellings, [&](const Names& names) { return std::ranges::find(names, plain) != names.end(); });
+}
+
+/// Places of the first of several spellings of which all fields are there and free.
+std::vector<size_t> find_spelling(const std::vector<VertexField>& fields, const Spellings& spellings) {
+    for (const Names& names : spellings) {
+        std::vector<size_t> found;
+        for (const std::string_view name : names) {
+            const auto it = std::ranges::find_if(fields, [&](const VertexField& field) {
+                return field.column->is_skipped() && lower(plain_name(field.property.name)) == name;
+            });
+            if (it != fields.end()) found.push_back(size_t(it - fields.begin()));
+        }
+        if (found.size() == names.size()) return found;
+    }
+    return {};
+}
+
+template <class Matrix>
+void plan_floats(const std::vector<VertexField>& fields, const std::vector<size_t>& found, size_t count,
+                 Matrix& matrix) {
+    if (found.empty()) return;
+    matrix.resize(Eigen::Index(count), Eigen::Index(found.size()));
+    for (size_t i = 0; i < found.size(); ++i) {
+        fields[found[i]].column->floats = matrix.data() + i;
+        fields[found[i]].column->stride = found.size();
+    }
+}
+
+/// Colours stored as integers span the range of their type; those of 4 bytes and more are used for 0 .. 255.
+double color_scale(ScalarType type) {
+    switch (type) {
+        case ScalarType::int8:
+            return 1 / 127.0;
+        case ScalarType::int16:
+            return 1 / 32767.0;
+        case ScalarType::uint16:
+            return 1 / 65535.0;
+        default:
+            return is_integer(type) ? 1 / 255.0 : 1;
+    }
+}
+
+/// Keeps the rows of `kept`.
+template <class A>
+void keep_rows(A& array, const Array1i::Dense& kept) {
+    if (array.empty()) return;
+    typename A::Dense rows(kept.size(), array.cols());
+    parallel_for(size_t(kept.size()), grain,
+                 [&](size_t i) { rows.row(Eigen::Index(i)) = array.row(kept(Eigen::Index(i))); });
+    array = std::move(rows);
+}
+
+}  // namespace
+
+VertexArrays::VertexArrays(const std::vector<VertexField>& fields, size_t count) {
+    const auto position = find_spelling(fields, position_names);
+    if (position.empty()) return;
+    for (const VertexField& field : fields) {
+        field.column->scale = field.property.scale;
+        field.column->shift = field.property.shift;
+    }
+    position_ = {position[0], position[1], position[2]};
+    plan_floats(fields, position, count, V_);
+    for (size_t i = 0; i < 3; ++i) position_columns_[i] = fields[position[i]].column;
+    plan_floats(fields, find_spelling(fields, normal_names), count, N_);
+    plan_floats(fields, find_spelling(fields, tangent_names), count, T_);
+    plan_floats(fields, find_spelling(fields, bitangent_names), count, B_);
+    plan_floats(fields, find_spelling(fields, uv_names), count, UV_);
+    plan_colors(fields, count);
+    if (const auto label = find_spelling(fields, label_names); !label.empty()) {
+        L_.resize(Eigen::Index(count));
+        fields[label[0]].column->integers = L_.data();
+    }
+    plan_floats(fields, find_spelling(fields, intensity_names), count, I_);
+    plan_scalars(fields, count);
+}
+
+void VertexArrays::plan_colors(const std::vector<VertexField>& fields, size_t count) {
+    const auto color = find_spelling(fields, color_names);
+    plan_floats(fields, color, count, C_);
+    for (const size_t i : color) {
+        fields[i].column->scale = color_scale(fields[i].property.type);
+        const ScalarType type = fields[i].property.type;
+        real_colors_ = !is_integer(type);
+        may_leave_range_ |= type != ScalarType::uint8 && type != ScalarType::uint16;
+    }
+}
+
+void VertexArrays::plan_scalars(const std::vector<VertexField>& fields, size_t count) {
+    std::vector<Column*> columns;
+    std::set<std::string> taken;
+    for (const VertexField& field : fields) {
+        if (!field.column->is_skipped() || field.property.name.empty() || field.property.name == "_")
+            continue;
+        const std::string plain = plain_name(field.property.name);
+        std::string name = plain;
+        for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}_{}", plain, number);
+        scalars_.push_back({name, Array1f::Dense(Eigen::Index(count))});
+        columns.push_back(field.column);
+    }
+    for (size_t i = 0; i < columns.size(); ++i) columns[i]->floats = scalars_[i].values.data();
+}
+
+void VertexArrays::recentre(std::vector<Vec3d> samples) {
+    offset_ = offset_of_samples(std::move(samples));
+    for (int axis = 0; axis < 3; ++axis) position_columns_[size_t(axis)]->shift -= offset_[axis];
+}
+
+void VertexArrays::recentre_positions() {
+    offset_ = choose_offset(size_t(V_.rows()), [&](size_t i) {
+        return Vec3d(V_.row(Eigen::Index(i)).transpose().cast<double>());
+    });
+    if (offset_.isZero(0)) return;
+    parallel_for(size_t(V_.rows()), grain, [&](size_t i) {
+        auto position = V_.row(Eigen::Index(i));
+        position = (position.cast<double>() - offset_.transpose()).cast<float>();
+    });
+}
+
+void VertexArrays::normalize_real_colors() {
+    if (!real_colors_ || C_.size() == 0) return;
+    std::vector<float> largest((size_t(C_.size()) + grain - 1) / grain, 0.0f);
+    parallel_chunks(size_t(C_.size()), grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i)
+            largest[begin / grain] = std::max(largest[begin / grain], C_.data()[i]);
+    });
+    const float most = *std::ranges::max_element(largest);
+    if (most <= 1) return;
+    const float full = most <= 255 ? 255.0f : 65535.0f;
+    parallel_for(size_t(C_.size()), grain, [&](size_t i) { C_.data()[i] /= full; });
+}
+
+void VertexArrays::move_into(MeshData& mesh) {
+    tidy_normals(N_);
+    if (may_leave_range_) tidy_colors(C_);
+    tidy_uv(UV_);
+    mesh.offset = offset_;
+    mesh.V = std::move(V_);
+    if (N_.size()) mesh.N = std::move(N_);
+    if (T_.size()) mesh.T = std::move(T_);
+    if (B_.size()) mesh.B = std::move(B_);
+    if (C_.size()) mesh.C = std::move(C_);
+    if (UV_.size()) mesh.UV = std::move(UV_);
+    if (L_.size()) mesh.L = std::move(L_);
+    if (I_.size()) mesh.I = std::move(I_);
+    for (Scalar& scalar : scalars_) mesh.scalars.push_back({scalar.name, std::move(scalar.values)});
+    *this = {};
+}
+
+FaceArrays::FaceArrays(ElementPlan& plan) {
+    std::vector<VertexField> fields;
+    for (size_t i = 0; i < plan.columns.size(); ++i)
+        if (!plan.element->properties[i].count_type)
+            fields.push_back({plan.element->properties[i], &plan.columns[i]});
+    const auto rows = Eigen::Index(plan.element->count);
+    if (const auto label = find_spelling(fields, label_names); !label.empty()) {
+        L_.resize(rows);
+        fields[label[0]].column->integers = L_.data();
+    }
+    for (const VertexField& field : fields) {
+        if (!field.column->is_skipped() || is_known_field(field.property.name) ||
+            field.property.name == "texnumber")
+            continue;
+        scalars_.emplace_back(plain_name(field.property.name), Array1f::Dense(rows));
+        field.column->floats = scalars_.back().second.data();
+    }
+}
+
+void FaceArrays::move_into(MeshData& mesh) {
+    if (mesh.F.rows() == mesh.V.rows()) return;
+    const auto of_triangles = [&](auto& values) {
+        std::remove_cvref_t<decltype(values)> result(mesh.F.rows());
+        for (Eigen::Index i = 0; i < result.size(); ++i)
+            result[i] = values[mesh.source_face.empty() ? i : mesh.source_face[i]];
+        return result;
+    };
+    if (mesh.L.empty() && L_.size()) mesh.L = of_triangles(L_);
+    for (auto& [name, values] : scalars_) {
+        const auto is_same = [&](const ScalarArray& scalar) { return scalar.name == name; };
+        if (std::ranges::none_of(mesh.scalars, is_same)) mesh.scalars.push_back({name, of_triangles(values)});
+    }
+}
+
+bool is_known_field(std::string_view name) {
+    return std::ranges::any_of(std::array{&normal_names, &tangent_names, &bitangent_names, &uv_names,
+                                          &color_names, &label_names, &intensity_names},
+                               [&](const Spellings* spellings) { return has_name(*spellings, name); }) ||
+           is_position_field(name);
+}
+
+bool is_position_field(std::string_view name) {
+    return has_name(position_names, name);
+}
+
+std::vector<std::string> names_of_parts(const std::string& name, size_t count) {
+    static const struct {
+        Names whole;
+        Names parts;
+    } known[] = {
+        {{"xyz", "pos", "position", "positions", "point", "points", "coord", "coords"}, {"x", "y", "z"}},
+        {{"normal", "normals", "n"}, {"nx", "ny", "nz"}},
+        {{"rgb", "color", "colors", "c"}, {"red", "green", "blue"}},
+        {{"rgb", "rgba", "color", "colors", "c"}, {"red", "green", "blue", "alpha"}},
+        {{"uv", "uvs", "texcoord", "texcoords"}, {"u", "v"}}};
+    if (count == 1 || name == "_") return std::vector<std::string>(count, name);
+    const std::string plain = lower(name);
+    for (const auto& entry : known)
+        if (entry.parts.size() == count && std::ranges::find(entry.whole, plain) != entry.whole.end())
+            return {entry.parts.begin(), entry.parts.end()};
+    std::vector<std::string> names;
+    for (size_t i = 0; i < count; ++i) names.push_back(fmt::format("{}_{}", name, i));
+    return names;
+}
+
+void drop_points_without_position(const Source& source, MeshData& mesh) {
+    const size_t count = size_t(mesh.V.rows());
+    std::vector<size_t> first((count + grain - 1) / grain + 1, 0);
+    const auto is_good = [&](size_t i) { return mesh.V.row(Eigen::Index(i)).allFinite(); };
+    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) first[begin / grain + 1] += is_good(i);
+    });
+    std::partial_sum(first.begin(), first.end(), first.begin());
+    const size_t kept_count = first.back();
+    if (kept_count == count && count > 0) return;
+    if (kept_count == 0) fail(source, fmt::format("no point of {} has a finite position", count));
+    Array1i::Dense kept{Eigen::Index(kept_count)};
+    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
+        size_t next = first[begin / grain];
+        for (size_t i = begin; i < end; ++i)
+            if (is_good(i)) kept(Eigen::Index(next++)) = int32_t(i);
+    });
+    keep_rows(mesh.V, kept);
+    keep_rows(mesh.N, kept);
+    keep_rows(mesh.C, kept);
+    keep_rows(mesh.UV, kept);
+    keep_rows(mesh.T, kept);
+    keep_rows(mesh.B, kept);
+    keep_rows(mesh.L, kept);
+    keep_rows(mesh.I, kept);
+    for (ScalarArray& scalar : mesh.scalars) keep_rows(scalar.values, kept);
+    mesh.source_vertex = std::move(kept);
+    log_warning(fmt::format("{}: {} of {} points have no finite position and are left out",
+                            source.path.string(), count - kept_count, count));
+}
+
+}  // namespace easypbr::io

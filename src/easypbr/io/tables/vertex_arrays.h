@@ -1,0 +1,103 @@
+// The arrays of a file's vertices or points, and which property of the file goes into which.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "easypbr/io/tables/element_table.h"
+#include "easypbr/scene/mesh.h"
+
+namespace easypbr::io {
+
+/// A scalar property of a file's vertices and where its values will go.
+struct VertexField {
+    Property property;
+    Column* column;
+};
+
+/// Recognises fields by their names, whatever the case: positions, normals, colours, texture coordinates,
+/// labels, intensities, tangents and bitangent lengths; every other field becomes scalars of its name ("_"
+/// and
+/// "" are skipped). "scalar_" before a name, as CloudCompare writes it, is left out.
+class VertexArrays {
+  public:
+    /// Makes room for `count` rows and sets the fields' columns.
+    VertexArrays(const std::vector<VertexField>& fields, size_t count);
+    VertexArrays() = default;
+
+    /// Which of the fields are x, y, z; nothing without all three.
+    const std::optional<std::array<size_t, 3>>& position() const { return position_; }
+
+    /// Lets the position columns subtract what offset_of_samples() finds.
+    void recentre(std::vector<Vec3d> samples);
+
+    /// The same after reading, for positions that float32 holds as the file has them.
+    void recentre_positions();
+
+    /// Throws FormatError when a position is not finite.
+    void check(const Source& source) const { check_positions(source, V_); }
+    Eigen::Index count() const { return V_.rows(); }
+
+    /// Colours that were written as real numbers: 0 .. 255 or 0 .. 65535 become 0 .. 1.
+    void normalize_real_colors();
+
+    /// Fills the mesh, with attributes in the ranges that MeshData promises. Leaves nothing here.
+    void move_into(MeshData& mesh);
+
+  private:
+    struct Scalar {
+        std::string name;
+        Array1f::Dense values;
+    };
+
+    void plan_colors(const std::vector<VertexField>& fields, size_t count);
+    void plan_scalars(const std::vector<VertexField>& fields, size_t count);
+
+    std::optional<std::array<size_t, 3>> position_;
+    std::array<Column*, 3> position_columns_{};
+    Vec3d offset_ = Vec3d::Zero();
+    bool real_colors_ = false, may_leave_range_ = false;  ///< of colours
+    Array3f::Dense V_, N_, T_;
+    ArrayXf::Dense C_;
+    Array2f::Dense UV_;
+    Array1i::Dense L_;
+    Array1f::Dense I_, B_;
+    std::vector<Scalar> scalars_;
+};
+
+/// Labels and scalars of a file's faces.
+class FaceArrays {
+  public:
+    FaceArrays() = default;
+    /// Makes room for what no column is there for yet: labels, and scalars of any other name but those of
+    /// normals, colours and textures.
+    explicit FaceArrays(ElementPlan& plan);
+
+    /// Gives each triangle the values of its polygon; those that would pass for values of the vertices (as
+    /// many faces as vertices) or that the vertices have too are left out.
+    void move_into(MeshData& mesh);
+
+  private:
+    Array1i::Dense L_;
+    std::vector<std::pair<std::string, Array1f::Dense>> scalars_;
+};
+
+/// Whether a field of this name is recognised, not just kept as scalars.
+bool is_known_field(std::string_view name);
+
+/// Whether it is one of those of positions.
+bool is_position_field(std::string_view name);
+
+/// Names for a field of several values: those of the parts of a position, normal, colour or texture
+/// coordinate when it is called so and has as many, else NAME_0, NAME_1, ...
+std::vector<std::string> names_of_parts(const std::string& name, size_t count);
+
+/// Leaves out the points of a cloud (a mesh without faces and edges) whose positions are not finite, with a
+/// warning that counts them; source_vertex leads back to the file's points. Throws FormatError when none is
+/// left.
+void drop_points_without_position(const Source& source, MeshData& mesh);
+
+}  // namespace easypbr::io

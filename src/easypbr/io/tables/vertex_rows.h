@@ -1,0 +1,46 @@
+// Vertices as rows of numbers: what PLY, PCD, NPY and text files are written of.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "easypbr/io/tables/element_table.h"
+#include "easypbr/scene/mesh.h"
+
+namespace easypbr::io {
+
+/// Neighbouring fields of one type, and how they are written for a row, in this machine's byte order.
+struct RowPart {
+    std::vector<std::string> names;
+    ScalarType type = ScalarType::float32;
+    std::function<void(Eigen::Index row, char* out)> write;
+    size_t size = names.size() * size_of(type);
+};
+
+/// Which names and forms a format uses.
+struct RowStyle {
+    std::vector<std::string> normal_names{"nx", "ny", "nz"};
+    std::vector<std::string> uv_names{"s", "t"};
+    /// Red, green, blue (and alpha) as one number of 4 bytes, "rgb" or "rgba".
+    bool packed_colors = false;
+};
+
+/// All that a mesh has for its vertices: positions (float64, with the offset added, unless that is zero),
+/// normals, colours as bytes, texture coordinates, tangents, bitangent lengths, labels, intensities, scalars.
+/// Names of scalars are plain_name()s.
+std::vector<RowPart> vertex_row_parts(const MeshData& mesh, const RowStyle& style = {});
+
+/// A name with '_' for what is no letter, digit, '.' or '-'.
+std::string plain_name(std::string name);
+
+/// What the faces have beside their corners: labels and scalars.
+std::vector<RowPart> face_row_parts(const MeshData& mesh);
+
+/// The rows one after the other.
+void append_rows(const std::vector<RowPart>& parts, size_t count, std::string& out);
+
+/// The rows as text: numbers with the fewest digits that read back as the same.
+void append_text_rows(const std::vector<RowPart>& parts, size_t count, char delimiter, std::string& out);
+
+}  // namespace easypbr::io

@@ -1,0 +1,311 @@
+#include "easypbr/io/video/ffmpeg/module.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/core/log.h"
+#include "easypbr/io/video/ffmpeg/handles.h"
+#include "easypbr/io/video/ffmpeg/palette.h"
+#include "easypbr/io/video/ffmpeg/remux.h"
+
+extern "C" {
+#include <libavutil/pixdesc.h>
+}
+
+namespace easypbr::io {
+
+int require_written(int code, const fs::path& path) {
+    if (code >= 0) return code;
+    char reason[AV_ERROR_MAX_STRING_SIZE]{};
+    av_strerror(code, reason, sizeof reason);
+    throw FileError(fmt::format("cannot write {}: {}", path.string(), reason));
+}
+
+namespace {
+
+/// A kind of file: FFmpeg's name, and the encoders that are tried for it.
+struct Container {
+    const char* name;
+    std::vector<std::string> encoders;
+};
+
+Container container_of(const fs::path& path) {
+    const std::string extension = extension_of(path);
+    if (extension == "gif") return {"gif", {"gif"}};
+    if (extension == "webm") return {"webm", {"libvpx-vp9", "libvpx"}};
+    if (extension == "mkv") return {"matroska", {"libx264", "libopenh264"}};
+    if (extension == "mov") return {"mov", {"libx264", "libopenh264"}};
+    return {"mp4", {"libx264", "libopenh264"}};
+}
+
+/// Encoders for pictures that a file of this kind may hold.
+std::vector<std::string> encoders_for(const char* container) {
+    const AVOutputFormat* format = av_guess_format(container, nullptr, nullptr);
+    std::vector<std::string> names;
+    void* state = nullptr;
+    while (const AVCodec* codec = av_codec_iterate(&state))
+        if (av_codec_is_encoder(codec) && codec->type == AVMEDIA_TYPE_VIDEO &&
+            (!format || avformat_query_codec(format, codec->id, FF_COMPLIANCE_NORMAL) == 1))
+            names.emplace_back(codec->name);
+    std::ranges::sort(names);
+    return names;
+}
+
+const AVCodec& encoder_for(const fs::path& path, const std::string& wanted) {
+    const Container container = container_of(path);
+    const std::vector<std::string> there = encoders_for(container.name);
+    for (const std::string& name : wanted.empty() ? container.encoders : std::vector<std::string>{wanted})
+        if (std::ranges::count(there, name)) return *avcodec_find_encoder_by_name(name.c_str());
+    throw ArgumentError(fmt::format(
+        "cannot write {}: FFmpeg has no encoder {} for it; it has {}", path.string(),
+        wanted.empty() ? fmt::format("{}", fmt::join(container.encoders, " or ")) : "'" + wanted + "'",
+        there.empty() ? "none" : fmt::format("{}", fmt::join(there, ", "))));
+}
+
+/// What the encoder takes of the pictures' kinds that we can make: its own first choice among them.
+AVPixelFormat pixel_format_of(const AVCodec& encoder) {
+    constexpr AVPixelFormat known[] = {AV_PIX_FMT_YUV420P, AV_PIX_FMT_PAL8,  AV_PIX_FMT_YUVJ420P,
+                                       AV_PIX_FMT_YUV444P, AV_PIX_FMT_RGB24, AV_PIX_FMT_RGBA,
+                                       AV_PIX_FMT_BGR0,    AV_PIX_FMT_RGB8};
+    for (const AVPixelFormat format : known) {
+        if (!encoder.pix_fmts) return AV_PIX_FMT_YUV420P;
+        for (const AVPixelFormat* taken = encoder.pix_fmts; *taken != AV_PIX_FMT_NONE; ++taken)
+            if (*taken == format) return format;
+    }
+    throw ArgumentError(fmt::format(
+        "the encoder {} takes none of the kinds of pictures that can be made for it", encoder.name));
+}
+
+void check_options(const fs::path& path, const VideoOptions& options) {
+    if (options.size.minCoeff() < 2 || options.size.maxCoeff() > 16384)
+        throw ArgumentError(fmt::format("cannot write {}: expected a size from 2x2 to 16384x16384, got {}x{}",
+                                        path.string(), options.size.x(), options.size.y()));
+    const double most = extension_of(path) == "gif" ? 50 : 1000;
+    if (!(options.fps > 0 && options.fps <= most))
+        throw ArgumentError(
+            fmt::format("cannot write {}: expected above 0 and at most {} frames per second, got {}",
+                        path.string(), most, options.fps));
+}
+
+class FfmpegVideo final : public VideoWriter {
+  public:
+    FfmpegVideo(const fs::path& path, const VideoOptions& options) : path_(path), size_(options.size) {
+        check_options(path, options);
+        // FFmpeg would print; what a program has chosen itself stays.
+        if (av_log_get_level() == AV_LOG_INFO) av_log_set_level(AV_LOG_QUIET);
+        const AVCodec& encoder = encoder_for(path, options.codec);
+        AVFormatContext* raw = nullptr;
+        require_written(avformat_alloc_output_context2(&raw, nullptr, container_of(path).name, path.c_str()),
+                        path);
+        output_.reset(raw);
+        codec_.reset(avcodec_alloc_context3(&encoder));
+        describe(encoder, options.fps);
+        open_encoder(encoder);
+        make_frame();
+        begin_file();
+    }
+
+    ~FfmpegVideo() override {
+        if (finished_) return;
+        try {
+            finish();
+        } catch (const Error& error) {
+            log_warning(error.what());
+        }
+    }
+
+    void add(const Image& picture) override {
+        if (picture.width() != size_.x() || picture.height() != size_.y() || picture.channels() != 4 ||
+            picture.type() != PixelType::u8)
+            throw ArgumentError(fmt::format(
+                "{}: expected pictures of {}x{} with 4 channels of 8 bits, got {}x{} with {}", path_.string(),
+                size_.x(), size_.y(), picture.width(), picture.height(), picture.channels()));
+        require_written(av_frame_make_writable(frame_.get()), path_);
+        if (codec_->pix_fmt == AV_PIX_FMT_PAL8)
+            fill_palette(picture);
+        else
+            fill_planes(picture);
+        frame_->pts = next_++;
+        encode(frame_.get());
+    }
+
+    void finish() override {
+        if (finished_) return;
+        finished_ = true;
+        encode(nullptr);
+        require_written(av_write_trailer(output_.get()), path_);
+        require_written(output_->pb->error, path_);
+        require_written(avio_closep(&output_->pb), path_);
+        if (!is_fragmented()) return;
+        try {
+            index_first(path_);
+        } catch (const std::exception& error) {
+            log_warning(fmt::format("{} stays a fragmented MP4: {}", path_.string(), error.what()));
+        }
+    }
+
+  private:
+    bool is_fragmented() const {
+        const std::string name = output_->oformat->name;
+        return name == "mp4" || name == "mov";
+    }
+
+    void describe(const AVCodec& encoder, double fps) {
+        AVCodecContext& codec = *codec_;
+        codec.pix_fmt = pixel_format_of(encoder);
+        const AVPixFmtDescriptor& format = *av_pix_fmt_desc_get(codec.pix_fmt);
+        // Planes of half the size need an even one.
+        codec.width = size_.x() + (size_.x() & (format.log2_chroma_w ? 1 : 0));
+        codec.height = size_.y() + (size_.y() & (format.log2_chroma_h ? 1 : 0));
+        codec.framerate = av_d2q(fps, 100000);
+        codec.time_base = av_inv_q(codec.framerate);
+        codec.gop_size = std::max(1, int(std::lround(fps)));
+        codec.max_b_frames = 0;  // Nothing of what was written waits for a frame to come.
+        if (!(format.flags & AV_PIX_FMT_FLAG_RGB) && codec.pix_fmt != AV_PIX_FMT_PAL8) {
+            codec.color_range = codec.pix_fmt == AV_PIX_FMT_YUVJ420P ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
+            codec.color_primaries = AVCOL_PRI_BT709;
+            codec.color_trc = AVCOL_TRC_BT709;
+            codec.colorspace = AVCOL_SPC_BT709;
+        }
+        if (output_->oformat->flags & AVFMT_GLOBALHEADER) codec.flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
+        codec.thread_count = 0;
+    }
+
+    void open_encoder(const AVCodec& encoder) {
+        AVDictionary* options = nullptr;
+        const std::string name = encoder.name;
+        if (name == "libx264") {
+            av_dict_set(&options, "preset", "superfast", 0);
+            av_dict_set(&options, "crf", "17", 0);
+            av_dict_set(&options, "x264-params", "log=-1", 0);
+        } else if (name == "libx265") {
+            // It prints by itself.
+            av_dict_set(&options, "preset", "superfast", 0);
+            av_dict_set(&options, "crf", "19", 0);
+            av_dict_set(&options, "x265-params", "log-level=none", 0);
+        } else if (name.starts_with("libvpx")) {
+            av_dict_set(&options, "deadline", "realtime", 0);
+            av_dict_set(&options, "cpu-used", "6", 0);
+            av_dict_set(&options, "crf", "20", 0);
+            av_dict_set(&options, "b", "0", 0);
+            if (name == "libvpx-vp9") av_dict_set(&options, "row-mt", "1", 0);
+        } else if (name != "gif") {
+            codec_->flags |= AV_CODEC_FLAG_QSCALE;
+            codec_->global_quality = 3 * FF_QP2LAMBDA;
+        }
+        const int opened = avcodec_open2(codec_.get(), &encoder, &options);
+        av_dict_free(&options);
+        if (opened < 0)
+            throw ArgumentError(
+                fmt::format("cannot write {}: the encoder {} does not take pictures of {}x{} at this "
+                            "rate",
+                            path_.string(), name, codec_->width, codec_->height));
+    }
+
+    void make_frame() {
+        frame_.reset(av_frame_alloc());
+        frame_->format = codec_->pix_fmt;
+        frame_->width = codec_->width;
+        frame_->height = codec_->height;
+        frame_->color_range = codec_->color_range;
+        frame_->color_primaries = codec_->color_primaries;
+        frame_->color_trc = codec_->color_trc;
+        frame_->colorspace = codec_->colorspace;
+        require_written(av_frame_get_buffer(frame_.get(), 0), path_);
+        packet_.reset(av_packet_alloc());
+        if (codec_->pix_fmt == AV_PIX_FMT_PAL8) return;
+        scaler_.reset(sws_getContext(
+            codec_->width, codec_->height, AV_PIX_FMT_RGBA, codec_->width, codec_->height, codec_->pix_fmt,
+            SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INP, nullptr, nullptr, nullptr));
+        const int* matrix = sws_getCoefficients(SWS_CS_ITU709);
+        sws_setColorspaceDetails(scaler_.get(), matrix, 1, matrix, codec_->color_range == AVCOL_RANGE_JPEG, 0,
+                                 1 << 16, 1 << 16);
+    }
+
+    void begin_file() {
+        stream_ = avformat_new_stream(output_.get(), nullptr);
+        require_written(avcodec_parameters_from_context(stream_->codecpar, codec_.get()), path_);
+        stream_->time_base = codec_->time_base;
+        stream_->avg_frame_rate = codec_->framerate;
+        require_written(avio_open(&output_->pb, path_.c_str(), AVIO_FLAG_WRITE), path_);
+        output_->flags |= AVFMT_FLAG_FLUSH_PACKETS;
+        AVDictionary* options = nullptr;
+        if (is_fragmented())
+            av_dict_set(&options, "movflags", "+empty_moov+default_base_moof+frag_every_frame", 0);
+        const int begun = avformat_write_header(output_.get(), &options);
+        av_dict_free(&options);
+        require_written(begun, path_);
+    }
+
+    void encode(AVFrame* frame) {
+        require_written(avcodec_send_frame(codec_.get(), frame), path_);
+        for (;;) {
+            const int received = avcodec_receive_packet(codec_.get(), packet_.get());
+            if (received == AVERROR(EAGAIN) || received == AVERROR_EOF) return;
+            require_written(received, path_);
+            packet_->duration = 1;
+            av_packet_rescale_ts(packet_.get(), codec_->time_base, stream_->time_base);
+            packet_->stream_index = stream_->index;
+            require_written(av_interleaved_write_frame(output_.get(), packet_.get()), path_);
+            require_written(output_->pb->error, path_);
+        }
+    }
+
+    void fill_planes(const Image& picture) {
+        const Image* source = &picture;
+        if (codec_->width != size_.x() || codec_->height != size_.y()) {
+            if (padded_.empty()) padded_ = Image(codec_->width, codec_->height, 4, PixelType::u8);
+            for (int y = 0; y < codec_->height; ++y) {
+                uint8_t* to = padded_.at<uint8_t>(0, y);
+                const uint8_t* from = picture.at<uint8_t>(0, std::min(y, size_.y() - 1));
+                std::copy_n(from, 4 * size_.x(), to);
+                if (codec_->width > size_.x()) std::copy_n(from + 4 * (size_.x() - 1), 4, to + 4 * size_.x());
+            }
+            source = &padded_;
+        }
+        const uint8_t* planes[1] = {source->pixels<uint8_t>().data()};
+        const int strides[1] = {4 * codec_->width};
+        sws_scale(scaler_.get(), planes, strides, 0, codec_->height, frame_->data, frame_->linesize);
+    }
+
+    void fill_palette(const Image& picture) {
+        const Palette palette = median_cut(picture);
+        map_to_palette(picture, palette, frame_->data[0], frame_->linesize[0]);
+        std::ranges::copy(palette, reinterpret_cast<uint32_t*>(frame_->data[1]));
+    }
+
+    fs::path path_;
+    Vec2i size_;
+    Output output_;
+    Codec codec_;
+    FrameHandle frame_;
+    Packet packet_;
+    Scaler scaler_;
+    AVStream* stream_ = nullptr;
+    Image padded_;
+    int64_t next_ = 0;
+    bool finished_ = false;
+};
+
+}  // namespace
+}  // namespace easypbr::io
+
+using namespace easypbr;
+
+void easypbr_ffmpeg_open(const std::filesystem::path& path, const io::VideoOptions& options,
+                         std::unique_ptr<io::VideoWriter>& out) {
+    out = std::make_unique<io::FfmpegVideo>(path, options);
+}
+
+void easypbr_ffmpeg_check(const std::filesystem::path& path, const std::string& codec) {
+    io::encoder_for(path, codec);
+}
+
+void easypbr_ffmpeg_encoders(std::vector<std::string>& out) {
+    out = io::encoders_for("matroska");
+}

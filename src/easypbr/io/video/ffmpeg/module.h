@@ -1,0 +1,17 @@
+// What the module exports; libeasypbr finds the functions by name.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "easypbr/io/video/video.h"
+
+extern "C" {
+/// Throw as easypbr::io::open_video() does.
+void easypbr_ffmpeg_open(const std::filesystem::path& path, const easypbr::io::VideoOptions& options,
+                         std::unique_ptr<easypbr::io::VideoWriter>& out);
+void easypbr_ffmpeg_check(const std::filesystem::path& path, const std::string& codec);
+void easypbr_ffmpeg_encoders(std::vector<std::string>& out);
+}

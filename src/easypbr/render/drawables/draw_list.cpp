@@ -1,0 +1,181 @@
+#include "easypbr/render/drawables/draw_list.h"
+
+#include "easypbr/core/color.h"
+
+namespace easypbr::render {
+namespace {
+
+/// The parts of a mesh; one part for all faces when it names none.
+std::vector<MeshPart> parts_of(const MeshData& mesh) {
+    if (!mesh.parts.empty()) return mesh.parts;
+    return {MeshPart{{}, 0, int(mesh.F.rows()), 0}};
+}
+
+Material material_of(const MeshData& mesh, const MeshPart& part) {
+    return size_t(part.material) < mesh.materials.size() ? mesh.materials[size_t(part.material)] : Material{};
+}
+
+/// An object and all that decides how it is drawn.
+struct Source {
+    const SceneSnapshot::Object& object;
+    const DrawStyle& style;
+    const Settings& settings;
+    const Material& textures;
+    const ColorMeaning& colors;
+    bool transparent_colors = has_transparent_colors(object.mesh->C);
+};
+
+DrawItem make_item(const Source& source, const MeshPart& part) {
+    const MeshData& mesh = *source.object.mesh;
+    DrawItem item;
+    item.object = &source.object;
+    item.part = part;
+    item.material = overridden(material_of(mesh, part), source.settings.material, source.textures);
+    item.style = source.style;
+    item.two_sided = source.style.two_sided.value_or(item.material.double_sided);
+    const bool own_color = !source.settings.material.color.value();
+    item.with_colors =
+        !mesh.C.empty() && (source.colors.from_data || (own_color && source.colors.vertex_colors));
+    if (source.colors.from_data) item.material.base_color = Vec3(1, 1, 1);
+    if (!source.colors.textured || (source.colors.from_data && item.with_colors))
+        item.material.base_color_texture = {};
+    item.alpha = item.material.alpha_mode_for(item.with_colors && source.transparent_colors);
+    return item;
+}
+
+/// Lit unless the style says otherwise; then as they are, and those of a table exactly.
+SurfaceKind kind_of(const Source& source) {
+    if (source.style.lit.value_or(true)) return SurfaceKind::lit;
+    return source.colors.exact ? SurfaceKind::exact : SurfaceKind::display;
+}
+
+void add_mesh(const Source& source, DrawList& list) {
+    if (source.object.mesh->F.empty()) return;
+    for (const MeshPart& part : parts_of(*source.object.mesh)) {
+        list.meshes.push_back(make_item(source, part));
+        list.meshes.back().kind = kind_of(source);
+        if (source.style.mode == DrawMode::voxels) list.meshes.back().style.flat = true;
+    }
+}
+
+void add_points(const Source& source, DrawList& list) {
+    const MeshData& mesh = *source.object.mesh;
+    if (mesh.V.empty()) return;
+    DrawItem item = make_item(source, {});
+    // Labels of clouds are there to be read.
+    const bool lit = source.style.lit.value_or(!source.colors.labels);
+    item.kind = kind_of(source);
+    if (lit && mesh.N.empty())
+        item.kind = source.settings.eye_dome.enabled ? SurfaceKind::eye_dome : SurfaceKind::display;
+    else if (!lit && source.colors.exact)
+        item.kind = SurfaceKind::exact;
+    list.points.push_back(std::move(item));
+}
+
+void add_surfels(const Source& source, DrawList& list) {
+    // A surfel without a normal is a point.
+    if (source.object.mesh->N.empty()) return add_points(source, list);
+    DrawItem item = make_item(source, {});
+    item.kind = kind_of(source);
+    list.surfels.push_back(std::move(item));
+}
+
+/// sRGB colours that stand out on most surfaces.
+const Vec3 wireframe_color(0.1f, 0.1f, 0.12f), normals_color(0.16f, 0.35f, 0.9f);
+/// Length of normals, as a part of the object's diagonal.
+constexpr float normal_part = 0.02f;
+
+void add_lines(const Source& source, DrawList& list) {
+    const MeshData& mesh = *source.object.mesh;
+    const DrawStyle& style = source.style;
+    LineItem item;
+    item.object = &source.object;
+    item.style = style;
+    const auto add = [&](gpu::LineKind kind, const Vec3& color) {
+        item.kind = kind;
+        item.color = color;
+        list.lines.push_back(item);
+    };
+    const auto given_or = [&](const Vec3& color) {
+        return linear_from_srgb(style.line_color.value_or(color));
+    };
+    if (style.mode == DrawMode::lines && mesh.E.empty() && !mesh.F.empty())
+        add(gpu::LineKind::wireframe, style.line_color ? linear_from_srgb(*style.line_color)
+                                                       : make_item(source, {}).material.base_color);
+    if (style.mode == DrawMode::lines && !mesh.E.empty()) {
+        const Vec3 own = mesh.C.empty() ? make_item(source, {}).material.base_color : Vec3(1, 1, 1);
+        add(gpu::LineKind::edges, style.line_color ? linear_from_srgb(*style.line_color) : own);
+    }
+    if (style.show_wireframe && !mesh.F.empty()) add(gpu::LineKind::wireframe, given_or(wireframe_color));
+    if (style.show_normals && !mesh.V.empty()) {
+        const float diagonal = (mesh.V.colwise().maxCoeff() - mesh.V.colwise().minCoeff()).norm();
+        item.length = style.normal_length.value_or(normal_part * diagonal);
+        add(gpu::LineKind::normals, given_or(normals_color));
+    }
+}
+
+}  // namespace
+
+DrawList DrawList::without_exact() const {
+    return without([](const DrawItem& item) { return item.kind == SurfaceKind::exact && !item.layered; });
+}
+
+DrawList DrawList::layers() const {
+    return without([](const DrawItem& item) { return !item.layered; });
+}
+
+DrawList DrawList::without_layers() const {
+    return without([](const DrawItem& item) { return item.layered; });
+}
+
+bool DrawItem::needs_tangents() const {
+    if (mesh().UV.empty()) return false;
+    const bool mapped = material.normal_texture || material.clearcoat_normal_texture;
+    return (mapped && !style.flat) || material.anisotropy > 0;
+}
+
+ExtensionSet DrawList::extensions() const {
+    ExtensionSet set = 0;
+    for (const DrawItem& item : meshes) set |= item.extensions();
+    return set;
+}
+
+DrawList DrawList::as_surfaces() const {
+    DrawList surfaces = *this;
+    for (std::vector<DrawItem>* items : {&surfaces.meshes, &surfaces.points, &surfaces.surfels})
+        for (DrawItem& item : *items) {
+            item.layered = false;
+            if (item.alpha != AlphaMode::blend) continue;
+            item.alpha = AlphaMode::mask;
+            item.material.alpha_cutoff = 0.5f;
+        }
+    return surfaces;
+}
+
+DrawList draw_list(const DrawableScene& drawable, const Settings& settings, const Material& textures,
+                   const ShaderFiles& shader_files) {
+    DrawList list;
+    for (size_t i = 0; i < drawable.scene.objects.size(); ++i) {
+        const SceneSnapshot::Object& object = drawable.scene.objects[i];
+        const DrawStyle style = resolve_style(*object.mesh, settings.style);
+        if (!style.visible) continue;
+        const Source source{object, style, settings, textures, drawable.meanings[i]};
+        if (style.mode == DrawMode::mesh || style.mode == DrawMode::voxels) add_mesh(source, list);
+        add_lines(source, list);
+        if (style.mode == DrawMode::surfels) add_surfels(source, list);
+        if (style.mode == DrawMode::points || style.show_points) add_points(source, list);
+    }
+    for (DrawItem& item : list.meshes)
+        if (SurfaceShader& shader = item.material.shader; shader.text.empty() && !shader.path.empty())
+            shader.text = shader_files.at(shader.path);
+    const bool blend_in_layers = settings.transparency.mode == TransparencyMode::layers;
+    for (std::vector<DrawItem>* items : {&list.meshes, &list.points})
+        for (DrawItem& item : *items)
+            item.layered = (item.alpha == AlphaMode::blend && blend_in_layers) ||
+                           (item.kind == SurfaceKind::lit && item.material.transmits());
+    // Splats that overlap are one surface: a random number for each would draw them all.
+    for (DrawItem& item : list.surfels) item.layered = item.alpha == AlphaMode::blend;
+    return list;
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,112 @@
+// What a frame draws: items with their final material and style, one list per kind of primitive.
+#pragma once
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "easypbr/gpu/line_segments.h"
+#include "easypbr/render/drawables/drawable_scene.h"
+#include "easypbr/render/frame/extensions.h"
+#include "easypbr/render/frame/surface_kind.h"
+#include "easypbr/scene/draw_style.h"
+#include "easypbr/scene/resolve.h"
+
+namespace easypbr::render {
+
+struct DrawItem {
+    const SceneSnapshot::Object* object = nullptr;
+    MeshPart part;                        ///< of a mesh; others are drawn whole
+    Material material;                    ///< with the settings' overrides
+    AlphaMode alpha = AlphaMode::opaque;  ///< what the material's alpha_mode stands for here
+    DrawStyle style;
+    bool two_sided = true;
+    bool with_colors = false;  ///< vertex colours count
+    SurfaceKind kind = SurfaceKind::lit;
+    bool layered = false;  ///< other surfaces are seen behind: drawn in layers over the picture
+
+    const MeshData& mesh() const { return *object->mesh; }
+    bool emits() const { return material.unlit || !material.emissive.isZero() || material.shader; }
+    bool textured() const { return material.has_textures() && !mesh().UV.empty(); }
+    /// Its shadow is a tint: it weakens light instead of stopping it.
+    bool casts_tint() const {
+        return alpha == AlphaMode::blend || (kind == SurfaceKind::lit && material.transmits());
+    }
+    /// Lights fall on it. A shader of its own may light what the material does not.
+    bool receives_shadows() const { return kind == SurfaceKind::lit && (!material.unlit || material.shader); }
+    /// Light goes through a solid.
+    bool is_volume() const { return material.transmits() && material.thickness > 0; }
+    /// What is seen through it is blurred.
+    bool blurs_behind() const {
+        return material.transmits() && (material.roughness > 0 || material.roughness_texture);
+    }
+    bool needs_tangents() const;
+    /// What its shading needs beyond glTF's core model.
+    ExtensionSet extensions() const { return kind == SurfaceKind::lit ? extensions_of(material) : 0; }
+};
+
+/// Drawn over everything else.
+inline bool is_over(const DrawItem& item) {
+    return item.style.overlay;
+}
+
+/// Lines of an object, drawn over the picture.
+struct LineItem {
+    const SceneSnapshot::Object* object = nullptr;
+    DrawStyle style;
+    gpu::LineKind kind = gpu::LineKind::edges;
+    Vec3 color{1, 1, 1};  ///< linear, a factor on the vertices' colours
+    float length = 0;     ///< of normals, in the mesh's own units
+};
+
+struct DrawList {
+    std::vector<DrawItem> meshes;  ///< one per part
+    std::vector<DrawItem> points;
+    std::vector<DrawItem> surfels;  ///< with normals
+    std::vector<LineItem> lines;
+
+    template <class Predicate>
+    bool has(Predicate&& predicate) const {
+        return std::ranges::any_of(meshes, predicate) || std::ranges::any_of(points, predicate) ||
+               std::ranges::any_of(surfels, predicate);
+    }
+    /// Whether something is shown past light and tone curve.
+    bool needs_overlay() const {
+        return !lines.empty() || has([](const DrawItem& item) { return is_display(item.kind); });
+    }
+    bool reaches_beyond_vertices() const { return !points.empty() || !surfels.empty() || !lines.empty(); }
+    template <class Predicate>
+    DrawList without(Predicate&& predicate) const {
+        DrawList rest = *this;
+        std::erase_if(rest.meshes, predicate);
+        std::erase_if(rest.points, predicate);
+        std::erase_if(rest.surfels, predicate);
+        return rest;
+    }
+    bool empty() const { return meshes.empty() && points.empty() && surfels.empty(); }
+    /// The items whose colours may be averaged: others are mixed with them in any case where they are
+    /// layers.
+    DrawList without_exact() const;
+    /// The items that light passes, which are drawn in layers, and the others.
+    DrawList layers() const;
+    DrawList without_layers() const;
+    /// Of all meshes together.
+    ExtensionSet extensions() const;
+    /// All items as surfaces that hide what is behind them: what depth, ids and labels are of. A blended
+    /// surface is one where its opacity is at least one half.
+    DrawList as_surfaces() const;
+};
+
+/// What the files of the materials' shaders hold, by path.
+using ShaderFiles = std::map<std::string, std::string>;
+
+/// All items in the order of the scene. `textures` are the settings' own, which stand in for the materials',
+/// its shader too.
+DrawList draw_list(const DrawableScene& drawable, const Settings& settings, const Material& textures,
+                   const ShaderFiles& shader_files = {});
+
+/// A material with the settings' overrides applied.
+Material overridden(const Material& material, const MaterialSettings& settings, const Material& textures);
+
+}  // namespace easypbr::render

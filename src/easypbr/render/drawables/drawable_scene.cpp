@@ -1,0 +1,279 @@
+#include "easypbr/render/drawables/drawable_scene.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/parallel.h"
+#include "easypbr/scene/cut.h"
+#include "easypbr/scene/draw_style.h"
+#include "easypbr/scene/resolve.h"
+#include "easypbr/scene/voxels.h"
+
+namespace easypbr::render {
+namespace {
+
+constexpr size_t grain = 1 << 15;
+/// Beyond this many faces triangles are about as small as pixels, where it does not matter whether a value or
+/// its colour is interpolated.
+constexpr Eigen::Index many_faces = 500000;
+
+ArrayXf colors_of(const std::vector<Rgba8>& colors) {
+    ArrayXf::Dense C(Eigen::Index(colors.size()), 4);
+    parallel_for(colors.size(), grain, [&](size_t i) {
+        for (int c = 0; c < 4; ++c) C(Eigen::Index(i), c) = float(colors[i][size_t(c)]) / 255.0f;
+    });
+    return ArrayXf(std::move(C));
+}
+
+/// Rows of an array for each corner of each face.
+template <class ArrayType>
+ArrayType per_corner(const ArrayType& array, const Array3i& F) {
+    if (array.empty()) return {};
+    typename ArrayType::Dense rows(F.size(), array.cols());
+    parallel_for(size_t(F.size()), grain,
+                 [&](size_t i) { rows.row(Eigen::Index(i)) = array.row(F.data()[i]); });
+    return ArrayType(std::move(rows));
+}
+
+/// Each face with three vertices of its own. Vertices that were one stay one for normals (source_vertex).
+MeshData with_own_corners(const MeshData& mesh) {
+    MeshData out = mesh;
+    out.V = per_corner(mesh.V, mesh.F);
+    out.N = per_corner(mesh.N, mesh.F);
+    out.C = per_corner(mesh.C, mesh.F);
+    out.UV = per_corner(mesh.UV, mesh.F);
+    out.T = {};
+    out.B = {};
+    out.E = {};
+    out.L = {};
+    out.I = {};
+    out.scalars.clear();
+    Array3i::Dense F(mesh.F.rows(), 3);
+    Array1i::Dense source(mesh.F.size());
+    for (Eigen::Index i = 0; i < mesh.F.size(); ++i) {
+        F.data()[i] = int32_t(i);
+        const int32_t vertex = mesh.F.data()[i];
+        source[i] = mesh.source_vertex.empty() ? vertex : mesh.source_vertex(vertex);
+    }
+    out.F = Array3i(std::move(F));
+    out.source_vertex = Array1i(std::move(source));
+    return out;
+}
+
+MeshData with_face_colors(const MeshData& mesh, const std::vector<Rgba8>& colors) {
+    std::vector<Rgba8> corners(3 * colors.size());
+    for (size_t i = 0; i < corners.size(); ++i) corners[i] = colors[i / 3];
+    MeshData out = with_own_corners(mesh);
+    out.C = colors_of(corners);
+    return out;
+}
+
+/// Places of values are this many ranges away from the table at most, so that their interpolation stays
+/// finite.
+constexpr float farthest = 1e6f;
+
+/// The colours of a table in the first row, the colour of what is not a number in the second.
+Texture table_texture(const ElementColors& values) {
+    auto image = std::make_shared<Image>(256, 2, 4, PixelType::u8);
+    uint8_t* to = image->pixels<uint8_t>().data();
+    for (size_t i = 0; i < 512; ++i)
+        std::ranges::copy(i < 256 ? values.table[i] : values.nan_color, to + 4 * i);
+    Texture texture;
+    texture.image = image;
+    texture.filter = Filter::nearest;
+    texture.wrap_u = texture.wrap_v = Wrap::clamp;
+    return texture;
+}
+
+/// Values as texture coordinates (v up) of their table: interpolated before they become colours, beyond the
+/// table's ends too. A face with a corner that is not a number has no values at all.
+MeshData with_values(const MeshData& mesh, const ElementColors& values) {
+    const bool has_nan = !values.values.array().isFinite().all();
+    MeshData out = has_nan ? with_own_corners(mesh) : mesh;
+    Array2f::Dense UV(out.V.rows(), 2);
+    const float scale = 1 / (values.range.max - values.range.min);
+    parallel_for(size_t(UV.rows()), grain, [&](size_t i) {
+        const auto row = Eigen::Index(i);
+        bool is_nan = false;
+        if (has_nan)
+            for (int k = 0; k < 3; ++k) is_nan |= !std::isfinite(values.values(mesh.F(row / 3, k)));
+        const float value = values.values(has_nan ? mesh.F.data()[i] : row);
+        if (is_nan)
+            UV.row(row) << 0.5f, 0.25f;
+        else
+            UV.row(row) << std::clamp((value - values.range.min) * scale, -farthest, farthest), 0.75f;
+    });
+    out.UV = Array2f(std::move(UV));
+    out.C = {};
+    return out;
+}
+
+/// The table in place of all that a material's textures say.
+void show_table(Material& material, const Texture& table) {
+    for (Texture Material::*texture :
+         {&Material::metallic_texture, &Material::roughness_texture, &Material::normal_texture,
+          &Material::occlusion_texture, &Material::emissive_texture, &Material::opacity_texture})
+        material.*texture = {};
+    material.base_color_texture = table;
+}
+
+/// The arrays that are drawn in place of the object's own.
+void replace_arrays(MeshData& mesh, const MeshData& arrays) {
+    mesh.V = arrays.V;
+    mesh.N = arrays.N;
+    mesh.C = arrays.C;
+    mesh.UV = arrays.UV;
+    mesh.T = arrays.T;
+    mesh.B = arrays.B;
+    mesh.F = arrays.F;
+    mesh.E = arrays.E;
+    mesh.L = arrays.L;
+    mesh.I = arrays.I;
+    mesh.scalars = arrays.scalars;
+    mesh.parts = arrays.parts;
+    mesh.voxel_size = arrays.voxel_size;
+    mesh.source_vertex = arrays.source_vertex;
+    mesh.source_face = arrays.source_face;
+}
+
+MeshData with_colors(const MeshData& mesh, const ColorPlan& plan, Texture& table) {
+    ElementColors colors = element_colors(mesh, plan);
+    if (plan.source == ColorSource::values && mesh.F.rows() <= many_faces) {
+        table = table_texture(colors);
+        return with_values(mesh, colors);
+    }
+    if (plan.source == ColorSource::values)
+        for (Eigen::Index i = 0; i < colors.values.size(); ++i) {
+            const int index = color_index(colors.values(i), colors.range);
+            colors.colors.push_back(index < 0 ? colors.nan_color : colors.table[size_t(index)]);
+        }
+    if (plan.element == PerElement::face && plan.source == ColorSource::colors)
+        return with_face_colors(mesh, colors.colors);
+    MeshData out = mesh;
+    out.C = colors_of(colors.colors);
+    return out;
+}
+
+/// The clip planes and the sides of the crop box in the mesh's frame.
+std::vector<Eigen::Vector4d> planes_of(const ClipSettings& clip, const Eigen::Affine3d& T_world_mesh) {
+    std::vector<Eigen::Vector4d> planes;
+    for (size_t i = 0; i + 3 < clip.planes.size(); i += 4) planes.emplace_back(&clip.planes[i]);
+    for (size_t axis = 0; axis < 3 && clip.box.size() == 6; ++axis)
+        for (const double side : {1.0, -1.0}) {
+            Eigen::Vector4d plane(0, 0, 0, side > 0 ? -clip.box[axis] : clip.box[axis + 3]);
+            plane[Eigen::Index(axis)] = side;
+            planes.push_back(plane);
+        }
+    const Mat4d transposed = T_world_mesh.matrix().transpose();
+    for (Eigen::Vector4d& plane : planes) plane = transposed * plane;
+    return planes;
+}
+
+/// Where `second` says what `first` came from.
+Array1i composed(const Array1i& second, const Array1i& first) {
+    if (first.empty()) return second;
+    if (second.empty()) return first;
+    Array1i::Dense both(second.rows());
+    for (Eigen::Index i = 0; i < both.size(); ++i) both[i] = first(second(i));
+    return Array1i(std::move(both));
+}
+
+Array1i flattened(const Array3i& F) {
+    return Array1i(Array1i::Dense(Eigen::Map<const Array1i::Dense>(F.data(), F.size())));
+}
+
+/// The points that the faces and corners of voxels came from.
+ElementSources of_voxels(const MeshData& cubes) {
+    Array1i::Dense corners(cubes.V.rows());
+    for (Eigen::Index f = 0; f < cubes.F.rows(); ++f)
+        for (int k = 0; k < 3; ++k) corners[cubes.F(f, k)] = cubes.source_face(f);
+    return {cubes.source_face, Array1i(std::move(corners))};
+}
+
+}  // namespace
+
+template <class Make>
+std::shared_ptr<const MeshData> DrawableCache::get(const std::string& key, const MeshData& current,
+                                                   ElementSources& sources, Make&& make) {
+    Entry& entry = entries_[key];
+    if (!entry.arrays) entry.arrays = std::make_shared<const MeshData>(make(entry));
+    entry.used = true;
+    sources = {composed(entry.sources.faces, sources.faces), composed(entry.sources.points, sources.points)};
+    auto mesh = std::make_shared<MeshData>(current);
+    replace_arrays(*mesh, *entry.arrays);
+    if (!entry.table) return mesh;
+    if (mesh->materials.empty()) mesh->materials.emplace_back();
+    for (Material& material : mesh->materials) show_table(material, entry.table);
+    return mesh;
+}
+
+DrawableScene DrawableCache::apply(const SceneSnapshot& scene, const Settings& settings) {
+    require_colors(scene, settings.style);
+    DrawableScene drawable{scene, std::vector<ColorMeaning>(scene.objects.size()),
+                           std::vector<ElementSources>(scene.objects.size())};
+    for (size_t i = 0; i < scene.objects.size(); ++i)
+        apply(drawable.scene.objects[i], settings, drawable.meanings[i], drawable.sources[i]);
+    return drawable;
+}
+
+void DrawableCache::apply(SceneSnapshot::Object& object, const Settings& settings, ColorMeaning& meaning,
+                          ElementSources& sources) {
+    const MeshData own = *object.mesh;
+    const DrawStyle style = resolve_style(own, settings.style);
+    const ColorPlan plan =
+        plan_colors(own, settings.style, style.mode, object.T_world_mesh, parse_up(settings.camera.up));
+    meaning.from_data = plan.source != ColorSource::material;
+    meaning.exact = plan.exact;
+    meaning.labels = plan.by == ColorBy::label;
+    meaning.textured = plan.textured || plan.source == ColorSource::values;
+    meaning.vertex_colors = plan.vertex_colors;
+    if (!style.visible || own.V.empty()) return;
+    if (meaning.from_data)
+        object.mesh =
+            get(fmt::format("{} {} {} {}", own.V.revision(), own.F.revision(), own.N.revision(), plan.key),
+                own, sources, [&](Entry& entry) {
+                    MeshData made = with_colors(own, plan, entry.table);
+                    if (made.V.revision() != own.V.revision()) entry.sources.points = flattened(own.F);
+                    return made;
+                });
+    // Materials of the object as it is drawn so far: a table of values has replaced them.
+    const auto key = [&](const char* what, const auto&... values) {
+        const MeshData& m = *object.mesh;
+        std::string text = fmt::format("{} {} {} {} {} {}", what, m.V.revision(), m.F.revision(),
+                                       m.C.revision(), m.UV.revision(), m.E.revision());
+        ((text += fmt::format(" {}", values)), ...);
+        return text;
+    };
+    const std::vector<Eigen::Vector4d> planes = planes_of(settings.clip, object.T_world_mesh);
+    if (!planes.empty()) {
+        std::string numbers;
+        for (const Eigen::Vector4d& plane : planes) numbers += fmt::format("{}", fmt::join(plane, " ")) + " ";
+        const std::shared_ptr<const MeshData> whole = object.mesh;
+        const bool by_vertex = style.mode != DrawMode::mesh && style.mode != DrawMode::lines;
+        object.mesh = get(key("cut", by_vertex, numbers), *whole, sources, [&](Entry& entry) {
+            return cut(*whole, planes, by_vertex, entry.sources.faces, entry.sources.points);
+        });
+    }
+    if (style.mode == DrawMode::voxels && !object.mesh->V.empty()) {
+        const std::shared_ptr<const MeshData> centres = object.mesh;
+        const double spacing = style.voxel_size ? 0 : spacings_.get(own.V);
+        const double size = style.voxel_size ? double(*style.voxel_size) : spacing > 0 ? spacing : 1;
+        ElementSources cubes;
+        object.mesh = get(key("voxels", size), *centres, cubes, [&](Entry& entry) {
+            MeshData mesh = voxel_mesh(*centres, size);
+            entry.sources = of_voxels(mesh);
+            return mesh;
+        });
+        sources = {composed(cubes.faces, sources.points), composed(cubes.points, sources.points)};
+    }
+}
+
+void DrawableCache::evict_unused() {
+    std::erase_if(entries_, [](const auto& item) { return !item.second.used; });
+    for (auto& [key, entry] : entries_) entry.used = false;
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,76 @@
+// A scene as it is drawn: what colours an object and what its voxels look like, as plain vertices, faces and
+// colours.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "easypbr/render/frame/gbuffer.h"
+#include "easypbr/scene/element_colors.h"
+#include "easypbr/scene/scene.h"
+#include "easypbr/scene/settings.h"
+#include "easypbr/scene/spacing_cache.h"
+
+namespace easypbr::render {
+
+/// How an object's colours are meant.
+struct ColorMeaning {
+    bool from_data = false;  ///< they stand for the material's base colour
+    bool exact = false;      ///< they are those of a table
+    bool labels = false;     ///< that of labels
+    bool textured = true;    ///< the material's base colour texture counts
+    bool vertex_colors = true;
+};
+
+/// Where what is drawn of an object came from, in the object's own data. Empty: the same.
+struct ElementSources {
+    Array1i faces;   ///< for each face its face, or, of voxels, the first vertex in the voxel
+    Array1i points;  ///< for each vertex its vertex; where a cut made one, that with the largest part in it
+
+    /// What the element target holds (see GBuffer::element), as 1 + index in the object's own data.
+    uint32_t own(uint32_t drawn) const {
+        const Array1i& source = drawn & point_element ? points : faces;
+        const uint32_t place = drawn & ~point_element;
+        return source.empty() ? place : uint32_t(source(Eigen::Index(place) - 1)) + 1;
+    }
+};
+
+struct DrawableScene {
+    SceneSnapshot scene;  ///< the same objects in the same order, their data replaced where that is needed
+    std::vector<ColorMeaning> meanings;   ///< one for each object
+    std::vector<ElementSources> sources;  ///< one for each object
+};
+
+/// Makes and keeps what is as large as the data.
+class DrawableCache {
+  public:
+    /// The cache is shared with other passes, must outlive this one, and is emptied by its owner.
+    explicit DrawableCache(SpacingCache& spacings) : spacings_(spacings) {}
+
+    /// Throws ArgumentError and NameError as plan_colors(), require_colors() and voxel_mesh() do.
+    DrawableScene apply(const SceneSnapshot& scene, const Settings& settings);
+
+    /// Drops what was not asked for since the last call.
+    void evict_unused();
+
+  private:
+    struct Entry {
+        std::shared_ptr<const MeshData> arrays;
+        ElementSources sources;  ///< of the arrays that they were made of
+        Texture table;           ///< of values; empty for colours
+        bool used = false;
+    };
+    /// The entry's arrays as the current object's; made by make(entry) when there are none.
+    template <class Make>
+    std::shared_ptr<const MeshData> get(const std::string& key, const MeshData& current,
+                                        ElementSources& sources, Make&& make);
+    void apply(SceneSnapshot::Object& object, const Settings& settings, ColorMeaning& meaning,
+               ElementSources& sources);
+
+    SpacingCache& spacings_;
+    std::map<std::string, Entry> entries_;
+};
+
+}  // namespace easypbr::render

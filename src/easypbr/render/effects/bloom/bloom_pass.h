@@ -1,0 +1,41 @@
+// Bloom: light that spreads around what is bright.
+#pragma once
+
+#include <vector>
+
+#include "easypbr/render/frame/frame.h"
+#include "easypbr/render/frame/programs.h"
+
+namespace easypbr::render {
+
+/// A pyramid of blurred light whose levels count alike (Jimenez 2014, "Next Generation Post Processing in
+/// Call of Duty: Advanced Warfare"), the first at a quarter of the resolution. The light that is spread is
+/// taken from where it was, so that the sum of all light stays, and an even picture stays as it is.
+class BloomPass {
+  public:
+    /// Computes the glow of a picture of frame.size pixels, RGBA32F.
+    void draw(const Frame& frame, const gl::Texture& radiance);
+
+    /// RGBA16F, exposed light, a texel for 4 x 4 pixels.
+    const gl::Texture& glow() const { return levels_.front().glow; }
+
+  private:
+    struct Level {
+        gl::Texture light, glow;
+        gl::Framebuffer lit, glowing;
+        Vec2 extent;  ///< of the picture in texels: not whole
+    };
+    void make_levels(Vec2i size, int count);
+    void gather(const Frame& frame, const gl::Texture& radiance);
+    /// Draws what a texture of this extent holds to another level, by "DOWN", "UP", or "SAME".
+    void resample(const gl::Texture& from, const Vec2& extent, const gl::Framebuffer& to, const char* step);
+
+    Vec2i size_{0, 0};
+    std::vector<Level> levels_;
+    gl::Texture sums_[4];  ///< of the blocks of pixels around the first level's texels
+    gl::Framebuffer summed_;
+    ProgramVariants gather_{"screen_triangle.vert", "bloom_gather.frag"};
+    ProgramVariants resample_{"screen_triangle.vert", "bloom_resample.frag"};
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,42 @@
+// The plane that the content stands on: a surface, or only the shadows on it.
+#pragma once
+
+#include "easypbr/render/frame/frame.h"
+#include "easypbr/render/frame/gbuffer.h"
+#include "easypbr/render/frame/programs.h"
+
+namespace easypbr::render {
+
+/// An endless plane at settings.ground.height, seen from above only. It receives shadows and occlusion, and
+/// casts none. In mode shadow it adds black with alpha = strength (1 - lit / unshadowed), where both are what
+/// lights and environment send to the plane; in mode plane it is lit like any surface and fades out.
+///
+///     draw(frame, targets);          // after the other opaque surfaces
+///     begin_light(frame, targets);   // mode shadow: LightingPass::draw_caught() into light() for each block
+///     finish(frame, targets, ...);   // once targets.radiance is lit
+class GroundPass {
+  public:
+    static bool is_on(const ResolvedSettings& resolved);
+    static bool catches(const ResolvedSettings& resolved);
+
+    /// An orthographic camera whose depth holds all of the ground that is in the picture, as far as 30 radii.
+    static void widen_depth(Camera& camera, const ResolvedSettings& resolved, const Box3d& bounds);
+
+    /// Writes the plane into the G-buffer where it is nearer than what is there.
+    void draw(const Frame& frame, const GBuffer& targets);
+    /// Empties light().
+    void begin_light(const Frame& frame, const GBuffer& targets);
+    /// RGBA32F: light that reaches the ground, and light that would without anything on it.
+    const gl::Framebuffer& light() const { return light_framebuffer_; }
+    /// `bounds`: of the content.
+    void finish(const Frame& frame, const GBuffer& targets, const Box3d& bounds);
+
+  private:
+    gl::Texture light_;
+    gl::Framebuffer light_framebuffer_;
+    uint32_t depth_id_ = 0;  ///< of the depth test that the framebuffer has
+    ProgramVariants surface_{"screen_triangle.vert", "geometry_ground.frag"};
+    ProgramVariants finish_{"screen_triangle.vert", "ground_finish.frag"};
+};
+
+}  // namespace easypbr::render

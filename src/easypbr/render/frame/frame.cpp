@@ -1,0 +1,160 @@
+#include "easypbr/render/frame/frame.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/gl/context.h"
+
+namespace easypbr::render {
+namespace {
+
+double halton(int index, int base) {
+    double value = 0, scale = 1;
+    for (int i = index; i > 0; i /= base) {
+        scale /= base;
+        value += scale * (i % base);
+    }
+    return value;
+}
+
+/// A permutation of 0 to count - 1: the rank of a number among all with its digits in this base reversed.
+/// Another base than those of the pixel's offsets, so that what a frame samples has nothing to do with where
+/// in the pixel it looks.
+int rank_of(int index, int count, int base) {
+    const double own = halton(index, base);
+    int rank = 0;
+    for (int i = 0; i < count; ++i) rank += halton(i, base) < own;
+    return rank;
+}
+
+/// Screen rectangle of the bounds' corners, one pixel of margin; the whole picture when a corner is behind
+/// the camera.
+PixelRect covered_rect(const Box3d& bounds, const Mat4d& clip_from_world, Vec2i size) {
+    if (bounds.isEmpty()) return {};
+    Eigen::AlignedBox2d box;
+    for (int i = 0; i < 8; ++i) {
+        const Vec3d corner = bounds.corner(Box3d::CornerType(i));
+        const Eigen::Vector4d clip = clip_from_world * corner.homogeneous();
+        if (!(clip.w() > 0)) return {0, 0, size.x(), size.y()};
+        box.extend(Vec2d((clip.x() / clip.w() + 1) / 2 * size.x(), (1 - clip.y() / clip.w()) / 2 * size.y()));
+    }
+    const auto pixel = [](double v, int limit) { return int(std::clamp(v, 0.0, double(limit))); };
+    const int x0 = pixel(std::floor(box.min().x()) - 1, size.x()),
+              x1 = pixel(std::ceil(box.max().x()) + 1, size.x());
+    const int y0 = pixel(std::floor(box.min().y()) - 1, size.y()),
+              y1 = pixel(std::ceil(box.max().y()) + 1, size.y());
+    return {x0, y0, x1 - x0, y1 - y0};
+}
+
+}  // namespace
+
+Vec2d jitter_of(int index, int count) {
+    Vec2d mean(0, 0);
+    for (int i = 1; i <= count; ++i) mean += Vec2d(halton(i, 2), halton(i, 3)) / count;
+    return Vec2d(halton(index + 1, 2), halton(index + 1, 3)) - mean;
+}
+
+double shutter_time(int index, int count, double shutter) {
+    return 1 - shutter * (1 - (rank_of(index, count, 7) + 0.5) / count);
+}
+
+Vec2d lens_position(int index, int count) {
+    const auto point = [&](int k) {
+        const double angle = k * pi * (3 - std::sqrt(5.0));
+        return Vec2d(std::sqrt((k + 0.5) / count) * Vec2d(std::cos(angle), std::sin(angle)));
+    };
+    Vec2d mean(0, 0);
+    for (int k = 0; k < count; ++k) mean += point(k) / count;
+    return point(rank_of(index, count, 5)) - mean;
+}
+
+namespace {
+
+/// Moves the camera to the frame's place on the lens; what is in focus stays where it is in the picture.
+void look_through_lens(Frame& frame) {
+    const double focus = frame.resolved->focus_distance;
+    const Vec2d place = frame.resolved->lens_radius * lens_position(frame.sample_index, frame.sample_count);
+    frame.camera.T_world_cam.translate(Vec3d(place.x(), place.y(), 0));
+    frame.clip_from_view(0, 2) -= frame.clip_from_view(0, 0) * place.x() / focus;
+    frame.clip_from_view(1, 2) -= frame.clip_from_view(1, 1) * place.y() / focus;
+}
+
+/// Clip space of the frame's part of the picture.
+Mat4d part_of_picture(const Frame& frame) {
+    const Vec2d whole = frame.picture_size.cast<double>(), part = frame.size.cast<double>(),
+                corner = frame.origin.cast<double>();
+    const Vec2d scale = whole.cwiseQuotient(part);
+    Mat4d T = Mat4d::Identity();
+    T(0, 0) = scale.x();
+    T(1, 1) = scale.y();
+    T(0, 3) = scale.x() - 1 - 2 * corner.x() / part.x();
+    T(1, 3) = 1 - scale.y() + 2 * corner.y() / part.y();
+    return T;
+}
+
+}  // namespace
+
+void prepare_frame(Frame& frame, const Box3d& bounds, bool reaches_beyond) {
+    const Camera& camera = frame.camera;
+    frame.clip_from_view = camera.projection_matrix(double(frame.picture_size.x()) / frame.picture_size.y());
+    if (frame.through_lens) look_through_lens(frame);
+    if (frame.size != frame.picture_size)
+        frame.clip_from_view = part_of_picture(frame) * frame.clip_from_view;
+    frame.covered = reaches_beyond ? PixelRect{0, 0, frame.size.x(), frame.size.y()}
+                                   : covered_rect(bounds, frame.clip_from_view * camera.view(), frame.size);
+    // Moving the picture by (dx, dy) pixels moves ndc by (2 dx / w, -2 dy / h): row 0 is the top.
+    const Vec2d offset = jitter_of(frame.sample_index, frame.sample_count);
+    const Vec2d ndc(2 * offset.x() / frame.size.x(), -2 * offset.y() / frame.size.y());
+    Mat4d shift = Mat4d::Identity();
+    shift(0, 3) = ndc.x();
+    shift(1, 3) = ndc.y();
+    frame.clip_from_view = shift * frame.clip_from_view;
+}
+
+void set_noise_uniforms(const gl::Program& program, const Frame& frame) {
+    program.set("u_noise_origin", Vec2(frame.origin.cast<float>()));
+}
+
+void set_camera_uniforms(const gl::Program& program, const Frame& frame) {
+    const Mat4d& p = frame.clip_from_view;
+    const Camera& camera = frame.camera;
+    const Vec2 shift =
+        frame.orthographic() ? Vec2(float(-p(0, 3)), float(-p(1, 3))) : Vec2(float(p(0, 2)), float(p(1, 2)));
+    program.set("u_size", Vec2(frame.size.cast<float>()));
+    program.set("u_picture", Vec4(float(frame.origin.x()), float(frame.origin.y()),
+                                  float(frame.picture_size.x()), float(frame.picture_size.y())));
+    program.set("u_reach", float(frame.reach));
+    program.set("u_unproject", Vec4(float(1 / p(0, 0)), float(1 / p(1, 1)), shift.x(), shift.y()));
+    program.set("u_depth", Vec3(float(camera.near), float(camera.far), frame.orthographic() ? 1.0f : 0.0f));
+    program.set("u_world_from_view", Mat3(camera.T_world_cam.linear().cast<float>()));
+}
+
+void set_bloom_uniforms(const gl::Program& program, const Frame& frame) {
+    const BloomSettings& bloom = frame.resolved->settings.bloom;
+    program.set("u_bloom", Vec4(bloom.intensity, frame.resolved->exposure, bloom.threshold,
+                                bloom.knee * bloom.threshold));
+}
+
+std::vector<std::string> camera_defines(const Frame& frame) {
+    return frame.orthographic() ? std::vector<std::string>{"ORTHOGRAPHIC"} : std::vector<std::string>{};
+}
+
+void test_geometry_depth(const Frame& frame) {
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_TRUE);
+    glDepthFunc(frame.peel && frame.peel->farthest ? GL_LESS : GL_GREATER);
+}
+
+void set_peel_uniforms(const gl::Program& program, const Peel& peel, unsigned unit) {
+    program.set("u_peel_limit", int(unit));
+    program.set("u_peel_mode", peel.backs ? -1.0f : peel.first ? 1.0f : 0.0f);
+    peel.limit->bind(unit);
+}
+
+void draw_screen_triangle() {
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,73 @@
+#include "easypbr/render/output/display_pass.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+#include <cmath>
+
+namespace easypbr::render {
+namespace {
+
+/// Depth of an orthographic picture in doublings of the distance, as if it were seen from where a perspective
+/// camera of 30 degrees sees the same height.
+double doublings_per_depth(const Camera& camera) {
+    const double distance = camera.ortho_height / (2 * std::tan(radians(15.0)));
+    return (camera.far - camera.near) / (distance * std::log(2.0));
+}
+
+void set_eye_dome_uniforms(const gl::Program& program, const Frame& frame) {
+    const EyeDomeSettings& eye_dome = frame.resolved->settings.eye_dome;
+    const float radius = eye_dome.radius * float(frame.picture_size.y()) / 1080;
+    program.set("u_size", Vec2(frame.size.cast<float>()));
+    program.set("u_eye_dome", Vec2(eye_dome.strength, std::max(1.0f, radius)));
+    program.set("u_depth_scale", Vec2(float(doublings_per_depth(frame.camera)), 0));
+}
+
+}  // namespace
+
+void DisplayPass::draw(const Frame& frame, const GBuffer& targets) {
+    const float zero[4] = {0, 0, 0, 0};
+    targets.display.clear_color(0, zero);
+    targets.display.bind();
+    glEnable(GL_DEPTH_TEST);
+    glDepthMask(GL_FALSE);
+    glDepthFunc(GL_LESS);
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(frame.covered.x, frame.covered.y, frame.covered.width, frame.covered.height);
+    std::vector<std::string> defines = camera_defines(frame);
+    if (targets.ambient_occlusion) defines.emplace_back("AMBIENT_OCCLUSION");
+    const gl::Program& program = programs_.get(defines);
+    program.use();
+    set_eye_dome_uniforms(program, frame);
+    const gl::Texture* sources[] = {&targets.albedo, &targets.material, &targets.depth};
+    const char* samplers[] = {"u_albedo", "u_material", "u_depth_target"};
+    for (unsigned unit = 0; unit < 3; ++unit) {
+        sources[unit]->bind(unit);
+        program.set(samplers[unit], int(unit));
+    }
+    if (targets.ambient_occlusion) targets.ambient_occlusion.bind(3);
+    program.set("u_ambient_occlusion", 3);
+    draw_screen_triangle();
+    glDisable(GL_SCISSOR_TEST);
+}
+
+const gl::Texture& DisplayPass::shade(const Frame& frame, const gl::Texture& nearest,
+                                      const gl::Texture& opaque) {
+    if (!shade_ || Vec2i(shade_.width(), shade_.height()) != frame.size) {
+        shade_ = gl::Texture(gl::Format::r16, frame.size.x(), frame.size.y());
+        shaded_ = gl::Framebuffer({&shade_});
+    }
+    shaded_.bind();
+    glDisable(GL_DEPTH_TEST);
+    const gl::Program& program = shades_.get(camera_defines(frame));
+    program.use();
+    set_eye_dome_uniforms(program, frame);
+    nearest.bind(0);
+    opaque.bind(1);
+    program.set("u_nearest", 0);
+    program.set("u_opaque", 1);
+    draw_screen_triangle();
+    return shade_;
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,27 @@
+// Colours that are shown as they are, past light and tone curve: points without normals, tables of labels.
+#pragma once
+
+#include "easypbr/render/drawables/draw_list.h"
+#include "easypbr/render/frame/frame.h"
+#include "easypbr/render/frame/gbuffer.h"
+#include "easypbr/render/frame/programs.h"
+
+namespace easypbr::render {
+
+class DisplayPass {
+  public:
+    /// Clears the overlay and draws into it what the G-buffer holds of such kinds.
+    void draw(const Frame& frame, const GBuffer& targets);
+
+    /// The eye-dome lighting of points that light passes, R16: a factor by where the nearest of them are and
+    /// where the opaque surfaces (both R32F, reversed depth). Until the next call.
+    const gl::Texture& shade(const Frame& frame, const gl::Texture& nearest, const gl::Texture& opaque);
+
+  private:
+    ProgramVariants programs_{"screen_triangle.vert", "display_surface.frag"};
+    ProgramVariants shades_{"screen_triangle.vert", "eye_dome_layers.frag"};
+    gl::Texture shade_;
+    gl::Framebuffer shaded_;
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,234 @@
+#include "easypbr/render/output/output_pass.h"
+
+#include <epoxy/gl.h>
+
+#include <algorithm>
+
+#include "easypbr/core/color.h"
+
+namespace easypbr::render {
+namespace {
+
+std::vector<std::string> curve_defines(const Frame& frame, Encoding encoding) {
+    if (encoding == Encoding::scene_linear) return {"SCENE_LINEAR"};
+    switch (frame.resolved->settings.tone.tone_operator) {
+        case ToneOperator::reinhard:
+            return {"TONE_REINHARD"};
+        case ToneOperator::agx:
+            return {"TONE_AGX"};
+        case ToneOperator::neutral:
+            return {"TONE_NEUTRAL"};
+        case ToneOperator::none:
+            return {"TONE_NONE"};
+        default:
+            return {"TONE_ACES"};
+    }
+}
+
+std::vector<std::string> tone_defines(const Frame& frame, Encoding encoding) {
+    std::vector<std::string> defines = curve_defines(frame, encoding);
+    if (frame.partly_covered) defines.emplace_back("PARTLY_COVERED");
+    return defines;
+}
+
+gl::Format format_of(Encoding encoding) {
+    return encoding == Encoding::srgb8    ? gl::Format::rgba8
+           : encoding == Encoding::srgb16 ? gl::Format::rgba16
+                                          : gl::Format::rgba32f;
+}
+
+float exposure_of(const Frame& frame, Encoding encoding) {
+    return encoding == Encoding::scene_linear ? 1.0f : frame.resolved->exposure;
+}
+
+bool sees_environment(const Frame& frame) {
+    const BackgroundMode mode = frame.resolved->settings.background.mode;
+    return mode == BackgroundMode::environment || mode == BackgroundMode::blur;
+}
+
+Vec4 background_color(const Frame& frame) {
+    const BackgroundSettings& background = frame.resolved->settings.background;
+    if (background.mode == BackgroundMode::transparent || sees_environment(frame)) return Vec4::Zero();
+    const Vec3 c = linear_from_srgb(background.color);
+    return {c.x(), c.y(), c.z(), 1};
+}
+
+/// Scale and offset of the frame's texture coordinates with which an image covers the picture, centred,
+/// nothing distorted.
+Vec4 cover(const gl::Texture& image, const Frame& frame) {
+    const Vec2 whole = frame.picture_size.cast<float>();
+    const float picture = whole.x() / whole.y(), own = float(image.width()) / float(image.height());
+    const Vec2 scale = picture > own ? Vec2(1, own / picture) : Vec2(picture / own, 1);
+    const Vec2 part = scale.cwiseProduct(frame.size.cast<float>().cwiseQuotient(whole));
+    const Vec2 first =
+        (Vec2(1, 1) - scale) / 2 + scale.cwiseProduct(frame.origin.cast<float>().cwiseQuotient(whole));
+    return {part.x(), part.y(), first.x(), first.y()};
+}
+
+constexpr int overlay_unit = 2, glow_unit = 3;
+
+void add_defines(const LitPicture& lit, std::vector<std::string>& defines) {
+    if (lit.overlay) defines.emplace_back("OVERLAY");
+    if (lit.glow) defines.emplace_back("BLOOM");
+}
+
+void bind_overlay(const gl::Program& program, const gl::Texture& overlay) {
+    program.set("u_overlay", overlay_unit);
+    overlay.bind(overlay_unit);
+}
+
+void bind(const LitPicture& lit, const gl::Program& program, const Frame& frame) {
+    lit.radiance->bind(0);
+    if (lit.overlay) bind_overlay(program, *lit.overlay);
+    if (!lit.glow) return;
+    set_bloom_uniforms(program, frame);
+    program.set("u_glow", glow_unit);
+    program.set("u_glow_size",
+                Vec2(float(glow_texel * lit.glow->width()), float(glow_texel * lit.glow->height())));
+    lit.glow->bind(glow_unit);
+}
+
+PixelRect united(const PixelRect& a, const PixelRect& b) {
+    const int x = std::min(a.x, b.x), y = std::min(a.y, b.y);
+    return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
+}
+
+/// Screen passes touch only where geometry may be, when nothing else was drawn.
+void limit_to(const PixelRect& area, const Frame& frame) {
+    if (sees_environment(frame) || frame.spreads) return;
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(area.x, area.y, area.width, area.height);
+}
+
+}  // namespace
+
+void OutputPass::begin(Vec2i size, Encoding encoding) {
+    const gl::Format format = format_of(encoding);
+    if (!picture_ || picture_.width() != size.x() || picture_.height() != size.y() ||
+        picture_.format() != format) {
+        picture_ = gl::Texture(format, size.x(), size.y());
+        picture_framebuffer_ = gl::Framebuffer({&picture_});
+        sum_ = gl::Texture();
+        aliased_ = gl::Texture();
+    }
+    encoding_ = encoding;
+}
+
+void OutputPass::accumulate(const Frame& frame, const LitPicture& lit) {
+    if (!sum_) {
+        sum_ = gl::Texture(gl::Format::rgba32f, frame.size.x(), frame.size.y());
+        sum_framebuffer_ = gl::Framebuffer({&sum_});
+    }
+    drawn_ = frame.sample_index == 0 ? frame.covered : united(drawn_, frame.covered);
+    const float zero[4] = {0, 0, 0, 0};
+    if (frame.sample_index == 0) sum_framebuffer_.clear_color(0, zero);
+    sum_framebuffer_.bind();
+    std::vector<std::string> defines = tone_defines(frame, encoding_);
+    add_defines(lit, defines);
+    const gl::Program& program = accumulate_.get(defines);
+    program.use();
+    program.set("u_size", Vec2(frame.size.cast<float>()));
+    program.set("u_exposure", exposure_of(frame, encoding_));
+    program.set("u_radiance", 0);
+    bind(lit, program, frame);
+    glDisable(GL_DEPTH_TEST);
+    glEnable(GL_BLEND);
+    glBlendFunc(GL_ONE, GL_ONE);
+    limit_to(frame.covered, frame);
+    draw_screen_triangle();
+    glDisable(GL_SCISSOR_TEST);
+    glDisable(GL_BLEND);
+}
+
+void OutputPass::finish(const Frame& frame, const LitPicture& lit, const GBuffer& targets,
+                        const gl::Texture* background_image) {
+    const bool sum = frame.sample_count > 1;
+    std::vector<std::string> defines = tone_defines(frame, encoding_);
+    if (sum)
+        defines.emplace_back("SUM");
+    else
+        add_defines(lit, defines);
+    if (background_image) defines.emplace_back("BACKGROUND_IMAGE");
+    if (encoding_ == Encoding::scene_linear) defines.emplace_back("LINEAR_OUTPUT");
+    const gl::Program& program = display_.get(defines);
+    glDisable(GL_DEPTH_TEST);
+    picture_framebuffer_.bind();
+    if (!background_image) {
+        const Vec4 b = background_color(frame);
+        Vec4 code = b;
+        if (encoding_ != Encoding::scene_linear) code.head<3>() = srgb_from_linear(Vec3(b.head<3>()));
+        const float rgba[4] = {code.x(), code.y(), code.z(), code.w()};
+        picture_framebuffer_.clear_color(0, rgba);
+        limit_to(sum ? drawn_ : frame.covered, frame);
+    }
+    program.use();
+    program.set("u_size", Vec2(frame.size.cast<float>()));
+    program.set("u_exposure", exposure_of(frame, encoding_));
+    program.set("u_sample_scale", 1.0f / float(frame.sample_index + 1));
+    program.set("u_background", background_color(frame));
+    program.set("u_source", 0);
+    if (sum)
+        sum_.bind(0);
+    else
+        bind(lit, program, frame);
+    if (background_image) {
+        program.set("u_background_image", 1);
+        program.set("u_background_uv", cover(*background_image, frame));
+        background_image->bind(1);
+    }
+    draw_screen_triangle();
+    glDisable(GL_SCISSOR_TEST);
+    const bool single = !sum && encoding_ != Encoding::scene_linear;
+    if (single && frame.resolved->settings.image.antialias == Antialias::fxaa) blur_edges(frame, targets);
+}
+
+void OutputPass::write_exact(const Frame& frame, const GBuffer& targets, bool layers) {
+    std::vector<std::string> defines = tone_defines(frame, encoding_);
+    if (layers) defines.emplace_back("LAYERS");
+    if (encoding_ == Encoding::scene_linear) defines.emplace_back("LINEAR_OUTPUT");
+    if (frame.with_overlay) defines.emplace_back("OVERLAY");
+    const gl::Program& program = exact_.get(defines);
+    picture_framebuffer_.bind();
+    program.use();
+    program.set("u_size", Vec2(frame.size.cast<float>()));
+    program.set("u_albedo", 0);
+    program.set("u_material", 1);
+    targets.albedo.bind(0);
+    targets.material.bind(1);
+    if (frame.with_overlay) bind_overlay(program, targets.overlay);
+    if (layers) {
+        targets.radiance.bind(3);
+        program.set("u_radiance", 3);
+        program.set("u_exposure", exposure_of(frame, encoding_));
+    }
+    glDisable(GL_DEPTH_TEST);
+    draw_screen_triangle();
+}
+
+void OutputPass::blur_edges(const Frame& frame, const GBuffer& targets) {
+    const PixelRect& area = frame.covered;
+    if (area.width == 0 || area.height == 0) return;
+    if (!aliased_) {
+        aliased_ = gl::Texture(picture_.format(), frame.size.x(), frame.size.y());
+        aliased_.sampling(gl::Filtering::linear);
+    }
+    gl::copy(picture_, aliased_);
+    picture_framebuffer_.bind();
+    const gl::Program& program =
+        fxaa_.get(frame.with_exact ? std::vector<std::string>{"EXACT"} : std::vector<std::string>{});
+    program.use();
+    program.set("u_size", Vec2(frame.size.cast<float>()));
+    program.set("u_color", 0);
+    aliased_.bind(0);
+    if (frame.with_exact) {
+        program.set("u_material", 1);
+        targets.material.bind(1);
+    }
+    // Edges are where geometry is; the environment behind it is smooth.
+    glEnable(GL_SCISSOR_TEST);
+    glScissor(area.x, area.y, area.width, area.height);
+    draw_screen_triangle();
+    glDisable(GL_SCISSOR_TEST);
+}
+
+}  // namespace easypbr::render

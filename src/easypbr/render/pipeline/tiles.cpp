@@ -1,0 +1,136 @@
+#include "easypbr/render/pipeline/tiles.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/error.h"
+#include "easypbr/render/effects/depth_of_field/focus_pass.h"
+#include "easypbr/render/effects/ground/ground_pass.h"
+#include "easypbr/scene/draw_style.h"
+
+namespace easypbr::render {
+namespace {
+
+/// Beyond these many pixels occlusion and refraction are cut.
+constexpr double most_reach = 1024, most_reach_beside_transmission = 512;
+/// Smoothing along edges, the blur of occlusion, lines' edges.
+constexpr int smallest_guard = 16;
+/// Widest texels of bloom's pyramid after which a light's glow has faded to 4e-8 of its sum.
+constexpr int glow_texels = 6;
+/// Points of more pixels are none to drivers: the centres of half of them may lie outside of a tile.
+constexpr int largest_point = 256;
+
+/// Parts of one side of the picture.
+struct Span {
+    int inner, inner_end, outer, outer_end;
+};
+
+std::vector<Span> spans_of(int side, int guard, int limit) {
+    if (side <= limit) return {{0, side, 0, side}};
+    // The outer beginning is rounded down to the grid, which may take a grid step more.
+    const int most = (limit - 2 * guard) / tile_grid * tile_grid - tile_grid;
+    if (most < tile_grid)
+        throw ArgumentError(
+            fmt::format("a picture of {} pixels a side is drawn in tiles of {}, which leaves no room between "
+                        "the {} pixels around each that its effects need to see; a single frame's depth "
+                        "of field, bloom and transmission see farthest",
+                        side, limit, guard));
+    const int count = (side + most - 1) / most;
+    const int step = (side + count * tile_grid - 1) / (count * tile_grid) * tile_grid;
+    std::vector<Span> spans;
+    for (int at = 0; at < side; at += step) {
+        const int end = std::min(at + step, side);
+        spans.push_back(
+            {at, end, std::max(at - guard, 0) / tile_grid * tile_grid, std::min(end + guard, side)});
+    }
+    return spans;
+}
+
+/// Depth of the nearest content, but no nearer than a hundredth of its size.
+double nearest_depth(const Box3d& bounds, const Camera& camera) {
+    double nearest = 1e300;
+    for (int i = 0; i < 8; ++i) {
+        const Vec3d corner = bounds.corner(Box3d::CornerType(i)) - camera.position();
+        nearest = std::min(nearest, -camera.T_world_cam.linear().col(2).dot(corner));
+    }
+    return std::max(nearest, bounds.diagonal().norm() / 100);
+}
+
+bool has_transmission(const SceneSnapshot& scene, const ResolvedSettings& resolved) {
+    if (const auto& set = resolved.settings.material.transmission; set.value()) return *set > 0;
+    return std::ranges::any_of(scene.objects, [](const SceneSnapshot::Object& object) {
+        return std::ranges::any_of(object.mesh->materials,
+                                   [](const Material& m) { return m.transmission > 0; });
+    });
+}
+
+/// Half the widest point of the scene.
+int point_reach(const SceneSnapshot& scene, const ResolvedSettings& resolved) {
+    int reach = 0;
+    for (const auto& object : scene.objects) {
+        const DrawStyle style = resolve_style(*object.mesh, resolved.settings.style);
+        if (!style.visible || (style.mode != DrawMode::points && !style.show_points)) continue;
+        const bool in_pixels = style.point_size && style.point_size_unit == SizeUnit::pixels;
+        const float size = in_pixels ? std::min(*style.point_size, float(largest_point)) : largest_point;
+        reach = std::max(reach, int(std::ceil(size / 2)));
+    }
+    return reach;
+}
+
+}  // namespace
+
+TileLimits TileLimits::of(const gl::ContextInfo& context) {
+    TileLimits limits;
+    limits.side = std::min({limits.side, context.max_texture_size, context.max_viewport});
+    return limits;
+}
+
+Guard guard_of(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i picture) {
+    const Settings& settings = resolved.settings;
+    Frame whole;
+    whole.resolved = &resolved;
+    whole.camera = resolved.camera;
+    whole.size = whole.picture_size = picture;
+    const Box3d bounds = scene.bounds();
+    prepare_frame(whole, bounds, true);
+
+    Guard guard;
+    guard.pixels = smallest_guard + settings.points.hole_filling + point_reach(scene, resolved);
+    // Eye-dome lighting looks four of its radii far.
+    guard.pixels += int(std::ceil(4 * std::max(1.0f, settings.eye_dome.radius * float(picture.y()) / 1080)));
+    const bool transmits = has_transmission(scene, resolved);
+    if (*settings.ssao.enabled && !bounds.isEmpty()) {
+        const double depth = whole.orthographic() ? 1 : nearest_depth(bounds, whole.camera);
+        const double radius = *settings.ssao.radius * whole.clip_from_view(1, 1) * picture.y() / 2 / depth;
+        // A ground comes as near to the camera as it likes.
+        guard.reach = GroundPass::is_on(resolved) ? most_reach : std::min(std::ceil(radius), most_reach);
+        if (transmits) guard.reach = std::min(guard.reach, most_reach_beside_transmission);
+        guard.pixels += int(guard.reach);
+    }
+    if (transmits) {
+        guard.reach = most_reach_beside_transmission;
+        // What rough glass shows is blurred by a quarter of its reach, seen through twice as wide a filter.
+        guard.pixels += int(1.5 * most_reach_beside_transmission);
+    }
+    if (settings.bloom.enabled) guard.pixels += glow_texels * (glow_texel << (resolved.bloom_levels - 1));
+    if (resolved.lens_radius > 0) guard.pixels += int(std::ceil(largest_confusion(whole, bounds))) + 4;
+    return guard;
+}
+
+std::vector<Tile> tiles_of(Vec2i picture, int guard, const TileLimits& limits) {
+    if (picture.maxCoeff() <= limits.side && int64_t(picture.x()) * picture.y() <= limits.pixels) {
+        const PixelRect all{0, 0, picture.x(), picture.y()};
+        return {{all, all}};
+    }
+    const int limit = std::min(limits.side, int(std::sqrt(double(limits.pixels))));
+    std::vector<Tile> tiles;
+    for (const Span& y : spans_of(picture.y(), guard, limit))
+        for (const Span& x : spans_of(picture.x(), guard, limit))
+            tiles.push_back({{x.inner, y.inner, x.inner_end - x.inner, y.inner_end - y.inner},
+                             {x.outer, y.outer, x.outer_end - x.outer, y.outer_end - y.outer}});
+    return tiles;
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,61 @@
+#include "easypbr/render/primitives/surfels/surfel_layers.h"
+
+#include <epoxy/gl.h>
+
+namespace easypbr::render {
+
+void SurfelLayers::begin(const Frame& frame, const std::vector<DrawItem>& items, const gl::Texture& opaque) {
+    if (items.empty()) return;
+    const int w = frame.size.x(), h = frame.size.y();
+    if (!claim_ || claim_.width() != w || claim_.height() != h) {
+        claim_ = gl::Texture(gl::Format::rgba32f, w, h);
+        limits_.clear();
+        layer_id_ = 0;
+    }
+    // Of another picture's items none is needed any more.
+    if (limits_.size() != items.size()) limits_ = std::vector<Limit>(items.size());
+    for (Limit& limit : limits_) {
+        if (!limit.depth) {
+            limit.depth = gl::Texture(gl::Format::r32f, w, h);
+            limit.framebuffer = gl::Framebuffer({&limit.depth});
+        }
+        gl::copy(opaque, limit.depth);
+    }
+}
+
+void SurfelLayers::draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& layer) {
+    if (items.empty()) return;
+    // An identity may be given again, but not with another size: then claim_ is new too.
+    if (layer_id_ != layer.albedo.id()) {
+        layer_ = gl::Framebuffer(
+            {&layer.albedo, &layer.normal, &layer.material, &layer.depth, &layer.radiance, &claim_},
+            &layer.depth_test);
+        layer_id_ = layer.albedo.id();
+    }
+    const float nobody[4] = {0, 0, 0, 0};
+    layer_.clear_color(5, nobody);
+    for (size_t i = 0; i < items.size(); ++i) {
+        splats_.sum(frame, {&items[i], 1}, limits_[i].depth);
+        layer_.bind();
+        test_geometry_depth(frame);
+        splats_.write(frame, int(i) + 1);
+    }
+}
+
+void SurfelLayers::take(const std::vector<DrawItem>& items) {
+    if (items.empty()) return;
+    if (!no_attributes_) no_attributes_ = gl::VertexArray::make();
+    no_attributes_.bind();
+    const gl::Program& program = take_.get({});
+    program.use();
+    program.set("u_claim", 0);
+    claim_.bind(0);
+    glDisable(GL_DEPTH_TEST);
+    for (size_t i = 0; i < items.size(); ++i) {
+        limits_[i].framebuffer.bind();
+        program.set("u_owner", float(i + 1));
+        draw_screen_triangle();
+    }
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,41 @@
+// The surface of a pixel that the native rasteriser found a triangle in.
+#pragma once
+
+#include "easypbr/render/raster/native_pixels.h"
+
+namespace easypbr::render {
+
+/// What is known of a mesh beyond its data.
+struct MeshKnowledge {
+    Array3f N;
+    bool normals_agree = true;    ///< the winding tells the normals' side
+    bool closed_outward = false;  ///< from outside, back faces need not be drawn
+    Box3d box;                    ///< of the vertices, when it is closed
+    bool used = false;
+};
+
+/// A mesh item with all that its pixels need.
+class MeshSurface {
+  public:
+    MeshSurface(const DrawItem& item, const MeshKnowledge& knowledge, const Mat4d& clip_from_mesh);
+
+    /// The triangle `face` of the item's part at a point of the picture in normalised device coordinates:
+    /// albedo, normal, depth, element.
+    SurfacePixel at(uint32_t face, double ndc_x, double ndc_y) const;
+
+  private:
+    struct Hit;
+    Hit intersect(const float* const (&corner)[3], double ndc_x, double ndc_y) const;
+    Vec3 face_normal(const int32_t* f) const;
+    Vec3 normal(const int32_t* f, const Hit& hit) const;
+    Vec3 albedo(const int32_t* f, const Hit& hit) const;
+    double clip(int row, const float* p) const;
+
+    const DrawItem* item_;
+    const MeshKnowledge* mesh_;
+    double clip_[4][4];
+    Mat3 normal_from_mesh_;
+    bool mirrored_;
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,220 @@
+// Rasterises triangles on the CPU into whatever the caller keeps of a pixel.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+#include "easypbr/core/math.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/render/frame/frame.h"
+#include "easypbr/scene/array.h"
+
+namespace easypbr::render {
+
+/// Triangles of a mesh on their way to the screen.
+struct ScreenTriangles {
+    const Array3f& V;
+    const Array3i& F;
+    int first_face = 0, face_count = 0;
+    Mat4 clip_from_mesh;
+    /// Faces whose winding is clockwise on the screen are left out unless `both_sides`; `mirrored` swaps the
+    /// two.
+    bool both_sides = false, mirrored = false;
+};
+
+/// Rules as OpenGL's: 8 bits of sub-pixel precision, top-left.
+class TriangleRaster {
+  public:
+    /// `size` is that of the whole picture, `area` the part of it that is drawn.
+    void set_area(Vec2i size, const PixelRect& area) {
+        size_ = size;
+        area_ = area;
+    }
+    Vec2i size() const { return size_; }
+    const PixelRect& area() const { return area_; }
+
+    /// Calls put(pixel of the area, reversed depth in the plane of the snapped vertices, face from 0 on) for
+    /// each pixel of each triangle, on all cores in any order, also for one pixel at once. Returns false,
+    /// without any call, when a vertex is before the near plane or so far outside of the picture that
+    /// triangles would have to be clipped.
+    template <class Put>
+    bool draw(const ScreenTriangles& triangles, const Put& put);
+
+  private:
+    static constexpr int subpixel_bits = 8, subpixel = 1 << subpixel_bits, half_pixel = subpixel / 2;
+    /// Pixels beyond which coordinates are not drawn here; edge functions stay far below 63 bits.
+    static constexpr float guard_band = 1 << 15;
+    static constexpr size_t vertex_grain = 1 << 12, face_grain = 1 << 11, prefetch_distance = 24;
+    /// Triangles up to this many pixels across have edge functions below 2^31: 2 (64 * 256)^2 = 2^29.
+    static constexpr int small_extent = 64;
+
+    /// A vertex on the screen, x to the right and y downwards.
+    struct Vertex {
+        int32_t x, y;  ///< 1/256 of a pixel
+        float depth;   ///< reversed, (0, 1]
+    };
+
+    /// The edge function of a -> b, stepped from pixel to pixel; at least 0 inside. Pixel centres on an edge
+    /// belong to the triangle to the right of or below it (the top-left rule).
+    template <class Integer>
+    struct Edge {
+        Integer value, step_x, step_y;
+
+        Edge(const Vertex& a, const Vertex& b, int x, int y) {
+            const Integer dx = b.x - a.x, dy = b.y - a.y;
+            const Integer px = Integer(x) * subpixel + half_pixel - a.x,
+                          py = Integer(y) * subpixel + half_pixel - a.y;
+            const bool top_left = dy < 0 || (dy == 0 && dx > 0);
+            value = dx * py - dy * px - (top_left ? 0 : 1);
+            step_x = -dy * subpixel;
+            step_y = dx * subpixel;
+        }
+    };
+
+    /// The depth in the plane through three vertices.
+    struct Plane {
+        const Vertex& a;
+        float slope_x, slope_y;
+
+        Plane(const Vertex& a_, const Vertex& b, const Vertex& c) : a(a_) {
+            const float bx = float(b.x - a.x), by = float(b.y - a.y), cx = float(c.x - a.x),
+                        cy = float(c.y - a.y);
+            const float inverse = 1 / (bx * cy - cx * by), db = b.depth - a.depth, dc = c.depth - a.depth;
+            slope_x = (db * cy - dc * by) * inverse;
+            slope_y = (dc * bx - db * cx) * inverse;
+        }
+        float at(int x, int y) const {
+            const float depth = a.depth + slope_x * float(x * subpixel + half_pixel - a.x) +
+                                slope_y * float(y * subpixel + half_pixel - a.y);
+            return std::max(depth, 1e-30f);
+        }
+    };
+
+    bool project(const ScreenTriangles& triangles);
+    template <class Put>
+    void draw_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Put& put);
+    template <class Put>
+    void fill_tiny(const Vertex& a, const Vertex& b, const Vertex& c, int x0, int y0, unsigned kept,
+                   const Put& put);
+    template <class Integer, class Put>
+    void fill(const Vertex& a, const Vertex& b, const Vertex& c, int x0, int x1, int y0, int y1,
+              const Put& put);
+    size_t index(int x, int y) const {
+        return size_t(y - area_.y) * size_t(area_.width) + size_t(x - area_.x);
+    }
+    /// First and last pixel whose centre lies between two sub-pixel coordinates.
+    static int first_pixel(int32_t low) { return (low + half_pixel - 1) >> subpixel_bits; }
+    static int last_pixel(int32_t high) { return (high - half_pixel) >> subpixel_bits; }
+
+    Vec2i size_{0, 0};
+    PixelRect area_;
+    std::vector<Vertex> screen_;
+};
+
+template <class Put>
+bool TriangleRaster::draw(const ScreenTriangles& t, const Put& put) {
+    if (!project(t)) return false;
+    parallel_chunks(size_t(t.face_count), face_grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const int32_t* f = t.F.data() + 3 * (size_t(t.first_face) + i);
+            // The vertices of large meshes are far apart in memory: they are asked for ahead of their turn.
+            if (i + prefetch_distance < end)
+                for (size_t k = 0; k < 3; ++k)
+                    __builtin_prefetch(&screen_[size_t(f[3 * prefetch_distance + k])]);
+            const Vertex &a = screen_[size_t(f[0])], &b = screen_[size_t(f[1])], &c = screen_[size_t(f[2])];
+            const int64_t area = int64_t(b.x - a.x) * (c.y - a.y) - int64_t(c.x - a.x) * (b.y - a.y);
+            // y runs downwards: a counter-clockwise triangle has a negative area. Neighbours face the same
+            // way, which processors foresee better than whether there is a pixel's centre within.
+            if (area == 0 || (!t.both_sides && (area < 0) == t.mirrored)) continue;
+            const auto to_pixel = [&](size_t pixel, float depth) { put(pixel, depth, uint32_t(i)); };
+            if (area > 0)
+                draw_triangle(a, b, c, to_pixel);
+            else
+                draw_triangle(a, c, b, to_pixel);
+        }
+    });
+    return true;
+}
+
+template <class Put>
+void TriangleRaster::draw_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Put& put) {
+    const int left = first_pixel(std::min(std::min(a.x, b.x), c.x)),
+              right = last_pixel(std::max(std::max(a.x, b.x), c.x));
+    const int top = first_pixel(std::min(std::min(a.y, b.y), c.y)),
+              bottom = last_pixel(std::max(std::max(a.y, b.y), c.y));
+    const int x0 = std::max(left, area_.x), x1 = std::min(right, area_.x + area_.width - 1);
+    const int y0 = std::max(top, area_.y), y1 = std::min(bottom, area_.y + area_.height - 1);
+    if (x0 > x1 || y0 > y1) return;  // Most triangles of a large mesh lie between the pixels' centres.
+    if (right - left < 2 && bottom - top < 2) {
+        const unsigned kept = (x1 > x0 ? 0b11u : 0b01u) * (y1 > y0 ? 0b101u : 0b001u);
+        fill_tiny(a, b, c, x0, y0, kept, put);
+    } else if (right - left < small_extent && bottom - top < small_extent) {
+        fill<int32_t>(a, b, c, x0, x1, y0, y1, put);
+    } else {
+        fill<int64_t>(a, b, c, x0, x1, y0, y1, put);
+    }
+}
+
+/// Of four pixels; `kept` has a bit for each that is drawn. Without branches on what is inside: for triangles
+/// of about a pixel, mispredicted ones would cost more than all else.
+template <class Put>
+void TriangleRaster::fill_tiny(const Vertex& a, const Vertex& b, const Vertex& c, int x0, int y0,
+                               unsigned kept, const Put& put) {
+    const Edge<int32_t> ab(a, b, x0, y0), bc(b, c, x0, y0), ca(c, a, x0, y0);
+    const auto outside = [&](int32_t e0, int32_t e1, int32_t e2, int bit) {
+        return (uint32_t(e0 | e1 | e2) >> 31) << bit;
+    };
+    const int32_t right[3] = {ab.value + ab.step_x, bc.value + bc.step_x, ca.value + ca.step_x};
+    unsigned inside =
+        kept & ~(outside(ab.value, bc.value, ca.value, 0) | outside(right[0], right[1], right[2], 1) |
+                 outside(ab.value + ab.step_y, bc.value + bc.step_y, ca.value + ca.step_y, 2) |
+                 outside(right[0] + ab.step_y, right[1] + bc.step_y, right[2] + ca.step_y, 3));
+    if (inside == 0) return;
+    const Plane plane(a, b, c);
+    for (; inside != 0; inside &= inside - 1) {
+        const int pixel = __builtin_ctz(inside), x = x0 + (pixel & 1), y = y0 + (pixel >> 1);
+        put(index(x, y), plane.at(x, y));
+    }
+}
+
+template <class Integer, class Put>
+void TriangleRaster::fill(const Vertex& a, const Vertex& b, const Vertex& c, int x0, int x1, int y0, int y1,
+                          const Put& put) {
+    Edge<Integer> ab(a, b, x0, y0), bc(b, c, x0, y0), ca(c, a, x0, y0);
+    const Plane plane(a, b, c);
+    for (int y = y0; y <= y1; ++y) {
+        Integer e0 = ab.value, e1 = bc.value, e2 = ca.value;
+        for (int x = x0; x <= x1; ++x) {
+            if ((e0 | e1 | e2) >= 0) put(index(x, y), plane.at(x, y));
+            e0 += ab.step_x, e1 += bc.step_x, e2 += ca.step_x;
+        }
+        ab.value += ab.step_y, bc.value += bc.step_y, ca.value += ca.step_y;
+    }
+}
+
+inline bool TriangleRaster::project(const ScreenTriangles& t) {
+    screen_.resize(size_t(t.V.rows()));
+    std::atomic<bool> inside{true};
+    const Vec2 half(0.5f * float(size_.x()), 0.5f * float(size_.y()));
+    const Mat4& m = t.clip_from_mesh;
+    parallel_chunks(screen_.size(), vertex_grain, [&](size_t begin, size_t end) {
+        bool all_inside = true;
+        for (size_t i = begin; i < end; ++i) {
+            const float* p = t.V.data() + 3 * i;
+            const Vec4 clip = m.col(0) * p[0] + m.col(1) * p[1] + m.col(2) * p[2] + m.col(3);
+            const float scale = 1.0f / clip.w();
+            const float x = (clip.x() * scale + 1) * half.x(), y = (1 - clip.y() * scale) * half.y();
+            const float depth = clip.z() * scale;
+            all_inside &= clip.w() > 0 && std::abs(x) < guard_band && std::abs(y) < guard_band && depth > 0 &&
+                          depth <= 1;
+            screen_[i] = {int32_t(std::lrintf(x * subpixel)), int32_t(std::lrintf(y * subpixel)), depth};
+        }
+        if (!all_inside) inside = false;
+    });
+    return inside;
+}
+
+}  // namespace easypbr::render

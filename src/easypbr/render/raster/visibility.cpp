@@ -1,0 +1,152 @@
+#include "easypbr/render/raster/visibility.h"
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+
+#include "easypbr/core/parallel.h"
+
+namespace easypbr::render {
+
+namespace {
+
+constexpr size_t point_grain = 1 << 12;
+
+/// Keeps the larger of a pixel and a key; any order of calls gives the same.
+template <class Key>
+inline void raise(Key& pixel, Key key) {
+    const std::atomic_ref<Key> cell(pixel);
+    Key seen = cell.load(std::memory_order_relaxed);
+    while (key > seen && !cell.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
+    }
+}
+
+/// The same for points: of equal depths the larger content, of equal contents the smaller id is kept.
+void raise_point(uint64_t& pixel, uint64_t key, const std::function<uint64_t(uint32_t)>& content) {
+    const std::atomic_ref<uint64_t> cell(pixel);
+    uint64_t seen = cell.load(std::memory_order_relaxed);
+    for (;;) {
+        if (seen >> 32 > key >> 32) return;
+        if (seen >> 32 == key >> 32) {
+            const uint64_t mine = content(VisibilityBuffer::id_of(key)),
+                           other = content(VisibilityBuffer::id_of(seen));
+            if (other > mine || (other == mine && seen >= key)) return;
+        }
+        if (cell.compare_exchange_weak(seen, key, std::memory_order_relaxed)) return;
+    }
+}
+
+}  // namespace
+
+void VisibilityBuffer::clear(Vec2i size, const PixelRect& area) {
+    raster_.set_area(size, area);
+    pixels_.assign(size_t(area.width) * size_t(area.height), 0);
+}
+
+bool VisibilityBuffer::draw(const ScreenTriangles& triangles, uint32_t first_id) {
+    return raster_.draw(triangles, [&](size_t pixel, float depth, uint32_t face) {
+        raise(pixels_[pixel], uint64_t(std::bit_cast<uint32_t>(depth)) << 32 | uint32_t(~(first_id + face)));
+    });
+}
+
+void DepthBuffer::clear(Vec2i size, float nothing) {
+    raster_.set_area(size, {0, 0, size.x(), size.y()});
+    pixels_.resize(size_t(size.x()) * size_t(size.y()));
+    parallel_chunks(pixels_.size(), size_t(1) << 16, [&](size_t begin, size_t end) {
+        std::fill(pixels_.begin() + long(begin), pixels_.begin() + long(end),
+                  std::bit_cast<int32_t>(nothing));
+    });
+}
+
+bool DepthBuffer::draw(const ScreenTriangles& triangles) {
+    return raster_.draw(triangles, [&](size_t pixel, float depth, uint32_t) {
+        raise(pixels_[pixel], std::bit_cast<int32_t>(depth));
+    });
+}
+
+void DepthBuffer::add(const VisibilityBuffer& other) {
+    parallel_for(pixels_.size(), size_t(1) << 14, [&](size_t i) {
+        if (const uint64_t pixel = other.pixels()[i]; pixel != 0)
+            pixels_[i] = std::max(pixels_[i], std::bit_cast<int32_t>(VisibilityBuffer::depth_of(pixel)));
+    });
+}
+
+bool cover(TriangleRaster& raster, const ScreenTriangles& triangles, std::span<uint8_t> covered) {
+    return raster.draw(triangles, [&](size_t pixel, float, uint32_t) {
+        std::atomic_ref<uint8_t>(covered[pixel]).store(1, std::memory_order_relaxed);
+    });
+}
+
+void VisibilityBuffer::draw_points(const Array3f& V, const PointSplats& splats, uint32_t first_id,
+                                   const std::function<uint64_t(uint32_t id)>& content) {
+    const Vec2i size = raster_.size();
+    const PixelRect& area = raster_.area();
+    const float half_width = 0.5f * float(size.x()), half_height = 0.5f * float(size.y());
+    const float left = float(area.x), right = float(area.x + area.width);
+    const float top = float(area.y), bottom = float(area.y + area.height);
+    const Mat4& m = splats.clip_from_mesh;
+    parallel_chunks(size_t(V.rows()), point_grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const float* p = V.data() + 3 * i;
+            const auto row = [&](int r) {
+                return m(r, 0) * p[0] + m(r, 1) * p[1] + m(r, 2) * p[2] + m(r, 3);
+            };
+            const float w = row(3), scale = 1.0f / w;
+            const float depth = row(2) * scale;
+            if (!(w > 0 && depth > 0 && depth <= 1)) continue;
+            const float x = (row(0) * scale + 1) * half_width, y = (1 - row(1) * scale) * half_height;
+            const float diameter = splats.world_pixels > 0
+                                       ? std::max(splats.least_pixels, splats.world_pixels * scale)
+                                       : splats.pixels;
+            const float r = 0.5f * diameter, ry = r * splats.y_per_x;
+            if (!(x + r >= left && x - r < right && y + ry >= top && y - ry < bottom)) continue;
+            const uint64_t key = uint64_t(std::bit_cast<uint32_t>(depth)) << 32 | uint32_t(~(first_id + i));
+            const auto put = [&](int column, int line) {
+                if (column < area.x || column >= area.x + area.width || line < area.y ||
+                    line >= area.y + area.height)
+                    return;
+                raise_point(pixels_[size_t(line - area.y) * size_t(area.width) + size_t(column - area.x)],
+                            key, content);
+            };
+            const int own_x = int(std::floor(x)), own_y = int(std::floor(y));
+            put(own_x, own_y);
+            if (diameter <= 1 && ry <= 0.5f) continue;
+            const int x0 = std::max(int(std::ceil(x - r - 0.5f)), area.x),
+                      x1 = std::min(int(std::floor(x + r - 0.5f)), area.x + area.width - 1);
+            const int y0 = std::max(int(std::ceil(y - ry - 0.5f)), area.y),
+                      y1 = std::min(int(std::floor(y + ry - 0.5f)), area.y + area.height - 1);
+            for (int line = y0; line <= y1; ++line)
+                for (int column = x0; column <= x1; ++column) {
+                    const float dx = float(column) + 0.5f - x, dy = (float(line) + 0.5f - y) / splats.y_per_x;
+                    if (!splats.round || dx * dx + dy * dy <= r * r) put(column, line);
+                }
+        }
+    });
+}
+
+void VisibilityBuffer::crop() {
+    const PixelRect area = raster_.area();
+    int x0 = area.width, x1 = -1, y0 = area.height, y1 = -1;
+    for (int y = 0; y < area.height; ++y) {
+        const auto row = pixels().subspan(size_t(y) * size_t(area.width), size_t(area.width));
+        const auto is_covered = [](uint64_t pixel) { return pixel != 0; };
+        const auto first = std::ranges::find_if(row, is_covered);
+        if (first == row.end()) continue;
+        const auto last = std::find_if(row.rbegin(), row.rend(), is_covered);
+        x0 = std::min(x0, int(first - row.begin()));
+        x1 = std::max(x1, area.width - 1 - int(last - row.rbegin()));
+        y0 = std::min(y0, y);
+        y1 = y;
+    }
+    const PixelRect kept{area.x + x0, area.y + y0, std::max(0, x1 - x0 + 1), std::max(0, y1 - y0 + 1)};
+    for (int y = 0; y < kept.height; ++y) {
+        const auto from = pixels_.begin() + (long(y0 + y) * area.width + x0);
+        std::copy(from, from + kept.width, pixels_.begin() + long(y) * kept.width);
+    }
+    const PixelRect left = kept.width > 0 ? kept : PixelRect{};
+    raster_.set_area(raster_.size(), left);
+    pixels_.resize(size_t(left.width) * size_t(left.height));
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,57 @@
+// The light that a ray brings back.
+#pragma once
+
+#include "easypbr/render/raytrace/ray_random.h"
+#include "easypbr/render/raytrace/ray_scene.h"
+#include "easypbr/scene/resolve.h"
+
+namespace easypbr::render {
+
+/// A part of a picture's lights and sky, in world directions, and what they do to the surfaces that rays
+/// meet. Paths of surfaces end after `bounces`.
+class RayLight {
+  public:
+    /// Surfaces that a path meets after the one that is seen.
+    static constexpr int bounces = 3;
+
+    /// Keeps what it makes of an environment for as long as the next call asks for the same one. `resolved`
+    /// and the scene must live as long as rays are traced.
+    void prepare(const ResolvedSettings& resolved, const RayScene& scene);
+
+    /// Radiance of the sky in a direction, without the sun.
+    Vec3 sky(const Vec3& direction) const;
+
+    /// How many of the rays are best sent where the sky is brighter than on average: the part of its light
+    /// that is there (MIS compensation, Karlik et al. 2019).
+    float bright_part() const { return bright_part_; }
+    /// A direction of the bright sky, and the density of such directions, per steradian.
+    Vec3 bright_direction(const Vec2& u) const;
+    float bright_density(const Vec3& direction) const;
+
+    /// Radiance that a surface sends back along a ray that met it. `scattered`: the ray left a matt surface.
+    Vec3 radiance(const RayHit& hit, const Vec3& direction, bool scattered, RayRandom& random) const;
+
+    /// Where rays start that leave a point (RayScene's frame) of a surface with this normal.
+    Vec3 off_surface(const Vec3& at, const Vec3& normal, float reach = 0) const;
+
+  private:
+    /// What a ground shows that catches shadows: the sky behind it, where it is open.
+    Vec3 caught(const RayHit& hit, const Vec3& direction, RayRandom& random) const;
+    Vec3 from_lights(const Vec3& at, const Vec3& normal) const;
+    /// Irradiance of the open sky on a surface, divided by pi.
+    Vec3 even_sky(const Vec3& normal) const;
+    /// Row and column of the sky's picture.
+    Vec2i pixel_of(const Vec3& direction) const;
+    void find_bright_parts();
+
+    const ResolvedSettings* resolved_ = nullptr;
+    const RayScene* scene_ = nullptr;
+    std::string hash_;
+    Image sky_;
+    float bright_part_ = 0;
+    std::vector<float> density_;     ///< of bright_direction(), for each pixel of the sky
+    std::vector<float> row_ends_;    ///< distribution function over the rows
+    std::vector<float> pixel_ends_;  ///< and within each of them
+};
+
+}  // namespace easypbr::render

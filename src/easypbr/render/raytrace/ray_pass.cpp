@@ -1,0 +1,240 @@
+#include "easypbr/render/raytrace/ray_pass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/octahedral.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/render/frame/surface_kind.h"
+
+namespace easypbr::render {
+namespace {
+
+/// Stills of fewer frames are previews, and refine in a window.
+constexpr int least_frames = 32;
+/// Rays of a frame whose mean may count: the ratio of few is not the ratio of many.
+constexpr int least_rays = 4;
+/// Rays that a frame sends into the mirrored lobe at least and at most.
+constexpr int most_mirrored = 4;
+
+using Half4 = std::array<Eigen::half, 4>;
+
+Half4 half4(const Vec3& rgb, float a) {
+    const auto half = [](float v) { return Eigen::half(std::clamp(v, 0.0f, 65504.0f)); };
+    return {half(rgb.x()), half(rgb.y()), half(rgb.z()), half(a)};
+}
+
+/// Of what a material's own occlusion says and what rays find the darker counts: the factor that is left.
+float recesses(float visibility, uint8_t material) {
+    const float own = float(material) / 255;
+    return own < visibility ? own / visibility : 1.0f;
+}
+
+bool is_lit(uint8_t kind) {
+    return kind < uint8_t(SurfaceKind::display) || kind == uint8_t(SurfaceKind::ground_catcher);
+}
+
+}  // namespace
+
+/// A rectangle of the G-buffer in memory, and what becomes of it.
+struct RayPass::Pixels {
+    Pixels(const Frame& frame_, const GBuffer& targets) : frame(frame_), area(frame_.covered) {
+        const size_t count = size_t(area.width) * size_t(area.height);
+        normal.resize(count * 2);
+        material.resize(count * 4);
+        depth.resize(count);
+        const auto read = [&](unsigned index, gl::Format format, auto& to) {
+            targets.surface.read(index, format, area.x, area.y, area.width, area.height,
+                                 std::as_writable_bytes(std::span(to)));
+        };
+        read(1, gl::Format::rg16, normal);
+        read(2, gl::Format::rgba8, material);
+        read(3, gl::Format::r32f, depth);
+        open.assign(count, half4(Vec3::Ones(), 1));
+        bounced.assign(count, half4(Vec3::Zero(), 0));
+        mirrored.assign(count, half4(Vec3::Zero(), 0));
+        world_from_view = frame.camera.T_world_cam.linear();
+    }
+
+    size_t index(int x, int y) const { return size_t(y - area.y) * size_t(area.width) + size_t(x - area.x); }
+
+    /// View space; `d` > 0.
+    Vec3d view_position(int x, int y, double d) const {
+        const Vec2d ndc((x + 0.5) / frame.size.x() * 2 - 1, 1 - (y + 0.5) / frame.size.y() * 2);
+        const Mat4d& p = frame.clip_from_view;
+        if (frame.orthographic()) {
+            const double z = frame.camera.far + (frame.camera.near - frame.camera.far) * d;
+            return {(ndc.x() - p(0, 3)) / p(0, 0), (ndc.y() - p(1, 3)) / p(1, 1), -z};
+        }
+        const double z = frame.camera.near / d;
+        return {(ndc.x() + p(0, 2)) / p(0, 0) * z, (ndc.y() + p(1, 2)) / p(1, 1) * z, -z};
+    }
+
+    void upload(const TracedLight& light) const {
+        const auto put = [&](const gl::Texture& texture, const std::vector<Half4>& pixels) {
+            texture.upload_area(area.x, area.y, area.width, area.height, std::as_bytes(std::span(pixels)));
+        };
+        put(light.open, open);
+        put(light.bounced, bounced);
+        put(light.mirrored, mirrored);
+    }
+
+    const Frame& frame;
+    PixelRect area;
+    std::vector<uint16_t> normal;
+    std::vector<uint8_t> material;
+    std::vector<float> depth;
+    std::vector<Half4> open, bounced, mirrored;
+    Mat3d world_from_view;
+};
+
+bool RayPass::is_on(const ResolvedSettings& resolved, int sample_count) {
+    if (resolved.environment.empty()) return false;
+    const bool automatic = sample_count >= least_frames && *resolved.settings.ssao.enabled;
+    return resolved.settings.rays.enabled.value_or(automatic);
+}
+
+void RayPass::make_targets(Vec2i size) {
+    if (light_.open && light_.open.width() == size.x() && light_.open.height() == size.y()) return;
+    for (gl::Texture* texture : {&light_.open, &light_.bounced, &light_.mirrored})
+        *texture = gl::Texture(gl::Format::rgba16f, size.x(), size.y());
+}
+
+namespace {
+
+/// A surface that is seen, in RayScene's frame.
+struct Seen {
+    Vec3 from, normal, face, view;
+    float alpha = 1;
+};
+
+/// Normal of the element itself that is seen at a place: interpolated ones lie above it or below.
+Vec3 face_at(const Vec3& place, const Seen& seen, const RayScene& scene) {
+    const float near = 1e-4f * std::max(1.0f, place.norm());
+    const auto hit = scene.trace(place + near * seen.view, -seen.view);
+    const bool found = hit && hit->distance < 2 * near && hit->normal.dot(seen.normal) > 0.3f;
+    return found ? hit->normal : seen.normal;
+}
+
+struct Sent {
+    Vec3 open{1, 1, 1}, bounced{0, 0, 0}, mirrored{0, 0, 0};
+    float covered = 0;     ///< of the reflection
+    float visibility = 1;  ///< of all around
+};
+
+/// Below this cosine to the face a direction is taken to lie in the surface.
+constexpr float grazing = 1e-3f;
+
+/// The sky's light that arrives and that of other surfaces: rays are distributed by the cosine, and those of
+/// a part by the sky (Veach and Guibas 1995, balance heuristic). What arrives is a part of what the same rays
+/// would bring from an open sky, so that where nothing is in the way there is no noise.
+void send_diffuse(const Seen& seen, const RayScene& scene, const RayLight& rays, Vec2d pixel, int first,
+                  int count, Sent& sent) {
+    const RayFrame frame(seen.normal);
+    Vec3 all = Vec3::Zero(), arrives = Vec3::Zero(), bounced = Vec3::Zero();
+    float open = 0, around = 0;
+    const float bright = rays.bright_part();
+    int used = 0;
+    for (int i = first; i < first + count; ++i) {
+        const Vec2 u = pixel_point(pixel.x(), pixel.y(), i);
+        const Vec3 direction = pixel_choice(pixel.x(), pixel.y(), i) < bright ? rays.bright_direction(u)
+                                                                              : cosine_direction(frame, u);
+        const float cosine = direction.dot(seen.normal);
+        // What lies under the face of an interpolated normal says nothing about the sky.
+        if (cosine > 0 && direction.dot(seen.face) < grazing) continue;
+        ++used;
+        if (cosine <= 0) continue;
+        const float even = cosine / float(pi);
+        const float weight = even / ((1 - bright) * even + bright * rays.bright_density(direction));
+        const Vec3 sky = weight * rays.sky(direction).cwiseMax(1e-20f);
+        all += sky;
+        around += weight;
+        if (const auto hit = scene.trace(seen.from, direction)) {
+            RayRandom random(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(i), 0);
+            bounced += weight * rays.radiance(*hit, direction, true, random);
+        } else {
+            arrives += sky;
+            open += weight;
+        }
+    }
+    if (!(around > 0)) return;
+    sent.open = arrives.cwiseQuotient(all);
+    sent.bounced = bounced / float(used);
+    sent.visibility = open / around;
+}
+
+/// What other surfaces fill of the specular lobe.
+void send_mirrored(const Seen& seen, const RayScene& scene, const RayLight& rays, Vec2d pixel, int first,
+                   int count, Sent& sent) {
+    const RayFrame frame(seen.normal);
+    int used = 0;
+    for (int i = first; i < first + count; ++i) {
+        const Vec2 u = pixel_point(pixel.x() + 113, pixel.y() + 71, i);
+        const Vec3 direction = mirrored_direction(frame, seen.view, seen.alpha, u).normalized();
+        if (direction.dot(seen.face) < grazing || direction.dot(seen.normal) <= 0) continue;
+        ++used;
+        const auto hit = scene.trace(seen.from, direction);
+        if (!hit) continue;
+        sent.covered += 1;
+        RayRandom random(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(i), 1);
+        sent.mirrored += rays.radiance(*hit, direction, false, random);
+    }
+    if (used == 0) return;
+    sent.covered /= float(used);
+    sent.mirrored /= float(used);
+}
+
+}  // namespace
+
+void RayPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& scene) {
+    make_targets(frame.size);
+    if (frame.covered.width <= 0 || frame.covered.height <= 0) return;
+    Pixels pixels(frame, targets);
+    if (scene.empty()) return pixels.upload(light_);
+    rays_.prepare(*frame.resolved, scene);
+    const int wanted = frame.resolved->settings.rays.count;
+    const int diffuse = std::max(least_rays, (wanted + frame.sample_count - 1) / frame.sample_count),
+              mirrored = std::clamp(diffuse / 4, 1, most_mirrored);
+    const Vec3d eye = frame.camera.position() - scene.centre();
+    // Layers of transparent surfaces come and go from frame to frame.
+    const bool keeps = !targets.from_behind;
+    if (keeps && (frame.sample_index == 0 || visible_.size() != size_t(frame.size.prod())))
+        visible_.assign(size_t(frame.size.prod()), 0);
+    const auto mean_visibility = [&](int x, int y, float visibility) {
+        if (!keeps) return visibility;
+        float& sum = visible_[size_t(y) * size_t(frame.size.x()) + size_t(x)];
+        sum += visibility;
+        return sum / float(frame.sample_index + 1);
+    };
+    const auto send = [&](int x, int y) {
+        const size_t at = pixels.index(x, y);
+        const uint8_t* material = &pixels.material[at * 4];
+        if (pixels.depth[at] <= 0 || !is_lit(material[3])) return;
+        const Vec3d position = pixels.view_position(x, y, pixels.depth[at]);
+        const Vec3d towards = frame.orthographic() ? Vec3d(0, 0, 1) : Vec3d(-position.normalized());
+        Seen seen;
+        seen.normal =
+            oct_decode(Vec2(pixels.normal[at * 2], pixels.normal[at * 2 + 1]) / 32767.5f - Vec2(1, 1));
+        seen.view = (pixels.world_from_view * towards).cast<float>();
+        const Vec3 place = ((pixels.world_from_view * position + eye) / scene.unit()).cast<float>();
+        seen.face = face_at(place, seen, scene);
+        seen.from = rays_.off_surface(place, seen.face, scene.splat_reach());
+        const float roughness = float(material[1]) / 255;
+        seen.alpha = roughness * roughness;
+        const Vec2d pixel = (frame.origin + Vec2i(x, y)).cast<double>();
+        Sent sent;
+        send_diffuse(seen, scene, rays_, pixel, frame.sample_index * diffuse, diffuse, sent);
+        if (material[3] != uint8_t(SurfaceKind::ground_catcher))
+            send_mirrored(seen, scene, rays_, pixel, frame.sample_index * mirrored, mirrored, sent);
+        pixels.open[at] = half4(sent.open, recesses(mean_visibility(x, y, sent.visibility), material[2]));
+        pixels.bounced[at] = half4(sent.bounced, 0);
+        pixels.mirrored[at] = half4(sent.mirrored, sent.covered);
+    };
+    const PixelRect& area = pixels.area;
+    parallel_for(size_t(area.height), 4, [&](size_t row) {
+        for (int x = 0; x < area.width; ++x) send(area.x + x, area.y + int(row));
+    });
+    pixels.upload(light_);
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,73 @@
+// What casts shadows as rays find it: triangles and discs in a tree of boxes, on the CPU.
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "easypbr/render/drawables/draw_list.h"
+#include "easypbr/render/shadow/splat_shadows.h"
+
+namespace easypbr::render {
+
+/// The ground under the casters, seen from above (GroundPass); world space.
+struct RayGround {
+    Vec3d up{0, 1, 0};
+    double height = 0;    ///< along `up`
+    double radius = 1;    ///< around the casters' centre; beyond it there is none
+    Vec3 color{0, 0, 0};  ///< linear
+    float roughness = 1;
+    bool catches = false;  ///< shows what lies behind it where it is open to the sky, in place of a colour
+};
+
+/// Where a ray ends.
+struct RayHit {
+    const DrawItem* item = nullptr;  ///< null: the ground
+    int element = 0;                 ///< face of the mesh, point or surfel
+    float u = 0, v = 0;              ///< barycentric coordinates of the face's second and third vertex
+    Vec3 position;                   ///< world, relative to RayScene::centre(), in RayScene::unit()
+    Vec3 normal;                     ///< unit, of the element itself, towards where the ray came from
+    float distance = 0;              ///< in RayScene::unit()
+};
+
+/// Positions are relative to the casters' centre and in units of half their diagonal, so that single
+/// precision holds them at any scale and place. Masked surfaces have their holes, by the nearest texel;
+/// those that light passes stop the part of the rays that they take from light, chosen by a hash of the ray.
+/// Points are discs along their normal, or towards the ray where they have none; surfels are polygons.
+class RayScene {
+  public:
+    RayScene();
+    ~RayScene();
+
+    /// Takes note of the casters, which must live as long as rays are traced; the tree is made anew when
+    /// `generation` is another one (ShadowMaps::casters_generation()). `bounds` are those of all casters.
+    void update(const DrawList& casters, const Box3d& bounds, uint64_t generation, SplatShadows& splats,
+                const std::optional<RayGround>& ground);
+
+    bool empty() const { return scene_ == nullptr; }
+    const Vec3d& centre() const { return centre_; }
+    double unit() const { return unit_; }
+    /// How far rays of splats must start off their surface; 0 without splats.
+    float splat_reach() const { return splat_reach_; }
+
+    const std::optional<RayGround>& ground() const { return ground_; }
+
+    /// The first surface in the direction (unit); safe to call from several threads.
+    std::optional<RayHit> trace(const Vec3& from, const Vec3& direction) const;
+    /// Whether any caster lies nearer than `distance` (RayScene::unit()).
+    bool blocked(const Vec3& from, const Vec3& direction, float distance) const;
+
+  private:
+    struct Scene;
+    /// Distance to the ground; infinity where it is not met.
+    float ground_distance(const Vec3& from, const Vec3& direction) const;
+
+    std::unique_ptr<Scene> scene_;
+    std::optional<RayGround> ground_;
+    const DrawList* casters_ = nullptr;
+    uint64_t generation_ = 0;
+    Vec3d centre_{0, 0, 0};
+    double unit_ = 1;
+    float splat_reach_ = 0;
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,153 @@
+#include "easypbr/render/raytrace/ray_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/color.h"
+#include "easypbr/render/raytrace/ray_scene.h"
+
+namespace easypbr::render {
+namespace {
+
+int wrapped(float coordinate, int size, Wrap wrap) {
+    if (!std::isfinite(coordinate)) return 0;
+    const float period = wrap == Wrap::mirror ? 2.0f : 1.0f;
+    float c = wrap == Wrap::clamp ? std::clamp(coordinate, 0.0f, 1.0f)
+                                  : coordinate - period * std::floor(coordinate / period);
+    if (c > 1) c = 2 - c;
+    return std::clamp(int(c * float(size)), 0, size - 1);
+}
+
+/// One channel as a number in the shader's range: colours of integers decoded from sRGB, others scaled.
+float value_of(const Image& image, int x, int y, int channel, bool color) {
+    const int c = std::min(channel, image.channels() - 1);
+    switch (image.type()) {
+        case PixelType::u8: {
+            const uint8_t code = image.at<uint8_t>(x, y)[c];
+            return color ? srgb8_table()[code] : float(code) / 255;
+        }
+        case PixelType::u16: {
+            const float code = float(image.at<uint16_t>(x, y)[c]) / 65535;
+            return color ? linear_from_srgb(code) : code;
+        }
+        default: {
+            const float value = image.at<float>(x, y)[c];
+            return std::isfinite(value) ? value : 0;
+        }
+    }
+}
+
+/// The texel of a texture at a place on a surface.
+class Texel {
+  public:
+    Texel(const Texture& texture, const Vec2& uv) : image_(*texture.image) {
+        const Vec3 at = texture.uv_transform * Vec3(uv.x(), uv.y(), 1);
+        x_ = wrapped(at.x(), image_.width(), texture.wrap_u);
+        y_ = image_.height() - 1 - wrapped(at.y(), image_.height(), texture.wrap_v);
+    }
+    /// Of grey images the grey.
+    Vec3 color() const {
+        const bool grey = image_.channels() < 3;
+        const auto value = [&](int c) { return value_of(image_, x_, y_, grey ? 0 : c, true); };
+        return {value(0), value(1), value(2)};
+    }
+    float channel(int channel) const { return value_of(image_, x_, y_, channel, false); }
+    float alpha() const {
+        const int c = image_.channels();
+        return c == 2 || c == 4 ? value_of(image_, x_, y_, c - 1, false) : 1.0f;
+    }
+
+  private:
+    const Image& image_;
+    int x_ = 0, y_ = 0;
+};
+
+/// An attribute of a face's vertices between them.
+template <class Rows>
+auto between(const Rows& rows, const Array3i& F, int face, float u, float v) {
+    using Result = Eigen::Matrix<float, Rows::ColsAtCompileTime, 1>;
+    return Result((1 - u - v) * rows.row(F(face, 0)) + u * rows.row(F(face, 1)) + v * rows.row(F(face, 2)));
+}
+
+bool is_face(const DrawItem& item) {
+    return !item.mesh().F.empty() && item.part.face_count > 0;
+}
+
+/// Colour and alpha of the vertices; white where none count.
+Vec4 vertex_color(const DrawItem& item, int element, float u, float v) {
+    const MeshData& mesh = item.mesh();
+    if (!item.with_colors || mesh.C.empty()) return Vec4::Ones();
+    Eigen::VectorXf c;
+    if (is_face(item))
+        c = between(mesh.C, mesh.F, element, u, v);
+    else
+        c = mesh.C.row(std::min<Eigen::Index>(element, mesh.C.rows() - 1));
+    const Vec3 linear = linear_from_srgb(Vec3(c.head<3>().cwiseMax(0.0f).cwiseMin(1.0f)));
+    return {linear.x(), linear.y(), linear.z(), c.size() > 3 ? c(3) : 1.0f};
+}
+
+Vec2 uv_at(const DrawItem& item, int element, float u, float v) {
+    return between(item.mesh().UV, item.mesh().F, element, u, v);
+}
+
+}  // namespace
+
+float opacity_at(const DrawItem& item, int element, float u, float v) {
+    const Material& m = item.material;
+    if (item.kind != SurfaceKind::lit) return 1;
+    float opacity = m.opacity;
+    if (item.alpha != AlphaMode::opaque) {
+        opacity *= vertex_color(item, element, u, v).w();
+        if (is_face(item) && item.textured()) {
+            const Vec2 uv = uv_at(item, element, u, v);
+            if (m.base_color_texture) opacity *= Texel(m.base_color_texture, uv).alpha();
+            if (m.opacity_texture) opacity *= Texel(m.opacity_texture, uv).channel(m.opacity_texture.channel);
+        }
+    }
+    if (item.alpha == AlphaMode::mask) opacity = opacity < m.alpha_cutoff ? 0.0f : 1.0f;
+    if (item.alpha == AlphaMode::opaque) opacity = 1;
+    // What goes through the surface itself.
+    if (m.transmits()) opacity *= 1 - m.transmittance(AlphaMode::opaque).mean();
+    return opacity;
+}
+
+RaySurface surface_at(const RayHit& hit, float dielectric_f0) {
+    const DrawItem& item = *hit.item;
+    const MeshData& mesh = item.mesh();
+    const Material& m = item.material;
+    RaySurface s;
+    s.normal = hit.normal;
+    Vec3 base = m.base_color.cwiseProduct(vertex_color(item, hit.element, hit.u, hit.v).head<3>());
+    float metallic = m.metallic;
+    s.roughness = m.roughness;
+    s.emission = m.emissive;
+    const bool face = is_face(item);
+    if (face && !mesh.N.empty()) {
+        const Mat3 normal_matrix = item.object->T_world_mesh.linear().inverse().transpose().cast<float>();
+        const Vec3 n = (normal_matrix * between(mesh.N, mesh.F, hit.element, hit.u, hit.v)).normalized();
+        if (n.allFinite()) s.normal = n.dot(hit.normal) < 0 ? Vec3(-n) : n;
+    }
+    if (face && item.textured()) {
+        const Vec2 uv = uv_at(item, hit.element, hit.u, hit.v);
+        if (m.base_color_texture) base = base.cwiseProduct(Texel(m.base_color_texture, uv).color());
+        if (m.metallic_texture) metallic *= Texel(m.metallic_texture, uv).channel(m.metallic_texture.channel);
+        if (m.roughness_texture)
+            s.roughness *= Texel(m.roughness_texture, uv).channel(m.roughness_texture.channel);
+        if (m.emissive_texture) s.emission = s.emission.cwiseProduct(Texel(m.emissive_texture, uv).color());
+    }
+    if (item.kind != SurfaceKind::lit) {
+        // Shown past the light: as if it were matt.
+        s.diffuse = base;
+        return s;
+    }
+    if (m.unlit) {
+        s.emission = base;
+        return s;
+    }
+    const float dielectric = m.ior == 1.5f ? dielectric_f0 : std::pow((m.ior - 1) / (m.ior + 1), 2.0f);
+    s.f0 = (1 - metallic) * std::min(dielectric * m.specular, 1.0f) * m.specular_color + metallic * base;
+    s.diffuse = (1 - metallic) * (1 - m.transmission) * base;
+    return s;
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,44 @@
+// Lights that are drawn in one go, and the shadow maps they see.
+#pragma once
+
+#include <vector>
+
+#include "easypbr/gl/texture.h"
+#include "easypbr/render/shadow/shadow_view.h"
+
+namespace easypbr::render {
+
+/// The maps of one light.
+struct LightShadow {
+    const ShadowProjection* projection = nullptr;
+    int first_layer = 0;
+    /// Radius of the light that the maps do not account for: world units, or the tangent of an angle for
+    /// directional lights.
+    double radius = 0;
+};
+
+/// What surfaces that let light through take from it, in arrays beside that of the maps, per channel of the
+/// light; see shaders/common_tint.glsl.
+struct ShadowTints {
+    gl::Texture absorption;  ///< rgb: sum of -ln(transmittance); a: depth of the first caster
+    gl::Texture moment;      ///< rgb: sum of -ln(transmittance) times depth; a: minus the last caster's depth
+
+    explicit operator bool() const { return bool(absorption); }
+};
+
+/// As the blocks in shaders/lighting_surface.frag.
+inline constexpr size_t lights_per_block = 64;
+
+struct LightBlock {
+    /// Those without shadows first, then those with one map, then those with a cube.
+    std::vector<const Light*> lights;
+    std::vector<LightShadow> shadows;  ///< of the last of the lights
+    size_t cubes = 0;                  ///< how many of the shadows are cubes
+    const gl::Texture* maps = nullptr;
+    const ShadowTints* tints = nullptr;  ///< where casters let light through
+    bool first = true;                   ///< of the frame's blocks
+
+    size_t plain() const { return lights.size() - shadows.size(); }
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,278 @@
+#include "easypbr/render/shadow/shadow_maps.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/hash.h"
+
+namespace easypbr::render {
+namespace {
+
+/// Bytes that all maps together may take; more lights than that are drawn in turns.
+constexpr size_t memory_limit = size_t(512) << 20;
+/// Every driver's least limit of layers in an array.
+constexpr size_t layer_limit = 2048;
+
+constexpr gl::Format map_format = gl::Format::r32f, tint_format = gl::Format::rgba32f;
+
+int most_layers(int resolution, bool tinted) {
+    const size_t texel = gl::pixel_bytes(map_format) + (tinted ? 2 * gl::pixel_bytes(tint_format) : 0);
+    const size_t bytes = size_t(resolution) * size_t(resolution) * texel;
+    return int(std::clamp(memory_limit / bytes, size_t(6), layer_limit));
+}
+
+/// What softens a light's shadows: its radius, or the tangent of a directional light's.
+double extent_of(const Light& light) {
+    return light.type == LightType::directional ? std::tan(radians(light.angular_radius_deg))
+                                                : double(light.radius.value_or(0));
+}
+
+}  // namespace
+
+ShadowMaps::Caster ShadowMaps::caster_of(const DrawItem& item) {
+    const MeshData& mesh = item.mesh();
+    const Material& m = item.material;
+    Caster caster{};
+    caster.revisions = {mesh.V.revision(), mesh.F.revision()};
+    caster.splat = {0, 0};
+    caster.first_face = item.part.first_face;
+    caster.face_count = item.part.face_count;
+    caster.T_world_mesh = item.object->T_world_mesh.matrix().topRows<3>();
+    if (m.shader)
+        caster.shaded = {
+            m.shader.text,
+            {m.base_color[0], m.base_color[1], m.base_color[2], m.metallic, m.roughness, m.occlusion_strength,
+             m.normal_scale, m.emissive[0], m.emissive[1], m.emissive[2], m.unlit ? 1.0f : 0.0f,
+             item.style.flat ? 1.0f : 0.0f},
+            {m.metallic_texture.image.get(), m.roughness_texture.image.get(), m.normal_texture.image.get(),
+             m.occlusion_texture.image.get(), m.emissive_texture.image.get(),
+             m.base_color_texture.image.get(), m.opacity_texture.image.get()}};
+    if (item.alpha == AlphaMode::opaque && !item.casts_tint() && !m.shader) return caster;
+    caster.revisions[2] = mesh.UV.revision();
+    caster.revisions[3] = item.with_colors ? mesh.C.revision() : 0;
+    caster.revisions[4] = uint64_t(item.alpha);
+    caster.images = {m.base_color_texture.image.get(), m.opacity_texture.image.get()};
+    caster.alpha = {m.opacity, m.alpha_cutoff, float(m.opacity_texture.channel)};
+    if (!item.casts_tint()) return caster;
+    caster.images[2] = m.transmission_texture.image.get();
+    caster.through = m.transmittance(AlphaMode::opaque);
+    caster.thickness = {m.thickness, float(m.transmission_texture.channel)};
+    return caster;
+}
+
+ShadowMaps::Caster ShadowMaps::splat_of(const DrawItem& item, bool surfels) {
+    const MeshData& mesh = item.mesh();
+    Caster caster = caster_of(item);
+    // Points have no faces: what the kind of splat and its light depend on instead.
+    caster.revisions[1] = 0;
+    caster.revisions[5] = mesh.N.revision();
+    caster.revisions[6] = surfels ? mesh.T.revision() : uint64_t(item.style.point_shape);
+    caster.revisions[7] = surfels ? mesh.B.revision() : uint64_t(item.kind);
+    caster.face_count = surfels ? -2 : -1;
+    caster.splat = {splats_.reach(item, surfels), surfels ? item.style.surfel_scale : 1.0};
+    return caster;
+}
+
+Box3d ShadowMaps::caster_bounds(const DrawList& list, const Box3d& bounds) {
+    double reach = 0;
+    for (const DrawItem& item : list.points) reach = std::max(reach, splats_.reach(item, false));
+    for (const DrawItem& item : list.surfels) reach = std::max(reach, splats_.reach(item, true));
+    if (bounds.isEmpty() || reach == 0) return bounds;
+    return {bounds.min() - Vec3d::Constant(reach), bounds.max() + Vec3d::Constant(reach)};
+}
+
+void ShadowMaps::note_casters(const DrawList& list, const Box3d& bounds) {
+    std::vector<Caster> casters;
+    casters.reserve(list.meshes.size());
+    for (const DrawItem& item : list.meshes) casters.push_back(caster_of(item));
+    for (const DrawItem& item : list.points) casters.push_back(splat_of(item, false));
+    for (const DrawItem& item : list.surfels) casters.push_back(splat_of(item, true));
+    const bool same_bounds = bounds.min() == bounds_.min() && bounds.max() == bounds_.max();
+    if (casters == casters_ && same_bounds && casters_generation_ != 0) return;
+    casters_ = std::move(casters);
+    bounds_ = bounds;
+    casters_generation_ = next_revision();
+}
+
+ShadowMaps::Request ShadowMaps::request_of(const Light& light, const Frame& frame, const Box3d& bounds) {
+    const ShadowSettings& settings = frame.resolved->settings.shadows;
+    Request request;
+    request.light = &light;
+    if (!settings.enabled || !light.casts_shadows) return request;
+    const double extent = settings.mode == ShadowMode::soft ? extent_of(light) : 0;
+    const int samples = extent > 0 ? frame.sample_count : 1;
+    const Light sampled = sampled_light(light, frame.sample_index, samples);
+    const auto projection = project_shadows(sampled, bounds, settings.resolution);
+    if (!projection) return request;
+    request.shadowed = true;
+    request.projection = *projection;
+    // What one sample stands for is as large a part of the light as it is of all samples.
+    request.radius = extent / std::sqrt(double(samples));
+    const Vec3 position = light.type == LightType::directional ? Vec3(Vec3::Zero()) : sampled.position,
+               direction = light.type == LightType::point ? Vec3(Vec3::Zero()) : sampled.direction;
+    request.key = {float(light.type), position.x(),  position.y(),  position.z(),
+                   direction.x(),     direction.y(), direction.z(), light.outer_cone_deg};
+    return request;
+}
+
+void ShadowMaps::set_resolution(int resolution) {
+    if (resolution == resolution_) return;
+    entries_.clear();
+    taken_.clear();
+    framebuffers_.clear();
+    tint_framebuffers_.clear();
+    maps_ = gl::Texture();
+    tints_ = {};
+    resolution_ = resolution;
+}
+
+void ShadowMaps::begin(const Frame& frame, const DrawList& casters, const Box3d& vertices, bool received) {
+    const Box3d bounds = caster_bounds(casters, vertices);
+    splats_.evict_unused();
+    note_casters(casters, bounds);
+    list_ = &casters;
+    ++frame_;
+    requests_.clear();
+    next_ = 0;
+    for (const Light& light : frame.resolved->lights) {
+        requests_.push_back(request_of(light, frame, bounds));
+        requests_.back().shadowed &= received;
+    }
+    const bool any = std::ranges::any_of(requests_, &Request::shadowed);
+    set_resolution(any ? frame.resolved->settings.shadows.resolution : 0);
+    tinted_ = casters.has(&DrawItem::casts_tint);
+    prepare_tints();
+    const auto rank = [](const Request& r) { return !r.shadowed ? 0 : r.projection.is_cube() ? 2 : 1; };
+    std::ranges::stable_sort(requests_, {}, rank);
+    for (const Request& request : requests_)
+        if (const auto found = entries_.find(request.key); request.shadowed && found != entries_.end())
+            found->second.last_frame = frame_;
+}
+
+LightBlock ShadowMaps::next_block() {
+    LightBlock block;
+    ++block_;
+    for (; next_ < requests_.size() && block.lights.size() < lights_per_block; ++next_) {
+        const Request& request = requests_[next_];
+        if (request.shadowed) {
+            const Entry* entry = acquire(request);
+            if (!entry) break;
+            block.shadows.push_back({&request.projection, entry->first_layer, request.radius});
+            block.cubes += request.projection.is_cube();
+        }
+        block.lights.push_back(request.light);
+    }
+    block.maps = &maps_;
+    if (tints_) block.tints = &tints_;
+    return block;
+}
+
+const ShadowMaps::Entry* ShadowMaps::acquire(const Request& request) {
+    auto found = entries_.find(request.key);
+    if (found != entries_.end() && found->second.layers != request.projection.count) {
+        take(found->second.first_layer, found->second.layers, false);
+        entries_.erase(found);
+        found = entries_.end();
+    }
+    if (found == entries_.end()) {
+        const int first = allocate(request.projection.count);
+        if (first < 0) return nullptr;
+        take(first, request.projection.count, true);
+        found = entries_.emplace(request.key, Entry{first, request.projection.count}).first;
+    }
+    Entry& entry = found->second;
+    entry.last_frame = frame_;
+    entry.last_block = block_;
+    if (entry.casters != casters_generation_) {
+        draw(request, entry);
+        entry.casters = casters_generation_;
+    }
+    return &entry;
+}
+
+void ShadowMaps::draw(const Request& request, const Entry& entry) {
+    for (int i = 0; i < entry.layers; ++i) {
+        const ShadowView& view = request.projection.views[size_t(i)];
+        const int layer = entry.first_layer + i;
+        pass_.draw(view, *list_, maps_, layer, framebuffers_[size_t(layer)]);
+        if (tints_) pass_.draw_tints(view, *list_, tint_framebuffers_[size_t(layer)]);
+    }
+    ++drawn_;
+}
+
+int ShadowMaps::allocate(int layers) {
+    const auto run_after = [&](auto&& make_room) {
+        int first = free_run(layers);
+        while (first < 0 && make_room()) first = free_run(layers);
+        return first;
+    };
+    // What this frame has not asked for goes first, then memory is taken, then maps of earlier blocks go.
+    int first = run_after([&] { return evict_before(frame_, block_); });
+    if (first < 0) first = run_after([&] { return grow(layers); });
+    if (first < 0) first = run_after([&] { return evict_before(frame_ + 1, block_); });
+    return first;
+}
+
+int ShadowMaps::free_run(int layers) const {
+    int run = 0;
+    for (size_t i = 0; i < taken_.size(); ++i) {
+        run = taken_[i] ? 0 : run + 1;
+        if (run == layers) return int(i) + 1 - layers;
+    }
+    return -1;
+}
+
+bool ShadowMaps::evict_before(uint64_t frame, uint64_t block) {
+    auto oldest = entries_.end();
+    for (auto it = entries_.begin(); it != entries_.end(); ++it) {
+        const Entry& entry = it->second;
+        if (entry.last_frame >= frame || entry.last_block >= block) continue;
+        if (oldest == entries_.end() || entry.last_frame < oldest->second.last_frame) oldest = it;
+    }
+    if (oldest == entries_.end()) return false;
+    take(oldest->second.first_layer, oldest->second.layers, false);
+    entries_.erase(oldest);
+    return true;
+}
+
+bool ShadowMaps::grow(int layers) {
+    const int before = maps_ ? maps_.layers() : 0, most = most_layers(resolution_, tinted_);
+    if (before >= most) return false;
+    const int after = std::min(most, std::max(before + layers, before * 3 / 2));
+    const auto enlarge = [&](gl::Texture& texture, gl::Format format) {
+        gl::Texture larger = gl::Texture::layered(format, resolution_, resolution_, after);
+        if (before > 0) gl::copy_layers(texture, larger, before);
+        texture = std::move(larger);
+    };
+    enlarge(maps_, map_format);
+    if (tinted_) enlarge(tints_.absorption, tint_format);
+    if (tinted_) enlarge(tints_.moment, tint_format);
+    taken_.resize(size_t(after), false);
+    make_framebuffers();
+    return true;
+}
+
+void ShadowMaps::prepare_tints() {
+    if (!tinted_ || resolution_ == 0) tints_ = {};
+    if (tinted_ == bool(tints_) || !maps_) return;
+    // What casts has changed, so that all maps are drawn anew.
+    tints_.absorption = gl::Texture::layered(tint_format, resolution_, resolution_, maps_.layers());
+    tints_.moment = gl::Texture::layered(tint_format, resolution_, resolution_, maps_.layers());
+    make_framebuffers();
+}
+
+void ShadowMaps::make_framebuffers() {
+    framebuffers_.clear();
+    tint_framebuffers_.clear();
+    for (int layer = 0; layer < maps_.layers(); ++layer) {
+        framebuffers_.emplace_back(maps_, layer);
+        if (tints_)
+            tint_framebuffers_.push_back(gl::Framebuffer({&tints_.absorption, &tints_.moment}, layer));
+    }
+}
+
+void ShadowMaps::take(int first, int layers, bool taken) {
+    std::fill_n(taken_.begin() + first, layers, taken);
+}
+
+}  // namespace easypbr::render

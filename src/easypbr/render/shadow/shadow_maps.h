@@ -1,0 +1,127 @@
+// Which light gets which shadow maps, and which of them must be drawn anew.
+#pragma once
+
+#include <array>
+#include <map>
+#include <vector>
+
+#include "easypbr/render/frame/frame.h"
+#include "easypbr/render/shadow/light_block.h"
+#include "easypbr/render/shadow/shadow_pass.h"
+
+namespace easypbr::render {
+
+/// Keeps the maps of all lights in the layers of one texture, by what they show: a map is drawn when its
+/// light or what casts has changed, not when the camera has. Lights beyond its memory are drawn from maps
+/// made anew for every frame.
+class ShadowMaps {
+  public:
+    /// The caches are shared with other passes, must outlive this one, and are emptied by their owner.
+    ShadowMaps(gpu::MeshCache& meshes, gpu::TextureCache& textures, const gpu::ClosedMeshes& closed,
+               SpacingCache& spacings, gpu::PointCache& points, gpu::SurfelCache& surfels)
+        : splats_(spacings, points, surfels), pass_(meshes, textures, closed, splats_) {}
+
+    /// Takes note of a frame's lights and of what casts; `bounds` are those of its vertices. Nothing is drawn
+    /// when no surface receives a shadow: a bare cloud, labels in their own colours. `casters` must live
+    /// until its last block.
+    void begin(const Frame& frame, const DrawList& casters, const Box3d& bounds, bool received);
+
+    /// Goes back to the first block.
+    void rewind() { next_ = 0; }
+
+    /// The next lights in the order of a block, with their maps drawn. Valid until the next call.
+    LightBlock next_block();
+    bool has_more() const { return next_ < requests_.size(); }
+
+    /// See ShadowPass.
+    void allow_native(bool allow) { pass_.allow_native(allow); }
+
+    /// Changes with what casts shadows and its bounds; of the last frame, as are the bounds.
+    uint64_t casters_generation() const { return casters_generation_; }
+    const Box3d& caster_bounds() const { return bounds_; }
+    SplatShadows& splats() { return splats_; }
+
+    /// How often the maps of a light have been drawn since the beginning; a cube counts once.
+    uint64_t drawn() const { return drawn_; }
+
+  private:
+    /// All that decides about a light's maps, but what casts.
+    using LightKey = std::array<float, 9>;
+    struct Entry {
+        int first_layer = 0, layers = 0;
+        uint64_t casters = 0;     ///< generation of the casters that it shows
+        uint64_t last_frame = 0;  ///< that asked for it
+        uint64_t last_block = 0;
+    };
+    struct Request {
+        const Light* light = nullptr;
+        bool shadowed = false;
+        LightKey key{};
+        ShadowProjection projection;
+        double radius = 0;
+    };
+    /// A part of an object as far as its shadow is concerned.
+    /// What the shader of a caster sees of its material.
+    struct Shaded {
+        std::string text;
+        std::array<float, 12> numbers{};
+        std::array<const void*, 7> images{};
+        bool operator==(const Shaded&) const = default;
+    };
+    struct Caster {
+        Shaded shaded;
+        std::array<uint64_t, 8> revisions;
+        std::array<const void*, 3> images;
+        std::array<float, 3> alpha;
+        Vec3 through{0, 0, 0};
+        std::array<float, 2> thickness;
+        std::array<double, 2> splat;  ///< radius, factor on it
+        int first_face, face_count;
+        Eigen::Matrix<double, 3, 4> T_world_mesh;
+        bool operator==(const Caster&) const = default;
+    };
+
+    static Caster caster_of(const DrawItem& item);
+    Caster splat_of(const DrawItem& item, bool surfels);
+    /// The vertices' bounds and the splats around them.
+    Box3d caster_bounds(const DrawList& list, const Box3d& bounds);
+    void note_casters(const DrawList& list, const Box3d& bounds);
+    static Request request_of(const Light& light, const Frame& frame, const Box3d& bounds);
+    /// Forgets all maps of another size; 0: no maps.
+    void set_resolution(int resolution);
+    /// The entry of a request, its maps drawn; null when there is no room beside the others of this block.
+    const Entry* acquire(const Request& request);
+    void draw(const Request& request, const Entry& entry);
+
+    /// First of so many free layers, made free if need be; -1 when there are none.
+    int allocate(int layers);
+    int free_run(int layers) const;
+    /// Gives back the layers of the entry that has not been asked for the longest, but for those asked for
+    /// since a frame and block.
+    bool evict_before(uint64_t frame, uint64_t block);
+    bool grow(int layers);
+    void make_framebuffers();
+    /// Keeps tints beside the maps only while something needs them.
+    void prepare_tints();
+    void take(int first, int layers, bool taken);
+
+    SplatShadows splats_;
+    ShadowPass pass_;
+    gl::Texture maps_;
+    ShadowTints tints_;  ///< beside the maps while some casters weaken light
+    std::vector<gl::Framebuffer> framebuffers_, tint_framebuffers_;  ///< of each layer
+    std::vector<bool> taken_;                                        ///< layers
+    std::map<LightKey, Entry> entries_;
+    std::vector<Caster> casters_;
+    Box3d bounds_;
+    uint64_t casters_generation_ = 0;  ///< changes with what casts and its bounds
+
+    const DrawList* list_ = nullptr;
+    int resolution_ = 0;
+    bool tinted_ = false;  ///< some casters weaken light instead of stopping it
+    uint64_t frame_ = 0, block_ = 0, drawn_ = 0;
+    std::vector<Request> requests_;
+    size_t next_ = 0;
+};
+
+}  // namespace easypbr::render
