@@ -16,7 +16,7 @@ uniform float u_env_intensity;
 uniform sampler2D u_ambient_occlusion;
 #endif
 #ifdef TRACED
-uniform sampler2D u_open;  // see render/ray_pass.h
+uniform sampler2D u_sky_visibility;  // see render/ray_pass.h
 #endif
 #endif
 
@@ -40,7 +40,7 @@ void main() {
     vec3 sky = u_env_intensity * textureLod(u_irradiance, u_env_from_world * normal, 0.0).rgb;
     light = vec2(luminance(sky));
 #ifdef TRACED
-    light.r = luminance(sky * texelFetch(u_open, ivec2(gl_FragCoord.xy), 0).rgb);
+    light.r = luminance(sky * texelFetch(u_sky_visibility, ivec2(gl_FragCoord.xy), 0).rgb);
 #endif
 #ifdef AMBIENT_OCCLUSION
     light.r *= textureLod(u_ambient_occlusion, uv, 0.0).r;

@@ -17,9 +17,9 @@ vec3 specular_visibility(float n_dot_v, float alpha, float visibility, vec3 f0) 
 
 #ifdef TRACED
 // See render/ray_pass.h.
-uniform sampler2D u_open;
-uniform sampler2D u_bounced;
-uniform sampler2D u_mirrored;
+uniform sampler2D u_sky_visibility;
+uniform sampler2D u_indirect_diffuse;
+uniform sampler2D u_indirect_specular;
 
 vec3 traced(sampler2D target) { return texelFetch(target, ivec2(gl_FragCoord.xy), 0).rgb; }
 #endif
@@ -28,7 +28,7 @@ vec3 traced(sampler2D target) { return texelFetch(target, ivec2(gl_FragCoord.xy)
 vec3 diffuse_light(vec3 normal, float visibility, vec3 albedo) {
     vec3 sky = u_env_intensity * textureLod(u_irradiance, u_env_from_world * normal, 0.0).rgb;
 #ifdef TRACED
-    sky = sky * traced(u_open) + traced(u_bounced);
+    sky = sky * traced(u_sky_visibility) + traced(u_indirect_diffuse);
 #endif
     return sky * diffuse_visibility(visibility, albedo);
 }
@@ -37,7 +37,7 @@ vec3 diffuse_light(vec3 normal, float visibility, vec3 albedo) {
 vec3 mirrored_light(vec3 lobe, float n_dot_v, float alpha, float visibility, vec3 f0) {
     lobe *= u_env_intensity;
 #ifdef TRACED
-    vec4 scene = texelFetch(u_mirrored, ivec2(gl_FragCoord.xy), 0);
+    vec4 scene = texelFetch(u_indirect_specular, ivec2(gl_FragCoord.xy), 0);
     lobe = lobe * (1.0 - scene.a) + scene.rgb;
 #endif
     return lobe * specular_visibility(n_dot_v, alpha, visibility, f0);
@@ -47,7 +47,7 @@ vec3 mirrored_light(vec3 lobe, float n_dot_v, float alpha, float visibility, vec
 vec3 sheen_light(vec3 lobe, float visibility) {
     lobe *= u_env_intensity;
 #ifdef TRACED
-    lobe = lobe * traced(u_open) + traced(u_bounced);
+    lobe = lobe * traced(u_sky_visibility) + traced(u_indirect_diffuse);
 #endif
     return lobe * visibility;
 }

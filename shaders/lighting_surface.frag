@@ -171,7 +171,7 @@ void main() {
 #ifdef ENVIRONMENT
     float visibility = material.z;
 #ifdef TRACED
-    visibility = texelFetch(u_open, ivec2(gl_FragCoord.xy), 0).a;
+    visibility = texelFetch(u_sky_visibility, ivec2(gl_FragCoord.xy), 0).a;
 #endif
 #ifdef AMBIENT_OCCLUSION
     // What the material's own occlusion says of recesses and what the depth buffer says overlap: the darker counts.

@@ -57,7 +57,7 @@ TEST(Refine, BeginsAnewWhenAnythingChanges) {
         return session.refine().began;
     };
     EXPECT_FALSE(began_after([] {}));
-    EXPECT_TRUE(began_after([&] { session.settings().tone.exposure_compensation = 1; }));
+    EXPECT_TRUE(began_after([&] { session.settings().tonemap.exposure_compensation = 1; }));
     EXPECT_TRUE(began_after([&] { session.scene().show(make_box(), "box"); }));
     EXPECT_TRUE(began_after([&] {
         session.scene().get("box").set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(1, 0, 0)));

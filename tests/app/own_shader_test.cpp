@@ -294,7 +294,7 @@ TEST(OwnPass, ReadsTheGBuffer) {
 // In stage light the tone curve comes after the pass; in stage overlay it does not touch it.
 TEST(OwnPass, DrawsBeforeOrPastTheToneCurve) {
     Session session = square_session({"void surface(inout Surface s) { s.emission = vec3(0.125); }"});
-    session.settings().tone.exposure = 2.0f;
+    session.settings().tonemap.exposure = 2.0f;
     session.add_pass("own", render::Stage::light, pass_of("o_color = vec4(0.25, 0.0, 0.0, 0.5);"));
     // 0.25 + (1 - 0.5) 0.125 = 0.3125, times the exposure.
     const auto encoded = [](double linear) {

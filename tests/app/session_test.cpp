@@ -52,7 +52,7 @@ Image constant_image(const Vec3& color) {
 TEST_F(SessionFiles, SavedSettingsReproduceThePicture) {
     Session first = small_session();
     first.settings().camera.azimuth_deg = 77;
-    first.settings().tone.tone_operator = ToneOperator::agx;
+    first.settings().tonemap.tone_operator = ToneOperator::agx;
     render_to_file(first, folder_ / "first.png");
     save_settings(first, {}, folder_ / "look.json");
 

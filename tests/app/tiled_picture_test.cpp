@@ -274,12 +274,12 @@ const Case cases[] = {
          s.lights.key.enabled = true;
      }},
     {"blurred_background", solids, [](Settings& s) { s.background.mode = BackgroundMode::blur; }},
-    {"points", [] { return showing(cloud()); }, [](Settings& s) { s.eye_dome.radius = 8.5f; }},
+    {"points", [] { return showing(cloud()); }, [](Settings& s) { s.edl.radius = 8.5f; }},
     // Its widest ring is 93 pixels from the middle, much farther than splats of 3 pixels ask a tile to see.
     {"points_shaded_widely", [] { return showing(cloud()); },
      [](Settings& s) {
          s.style.point_size = 3.0f;
-         s.eye_dome.radius = 60;
+         s.edl.radius = 60;
      },
      1, 100},
     {"points_blended", [] { return showing(see_through(cloud())); },

@@ -80,10 +80,10 @@ TEST_F(LightsPanel, ChangesAreUndoneAndRedone) {
     brighter.intensity = 9;
     session_.scene().set_light("lamp", brighter);
     settle();
-    session_.settings().tone.exposure_compensation = 1;
+    session_.settings().tonemap.exposure_compensation = 1;
     settle();
     key('Z');
-    EXPECT_EQ(session_.settings().tone.exposure_compensation, 0);
+    EXPECT_EQ(session_.settings().tonemap.exposure_compensation, 0);
     EXPECT_EQ(lamp().intensity, 9);
 }
 

@@ -300,7 +300,7 @@ TEST(History, ForgetsWhatWasUndoneWhenSomethingNewIsDone) {
     EXPECT_FALSE(history.can_undo());
     settings.image.samples = 2;
     history.note(settings);
-    settings.tone.exposure.latch(3);  // inferred: no choice of a person's
+    settings.tonemap.exposure.latch(3);  // inferred: no choice of a person's
     history.note(settings);
     settings.image.samples = 3;
     history.note(settings);

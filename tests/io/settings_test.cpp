@@ -38,7 +38,7 @@ TEST(SettingsFile, KeepsWhatIsAutomaticPinnedAndFollowing) {
     settings.camera.position.latch(Vec3d(1.0 / 3, -2e-17, 1e20));
     settings.camera.target = follow;
     settings.camera.near = 0.1;
-    settings.tone.exposure.latch(0.1f);
+    settings.tonemap.exposure.latch(0.1f);
     settings.lights.key.intensity = 1e-7f;
     settings.image.size = {1920, 1080};
     settings.background.color = Vec3(0.1f, 0.2f, 1.0f / 3);
@@ -50,8 +50,8 @@ TEST(SettingsFile, KeepsWhatIsAutomaticPinnedAndFollowing) {
     EXPECT_TRUE(read.camera.target.is_follow());
     EXPECT_TRUE(read.camera.near.is_pinned());
     EXPECT_EQ(*read.camera.near, 0.1);
-    EXPECT_EQ(*read.tone.exposure, 0.1f);
-    EXPECT_FALSE(read.tone.exposure.is_pinned());
+    EXPECT_EQ(*read.tonemap.exposure, 0.1f);
+    EXPECT_FALSE(read.tonemap.exposure.is_pinned());
     EXPECT_EQ(*read.lights.key.intensity, 1e-7f);
     EXPECT_FALSE(read.lights.fill.intensity.value().has_value());
     EXPECT_EQ(read.image.size, settings.image.size);

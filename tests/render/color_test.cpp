@@ -43,7 +43,7 @@ TEST(Colors, OfLabelsAreExact) {
             app::Session session(scene);
             session.allow_native_geometry(native);
             session.settings().image.size = Vec2i(160, 120);
-            session.settings().tone.exposure_compensation = 1.5f;
+            session.settings().tonemap.exposure_compensation = 1.5f;
             const Image picture = session.render({std::nullopt, samples, app::Encoding::srgb8});
             const Image element = session.render_layers({"element"}).at("element");
             int covered = 0;

@@ -142,7 +142,7 @@ TEST(Lighting, ExposureUndoesIntensity) {
     Scene scene;
     scene.show(make_sphere(), "sphere");
     app::Session session = plain_session(scene);
-    session.settings().tone.tone_operator = ToneOperator::aces;
+    session.settings().tonemap.tone_operator = ToneOperator::aces;
     Light light;
     light.position = Vec3(2, 3, 4);
     light.intensity = 20;
@@ -150,7 +150,7 @@ TEST(Lighting, ExposureUndoesIntensity) {
     const Image a = session.render();
     light.intensity *= 8;
     scene.set_light("light", light);
-    session.settings().tone.exposure = 1.0f / 8;
+    session.settings().tonemap.exposure = 1.0f / 8;
     const Image b = session.render();
     EXPECT_TRUE(std::ranges::equal(a.bytes(), b.bytes()));
 }

@@ -21,7 +21,7 @@ Vec3 tone_mapped(ToneOperator tone_operator, const Vec3& linear, int samples = 1
     Scene scene;
     scene.show(unlit(linear), "square");
     app::Session session = plain_session(scene, 8);
-    session.settings().tone.tone_operator = tone_operator;
+    session.settings().tonemap.tone_operator = tone_operator;
     look_from(session, Vec3d(0, 0, 7));
     const Image image = session.render({std::nullopt, samples, app::Encoding::srgb16});
     Vec3 out;
@@ -83,7 +83,7 @@ TEST(Output, BackgroundColorIsExact) {
         app::Session session = plain_session(scene);
         session.settings().background.mode = BackgroundMode::color;
         session.settings().background.color = Vec3(0x20, 0x40, 0x60) / 255.0f;
-        session.settings().tone.tone_operator = ToneOperator::aces;
+        session.settings().tonemap.tone_operator = ToneOperator::aces;
         session.settings().image.samples = samples;
         const Image image = session.render();
         for (const auto& [x, y] : {std::pair(0, 0), std::pair(63, 63), std::pair(4, 4)}) {

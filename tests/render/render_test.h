@@ -19,8 +19,8 @@ inline app::Session plain_session(const Scene& scene, int size = 64) {
     s.shadows.enabled = false;
     s.ssao.enabled = false;
     for (StudioLight* light : {&s.lights.key, &s.lights.fill, &s.lights.rim}) light->enabled = false;
-    s.tone.tone_operator = ToneOperator::none;
-    s.tone.exposure = 1.0f;
+    s.tonemap.tone_operator = ToneOperator::none;
+    s.tonemap.exposure = 1.0f;
     s.background.mode = BackgroundMode::transparent;
     return session;
 }

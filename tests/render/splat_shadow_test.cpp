@@ -23,7 +23,7 @@ app::Session session_over(Scene& scene, const Mesh& caster, bool native, bool pa
     s.camera.target = Vec3d(0, 0, 0);
     s.camera.position = Vec3d(0, 0, 10);
     s.camera.azimuth_deg = 0;
-    s.eye_dome.enabled = true;
+    s.edl.enabled = true;
     session.allow_native_geometry(native);
     return session;
 }

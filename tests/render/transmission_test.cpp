@@ -304,7 +304,7 @@ TEST(Transmission, ColoursPastTheToneCurveAreSeenThroughGlass) {
     scene.show(wall, "wall");
     scene.show(facing_square(2, glass()), "pane");
     app::Session session = session_of(scene, Vec3d(0, 0, 5));
-    session.settings().tone.exposure = 2.0f;
+    session.settings().tonemap.exposure = 2.0f;
     const Image image = session.render();
     EXPECT_NEAR(linear_from_srgb(image.at<uint8_t>(48, 48)[1] / 255.0f), 0.5 * 0.96, 0.006);
     EXPECT_EQ(image.at<uint8_t>(48, 48)[3], 255);

@@ -293,7 +293,7 @@ TEST(Transparency, PointsBlendInAnyOrder) {
         Scene scene;
         scene.show(Mesh(data), "points");
         app::Session session = plain_session(scene, 32);
-        session.settings().eye_dome.enabled = false;
+        session.settings().edl.enabled = false;
         look_from(session, Vec3d(0, 0, 6), 28);
         std::vector<Hit> expected;
         for (int k = 0; k < 3; ++k)
@@ -328,7 +328,7 @@ TEST(Transparency, DisplayColoursAndLightMix) {
         session.settings().background.mode = BackgroundMode::color;
         session.settings().background.color = Vec3(0, 0, 1);
         const float e = 2;  // the exposure is for light alone
-        session.settings().tone.exposure = e;
+        session.settings().tonemap.exposure = e;
         const Vec3 red(0.5f * e, 0, 0), green(0, 0.8f, 0), blue(0, 0, 1);
         const Vec3 expected = light_in_front ? Vec3(0.5f * red + 0.5f * (0.25f * green + 0.75f * blue))
                                              : Vec3(0.25f * green + 0.75f * (0.5f * red + 0.5f * blue));
@@ -344,7 +344,7 @@ TEST(Transparency, FilesHoldStraightAlpha) {
     Scene scene;
     scene.show(facing_square(4, flat_color(Vec3(0.8f, 0.4f, 0.2f), 0.5f)), "glass");
     app::Session session = plain_session(scene, 16);
-    session.settings().tone.tone_operator = ToneOperator::aces;
+    session.settings().tonemap.tone_operator = ToneOperator::aces;
     look_from(session, Vec3d(0, 0, 6), 10);
     const Image half = session.render();
     scene.get("glass").set_material(flat_color(Vec3(0.8f, 0.4f, 0.2f), 1));

@@ -133,10 +133,10 @@ TEST(Fields, NumbersKeepTheirBits) {
     for (int i = 0; i < 100000; ++i) {
         const float number = std::bit_cast<float>(uint32_t(random()) & 0x7fffffffu);
         if (!(number <= 1e30f)) continue;
-        settings.tone.exposure = number;
+        settings.tonemap.exposure = number;
         Settings read;
         set_from_text(read, "tonemap.exposure", to_text(exposure, exposure.get(settings)));
-        ASSERT_EQ(std::bit_cast<uint32_t>(*read.tone.exposure), std::bit_cast<uint32_t>(number)) << number;
+        ASSERT_EQ(std::bit_cast<uint32_t>(*read.tonemap.exposure), std::bit_cast<uint32_t>(number)) << number;
     }
     settings.camera.margin = 0.1f;
     EXPECT_EQ(to_text(field("camera.margin"), get(settings, "camera.margin")), "0.1");
@@ -155,7 +155,7 @@ TEST(Fields, ReadCommonSpellings) {
     set_from_text(settings, "shading.multiple_scattering", "off");
     EXPECT_FALSE(settings.shading.multiple_scattering);
     set_from_text(settings, "tonemap.operator", "agx");
-    EXPECT_EQ(settings.tone.tone_operator, ToneOperator::agx);
+    EXPECT_EQ(settings.tonemap.tone_operator, ToneOperator::agx);
     set_from_text(settings, "camera.position", "auto");
     EXPECT_FALSE(settings.camera.position.value());
     set_from_text(settings, "camera.position", "follow");

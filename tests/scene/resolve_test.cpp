@@ -142,9 +142,9 @@ TEST(Resolve, HalvesExposureWhenLightDoubles) {
     const float one = resolve(scene, settings, size).exposure;
     scene.lights["sun"].intensity = 2;
     EXPECT_EQ(resolve(scene, settings, size).exposure, one / 2);
-    settings.tone.exposure_compensation = 1;
+    settings.tonemap.exposure_compensation = 1;
     EXPECT_EQ(resolve(scene, settings, size).exposure, one);
-    settings.tone.exposure = 3.0f;
+    settings.tonemap.exposure = 3.0f;
     EXPECT_EQ(resolve(scene, settings, size).exposure, 6);
     EXPECT_EQ(resolve(scene_of(blob()), unlit(), size).exposure, 1) << "nothing lights the scene";
 }

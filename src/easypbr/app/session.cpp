@@ -130,7 +130,7 @@ SceneSnapshot Session::snapshot() {
         for (StudioLight* light : {&settings_.lights.key, &settings_.lights.fill, &settings_.lights.rim})
             light->enabled.release();
         settings_.environment.sun.release();
-        settings_.tone.exposure.release();
+        settings_.tonemap.exposure.release();
     }
     environment_hash_ = hash;
     return scene;

@@ -243,14 +243,14 @@ void add_shading(Table& table) {
     table.push_back(make("shading.dielectric_f0", shading(&ShadingSettings::dielectric_f0),
                          "Reflectance of non-metals at normal incidence.", "", {0, 1}));
 
-    const auto eye_dome = [](auto member) { return at(&Settings::eye_dome, member); };
+    const auto eye_dome = [](auto member) { return at(&Settings::edl, member); };
     table.push_back(
-        make("edl.enabled", eye_dome(&EyeDomeSettings::enabled),
+        make("edl.enabled", eye_dome(&EdlSettings::enabled),
              "Eye-dome lighting of points without normals: what lies behind an edge is darkened."));
-    table.push_back(make("edl.strength", eye_dome(&EyeDomeSettings::strength),
+    table.push_back(make("edl.strength", eye_dome(&EdlSettings::strength),
                          "How much eye-dome lighting darkens.", "", {0, 100}));
     table.push_back(
-        make("edl.radius", eye_dome(&EyeDomeSettings::radius),
+        make("edl.radius", eye_dome(&EdlSettings::radius),
              "Distance at which eye-dome lighting looks for edges, in pixels of a picture 1080 high.",
              "pixels", {0.1, 100}));
 
@@ -265,15 +265,15 @@ void add_shading(Table& table) {
         "the nearest is drawn.",
         "", {1, 10000}));
 
-    const auto tone = [](auto member) { return at(&Settings::tone, member); };
-    table.push_back(make("tonemap.operator", tone(&ToneSettings::tone_operator),
+    const auto tone = [](auto member) { return at(&Settings::tonemap, member); };
+    table.push_back(make("tonemap.operator", tone(&TonemapSettings::tone_operator),
                          "Curve from scene light to the picture's range."));
     table.push_back(
-        make("tonemap.exposure", tone(&ToneSettings::exposure),
+        make("tonemap.exposure", tone(&TonemapSettings::exposure),
              "Factor on scene light before the tone curve; automatic: a white surface facing the camera "
              "averages 1.",
              "", {0, 1e30}));
-    table.push_back(make("tonemap.exposure_compensation", tone(&ToneSettings::exposure_compensation),
+    table.push_back(make("tonemap.exposure_compensation", tone(&TonemapSettings::exposure_compensation),
                          "Makes the picture brighter or darker by this many doublings.", "stops", {-30, 30}));
 }
 

@@ -66,7 +66,7 @@ void resolve_lights(const detail::Content& content, ResolvedSettings& resolved) 
 }
 
 void resolve_exposure(const detail::Content& content, ResolvedSettings& resolved) {
-    ToneSettings& tone = resolved.settings.tone;
+    TonemapSettings& tone = resolved.settings.tonemap;
     if (!tone.exposure.value()) detail::fill(tone.exposure, detail::metered_exposure(content, resolved));
     resolved.exposure = *tone.exposure * std::exp2(tone.exposure_compensation);
 }

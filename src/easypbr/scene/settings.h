@@ -99,7 +99,7 @@ struct ShadingSettings {
 };
 
 /// Of points without normals (Boucheny 2009).
-struct EyeDomeSettings {
+struct EdlSettings {
     bool enabled = true;
     float strength = 0.4f;
     float radius = 1.4f;
@@ -153,7 +153,7 @@ struct MotionBlurSettings {
     float shutter = 0.5f;
 };
 
-struct ToneSettings {
+struct TonemapSettings {
     ToneOperator tone_operator = ToneOperator::aces;
     Auto<float> exposure;
     float exposure_compensation = 0;
@@ -214,14 +214,14 @@ struct Settings {
     ShadowSettings shadows;
     GroundSettings ground;
     ShadingSettings shading;
-    EyeDomeSettings eye_dome;
+    EdlSettings edl;
     TransparencySettings transparency;
     SsaoSettings ssao;
     RaySettings rays;
     BloomSettings bloom;
     DepthOfFieldSettings depth_of_field;
     MotionBlurSettings motion_blur;
-    ToneSettings tone;
+    TonemapSettings tonemap;
     MaterialSettings material;
     Style style;  ///< overrides of every object's style; automatic: the object's own value
     PointsSettings points;

@@ -66,7 +66,7 @@ void add_points(const Source& source, DrawList& list) {
     const bool lit = source.style.lit.value_or(!source.colors.labels);
     item.kind = kind_of(source);
     if (lit && mesh.N.empty())
-        item.kind = source.settings.eye_dome.enabled ? SurfaceKind::eye_dome : SurfaceKind::display;
+        item.kind = source.settings.edl.enabled ? SurfaceKind::eye_dome : SurfaceKind::display;
     else if (!lit && source.colors.exact)
         item.kind = SurfaceKind::exact;
     list.points.push_back(std::move(item));

@@ -26,7 +26,7 @@ struct Peel {
 };
 
 /// What is seen through a layer.
-struct Behind {
+struct TransmissionInputs {
     const gl::Texture* picture = nullptr;  ///< radiance of all that is farther, with mip levels
     int levels = 1;
     const gl::Texture* depth = nullptr;        ///< of the opaque surfaces
@@ -62,14 +62,14 @@ struct Frame {
     int sample_index = 0;
     int sample_count = 1;
     bool with_ids = false;
-    bool with_overlay = false;                 ///< something is shown past light and tone curve
-    bool with_exact = false;                   ///< colours of tables, which nothing may mix with others
-    bool with_ground = false;                  ///< a plane under the content belongs to the picture
-    ExtensionSet extensions = 0;               ///< of the surfaces that are drawn and lit now
-    bool spreads = false;                      ///< light may fall beyond `covered`
-    bool partly_covered = false;               ///< the radiance may hold coverages between 0 and 1
-    const Peel* peel = nullptr;                ///< set while a layer is drawn
-    const Behind* behind = nullptr;            ///< set while a layer is lit through which light goes
+    bool with_overlay = false;                   ///< something is shown past light and tone curve
+    bool with_exact = false;                     ///< colours of tables, which nothing may mix with others
+    bool with_ground = false;                    ///< a plane under the content belongs to the picture
+    ExtensionSet extensions = 0;                 ///< of the surfaces that are drawn and lit now
+    bool spreads = false;                        ///< light may fall beyond `covered`
+    bool partly_covered = false;                 ///< the radiance may hold coverages between 0 and 1
+    const Peel* peel = nullptr;                  ///< set while a layer is drawn
+    const TransmissionInputs* behind = nullptr;  ///< set while a layer is lit through which light goes
     const TracedLight* traced = nullptr;       ///< set while surfaces are lit whose sky rays have looked for
     Mat4d clip_from_view = Mat4d::Identity();  ///< jittered
     PixelRect covered;                         ///< all surfaces and lines are inside

@@ -150,7 +150,7 @@ void LightingPass::set_extensions(const gl::Program& program, const Frame& frame
 }
 
 void LightingPass::set_behind(const gl::Program& program, const Frame& frame) {
-    const Behind& behind = *frame.behind;
+    const TransmissionInputs& behind = *frame.behind;
     const gl::Texture* sources[] = {behind.picture, behind.depth, behind.exit_depth, behind.exit_normal};
     const char* samplers[] = {"u_behind", "u_behind_depth", "u_exit_depth", "u_exit_normal"};
     for (int i = 0; i < 4; ++i) {
@@ -238,9 +238,10 @@ void LightingPass::set_environment(const gl::Program& program, const Frame& fram
         program.set("u_lobe_slope", lobe_slope(frame.sample_index, frame.sample_count));
     program.set("u_env_intensity", frame.resolved->settings.environment.intensity);
     if (!frame.traced) return;
-    const std::pair<const char*, const gl::Texture*> sources[] = {{"u_open", &frame.traced->open},
-                                                                  {"u_bounced", &frame.traced->bounced},
-                                                                  {"u_mirrored", &frame.traced->mirrored}};
+    const std::pair<const char*, const gl::Texture*> sources[] = {
+        {"u_sky_visibility", &frame.traced->sky_visibility},
+        {"u_indirect_diffuse", &frame.traced->indirect_diffuse},
+        {"u_indirect_specular", &frame.traced->indirect_specular}};
     for (int i = 0; i < 3; ++i) {
         program.set(sources[i].first, traced_unit + i);
         sources[i].second->bind(unsigned(traced_unit + i));

@@ -16,7 +16,7 @@ double doublings_per_depth(const Camera& camera) {
 }
 
 void set_eye_dome_uniforms(const gl::Program& program, const Frame& frame) {
-    const EyeDomeSettings& eye_dome = frame.resolved->settings.eye_dome;
+    const EdlSettings& eye_dome = frame.resolved->settings.edl;
     const float radius = eye_dome.radius * float(frame.picture_size.y()) / 1080;
     program.set("u_size", Vec2(frame.size.cast<float>()));
     program.set("u_eye_dome", Vec2(eye_dome.strength, std::max(1.0f, radius)));

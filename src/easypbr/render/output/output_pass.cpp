@@ -11,7 +11,7 @@ namespace {
 
 std::vector<std::string> curve_defines(const Frame& frame, Encoding encoding) {
     if (encoding == Encoding::scene_linear) return {"SCENE_LINEAR"};
-    switch (frame.resolved->settings.tone.tone_operator) {
+    switch (frame.resolved->settings.tonemap.tone_operator) {
         case ToneOperator::reinhard:
             return {"TONE_REINHARD"};
         case ToneOperator::agx:

@@ -29,7 +29,7 @@ std::optional<RayGround> ray_ground(const Frame& frame) {
                      .radius = double(*ground.radius),
                      .color = linear_from_srgb(ground.color),
                      .roughness = ground.roughness,
-                     .catches = GroundPass::catches(*frame.resolved)};
+                     .shadow_catcher = GroundPass::is_shadow_catcher(*frame.resolved)};
 }
 
 }  // namespace
@@ -384,8 +384,9 @@ void Renderer::draw_lights(Frame& frame, const GBuffer& targets) {
         run("rays", [&] { rays_.draw(frame, targets, ray_scene_); });
         frame.traced = &rays_.light();
     }
-    const bool catches = frame.with_ground && &targets == &targets_ && GroundPass::catches(*frame.resolved);
-    if (catches) ground_.begin_light(frame, targets);
+    const bool shadow_catcher =
+        frame.with_ground && &targets == &targets_ && GroundPass::is_shadow_catcher(*frame.resolved);
+    if (shadow_catcher) ground_.begin_light(frame, targets);
     LightBlock block;
     bool first = true;
     do {
@@ -395,7 +396,7 @@ void Renderer::draw_lights(Frame& frame, const GBuffer& targets) {
         const bool with_environment = first && !frame.resolved->environment.empty();
         const gpu::EnvironmentMaps* maps = with_environment ? &environment_ : nullptr;
         run("lighting", [&] { lighting_.draw(frame, targets, block, maps); });
-        if (catches)
+        if (shadow_catcher)
             run("ground", [&] { lighting_.draw_caught(frame, targets, block, maps, ground_.light()); });
         first = false;
     } while (shadow_maps_.has_more());

@@ -99,7 +99,7 @@ Guard guard_of(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec
     Guard guard;
     guard.pixels = smallest_guard + settings.points.hole_filling + point_reach(scene, resolved);
     // Eye-dome lighting looks four of its radii far.
-    guard.pixels += int(std::ceil(4 * std::max(1.0f, settings.eye_dome.radius * float(picture.y()) / 1080)));
+    guard.pixels += int(std::ceil(4 * std::max(1.0f, settings.edl.radius * float(picture.y()) / 1080)));
     const bool transmits = has_transmission(scene, resolved);
     if (*settings.ssao.enabled && !bounds.isEmpty()) {
         const double depth = whole.orthographic() ? 1 : nearest_depth(bounds, whole.camera);

@@ -14,7 +14,7 @@ struct MeshSurface::Hit {
     bool front;  ///< counter-clockwise on the screen
 };
 
-MeshSurface::MeshSurface(const DrawItem& item, const MeshKnowledge& knowledge, const Mat4d& clip_from_mesh)
+MeshSurface::MeshSurface(const DrawItem& item, const MeshFacts& knowledge, const Mat4d& clip_from_mesh)
     : item_(&item), mesh_(&knowledge) {
     // In double precision: not the snapped coordinates that decide visibility.
     for (int row = 0; row < 4; ++row)

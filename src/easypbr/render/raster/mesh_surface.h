@@ -6,7 +6,7 @@
 namespace easypbr::render {
 
 /// What is known of a mesh beyond its data.
-struct MeshKnowledge {
+struct MeshFacts {
     Array3f N;
     bool normals_agree = true;    ///< the winding tells the normals' side
     bool closed_outward = false;  ///< from outside, back faces need not be drawn
@@ -17,7 +17,7 @@ struct MeshKnowledge {
 /// A mesh item with all that its pixels need.
 class MeshSurface {
   public:
-    MeshSurface(const DrawItem& item, const MeshKnowledge& knowledge, const Mat4d& clip_from_mesh);
+    MeshSurface(const DrawItem& item, const MeshFacts& knowledge, const Mat4d& clip_from_mesh);
 
     /// The triangle `face` of the item's part at a point of the picture in normalised device coordinates:
     /// albedo, normal, depth, element.
@@ -32,7 +32,7 @@ class MeshSurface {
     double clip(int row, const float* p) const;
 
     const DrawItem* item_;
-    const MeshKnowledge* mesh_;
+    const MeshFacts* mesh_;
     double clip_[4][4];
     Mat3 normal_from_mesh_;
     bool mirrored_;

@@ -27,7 +27,7 @@ Mat4d clip_from(const Frame& frame, const DrawItem& item) {
     return frame.clip_from_view * frame.camera.view() * item.object->T_world_mesh.matrix();
 }
 
-ScreenTriangles triangles_of(const Frame& frame, const DrawItem& item, const MeshKnowledge& known,
+ScreenTriangles triangles_of(const Frame& frame, const DrawItem& item, const MeshFacts& known,
                              const Mat4d& clip_from_mesh) {
     const MeshData& mesh = item.mesh();
     const bool both_sides =
@@ -65,8 +65,8 @@ bool SoftwareGeometryPass::handles_points(const DrawList& list) {
                                [](const DrawItem& item) { return item.alpha == AlphaMode::opaque; });
 }
 
-const MeshKnowledge& SoftwareGeometryPass::knowledge_of(const MeshData& mesh) {
-    MeshKnowledge& known = knowledge_[{mesh.V.revision(), mesh.N.revision(), mesh.F.revision()}];
+const MeshFacts& SoftwareGeometryPass::facts_of(const MeshData& mesh) {
+    MeshFacts& known = facts_[{mesh.V.revision(), mesh.N.revision(), mesh.F.revision()}];
     known.used = true;
     if (known.N.empty()) {
         known.N = mesh.N.empty() ? smooth_normals(mesh) : mesh.N;
@@ -78,15 +78,15 @@ const MeshKnowledge& SoftwareGeometryPass::knowledge_of(const MeshData& mesh) {
 }
 
 void SoftwareGeometryPass::evict_unused() {
-    std::erase_if(knowledge_, [](const auto& item) { return !item.second.used; });
-    for (auto& [key, known] : knowledge_) known.used = false;
+    std::erase_if(facts_, [](const auto& item) { return !item.second.used; });
+    for (auto& [key, known] : facts_) known.used = false;
 }
 
 bool SoftwareGeometryPass::add_meshes(const Frame& frame, const DrawList& list,
                                       std::vector<Surface>& surfaces) {
     uint32_t next_id = 0;
     for (const DrawItem& item : list.meshes) {
-        const MeshKnowledge& known = knowledge_of(item.mesh());
+        const MeshFacts& known = facts_of(item.mesh());
         const Mat4d clip_from_mesh = clip_from(frame, item);
         if (!visibility_.draw(triangles_of(frame, item, known, clip_from_mesh), next_id)) return false;
         surfaces.push_back({next_id, &item, MeshSurface(item, known, clip_from_mesh), std::nullopt});
@@ -151,8 +151,7 @@ bool SoftwareGeometryPass::cover(const Frame& frame, const DrawList& list, std::
     TriangleRaster raster;
     raster.set_area(frame.size, area);
     for (const DrawItem& item : list.meshes)
-        if (!render::cover(raster,
-                           triangles_of(frame, item, knowledge_of(item.mesh()), clip_from(frame, item)),
+        if (!render::cover(raster, triangles_of(frame, item, facts_of(item.mesh()), clip_from(frame, item)),
                            covered)) {
             std::ranges::fill(covered, uint8_t(0));
             return false;

@@ -41,12 +41,12 @@ class SoftwareGeometryPass {
 
   private:
     struct Surface;
-    const MeshKnowledge& knowledge_of(const MeshData& mesh);
+    const MeshFacts& facts_of(const MeshData& mesh);
     bool add_meshes(const Frame& frame, const DrawList& list, std::vector<Surface>& surfaces);
     void add_points(const Frame& frame, const DrawList& list, std::vector<Surface>& surfaces);
     void resolve(const Frame& frame, const std::vector<Surface>& surfaces);
 
-    std::map<std::tuple<uint64_t, uint64_t, uint64_t>, MeshKnowledge> knowledge_;
+    std::map<std::tuple<uint64_t, uint64_t, uint64_t>, MeshFacts> facts_;
     SpacingCache& spacings_;
     gpu::ClosedMeshes& closed_;
     VisibilityBuffer visibility_;

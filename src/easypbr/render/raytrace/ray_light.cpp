@@ -157,7 +157,7 @@ Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, 
     Vec3 sum = Vec3::Zero(), weight = Vec3::Ones(), direction = along;
     RayHit hit = first;
     for (int bounce = 0; bounce < bounces; ++bounce) {
-        if (!hit.item && scene_->ground()->catches)
+        if (!hit.item && scene_->ground()->shadow_catcher)
             return sum + weight.cwiseProduct(caught(hit, direction, random));
         const float dielectric = resolved_->settings.shading.dielectric_f0;
         const RaySurface s =

@@ -50,9 +50,9 @@ struct RayPass::Pixels {
         read(1, gl::Format::rg16, normal);
         read(2, gl::Format::rgba8, material);
         read(3, gl::Format::r32f, depth);
-        open.assign(count, half4(Vec3::Ones(), 1));
-        bounced.assign(count, half4(Vec3::Zero(), 0));
-        mirrored.assign(count, half4(Vec3::Zero(), 0));
+        sky_visibility.assign(count, half4(Vec3::Ones(), 1));
+        indirect_diffuse.assign(count, half4(Vec3::Zero(), 0));
+        indirect_specular.assign(count, half4(Vec3::Zero(), 0));
         world_from_view = frame.camera.T_world_cam.linear();
     }
 
@@ -74,9 +74,9 @@ struct RayPass::Pixels {
         const auto put = [&](const gl::Texture& texture, const std::vector<Half4>& pixels) {
             texture.upload_area(area.x, area.y, area.width, area.height, std::as_bytes(std::span(pixels)));
         };
-        put(light.open, open);
-        put(light.bounced, bounced);
-        put(light.mirrored, mirrored);
+        put(light.sky_visibility, sky_visibility);
+        put(light.indirect_diffuse, indirect_diffuse);
+        put(light.indirect_specular, indirect_specular);
     }
 
     const Frame& frame;
@@ -84,7 +84,7 @@ struct RayPass::Pixels {
     std::vector<uint16_t> normal;
     std::vector<uint8_t> material;
     std::vector<float> depth;
-    std::vector<Half4> open, bounced, mirrored;
+    std::vector<Half4> sky_visibility, indirect_diffuse, indirect_specular;
     Mat3d world_from_view;
 };
 
@@ -95,8 +95,10 @@ bool RayPass::is_on(const ResolvedSettings& resolved, int sample_count) {
 }
 
 void RayPass::make_targets(Vec2i size) {
-    if (light_.open && light_.open.width() == size.x() && light_.open.height() == size.y()) return;
-    for (gl::Texture* texture : {&light_.open, &light_.bounced, &light_.mirrored})
+    if (light_.sky_visibility && light_.sky_visibility.width() == size.x() &&
+        light_.sky_visibility.height() == size.y())
+        return;
+    for (gl::Texture* texture : {&light_.sky_visibility, &light_.indirect_diffuse, &light_.indirect_specular})
         *texture = gl::Texture(gl::Format::rgba16f, size.x(), size.y());
 }
 
@@ -117,7 +119,7 @@ Vec3 face_at(const Vec3& place, const Seen& seen, const RayScene& scene) {
 }
 
 struct Sent {
-    Vec3 open{1, 1, 1}, bounced{0, 0, 0}, mirrored{0, 0, 0};
+    Vec3 sky_visibility{1, 1, 1}, indirect_diffuse{0, 0, 0}, indirect_specular{0, 0, 0};
     float covered = 0;     ///< of the reflection
     float visibility = 1;  ///< of all around
 };
@@ -158,8 +160,8 @@ void send_diffuse(const Seen& seen, const RayScene& scene, const RayLight& rays,
         }
     }
     if (!(around > 0)) return;
-    sent.open = arrives.cwiseQuotient(all);
-    sent.bounced = bounced / float(used);
+    sent.sky_visibility = arrives.cwiseQuotient(all);
+    sent.indirect_diffuse = bounced / float(used);
     sent.visibility = open / around;
 }
 
@@ -177,11 +179,11 @@ void send_mirrored(const Seen& seen, const RayScene& scene, const RayLight& rays
         if (!hit) continue;
         sent.covered += 1;
         RayRandom random(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(i), 1);
-        sent.mirrored += rays.radiance(*hit, direction, false, random);
+        sent.indirect_specular += rays.radiance(*hit, direction, false, random);
     }
     if (used == 0) return;
     sent.covered /= float(used);
-    sent.mirrored /= float(used);
+    sent.indirect_specular /= float(used);
 }
 
 }  // namespace
@@ -226,9 +228,10 @@ void RayPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& s
         send_diffuse(seen, scene, rays_, pixel, frame.sample_index * diffuse, diffuse, sent);
         if (material[3] != uint8_t(SurfaceKind::ground_catcher))
             send_mirrored(seen, scene, rays_, pixel, frame.sample_index * mirrored, mirrored, sent);
-        pixels.open[at] = half4(sent.open, recesses(mean_visibility(x, y, sent.visibility), material[2]));
-        pixels.bounced[at] = half4(sent.bounced, 0);
-        pixels.mirrored[at] = half4(sent.mirrored, sent.covered);
+        pixels.sky_visibility[at] =
+            half4(sent.sky_visibility, recesses(mean_visibility(x, y, sent.visibility), material[2]));
+        pixels.indirect_diffuse[at] = half4(sent.indirect_diffuse, 0);
+        pixels.indirect_specular[at] = half4(sent.indirect_specular, sent.covered);
     };
     const PixelRect& area = pixels.area;
     parallel_for(size_t(area.height), 4, [&](size_t row) {

@@ -16,7 +16,8 @@ struct RayGround {
     double radius = 1;    ///< around the casters' centre; beyond it there is none
     Vec3 color{0, 0, 0};  ///< linear
     float roughness = 1;
-    bool catches = false;  ///< shows what lies behind it where it is open to the sky, in place of a colour
+    bool shadow_catcher =
+        false;  ///< shows what lies behind it where it is open to the sky, in place of a colour
 };
 
 /// Where a ray ends.

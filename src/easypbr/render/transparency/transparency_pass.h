@@ -64,7 +64,7 @@ class TransparencyPass {
     uint32_t radiance_id_ = 0, overlay_id_ = 0;
     gl::OcclusionQuery query_;
     Peel peel_;
-    Behind behind_;
+    TransmissionInputs behind_;
     gl::Texture picture_;  ///< of what is behind, with mip levels
     std::vector<gl::Framebuffer> levels_;
     int count_ = 0;

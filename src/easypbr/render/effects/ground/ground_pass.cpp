@@ -31,7 +31,7 @@ bool GroundPass::is_on(const ResolvedSettings& resolved) {
     return ground.mode != GroundMode::none && ground.height.value() && ground.radius.value();
 }
 
-bool GroundPass::catches(const ResolvedSettings& resolved) {
+bool GroundPass::is_shadow_catcher(const ResolvedSettings& resolved) {
     return is_on(resolved) && resolved.settings.ground.mode == GroundMode::shadow;
 }
 
@@ -52,7 +52,7 @@ void GroundPass::widen_depth(Camera& camera, const ResolvedSettings& resolved, c
 
 void GroundPass::draw(const Frame& frame, const GBuffer& targets) {
     const GroundSettings& ground = frame.resolved->settings.ground;
-    const bool catches = ground.mode == GroundMode::shadow;
+    const bool shadow_catcher = ground.mode == GroundMode::shadow;
     const Plane plane = plane_of(frame.camera, *frame.resolved);
     const gl::Program& program = surface_.get(camera_defines(frame));
     targets.surface_emission.bind();
@@ -66,7 +66,7 @@ void GroundPass::draw(const Frame& frame, const GBuffer& targets) {
     program.set("u_plane", Vec4(up.x(), up.y(), up.z(), float(plane.offset)));
     program.set("u_color", linear_from_srgb(ground.color));
     program.set("u_roughness", ground.roughness);
-    program.set("u_kind", code_of(catches ? SurfaceKind::ground_catcher : SurfaceKind::ground_plane));
+    program.set("u_kind", code_of(shadow_catcher ? SurfaceKind::ground_catcher : SurfaceKind::ground_plane));
     draw_screen_triangle();
 }
 
@@ -85,9 +85,9 @@ void GroundPass::begin_light(const Frame& frame, const GBuffer& targets) {
 
 void GroundPass::finish(const Frame& frame, const GBuffer& targets, const Box3d& bounds) {
     const GroundSettings& ground = frame.resolved->settings.ground;
-    const bool catches = ground.mode == GroundMode::shadow;
+    const bool shadow_catcher = ground.mode == GroundMode::shadow;
     std::vector<std::string> defines = camera_defines(frame);
-    if (catches) defines.emplace_back("CATCHER");
+    if (shadow_catcher) defines.emplace_back("CATCHER");
     const gl::Program& program = finish_.get(defines);
     targets.lit.bind();
     targets.test_covered();
@@ -95,7 +95,7 @@ void GroundPass::finish(const Frame& frame, const GBuffer& targets, const Box3d&
     set_camera_uniforms(program, frame);
     program.set("u_material", 0);
     targets.material.bind(0);
-    if (catches) {
+    if (shadow_catcher) {
         program.set("u_light", 1);
         light_.bind(1);
         program.set("u_strength", ground.strength);

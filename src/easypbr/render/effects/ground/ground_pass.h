@@ -17,7 +17,7 @@ namespace easypbr::render {
 class GroundPass {
   public:
     static bool is_on(const ResolvedSettings& resolved);
-    static bool catches(const ResolvedSettings& resolved);
+    static bool is_shadow_catcher(const ResolvedSettings& resolved);
 
     /// An orthographic camera whose depth holds all of the ground that is in the picture, as far as 30 radii.
     static void widen_depth(Camera& camera, const ResolvedSettings& resolved, const Box3d& bounds);
