@@ -53,7 +53,7 @@ void set_projection(Camera& camera, const std::string& name) {
     camera.projection = name == "perspective" ? Projection::perspective : Projection::orthographic;
 }
 
-void bind_makers(nb::class_<Camera>& camera) {
+void bind_camera_makers(nb::class_<Camera>& camera) {
     camera
         .def_static("look_at", look_at, nb::arg("position"), nb::arg("target"),
                     nb::arg("up").none() = nb::none(), nb::arg("fov_y_deg") = 30.0,
@@ -81,7 +81,7 @@ void bind_makers(nb::class_<Camera>& camera) {
 void bind_camera(nb::module_& module) {
     nb::class_<Camera> camera(module, "Camera", "A pinhole or orthographic camera with a pose.");
     camera.def(nb::init<>());
-    bind_makers(camera);
+    bind_camera_makers(camera);
     camera
         .def_prop_rw(
             "T_world_cam", [](const Camera& c) { return matrix_to_numpy(c.T_world_cam.matrix()); }, set_pose,

@@ -53,7 +53,7 @@ std::vector<double> numbers_for(const nb::object& object, size_t count, const ch
     return values;
 }
 
-void construct(CameraPath* self, const nb::object& keys, const nb::object& segment_s,
+void construct_camera_path(CameraPath* self, const nb::object& keys, const nb::object& segment_s,
                const nb::object& fov_y_deg, const std::string& mode, const std::string& ease, bool closed,
                const std::string& axes) {
     const auto kind = choice_named<Axes>("axes", axes, axes_names);
@@ -78,8 +78,8 @@ CameraPath orbit(const Camera& camera, const ArrayLike& center, const nb::object
                              choice_named<PathEase>("ease", ease, ease_names));
 }
 
-void bind_makers(nb::class_<CameraPath>& path) {
-    path.def("__init__", construct, nb::arg("keys"), nb::arg("segment_s") = 1.0,
+void bind_camera_path_makers(nb::class_<CameraPath>& path) {
+    path.def("__init__", construct_camera_path, nb::arg("keys"), nb::arg("segment_s") = 1.0,
              nb::arg("fov_y_deg").none() = nb::none(), nb::arg("mode") = "smooth", nb::arg("ease") = "none",
              nb::arg("closed") = false, nb::arg("axes") = "opengl",
              nb::sig(
@@ -139,7 +139,7 @@ void bind_times(nb::class_<CameraPath>& path) {
 
 void bind_camera_path(nb::module_& module) {
     nb::class_<CameraPath> path(module, "CameraPath", "Where the camera is at each moment.");
-    bind_makers(path);
+    bind_camera_path_makers(path);
     bind_times(path);
     path.def(
             "pose", [](const CameraPath& p, double time) { return matrix_to_numpy(p.pose(time).matrix()); },

@@ -9,7 +9,7 @@
 namespace easypbr::python {
 namespace {
 
-void construct(Environment* self, const PathOrArray& source) {
+void construct_environment(Environment* self, const PathOrArray& source) {
     if (source.is_none()) {
         new (self) Environment();
     } else if (is_path(source)) {
@@ -28,7 +28,7 @@ void bind_environment(nb::module_& module) {
         module, "Environment",
         "An equirectangular picture (HDR, EXR, PNG, JPEG, or an array; the first row is straight "
         "up) that lights the scene from infinitely far.")
-        .def("__init__", construct, nb::arg("source").none() = nb::none())
+        .def("__init__", construct_environment, nb::arg("source").none() = nb::none())
         .def_prop_ro("name", [](const Environment& e) { return e.empty() ? std::string() : e.name(); })
         .def_prop_ro("empty", &Environment::empty)
         .def(

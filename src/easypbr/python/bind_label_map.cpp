@@ -78,7 +78,7 @@ UnknownLabels unknown_from(const std::string& text) {
     throw ArgumentError(fmt::format("LabelMap unknown: expected 'refused' or 'unlabelled', got '{}'", text));
 }
 
-void construct(LabelMapHandle* self, const NamesLike& names, const ColorsLike& colors,
+void construct_label_map(LabelMapHandle* self, const NamesLike& names, const ColorsLike& colors,
                const std::optional<std::vector<int32_t>>& labels, std::optional<int32_t> unlabelled,
                const std::string& unknown, const std::string& name) {
     std::vector<LabelClass> classes = classes_from(names, labels);
@@ -123,7 +123,7 @@ std::vector<T> column(const LabelMapHandle& handle, T LabelClass::*member) {
 
 void bind_constructors(nb::class_<LabelMapHandle>& map) {
     map.def(
-        "__init__", construct, nb::arg("names"), nb::arg("colors").none() = nb::none(),
+        "__init__", construct_label_map, nb::arg("names"), nb::arg("colors").none() = nb::none(),
         nb::arg("labels").none() = nb::none(), nb::arg("unlabelled").none() = nb::none(),
         nb::arg("unknown") = "refused", nb::arg("name") = "",
         "`names`: a list for labels 0, 1, 2, ... or for `labels`, or a dict of label to name. `colors`: "

@@ -113,7 +113,7 @@ void set_shader(MaterialHandle& m, nb::handle object) {
 
 /// Keyword arguments are assignments to attributes; a misspelt one is an AttributeError.
 template <class Handle>
-void construct(Handle* self, const nb::kwargs& values) {
+void construct_material(Handle* self, const nb::kwargs& values) {
     // Python owns the object: an AttributeError holds on to it.
     nb::object object = nb::cast(Handle());
     for (auto [name, value] : values) nb::setattr(object, name, value);
@@ -136,7 +136,7 @@ std::string style_text(nb::handle style) {
 void bind_style(nb::module_& module) {
     nb::class_<StyleHandle> style(module, "Style",
                                   "How a mesh is drawn; `auto` where it follows from the data.");
-    style.def("__init__", construct<StyleHandle>, nb::sig("def __init__(self, **values: object) -> None"));
+    style.def("__init__", construct_material<StyleHandle>, nb::sig("def __init__(self, **values: object) -> None"));
     style.def("__repr__", style_text);
     const std::string prefix = "style.";
     for (const Field& field : fields()) {
@@ -163,7 +163,7 @@ void bind_material(nb::module_& module) {
     MaterialClass material(module, "Material",
                            "glTF 2.0's metallic-roughness model and its extensions. Colours are linear "
                            "numbers, or text ('#rrggbb', sRGB).");
-    material.def("__init__", construct<MaterialHandle>,
+    material.def("__init__", construct_material<MaterialHandle>,
                  nb::sig("def __init__(self, **values: object) -> None"));
     material.def_prop_rw(
         "name", [](const MaterialHandle& m) { return m.get().name; },
