@@ -58,7 +58,7 @@ class ShadowPass {
     const gpu::ClosedMeshes& closed_;
     SplatShadows& splats_;
     ProgramVariants programs_{"shadow_depth.vert", "shadow_depth.frag"};
-    ProgramVariants shaded_{"geometry_mesh.vert", "geometry_mesh.frag"};
+    ProgramVariants shaded_{"geometry_mesh.vert", "shadow_shaded.frag"};
     bool native_ = true;
     DepthBuffer depths_;
     VisibilityBuffer points_;
