@@ -1,4 +1,4 @@
-// What transparent casters take from the light on its way to a receiver, from the sums that common_tint.glsl leaves. Exact
+// What transparent casters take from the light on its way to a receiver, from the sums that shadow_target.glsl leaves. Exact
 // before the first caster of a texel, behind the last one, and between two; between more than two it is what two at the
 // same ends with the same mean depth would take.
 uniform sampler2DArray u_tint_absorption;

@@ -32,7 +32,7 @@ class ShadowPass {
     void draw(const ShadowView& view, const DrawList& casters, gl::Texture& maps, int layer,
               const gl::Framebuffer& framebuffer);
 
-    /// Fills one layer of the tints with the others, see shaders/common_tint.glsl: what all of them take from
+    /// Fills one layer of the tints with the others, see shaders/shadow_target.glsl: what all of them take from
     /// the light, and where. `framebuffer` has both as attachments.
     void draw_tints(const ShadowView& view, const DrawList& casters, const gl::Framebuffer& framebuffer);
 
