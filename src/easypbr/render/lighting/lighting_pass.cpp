@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "easypbr/gpu/dfg.h"
@@ -17,20 +18,20 @@ constexpr int extension_unit = 12;
 constexpr int behind_unit = 20;
 constexpr int traced_unit = 24;
 
-/// As the blocks in shaders/lighting_surface.frag and common_shadow.glsl.
-struct LightUniforms {
-    struct {
-        Vec4 position, color, direction, cone;
-    } lights[lights_per_block];
-};
-struct ShadowUniforms {
-    struct {
-        Vec4 x, y, z, window, depth, size;
-    } maps[lights_per_block];
-};
+/// What the uniform blocks hold is stated once, in the text that the shaders include.
+namespace blocks {
+using vec4 = Vec4;
+#include "light_blocks.glsl"
+// std140 rounds the size of an element up to that of a vec4.
+static_assert(sizeof(Light) == 4 * sizeof(vec4) && sizeof(ShadowMap) == 6 * sizeof(vec4));
+static_assert(sizeof(vec4) == 16 && alignof(vec4) <= 16);
+}  // namespace blocks
+
+using LightUniforms = std::array<blocks::Light, lights_per_block>;
+using ShadowUniforms = std::array<blocks::ShadowMap, lights_per_block>;
 
 void write_light(const Light& light, const Vec3d& camera, LightUniforms& uniforms, size_t index) {
-    auto& to = uniforms.lights[index];
+    blocks::Light& to = uniforms[index];
     const float kind = light.type == LightType::directional ? 0.0f
                        : light.type == LightType::point     ? 1.0f
                                                             : 2.0f;
@@ -50,7 +51,7 @@ Vec4 vec4(double x, double y, double z, double w) {
 
 void write_shadow(const LightShadow& shadow, const Vec3d& camera, int resolution, ShadowUniforms& uniforms,
                   size_t index) {
-    auto& to = uniforms.maps[index];
+    blocks::ShadowMap& to = uniforms[index];
     const ShadowView& view = shadow.projection->views[0];
     // A cube's faces turn the axes themselves.
     const Mat3d R = shadow.projection->is_cube() ? Mat3d(Mat3d::Identity()) : view.R_light_world;

@@ -194,13 +194,13 @@ void ShadowPass::draw_shaded(const ShadowView& view, const DrawItem& item) {
     const bool varies = tints && item.textured() && m.transmission_texture;
     const Frame frame;  // of the core model
     // The face's side by its derivatives: nothing is known of the winding here.
-    std::vector<std::string> defines = {"SHADOW", "SURFACE_SHADER", "FACE_NORMAL"};
+    std::vector<std::string> defines = {"SURFACE_SHADER", "FACE_NORMAL"};
     if (item.style.flat) defines.emplace_back("FLAT");
     if (item.with_colors) defines.emplace_back("VERTEX_COLOR");
     if (item.alpha == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
     if (item.alpha == AlphaMode::opaque) defines.emplace_back("COVERS");
     if (tints) defines.emplace_back("TINT");
-    if (varies) defines.emplace_back("SHADOW_TRANSMISSION");
+    if (varies) defines.emplace_back("TRANSMISSION_TEXTURE");
     add_material_defines(frame, item, defines);
     const gl::Program& program = with_shader(shaded_, m.shader, defines);
     program.use();

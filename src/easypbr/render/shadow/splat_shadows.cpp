@@ -104,9 +104,7 @@ void SplatShadows::draw_points(const ShadowView& view, const DrawItem& item, int
 
 void SplatShadows::draw_surfels(const ShadowView& view, const DrawItem& item) {
     const gpu::SurfelBuffers& buffers = surfels_.get(item.mesh());
-    std::vector<std::string> defines = alpha_defines(item);
-    defines.emplace_back("SURFEL");
-    const gl::Program& program = surfel_programs_.get(defines);
+    const gl::Program& program = surfel_programs_.get(alpha_defines(item));
     program.use();
     program.set("u_clip_from_mesh", clip_from_mesh(view, item));
     program.set("u_light", light_in_mesh(view, item));

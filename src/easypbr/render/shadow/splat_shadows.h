@@ -50,8 +50,8 @@ class SplatShadows {
     gpu::PointCache& points_;
     gpu::SurfelCache& surfels_;
     std::map<std::pair<uint64_t, uint64_t>, Reach> reaches_;  ///< of surfels, by the revisions of T and B
-    ProgramVariants point_programs_{"shadow_points.vert", "shadow_splats.frag"};
-    ProgramVariants surfel_programs_{"shadow_surfels.vert", "shadow_splats.frag"};
+    ProgramVariants point_programs_{"shadow_points.vert", "shadow_points.frag"};
+    ProgramVariants surfel_programs_{"shadow_surfels.vert", "shadow_surfels.frag"};
 };
 
 }  // namespace easypbr::render

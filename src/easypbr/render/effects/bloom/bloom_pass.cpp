@@ -54,16 +54,16 @@ void BloomPass::draw(const Frame& frame, const gl::Texture& radiance) {
     gather(frame, radiance);
     const size_t count = levels_.size();
     for (size_t i = 1; i < count; ++i)
-        resample(levels_[i - 1].light, levels_[i - 1].extent, levels_[i].lit, "DOWN");
+        resample(levels_[i - 1].light, levels_[i - 1].extent, levels_[i].lit, {"DOWN"});
     // Upwards each level becomes the mean of itself and the levels below, all counting alike.
     for (size_t i = count; i-- > 0;) {
-        resample(levels_[i].light, levels_[i].extent, levels_[i].glowing, "SAME");
+        resample(levels_[i].light, levels_[i].extent, levels_[i].glowing, {});
         if (i + 1 == count) continue;
         const float own = 1 / float(count - i);
         glEnable(GL_BLEND);
         glBlendColor(own, own, own, own);
         glBlendFunc(GL_ONE_MINUS_CONSTANT_COLOR, GL_CONSTANT_COLOR);
-        resample(levels_[i + 1].glow, levels_[i + 1].extent, levels_[i].glowing, "UP");
+        resample(levels_[i + 1].glow, levels_[i + 1].extent, levels_[i].glowing, {"UP"});
         glDisable(GL_BLEND);
     }
     glBlendFunc(GL_ONE, GL_ZERO);
@@ -77,9 +77,9 @@ void BloomPass::gather(const Frame& frame, const gl::Texture& radiance) {
     glEnable(GL_SCISSOR_TEST);
     // A texel lies between the block of its own index and the next.
     glScissor(area.x, area.y, area.width + 1, area.height + 1);
-    std::vector<std::string> defines = {"BLOCKS"};
+    std::vector<std::string> defines;
     if (frame.resolved->suppress_fireflies) defines.emplace_back("SUPPRESS_FIREFLIES");
-    const gl::Program& blocks = gather_.get(defines);
+    const gl::Program& blocks = blocks_.get(defines);
     summed_.bind();
     blocks.use();
     set_bloom_uniforms(blocks, frame);
@@ -101,8 +101,8 @@ void BloomPass::gather(const Frame& frame, const gl::Texture& radiance) {
 }
 
 void BloomPass::resample(const gl::Texture& from, const Vec2& extent, const gl::Framebuffer& to,
-                         const char* step) {
-    const gl::Program& program = resample_.get({step});
+                         const std::vector<std::string>& step) {
+    const gl::Program& program = resample_.get(step);
     to.bind();
     program.use();
     program.set("u_source", 0);

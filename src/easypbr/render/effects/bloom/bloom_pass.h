@@ -27,13 +27,15 @@ class BloomPass {
     };
     void make_levels(Vec2i size, int count);
     void gather(const Frame& frame, const gl::Texture& radiance);
-    /// Draws what a texture of this extent holds to another level, by "DOWN", "UP", or "SAME".
-    void resample(const gl::Texture& from, const Vec2& extent, const gl::Framebuffer& to, const char* step);
+    /// Draws what a texture of this extent holds to another level, by {"DOWN"}, {"UP"}, or {}: of the same size.
+    void resample(const gl::Texture& from, const Vec2& extent, const gl::Framebuffer& to,
+                  const std::vector<std::string>& step);
 
     Vec2i size_{0, 0};
     std::vector<Level> levels_;
     gl::Texture sums_[4];  ///< of the blocks of pixels around the first level's texels
     gl::Framebuffer summed_;
+    ProgramVariants blocks_{"screen_triangle.vert", "bloom_blocks.frag"};
     ProgramVariants gather_{"screen_triangle.vert", "bloom_gather.frag"};
     ProgramVariants resample_{"screen_triangle.vert", "bloom_resample.frag"};
 };
