@@ -3,6 +3,7 @@
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
+from typing import Any
 
 from . import _easypbr
 from .errors import ArgumentError, Error
@@ -29,7 +30,7 @@ class MeshLoader:
         prefetch: int = 4,
         device: str = "cpu",
         on_error: str = "raise",
-    ):
+    ) -> None:
         if on_error not in ("raise", "skip"):
             raise ArgumentError(f"on_error: expected 'raise' or 'skip', got '{on_error}'")
         if device != "cpu":
@@ -40,7 +41,7 @@ class MeshLoader:
         self.device = device
         self.on_error = on_error
 
-    def __new__(cls, *arguments, **options):
+    def __new__(cls, *arguments: Any, **options: Any) -> "MeshLoader":
         return super().__new__(_with_torch(cls))
 
     def __len__(self) -> int:
@@ -58,7 +59,7 @@ class MeshLoader:
             yield _moved(_tensors(mesh) if self.transform is None else self.transform(mesh), self.device)
 
 
-def _with_torch(cls):
+def _with_torch(cls: type) -> type:
     """The class, derived from torch's IterableDataset too if torch has been imported: only then can it matter."""
     data = getattr(sys.modules.get("torch"), "utils", None)
     if data is None or not hasattr(data, "data") or issubclass(cls, data.data.IterableDataset):
@@ -73,14 +74,14 @@ def _own_share(paths: list) -> list:
     return paths if worker is None else paths[worker.id :: worker.num_workers]
 
 
-def _tensors(mesh) -> dict:
+def _tensors(mesh: "_easypbr.Mesh") -> dict:
     if mesh.children:
         mesh = mesh.merge()  # all nodes of a hierarchy
     arrays = {name: getattr(mesh, name) for name in _ARRAYS}
     return {name: eigen2tensor(array) for name, array in arrays.items() if len(array)}
 
 
-def _moved(sample, device: str):
+def _moved(sample: Any, device: str) -> Any:
     if device == "cpu":
         return sample
     if isinstance(sample, dict):

@@ -4,11 +4,14 @@ import sys
 import traceback
 import weakref
 from collections.abc import Callable, Iterable, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 
 from . import _easypbr
 from .errors import ArgumentError
+
+Value = TypeVar("Value")
 
 _KINDS = ("move", "press", "release", "scroll", "key_down", "key_up", "text", "drop", "resize", "focus_lost")
 
@@ -19,16 +22,16 @@ class Panel:
     The value that is given is where the widget begins. From then on a widget keeps what the person chose, by its name, so
     that `rate = ui.slider("rate", 0.1, 0, 1)` is all there is to it; give another value and the widget shows that."""
 
-    def __init__(self):
-        self._handle = None
-        self._memory = {}
+    def __init__(self) -> None:
+        self._handle: _easypbr._Widgets | None = None
+        self._memory: dict[str, tuple[Any, Any]] = {}
 
     def _widgets(self) -> "_easypbr._Widgets":
         if self._handle is None:
             raise ArgumentError("a panel's widgets can be drawn only while its function runs")
         return self._handle
 
-    def _remembered(self, name, given, draw):
+    def _remembered(self, name: str, given: Value, draw: Callable[[Value], Any]) -> Value:
         """Draws a widget that keeps its value while the value that is given stays the same."""
         last_given, value = self._memory.get(name, (given, given))
         if given != last_given:
@@ -37,7 +40,7 @@ class Panel:
         self._memory[name] = (given, value)
         return value
 
-    def text(self, text) -> None:
+    def text(self, text: object) -> None:
         """A paragraph."""
         self._widgets().text(str(text))
 
@@ -83,10 +86,11 @@ class Panel:
         widgets = self._widgets()
         return self._remembered(name, value, lambda v: widgets.text_field(name, v))
 
-    def color(self, name: str, value=(1.0, 1.0, 1.0)) -> tuple[float, float, float]:
+    def color(self, name: str, value: Iterable[float] = (1.0, 1.0, 1.0)) -> tuple[float, float, float]:
         """sRGB, 0 to 1."""
         widgets = self._widgets()
-        return self._remembered(name, tuple(map(float, value)), lambda v: widgets.color(name, v))
+        red, green, blue = value
+        return self._remembered(name, (float(red), float(green), float(blue)), lambda v: widgets.color(name, v))
 
     def plot(self, name: str, values: Iterable[float], range: tuple[float, float] | None = None) -> None:
         """A curve, with its last value beside the name. `range`: what its height shows, by default all values."""
@@ -101,11 +105,17 @@ class WindowCallbacks:
     """The part of a Viewer that calls its user's functions. They may use the viewer, but for update(), show() and
     screenshot(), which draw what they are called from."""
 
-    def _init_callbacks(self) -> None:
-        self._before_draw, self._after_draw, self._told = [], [], {}
-        self._panels, self._handlers, self._handler_number = {}, [], None
+    _handle: "_easypbr.ViewerHandle"
 
-    def add_panel(self, name: str, function: Callable[[Panel], None] | None = None):
+    def _init_callbacks(self) -> None:
+        self._before_draw: list[Callable[[], object]] = []
+        self._after_draw: list[Callable[[], object]] = []
+        self._told: dict[int, str] = {}  # tracebacks, by who raised them
+        self._panels: dict[str, tuple[Callable[[Panel], object], Panel]] = {}
+        self._handlers: list[tuple[Callable[[_easypbr.Event], object], str | None]] = []
+        self._handler_number: int | None = None
+
+    def add_panel(self, name: str, function: Callable[[Panel], object] | None = None) -> Any:
         """A panel in the window, drawn by function(ui) in each of its frames; see Panel. What it raises is shown in the
         panel with its traceback, and the loop goes on. Also as a decorator: @view.add_panel("Training")."""
         if function is None:
@@ -114,7 +124,12 @@ class WindowCallbacks:
             raise ArgumentError(f"add_panel: expected a function, got a {type(function).__name__}")
         self._panels[name] = (function, Panel())
         viewer = weakref.ref(self)  # The library must not keep alive who owns it.
-        self._handle.add_panel(name, lambda widgets: viewer()._draw_panel(name, widgets))
+
+        def draw(widgets: "_easypbr._Widgets") -> str | None:
+            owner = viewer()
+            return None if owner is None else owner._draw_panel(name, widgets)
+
+        self._handle.add_panel(name, draw)
         return function
 
     def remove_panel(self, name: str) -> None:
@@ -122,7 +137,7 @@ class WindowCallbacks:
         self._handle.remove_panel(name)
         del self._panels[name]
 
-    def _draw_panel(self, name: str, widgets) -> str | None:
+    def _draw_panel(self, name: str, widgets: "_easypbr._Widgets") -> str | None:
         function, panel = self._panels[name]
         panel._handle = widgets
         try:
@@ -130,18 +145,18 @@ class WindowCallbacks:
         finally:
             panel._handle = None
 
-    def before_draw(self, function: Callable[[], None]) -> Callable[[], None]:
+    def before_draw(self, function: Callable[[], object]) -> Callable[[], object]:
         """Calls `function` in every update() before it draws. What it raises is shown in the window with its traceback,
         and the loop goes on. Also as a decorator."""
         self._before_draw.append(function)
         return function
 
-    def after_draw(self, function: Callable[[], None]) -> Callable[[], None]:
+    def after_draw(self, function: Callable[[], object]) -> Callable[[], object]:
         """Calls `function` in every update() after it has drawn. Also as a decorator."""
         self._after_draw.append(function)
         return function
 
-    def on_event(self, function: Callable | None = None, kind: str | None = None):
+    def on_event(self, function: Callable | None = None, kind: str | None = None) -> Any:
         """Calls function(event) for what is done with mouse and keyboard, files that are dropped and another size of the
         window, but not for what panels take for themselves; see Event. When it returns True the viewer does nothing else about
         it. `kind`: only events of this kind. Also as a decorator: @view.on_event(kind="key_down")."""
@@ -154,7 +169,12 @@ class WindowCallbacks:
         self._handlers.append((function, kind))
         if self._handler_number is None:
             viewer = weakref.ref(self)
-            self._handler_number = self._handle.on_event(lambda event: viewer()._dispatch(event))
+
+            def dispatch(event: "_easypbr.Event") -> bool:
+                owner = viewer()
+                return owner is not None and owner._dispatch(event)
+
+            self._handler_number = self._handle.on_event(dispatch)
         return function
 
     def remove_callback(self, function: Callable) -> None:
@@ -167,7 +187,7 @@ class WindowCallbacks:
         """Shows a message in the window for a few seconds."""
         self._handle.notify(text, error)
 
-    def _dispatch(self, event) -> bool:
+    def _dispatch(self, event: "_easypbr.Event") -> bool:
         handled = False
         for function, kind in list(self._handlers):
             if kind is None or kind == event.kind:
@@ -178,14 +198,15 @@ class WindowCallbacks:
         for function in list(functions):
             self._call(function)
 
-    def _call(self, function, *arguments, in_panel: bool = False):
+    def _call(self, function: Callable, *arguments: object, in_panel: bool = False) -> tuple[Any, str | None]:
         """Calls a user's function: what it returned, and the traceback of an exception. That is written to stderr and
         shown in the window, once, unless its panel shows it."""
         try:
             return function(*arguments), None
         except Exception as error:
             # From the user's own function on; how it was called says nothing.
-            failure = traceback.format_exception(type(error), error, error.__traceback__.tb_next)
+            at = error.__traceback__ and error.__traceback__.tb_next
+            failure = traceback.format_exception(type(error), error, at)
             text = "".join(failure).rstrip()
             if self._told.get(id(function)) != text:
                 self._told[id(function)] = text

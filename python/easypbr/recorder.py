@@ -1,12 +1,16 @@
 """Recorder: pictures of a viewer as files, one by one or as recordings of many frames."""
 
 import atexit
+import os
 import weakref
 from collections.abc import Callable
 from pathlib import Path
 
+from numpy.typing import ArrayLike
+
 from . import _easypbr
 from .errors import ArgumentError
+from .panels import WindowCallbacks
 
 #: Recorders that may be recording when the program ends.
 _started: "weakref.WeakSet[Recorder]" = weakref.WeakSet()
@@ -26,17 +30,22 @@ def watch_recorder(recorder: "Recorder") -> None:
 class Recorder:
     """Pictures of a viewer as files, and recordings: frames are encoded beside the drawing, all of them, in order."""
 
-    def __init__(self, viewer):
-        self._viewer = weakref.ref(viewer)
+    def __init__(self, viewer: WindowCallbacks) -> None:
         self._handle = viewer._handle
 
-    def record(self, path, size=None, samples: int | None = None, deep: bool = False) -> Path:
+    def record(self, path: str | os.PathLike, size: ArrayLike | None = None, samples: int | None = None, deep: bool = False) -> Path:
         """Writes one picture, complete when the call returns: PNG (16 bits with `deep`), JPEG, HDR or EXR, by the
         extension."""
         return self._handle.record(path, size, samples, deep)
 
     def start(
-        self, path, fps: float = 30.0, size=None, samples: int | None = None, codec: str = "", deep: bool = False
+        self,
+        path: str | os.PathLike,
+        fps: float = 30.0,
+        size: ArrayLike | None = None,
+        samples: int | None = None,
+        codec: str = "",
+        deep: bool = False,
     ) -> "Recorder":
         """Begins a recording: a video (MP4, MOV, MKV, WebM, GIF) or numbered pictures ("out/frame_%04d.png", or a
         folder), by the name. `with view.recorder.start("out.mp4"):` stops it at the end of the block. `codec` is
@@ -45,7 +54,7 @@ class Recorder:
         _started.add(self)
         return self
 
-    def add_frame(self, picture=None) -> None:
+    def add_frame(self, picture: ArrayLike | None = None) -> None:
         """Draws the scene as it is as the next frame, and lets view.time make its step. A `picture` of the
         recording's size is taken as it is."""
         self._handle.add_frame(picture)
@@ -67,10 +76,10 @@ class Recorder:
     def record_path(
         self,
         path: "_easypbr.CameraPath",
-        out,
+        out: str | os.PathLike,
         fps: float = 30.0,
         frames: int | None = None,
-        size=None,
+        size: ArrayLike | None = None,
         samples: int | None = None,
         codec: str = "",
         on_frame: Callable[[int, float], None] | None = None,
@@ -80,9 +89,8 @@ class Recorder:
         was. Returns the number of frames."""
         if not isinstance(path, _easypbr.CameraPath):
             raise ArgumentError(f"record_path: expected a CameraPath, got a {type(path).__name__}")
-        viewer = self._viewer()
         before = self._handle.camera_state
-        camera = viewer.camera
+        camera = self._handle.camera
         try:
             times = path.frame_times(fps) if frames is None else path.times(frames)
             with self.start(out, fps, size, samples, codec):
@@ -92,7 +100,7 @@ class Recorder:
                 for number, seconds in enumerate(times):
                     if on_frame is not None:
                         on_frame(number, seconds)
-                    viewer.camera = path.camera(seconds, camera)
+                    self._handle.camera = path.camera(seconds, camera)
                     self.add_frame()
                 return self.frame_count
         finally:
@@ -101,5 +109,5 @@ class Recorder:
     def __enter__(self) -> "Recorder":
         return self
 
-    def __exit__(self, *_) -> None:
+    def __exit__(self, *_: object) -> None:
         self.stop()

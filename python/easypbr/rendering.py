@@ -1,11 +1,13 @@
 """render(): one call from data to a picture."""
 
 import os
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import _easypbr
-from .convert import as_mesh
 from .errors import ArgumentError, UnknownNameError
 from .scene import Scene
 from .viewer import Viewer
@@ -21,16 +23,16 @@ _SHORT_NAMES = {
 
 
 def render(
-    what,
-    out=None,
-    size=None,
+    what: Any,
+    out: str | os.PathLike | None = None,
+    size: ArrayLike | None = None,
     samples: int | None = None,
-    environment=None,
+    environment: Any = None,
     hdr: bool = False,
     camera: "_easypbr.Camera | None" = None,
-    background=None,
-    settings=None,
-    **values,
+    background: Any = None,
+    settings: Mapping | str | os.PathLike | None = None,
+    **values: Any,
 ) -> np.ndarray:
     """A picture of `what`: a path, a Mesh, a Scene, (V, F), a dict of arrays, or a trimesh, Open3D or PyVista object.
 
@@ -56,12 +58,12 @@ def render(
     return picture
 
 
-def render_png(what) -> bytes:
+def render_png(what: Any) -> bytes:
     """The picture as a PNG file's bytes: what notebooks show of a mesh."""
     return _easypbr.encode_png(render(what))
 
 
-def _scene_of(what) -> Scene:
+def _scene_of(what: Any) -> Scene:
     if isinstance(what, Scene):
         return what
     scene = Scene()
@@ -69,13 +71,13 @@ def _scene_of(what) -> Scene:
     return scene
 
 
-def _set_environment(view: Viewer, environment) -> None:
+def _set_environment(view: Viewer, environment: Any) -> None:
     if not isinstance(environment, (str, os.PathLike)) and not isinstance(environment, _easypbr.Environment):
         environment = _easypbr.Environment(environment)
     view.load_environment_map(environment)
 
 
-def _set_background(view: Viewer, background) -> None:
+def _set_background(view: Viewer, background: Any) -> None:
     mode = {"env": "environment"}.get(background, background) if isinstance(background, str) else None
     if mode in _easypbr.field("background.mode").choices and mode not in ("color", "image"):
         view.settings["background.mode"] = mode

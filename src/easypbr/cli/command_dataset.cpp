@@ -1,11 +1,13 @@
 // The generator of data sets is a part of the Python package; this hands over to it.
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
+#include <sstream>
 
 #include "easypbr/cli/command.h"
 #include "easypbr/core/error.h"
@@ -13,6 +15,17 @@
 
 namespace easypbr::cli {
 namespace {
+
+constexpr const char* hint =
+    "the generator is a part of the Python package; set EASYPBR_PYTHON to the Python that has it";
+
+/// `python -m` would search the current folder for modules first, and run a numpy.py that lies there. Python
+/// has an option against it (-P) from 3.11 on only.
+constexpr const char* start =
+    "import sys\n"
+    "sys.path[:] = [folder for folder in sys.path if folder]\n"
+    "from easypbr.dataset.__main__ import main\n"
+    "sys.exit(main())\n";
 
 struct DatasetOptions {
     std::string spec, output, count, seed, workers, threads, engine, address, writers, on_error;
@@ -51,19 +64,37 @@ void declare(CLI::App& command, DatasetOptions& o) {
     command.add_flag("-q,--quiet", o.quiet, "No progress");
 }
 
-/// Python's path. The package sets the variable when it runs the command line itself; where `make build` has
-/// made this program, its environment stands beside the build folder.
+/// Where a program of this name is. Of PATH only absolute folders count: the current one is not trusted.
+std::string found_in_path(const std::string& name) {
+    const char* path = std::getenv("PATH");
+    std::istringstream folders(path ? path : "/usr/local/bin:/usr/bin:/bin");
+    for (std::string folder; std::getline(folders, folder, ':');) {
+        const fs::path program = fs::path(folder) / name;
+        if (program.is_absolute() && access(program.c_str(), X_OK) == 0) return program.string();
+    }
+    throw ContextError(fmt::format("dataset: there is no {} in PATH: {}", name, hint));
+}
+
+bool same_owner(const fs::path& a, const fs::path& b) {
+    struct stat of_a = {}, of_b = {};
+    return stat(a.c_str(), &of_a) == 0 && stat(b.c_str(), &of_b) == 0 && of_a.st_uid == of_b.st_uid;
+}
+
+/// Python's absolute path. The package sets the variable when it runs the command line itself; where `make
+/// build` has made this program, its environment stands beside the build folder.
 std::string python() {
-    const char* given = std::getenv("EASYPBR_PYTHON");
-    if (given && *given) return given;
+    if (const char* given = std::getenv("EASYPBR_PYTHON"); given && *given)
+        return std::strchr(given, '/') ? fs::absolute(given).string() : found_in_path(given);
     std::error_code error;
-    const fs::path own =
-        fs::read_symlink("/proc/self/exe", error).parent_path().parent_path() / ".venv/bin/python";
-    return !error && fs::exists(own, error) ? own.string() : "python3";
+    const fs::path self = fs::read_symlink("/proc/self/exe", error);
+    const fs::path own = self.parent_path().parent_path() / ".venv/bin/python";
+    // Of a program in a folder that others may write to, such as /tmp, the environment may be theirs.
+    const bool is_ours = !error && same_owner(self, own.parent_path()) && fs::exists(own, error);
+    return is_ours ? own.string() : found_in_path("python3");
 }
 
 int run(const DatasetOptions& o) {
-    std::vector<std::string> arguments = {python(), "-m", "easypbr.dataset"};
+    std::vector<std::string> arguments = {python(), "-c", start};
     if (!o.spec.empty()) arguments.push_back(o.spec);
     if (o.demo) arguments.emplace_back("--demo");
     if (o.quiet) arguments.emplace_back("--quiet");
@@ -76,12 +107,12 @@ int run(const DatasetOptions& o) {
     std::vector<char*> pointers;
     for (std::string& argument : arguments) pointers.push_back(argument.data());
     pointers.push_back(nullptr);
+    // For the worker processes, which are started by Python itself.
+    setenv("PYTHONSAFEPATH", "1", 1);
     std::fflush(nullptr);
-    execvp(pointers[0], pointers.data());
+    execv(pointers[0], pointers.data());
     throw ContextError(
-        fmt::format("dataset: cannot run {} ({}): the generator is a part of the Python package; set "
-                    "EASYPBR_PYTHON to the Python that has it",
-                    arguments[0], std::strerror(errno)));
+        fmt::format("dataset: cannot run {} ({}): {}", arguments[0], std::strerror(errno), hint));
 }
 
 }  // namespace

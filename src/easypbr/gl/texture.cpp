@@ -9,6 +9,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/gl/context.h"
+#include "easypbr/gl/pace.h"
 
 namespace easypbr::gl {
 namespace {
@@ -236,6 +237,7 @@ void Framebuffer::read(unsigned index, Format format, int x, int y, int width, i
                        std::span<std::byte> pixels) const {
     if (pixels.size() < size_t(width) * height * pixel_bytes(format))
         throw ArgumentError("framebuffer read: the buffer is too small");
+    wait_for_driver();
     read_to(index, format, x, y, width, height, pixels.data());
 }
 

@@ -229,7 +229,10 @@ void raise_kept(SharedViewer& self) {
 }
 
 bool update_window(SharedViewer& self) {
-    const bool open = self.run([](Viewer& viewer) { return viewer.update(); });
+    const bool open = self.run([](Viewer& viewer) {
+        const Uninterrupted whole;
+        return viewer.update();
+    });
     raise_kept(self);
     return open;
 }

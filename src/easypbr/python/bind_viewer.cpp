@@ -189,7 +189,10 @@ void bind_window(ViewerClass& viewer) {
             "screenshot",
             [](SharedViewer& self, const nb::object& size, float scale) {
                 const std::optional<Vec2i> pixels = optional_size(size);
-                Image screen = self.run([&](Viewer& v) { return v.screenshot(pixels, scale); });
+                Image screen = self.run([&](Viewer& v) {
+                    const Uninterrupted whole;
+                    return v.screenshot(pixels, scale);
+                });
                 raise_kept(self);
                 return to_numpy(std::move(screen));
             },

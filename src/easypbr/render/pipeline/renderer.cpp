@@ -12,6 +12,7 @@
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
 #include "easypbr/gl/context.h"
+#include "easypbr/gl/pace.h"
 
 namespace easypbr::render {
 namespace {
@@ -82,7 +83,8 @@ Renderer::~Renderer() = default;
 void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved, const DrawOptions& options,
                     const SettingsImages& images) {
     begin(scene, resolved, options, images);
-    while (add_sample() < options.samples) continue;
+    gl::Pace pace;
+    while (add_sample() < options.samples) pace.step();
     finish();
 }
 

@@ -35,20 +35,22 @@ namespace easypbr::render {
 /// pixels' centres.
 enum class Layer {
     albedo,             ///< RGBA f32, linear base colour, alpha 1 where there is geometry
-    normal,             ///< RGB f32, unit world normal, 0 where there is nothing
+    normal_world,       ///< RGB f32, unit world normal, 0 where there is nothing
     depth,              ///< one channel f32, distance along the optical axis, 0 where there is nothing
     roughness,          ///< one channel f32
     metallic,           ///< one channel f32
     occlusion,          ///< one channel f32, the material's
     ambient_occlusion,  ///< one channel f32, part of the surroundings that is seen; needs ssao.enabled
-    id,      ///< one channel f32, 1 + place of the object in the snapshot, 0 where there is nothing; exact
-    element  ///< one channel f32, 1 + index of the face or point in its object, 0 where there is nothing;
-             ///< exact up to 2^24
+    object_id,  ///< one channel f32, 1 + place of the object in the snapshot, 0 where there is nothing; exact
+    element_id  ///< one channel f32, 1 + index of the face or point in its object, 0 where there is nothing;
+                ///< exact up to 2^24
 };
 
-/// "albedo", "normal", ... Throws NameError with the nearest name.
+/// "albedo", "normal_world", ... Throws NameError with the nearest name, or with what a former name became.
 Layer layer_named(const std::string& name);
 const std::vector<std::string>& layer_names();
+/// What a layer is called now that was "normal", "id" or "element"; empty for other names.
+std::string layer_formerly(const std::string& name);
 
 struct DrawOptions {
     Vec2i size{800, 600};

@@ -33,14 +33,23 @@ PixelType pixel_type(gl::Format format) {
 
 const std::vector<std::string>& layer_names() {
     static const std::vector<std::string> names = {
-        "albedo", "normal", "depth", "roughness", "metallic", "occlusion", "ambient_occlusion",
-        "id",     "element"};
+        "albedo",    "normal_world",      "depth",     "roughness", "metallic",
+        "occlusion", "ambient_occlusion", "object_id", "element_id"};
     return names;
+}
+
+std::string layer_formerly(const std::string& name) {
+    return name == "normal"    ? "normal_world"
+           : name == "id"      ? "object_id"
+           : name == "element" ? "element_id"
+                               : "";
 }
 
 Layer layer_named(const std::string& name) {
     const auto& names = layer_names();
     const auto found = std::find(names.begin(), names.end(), name);
+    if (const std::string now = layer_formerly(name); !now.empty())
+        throw NameError(fmt::format("there is no layer '{}': it is called '{}'", name, now));
     if (found == names.end())
         throw NameError(fmt::format("there is no layer '{}'{}: expected {}", name, did_you_mean(name, names),
                                     fmt::join(names, ", ")));
@@ -65,7 +74,7 @@ Image Renderer::begin_reading(gl::Readback& readback) const {
 
 Image Renderer::read_layer(Layer layer) const {
     const std::vector<float> depth = read<float>(targets_.surface, 3, gl::Format::r32f);
-    const int channels = layer == Layer::albedo ? 4 : layer == Layer::normal ? 3 : 1;
+    const int channels = layer == Layer::albedo ? 4 : layer == Layer::normal_world ? 3 : 1;
     Image image(targets_.size().x(), targets_.size().y(), channels, PixelType::f32);
     float* to = image.pixels<float>().data();
     const auto for_each_covered = [&](auto&& body) {
@@ -84,19 +93,19 @@ Image Renderer::read_layer(Layer layer) const {
             for (size_t c = 0; c < 3; ++c) to[4 * i + c] = float(texels[4 * i + c]) / 65535.0f;
             to[4 * i + 3] = 1;
         });
-    } else if (layer == Layer::normal) {
+    } else if (layer == Layer::normal_world) {
         const auto texels = read<uint16_t>(targets_.surface, 1, gl::Format::rg16);
         for_each_covered([&](size_t i) {
             const Vec3 n = oct_decode(Vec2(texels[2 * i], texels[2 * i + 1]) / 32767.5f - Vec2(1, 1));
             std::copy_n(n.data(), 3, to + 3 * i);
         });
-    } else if (layer == Layer::id || layer == Layer::element) {
+    } else if (layer == Layer::object_id || layer == Layer::element_id) {
         if (!targets_.id)
             throw ArgumentError(fmt::format("layer {}: the last picture was drawn without ids",
                                             layer_names()[size_t(layer)]));
         const auto texels =
-            read<uint32_t>(targets_.surface_ids, layer == Layer::id ? 5 : 6, gl::Format::r32ui);
-        if (layer == Layer::id) {
+            read<uint32_t>(targets_.surface_ids, layer == Layer::object_id ? 5 : 6, gl::Format::r32ui);
+        if (layer == Layer::object_id) {
             for_each_covered([&](size_t i) { to[i] = float(texels[i]); });
         } else {
             // Elements of the user's own data, not of what was made of them to be drawn.
