@@ -1,4 +1,4 @@
-"""Panels of one's own in the window of a viewer, and functions that it calls."""
+"""Custom panels in the window of a viewer, and callbacks."""
 
 import sys
 import traceback
@@ -14,10 +14,10 @@ _KINDS = ("move", "press", "release", "scroll", "key_down", "key_up", "text", "d
 
 
 class Panel:
-    """What a panel's function draws with, from top to bottom: every method shows a widget and returns its value.
+    """Widgets of a panel, from top to bottom: every method shows a widget and returns its value.
 
-    The value that is given is where the widget begins. From then on a widget keeps what the person chose, by its name, so
-    that `rate = ui.slider("rate", 0.1, 0, 1)` is all there is to it; give another value and the widget shows that."""
+    The argument is the initial value. A widget keeps the user's value, by its name, as in
+    `rate = ui.slider("rate", 0.1, 0, 1)`; another initial value replaces it."""
 
     def __init__(self):
         self._handle = None
@@ -29,7 +29,7 @@ class Panel:
         return self._handle
 
     def _remembered(self, name, given, draw):
-        """Draws a widget that keeps its value while the value that is given stays the same."""
+        """Draws a widget that keeps its value while the initial value stays the same."""
         last_given, value = self._memory.get(name, (given, given))
         if given != last_given:
             value = given
@@ -42,15 +42,15 @@ class Panel:
         self._widgets().text(str(text))
 
     def separator(self) -> None:
-        """A line across."""
+        """A horizontal line."""
         self._widgets().separator()
 
     def same_line(self) -> None:
-        """The next button or text stands beside the last one."""
+        """Places the next button or text beside the last one."""
         self._widgets().same_line()
 
     def section(self, title: str, open: bool = True) -> bool:
-        """A heading that folds what follows: `if ui.section("More"): ...`"""
+        """A collapsible section: `if ui.section("More"): ...`"""
         return self._widgets().section(title, open)
 
     def button(self, name: str) -> bool:
@@ -62,7 +62,7 @@ class Panel:
         return self._remembered(name, bool(value), lambda v: widgets.checkbox(name, v))
 
     def slider(self, name: str, value: float, low: float, high: float) -> float:
-        """A number between low and high; a whole one when all three are whole."""
+        """A number between low and high; an integer if all three are integers."""
         widgets = self._widgets()
         if all(isinstance(v, (int, np.integer)) and not isinstance(v, bool) for v in (value, low, high)):
             return self._remembered(name, int(value), lambda v: widgets.slider_int(name, v, int(low), int(high)))
@@ -79,7 +79,7 @@ class Panel:
         return self._remembered(name, value, lambda v: widgets.combo(name, v, list(choices)))
 
     def text_field(self, name: str, value: str = "") -> str:
-        """A line that is typed."""
+        """A line of text input."""
         widgets = self._widgets()
         return self._remembered(name, value, lambda v: widgets.text_field(name, v))
 
@@ -89,7 +89,8 @@ class Panel:
         return self._remembered(name, tuple(map(float, value)), lambda v: widgets.color(name, v))
 
     def plot(self, name: str, values: Iterable[float], range: tuple[float, float] | None = None) -> None:
-        """A curve, with its last value beside the name. `range`: what its height shows, by default all values."""
+        """A curve, with its last value beside the name. `range`: of the vertical axis, by default that of the
+        values."""
         self._widgets().plot(name, np.asarray(values, np.float32).ravel().tolist(), range)
 
     def progress(self, fraction: float, text: str = "") -> None:
@@ -98,16 +99,16 @@ class Panel:
 
 
 class WindowCallbacks:
-    """The part of a Viewer that calls its user's functions. They may use the viewer, but for update(), show() and
-    screenshot(), which draw what they are called from."""
+    """The callbacks of a Viewer. They may use the viewer, except update(), show() and screenshot(), which draw the
+    window."""
 
     def _init_callbacks(self) -> None:
         self._before_draw, self._after_draw, self._told = [], [], {}
         self._panels, self._handlers, self._handler_number = {}, [], None
 
     def add_panel(self, name: str, function: Callable[[Panel], None] | None = None):
-        """A panel in the window, drawn by function(ui) in each of its frames; see Panel. What it raises is shown in the
-        panel with its traceback, and the loop goes on. Also as a decorator: @view.add_panel("Training")."""
+        """Adds a panel to the window, drawn by function(ui) in each frame; see Panel. Exceptions are shown in the panel
+        with their traceback, and the loop continues. Also as a decorator: @view.add_panel("Training")."""
         if function is None:
             return lambda decorated: self.add_panel(name, decorated)
         if not callable(function):
@@ -131,8 +132,8 @@ class WindowCallbacks:
             panel._handle = None
 
     def before_draw(self, function: Callable[[], None]) -> Callable[[], None]:
-        """Calls `function` in every update() before it draws. What it raises is shown in the window with its traceback,
-        and the loop goes on. Also as a decorator."""
+        """Calls `function` in every update() before it draws. Exceptions are shown in the window with their traceback,
+        and the loop continues. Also as a decorator."""
         self._before_draw.append(function)
         return function
 
@@ -142,9 +143,9 @@ class WindowCallbacks:
         return function
 
     def on_event(self, function: Callable | None = None, kind: str | None = None):
-        """Calls function(event) for what is done with mouse and keyboard, files that are dropped and another size of the
-        window, but not for what panels take for themselves; see Event. When it returns True the viewer does nothing else about
-        it. `kind`: only events of this kind. Also as a decorator: @view.on_event(kind="key_down")."""
+        """Calls function(event) for events of mouse and keyboard, dropped files and resizing, except those consumed
+        by panels; see Event. If it returns True the viewer ignores the event. `kind`: only events of this kind. Also
+        as a decorator: @view.on_event(kind="key_down")."""
         if kind is not None and kind not in _KINDS:
             raise ArgumentError(f"on_event: expected a kind out of {', '.join(_KINDS)}, got {kind!r}")
         if function is None:
@@ -158,7 +159,7 @@ class WindowCallbacks:
         return function
 
     def remove_callback(self, function: Callable) -> None:
-        """Calls a function of before_draw(), after_draw() and on_event() no more."""
+        """Removes a callback of before_draw(), after_draw() and on_event()."""
         self._before_draw = [known for known in self._before_draw if known is not function]
         self._after_draw = [known for known in self._after_draw if known is not function]
         self._handlers = [(known, kind) for known, kind in self._handlers if known is not function]
@@ -179,7 +180,7 @@ class WindowCallbacks:
             self._call(function)
 
     def _call(self, function, *arguments, in_panel: bool = False):
-        """Calls a user's function: what it returned, and the traceback of an exception. That is written to stderr and
+        """Calls a user's function: its result, and the traceback of an exception, which is written to stderr and
         shown in the window, once, unless its panel shows it."""
         try:
             return function(*arguments), None

@@ -1,4 +1,4 @@
-"""Scene: named meshes and lights and an environment."""
+"""Scene: named meshes, lights and an environment map."""
 
 import functools
 import os
@@ -25,7 +25,7 @@ class _OnDefaultScene(Generic[Arguments, Result]):
 
 
 class Scene:
-    """A scene of its own. On the class, `Scene.show(...)` and the other methods act on the default scene."""
+    """A scene. On the class, `Scene.show(...)` and the other methods act on the default scene."""
 
     def __init__(self):
         self._handle = _easypbr.SceneHandle()
@@ -38,7 +38,7 @@ class Scene:
 
     @classmethod
     def default(cls) -> "Scene":
-        """The scene that a Viewer draws unless it is given another one."""
+        """The default scene of a Viewer."""
         return cls._of(_easypbr.default_scene())
 
     @classmethod
@@ -48,8 +48,8 @@ class Scene:
 
     @_OnDefaultScene
     def show(self, what, name: str | None = None) -> "_easypbr.Mesh":
-        """Shows a mesh (or whatever as_mesh() takes) under a name; the same name again replaces it. Of a path, the
-        file's lights are added as "name/light" too."""
+        """Shows a mesh (or whatever as_mesh() takes) under a name; the same name again replaces it. For a path, the
+        lights of the file are added too, as "name/light"."""
         lights = {}
         if isinstance(what, (str, os.PathLike)):
             loaded = _easypbr.load_scene(what)
@@ -83,7 +83,7 @@ class Scene:
 
     @_OnDefaultScene
     def names(self) -> list[str]:
-        """Names of the meshes shown, in their order."""
+        """Names of the meshes, in order."""
         return self._handle.names()
 
     @_OnDefaultScene
@@ -108,7 +108,7 @@ class Scene:
 
     @_OnDefaultScene
     def light_names(self) -> list[str]:
-        """Names of the scene's own lights."""
+        """Names of the lights of the scene."""
         return self._handle.light_names()
 
     @property
@@ -124,7 +124,7 @@ class Scene:
 
     @property
     def environment(self) -> "_easypbr.Environment":
-        """What lights the scene from infinitely far; empty: none was given."""
+        """The environment map; empty: none was given."""
         return self._handle.environment
 
     @environment.setter
