@@ -1,4 +1,4 @@
-"""EasyPBR: give it a mesh, it makes a physically based picture.
+"""EasyPBR: a physically based renderer for meshes, point clouds and labelled data.
 
     from easypbr import *
     view = Viewer()

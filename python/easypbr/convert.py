@@ -1,4 +1,4 @@
-"""Meshes out of what other libraries hold. They are recognised by their attributes; none is imported."""
+"""Meshes from objects of other libraries, which are recognised by their attributes; none is imported."""
 
 import os
 from typing import Any
@@ -38,8 +38,8 @@ def _from_arrays(name: str = "", **arrays: Any) -> Mesh:
     return mesh
 
 
-def _rows(array: Any, count: int) -> np.ndarray | None:
-    """The array when it has one row for each of `count` things, else None."""
+def _rows(array, count: int):
+    """The array if it has `count` rows, else None."""
     array = None if array is None else np.asarray(array)
     return array if array is not None and count and len(array) == count else None
 
@@ -67,8 +67,8 @@ def _from_trimesh(what: Any) -> Mesh:
     return mesh
 
 
-def _with_face_colors(V: Any, F: Any, colors: Any) -> Mesh:
-    """Every corner becomes a vertex, so that a face can have a colour of its own."""
+def _with_face_colors(V, F, colors) -> Mesh:
+    """Splits the mesh into separate corners, so that each face has its own colour."""
     F = np.asarray(F)
     return _from_arrays(
         V=np.asarray(V)[F.ravel()], F=np.arange(F.size).reshape(-1, 3), C=np.repeat(np.asarray(colors), 3, axis=0)

@@ -1,4 +1,4 @@
-"""view.lights: the three-point lights, which are settings, and the scene's own lights, by name."""
+"""view.lights: the three-point lights, which are settings, and the lights of the scene, by name."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -11,7 +11,7 @@ _STUDIO_FIELDS = ("enabled", "position", "color", "intensity", "casts_shadows", 
 
 
 class SceneLight:
-    """A light of the scene; assignments to its attributes go through."""
+    """A light of the scene; assignments to its attributes change the scene."""
 
     def __init__(self, scene: "_easypbr.SceneHandle", name: str) -> None:
         object.__setattr__(self, "_scene", scene)
@@ -35,8 +35,8 @@ class SceneLight:
 
 
 class StudioLight:
-    """The key, fill or rim light: the settings lights.<name>.*, with a linear colour as all lights have it. Reading an
-    automatic value gives what is inferred; assigning pins it."""
+    """The key, fill or rim light: the settings lights.<name>.*, with a linear colour as for all lights. Reading an
+    automatic value returns the inferred one; assigning pins it."""
 
     def __init__(self, handle: "_easypbr.ViewerHandle", name: str) -> None:
         object.__setattr__(self, "_handle", handle)
@@ -57,8 +57,8 @@ class StudioLight:
             value = known if known is not None else self._inferred(name, value)
         return tuple(map(_linear, value)) if name == "color" else value
 
-    def _inferred(self, name: str, automatic: Any) -> Any:
-        """What the next picture would have; the setting itself while there is nothing to infer it from."""
+    def _inferred(self, name: str, automatic):
+        """The value for the next image; the setting itself if there is no content to infer it from."""
         try:
             return self._handle.resolved_setting(self._full(name))
         except ArgumentError:

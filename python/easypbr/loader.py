@@ -1,4 +1,4 @@
-"""MeshLoader: meshes and clouds read ahead of training."""
+"""MeshLoader: prefetches meshes and clouds for training."""
 
 import os
 import sys
@@ -14,13 +14,13 @@ _ARRAYS = ("V", "N", "C", "F", "L", "I", "UV")
 
 
 class MeshLoader:
-    """An iterable over files: meshes and clouds are read by native threads of its own, without Python's lock, in order,
-    at most `prefetch` of them ahead. Also a torch IterableDataset where torch is there: DataLoader(loader,
-    batch_size=None).
+    """An iterable over files: meshes and clouds are read on native threads, without the GIL, in order, at most
+    `prefetch` of them ahead. Also a torch IterableDataset if torch is imported: DataLoader(loader, batch_size=None).
 
-    `transform(mesh)` makes a sample of a Mesh; without it a sample is a dict of torch tensors of the mesh's arrays (V, N,
-    C, F, L, I, UV). Tensors in what it gives are moved to `device`. A file that cannot be read raises at its place, with
-    its name; `on_error="skip"` leaves it out. SemanticKITTI's scans (.bin) come with their .label files."""
+    `transform(mesh)` makes a sample of a Mesh; without it a sample is a dict of torch tensors of the mesh's arrays
+    (V, N, C, F, L, I, UV). Tensors in the result are moved to `device`. A file that cannot be read raises in place of
+    its sample, with its name; `on_error="skip"` skips it. SemanticKITTI's scans (.bin) come with their .label
+    files."""
 
     def __init__(
         self,
@@ -68,7 +68,7 @@ def _with_torch(cls: type) -> type:
 
 
 def _own_share(paths: list) -> list:
-    """In a worker process of a DataLoader, the files that are its own."""
+    """The files of this worker process of a DataLoader."""
     data = getattr(getattr(sys.modules.get("torch"), "utils", None), "data", None)
     worker = data.get_worker_info() if data is not None else None
     return paths if worker is None else paths[worker.id :: worker.num_workers]

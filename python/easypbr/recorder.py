@@ -1,4 +1,4 @@
-"""Recorder: pictures of a viewer as files, one by one or as recordings of many frames."""
+"""Recorder: images and recordings of a viewer as files."""
 
 import atexit
 import os
@@ -23,18 +23,18 @@ def _finish_recordings() -> None:
 
 
 def watch_recorder(recorder: "Recorder") -> None:
-    """Finishes what this recorder records when the program ends."""
+    """Finishes the recording when the program ends."""
     _started.add(recorder)
 
 
 class Recorder:
-    """Pictures of a viewer as files, and recordings: frames are encoded beside the drawing, all of them, in order."""
+    """Writes images and recordings of a viewer. Frames are encoded on other threads, all of them, in order."""
 
     def __init__(self, viewer: WindowCallbacks) -> None:
         self._handle = viewer._handle
 
-    def record(self, path: str | os.PathLike, size: ArrayLike | None = None, samples: int | None = None, deep: bool = False) -> Path:
-        """Writes one picture, complete when the call returns: PNG (16 bits with `deep`), JPEG, HDR or EXR, by the
+    def record(self, path, size=None, samples: int | None = None, deep: bool = False) -> Path:
+        """Writes one image, complete when the call returns: PNG (16 bits with `deep`), JPEG, HDR or EXR, by the
         extension."""
         return self._handle.record(path, size, samples, deep)
 
@@ -47,20 +47,20 @@ class Recorder:
         codec: str = "",
         deep: bool = False,
     ) -> "Recorder":
-        """Begins a recording: a video (MP4, MOV, MKV, WebM, GIF) or numbered pictures ("out/frame_%04d.png", or a
+        """Starts a recording: a video (MP4, MOV, MKV, WebM, GIF) or numbered images ("out/frame_%04d.png", or a
         folder), by the name. `with view.recorder.start("out.mp4"):` stops it at the end of the block. `codec` is
-        FFmpeg's name of an encoder. While recording, view.time makes steps of 1 / fps."""
+        FFmpeg's name of an encoder. While recording, view.time advances by 1 / fps per frame."""
         self._handle.start_recording(path, fps, size, samples, codec, deep)
         _started.add(self)
         return self
 
-    def add_frame(self, picture: ArrayLike | None = None) -> None:
-        """Draws the scene as it is as the next frame, and lets view.time make its step. A `picture` of the
-        recording's size is taken as it is."""
+    def add_frame(self, picture=None) -> None:
+        """Renders the scene as the next frame and advances view.time. A `picture` of the recording's size is
+        added unchanged."""
         self._handle.add_frame(picture)
 
     def stop(self) -> int:
-        """Waits until all frames are written and finishes the file; returns how many there are."""
+        """Waits until all frames are written and finishes the file; returns their number."""
         _started.discard(self)
         return self._handle.stop_recording()
 
@@ -84,9 +84,9 @@ class Recorder:
         codec: str = "",
         on_frame: Callable[[int, float], None] | None = None,
     ) -> int:
-        """Records the camera on its way along a path: path.frame_times(fps), or `frames` evenly over it. on_frame(number,
-        seconds) is called before each frame is drawn, for example to move something. The camera is afterwards what it
-        was. Returns the number of frames."""
+        """Records along a camera path: path.frame_times(fps), or `frames` evenly spaced times. on_frame(number,
+        seconds) is called before each frame, for example to move objects. The camera is restored afterwards. Returns
+        the number of frames."""
         if not isinstance(path, _easypbr.CameraPath):
             raise ArgumentError(f"record_path: expected a CameraPath, got a {type(path).__name__}")
         before = self._handle.camera_state

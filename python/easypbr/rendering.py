@@ -1,4 +1,4 @@
-"""render(): one call from data to a picture."""
+"""render(): one call from data to an image."""
 
 import os
 from collections.abc import Mapping
@@ -34,14 +34,13 @@ def render(
     settings: Mapping | str | os.PathLike | None = None,
     **values: Any,
 ) -> np.ndarray:
-    """A picture of `what`: a path, a Mesh, a Scene, (V, F), a dict of arrays, or a trimesh, Open3D or PyVista object.
+    """Renders `what`: a path, a Mesh, a Scene, (V, F), a dict of arrays, or a trimesh, Open3D or PyVista object.
 
-    Returns height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`. `size` is (800, 600) and `samples`
-    16 unless they or `settings` say otherwise. `out` writes the picture to a
-    file too. `environment`: a path, an array or an Environment. `background`: a colour, an image file, "environment",
-    "blur" or "transparent". Other values are settings by the last part of their name (roughness=0.3, exposure=2) or,
-    through `settings`, a dict or file of them.
-    """
+    Returns height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`. `size` is (800, 600) and
+    `samples` 16 by default. `out` writes the image to a file too. `environment`: environment map, a path, an array or
+    an Environment. `background`: a colour, an image file, "environment", "blur" or "transparent". Other keywords are
+    settings by the last part of their name (roughness=0.3, exposure=2); `settings` is a dict or a file of
+    settings."""
     linear_file = out is not None and _easypbr.check_picture_path(out)
     view = Viewer(size, settings, scene=_scene_of(what))
     if environment is not None:
@@ -58,8 +57,8 @@ def render(
     return picture
 
 
-def render_png(what: Any) -> bytes:
-    """The picture as a PNG file's bytes: what notebooks show of a mesh."""
+def render_png(what) -> bytes:
+    """The bytes of a PNG file, for display in notebooks."""
     return _easypbr.encode_png(render(what))
 
 

@@ -1,4 +1,4 @@
-"""A mesh's named values as a dict that writes through to the mesh."""
+"""The scalar fields of a mesh as a dict that writes through to the mesh."""
 from collections.abc import Iterator, MutableMapping
 
 import numpy as np
@@ -8,7 +8,7 @@ from ._easypbr import Mesh
 
 
 class Scalars(MutableMapping[str, np.ndarray]):
-    """What `mesh.scalars` is: read-only arrays by name; assigning to a name or deleting it changes the mesh."""
+    """The type of `mesh.scalars`: read-only arrays by name; assigning to a name or deleting it changes the mesh."""
 
     def __init__(self, mesh: "Mesh") -> None:
         self._mesh = mesh

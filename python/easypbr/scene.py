@@ -1,4 +1,4 @@
-"""Scene: named meshes and lights and an environment."""
+"""Scene: named meshes, lights and an environment map."""
 
 import os
 import types
@@ -28,7 +28,7 @@ class _OnDefaultScene(Generic[Arguments, Result]):
 
 
 class Scene:
-    """A scene of its own. On the class, `Scene.show(...)` and the other methods act on the default scene."""
+    """A scene. On the class, `Scene.show(...)` and the other methods act on the default scene."""
 
     def __init__(self) -> None:
         self._handle = _easypbr.SceneHandle()
@@ -41,7 +41,7 @@ class Scene:
 
     @classmethod
     def default(cls) -> "Scene":
-        """The scene that a Viewer draws unless it is given another one."""
+        """The default scene of a Viewer."""
         return cls._of(_easypbr.default_scene())
 
     @classmethod
@@ -50,9 +50,9 @@ class Scene:
         return cls._of(_easypbr.demo_scene())
 
     @_OnDefaultScene
-    def show(self, what: Any, name: str | None = None) -> "_easypbr.Mesh":
-        """Shows a mesh (or whatever as_mesh() takes) under a name; the same name again replaces it. Of a path, the
-        file's lights are added as "name/light" too."""
+    def show(self, what, name: str | None = None) -> "_easypbr.Mesh":
+        """Shows a mesh (or whatever as_mesh() takes) under a name; the same name again replaces it. For a path, the
+        lights of the file are added too, as "name/light"."""
         lights = {}
         if isinstance(what, (str, os.PathLike)):
             loaded = _easypbr.load_scene(what)
@@ -86,7 +86,7 @@ class Scene:
 
     @_OnDefaultScene
     def names(self) -> list[str]:
-        """Names of the meshes shown, in their order."""
+        """Names of the meshes, in order."""
         return self._handle.names()
 
     @_OnDefaultScene
@@ -111,7 +111,7 @@ class Scene:
 
     @_OnDefaultScene
     def light_names(self) -> list[str]:
-        """Names of the scene's own lights."""
+        """Names of the lights of the scene."""
         return self._handle.light_names()
 
     @property
@@ -127,7 +127,7 @@ class Scene:
 
     @property
     def environment(self) -> "_easypbr.Environment":
-        """What lights the scene from infinitely far; empty: none was given."""
+        """The environment map; empty: none was given."""
         return self._handle.environment
 
     @environment.setter

@@ -9,7 +9,7 @@ from .errors import UnknownNameError
 
 
 class SettingsGroup:
-    """The settings whose names begin alike; attributes are the next parts of the names."""
+    """A group of settings; attributes are the next parts of their names."""
 
     def __init__(self, handle: "_easypbr.ViewerHandle", prefix: str) -> None:
         object.__setattr__(self, "_handle", handle)
@@ -66,12 +66,12 @@ class Settings(SettingsGroup):
     def __setitem__(self, name: str, value: Any) -> None:
         self._handle.set_setting(name, value)
 
-    def resolve(self, name: str) -> Any:
-        """The value that the next picture would be drawn with (auto: each mesh has its own); nothing is kept."""
+    def resolve(self, name: str):
+        """The value for the next image (auto: each mesh has its own), without latching it."""
         return self._handle.resolved_setting(name)
 
     def describe(self, name: str) -> str:
-        """What a setting means, its unit, range and default."""
+        """Description, unit, range and default of a setting."""
         field = _easypbr.field(name)
         lines = [field.name + (f" [{field.unit}]" if field.unit else ""), field.doc]
         if field.choices:
@@ -80,14 +80,14 @@ class Settings(SettingsGroup):
         return "\n".join(lines)
 
     def update(self, values: Mapping) -> None:
-        """Takes values over from a dict: nested ({"camera": {"fov_y_deg": 45}}), by full names, or as to_dict() gives it."""
+        """Sets values from a dict: nested ({"camera": {"fov_y_deg": 45}}), by full names, or as to_dict() gives it."""
         if "easypbr" in values:
             self._handle.settings_from_json(json.dumps(values))
         else:
             _assign(self._handle, values, "")
 
     def to_dict(self) -> dict:
-        """Every setting, chosen and inferred, and the scene's lights, as they stand in a settings file."""
+        """All settings, given and inferred, and the lights of the scene, as in a settings file."""
         return json.loads(self._handle.settings_to_json())
 
 

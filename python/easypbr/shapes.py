@@ -1,4 +1,4 @@
-"""Shapes made in code, centred at the origin unless said otherwise, with normals and uv; y is up."""
+"""Procedural shapes, centred at the origin unless stated otherwise, with normals and uv; y is up."""
 
 from typing import Any
 
@@ -29,13 +29,11 @@ __all__ = [
 ]
 
 
-def camera_frustum(
-    camera: Any, image: ArrayLike | None = None, size: ArrayLike | None = None, depth: float = 1.0
-) -> "_easypbr.Mesh":
-    """What a camera sees, as lines, with its image in it.
+def camera_frustum(camera, image=None, size=None, depth: float = 1.0) -> "_easypbr.Mesh":
+    """A camera frustum as lines, with its image.
 
-    `camera` is a Camera, or (K, T_world_cam) with OpenCV's axes. The outline of its picture is laid at `depth` along
-    the optical axis, with a roof on the upper border; `image` fills it. `size` is (width, height), by default the
+    `camera` is a Camera, or (K, T_world_cam) with OpenCV axes. The image plane is at `depth` along the optical axis,
+    with a triangle on the upper border; `image` fills it. `size` is (width, height), by default the
     image's, or what the camera's intrinsics belong to.
     """
     if isinstance(camera, _easypbr.Camera):
@@ -54,14 +52,14 @@ def camera_frustum(
 def camera_path(
     path: "_easypbr.CameraPath", size: ArrayLike = (4, 3), fov_y_deg: float = 30.0, depth: float | None = None
 ) -> "_easypbr.Mesh":
-    """The curve of a camera path as lines, with the outlines of its cameras as children: one at each key, twelve on an
-    orbit. Their pictures have the size's shape, and the angle of view where the path has none; `depth` is how far the
-    outlines reach, by default a tenth of the curve's extent."""
+    """The curve of a camera path as lines, with camera frustums as children: one at each key, twelve on an orbit.
+    `size` gives their aspect ratio, and the field of view applies where the path has none; `depth` is the length of
+    the frustums, by default a tenth of the curve's extent."""
     return _easypbr._camera_path(path, size, fov_y_deg, depth)
 
 
-def image_plane(image: ArrayLike, width: float | None = None, height: float | None = None) -> "_easypbr.Mesh":
-    """A picture standing in the xy plane around the origin, seen from +z, shown as it is: unlit, in its own colours.
+def image_plane(image, width: float | None = None, height: float | None = None) -> "_easypbr.Mesh":
+    """An image in the xy plane around the origin, facing +z, unlit.
 
     `image` is an array of height x width (x 1, 3 or 4), uint8, uint16 or linear floats. One of width and height is enough; by
     default the plane is 1 high.

@@ -1,4 +1,4 @@
-"""Arrays of other libraries: torch, JAX, CuPy, anything with DLPack. None is imported before it is asked for."""
+"""Arrays of other libraries: torch, JAX, CuPy, any with DLPack. They are imported on demand."""
 
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -9,7 +9,7 @@ from .errors import ArgumentError, ContextError
 
 
 def converter(name: str, device: str = "cpu") -> Callable:
-    """What turns a numpy array into one of the library of this name, without a copy: "numpy" or "torch"."""
+    """A function from numpy arrays to those of "numpy" or "torch", without a copy."""
     if name == "numpy":
         if device != "cpu":
             raise ArgumentError(f"device: numpy's arrays are the CPU's: expected as_='torch' with device '{device}'")
@@ -19,8 +19,8 @@ def converter(name: str, device: str = "cpu") -> Callable:
     raise ArgumentError(f"as_: expected 'numpy' or 'torch', got '{name}'")
 
 
-def check_device(device: str) -> Any:
-    """The torch device of this name. Raises ArgumentError for a name that is none, ContextError where PyTorch sees no such
+def check_device(device: str):
+    """The torch device of this name. Raises ArgumentError for an invalid name, ContextError if PyTorch does not see the
     device."""
     torch = _torch()
     try:
@@ -35,13 +35,13 @@ def check_device(device: str) -> Any:
     return found
 
 
-def from_dlpack(capsule: Any) -> Any:
-    """A torch tensor of a capsule of DLPack, without a copy."""
+def from_dlpack(capsule):
+    """A torch tensor from a DLPack capsule, without a copy."""
     return _torch().utils.dlpack.from_dlpack(capsule)
 
 
-def layers_of_targets(raw: dict, names: Iterable[str], from_dlpack: Callable) -> dict:
-    """The layers of these names, tensors on the GPU, of what Viewer.render_layers() finds there: `raw` is cuda_layers()'s."""
+def layers_of_targets(raw: dict, names, from_dlpack: Callable) -> dict:
+    """Layers by name as GPU tensors, computed from the targets; `raw` is the result of cuda_layers()."""
     torch = _torch()
     targets = {name: from_dlpack(target) for name, target in raw["targets"].items()}
     result = {name: targets[name] if name == "color" else targets[name].float() for name in names if name in ("color", "hdr")}
@@ -76,8 +76,8 @@ def layers_of_targets(raw: dict, names: Iterable[str], from_dlpack: Callable) ->
     return result | {name: shown(make[name]()).contiguous() for name in names if name in make}
 
 
-def _octahedral(torch: Any, p: Any) -> Any:
-    """Unit vectors of points of the octahedron's map (Cigolle et al. 2014)."""
+def _octahedral(torch, p):
+    """Unit vectors from octahedral coordinates (Cigolle et al. 2014)."""
     z = 1 - p.abs().sum(-1, keepdim=True)
     fold = (-z).clamp(min=0)
     return torch.nn.functional.normalize(torch.cat([p - torch.where(p >= 0, fold, -fold), z], -1), dim=-1)
@@ -95,9 +95,9 @@ def _is_torch(what: Any) -> bool:
     return type(what).__module__.split(".")[0] == "torch"
 
 
-def as_numpy(what: Any) -> Any:
-    """A numpy array of what other libraries hold, without a copy where it lies in this machine's memory: a torch tensor
-    of any device, with or without gradients, or anything with DLPack. Other things are returned as they are."""
+def as_numpy(what):
+    """A numpy array of an array of another library, without a copy if it is in host memory: a torch tensor of any
+    device, with or without gradients, or any object with DLPack. Other objects are returned unchanged."""
     if _is_torch(what) and hasattr(what, "detach"):
         return what.detach().cpu().numpy()
     if isinstance(what, np.ndarray) or not hasattr(what, "__dlpack__"):
@@ -110,12 +110,12 @@ def as_numpy(what: Any) -> Any:
     return np.asarray(what)
 
 
-def eigen2tensor(array: Any, device: str | None = None) -> Any:
-    """A torch tensor of a mesh's array (or any other): a copy, so that training may write to it."""
+def eigen2tensor(array, device=None):
+    """A torch tensor of an array of a mesh (or any other): a copy, so that training may write to it."""
     torch = _torch()
     return torch.from_numpy(np.array(as_numpy(array))).to(check_device(device or "cpu"))
 
 
-def tensor2eigen(tensor: Any) -> np.ndarray:
-    """A numpy array of a tensor, wherever it lies and whether or not it has a gradient: for mesh.V = tensor2eigen(t)."""
+def tensor2eigen(tensor) -> np.ndarray:
+    """A numpy array of a tensor of any device, with or without gradients: mesh.V = tensor2eigen(t)."""
     return np.ascontiguousarray(as_numpy(tensor))

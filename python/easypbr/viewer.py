@@ -21,8 +21,8 @@ from .tensors import as_numpy, check_device, converter, from_dlpack, layers_of_t
 
 
 class Viewer(WindowCallbacks):
-    """Draws a scene, the default one unless another is given. Nothing is drawn, and no GL needed, before a picture is
-    asked for. Threads may share a viewer; they take turns."""
+    """Renders a scene, by default the default scene. Nothing is rendered, and OpenGL is not loaded, before the first
+    image. Threads may share a viewer; they take turns."""
 
     def __init__(
         self,
@@ -59,7 +59,7 @@ class Viewer(WindowCallbacks):
 
     @property
     def lights(self) -> Lights:
-        """view.lights["key" | "fill" | "rim"] and the lights that were added, by name."""
+        """view.lights["key" | "fill" | "rim"] and the lights of the scene, by name."""
         return Lights(self._handle, self.scene._handle)
 
     def add_light(self, name: str, type: str = "point", **values: Any) -> "SceneLight | StudioLight":
@@ -75,8 +75,8 @@ class Viewer(WindowCallbacks):
             raise ArgumentError(f"'{name}' cannot be removed: use view.lights['{name}'].enabled = False")
         self.scene.remove_light(name)
 
-    def load_environment_map(self, source: Any) -> None:
-        """Lights the scene with an equirectangular picture: a path, an array or an Environment."""
+    def load_environment_map(self, source) -> None:
+        """Sets the environment map: a path, an array or an Environment."""
         if isinstance(source, (str, os.PathLike)):
             self._handle.load_environment_map(source)
         else:
@@ -85,7 +85,7 @@ class Viewer(WindowCallbacks):
 
     @property
     def camera(self) -> "_easypbr.Camera":
-        """A copy of the next picture's camera; assign a Camera to pin it."""
+        """A copy of the camera of the next image; assign a Camera to pin it."""
         return self._handle.camera
 
     @camera.setter
@@ -94,7 +94,7 @@ class Viewer(WindowCallbacks):
 
     @property
     def time(self) -> float:
-        """Seconds of the animation: of the last frame of a window or a recording; assign to set it."""
+        """Animation time in seconds, of the last frame of a window or a recording; assign to set it."""
         return self._handle.time
 
     @time.setter
@@ -126,7 +126,7 @@ class Viewer(WindowCallbacks):
             self._handle.play(animations, str(animation), speed, loop)
 
     def pause(self) -> None:
-        """The animation stays as it is, until play()."""
+        """Pauses the animation until play()."""
         self._handle.pause()
 
     @property
@@ -136,7 +136,7 @@ class Viewer(WindowCallbacks):
 
     @property
     def animation_time(self) -> float:
-        """Seconds of the animation that plays; assign to put the meshes where they are then."""
+        """Time in the animation that plays, in seconds; assign to seek."""
         return self._handle.animation_time
 
     @animation_time.setter
@@ -144,16 +144,16 @@ class Viewer(WindowCallbacks):
         self._handle.animation_time = seconds
 
     def turntable(self, duration_s: float = 4.0) -> "_easypbr.CameraPath":
-        """One turn of the camera around the content, from where it is; while it is automatic from far enough away for
-        the content to stay in the picture."""
+        """A path of one turn around the content from the current camera; an automatic camera is far enough away to keep
+        the content in the image."""
         return self._handle.turntable(duration_s)
 
     def refit(self) -> None:
-        """Forgets what was inferred, so that the next picture infers it anew."""
+        """Releases latched values, so that the next image infers them again."""
         self._handle.refit()
 
-    def render(self, size: ArrayLike | None = None, samples: int | None = None, hdr: bool = False) -> np.ndarray:
-        """The picture, height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`."""
+    def render(self, size=None, samples: int | None = None, hdr: bool = False) -> np.ndarray:
+        """Renders an image, height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`."""
         return self._handle.render(size, samples, "linear" if hdr else "srgb8")
 
     def layers(self, names: Sequence[str] | None = None, size: ArrayLike | None = None) -> dict[str, np.ndarray]:
@@ -177,7 +177,7 @@ class Viewer(WindowCallbacks):
         as_: str = "numpy",
         device: str = "cpu",
     ) -> dict:
-        """The picture and exact ground truth of the same frame by name, all of the same height and width: color, hdr,
+        """The image and exact ground truth of the same frame by name, all of the same height and width: color, hdr,
         depth, distance, position, normal_world, normal_camera, albedo, roughness, metallic, instance_id, semantic_id,
         object_coordinates, face_id, barycentrics, uv, flow_forward, flow_backward and their occlusion_forward and
         occlusion_backward, and "instances", a list of Instance.
@@ -227,25 +227,25 @@ class Viewer(WindowCallbacks):
         """Masks, boxes, poses and visibility of all instances; options as render_layers() has them."""
         return self.render_layers(["instances"], size, **options)["instances"]
 
-    def moment(self, size: ArrayLike | None = None) -> "_easypbr.Moment":
-        """The scene and camera as they are now, for flow between frames: render_layers(..., previous=moment)."""
+    def moment(self, size=None) -> "_easypbr.Moment":
+        """The current scene and camera, for flow between frames: render_layers(..., previous=moment)."""
         return _easypbr.moment(self._handle, size)
 
-    def focus_at(self, x: int, y: int, size: ArrayLike | None = None) -> float:
-        """Focuses the lens (settings.depth_of_field) on what pixel (x, y) shows and returns its depth."""
+    def focus_at(self, x: int, y: int, size=None) -> float:
+        """Focuses the lens (settings.depth_of_field) on the surface at pixel (x, y) and returns its depth."""
         return self._handle.focus_at(x, y, size)
 
     def forget_motion(self) -> None:
-        """The next picture shows no motion since this one (settings.motion_blur)."""
+        """Disables motion blur in the next image, as after a cut (settings.motion_blur)."""
         self._handle.forget_motion()
 
-    def save_settings(self, path: str | os.PathLike) -> None:
-        """Writes every value, chosen and inferred, with hashes of the files shown."""
+    def save_settings(self, path) -> None:
+        """Writes all settings, given and inferred, with hashes of the files in use."""
         sources = (self.scene.get(name).source for name in self.scene.names())
         self._handle.save_settings(path, [source for source in sources if source])
 
-    def load_settings(self, path: str | os.PathLike) -> None:
-        """Takes over settings and lights from a file that save_settings() wrote."""
+    def load_settings(self, path) -> None:
+        """Loads settings and lights from a file of save_settings()."""
         self._handle.load_settings(path)
 
     @property
@@ -254,8 +254,8 @@ class Viewer(WindowCallbacks):
         return self._handle.timing()
 
     def update(self) -> bool:
-        """Opens the window at the first call; shows what has changed and does what mouse and keys ask for. Waits up to
-        16 ms for something to happen. False when the window has been closed: while view.update(): ..."""
+        """Opens the window at the first call; processes events and redraws changes. Waits up to 16 ms for events. False
+        when the window has been closed: while view.update(): ..."""
         watch_recorder(self.recorder)  # The panel may begin a recording.
         self._run(self._before_draw)
         is_open = self._handle.update()
@@ -263,7 +263,7 @@ class Viewer(WindowCallbacks):
         return is_open
 
     def show(self, block: bool = True) -> None:
-        """Shows the window until it is closed; with block=False it lives on a thread of its own meanwhile."""
+        """Shows the window until it is closed; with block=False it runs on its own thread."""
         self._handle.reopen()
         if block:
             while self.update():
@@ -311,7 +311,7 @@ class Viewer(WindowCallbacks):
 
     @property
     def panel_scale(self) -> float:
-        """How large panels, text and handles are, 0.5 to 4; 1 is as the screen asks for."""
+        """Scale of panels, text and manipulators relative to the screen's own, 0.5 to 4."""
         return self._handle.panel_scale
 
     @panel_scale.setter
@@ -319,7 +319,7 @@ class Viewer(WindowCallbacks):
         self._handle.panel_scale = scale
 
     def show_panels(self, *names: str) -> None:
-        """Shows these of the window's own panels alone, unfolded: "Scene", "Object", "Effects", "Lights", "Environment",
+        """Shows only these built-in panels, expanded: "Scene", "Object", "Effects", "Lights", "Environment",
         "Camera", "Channels", "Statistics", "Animations", "Camera path", "Recorder"."""
         known = self._handle.panel_names()
         for name in names:
@@ -366,21 +366,22 @@ class Viewer(WindowCallbacks):
 
     @property
     def is_open(self) -> bool:
-        """Whether the window is there."""
+        """Whether the window is open."""
         return self._handle.is_open()
 
     def add_pass(self, name: str, shader: str | os.PathLike, stage: str = "overlay") -> None:
-        """Draws a fragment shader over every picture: GLSL text, or the path of a file (pathlib.Path), which is read
-        again whenever it changes. `stage`: "light" (linear radiance before lens and tone curve), "overlay" (linear
-        display light past it) or "picture" (the finished picture). A pass of the same name is replaced."""
+        """Adds a custom full-screen pass: a fragment shader as GLSL text, or the path of a file (pathlib.Path), which is
+        reloaded when it changes. `stage`: "light" (linear radiance, before depth of field and tone mapping), "overlay"
+        (linear display colours, after tone mapping) or "picture" (the final image). A pass of the same name is
+        replaced."""
         self._handle.add_pass(name, shader, stage)
 
     def remove_pass(self, name: str) -> None:
-        """Takes a pass away that was added."""
+        """Removes a custom pass."""
         self._handle.remove_pass(name)
 
-    def open(self, path: str | os.PathLike) -> None:
-        """Adds what a file holds, as a file dropped on the window; HDR and EXR become the environment."""
+    def open(self, path) -> None:
+        """Adds the contents of a file, like a file dropped on the window; HDR and EXR become the environment map."""
         self._handle.open(path)
 
     def pick(self, x: float, y: float, size: ArrayLike | None = None) -> "_easypbr.Pick | None":
@@ -388,8 +389,8 @@ class Viewer(WindowCallbacks):
         position. None where there is no surface; lines are none."""
         return self._handle.pick(x, y, size)
 
-    def screenshot(self, size: ArrayLike | None = None, scale: float = 1) -> np.ndarray:
-        """What the window would show, panels included; needs no display. `scale`: pixels of a plain one (HiDPI)."""
+    def screenshot(self, size=None, scale: float = 1) -> np.ndarray:
+        """The contents of the window as an image, panels included; needs no display. `scale`: HiDPI scale."""
         return self._handle.screenshot(size, scale)
 
     def _repr_png_(self) -> bytes | None:
@@ -406,7 +407,7 @@ def show(
     settings: Mapping | str | os.PathLike | None = None,
 ) -> Viewer:
     """Shows anything as_mesh() takes, a path or a Scene in a window, until it is closed; with block=False the window
-    lives on its own. Returns its Viewer; `settings` as Viewer takes them."""
+    runs on its own thread. Returns its Viewer; `settings` as for Viewer."""
     if isinstance(what, Scene):
         scene = what
     else:

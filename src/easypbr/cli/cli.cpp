@@ -73,7 +73,7 @@ void add_commands(CLI::App& app, Job& job) {
 }
 
 int parse_and_run(int argc, const char* const* argv) {
-    CLI::App app("EasyPBR: give it a mesh, it makes a physically based picture.");
+    CLI::App app("EasyPBR: a physically based renderer for meshes, point clouds and labelled data.");
     Job job;
     add_commands(app, job);
     try {

@@ -33,35 +33,36 @@ struct DatasetOptions {
 };
 
 void declare(CLI::App& command, DatasetOptions& o) {
-    command.add_option("spec", o.spec, "What to generate, a TOML file")->option_text("SPEC");
+    command.add_option("spec", o.spec, "Specification of the data set, a TOML file")->option_text("SPEC");
     command.add_flag("--demo", o.demo, "Generate the built-in drones instead of a SPEC");
     command
-        .add_option("-o,--output", o.output, "Folder to write; started again, only what is missing is made")
+        .add_option("-o,--output", o.output,
+                    "Folder to write; an interrupted run resumes with the missing frames")
         ->option_text("FOLDER");
-    command.add_option("--count", o.count, "Number of pictures")->option_text("N");
-    command.add_option("--seed", o.seed, "Another seed gives other pictures")->option_text("N");
-    command.add_option("--workers", o.workers, "Processes that draw; one for two cores unless given")
+    command.add_option("--count", o.count, "Number of images")->option_text("N");
+    command.add_option("--seed", o.seed, "Seed of the random numbers")->option_text("N");
+    command.add_option("--workers", o.workers, "Worker processes; default: one per two cores")
         ->option_text("N");
     command
         .add_option("--threads", o.threads,
-                    "Cores of each worker; all are divided among the workers unless given, 1 with Ray")
+                    "Cores of each worker; default: all cores divided among the workers, 1 with Ray")
         ->option_text("N");
     command
-        .add_option("--engine", o.engine, "Who runs the workers: local, or ray (pip install 'easypbr[ray]')")
+        .add_option("--engine", o.engine,
+                    "Scheduler of the workers: local, or ray (pip install 'easypbr[ray]')")
         ->option_text("local|ray");
     command
         .add_option("--address", o.address,
-                    "Cluster of Ray: HOST:PORT, or auto; its machines share the folder. This machine unless "
-                    "given")
+                    "Ray cluster: HOST:PORT, or auto; its machines share the folder. Default: this machine")
         ->option_text("ADDRESS");
     command
         .add_option("--writers", o.writers,
                     "Formats, separated by commas: coco, yolo, kitti, flow, bop, nerfstudio, "
                     "colmap, webdataset, raw, exr, png")
         ->option_text("NAMES");
-    command.add_option("--on-error", o.on_error, "A mesh that cannot be read: stop, or skip and report it")
+    command.add_option("--on-error", o.on_error, "Unreadable mesh: stop, or skip and report it")
         ->option_text("stop|skip");
-    command.add_flag("-q,--quiet", o.quiet, "No progress");
+    command.add_flag("-q,--quiet", o.quiet, "Suppress progress");
 }
 
 /// Where a program of this name is. Of PATH only absolute folders count: the current one is not trusted.
@@ -118,8 +119,8 @@ int run(const DatasetOptions& o) {
 }  // namespace
 
 void add_dataset(CLI::App& app, Job& job) {
-    set_job<DatasetOptions>(*app.add_subcommand("dataset", "Generate pictures with annotations for training"),
-                            job, declare, run);
+    set_job<DatasetOptions>(*app.add_subcommand("dataset", "Generate annotated images for training"), job,
+                            declare, run);
 }
 
 }  // namespace easypbr::cli
