@@ -82,13 +82,13 @@ void check_files(const Picture& picture, const Settings& settings, const RenderO
         app::check_picture(picture.output, settings);
     for (const std::string& layer : options.layers) check_writable(truth_path(picture.output, layer));
     if (!picture.save_settings.empty()) check_writable(picture.save_settings);
-    for (const std::string& file : picture.files) MappedFile{file};
+    for (const std::string& file : picture.files) check_readable(file);
     const MaterialSettings& m = settings.material;
     for (const std::string& file :
          {settings.environment.file, settings.background.image, m.base_color_texture, m.metallic_texture,
           m.roughness_texture, m.normal_texture, m.occlusion_texture, m.emissive_texture, m.opacity_texture,
           m.shader})
-        if (!file.empty()) MappedFile{file};
+        if (!file.empty()) check_readable(file);
 }
 
 std::vector<io::LoadedScene> load_all(const std::vector<std::string>& files, const io::LoadOptions& options) {

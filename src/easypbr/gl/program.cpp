@@ -152,11 +152,11 @@ Expanded expanded(std::string_view name, const ShaderTexts& texts) {
 }  // namespace
 
 std::string shader_source(std::string_view name) {
-    if (is_path(name)) return std::string(MappedFile(fs::path(name)).text());
+    if (is_path(name)) return std::string(FileBytes(fs::path(name)).text());
     if (const char* folder = std::getenv("EASYPBR_SHADER_DIR"); folder && *folder) {
         const fs::path path = fs::path(folder) / name;
         std::error_code unusable;
-        if (fs::exists(path, unusable)) return std::string(MappedFile(path).text());
+        if (fs::exists(path, unusable)) return std::string(FileBytes(path).text());
     }
     for (const EmbeddedShader& shader : embedded_shaders)
         if (shader.name == name) return std::string(shader.text);

@@ -60,7 +60,7 @@ const std::map<std::string, Reader>& readers() {
 }
 
 LoadedScene load_by_reader(const fs::path& path, const std::string& extension, const LoadOptions& options) {
-    const MappedFile file(path);
+    const FileBytes file(path);
     MeshData data = readers().at(extension)(Source(file, path), options);
     data.name = path.stem().string();
     data.source = path;

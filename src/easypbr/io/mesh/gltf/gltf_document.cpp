@@ -151,7 +151,7 @@ std::span<const std::byte> GltfDocument::buffer(size_t index) {
             buffer.decoded = std::move(*decoded);
             buffer.bytes = buffer.decoded;
         } else {
-            buffer.file = MappedFile(path_of_uri(text(json, "uri")));
+            buffer.file = FileBytes(path_of_uri(text(json, "uri")));
             buffer.bytes = buffer.file.bytes();
         }
         if (buffer.bytes.size() < length)

@@ -62,7 +62,7 @@ class GltfDocument {
 
     struct Buffer {
         bool loaded = false;
-        MappedFile file;
+        FileBytes file;
         std::vector<std::byte> decoded;
         std::span<const std::byte> bytes;
     };

@@ -212,7 +212,7 @@ class SceneReader {
 }  // namespace
 
 LoadedScene load_gltf(const std::filesystem::path& path) {
-    const MappedFile file(path);
+    const FileBytes file(path);
     return decode_gltf(file.bytes(), path);
 }
 
