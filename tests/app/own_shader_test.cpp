@@ -264,6 +264,18 @@ TEST(OwnShader, OfTheSettingsIsForAllMaterials) {
     EXPECT_NEAR(middle_of(session.render_layers({"albedo"}).at("albedo")).x(), 0.25, 0.5 / 65535);
 }
 
+TEST(OwnShader, MayHaveLongLines) {
+    const std::string blanks(1'000'000, ' ');
+    Session session = square_session({"//" + blanks + "\nvoid" + blanks + "surface" + blanks +
+                                      "(inout Surface s) { s.base_color = vec3(0.25, 0.5, 1.0); }"});
+    EXPECT_NEAR(middle_of(session.render_layers({"albedo"}).at("albedo")).x(), 0.25, 0.5 / 65535);
+    for (const char* text : {"voidsurface(inout Surface s) {}", "avoid surface(inout Surface s) {}",
+                             "void surface;", "surface(", "void surface"}) {
+        Session without = square_session({text});
+        EXPECT_NE(message_of(without).find("expected GLSL with the function"), std::string::npos) << text;
+    }
+}
+
 std::shared_ptr<render::Pass> pass_of(const std::string& body, render::Blend blend = render::Blend::over) {
     const std::string head =
         "#include \"common_camera.glsl\"\n#include \"common_encoding.glsl\"\n"

@@ -19,13 +19,15 @@ namespace {
 
 struct ViewOptions {
     std::vector<std::string> files, values, passes;
-    std::string size = "1280x720", environment, settings, screenshot, shader, animation, path;
+    std::string size = "1280x720", environment, settings, screenshot, shader, animation, path, format;
     bool watch = false, light = false;
     float panel_scale = 1;
 };
 
 void declare(CLI::App& command, ViewOptions& options) {
-    command.add_option("FILE", options.files, "Meshes: PLY, OBJ, STL, OFF, glTF, GLB and more");
+    command.add_option("FILE", options.files,
+                       "Meshes: PLY, OBJ, STL, OFF, glTF, GLB and more; - is standard input");
+    declare_format(command, options.format);
     command.add_option("--size,--resolution", options.size, "Width and height of the window in pixels")
         ->option_text("WxH");
     command.add_option("--env,--hdri-file", options.environment, field("environment.file").doc)
@@ -75,6 +77,7 @@ void play(Viewer& view, const std::vector<std::string>& names, const std::string
 }
 
 int run(const ViewOptions& options) {
+    check_input("view", options.files);
     Viewer view{Scene()};
     if (!options.settings.empty()) app::load_settings(view.session(), options.settings);
     apply(look_of(options), view.settings());
@@ -82,11 +85,13 @@ int run(const ViewOptions& options) {
     if (!options.screenshot.empty()) app::encoding_for(options.screenshot);
     const std::vector<std::string> names = unique_names(options.files);
     for (size_t i = 0; i < names.size(); ++i) {
-        const io::LoadOptions load{.crease_angle_deg = view.settings().load.crease_deg};
+        const io::LoadOptions load{.crease_angle_deg = view.settings().load.crease_deg,
+                                   .format = options.format};
         const io::LoadedScene loaded = load_drawable(options.files[i], load);
         show(view.scene(), loaded, names[i]);
         if (!loaded.animations.empty()) view.player().add(names[i], loaded.animations);
-        if (options.watch) view.live().watch(options.files[i], names[i]);
+        if (options.watch && options.files[i] != standard_input)
+            view.live().watch(options.files[i], names[i]);
     }
     if (!options.animation.empty()) play(view, names, options.animation);
     if (!options.path.empty()) view.live().state().path.set(io::load_camera_path(options.path));

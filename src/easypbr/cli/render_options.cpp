@@ -269,7 +269,9 @@ Vec2i parse_size(const std::string& text) {
 }
 
 void declare_render_options(CLI::App& command, RenderOptions& options) {
-    command.add_option("FILE", options.files, "Meshes: PLY, OBJ, STL, OFF, glTF, GLB and more");
+    command.add_option("FILE", options.files,
+                       "Meshes: PLY, OBJ, STL, OFF, glTF, GLB and more; - is standard input");
+    declare_format(command, options.format);
     declare_output(command, options);
     declare_look(command, options);
     declare_camera(command, options);
@@ -305,6 +307,7 @@ void check_recording_usage(const RenderOptions& options) {
 void check_usage(const RenderOptions& options) {
     require(!options.files.empty(), "render", "at least one FILE");
     require(!options.output.empty(), "render", "-o OUT.png");
+    check_input("render", options.files);
     check_recording_usage(options);
     parse_styles(options.styles, unique_names(options.files));
     if (options.smooth && options.flat) throw UsageError("render: --smooth and --flat exclude each other");

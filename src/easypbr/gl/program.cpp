@@ -4,8 +4,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
 #include <cstdlib>
-#include <regex>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -32,7 +33,30 @@ bool is_path(std::string_view name) {
 std::string resolve_include(std::string_view includer, const std::string& name) {
     if (!is_path(includer)) return name;
     const fs::path beside = fs::path(includer).parent_path() / name;
-    return fs::exists(beside) ? beside.string() : name;
+    std::error_code unusable;  // A name may be too long for the system.
+    return fs::exists(beside, unusable) ? beside.string() : name;
+}
+
+constexpr std::string_view blanks = " \t\r\v\f";
+
+std::string_view without_blanks(std::string_view text) {
+    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+    text.remove_suffix(text.size() - 1 - text.find_last_not_of(blanks));
+    return text;
+}
+
+/// The file that a line `#include "FILE"` names; nothing for another line. A scan, because std::regex
+/// recurses once per character and a long line overflows the stack.
+std::optional<std::string_view> included_file(std::string_view line) {
+    constexpr std::string_view directive = "#include";
+    line = without_blanks(line);
+    if (!line.starts_with(directive)) return std::nullopt;
+    line.remove_prefix(directive.size());
+    const std::string_view quoted = without_blanks(line);
+    const bool is_quoted =
+        quoted.size() > 2 && quoted.front() == '"' && quoted.find('"', 1) == quoted.size() - 1;
+    if (!is_quoted || quoted.size() == line.size()) return std::nullopt;
+    return quoted.substr(1, quoted.size() - 2);
 }
 
 /// Files are told apart by their lines' numbers: Mesa forgets the source's own number in many messages.
@@ -74,14 +98,12 @@ struct Expanded {
         files.emplace_back(name);
         shown.emplace_back(given == texts.end() ? name : given->second.name);
         is_own |= given != texts.end() || is_path(name);
-        static const std::regex include(R"re(^\s*#include\s+"([^"]+)"\s*$)re");
         std::istringstream lines(given == texts.end() ? shader_source(name) : given->second.text);
         std::string line;
         text += line_directive(index, 1);
         for (int number = 1; std::getline(lines, line); ++number) {
-            std::smatch match;
-            if (std::regex_match(line, match, include)) {
-                add(resolve_include(name, match[1].str()));
+            if (const auto file = included_file(line)) {
+                add(resolve_include(name, std::string(*file)));
                 text += line_directive(index, number + 1);
             } else if (const Feature feature = feature_of(line); !feature.macro.empty()) {
                 features.push_back(feature.macro);
@@ -103,20 +125,29 @@ struct Expanded {
     }
 };
 
-/// Puts file names in place of the numbers in a compiler log ("0:12(3): error" or "0(12) : error").
+/// Removes the whole number that the text begins with; nothing where there is none.
+std::optional<size_t> take_number(std::string_view& text) {
+    size_t number = 0;
+    const auto result = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (result.ec != std::errc()) return std::nullopt;
+    text.remove_prefix(size_t(result.ptr - text.data()));
+    return number;
+}
+
+/// Puts file names in place of the numbers in a line of a compiler log ("0:12(3): error" or "0(12) : error").
+std::string readable_line(const std::string& line, const std::vector<std::string>& files) {
+    std::string_view rest = line;
+    if (!take_number(rest) || rest.empty() || (rest.front() != ':' && rest.front() != '(')) return line;
+    rest.remove_prefix(1);
+    const auto number = take_number(rest);
+    if (!number || *number / lines_of_a_file >= files.size()) return line;
+    return fmt::format("{}:{}{}", files[*number / lines_of_a_file], *number % lines_of_a_file, rest);
+}
+
 std::string readable_log(const std::string& log, const std::vector<std::string>& files) {
-    static const std::regex place(R"(^(\d+)[:(](\d+))");
     std::istringstream lines(log);
     std::string line, out;
-    while (std::getline(lines, line)) {
-        std::smatch match;
-        if (std::regex_search(line, match, place)) {
-            const size_t number = std::stoul(match[2]);
-            if (const size_t file = number / lines_of_a_file; file < files.size())
-                line = fmt::format("{}:{}{}", files[file], number % lines_of_a_file, match.suffix().str());
-        }
-        out += "\n  " + line;
-    }
+    while (std::getline(lines, line)) out += "\n  " + readable_line(line, files);
     return out;
 }
 
@@ -180,14 +211,15 @@ Expanded expanded(std::string_view name, const ShaderTexts& texts, const std::ve
 }  // namespace
 
 std::string shader_source(std::string_view name) {
-    if (is_path(name)) return std::string(MappedFile(fs::path(name)).text());
+    if (is_path(name)) return std::string(FileBytes(fs::path(name)).text());
     if (const char* folder = std::getenv("EASYPBR_SHADER_DIR"); folder && *folder) {
         const fs::path path = fs::path(folder) / name;
-        if (fs::exists(path)) return std::string(MappedFile(path).text());
+        std::error_code unusable;
+        if (fs::exists(path, unusable)) return std::string(FileBytes(path).text());
     }
     for (const EmbeddedShader& shader : embedded_shaders)
         if (shader.name == name) return std::string(shader.text);
-    throw ArgumentError(fmt::format("there is no shader file '{}'", name));
+    throw ArgumentError(fmt::format("there is no shader file '{}'", name.substr(0, 200)));
 }
 
 std::vector<fs::path> shader_files(std::string_view name) {

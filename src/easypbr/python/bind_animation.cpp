@@ -1,8 +1,8 @@
 // Animations: what moves the meshes of a file.
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/python/bindings.h"
+#include "easypbr/python/text.h"
 #include "easypbr/scene/animation.h"
 
 namespace easypbr::python {

@@ -1,11 +1,11 @@
 // Camera: poses and projections, in OpenGL's and in OpenCV's axes.
 #include <fmt/format.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/core/error.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/text.h"
 #include "easypbr/scene/camera.h"
 
 namespace easypbr::python {

@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/camera_path_shape.h"
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/text.h"
 #include "easypbr/scene/camera_path.h"
 
 namespace easypbr::python {

@@ -1,9 +1,9 @@
 // Environment: an equirectangular picture that lights the scene.
 #include <nanobind/stl/filesystem.h>
-#include <nanobind/stl/string.h>
 
 #include "easypbr/core/file.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/text.h"
 #include "easypbr/scene/environment.h"
 
 namespace easypbr::python {

@@ -1,6 +1,5 @@
 // Methods of Mesh that make new meshes: placed, repaired, coarser, finer.
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include <cmath>
@@ -15,6 +14,7 @@
 #include "easypbr/geometry/simplify.h"
 #include "easypbr/geometry/subsample.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/text.h"
 
 namespace easypbr::python {
 namespace {

@@ -2,13 +2,13 @@
 #include <fmt/format.h>
 #include <nanobind/stl/map.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/dataset/cuda_layers.h"
 #include "easypbr/dataset/ground_truth.h"
 #include "easypbr/dataset/rle.h"
 #include "easypbr/python/shared_viewer.h"
+#include "easypbr/python/text.h"
 
 namespace easypbr::python {
 namespace {

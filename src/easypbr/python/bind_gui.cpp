@@ -2,11 +2,11 @@
 #include <fmt/format.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/gui/live_view.h"
 #include "easypbr/python/shared_viewer.h"
+#include "easypbr/python/text.h"
 
 namespace easypbr::python {
 namespace {

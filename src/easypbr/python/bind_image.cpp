@@ -1,7 +1,6 @@
 // Pictures as numpy arrays.
 #include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/app/output.h"
@@ -11,6 +10,7 @@
 #include "easypbr/io/image/image_codecs.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/text.h"
 
 namespace easypbr::python {
 namespace {

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/core/error.h"
@@ -10,6 +9,7 @@
 #include "easypbr/io/settings/label_map_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
+#include "easypbr/python/text.h"
 #include "easypbr/scene/colormap.h"
 #include "easypbr/scene/label_colors.h"
 
@@ -23,6 +23,16 @@ class ColorsLike : public nb::object {
 class NamesLike : public nb::object {
     NB_OBJECT_DEFAULT(NamesLike, nb::object, "Sequence[str] | Mapping[int, str]", is_anything)
 };
+
+/// Throws ArgumentError that says what was expected.
+template <class T>
+T taken(nb::handle object, std::string_view what, std::string_view expected) {
+    T value;
+    if (!nb::try_cast(object, value))
+        throw ArgumentError(fmt::format("LabelMap {}: expected {}, got {}", what, expected,
+                                        nb::cast<std::string>(nb::repr(object))));
+    return value;
+}
 
 Rgb8 rgb8(nb::handle red, nb::handle green, nb::handle blue, bool whole) {
     const Vec3d c(nb::cast<double>(red), nb::cast<double>(green), nb::cast<double>(blue));
@@ -50,7 +60,8 @@ std::vector<Rgb8> colors_from(nb::handle object) {
     const bool texts = nb::isinstance<nb::sequence>(object) && nb::len(object) > 0 &&
                        nb::isinstance<nb::str>(nb::object(object[0]));
     if (!texts) return colors_of_array(object);
-    for (nb::handle text : object) colors.push_back(to_rgb8(parse_color(nb::cast<std::string>(text))));
+    for (nb::handle text : object)
+        colors.push_back(to_rgb8(parse_color(taken<std::string>(text, "colors", "texts"))));
     return colors;
 }
 
@@ -59,9 +70,11 @@ std::vector<LabelClass> classes_from(nb::handle names, const std::optional<std::
     if (nb::isinstance<nb::dict>(names)) {
         if (labels) throw ArgumentError("LabelMap: expected names as a list beside labels, got a dict");
         for (auto [label, name] : nb::cast<nb::dict>(names))
-            classes.push_back({nb::cast<int32_t>(label), nb::cast<std::string>(name), {}});
+            classes.push_back({taken<int32_t>(label, "names", "labels of 32 bits as keys"),
+                               taken<std::string>(name, "names", "texts"),
+                               {}});
     } else {
-        for (const std::string& name : nb::cast<std::vector<std::string>>(names)) {
+        for (const std::string& name : taken<std::vector<std::string>>(names, "names", "a list of texts")) {
             const size_t i = classes.size();
             classes.push_back({labels && i < labels->size() ? (*labels)[i] : int32_t(i), name, {}});
         }

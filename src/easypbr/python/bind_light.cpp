@@ -1,11 +1,11 @@
 // Light: point, directional or spot.
 #include <fmt/format.h>
-#include <nanobind/stl/string.h>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/settings_value.h"
+#include "easypbr/python/text.h"
 #include "easypbr/scene/light.h"
 
 namespace easypbr::python {

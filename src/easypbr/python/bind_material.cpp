@@ -1,7 +1,6 @@
 // Material and Style: values of their own, or those of a mesh, whose changes then go through.
 #include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/core/error.h"
@@ -9,6 +8,7 @@
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
 #include "easypbr/python/settings_value.h"
+#include "easypbr/python/text.h"
 #include "easypbr/scene/fields.h"
 #include "easypbr/scene/material_table.h"
 

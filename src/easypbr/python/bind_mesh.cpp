@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/core/error.h"
@@ -14,6 +13,7 @@
 #include "easypbr/python/handles.h"
 #include "easypbr/python/mesh_fields.h"
 #include "easypbr/python/mesh_pose.h"
+#include "easypbr/python/text.h"
 
 namespace easypbr::python {
 namespace {

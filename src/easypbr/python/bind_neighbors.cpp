@@ -1,10 +1,10 @@
 // Neighbours, normals and surfels of points.
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 
 #include "easypbr/geometry/kd_tree.h"
 #include "easypbr/geometry/surfels.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/text.h"
 
 namespace easypbr::python {
 namespace {

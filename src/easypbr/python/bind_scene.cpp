@@ -1,13 +1,13 @@
 // Scene, as the Python class of the same name uses it.
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/map.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/python/bindings.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/text.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/viewer/viewer.h"
 

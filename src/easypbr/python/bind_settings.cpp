@@ -1,12 +1,12 @@
 // The table of settings, and `auto` and `follow`.
 #include <fmt/format.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/core/error.h"
 #include "easypbr/io/settings/settings_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/settings_value.h"
+#include "easypbr/python/text.h"
 
 namespace easypbr::python {
 namespace {

@@ -1,7 +1,6 @@
 // Shapes made in code: the module easypbr.shapes.
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 
 #include <optional>
 #include <span>
@@ -11,6 +10,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/geometry/voxels.h"
 #include "easypbr/python/convert.h"
+#include "easypbr/python/text.h"
 
 namespace easypbr::python {
 namespace {

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/core/error.h"
@@ -12,6 +11,7 @@
 #include "easypbr/python/convert.h"
 #include "easypbr/python/settings_value.h"
 #include "easypbr/python/shared_viewer.h"
+#include "easypbr/python/text.h"
 
 namespace easypbr::python {
 namespace {

@@ -1,11 +1,11 @@
 #include "easypbr/python/mesh_fields.h"
 
 #include <fmt/format.h>
-#include <nanobind/stl/string.h>
 
 #include "easypbr/core/error.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
+#include "easypbr/python/text.h"
 
 namespace easypbr::python {
 namespace {
@@ -49,7 +49,7 @@ Array1f scalar_values(const std::string& name, nb::handle values) {
 nb::dict scalars_of(const Mesh& mesh) {
     nb::dict scalars;
     for (const ScalarArray& scalar : mesh.snapshot()->scalars)
-        scalars[nb::str(scalar.name.c_str())] = view_of(scalar.values);
+        scalars[nb::cast(scalar.name)] = view_of(scalar.values);
     return scalars;
 }
 

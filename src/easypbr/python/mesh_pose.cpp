@@ -1,10 +1,10 @@
 #include "easypbr/python/mesh_pose.h"
 
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/python/convert.h"
+#include "easypbr/python/text.h"
 
 namespace easypbr::python {
 namespace {

@@ -29,10 +29,12 @@ struct ResolvedSettings {
 };
 
 /// Pure: the same scene, settings and size give the same result. Throws ArgumentError when settings
-/// contradict each other or when there is nothing to place a camera for.
+/// contradict each other, when there is nothing to place a camera for, and, with its name, when a mesh is so
+/// large that the camera or a light leaves single precision.
 ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, Vec2i size);
 
-/// Copies inferred values into the automatic (not pinned, not following) fields of `settings`.
+/// Copies inferred values into the automatic (not pinned, not following) fields of `settings`, but those that
+/// are not finite or out of the field's range.
 void latch(Settings& settings, const Settings& resolved);
 /// Forgets all latched values, so that the next picture infers them anew.
 void release(Settings& settings);

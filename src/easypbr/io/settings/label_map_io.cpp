@@ -144,7 +144,7 @@ std::string to_json(const LabelMap& map) {
 }  // namespace
 
 LabelMap load_label_map(const fs::path& path) {
-    const MappedFile file(path);
+    const FileBytes file(path);
     try {
         ReadMap map = read(path, file.text());
         if (map.name.empty()) map.name = path.stem().string();

@@ -270,7 +270,7 @@ class SettingsParser {
 }  // namespace
 
 SettingsFile load_settings(const std::filesystem::path& path) {
-    const MappedFile file(path);
+    const FileBytes file(path);
     return parse_settings(std::string(file.text()), path.string());
 }
 
@@ -295,7 +295,7 @@ std::string to_json(const SettingsFile& file) {
 }
 
 std::string hash_file(const std::filesystem::path& path) {
-    return content_hash(MappedFile(path).bytes());
+    return content_hash(FileBytes(path).bytes());
 }
 
 }  // namespace easypbr::io
