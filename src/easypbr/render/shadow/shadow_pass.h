@@ -49,9 +49,9 @@ class ShadowPass {
     void draw_splats(const ShadowView& view, const DrawList& casters, bool tints, bool native,
                      int resolution);
     void draw_object(const ShadowView& view, Items items);
-    void draw_item(const ShadowView& view, const DrawItem& item);
+    void use_shader(const ShadowView& view, const DrawItem& item);
     /// The same of an item with a shader of its own, whose holes are holes in its shadow.
-    void draw_shaded(const ShadowView& view, const DrawItem& item);
+    void use_own_shader(const ShadowView& view, const DrawItem& item);
 
     gpu::MeshCache& meshes_;
     gpu::TextureCache& textures_;

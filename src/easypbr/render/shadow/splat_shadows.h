@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "easypbr/gl/draw.h"
 #include "easypbr/gpu/point_buffers.h"
 #include "easypbr/gpu/surfel_buffers.h"
 #include "easypbr/render/drawables/draw_list.h"
@@ -30,8 +31,9 @@ class SplatShadows {
     double reach(const DrawItem& item, bool surfels);
 
     /// Into the bound layer of a map of `resolution` texels.
-    void draw_points(const ShadowView& view, const DrawItem& item, int resolution);
-    void draw_surfels(const ShadowView& view, const DrawItem& item);
+    void draw_points(const ShadowView& view, const DrawItem& item, int resolution,
+                     const gl::DrawState& state);
+    void draw_surfels(const ShadowView& view, const DrawItem& item, const gl::DrawState& state);
 
     static bool suits_native(const DrawItem& item) {
         return item.alpha == AlphaMode::opaque && !item.casts_tint();
