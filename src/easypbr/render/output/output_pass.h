@@ -4,6 +4,7 @@
 
 #include "easypbr/gl/texture.h"
 #include "easypbr/render/effects/bloom/glow.h"
+#include "easypbr/render/effects/effect.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/render/frame/programs.h"
@@ -15,16 +16,6 @@ enum class Encoding {
     srgb8,        ///< RGBA8, tone mapped, sRGB-encoded, straight alpha
     srgb16,       ///< RGBA16, the same
     scene_linear  ///< RGBA32F, radiance before exposure and tone curve, premultiplied alpha
-};
-
-/// What a frame shows once its passes have run.
-struct LitPicture {
-    const gl::Texture* radiance = nullptr;  ///< as GBuffer::radiance
-    const gl::Texture* overlay = nullptr;   ///< as GBuffer::overlay, where there is one
-    const Glow* glow = nullptr;             ///< where bloom spreads light
-    PixelRect covered;                      ///< all surfaces, lines and layers are inside
-    bool partly_covered = false;            ///< the radiance may hold coverages between 0 and 1
-    bool spreads = false;                   ///< light may fall beyond `covered`
 };
 
 class OutputPass {

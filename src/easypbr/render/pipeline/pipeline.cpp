@@ -1,6 +1,7 @@
 #include "easypbr/render/pipeline/pipeline.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "easypbr/core/color.h"
 
@@ -51,7 +52,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     const bool has_layers = list.has(is_layered);
     const DrawList solid = has_layers ? list.without_layers() : DrawList();
     const DrawList& opaque = has_layers ? solid : list;
-    const bool with_overlay = list.needs_overlay() || has_custom(contents.custom, Stage::overlay);
+    const bool with_overlay = list.needs_overlay() || draws_overlay(frame, contents);
     const SurfaceOutputs outputs{.ids = contents.ids, .extensions = contents.ids ? 0 : opaque.extensions()};
     if (with_overlay) targets_.add_overlay();
     if (outputs.extensions) targets_.add_extensions();
@@ -80,7 +81,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         lit.partly_covered |=
             timer_.run("transparency", [&] { return draw_transparent(frame, list, contents, with_overlay); });
     if (contents.custom) contents.custom->draw_in_frame(frame, targets_, timer_, lit);
-    if (!contents.layers) post_process(frame.covering(lit.covered), lit);
+    if (!contents.layers) draw_effects(frame, opaque, lit);
     return lit;
 }
 
@@ -112,17 +113,31 @@ void Pipeline::update_ray_scene(const Frame& frame, const DrawList& casters, boo
                       shadow_maps_.splats(), plane);
 }
 
-void Pipeline::post_process(const Frame& frame, LitPicture& lit) {
-    const ResolvedSettings& resolved = *frame.resolved;
-    lit.spreads |= resolved.settings.bloom.enabled || resolved.lens_radius > 0;
-    if (resolved.lens_radius > 0 && !frame.through_lens) {
-        lit.radiance = timer_.run("depth of field",
-                                  [&] { return &focus_.draw(frame, targets_, bounds_of(*frame.scene)); });
-        lit.partly_covered = true;
+bool Pipeline::draws_overlay(const Shot& shot, const FrameContents& contents) const {
+    if (has_custom(contents.custom, Stage::overlay)) return true;
+    return !contents.layers && std::ranges::any_of(effects_, [&](const auto& effect) {
+        return effect->draws_overlay() && effect->is_on(shot);
+    });
+}
+
+void Pipeline::draw_effects(const Frame& frame, const DrawList& opaque, LitPicture& lit) {
+    bool has_ids = false;
+    const auto with_ids = [&]() -> const GBuffer& {
+        if (std::exchange(has_ids, true)) return with_ids_;
+        if (!with_ids_.albedo || with_ids_.size() != frame.size) with_ids_ = GBuffer(frame.size);
+        with_ids_.add_ids();
+        surfaces_.draw(frame, opaque, with_ids_, {.ids = true});
+        return with_ids_;
+    };
+    // The frames of an accumulated picture look through different places of the lens.
+    lit.spreads |= frame.through_lens;
+    for (const auto& effect : effects_) {
+        if (!effect->is_on(frame)) continue;
+        const Frame seen = frame.covering(lit.covered);
+        timer_.run(effect->name(), [&] {
+            effect->draw({seen, targets_, bounds_of(*frame.scene), with_ids}, lit);
+        });
     }
-    if (!resolved.settings.bloom.enabled) return;
-    lit.glow = timer_.run("bloom", [&] { return &bloom_.draw(frame, *lit.radiance); });
-    lit.partly_covered = true;  // Light falls where nothing is.
 }
 
 void Pipeline::draw_surfaces(const Frame& frame, const DrawList& list, const SurfaceOutputs& outputs) {

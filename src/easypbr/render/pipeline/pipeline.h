@@ -7,8 +7,7 @@
 #include "easypbr/gpu/environment_maps.h"
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/render/effects/ambient_occlusion/ambient_occlusion_pass.h"
-#include "easypbr/render/effects/bloom/bloom_pass.h"
-#include "easypbr/render/effects/depth_of_field/focus_pass.h"
+#include "easypbr/render/effects/effect.h"
 #include "easypbr/render/effects/ground/ground_pass.h"
 #include "easypbr/render/frame/pass_timer.h"
 #include "easypbr/render/lighting/background_pass.h"
@@ -89,8 +88,8 @@ class Pipeline {
                      const gl::Texture& opaque, const FrameContents& contents, bool with_overlay);
     /// The eye-dome lighting of the layers' points; nothing where there are none.
     const gl::Texture* shade_points(const Frame& frame, const DrawList& layers, const gl::Texture& opaque);
-    /// What the lens and the eye make of the frame.
-    void post_process(const Frame& frame, LitPicture& lit);
+    bool draws_overlay(const Shot& shot, const FrameContents& contents) const;
+    void draw_effects(const Frame& frame, const DrawList& opaque, LitPicture& lit);
 
     GBuffer targets_;
     DataCaches caches_;
@@ -106,8 +105,8 @@ class Pipeline {
     LinePass lines_;
     TransparencyPass transparency_;
     BackgroundPass background_;
-    FocusPass focus_;
-    BloomPass bloom_;
+    std::vector<std::unique_ptr<Effect>> effects_ = make_effects();
+    GBuffer with_ids_;  ///< for effects that ask for ids
     PassTimer timer_;
     gl::Texture hiding_depth_;
     gl::Framebuffer hiding_;

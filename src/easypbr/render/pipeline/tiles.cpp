@@ -6,8 +6,7 @@
 #include <cmath>
 
 #include "easypbr/core/error.h"
-#include "easypbr/render/effects/bloom/glow.h"
-#include "easypbr/render/effects/depth_of_field/focus_pass.h"
+#include "easypbr/render/effects/effect.h"
 #include "easypbr/render/effects/ground/ground_pass.h"
 #include "easypbr/scene/draw_style.h"
 
@@ -18,8 +17,6 @@ namespace {
 constexpr double most_reach = 1024, most_reach_beside_transmission = 512;
 /// Smoothing along edges, the blur of occlusion, lines' edges.
 constexpr int smallest_guard = 16;
-/// Widest texels of bloom's pyramid after which a light's glow has faded to 4e-8 of its sum.
-constexpr int glow_texels = 6;
 /// Points of more pixels are none to drivers: the centres of half of them may lie outside of a tile.
 constexpr int largest_point = 256;
 
@@ -112,8 +109,7 @@ Guard guard_of(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec
         // What rough glass shows is blurred by a quarter of its reach, seen through twice as wide a filter.
         guard.pixels += int(1.5 * most_reach_beside_transmission);
     }
-    if (settings.bloom.enabled) guard.pixels += glow_texels * (glow_texel << (resolved.bloom_levels - 1));
-    if (resolved.lens_radius > 0) guard.pixels += int(std::ceil(largest_confusion(whole, bounds))) + 4;
+    for (const auto& effect : make_effects()) guard.pixels += effect->reach(whole, bounds);
     return guard;
 }
 

@@ -1,4 +1,4 @@
-#include "easypbr/render/effects/depth_of_field/focus_pass.h"
+#include "easypbr/render/effects/depth_of_field/depth_of_field_effect.h"
 
 #include <algorithm>
 #include <cmath>
@@ -16,13 +16,7 @@ Vec2d confusion_of(const Frame& frame) {
     return {scale / frame.resolved->focus_distance, scale / frame.camera.near};
 }
 
-void bind(const gl::Program& program, const char* sampler, unsigned unit, const gl::Texture& texture) {
-    program.set(sampler, int(unit));
-    texture.bind(unit);
-}
-
-}  // namespace
-
+/// Largest radius of a circle of confusion that a single frame draws, in pixels.
 double largest_confusion(const Frame& frame, const Box3d& bounds) {
     const Vec2d focus = confusion_of(frame);
     double largest = std::abs(focus.x());  // Of the background, too.
@@ -34,7 +28,14 @@ double largest_confusion(const Frame& frame, const Box3d& bounds) {
     return std::min(largest, largest_part * frame.picture_size.y());
 }
 
-void FocusPass::make_targets(Vec2i size) {
+void bind(const gl::Program& program, const char* sampler, unsigned unit, const gl::Texture& texture) {
+    program.set(sampler, int(unit));
+    texture.bind(unit);
+}
+
+}  // namespace
+
+void DepthOfFieldEffect::make_targets(Vec2i size) {
     if (radiance_ && radiance_.width() == size.x() && radiance_.height() == size.y()) return;
     const int w = (size.x() + 1) / 2, h = (size.y() + 1) / 2;
     radiance_ = gl::Texture(gl::Format::rgba32f, size.x(), size.y());
@@ -49,7 +50,15 @@ void FocusPass::make_targets(Vec2i size) {
     composed_ = gl::Framebuffer({&radiance_});
 }
 
-const gl::Texture& FocusPass::draw(const Frame& frame, const GBuffer& targets, const Box3d& bounds) {
+int DepthOfFieldEffect::reach(const Frame& whole, const Box3d& bounds) const {
+    if (!(whole.resolved->lens_radius > 0)) return 0;
+    // A little more for the filters of half resolution.
+    return int(std::ceil(largest_confusion(whole, bounds))) + 4;
+}
+
+void DepthOfFieldEffect::draw(const EffectInputs& inputs, LitPicture& lit) {
+    const Frame& frame = inputs.frame;
+    const GBuffer& targets = inputs.targets;
     make_targets(frame.size);
     const Vec2 size = frame.size.cast<float>(), focus = confusion_of(frame).cast<float>();
     const Vec2 half(float(light_.width()), float(light_.height()));
@@ -67,7 +76,7 @@ const gl::Texture& FocusPass::draw(const Frame& frame, const GBuffer& targets, c
     gathered_.bind();
     gather.use();
     gather.set("u_half_size", half);
-    gather.set("u_reach", float(largest_confusion(frame, bounds) / 2));
+    gather.set("u_reach", float(largest_confusion(frame, inputs.bounds) / 2));
     bind(gather, "u_light", 0, light_);
     bind(gather, "u_confusion", 1, confusion_);
     gl::draw_screen({});
@@ -84,7 +93,8 @@ const gl::Texture& FocusPass::draw(const Frame& frame, const GBuffer& targets, c
     bind(compose, "u_before", 3, before_);
     bind(compose, "u_hidden", 4, hidden_);
     gl::draw_screen({});
-    return radiance_;
+    lit.radiance = &radiance_;
+    lit.partly_covered = lit.spreads = true;
 }
 
 }  // namespace easypbr::render

@@ -1,9 +1,12 @@
-#include "easypbr/render/effects/bloom/bloom_pass.h"
+#include "easypbr/render/effects/bloom/bloom_effect.h"
 
 #include <algorithm>
 
 namespace easypbr::render {
 namespace {
+
+/// Widest texels of the pyramid after which a light's glow has faded to 4e-8 of its sum.
+constexpr int visible_texels = 6;
 
 bool shows_environment(const Frame& frame) {
     const BackgroundMode mode = frame.resolved->settings.background.mode;
@@ -30,7 +33,7 @@ void set_glow_uniforms(const gl::Program& program, const Glow& glow, unsigned un
     glow.light->bind(unit);
 }
 
-void BloomPass::make_levels(Vec2i size, int count) {
+void BloomEffect::make_levels(Vec2i size, int count) {
     if (size_ == size && levels_.size() == size_t(count)) return;
     size_ = size;
     levels_.clear();
@@ -53,13 +56,18 @@ void BloomPass::make_levels(Vec2i size, int count) {
     summed_ = gl::Framebuffer({&sums_[0], &sums_[1], &sums_[2], &sums_[3]});
 }
 
-const Glow& BloomPass::draw(const Frame& frame, const gl::Texture& radiance) {
+int BloomEffect::reach(const Frame& whole, const Box3d& /*bounds*/) const {
+    return is_on(whole) ? visible_texels * (glow_texel << (whole.resolved->bloom_levels - 1)) : 0;
+}
+
+void BloomEffect::draw(const EffectInputs& inputs, LitPicture& lit) {
+    const Frame& frame = inputs.frame;
     make_levels(frame.size, frame.resolved->bloom_levels);
     const BloomSettings& bloom = frame.resolved->settings.bloom;
     glow_.light = &levels_.front().glow;
     glow_.parameters = {bloom.intensity, frame.resolved->exposure, bloom.threshold,
                         bloom.knee * bloom.threshold};
-    gather(frame, radiance);
+    gather(frame, *lit.radiance);
     const size_t count = levels_.size();
     for (size_t i = 1; i < count; ++i)
         resample(levels_[i - 1].light, levels_[i - 1].extent, levels_[i].lit, {"DOWN"}, gl::replace);
@@ -72,10 +80,12 @@ const Glow& BloomPass::draw(const Frame& frame, const gl::Texture& radiance) {
                                 .constant = 1 / float(count - i)};
         resample(levels_[i + 1].glow, levels_[i + 1].extent, levels_[i].glowing, {"UP"}, mean);
     }
-    return glow_;
+    lit.glow = &glow_;
+    // Light falls where nothing is.
+    lit.partly_covered = lit.spreads = true;
 }
 
-void BloomPass::gather(const Frame& frame, const gl::Texture& radiance) {
+void BloomEffect::gather(const Frame& frame, const gl::Texture& radiance) {
     const Level& first = levels_.front();
     const float black[4] = {0, 0, 0, 0};
     first.lit.clear_color(0, black);
@@ -102,8 +112,8 @@ void BloomPass::gather(const Frame& frame, const gl::Texture& radiance) {
     gl::draw_screen(screen_state(area));
 }
 
-void BloomPass::resample(const gl::Texture& from, const Vec2& extent, const gl::Framebuffer& to,
-                         const std::vector<std::string>& step, const gl::Blending& blending) {
+void BloomEffect::resample(const gl::Texture& from, const Vec2& extent, const gl::Framebuffer& to,
+                           const std::vector<std::string>& step, const gl::Blending& blending) {
     const gl::Program& program = resample_.get(step);
     to.bind();
     program.use();

@@ -2,8 +2,7 @@
 // instead, which is exact: see prepare_frame().
 #pragma once
 
-#include "easypbr/render/frame/frame.h"
-#include "easypbr/render/frame/gbuffer.h"
+#include "easypbr/render/effects/effect.h"
 #include "easypbr/render/frame/programs.h"
 
 namespace easypbr::render {
@@ -11,11 +10,14 @@ namespace easypbr::render {
 /// Blurs the radiance by the thin lens's circle of confusion, at half resolution, what is near over what is
 /// far. What is hidden in the picture cannot be seen around what hides it, and circles are at most a
 /// sixteenth of the picture's height in radius.
-class FocusPass {
+class DepthOfFieldEffect : public Effect {
   public:
-    /// The blurred radiance, RGBA32F, of the G-buffer's radiance and depth. `bounds` are those of all
-    /// content. Until the next call.
-    const gl::Texture& draw(const Frame& frame, const GBuffer& targets, const Box3d& bounds);
+    const char* name() const override { return "depth of field"; }
+    bool is_on(const Shot& shot) const override {
+        return shot.resolved->lens_radius > 0 && !shot.through_lens;
+    }
+    int reach(const Frame& whole, const Box3d& bounds) const override;
+    void draw(const EffectInputs& inputs, LitPicture& lit) override;
 
   private:
     void make_targets(Vec2i size);
@@ -26,8 +28,5 @@ class FocusPass {
     ProgramVariants gather_{"screen_triangle.vert", "focus_gather.frag"};
     ProgramVariants compose_{"screen_triangle.vert", "focus_compose.frag"};
 };
-
-/// Largest radius of a circle of confusion that a single frame draws, in pixels.
-double largest_confusion(const Frame& frame, const Box3d& bounds);
 
 }  // namespace easypbr::render

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "easypbr/render/effects/bloom/glow.h"
-#include "easypbr/render/frame/frame.h"
+#include "easypbr/render/effects/effect.h"
 #include "easypbr/render/frame/programs.h"
 
 namespace easypbr::render {
@@ -12,10 +12,12 @@ namespace easypbr::render {
 /// A pyramid of blurred light whose levels count alike (Jimenez 2014, "Next Generation Post Processing in
 /// Call of Duty: Advanced Warfare"), the first at a quarter of the resolution. The light that is spread is
 /// taken from where it was, so that the sum of all light stays, and an even picture stays as it is.
-class BloomPass {
+class BloomEffect : public Effect {
   public:
-    /// The glow of a picture of frame.size pixels, RGBA32F. Until the next call.
-    const Glow& draw(const Frame& frame, const gl::Texture& radiance);
+    const char* name() const override { return "bloom"; }
+    bool is_on(const Shot& shot) const override { return shot.resolved->settings.bloom.enabled; }
+    int reach(const Frame& whole, const Box3d& bounds) const override;
+    void draw(const EffectInputs& inputs, LitPicture& lit) override;
 
   private:
     struct Level {
