@@ -182,7 +182,7 @@ class RenderJob {
             animation_->first.apply(animation_->second, options_.animation_time.value_or(0) + time_s);
     }
 
-    /// A still shows what a recording's frame shows: how the animation went on since the frame before.
+    /// An image has the motion blur of a recording's frame: the motion since the previous frame.
     void begin_motion() {
         if (!animation_ || !session_.settings().motion_blur.enabled) return;
         animate_frame_before();

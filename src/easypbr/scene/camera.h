@@ -10,7 +10,7 @@ namespace easypbr {
 
 enum class Projection { perspective, orthographic };
 
-/// Intrinsics as OpenCV has them, in pixels of an image of the given size; pixel centres at integers.
+/// Intrinsics in the OpenCV convention, in pixels of an image of the given size; pixel centres at integers.
 struct Intrinsics {
     double fx = 0, fy = 0, cx = 0, cy = 0;
     int width = 0, height = 0;
@@ -20,12 +20,12 @@ struct Intrinsics {
 struct Camera {
     Eigen::Isometry3d T_world_cam = Eigen::Isometry3d::Identity();
     Projection projection = Projection::perspective;
-    double fov_y_deg = 30;    ///< full vertical angle; perspective without intrinsics
-    double ortho_height = 2;  ///< world height of the picture; orthographic
-    double near = 0.01;       ///< distance of the near plane; the far plane is infinitely far (perspective)
+    double fov_y_deg = 30;    ///< vertical field of view; perspective without intrinsics
+    double ortho_height = 2;  ///< height of the view volume, world units; orthographic
+    double near = 0.01;       ///< distance to the near plane; the far plane is at infinity (perspective)
     double far = 100;         ///< orthographic only
     std::optional<Intrinsics>
-        intrinsics;  ///< perspective; replaces fov_y_deg, scaled to the size of the picture
+        intrinsics;  ///< perspective; overrides fov_y_deg, scaled to the size of the image
     std::optional<Distortion> distortion;  ///< of the lens; perspective with intrinsics
 
     Vec3d position() const { return T_world_cam.translation(); }

@@ -1,4 +1,4 @@
-// Environment: an equirectangular HDR picture that lights the scene from infinitely far.
+// Environment: an equirectangular HDR environment map for image-based lighting.
 #pragma once
 
 #include <array>
@@ -12,7 +12,7 @@
 
 namespace easypbr {
 
-/// Direction of an equirectangular picture's point (u, v) in [0, 1]^2, v = 0 on top: +Y is up, u = 0.5 is -Z,
+/// Direction of a point (u, v) of an equirectangular map in [0, 1]^2, v = 0 on top: +Y is up, u = 0.5 is -Z,
 /// u grows to the right (towards +X) for a viewer inside.
 Vec3 equirect_direction(float u, float v);
 /// The inverse: (u, v) of a unit direction.
@@ -32,16 +32,16 @@ class Environment {
     bool empty() const { return data_ == nullptr; }
     const Image& image() const { return data_->image; }
     const std::string& name() const { return data_->name; }
-    /// Content hash of the pixels: the key of all that is derived from them.
+    /// Content hash of the pixels, the cache key of everything derived from them.
     const std::string& hash() const { return data_->hash; }
 
     /// Irradiance divided by pi on a surface with this unit normal, from spherical harmonics up to degree 2
     /// (Ramamoorthi and Hanrahan 2001), never negative. Good to a few percent: for exposure, not for shading.
     Vec3 irradiance_over_pi(const Vec3& normal) const;
 
-    /// Its sun, if it has one; looked for at the first call.
+    /// The sun, if there is one; detected at the first call.
     const std::optional<Sun>& sun() const;
-    /// What is left without the sun's light; the same environment when there is none.
+    /// The environment map without the sun; the same map if there is none.
     Environment without_sun() const;
 
   private:
@@ -56,7 +56,7 @@ class Environment {
     std::shared_ptr<const Data> data_;
 };
 
-/// The embedded studio: a dim room with soft boxes above, left, right and behind, computed.
+/// The built-in studio: a dim room with soft boxes above, left, right and behind, computed.
 const Environment& studio_environment();
 
 }  // namespace easypbr

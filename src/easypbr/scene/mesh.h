@@ -224,18 +224,18 @@ class Mesh {
     void scale(const Vec3d& factors);
     void scale(double factor) { scale(Vec3d(factor, factor, factor)); }
 
-    /// Hangs a mesh below this one: its pose is relative to this one's from now on. With `keep_world_pose`
-    /// its T_parent_mesh changes so that it stays where it is. Does nothing when it is a child already.
+    /// Adds a child, whose pose becomes relative to this mesh. With `keep_world_pose` its T_parent_mesh
+    /// changes so that its world pose is kept. Does nothing if it is a child already.
     /// Throws ArgumentError when it is this mesh or contains it, or is the child of another mesh.
     void add_child(const Mesh& child, bool keep_world_pose = false);
-    /// Takes a child away; with `keep_world_pose` it stays where it is. Throws ArgumentError when it is no
-    /// child of this mesh.
+    /// Removes a child; with `keep_world_pose` its world pose is kept. Throws ArgumentError if it is no child
+    /// of this mesh.
     void remove_child(const Mesh& child, bool keep_world_pose = false);
     std::vector<Mesh> children() const { return snapshot()->children; }
-    /// The mesh that this one is a child of. Of several, which only copies of MeshData give, the first.
+    /// The parent mesh. Of several, which only copies of MeshData give, the first.
     std::optional<Mesh> parent() const;
 
-    /// A copy of its own, children included; arrays stay shared until one of the two is given others.
+    /// A deep copy, children included; arrays are shared until one of the two is assigned others.
     Mesh clone() const;
 
     /// Writes PLY, OBJ or GLB, by the extension. Throws FileError, FormatError.

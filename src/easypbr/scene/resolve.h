@@ -1,4 +1,4 @@
-// Auto parameters: from a scene and the user's settings to every value that a picture needs.
+// Automatic parameters: infers every value that an image needs from a scene and the user's settings.
 #pragma once
 
 #include <map>
@@ -11,7 +11,7 @@
 
 namespace easypbr {
 
-/// All that the renderer asks of the settings, with nothing left to infer.
+/// All inputs of the renderer from the settings, fully inferred.
 struct ResolvedSettings {
     Settings settings;  ///< every automatic field holds its value, but overrides of materials and styles, and
                         ///< what is inferred for every picture anew: the next three
@@ -21,11 +21,11 @@ struct ResolvedSettings {
     Camera camera;
     std::vector<Light> lights;                 ///< enabled lights of the scene, then key, fill, rim and sun
     std::map<std::string, float> light_radii;  ///< those inferred for lights of the scene, by name
-    Environment environment;  ///< what lights the scene: the given one, less its sun, the studio, or empty
-    Environment seen_environment;         ///< the same with its sun, as it is seen in the background
-    Mat3 R_env_world = Mat3::Identity();  ///< turns a world direction into the environment's frame
+    Environment environment;       ///< environment map without its sun: the given one, the studio, or empty
+    Environment seen_environment;  ///< the same with its sun, for the background
+    Mat3 R_env_world = Mat3::Identity();  ///< from world space to environment space
     double lens_radius = 0;               ///< of the aperture, world units; 0: a pinhole
-    float exposure = 1;  ///< factor from radiance to the tone curve's input, compensation included
+    float exposure = 1;                   ///< scale factor before tone mapping, compensation included
 };
 
 /// Pure: the same scene, settings and size give the same result. Throws ArgumentError when settings
@@ -36,7 +36,7 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, V
 /// Copies inferred values into the automatic (not pinned, not following) fields of `settings`, but those that
 /// are not finite or out of the field's range.
 void latch(Settings& settings, const Settings& resolved);
-/// Forgets all latched values, so that the next picture infers them anew.
+/// Releases all latched values, so that the next image infers them again.
 void release(Settings& settings);
 
 /// World direction of an up setting: "+x", "-x", "+y", "-y", "+z", "-z" (F3D's spelling, the sign may be

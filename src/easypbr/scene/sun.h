@@ -1,4 +1,4 @@
-// The sun of an environment: what shines so brightly from so small a spot that it casts shadows.
+// The sun of an environment map: a bright spot small enough to act as a directional light.
 #pragma once
 
 #include <optional>
@@ -9,14 +9,14 @@
 namespace easypbr {
 
 struct Sun {
-    Vec3 towards{0, 1, 0};     ///< unit, in the environment's frame (see scene/environment.h)
-    Vec3 irradiance{0, 0, 0};  ///< on a surface that faces it
+    Vec3 towards{0, 1, 0};     ///< unit vector in environment space (see scene/environment.h)
+    Vec3 irradiance{0, 0, 0};  ///< of a surface that faces the sun
     float angular_radius_deg = 0;
 };
 
 struct SunSplit {
     Sun sun;
-    Image rest;  ///< the picture without the sun's light
+    Image rest;  ///< the map without the sun
 };
 
 /// Takes the sun out of an equirectangular radiance picture (f32, 3 channels): the brightest spot, when it is
