@@ -147,7 +147,7 @@ def test_a_file_name_may_have_any_bytes(tmp_path, caplog):
     assert "caf" in repr(read)
     scene = Scene()
     scene.show(read, read.name)
-    assert scene.names() == [read.name] and scene[read.name] == read
+    assert scene.names() == [read.name] and scene.get(read.name) == read
     with pytest.raises(easypbr.FileError, match="No such file"):
         Mesh(os.fsdecode(folder + b"/gone\xe9.ply"))
     # Nor do names in a file need to be UTF-8: it is read with a warning that has one.
