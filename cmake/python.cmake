@@ -32,7 +32,7 @@ endforeach()
 
 file(CREATE_LINK ${PROJECT_SOURCE_DIR}/python/easypbr/dataset ${package}/dataset SYMBOLIC)
 
-nanobind_add_stub(easypbr_stub MODULE easypbr._easypbr OUTPUT ${package}/_easypbr.pyi
+nanobind_add_stub(easypbr_stub INCLUDE_PRIVATE MODULE easypbr._easypbr OUTPUT ${package}/_easypbr.pyi
                   PYTHON_PATH ${PROJECT_BINARY_DIR}/python DEPENDS _easypbr)
 add_custom_command(OUTPUT ${package}/settings.pyi
                    COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/write_settings_stub.py

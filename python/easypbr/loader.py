@@ -56,6 +56,8 @@ class MeshLoader:
                 if self.on_error == "raise":
                     raise
                 continue
+            if mesh is None:
+                return
             yield _moved(_tensors(mesh) if self.transform is None else self.transform(mesh), self.device)
 
 

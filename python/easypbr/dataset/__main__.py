@@ -9,7 +9,7 @@ from .run import generate
 from .spec import DatasetSpec
 
 
-def main(arguments=None) -> int:
+def main(arguments: list[str] | None = None) -> int:
     """Runs the command; returns the exit code: 0, 1 when the job failed, 2 for a wrong command, 130 for Ctrl-C."""
     parser = argparse.ArgumentParser(prog="easypbr dataset", description="Generate pictures with annotations for training.")
     parser.add_argument("spec", nargs="?", help="what to generate, a TOML file")

@@ -6,6 +6,7 @@ import os
 import socket
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from ..errors import ArgumentError, ContextError
 from .folder import FolderWriter, keep_memory
@@ -20,7 +21,7 @@ _LONGEST_RANGE = 16
 _STORE = 80 << 20
 
 
-def find_ray():
+def find_ray() -> Any:
     """The module. Raises ImportError saying how to get it. Ray's statistics of usage are switched off: nothing is sent."""
     os.environ["RAY_USAGE_STATS_ENABLED"] = "0"
     try:
@@ -53,7 +54,7 @@ def make_range(spec: DatasetSpec, folder: Path, indices: list[int], threads: int
 
 
 def make(spec: DatasetSpec, folder: Path, missing: list[int], workers: int | None, threads: int, address: str | None,
-         progress) -> set[str]:
+         progress: Any) -> set[str]:
     """Makes the frames that are missing and returns the files that were left out. `threads`: cores of each worker."""
     ray = find_ray()
     own = not ray.is_initialized()
@@ -91,7 +92,7 @@ def _in_root() -> Iterator[None]:
         os.chdir(before)
 
 
-def _start(ray, cores: int, address: str | None) -> None:
+def _start(ray: Any, cores: int, address: str | None) -> None:
     quiet = {"log_to_driver": False, "logging_level": "ERROR"}
     if address is None:
         # The address of its own machine needs no network.
@@ -114,7 +115,7 @@ def _reach(address: str) -> None:
         socket.create_connection((host, int(port)), timeout=5).close()
 
 
-def _collect(ray, pending: dict, progress) -> set[str]:
+def _collect(ray: Any, pending: dict, progress: Any) -> set[str]:
     skipped: set[str] = set()
     missing = sum(pending.values())
     try:

@@ -1,6 +1,9 @@
 """Procedural content: drones of several shapes and materials, simple shapes, skies."""
 
+from collections.abc import Callable, Iterable
+
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .. import shapes
 from .._easypbr import Environment, Mesh
@@ -23,17 +26,17 @@ def _merged(parts: list) -> Mesh:
     return merged
 
 
-def _placed(position, scale=(1, 1, 1), turn_deg: float = 0) -> np.ndarray:
+def _placed(position: ArrayLike, scale: ArrayLike = (1, 1, 1), turn_deg: float = 0) -> np.ndarray:
     """Scaled along its own axes, then turned about y, then moved."""
     angle = np.radians(turn_deg)
     c, s = np.cos(angle), np.sin(angle)
     T = np.eye(4)
-    T[:3, :3] = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ np.diag(scale)
+    T[:3, :3] = np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]) @ np.diag(np.asarray(scale))
     T[:3, 3] = position
     return T
 
 
-def _material(mesh: Mesh, color, metallic: float, roughness: float) -> Mesh:
+def _material(mesh: Mesh, color: Iterable[float], metallic: float, roughness: float) -> Mesh:
     mesh.material.base_color = tuple(float(c) for c in color)
     mesh.material.metallic, mesh.material.roughness = float(metallic), float(roughness)
     return mesh
@@ -49,11 +52,12 @@ def drone(random: np.random.Generator) -> Mesh:
     arms = int(random.choice([4, 6, 8]))
     reach, thickness = random.uniform(0.36, 0.5), random.uniform(0.012, 0.025)
     height = random.uniform(0.09, 0.16)
-    body = [
+    bodies: list[Callable[[], tuple[Mesh, np.ndarray]]] = [
         lambda: (shapes.box((0.26, height, 0.3)), np.eye(4)),
         lambda: (shapes.sphere(0.5, 24), _placed((0, 0, 0), (0.3, 1.2 * height, 0.34))),
         lambda: (shapes.cylinder(0.15, height, 24), np.eye(4)),
-    ][random.integers(3)]()
+    ]
+    body = bodies[random.integers(3)]()
     camera = (shapes.sphere(0.04, 12), _placed((0, -height / 2 - 0.02, 0.1)))
     root = _material(_merged([body, camera]), random.uniform(0.02, 0.9, 3), random.random() < 0.2, random.uniform(0.2, 0.7))
     frame, rotors = [], []
@@ -77,7 +81,7 @@ def drone(random: np.random.Generator) -> Mesh:
     return root
 
 
-def _rod(start, end) -> np.ndarray:
+def _rod(start: ArrayLike, end: ArrayLike) -> np.ndarray:
     """Pose of a cylinder of height 1 along y that makes it reach from one point to the other."""
     start, end = np.asarray(start, float), np.asarray(end, float)
     y = end - start
@@ -91,12 +95,13 @@ def _rod(start, end) -> np.ndarray:
 
 def simple_shape(random: np.random.Generator) -> Mesh:
     """A ball, box, cylinder, cone, torus or capsule."""
-    mesh = [shapes.sphere, shapes.box, shapes.cylinder, shapes.cone, shapes.torus, shapes.capsule][random.integers(6)]()
+    makers: list[Callable[[], Mesh]] = [shapes.sphere, shapes.box, shapes.cylinder, shapes.cone, shapes.torus, shapes.capsule]
+    mesh = makers[random.integers(6)]()
     random_material(mesh, random)
     return mesh
 
 
-BUILTIN = {"drone": drone, "shapes": simple_shape}
+BUILTIN: dict[str, Callable[[np.random.Generator], Mesh]] = {"drone": drone, "shapes": simple_shape}
 
 
 def sky(random: np.random.Generator, height: int = 128) -> Environment:

@@ -33,7 +33,7 @@ class FolderWriter:
 
     def __init__(self, spec: DatasetSpec, folder: Path, classes: list[str]):
         self.folder = folder
-        self.base = Writer(spec.image.format, classes)
+        self.base = Writer(spec.image.format, classes, spec)
         self.writers = [WRITERS[name](spec.image.format, classes, spec) for name in spec.writers]
 
     def record_path(self, index: int) -> Path:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from .. import shapes
-from .._easypbr import Camera, Environment, Light, Mesh, decode_image, encode_jpeg, load_image
+from .._easypbr import Camera, Environment, Instance, Light, Mesh, decode_image, encode_jpeg, load_image
 from ..errors import ArgumentError, Error
 from ..scene import Scene
 from ..viewer import Viewer
@@ -12,7 +12,7 @@ from .extents import bounds, diameter_of, vertices_of
 from .frame import Frame, NextFrame
 from .poses import direction, draw, rotation, turn_about
 from .spec import DatasetSpec
-from .tables import ObjectSpec
+from .tables import ObjectSpec, SensorSpec
 
 _LAYERS = ("color", "depth", "normal_camera", "instance_id", "instances")
 
@@ -20,7 +20,7 @@ _LAYERS = ("color", "depth", "normal_camera", "instance_id", "instances")
 class FrameMaker:
     """Draws frames of a spec. Meshes and skies are kept from frame to frame; nothing else is."""
 
-    def __init__(self, spec: DatasetSpec):
+    def __init__(self, spec: DatasetSpec) -> None:
         spec.check()
         self.spec = spec
         self.classes = spec.class_names()
@@ -43,7 +43,7 @@ class FrameMaker:
                 self.skipped.append(path)
         return self._meshes[path]
 
-    def _object(self, number: int, random) -> Mesh:
+    def _object(self, number: int, random: np.random.Generator) -> Mesh:
         entry = self.spec.objects[number]
         files = self._files[number]
         if not files:
@@ -81,13 +81,14 @@ class FrameMaker:
                 return self._finish(index, random, data, camera, counted)
         raise ArgumentError(f"dataset: frame {index}: {worst} was not met in {limit.tries} tries: relax it, or show fewer objects")
 
-    def _attempt(self, random):
+    def _attempt(self, random: np.random.Generator) -> tuple[dict, Camera, dict[str, ObjectSpec]]:
         spec = self.spec
         self._scene.clear()
         camera = self._camera(random)
         self._background(random)
         self._lights(random)
-        entries, spheres = {}, []
+        entries: dict[str, ObjectSpec] = {}
+        spheres: list[tuple[np.ndarray, float]] = []
         for number, entry in enumerate(spec.objects):
             low, high = entry.count
             for _ in range(int(random.integers(low, high + 1))):
@@ -108,7 +109,7 @@ class FrameMaker:
         data = self._view.render_layers(_LAYERS, samples=spec.image.samples, classes=classes)
         return data, camera, entries
 
-    def _camera(self, random) -> Camera:
+    def _camera(self, random: np.random.Generator) -> Camera:
         given, (width, height) = self.spec.camera, self.spec.image.size
         azimuth, elevation = np.radians(draw(random, given.azimuth_deg)), np.radians(draw(random, given.elevation_deg))
         away = np.array([np.cos(elevation) * np.sin(azimuth), np.sin(elevation), np.cos(elevation) * np.cos(azimuth)])
@@ -125,7 +126,7 @@ class FrameMaker:
         given = self.spec.camera
         return Camera.from_opencv(K, T_world_cam, self.spec.image.size, list(given.distortion), given.distortion_model)
 
-    def _background(self, random) -> None:
+    def _background(self, random: np.random.Generator) -> None:
         given, settings = self.spec.background, self._view.settings
         turn, intensity = random.uniform(-180, 180), draw(random, given.intensity)
         choice = int(random.integers(given.skies if given.mode == "sky" else max(len(given.files), 1)))
@@ -141,7 +142,7 @@ class FrameMaker:
                 self._skies[choice] = content.sky(own) if given.mode == "sky" else Environment(load_image(given.files[choice]))
             self._scene.environment = self._skies[choice]
 
-    def _lights(self, random) -> None:
+    def _lights(self, random: np.random.Generator) -> None:
         for name in self._scene.light_names():
             self._scene.remove_light(name)
         for given in self.spec.lights:
@@ -158,7 +159,7 @@ class FrameMaker:
                 self._scene.set_light(f"light {len(self._scene.light_names())}",
                                       Light(given.type, intensity=candela, color=color, **place))
 
-    def _place(self, mesh: Mesh, entry: ObjectSpec, camera: Camera, random, spheres: list) -> None:
+    def _place(self, mesh: Mesh, entry: ObjectSpec, camera: Camera, random: np.random.Generator, spheres: list) -> None:
         """Sets the pose so that the mesh has its size and its ball meets no other's."""
         given = self.spec.placement
         size, turn = draw(random, entry.size), rotation(entry, random)
@@ -186,14 +187,14 @@ class FrameMaker:
             "smaller objects"
         )
 
-    def _in_frustum(self, camera: Camera, random) -> np.ndarray:
+    def _in_frustum(self, camera: Camera, random: np.random.Generator) -> np.ndarray:
         given, size = self.spec.placement, np.array(self.spec.image.size)
         pixel = (given.margin + (1 - 2 * given.margin) * random.random(2)) * size - 0.5
         depth = draw(random, given.distance)
         T = camera.opencv_T_world_cam
         return T[:3, :3] @ (np.linalg.inv(camera.opencv_K(size)) @ [*pixel, 1] * depth) + T[:3, 3]
 
-    def _next(self, random, camera: Camera) -> NextFrame:
+    def _next(self, random: np.random.Generator, camera: Camera) -> NextFrame:
         """Moves everything, draws, moves it back."""
         spec, poses = self.spec, {}
         for name in self._scene.names():
@@ -219,7 +220,7 @@ class FrameMaker:
         data = self._view.render_layers(["flow_forward", "occlusion_forward"], next=moment)
         return NextFrame(sensor(picture, spec.sensor, random), data["flow_forward"], data["occlusion_forward"])
 
-    def _finish(self, index: int, random, data: dict, camera: Camera, counted: dict) -> Frame:
+    def _finish(self, index: int, random: np.random.Generator, data: dict, camera: Camera, counted: dict) -> Frame:
         size = self.spec.image.size
         picture = sensor(data["color"][..., :3], self.spec.sensor, random)
         wanted = [instance for instance in data["instances"] if instance.name in counted]
@@ -238,7 +239,7 @@ class FrameMaker:
                      self.spec.camera.distortion_model, objects, moved)
 
 
-def sensor(picture: np.ndarray, given, random) -> np.ndarray:
+def sensor(picture: np.ndarray, given: SensorSpec, random: np.random.Generator) -> np.ndarray:
     """The picture blurred, then with noise, then through a JPEG."""
     blur, noise = draw(random, given.blur), draw(random, given.noise)
     values = picture.astype(np.float32)
@@ -259,7 +260,7 @@ def sensor(picture: np.ndarray, given, random) -> np.ndarray:
     return decode_image(encode_jpeg(picture, round(draw(random, given.jpeg_quality))))[..., :3]
 
 
-def _annotation(instance, class_name: str) -> dict:
+def _annotation(instance: Instance, class_name: str) -> dict:
     return {
         "class": class_name,
         "category_id": instance.semantic_id,

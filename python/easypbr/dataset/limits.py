@@ -14,7 +14,7 @@ _MOST = 1_000_000  #: frames, whose files have names of six digits; tries, which
 _MOST_OBJECTS, _MOST_LIGHTS = 100_000, 1000
 
 #: By table and key the least and the largest, of both ends of ranges.
-_LIMITS = {
+_LIMITS: dict[str, dict[str, tuple[float, float]]] = {
     "": {"count": (1, _MOST), "seed": (0, math.inf)},
     "image": {"size": (1, 65536), "samples": (1, 65536)},
     "camera": {"fov_y_deg": (0.001, 179), "distance": (_TINY, _LARGE), "azimuth_deg": (-_LARGE, _LARGE),
@@ -40,7 +40,7 @@ def check_numbers(spec: DatasetTables) -> None:
                 _check(where + key, getattr(owner, key), least, largest)
 
 
-def _check(key: str, value, least: float, largest: float) -> None:
+def _check(key: str, value: float | tuple[float, ...], least: float, largest: float) -> None:
     ends = value if isinstance(value, tuple) else (value,)
     if not all(least <= end <= largest for end in ends):  # NaN is in no range.
         low = "more than 0" if least == _TINY else f"{least:g} or more" if largest >= _LARGE else f"{least:g}"
@@ -56,7 +56,7 @@ def _text(value: float | tuple[float, ...]) -> str:
     try:
         return f"{value:g}"
     except OverflowError:  # a whole number beyond the range of floats
-        return f"a number of {value.bit_length()} bits"
+        return f"a number of {int(value).bit_length()} bits"
 
 
 def check_names(spec: DatasetTables) -> None:

@@ -6,9 +6,10 @@ import numpy as np
 
 from .. import _easypbr
 from .extents import bounds
+from .tables import DatasetTables
 
 
-def single_model(spec, class_name: str) -> tuple[str, float] | None:
+def single_model(spec: DatasetTables, class_name: str) -> tuple[str, float] | None:
     """The file and size of a class whose objects are all of one model; None for the others."""
     found = set()
     for entry in spec.objects:

@@ -10,7 +10,7 @@ def draw(random: np.random.Generator, value: Range) -> float:
     return float(random.uniform(*value)) if isinstance(value, tuple) else float(value)
 
 
-def direction(random) -> np.ndarray:
+def direction(random: np.random.Generator) -> np.ndarray:
     towards = random.normal(size=3)
     return towards / np.linalg.norm(towards)
 
@@ -22,7 +22,7 @@ def turn_about(axis: np.ndarray, angle: float) -> np.ndarray:
     return np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * k @ k
 
 
-def rotation(entry: ObjectSpec, random) -> np.ndarray:
+def rotation(entry: ObjectSpec, random: np.random.Generator) -> np.ndarray:
     quaternion = random.normal(size=4)
     yaw, tilt, towards = random.uniform(0, 2 * np.pi), np.radians(entry.tilt_deg) * random.uniform(-1, 1), random.uniform(0, 2 * np.pi)
     if entry.rotation == "none":

@@ -1,12 +1,13 @@
 """What a data set looks like: a contact sheet, a page of numbers."""
 
 import html
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 
 from .. import _easypbr
-from .writers import decode_rle
+from .writers import Writer, decode_rle
 
 _COLORS = np.array([(230, 80, 60), (60, 160, 230), (90, 200, 90), (240, 180, 40), (180, 90, 220), (60, 200, 190)])
 _CELL = 320  #: width of a picture on the sheet
@@ -34,7 +35,7 @@ def draw_annotations(picture: np.ndarray, objects: list[dict], edges: bool = Fal
     return picture
 
 
-def _line(picture: np.ndarray, start, end, color) -> None:
+def _line(picture: np.ndarray, start: list[float], end: list[float], color: np.ndarray) -> None:
     if not np.isfinite([*start, *end]).all():
         return
     height, width = picture.shape[:2]
@@ -53,7 +54,7 @@ def _shrunk(picture: np.ndarray, width: int) -> np.ndarray:
     return blocks.mean((1, 3)).astype(np.uint8)
 
 
-def contact_sheet(records: list[dict], folder: Path, names, count: int = 20, columns: int = 5) -> np.ndarray:
+def contact_sheet(records: list[dict], folder: Path, names: Writer, count: int = 20, columns: int = 5) -> np.ndarray:
     """The first pictures with their annotations, in rows."""
     cells = []
     for record in records[:count]:
@@ -90,7 +91,7 @@ def statistics_page(records: list[dict], classes: list[str]) -> tuple[str, dict]
     return page, statistics
 
 
-def _bars(title: str, values, edges) -> str:
+def _bars(title: str, values: list[float], edges: Iterable[int]) -> str:
     edges = list(edges)
     counts, _ = np.histogram(values, edges)
     rows = [f"<tr><td>{low} – {high}<td>{n}<td><div style='width:{300 * n / max(counts.max(), 1):.0f}px'></div>"

@@ -27,7 +27,7 @@ _RETRIES = 3
 
 def generate(
     spec: DatasetSpec,
-    folder,
+    folder: str | os.PathLike,
     workers: int | None = None,
     quiet: bool = True,
     engine: str = "local",
@@ -55,7 +55,7 @@ def _generate(spec: DatasetSpec, folder: Path, workers: int | None, quiet: bool,
     missing = [i for i in range(spec.count) if not (folder / "records" / f"{i:06d}.json").exists()]
     progress = _Progress(spec.count, spec.count - len(missing), quiet)
     if not missing:
-        skipped = set()
+        skipped: set[str] = set()
     elif engine == "ray":
         skipped = cluster.make(spec, folder, missing, workers, threads or 1, address, progress)
     else:
@@ -82,12 +82,12 @@ def _check_engine(engine: str, address: str | None, workers: int | None, threads
         raise ArgumentError("dataset: workers: a cluster starts as many as it has cores for; expected none with an address")
 
 
-def _make_here(spec, folder, missing, progress) -> set[str]:
+def _make_here(spec: DatasetSpec, folder: Path, missing: list[int], progress: "_Progress") -> set[str]:
     """Each frame is written while the next one is drawn: compressing pictures keeps a single core busy."""
     maker = FrameMaker(spec)
     writer = FolderWriter(spec, folder, maker.classes)
 
-    def finish(frames) -> None:
+    def finish(frames: list[concurrent.futures.Future]) -> None:
         for frame in frames:
             frame.result()
             progress.add()
@@ -128,6 +128,7 @@ def _begin_worker(spec: DatasetSpec, folder: Path, cores: list[int], share: int)
 
 
 def _make_one(index: int) -> list[str]:
+    assert _worker is not None  # _begin_worker() has run.
     maker, writer = _worker
     writer.write_frame(maker.make(index))
     return maker.skipped
@@ -150,7 +151,8 @@ def _starting_workers() -> Iterator[None]:
             os.environ["PYTHONSAFEPATH"] = before
 
 
-def _make_apart(spec, folder, missing, workers, threads, progress) -> set[str]:
+def _make_apart(spec: DatasetSpec, folder: Path, missing: list[int], workers: int, threads: int | None,
+                progress: "_Progress") -> set[str]:
     skipped: set[str] = set()
     rest = set(missing)
     cores = sorted(os.sched_getaffinity(0))
@@ -201,7 +203,7 @@ def _finish(spec: DatasetSpec, folder: Path) -> dict:
 class _Progress:
     """A line on the error stream: what is done, images per second, time left."""
 
-    def __init__(self, total: int, done: int, quiet: bool):
+    def __init__(self, total: int, done: int, quiet: bool) -> None:
         self.total, self.done, self.quiet = total, done, quiet
         self.start, self.first, self.shown = time.monotonic(), done, 0.0
 

@@ -2,14 +2,22 @@
 
 import dataclasses
 import difflib
-import tomllib
+import os
+import sys
 import typing
+from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 from ..errors import ArgumentError, FileError
 from .limits import check_camera, check_names, check_numbers
 from .tables import DatasetTables, ObjectSpec, Range, SensorSpec
 from .writers import WRITERS
+
+if sys.version_info >= (3, 11):
+    import tomllib
+else:
+    import tomli as tomllib
 
 
 @dataclasses.dataclass
@@ -25,7 +33,7 @@ class DatasetSpec(DatasetTables):
         )
 
     @classmethod
-    def from_toml(cls, path) -> "DatasetSpec":
+    def from_toml(cls, path: str | os.PathLike) -> "DatasetSpec":
         """Reads a spec; files in it are relative to the TOML file's folder. Raises ArgumentError naming the key, FileError."""
         path = Path(path)
         try:
@@ -73,12 +81,12 @@ class DatasetSpec(DatasetTables):
             raise ArgumentError(f"dataset: background.files: expected files for mode '{self.background.mode}'")
 
 
-def _nearest(name: str, names) -> str:
+def _nearest(name: str, names: Iterable[str]) -> str:
     found = difflib.get_close_matches(name, names, 1, 0.5)
     return f" (did you mean '{found[0]}'?)" if found else ""
 
 
-def _from_dict(cls, values: dict, where: str):
+def _from_dict(cls: Any, values: dict, where: str) -> Any:
     """An object of a class of tables; keys are its fields, "class" stands for class_name."""
     hints = typing.get_type_hints(cls)
     result = cls()
@@ -91,7 +99,7 @@ def _from_dict(cls, values: dict, where: str):
     return result
 
 
-def _value(hint, value, where: str):
+def _value(hint: Any, value: Any, where: str) -> Any:
     if dataclasses.is_dataclass(hint):
         if not isinstance(value, dict):
             raise ArgumentError(f"{where}: expected a table, got {value!r}")
@@ -111,15 +119,15 @@ def _value(hint, value, where: str):
     return value
 
 
-def _range(value, where: str) -> Range:
+def _range(value: Any, where: str) -> Range:
     numbers = value if isinstance(value, (list, tuple)) else [value]
     is_number = all(isinstance(number, (int, float)) and not isinstance(number, bool) for number in numbers)
     if not is_number or len(numbers) > 2 or not numbers or (len(numbers) == 2 and numbers[0] > numbers[1]):
         raise ArgumentError(f"{where}: expected a number or [least, largest], got {value!r}")
-    return tuple(map(float, numbers)) if len(numbers) == 2 else float(numbers[0])
+    return (float(numbers[0]), float(numbers[1])) if len(numbers) == 2 else float(numbers[0])
 
 
-def _tuple(hint, value, where: str) -> tuple:
+def _tuple(hint: Any, value: Any, where: str) -> tuple:
     kinds = typing.get_args(hint)
     if isinstance(value, int) and kinds == (int, int):
         value = [value, value]
@@ -136,5 +144,5 @@ def _tuple(hint, value, where: str) -> tuple:
         raise ArgumentError(f"{where}: expected rows of numbers [[fx, 0, cx], [0, fy, cy], [0, 0, 1]], got {value!r}") from None
 
 
-def _word(hint) -> str:
+def _word(hint: Any) -> str:
     return {int: "a whole number", float: "a number", str: "a text", bool: "true or false"}.get(hint, str(hint))

@@ -4,15 +4,18 @@ import io
 import json
 import tarfile
 from pathlib import Path
+from typing import NoReturn
 
 import numpy as np
 
 from .. import _easypbr
 from ..errors import ArgumentError
+from .frame import Frame
 from .models import model_ply, single_model
+from .tables import DatasetTables
 
 
-def _json(value) -> bytes:
+def _json(value: object) -> bytes:
     return (json.dumps(value, indent=1, allow_nan=True) + "\n").encode()
 
 
@@ -24,14 +27,15 @@ def _exr(array: np.ndarray) -> bytes:
     return _easypbr.encode_exr(np.ascontiguousarray(array, np.float32))
 
 
-def _refuse(name: str, what: str) -> None:
+def _refuse(name: str, what: str) -> NoReturn:
     raise ArgumentError(f"dataset: writer {name}: {what}")
 
 
 def decode_rle(rle: dict) -> np.ndarray:
     """The mask, height x width, of COCO's compressed run lengths."""
     height, width = rle["size"]
-    counts, value, shift = [], 0, 0
+    counts: list[int] = []
+    value = shift = 0
     for letter in rle["counts"].encode():
         group = letter - 48
         value |= (group & 31) << shift
@@ -48,18 +52,18 @@ def decode_rle(rle: dict) -> np.ndarray:
 class Writer:
     """The base of all: nothing is written."""
 
-    def __init__(self, image_format: str, classes: list[str], spec=None):
-        self.image_format, self.classes, self.spec = image_format, classes, spec
+    def __init__(self, image_format: str, classes: list[str], spec: DatasetTables | None = None) -> None:
+        self.image_format, self.classes, self.spec = image_format, classes, spec or DatasetTables()
 
     @classmethod
-    def check(cls, spec) -> None:
+    def check(cls, spec: DatasetTables) -> None:
         """Raises ArgumentError for a spec that the format cannot express."""
 
     def picture(self, index: int) -> str:
         """Where the picture of a frame is, in the set's folder."""
         return f"images/{index:06d}.{self.image_format}"
 
-    def frame(self, frame) -> dict[str, bytes]:
+    def frame(self, frame: Frame) -> dict[str, bytes]:
         """Files of a frame by their path in the set's folder."""
         return {}
 
@@ -71,8 +75,9 @@ class Writer:
 class Coco(Writer):
     """annotations.json: boxes, masks as run lengths, and the corners of the 3D box as keypoints."""
 
-    def finish(self, records, folder):
-        images, annotations = [], []
+    def finish(self, records: list[dict], folder: Path) -> dict[str, bytes]:
+        images: list[dict] = []
+        annotations: list[dict] = []
         for record in records:
             size = {"width": record["width"], "height": record["height"]}
             images.append({"id": record["index"], "file_name": self.picture(record["index"]), **size})
@@ -90,8 +95,8 @@ class Coco(Writer):
         return {"annotations.json": _json({"images": images, "categories": categories, "annotations": annotations})}
 
     @staticmethod
-    def _keypoints(entry, record):
-        flat = []
+    def _keypoints(entry: dict, record: dict) -> list[float]:
+        flat: list[float] = []
         for x, y in entry["corners_px"]:
             inside = -0.5 <= x < record["width"] - 0.5 and -0.5 <= y < record["height"] - 0.5
             # COCO's pixel edges are at integers.
@@ -102,7 +107,7 @@ class Coco(Writer):
 class Yolo(Writer):
     """labels/*.txt: class, centre and size of the box as parts of the picture; data.yaml."""
 
-    def frame(self, frame):
+    def frame(self, frame: Frame) -> dict[str, bytes]:
         height, width = frame.depth.shape
         lines = []
         for entry in frame.objects:
@@ -112,7 +117,7 @@ class Yolo(Writer):
                 lines.append(f"{entry['category_id'] - 1} " + " ".join(f"{value:.6f}" for value in place))
         return {f"labels/{frame.index:06d}.txt": "".join(line + "\n" for line in lines).encode()}
 
-    def finish(self, records, folder):
+    def finish(self, records: list[dict], folder: Path) -> dict[str, bytes]:
         # JSON's texts are YAML's too: a name may look like a number or hold a colon.
         names = "".join(f"  {i}: {json.dumps(name, ensure_ascii=False)}\n" for i, name in enumerate(self.classes))
         return {"data.yaml": f"path: .\ntrain: images\nval: images\nnames:\n{names}".encode()}
@@ -122,11 +127,11 @@ class Kitti(Writer):
     """label_2/*.txt and calib/*.txt of KITTI's object benchmark, depth/*.png (uint16, 1/256 m)."""
 
     @classmethod
-    def check(cls, spec):
+    def check(cls, spec: DatasetTables) -> None:
         if spec.camera.distortion:
             _refuse("kitti", "its pictures are rectified: expected no camera.distortion")
 
-    def frame(self, frame):
+    def frame(self, frame: Frame) -> dict[str, bytes]:
         name = f"{frame.index:06d}"
         P = np.c_[frame.K, np.zeros(3)]
         calib = f"P2: {' '.join(f'{value:.12e}' for value in P.ravel())}\n"
@@ -138,7 +143,7 @@ class Kitti(Writer):
                 f"kitti/depth/{name}.png": save16(depth)}
 
     @staticmethod
-    def _line(entry) -> str:
+    def _line(entry: dict) -> str:
         hidden = 1 - entry["pixels"] / max(entry["pixels_amodal_inside"], 1)
         occluded = 0 if hidden < 0.1 else 1 if hidden < 0.5 else 2
         T = np.array(entry["T_cam_obj"])
@@ -166,11 +171,12 @@ class Flow(Writer):
     picture shows too): uint16, 64 x pixels + 32768, the third channel 1 where there is a value."""
 
     @classmethod
-    def check(cls, spec):
+    def check(cls, spec: DatasetTables) -> None:
         if not spec.motion:
             _refuse("flow", "nothing moves: expected motion.translation, rotation_deg or camera")
 
-    def frame(self, frame):
+    def frame(self, frame: Frame) -> dict[str, bytes]:
+        assert frame.next is not None  # The spec has motion: check() has seen to it.
         name, base = f"{frame.index:06d}", "kitti_flow"
         seen = frame.depth > 0
         return {f"{base}/image_2/{name}_10.png": _png(frame.picture), f"{base}/image_2/{name}_11.png": _png(frame.next.picture),
@@ -190,7 +196,7 @@ class Bop(Writer):
 
     scale = 1.0  # millimetres of a unit of depth: up to 65 m
 
-    def frame(self, frame):
+    def frame(self, frame: Frame) -> dict[str, bytes]:
         name, base = f"{frame.index:06d}", "bop/000000"
         depth = np.rint(frame.depth * 1000 / self.scale)
         files = {f"{base}/depth/{name}.png": save16(np.where(depth < 65536, depth, 0).astype(np.uint16)),
@@ -201,7 +207,7 @@ class Bop(Writer):
             files[f"{base}/mask/{name}_{i:06d}.png"] = _png(decode_rle(entry["amodal_rle"]).astype(np.uint8) * 255)
         return files
 
-    def finish(self, records, folder):
+    def finish(self, records: list[dict], folder: Path) -> dict[str, bytes]:
         camera, truth, info = {}, {}, {}
         for record in records:
             T_cam_world = np.linalg.inv(record["T_world_cam"])
@@ -217,7 +223,7 @@ class Bop(Writer):
                 f"{base}/scene_gt_info.json": _json(info), **self._models(truth)}
 
     @staticmethod
-    def _pose(entry):
+    def _pose(entry: dict) -> dict:
         T = np.array(entry["T_cam_obj"])
         scale = np.linalg.norm(T[:3, :3], axis=0)
         size, centre = 1000 * scale * entry["box3d_size"], 1000 * scale * entry["box3d_center"]
@@ -227,7 +233,7 @@ class Bop(Writer):
         return {"cam_R_m2c": (T[:3, :3] / scale).ravel().tolist(), "cam_t_m2c": (1000 * T[:3, 3]).tolist(),
                 "obj_id": entry["category_id"], "model": {"diameter": 1000 * entry["diameter"], **model}}
 
-    def _models(self, truth) -> dict[str, bytes]:
+    def _models(self, truth: dict[str, list[dict]]) -> dict[str, bytes]:
         """models_info.json and the meshes of the classes whose objects are all of one file and size."""
         info = {entry["obj_id"]: entry["model"] for entries in truth.values() for entry in entries}
         sources = {number: single_model(self.spec, name) for number, name in enumerate(self.classes, 1)}
@@ -236,8 +242,8 @@ class Bop(Writer):
         return {"bop/models/models_info.json": _json(known), **files}
 
     @staticmethod
-    def _info(entry):
-        def box(xywh):  # BOP's width is the difference of the outermost pixels.
+    def _info(entry: dict) -> dict:
+        def box(xywh: list[int]) -> list[int]:  # BOP's width is the difference of the outermost pixels.
             return [xywh[0], xywh[1], xywh[2] - 1, xywh[3] - 1] if xywh[2] > 0 else [-1, -1, -1, -1]
 
         return {"bbox_obj": box(entry["box_amodal"]), "bbox_visib": box(entry["box"]), "px_count_all": entry["pixels_amodal"],
@@ -249,7 +255,7 @@ class Bop(Writer):
 _BROWN = ("k1", "k2", "p1", "p2", "k3", "k4", "k5", "k6")
 
 
-def _has_skew(spec) -> bool:
+def _has_skew(spec: DatasetTables) -> bool:
     return bool(spec.camera.K) and spec.camera.K[0][1] != 0
 
 
@@ -257,11 +263,11 @@ class Nerfstudio(Writer):
     """transforms.json: poses with OpenGL's axes, the lens's coefficients."""
 
     @classmethod
-    def check(cls, spec):
+    def check(cls, spec: DatasetTables) -> None:
         if _has_skew(spec) or (spec.camera.distortion_model != "fisheye" and len(spec.camera.distortion) > 5):
             _refuse("nerfstudio", "its cameras have no skew and at most k1, k2, p1, p2, k3: choose another camera.K or distortion")
 
-    def finish(self, records, folder):
+    def finish(self, records: list[dict], folder: Path) -> dict[str, bytes]:
         frames = []
         for record in records:
             K = np.array(record["K"])
@@ -283,12 +289,12 @@ class Colmap(Writer):
     """sparse/0/cameras.txt, images.txt and an empty points3D.txt."""
 
     @classmethod
-    def check(cls, spec):
+    def check(cls, spec: DatasetTables) -> None:
         if _has_skew(spec):
             _refuse("colmap", "its cameras have no skew: expected camera.K with a zero there")
 
     @staticmethod
-    def _model(record) -> tuple[str, list]:
+    def _model(record: dict) -> tuple[str, list]:
         """COLMAP's name of the camera model, and the coefficients after fx, fy, cx, cy."""
         lens = record["distortion"]
         if not lens:
@@ -297,7 +303,7 @@ class Colmap(Writer):
             return "OPENCV_FISHEYE", lens
         return ("OPENCV", lens) if len(lens) == 4 else ("FULL_OPENCV", lens + [0.0] * (8 - len(lens)))
 
-    def finish(self, records, folder):
+    def finish(self, records: list[dict], folder: Path) -> dict[str, bytes]:
         cameras, images = ["# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]"], ["# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME"]
         for record in records:
             K, number = np.array(record["K"]), record["index"] + 1
@@ -326,7 +332,7 @@ class WebDataset(Writer):
 
     per_shard = 1000
 
-    def finish(self, records, folder):
+    def finish(self, records: list[dict], folder: Path) -> dict[str, bytes]:
         files = {}
         for first in range(0, len(records), self.per_shard):
             buffer = io.BytesIO()
@@ -345,7 +351,7 @@ class WebDataset(Writer):
 class Raw(Writer):
     """raw/*.npz: depth, normals, instance ids, K, T_world_cam; with motion, flow and occlusion."""
 
-    def frame(self, frame):
+    def frame(self, frame: Frame) -> dict[str, bytes]:
         buffer = io.BytesIO()
         moved = {} if frame.next is None else {"flow_forward": frame.next.flow, "occlusion_forward": frame.next.occluded}
         np.savez_compressed(buffer, depth=frame.depth, normal_camera=frame.normal, instance_id=frame.instance_id, K=frame.K,
@@ -356,7 +362,7 @@ class Raw(Writer):
 class Exr(Writer):
     """exr/depth, exr/normal, exr/id: float32, without loss."""
 
-    def frame(self, frame):
+    def frame(self, frame: Frame) -> dict[str, bytes]:
         name = f"{frame.index:06d}.exr"
         return {f"exr/depth/{name}": _exr(frame.depth), f"exr/normal/{name}": _exr(frame.normal),
                 f"exr/id/{name}": _exr(frame.instance_id)}
@@ -366,12 +372,12 @@ class Png(Writer):
     """depth/*.png (uint16, millimetres), normals/*.png and ids/*.png (uint16): what a fast loader reads."""
 
     @classmethod
-    def check(cls, spec):
+    def check(cls, spec: DatasetTables) -> None:
         most = sum(entry.count[1] for entry in spec.objects if not entry.distractor)
         if most > 65535:
             _refuse("png", f"its 16 bits hold up to 65535 instances, and objects.count allows for {most}: choose exr or raw")
 
-    def frame(self, frame):
+    def frame(self, frame: Frame) -> dict[str, bytes]:
         name = f"{frame.index:06d}.png"
         depth = np.rint(frame.depth * 1000)
         return {f"depth/{name}": save16(np.where(depth < 65536, depth, 0).astype(np.uint16)),
@@ -379,5 +385,5 @@ class Png(Writer):
                 f"ids/{name}": save16(frame.instance_id.astype(np.uint16))}
 
 
-WRITERS = {"coco": Coco, "yolo": Yolo, "kitti": Kitti, "flow": Flow, "bop": Bop, "nerfstudio": Nerfstudio, "colmap": Colmap,
+WRITERS: dict[str, type[Writer]] = {"coco": Coco, "yolo": Yolo, "kitti": Kitti, "flow": Flow, "bop": Bop, "nerfstudio": Nerfstudio, "colmap": Colmap,
            "webdataset": WebDataset, "raw": Raw, "exr": Exr, "png": Png}

@@ -234,7 +234,9 @@ void bind_ground_truth(nb::module_& module) {
                nb::arg("previous").none() = nb::none(), nb::arg("next").none() = nb::none(),
                nb::arg("instances") = false, nb::arg("amodal") = true);
     module.def("cuda_layers", cuda_layers, nb::arg("viewer"), nb::arg("layers"), nb::arg("size").none(),
-               nb::arg("samples").none(), nb::arg("instances_by"), nb::arg("classes"));
+               nb::arg("samples").none(), nb::arg("instances_by"), nb::arg("classes"),
+               nb::sig("def cuda_layers(viewer: ViewerHandle, layers: Sequence[str], size: object | None, "
+                       "samples: int | None, instances_by: str, classes: Mapping[str, int]) -> dict | None"));
     module.def("cuda_layer_names", [] { return dataset::cuda_layer_names(); });
     module.def("truth_layer_names", [] { return dataset::truth_layer_names(); });
     module.def(

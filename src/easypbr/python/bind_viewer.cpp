@@ -184,7 +184,8 @@ void bind_window(ViewerClass& viewer) {
         .def("reopen", [](SharedViewer& self) { self.run([](Viewer& v) { v.reopen(); }); })
         .def("close", [](SharedViewer& self) { self.run([](Viewer& v) { v.close(); }); })
         .def("is_open", [](SharedViewer& self) { return self.run([](Viewer& v) { return v.is_open(); }); })
-        .def("pick", pick, nb::arg("x"), nb::arg("y"), nb::arg("size").none() = nb::none())
+        .def("pick", pick, nb::arg("x"), nb::arg("y"), nb::arg("size").none() = nb::none(),
+             nb::sig("def pick(self, x: float, y: float, size: object | None = None) -> Pick | None"))
         .def(
             "screenshot",
             [](SharedViewer& self, const nb::object& size, float scale) {
@@ -196,7 +197,8 @@ void bind_window(ViewerClass& viewer) {
                 raise_kept(self);
                 return to_numpy(std::move(screen));
             },
-            nb::arg("size").none() = nb::none(), nb::arg("scale") = 1.0f)
+            nb::arg("size").none() = nb::none(), nb::arg("scale") = 1.0f,
+            nb::sig("def screenshot(self, size: object | None = None, scale: float = 1.0) -> numpy.ndarray"))
         .def("open", [](SharedViewer& self,
                         const fs::path& path) { self.run([&](Viewer& v) { v.live().open(path); }); })
         .def("watch",
@@ -235,7 +237,9 @@ void bind_window(ViewerClass& viewer) {
 void bind_pictures(ViewerClass& viewer) {
     viewer
         .def("render", render, nb::arg("size").none() = nb::none(), nb::arg("samples").none() = nb::none(),
-             nb::arg("encoding") = "srgb8")
+             nb::arg("encoding") = "srgb8",
+             nb::sig("def render(self, size: object | None = None, samples: int | None = None, encoding: str "
+                     "= 'srgb8') -> numpy.ndarray"))
         .def("layers", layers, nb::arg("names"), nb::arg("size").none() = nb::none())
         .def("forget_motion",
              [](SharedViewer& self) { self.run([](Viewer& viewer) { viewer.session().forget_motion(); }); })

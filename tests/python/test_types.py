@@ -1,0 +1,80 @@
+"""What editors and type checkers read: the package and its generated stubs are clean under mypy and pyright."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import easypbr
+
+ROOT = Path(__file__).parents[2]
+PACKAGE = Path(easypbr.__file__).parent
+
+#: A user's program; each line marked WRONG is a mistake that the checker must find.
+PROGRAM = """\
+import numpy as np
+import easypbr
+from easypbr import Mesh, Scene, Viewer
+from easypbr.dataset import DatasetSpec, ObjectSpec, generate
+
+view = Viewer((64, 48), {"camera.fov_y_deg": 30}, scene=Scene())
+picture: np.ndarray = view.render(samples=4)
+depth: np.ndarray = view.layers("depth")["depth"]
+mesh: Mesh = Scene.show("drone.ply", "drone")
+fov: float = view.settings.camera.fov_y_deg
+names: list[str] = view.scene.names()
+statistics: dict = generate(DatasetSpec(objects=[ObjectSpec("drone.ply")]), "out", workers=2)
+version: str = easypbr.__version__
+view.render(samples="many")  # WRONG
+view.focus_at(1)  # WRONG
+view.settings.camera.fov = 3  # WRONG
+text: str = view.render()  # WRONG
+generate("spec.toml", "out")  # WRONG
+"""
+
+
+def run(*command, cwd):
+    return subprocess.run([sys.executable, "-m", *map(str, command)], cwd=cwd, capture_output=True, text=True, timeout=600)
+
+
+def wrong_lines() -> list[int]:
+    return [number for number, line in enumerate(PROGRAM.splitlines(), 1) if "WRONG" in line]
+
+
+def test_mypy(tmp_path):
+    pytest.importorskip("mypy")
+    options = ["--config-file", ROOT / "pyproject.toml", "--cache-dir", tmp_path / "cache"]
+    done = run("mypy", *options, "-p", "easypbr", cwd=PACKAGE.parent)
+    assert done.returncode == 0, done.stdout + done.stderr
+    (tmp_path / "program.py").write_text(PROGRAM)
+    found = run("mypy", *options, tmp_path / "program.py", cwd=PACKAGE.parent).stdout
+    assert sorted({int(line.split(":")[1]) for line in found.splitlines() if ": error:" in line}) == wrong_lines(), found
+
+
+def pyright(folder: Path, include: list[str], **settings):
+    """Its complaints about files, as (file name, line from 1 on, text)."""
+    config = {"include": include, "pythonVersion": "3.11", "typeCheckingMode": "basic", "extraPaths": [str(PACKAGE.parent)],
+              "reportMissingImports": "none", **settings}
+    (folder / "pyrightconfig.json").write_text(json.dumps(config))
+    done = run("pyright", "--outputjson", "--pythonpath", sys.executable, "--project", folder, cwd=folder)
+    if done.returncode not in (0, 1):  # It needs Node.js: of the machine, or of PyPI's pyright[nodejs].
+        pytest.skip(f"pyright does not run here: {done.stderr or done.stdout}")
+    report = json.loads(done.stdout)
+    assert report["summary"]["filesAnalyzed"] > 0
+    return [(Path(entry["file"]).name, entry["range"]["start"]["line"] + 1, entry["message"])
+            for entry in report["generalDiagnostics"] if entry["severity"] == "error"]
+
+
+def test_pyright(tmp_path):
+    pytest.importorskip("pyright")
+    # What settings.py holds is told by settings.pyi, which is made of the table of settings.
+    (tmp_path / "easypbr").symlink_to(PACKAGE)  # It looks at what lies below its project alone.
+    found = pyright(tmp_path, ["easypbr"], ignore=["**/settings.py", "**/_easypbr.pyi"])
+    assert not found, "\n".join(map(str, found))
+    program = tmp_path / "program"
+    program.mkdir()
+    (program / "program.py").write_text(PROGRAM)
+    found = pyright(program, ["program.py"])
+    assert sorted({line for _, line, _ in found}) == wrong_lines(), found
