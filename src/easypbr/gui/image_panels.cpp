@@ -14,7 +14,7 @@
 namespace easypbr::gui {
 namespace {
 
-constexpr float panel_width = 240, gap = 12, largest_zoom = 64;
+constexpr float image_panel_width = 240, gap = 12, largest_zoom = 64;
 /// From this zoom on pixels are seen as squares.
 constexpr float square_zoom = 2;
 
@@ -128,13 +128,13 @@ const Image& ImagePanels::image(const std::string& name) const {
 
 void ImagePanels::draw(GuiState& state) {
     const bool rescaled = std::exchange(scale_, state.screen.scale) != state.screen.scale;
-    const float step = (panel_width + gap) * state.screen.scale,
+    const float step = (image_panel_width + gap) * state.screen.scale,
                 left = (left_width + gap) * state.screen.scale;
     const float right = float(state.screen.size.x()) - right_width * state.screen.scale;
     float x = left, bottom = float(state.screen.size.y()) - gap * state.screen.scale;
     for (auto& [name, panel] : panels_) {
         if (!panel.open) continue;
-        const float width = panel_width * state.screen.scale;
+        const float width = image_panel_width * state.screen.scale;
         const float shape = float(panel.image.height()) / float(panel.image.width());
         const float rows = 2.2f * ImGui::GetFrameHeightWithSpacing() + ImGui::GetFrameHeight();
         const float height = std::clamp(width * shape, 0.3f * width, 1.5f * width) + rows;

@@ -10,7 +10,7 @@
 namespace easypbr::gui {
 namespace {
 
-constexpr float panel_width = 280, gap = 12;
+constexpr float user_panel_width = 280, user_panel_gap = 12;
 
 void error_text(const std::string& text) {
     ImGui::PushStyleColor(ImGuiCol_Text, ImVec4(0.93f, 0.36f, 0.33f, 1));
@@ -31,21 +31,21 @@ UserPanelWindows::Window& UserPanelWindows::window_of(const app::UserPanels& pan
 }
 
 void UserPanelWindows::draw(app::UserPanels& panels, const GuiState& state) {
-    const float top = ImGui::GetFrameHeight() + gap * state.screen.scale;
-    float x = (left_width + gap) * state.screen.scale;
+    const float top = ImGui::GetFrameHeight() + user_panel_gap * state.screen.scale;
+    float x = (left_width + user_panel_gap) * state.screen.scale;
     rescaled_ = std::exchange(scale_, state.screen.scale) != state.screen.scale;
     std::erase_if(windows_, [&](const auto& window) { return panels.revision(window.first) == 0; });
     // By name, for functions may add and remove panels.
     for (const std::string& name : panels.names()) {
         if (panels.revision(name) == 0 || !window_of(panels, name).open) continue;
         draw_panel(panels, name, state.screen.scale, {x, top}, float(state.screen.size.y()));
-        x += (panel_width + gap) * state.screen.scale;
+        x += (user_panel_width + user_panel_gap) * state.screen.scale;
     }
 }
 
 void UserPanelWindows::draw_panel(app::UserPanels& panels, const std::string& name, float scale, Vec2 at,
                                   float bottom) {
-    const float width = panel_width * scale;
+    const float width = user_panel_width * scale;
     ImGui::SetNextWindowPos(ImVec2(at.x(), at.y()), rescaled_ ? ImGuiCond_Always : ImGuiCond_FirstUseEver);
     ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, bottom - at.y()));
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoSavedSettings | ImGuiWindowFlags_AlwaysAutoResize;

@@ -18,7 +18,7 @@ namespace {
 /// Keeps the order of the reference.
 using Json = nlohmann::ordered_json;
 
-constexpr int version = 1;
+constexpr int format_version = 1;
 const std::vector<std::string> light_types = {"point", "directional", "spot"};
 
 Json json_of(const Field& field, double number) {
@@ -81,9 +81,9 @@ Json json_of(const Light& light) {
             {"angular_radius_deg", json_of(light.angular_radius_deg)}};
 }
 
-class Parser {
+class SettingsParser {
   public:
-    explicit Parser(const std::string& name) : name_(name) {}
+    explicit SettingsParser(const std::string& name) : name_(name) {}
 
     SettingsFile parse(const std::string& text) {
         Json root;
@@ -93,8 +93,8 @@ class Parser {
             fail(error.what());
         }
         if (!root.is_object() || !root.contains("easypbr")) fail("expected an object with \"easypbr\": 1");
-        if (root["easypbr"] != version)
-            fail(fmt::format("expected \"easypbr\": {}, got {}", version, root["easypbr"].dump()));
+        if (root["easypbr"] != format_version)
+            fail(fmt::format("expected \"easypbr\": {}, got {}", format_version, root["easypbr"].dump()));
         SettingsFile file;
         for (const auto& [key, value] : root.items()) section(key, value, file);
         return file;
@@ -275,7 +275,7 @@ SettingsFile load_settings(const std::filesystem::path& path) {
 }
 
 SettingsFile parse_settings(const std::string& json, const std::string& name) {
-    return Parser(name).parse(json);
+    return SettingsParser(name).parse(json);
 }
 
 void save_settings(const SettingsFile& file, const std::filesystem::path& path) {
@@ -284,7 +284,7 @@ void save_settings(const SettingsFile& file, const std::filesystem::path& path) 
 
 std::string to_json(const SettingsFile& file) {
     Json root;
-    root["easypbr"] = version;
+    root["easypbr"] = format_version;
     root["settings"] = Json::object();
     for (const Field& field : fields())
         place_of(root["settings"], field.name) = json_of(field, field.get(file.settings));

@@ -12,7 +12,7 @@ namespace easypbr::render {
 namespace {
 
 /// Small meshes alone are left to the driver; where exactly the two break even has not been measured.
-constexpr int64_t smallest_face_count = 5000;
+constexpr int64_t least_native_faces = 5000;
 
 /// The frames of one picture are jittered by up to a pixel, and edges are smoothed one pixel beyond them.
 PixelRect with_margin(const PixelRect& r, Vec2i size) {
@@ -57,7 +57,7 @@ bool SoftwareGeometryPass::handles(const DrawList& list) {
     }
     if (!handles_points(list)) return false;
     for (const DrawItem& item : list.points) points += item.mesh().V.rows();
-    return (points > 0 || faces >= smallest_face_count) && faces + points < int64_t(UINT32_MAX);
+    return (points > 0 || faces >= least_native_faces) && faces + points < int64_t(UINT32_MAX);
 }
 
 bool SoftwareGeometryPass::handles_points(const DrawList& list) {
