@@ -366,7 +366,7 @@ TEST_F(MotionPanels, AnAnimationAtRestIsBlurred) {
     player_.pause();
     player_.seek(2);
     settle();
-    const Image shown = session_.last_picture();
+    const Image shown = view_.drawing().picture().image();
     const auto put = [&](double time) { return [this, time] { player_.seek(time); }; };
     EXPECT_TRUE(same(shown, still_after(session_, put(1.5), put(2))));
     const Image sharp = still_after(session_, put(2), put(2));
@@ -375,10 +375,10 @@ TEST_F(MotionPanels, AnAnimationAtRestIsBlurred) {
     player_.set_speed(2);
     step();
     settle();
-    EXPECT_TRUE(same(session_.last_picture(), still_after(session_, put(1), put(2))));
+    EXPECT_TRUE(same(view_.drawing().picture().image(), still_after(session_, put(1), put(2))));
     session_.settings().motion_blur.enabled = false;
     settle();
-    const Image off = session_.last_picture();
+    const Image off = view_.drawing().picture().image();
     EXPECT_TRUE(same(off, session_.render({size, 6})));
 }
 
@@ -391,7 +391,7 @@ TEST_F(MotionPanels, ACameraThatRestsOnItsPathIsBlurred) {
     view_.drawing().recording_form().fps = 4;
     view_.drawing().path().editor.seek(0.7);
     settle();
-    const Image shown = session_.last_picture();
+    const Image shown = view_.drawing().picture().image();
     const auto look = [&](double time) {
         return [this, time, &path] { session_.set_camera(path.camera(time, session_.camera())); };
     };
@@ -399,7 +399,7 @@ TEST_F(MotionPanels, ACameraThatRestsOnItsPathIsBlurred) {
     // Elsewhere it has not come along the path.
     look_from({1, 1, 5});
     settle();
-    const Image sharp = session_.last_picture();
+    const Image sharp = view_.drawing().picture().image();
     const auto nothing = [] {};
     EXPECT_TRUE(same(sharp, still_after(session_, nothing, nothing)));
 }

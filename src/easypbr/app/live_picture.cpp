@@ -95,10 +95,10 @@ void LivePicture::draw_quickly(const LiveShot& shot, bool adapt) {
         const Stopwatch watch(seconds);
         render::Renderer& renderer = session_.renderer();
         renderer.measure_passes(measures);
-        if (!layer) session_.refine({shown_.size, 1});
+        const Drawn drawn = layer ? Drawn() : session_.refine({shown_.size, 1}).drawn;
         statistics_.passes = measures ? renderer.pass_times() : decltype(statistics_.passes){};
         renderer.measure_passes(false);
-        show_picture();
+        show_picture(drawn);
         glFinish();
     }
     if (adapt && seconds > slow_seconds) reduction_ = std::max(lowest_reduction, reduction_ * 0.75);
@@ -123,16 +123,15 @@ bool LivePicture::refine(const LiveShot& shot) {
     const bool show = frames_ + 1 >= std::min(least_frames, total);
     const Session::Refinement done = session_.refine({shot.size, total}, show, motion_);
     frames_ = statistics_.frames = done.frames;
-    if (show && (shot.channel == "picture" || is_complete())) show_picture();
+    if (show && (shot.channel == "picture" || is_complete())) show_picture(done.drawn);
     glFinish();
     return show;
 }
 
-void LivePicture::show_picture() {
+void LivePicture::show_picture(const Drawn& drawn) {
     shows_other_ = false;
-    const AnnotationSettings& annotation = session_.settings().annotation;
     if (shown_.channel == "slices") {
-        std::vector<Image> pictures = {session_.last_picture()};
+        std::vector<Image> pictures = {drawn.picture()};
         const std::vector<std::string> names = {"metallic", "albedo", "ambient_occlusion", "normal"};
         const auto layers = session_.render_layers(names, shown_.size);
         for (const std::string& name : names) pictures.push_back(layer_picture(name, layers.at(name)));
@@ -140,11 +139,10 @@ void LivePicture::show_picture() {
     } else if (is_layer(shown_.channel)) {
         const auto layers = session_.render_layers({shown_.channel}, shown_.size);
         show_pixels(layer_picture(shown_.channel, layers.at(shown_.channel)));
-    } else if (annotation.legend.value_or(false) || annotation.colorbar.value_or(false) ||
-               !session_.lens().is_identity()) {
-        show_pixels(session_.last_picture());
+    } else if (!drawn.is_plain()) {
+        show_pixels(drawn.picture());
     } else {
-        const gl::Texture& picture = session_.renderer().picture();
+        const gl::Texture& picture = drawn.texture();
         fit_texture(texture_, {picture.width(), picture.height()});
         gl::copy(picture, texture_);
     }

@@ -92,7 +92,7 @@ class LivePicture {
     bool fail(const std::string& what, const LiveShot& shot, uint64_t version);
     void draw_quickly(const LiveShot& shot, bool adapt);
     bool refine(const LiveShot& shot);
-    void show_picture();
+    void show_picture(const Drawn& drawn);
     void show_pixels(const Image& image);
     bool is_stale(const LiveShot& shot, uint64_t version) const;
 
