@@ -1,13 +1,12 @@
 #include "easypbr/app/live_picture.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 
 #include "easypbr/app/channels.h"
 #include "easypbr/app/stopwatch.h"
 #include "easypbr/core/error.h"
 #include "easypbr/gl/context.h"
+#include "easypbr/gl/draw.h"
 
 namespace easypbr::app {
 namespace {
@@ -99,7 +98,7 @@ void LivePicture::draw_quickly(const LiveShot& shot, bool adapt) {
         statistics_.passes = measures ? renderer.pass_times() : decltype(statistics_.passes){};
         renderer.measure_passes(false);
         show_picture(drawn);
-        glFinish();
+        gl::finish();
     }
     if (adapt && seconds > slow_seconds) reduction_ = std::max(lowest_reduction, reduction_ * 0.75);
     if (adapt && seconds < quick_seconds) reduction_ = std::min(1.0, reduction_ * 1.2);
@@ -124,7 +123,7 @@ bool LivePicture::refine(const LiveShot& shot) {
     const Session::Refinement done = session_.refine({shot.size, total}, show, motion_);
     frames_ = statistics_.frames = done.frames;
     if (show && (shot.channel == "picture" || is_complete())) show_picture(done.drawn);
-    glFinish();
+    gl::finish();
     return show;
 }
 
@@ -132,7 +131,7 @@ void LivePicture::show_picture(const Drawn& drawn) {
     shows_other_ = false;
     if (shown_.channel == "slices") {
         std::vector<Image> pictures = {drawn.picture()};
-        const std::vector<std::string> names = {"metallic", "albedo", "ambient_occlusion", "normal"};
+        const std::vector<std::string> names = {"metallic", "albedo", "ambient_occlusion", "normal_world"};
         const auto layers = session_.render_layers(names, shown_.size);
         for (const std::string& name : names) pictures.push_back(layer_picture(name, layers.at(name)));
         show_pixels(slices(pictures));

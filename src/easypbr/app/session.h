@@ -98,7 +98,7 @@ class Session {
         motion_.begin(scene_.snapshot(), from);
     }
 
-    /// Names of what is visible; the layer "id" holds 1 + the place in this list.
+    /// Names of what is visible; the layer "object_id" holds 1 + the place in this list.
     std::vector<std::string> object_names() const;
 
     /// A picture that gets better with every call: one more frame of draw()'s, whose picture it is, bit for

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -148,12 +149,14 @@ void VertexArrays::plan_colors(const std::vector<VertexField>& fields, size_t co
 void VertexArrays::plan_scalars(const std::vector<VertexField>& fields, size_t count) {
     std::vector<Column*> columns;
     std::set<std::string> taken;
+    std::map<std::string, int> numbers;  // Goes on where it ended, for there may be many of one name.
     for (const VertexField& field : fields) {
         if (!field.column->is_skipped() || field.property.name.empty() || field.property.name == "_")
             continue;
         const std::string plain = plain_name(field.property.name);
         std::string name = plain;
-        for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}_{}", plain, number);
+        int& number = numbers.try_emplace(plain, 1).first->second;
+        while (!taken.insert(name).second) name = fmt::format("{}_{}", plain, ++number);
         scalars_.push_back({name, Array1f::Dense(Eigen::Index(count))});
         columns.push_back(field.column);
     }
@@ -234,10 +237,10 @@ void FaceArrays::move_into(MeshData& mesh) {
         return result;
     };
     if (mesh.L.empty() && L_.size()) mesh.L = of_triangles(L_);
-    for (auto& [name, values] : scalars_) {
-        const auto is_same = [&](const ScalarArray& scalar) { return scalar.name == name; };
-        if (std::ranges::none_of(mesh.scalars, is_same)) mesh.scalars.push_back({name, of_triangles(values)});
-    }
+    std::set<std::string> taken;
+    for (const ScalarArray& scalar : mesh.scalars) taken.insert(scalar.name);
+    for (auto& [name, values] : scalars_)
+        if (taken.insert(name).second) mesh.scalars.push_back({name, of_triangles(values)});
 }
 
 bool is_known_field(std::string_view name) {

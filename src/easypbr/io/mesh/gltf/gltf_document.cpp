@@ -151,7 +151,7 @@ std::span<const std::byte> GltfDocument::buffer(size_t index) {
             buffer.decoded = std::move(*decoded);
             buffer.bytes = buffer.decoded;
         } else {
-            buffer.file = MappedFile(path_of_uri(text(json, "uri")));
+            buffer.file = FileBytes(path_of_uri(text(json, "uri")));
             buffer.bytes = buffer.file.bytes();
         }
         if (buffer.bytes.size() < length)
@@ -188,7 +188,14 @@ std::optional<std::vector<std::byte>> GltfDocument::data_of_uri(std::string_view
 std::filesystem::path GltfDocument::path_of_uri(std::string_view uri) const {
     if (has_scheme(uri))
         fail(fmt::format("URI '{}': only relative paths and data URIs are read", uri.substr(0, 100)));
-    return path_.parent_path() / percent_decoded(uri);
+    const std::filesystem::path path = percent_decoded(uri);
+    const std::filesystem::path normal = path.lexically_normal();
+    if (path.is_absolute() || *normal.begin() == ".." || path.native().find('\0') != std::string::npos)
+        fail(fmt::format(
+            "URI '{}' leads out of the file's folder, which is not allowed: a glTF file names files "
+            "beside or below itself",
+            uri.substr(0, 100)));
+    return path_.parent_path() / path;
 }
 
 void GltfDocument::fail(std::string_view what) const {

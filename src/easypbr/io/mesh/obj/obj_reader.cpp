@@ -214,7 +214,7 @@ class ObjReader {
                 if (!read.insert(name).second) continue;
                 try {
                     const fs::path path = source_.path.parent_path() / name;
-                    const MappedFile file(path);
+                    const FileBytes file(path);
                     library.merge(read_mtl(Source(file, path), textures));
                 } catch (const Error& error) {
                     log_warning(
