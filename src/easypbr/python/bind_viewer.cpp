@@ -107,8 +107,13 @@ struct GuiReport {
 GuiReport report_of(gui::LiveView& view) {
     gui::GuiState& state = view.state();
     app::LiveDrawing& live = view.drawing();
-    GuiReport report{live.selection(), live.picture().statistics(), live.report(), state.panels, state.screen,
-                     view.places()};
+    GuiReport report;
+    report.selection = live.selection();
+    report.statistics = live.picture().statistics();
+    report.recorder = live.report();
+    report.panels = state.panels;
+    report.screen = state.screen;
+    report.places = view.places();
     report.messages = live.notifications().list();
     report.errors = live.panels().errors();
     report.channel = live.channel;
