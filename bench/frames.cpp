@@ -97,16 +97,19 @@ int measure(int argc, char** argv) {
 
     const int frames = std::stoi(argv[2]);
     std::vector<double> times;
+    app::Drawn timed;
     for (int i = 0; i < frames; ++i) {
         session.set_camera(vtk_camera(scene.snapshot().bounds(), 3.0 * (i + 1)));
         start = std::chrono::steady_clock::now();
-        session.draw_frame();
+        timed = session.draw_frame();
         times.push_back(seconds_since(start) * 1e3);
     }
-    const Image timed = session.last_picture();
-    const double equal = equal_share(timed, session.render());
+    const Image last = timed.picture();
+    const double equal = equal_share(last, session.render());
+    session.renderer().measure_passes(true);
+    session.draw_frame();
     std::string passes;
-    for (const auto& [name, ms] : session.measure_passes())
+    for (const auto& [name, ms] : session.renderer().pass_times())
         passes += fmt::format(R"({}"{}": {:.1f})", passes.empty() ? "" : ", ", name, ms);
     std::sort(times.begin(), times.end());
     fmt::print(

@@ -20,6 +20,14 @@ bool same(const Image& a, const Image& b) {
     return std::ranges::equal(a.bytes(), b.bytes());
 }
 
+/// Refined to the end.
+Drawn complete(Session& session, const Session::RefinedMotion& motion = {}) {
+    Session::Refinement done;
+    do done = session.refine({}, true, motion);
+    while (done.frames < done.total);
+    return done.drawn;
+}
+
 TEST(Refine, EndsAtTheStillBitForBit) {
     const Image still = ball_session().render();
     Session session = ball_session();
@@ -29,10 +37,10 @@ TEST(Refine, EndsAtTheStillBitForBit) {
         EXPECT_EQ(done.total, 4);
         EXPECT_EQ(done.began, frame == 1);
         EXPECT_TRUE(done.drew);
-        EXPECT_EQ(same(session.last_picture(), still), frame == 4);
+        EXPECT_EQ(same(done.drawn.picture(), still), frame == 4);
     }
     EXPECT_FALSE(session.refine().drew);
-    EXPECT_TRUE(same(session.last_picture(), still));
+    EXPECT_TRUE(same(session.refine().drawn.picture(), still));
 }
 
 TEST(Refine, EveryFrameOnTheWayIsThePictureOfItsOwnFrames) {
@@ -40,9 +48,9 @@ TEST(Refine, EveryFrameOnTheWayIsThePictureOfItsOwnFrames) {
     session.settings().background.mode = BackgroundMode::color;
     session.settings().background.color = Vec3(1, 0, 0);
     session.refine();
-    session.refine();
+    const Drawn two = session.refine().drawn;
     // A sum that is divided by the wrong number of frames darkens or lets the background through.
-    const Image half = session.last_picture(), still = ball_session().render();
+    const Image half = two.picture(), still = ball_session().render();
     const uint8_t *middle = half.at<uint8_t>(32, 24), *expected = still.at<uint8_t>(32, 24);
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(middle[c], expected[c], 6);  // noise of two frames against four
     EXPECT_EQ(half.at<uint8_t>(0, 0)[0], 255);
@@ -80,19 +88,18 @@ TEST(Refine, ShowsTheLensAsTheStillDoes) {
     Session session = ball_session(), plain = ball_session();
     distort(session);
     const Image still = session.render();
-    while (session.refine().frames < 4) continue;
-    EXPECT_EQ(session.last_picture().width(), 64);
-    EXPECT_TRUE(same(session.last_picture(), still));
+    const Drawn refined = complete(session);
+    EXPECT_EQ(refined.picture().width(), 64);
+    EXPECT_TRUE(same(refined.picture(), still));
     EXPECT_FALSE(session.refine().drew);
     // Also when something is looked up meanwhile, and when the lens is taken off again.
     session.pick({32, 24});
-    EXPECT_TRUE(same(session.last_picture(), still));
+    EXPECT_TRUE(same(refined.picture(), still));
     EXPECT_FALSE(session.refine().drew);
     const Camera pinhole = Camera::look_at(Vec3d(0, 0, 5), Vec3d(0, 0, 0));
     session.set_camera(pinhole);
     plain.set_camera(pinhole);
-    while (session.refine().frames < 4) continue;
-    EXPECT_TRUE(same(session.last_picture(), plain.render()));
+    EXPECT_TRUE(same(complete(session).picture(), plain.render()));
 }
 
 TEST(Refine, ShowsMotionAsTheStillDoes) {
@@ -109,24 +116,21 @@ TEST(Refine, ShowsMotionAsTheStillDoes) {
     const Image still = other.render(), sharp = other.render();
     ASSERT_FALSE(same(still, sharp));
     const auto motion = std::make_shared<const Motion>(session.scene().snapshot(), from);
-    while (session.refine({}, true, motion).frames < 4) continue;
-    EXPECT_TRUE(same(session.last_picture(), still));
+    EXPECT_TRUE(same(complete(session, motion).picture(), still));
     EXPECT_FALSE(session.refine({}, true, motion).drew);
     EXPECT_TRUE(session.refine({}, true).began);
-    while (session.refine().frames < 4) continue;
-    EXPECT_TRUE(same(session.last_picture(), sharp));
+    EXPECT_TRUE(same(complete(session).picture(), sharp));
     session.settings().motion_blur.enabled = false;
-    while (session.refine({}, true, motion).frames < 4) continue;
-    EXPECT_TRUE(same(session.last_picture(), sharp));
+    EXPECT_TRUE(same(complete(session, motion).picture(), sharp));
 }
 
 TEST(Refine, PickingLeavesAFinishedPictureAlone) {
     Session session = ball_session();
-    while (session.refine().frames < 4) continue;
-    const Image before = session.last_picture();
+    const Drawn refined = complete(session);
+    const Image before = refined.picture();
     session.pick({32, 24});
     EXPECT_FALSE(session.refine().drew);
-    EXPECT_TRUE(same(session.last_picture(), before));
+    EXPECT_TRUE(same(refined.picture(), before));
 }
 
 TEST(Pick, FindsTheFaceAndThePositionOnTheBall) {

@@ -205,9 +205,9 @@ TEST(OwnShader, CutsHolesForLightAndPickingToo) {
                 EXPECT_EQ(picks.at({42.5, 32.5})->object, "caster") << what;
                 session.render({std::nullopt, 1});
                 // Alone: what ground truth measures amodal masks with.
-                session.draw_surfaces({Vec2i(64, 64), 1}, false);
+                const Drawn drawn = session.draw_surfaces({Vec2i(64, 64), 1}, false);
                 const std::vector<std::string> names = session.object_names();
-                const auto covered = session.coverage(
+                const auto covered = drawn.coverage(
                     {0, 32, 64, 1}, [&](size_t object, int) { return names[object] == "caster"; });
                 EXPECT_FALSE(covered[32]) << what;
                 EXPECT_TRUE(covered[42]) << what;

@@ -341,14 +341,16 @@ TEST(TiledPicture, HoldsRadianceToo) {
     EXPECT_LE(compare(whole, tiled).max, 3e-3);
 }
 
-// The picture that was drawn last is there, whether it was drawn in tiles or not.
-TEST(TiledPicture, IsTheLastOne) {
+// Put together in memory, it is there whatever is drawn later.
+TEST(TiledPicture, IsNeverOutdated) {
     Session session = session_of({"plain", solids, [](Settings&) {}});
     session.limit_tiles(smallest_limits(40));
-    const Image tiled = session.render();
-    EXPECT_EQ(compare(session.last_picture(), tiled).different, 0u);
+    const Image still = session.render();
+    const Drawn tiled = session.draw();
+    EXPECT_THROW(tiled.texture(), ArgumentError);
     const Image small = session.render({Vec2i(64, 48), 1, Encoding::srgb8});
-    EXPECT_EQ(compare(session.last_picture(), small).different, 0u);
+    EXPECT_EQ(small.width(), 64);
+    EXPECT_EQ(compare(tiled.picture(), still).different, 0u);
 }
 
 TEST(TilesOf, CoverThePictureOnce) {

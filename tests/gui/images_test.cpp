@@ -90,7 +90,7 @@ class ImageWindow : public testing::Test {
         return event;
     }
     Vec2d canvas(double x, double y) {
-        const auto box = view_.state().places.at("loss");
+        const auto box = view_.places().at("loss");
         return box.min() + box.sizes().cwiseProduct(Vec2d(x, y));
     }
     Code screen_at(Vec2d place) { return pixel(view_.screen(), int(place.x()), int(place.y())); }
@@ -106,7 +106,7 @@ TEST_F(ImageWindow, ShowsPixelsTheirValuesAndZooms) {
     std::ranges::copy(values, image.pixels<uint8_t>().begin());
     view_.show_image("loss", image);
     settle();
-    const auto box = view_.state().places.at("loss");
+    const auto box = view_.places().at("loss");
     const double side = box.sizes().minCoeff();
     const auto place = [&](double x, double y) {
         return Vec2d(box.center() + side * Vec2d(x - 0.5, y - 0.5));
@@ -131,17 +131,17 @@ TEST_F(ImageWindow, ShowsPixelsTheirValuesAndZooms) {
     EXPECT_EQ(view_.state().image_value, "loss: (1, 0)  99  240  0");
     view_.remove_image("loss");
     settle();
-    EXPECT_EQ(view_.state().places.count("loss"), 0u);
+    EXPECT_EQ(view_.places().count("loss"), 0u);
 }
 
 TEST_F(ImageWindow, KeepsWhatIsShownWithoutDrawingIt) {
     for (int i = 0; i < 100; ++i) view_.show_image("loss", floats(2, 1, 1, {float(i), 0}));
     EXPECT_EQ(view_.images().image("loss").pixels<float>()[0], 99);
     settle();
-    view_.state().show_panels = false;
+    view_.state().panels.shown = false;
     view_.touch();
     settle();
-    EXPECT_EQ(view_.state().places.count("loss"), 0u);
+    EXPECT_EQ(view_.places().count("loss"), 0u);
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ class LightsPanel : public testing::Test {
         session_.set_view_point({Camera::look_at(Vec3d(0, 0, 6), Vec3d(0, 0, 0)), Vec3d(0, 0, 0)});
         for (const Panel panel :
              {Panel::effects, Panel::environment, Panel::camera, Panel::channels, Panel::statistics})
-            view_.state().is_open(panel) = false;
-        view_.state().unfold.insert(Panel::lights);
+            view_.state().panels.is_open(panel) = false;
+        view_.state().panels.unfold.insert(Panel::lights);
         settle();
     }
     static Scene ball_scene() {
@@ -44,8 +44,8 @@ class LightsPanel : public testing::Test {
         step({event});
     }
     void click(const std::string& name) {
-        const auto place = view_.state().places.find(name);
-        ASSERT_NE(place, view_.state().places.end()) << name;
+        const auto place = view_.places().find(name);
+        ASSERT_NE(place, view_.places().end()) << name;
         const Vec2d at = place->second.center();
         for (const Kind kind : {Kind::move, Kind::press, Kind::release}) pointer(kind, at);
         pointer(Kind::move, {550, 780});
@@ -104,7 +104,7 @@ TEST_F(LightsPanel, AddedLightsShineAreChosenAndUndone) {
     click("Lights/Add a light");
     click("Lights/Add a light");
     EXPECT_EQ(session_.scene().light_names(), (std::vector<std::string>{"lamp", "light", "light-2"}));
-    EXPECT_EQ(view_.state().light, "light-2");
+    EXPECT_EQ(view_.drawing().selection().light, "light-2");
     // Beside, above and before the ball, seen from 6 away: (3, 3, 3), 27 away from it by the square root.
     EXPECT_LT((session_.scene().light("light").position - Vec3(3, 3, 3)).norm(), 1e-5f);
     EXPECT_NEAR(session_.scene().light("light").intensity, 3 * 27, 1e-3);
@@ -121,7 +121,7 @@ TEST_F(LightsPanel, AddedLightsShineAreChosenAndUndone) {
 TEST_F(LightsPanel, AMoveByTheHandlesIsOneStep) {
     click("Lights/lamp");
     click("Lights/move lamp");
-    EXPECT_EQ(view_.state().light, "lamp");
+    EXPECT_EQ(view_.drawing().selection().light, "lamp");
     const Light before = lamp();
     const Vec2d at =
         app::pixel_of(session_.view_point(size).camera, before.position.cast<double>(), size).head<2>();
@@ -138,15 +138,15 @@ TEST_F(LightsPanel, AMoveByTheHandlesIsOneStep) {
 }
 
 TEST_F(LightsPanel, PanelsAreAsLargeAsTheyAreAskedToBe) {
-    const auto width = [&] { return view_.state().places.at("Lights").sizes().x(); };
+    const auto width = [&] { return view_.places().at("Lights").sizes().x(); };
     const double plain = width();
     view_.set_panel_scale(1.5f);
     settle();
     EXPECT_NEAR(width(), 1.5 * plain, 2);  // whole pixels
-    EXPECT_EQ(view_.state().scale, 1.5f);
+    EXPECT_EQ(view_.state().screen.scale, 1.5f);
     for (const float bad : {0.4f, 5.0f, -1.0f, std::nanf("")})
         EXPECT_THROW(view_.set_panel_scale(bad), ArgumentError);
-    EXPECT_EQ(view_.state().panel_scale, 1.5f);
+    EXPECT_EQ(view_.state().screen.panel_scale, 1.5f);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ class Live : public testing::Test {
   protected:
     Live() : session_(ball_scene()) {
         session_.settings().image.samples = 6;
-        view_.state().show_panels = false;
+        view_.state().panels.shown = false;
         settle();
     }
 
@@ -93,9 +93,9 @@ TEST_F(Live, AClickSelectsAndTheWheelZoomsToThePointer) {
     const Vec2d place = middle + Vec2d(60, 30);
     step({at(Kind::move, place)});
     step({at(Kind::press, place), at(Kind::release, place)});
-    EXPECT_EQ(view_.state().object, "ball");
-    ASSERT_TRUE(view_.state().picked);
-    const Vec3d point = view_.state().picked->position;
+    EXPECT_EQ(view_.drawing().selection().object, "ball");
+    ASSERT_TRUE(view_.drawing().selection().picked);
+    const Vec3d point = view_.drawing().selection().picked->position;
     InputEvent wheel = at(Kind::scroll, place);
     wheel.scroll = {0, 3};
     const double before = session_.view_point(size).camera.position().norm();
@@ -107,7 +107,7 @@ TEST_F(Live, AClickSelectsAndTheWheelZoomsToThePointer) {
     const Vec2d corner(5, 5);
     step({at(Kind::move, corner)});
     step({at(Kind::press, corner), at(Kind::release, corner)});
-    EXPECT_EQ(view_.state().object, "");
+    EXPECT_EQ(view_.drawing().selection().object, "");
 }
 
 TEST_F(Live, ADoubleClickMakesThePointTheTarget) {
@@ -121,28 +121,28 @@ TEST_F(Live, ADoubleClickMakesThePointTheTarget) {
 TEST_F(Live, HoveringNamesWhatIsThere) {
     step({at(Kind::move, middle)});
     settle();
-    ASSERT_TRUE(view_.state().hovered);
-    EXPECT_EQ(view_.state().hovered->object, "ball");
+    ASSERT_TRUE(view_.drawing().picture().hovered());
+    EXPECT_EQ(view_.drawing().picture().hovered()->object, "ball");
     step({at(Kind::move, {3, 3})});
     settle();
-    EXPECT_FALSE(view_.state().hovered);
+    EXPECT_FALSE(view_.drawing().picture().hovered());
 }
 
 TEST_F(Live, KeysHidePanelsShowThemselvesFitAndClose) {
-    view_.state().show_panels = true;
+    view_.state().panels.shown = true;
     step({key('H')});
-    EXPECT_FALSE(view_.state().show_panels);
+    EXPECT_FALSE(view_.state().panels.shown);
     InputEvent question = at(Kind::text, middle);
     question.code = '?';
     step({question});
-    EXPECT_TRUE(view_.state().show_keys);
+    EXPECT_TRUE(view_.state().panels.keys);
     step({key(app::key::escape)});
-    EXPECT_FALSE(view_.state().show_keys);
+    EXPECT_FALSE(view_.state().panels.keys);
     EXPECT_FALSE(view_.wants_to_close());
     for (int i = 0; i < panel_count; ++i) {
-        const bool before = view_.state().is_open(Panel(i));
+        const bool before = view_.state().panels.is_open(Panel(i));
         step({key(app::key::f1 + i)});
-        EXPECT_NE(view_.state().is_open(Panel(i)), before);
+        EXPECT_NE(view_.state().panels.is_open(Panel(i)), before);
     }
     const double fitted = camera_position().norm();
     session_.set_view_point(app::zoomed(session_.view_point(size), 5, Vec3d(0, 0, 0)));
@@ -153,7 +153,7 @@ TEST_F(Live, KeysHidePanelsShowThemselvesFitAndClose) {
 }
 
 TEST_F(Live, ThePanelsTakeTheirOwnClicks) {
-    view_.state().show_panels = true;
+    view_.state().panels.shown = true;
     settle();
     const Vec2d in_panel(60, 60);
     step({at(Kind::move, in_panel)});
@@ -183,8 +183,8 @@ TEST_F(Live, NewDataUnderTheSameNameKeepLookAndCamera) {
 }
 
 TEST_F(Live, TheManipulatorMovesTheObjectAlongItsAxis) {
-    view_.state().show_panels = true;
-    view_.state().object = "ball";
+    view_.state().panels.shown = true;
+    view_.drawing().selection().object = "ball";
     session_.set_view_point({Camera::look_at(Vec3d(0, 0, 6), Vec3d(0, 0, 0)), Vec3d(0, 0, 0)});
     settle();
     // The x handle goes 90 pixels to the right of the centre.
@@ -198,8 +198,8 @@ TEST_F(Live, TheManipulatorMovesTheObjectAlongItsAxis) {
 }
 
 TEST_F(Live, UndoTakesPosesAndMaterialsBackAndLeavesTheProgramsOwn) {
-    view_.state().show_panels = true;
-    view_.state().object = "ball";
+    view_.state().panels.shown = true;
+    view_.drawing().selection().object = "ball";
     session_.set_view_point({Camera::look_at(Vec3d(0, 0, 6), Vec3d(0, 0, 0)), Vec3d(0, 0, 0)});
     settle();
     const auto ball = [&] { return session_.scene().get("ball"); };
@@ -237,7 +237,7 @@ TEST_F(Live, UndoTakesPosesAndMaterialsBackAndLeavesTheProgramsOwn) {
 TEST_F(Live, EveryChannelIsShown) {
     std::vector<Image> seen;
     for (const char* channel : {"picture", "slices", "normal_world", "depth", "albedo", "object_id"}) {
-        view_.state().channel = channel;
+        view_.drawing().channel = channel;
         settle();
         const Image screen = view_.screen();
         for (const Image& other : seen)
@@ -245,7 +245,7 @@ TEST_F(Live, EveryChannelIsShown) {
         seen.push_back(screen);
     }
     // The ball's middle faces the camera: its world normal is towards it.
-    view_.state().channel = "normal_world";
+    view_.drawing().channel = "normal_world";
     settle();
     const Vec3d towards = camera_position().normalized();
     const Image screen = view_.screen();
@@ -256,26 +256,26 @@ TEST_F(Live, EveryChannelIsShown) {
 TEST_F(Live, WhatCannotBeDrawnIsToldAndTheLoopGoesOn) {
     session_.settings().background.mode = BackgroundMode::image;
     step();
-    ASSERT_EQ(view_.state().notifications.size(), 1u);
-    EXPECT_NE(view_.state().notifications[0].text.find("background.image"), std::string::npos);
+    ASSERT_EQ(view_.drawing().notifications().list().size(), 1u);
+    EXPECT_NE(view_.drawing().notifications().list()[0].text.find("background.image"), std::string::npos);
     for (int i = 0; i < 5; ++i) step();
-    EXPECT_EQ(view_.state().notifications.size(), 1u);
+    EXPECT_EQ(view_.drawing().notifications().list().size(), 1u);
     session_.settings().background.mode = BackgroundMode::color;
     settle();
     InputEvent drop = at(Kind::drop, middle);
     drop.paths = {"/nowhere/at_all.ply"};
     step({drop});
-    EXPECT_EQ(view_.state().notifications.size(), 2u);
+    EXPECT_EQ(view_.drawing().notifications().list().size(), 2u);
 }
 
 TEST(LiveView, AnEmptySceneIsAnEmptyScreen) {
     app::Session session;
     LiveView view(session);
-    view.state().show_panels = false;
+    view.state().panels.shown = false;
     EXPECT_TRUE(view.update({}, {64, 48}, 1, 0.01));
     const Image screen = view.screen();
     EXPECT_EQ(screen.at<uint8_t>(32, 24)[0], 64);  // the grey of a default background
-    EXPECT_TRUE(view.state().notifications.empty());
+    EXPECT_TRUE(view.drawing().notifications().list().empty());
     EXPECT_THROW(LiveView(session).screen(), ArgumentError);
 }
 

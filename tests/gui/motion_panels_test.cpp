@@ -36,7 +36,7 @@ class MotionPanels : public testing::Test {
         session_.settings().image.size = {48, 32};
         for (const Panel panel : {Panel::scene, Panel::object, Panel::effects, Panel::lights,
                                   Panel::environment, Panel::camera, Panel::channels, Panel::statistics})
-            view_.state().is_open(panel) = false;
+            view_.state().panels.is_open(panel) = false;
     }
     ~MotionPanels() override { fs::remove_all(folder_); }
 
@@ -52,7 +52,7 @@ class MotionPanels : public testing::Test {
         for (int i = 0; i < 100 && (view_.is_busy() || i < 3); ++i) step();
     }
     void unfold(Panel panel) {
-        view_.state().unfold.insert(panel);
+        view_.state().panels.unfold.insert(panel);
         view_.touch();
         settle();
     }
@@ -63,8 +63,8 @@ class MotionPanels : public testing::Test {
         step({event});
     }
     void click(const std::string& name) {
-        const auto place = view_.state().places.find(name);
-        ASSERT_NE(place, view_.state().places.end()) << name;
+        const auto place = view_.places().find(name);
+        ASSERT_NE(place, view_.places().end()) << name;
         InputEvent event;
         event.position = place->second.center();
         for (const Kind kind : {Kind::move, Kind::press, Kind::release}) {
@@ -103,7 +103,7 @@ TEST_F(MotionPanels, KeysArePlacedListedMovedAndRemoved) {
     click("Camera path/Add key (K)");
     look_from({0, 1, -5});
     key('K');
-    const app::PathEditor& path = view_.state().path;
+    const app::PathEditor& path = view_.drawing().path().editor;
     ASSERT_EQ(path.keys().size(), 3u);
     EXPECT_LT((path.keys()[2].T_world_cam.translation() - Vec3d(0, 1, -5)).norm(), 1e-12);
     settle();
@@ -126,26 +126,26 @@ TEST_F(MotionPanels, ThePathIsPlayedScrubbedSavedAndLoaded) {
     three_keys();
     settle();
     click("Camera path/time");  // its middle
-    EXPECT_NEAR(view_.state().path.time(), 1, 0.02);
-    const CameraPath before = *view_.state().path.path();
-    EXPECT_LT((position() - before.pose(view_.state().path.time()).translation()).norm(), 1e-9);
-    view_.state().path.seek(0);
+    EXPECT_NEAR(view_.drawing().path().editor.time(), 1, 0.02);
+    const CameraPath before = *view_.drawing().path().editor.path();
+    EXPECT_LT((position() - before.pose(view_.drawing().path().editor.time()).translation()).norm(), 1e-9);
+    view_.drawing().path().editor.seek(0);
     click("Camera path/Play");
-    EXPECT_TRUE(view_.state().path.is_playing());
-    for (int i = 0; i < 20 && view_.state().path.is_playing(); ++i) step({}, 0.25);
-    EXPECT_FALSE(view_.state().path.is_playing());
+    EXPECT_TRUE(view_.drawing().path().editor.is_playing());
+    for (int i = 0; i < 20 && view_.drawing().path().editor.is_playing(); ++i) step({}, 0.25);
+    EXPECT_FALSE(view_.drawing().path().editor.is_playing());
     EXPECT_LT((position() - Vec3d(0, 1, -5)).norm(), 1e-9);
-    view_.state().path_file = (folder_ / "path.json").string();
+    view_.state().path_panel.file = (folder_ / "path.json").string();
     click("Camera path/Save");
     EXPECT_EQ(io::load_camera_path(folder_ / "path.json").keys().size(), 3u);
     click("Camera path/Clear");
-    EXPECT_TRUE(view_.state().path.keys().empty());
+    EXPECT_TRUE(view_.drawing().path().editor.keys().empty());
     click("Camera path/Load");
-    EXPECT_EQ(view_.state().path.path()->pose(0.7).matrix(), before.pose(0.7).matrix());
-    view_.state().path_file = (folder_ / "nothing.json").string();
+    EXPECT_EQ(view_.drawing().path().editor.path()->pose(0.7).matrix(), before.pose(0.7).matrix());
+    view_.state().path_panel.file = (folder_ / "nothing.json").string();
     click("Camera path/Load");
-    EXPECT_NE(view_.state().notifications.back().text.find("nothing.json"), std::string::npos);
-    EXPECT_EQ(view_.state().path.keys().size(), 3u);
+    EXPECT_NE(view_.drawing().notifications().list().back().text.find("nothing.json"), std::string::npos);
+    EXPECT_EQ(view_.drawing().path().editor.keys().size(), 3u);
 }
 
 // The way there is one change, not one for each frame.
@@ -153,29 +153,29 @@ TEST_F(MotionPanels, PlayingIsUndoneAtOnce) {
     three_keys();
     look_from({1, 2, 6});
     settle();
-    view_.state().path.play();
+    view_.drawing().path().editor.play();
     for (int i = 0; i < 20; ++i) step({}, 0.25);
     settle();
-    EXPECT_FALSE(view_.state().path.is_playing());
+    EXPECT_FALSE(view_.drawing().path().editor.is_playing());
     EXPECT_LT((position() - Vec3d(0, 1, -5)).norm(), 1e-9);
-    undo(view_.state());
+    view_.drawing().edits().undo();
     EXPECT_LT((position() - Vec3d(1, 2, 6)).norm(), 1e-9);
 }
 
 TEST_F(MotionPanels, TheCurveIsDrawnOverThePictureAndFaintBehindSurfaces) {
-    view_.state().show_panels = true;
+    view_.state().panels.shown = true;
     three_keys();
     look_from({0, 16, 14});
-    view_.state().show_path = false;
+    view_.state().path_panel.shows_path = false;
     view_.touch();
     settle();
     const Image without = view_.screen();
-    view_.state().show_path = true;
+    view_.state().path_panel.shows_path = true;
     view_.touch();
     settle();
     const Image with = view_.screen();
     // A point of the curve, where the orange is on the screen.
-    const CameraPath& path = *view_.state().path.path();
+    const CameraPath& path = *view_.drawing().path().editor.path();
     const Camera camera = session_.view_point(size).camera;
     const auto color_at = [&](const Image& image, double time) {
         const Vec3d p = app::pixel_of(camera, path.pose(time).translation(), size);
@@ -195,7 +195,7 @@ TEST_F(MotionPanels, RecordsAPictureAndACameraPath) {
     three_keys();
     look_from({1, 2, 6});
     settle();
-    RecordingForm& form = view_.state().form;
+    app::RecordingForm& form = view_.drawing().recording_form();
     form.picture = (folder_ / "picture.png").string();
     form.video = (folder_ / "frame_%02d.png").string();
     form.fps = 4;
@@ -207,10 +207,11 @@ TEST_F(MotionPanels, RecordsAPictureAndACameraPath) {
     EXPECT_FALSE(view_.is_recording());
     EXPECT_FALSE(recorder_.is_recording());
     EXPECT_LT((position() - before).norm(), 1e-12);
-    EXPECT_NE(view_.state().recorder_says.find("9 frames"), std::string::npos) << view_.state().recorder_says;
+    EXPECT_NE(view_.drawing().report().text.find("9 frames"), std::string::npos)
+        << view_.drawing().report().text;
     // Frame 4 of 2 seconds at 4 frames per second is key 2, to the bit.
     look_from({5, 1, 0});
-    session_.set_camera(view_.state().path.path()->camera(1, session_.camera()));
+    session_.set_camera(view_.drawing().path().editor.path()->camera(1, session_.camera()));
     const Image still = session_.render({Vec2i(48, 32), {}});
     EXPECT_TRUE(std::ranges::equal(io::load_image(folder_ / "frame_04.png").bytes(),
                                    with_channels(still, 3).bytes()) ||
@@ -221,7 +222,7 @@ TEST_F(MotionPanels, RecordsAPictureAndACameraPath) {
 TEST_F(MotionPanels, RecordsTheWindowWithItsPanelsAndWithoutBackground) {
     unfold(Panel::recorder);
     settle();
-    RecordingForm& form = view_.state().form;
+    app::RecordingForm& form = view_.drawing().recording_form();
     form.picture = (folder_ / "clear.png").string();
     click("Recorder/transparent");
     EXPECT_TRUE(form.transparent);
@@ -238,8 +239,8 @@ TEST_F(MotionPanels, RecordsTheWindowWithItsPanelsAndWithoutBackground) {
 
 TEST_F(MotionPanels, AVideoOfWhatHappensIsAsLongAsItTook) {
     unfold(Panel::recorder);
-    view_.state().form.video = (folder_ / "live_%03d.png").string();
-    view_.state().form.size = {32, 24};
+    view_.drawing().recording_form().video = (folder_ / "live_%03d.png").string();
+    view_.drawing().recording_form().size = {32, 24};
     const auto begun = std::chrono::steady_clock::now();
     click("Recorder/Video");
     ASSERT_TRUE(view_.is_recording());
@@ -258,18 +259,18 @@ TEST_F(MotionPanels, WhatCannotBeRecordedIsTold) {
     unfold(Panel::recorder);
     three_keys();
     settle();
-    view_.state().form.video = (folder_ / "film.xyz").string();
+    view_.drawing().recording_form().video = (folder_ / "film.xyz").string();
     click("Recorder/Camera path");
     EXPECT_FALSE(view_.is_recording());
-    EXPECT_TRUE(view_.state().recorder_failed);
-    EXPECT_NE(view_.state().recorder_says.find("film.xyz"), std::string::npos);
-    view_.state().form.video = "/nowhere/at/all/film_%d.png";
+    EXPECT_TRUE(view_.drawing().report().failed);
+    EXPECT_NE(view_.drawing().report().text.find("film.xyz"), std::string::npos);
+    view_.drawing().recording_form().video = "/nowhere/at/all/film_%d.png";
     click("Recorder/Video");
-    EXPECT_TRUE(view_.state().recorder_failed);
-    view_.state().form.picture = "/nowhere/at/all.png";
+    EXPECT_TRUE(view_.drawing().report().failed);
+    view_.drawing().recording_form().picture = "/nowhere/at/all.png";
     click("Recorder/Picture");
-    EXPECT_TRUE(view_.state().recorder_failed);
-    view_.state().form.video = (folder_ / "stopped_%02d.png").string();
+    EXPECT_TRUE(view_.drawing().report().failed);
+    view_.drawing().recording_form().video = (folder_ / "stopped_%02d.png").string();
     click("Recorder/Camera path");
     ASSERT_TRUE(view_.is_recording());
     const Vec3d before(0, 1, -5);
@@ -306,7 +307,7 @@ TEST_F(MotionPanels, AnimationsPlayPauseAndScrub) {
 
 // Frames of 48 x 32 in a window of 560 x 620: 560 x 373, with bars of 123 above and below.
 TEST_F(MotionPanels, ARecordedPathKeepsItsShapeInTheWindow) {
-    view_.state().show_panels = false;
+    view_.state().panels.shown = false;
     session_.settings().background.mode = BackgroundMode::color;
     session_.settings().background.color = Vec3(0, 1, 0);
     three_keys();
@@ -322,8 +323,8 @@ TEST_F(MotionPanels, ARecordedPathKeepsItsShapeInTheWindow) {
         return std::pair(first, count);
     };
     EXPECT_EQ(green_rows(), std::pair(0, size.y()));
-    view_.state().form.video = (folder_ / "f_%03d.png").string();
-    view_.state().wish = RecorderWish::path;
+    view_.drawing().recording_form().video = (folder_ / "f_%03d.png").string();
+    view_.drawing().wishes().recording = app::LiveWishes::Recording::path;
     step();
     step();
     step();
@@ -352,7 +353,7 @@ bool same(const Image& a, const Image& b) {
 
 // At rest the view shows what a recording's frame shows at this time: what happened since the frame before.
 TEST_F(MotionPanels, AnAnimationAtRestIsBlurred) {
-    view_.state().show_panels = false;
+    view_.state().panels.shown = false;
     look_from({0, 1, 5});
     AnimationNode node;
     node.mesh = session_.scene().get("ball");
@@ -360,12 +361,12 @@ TEST_F(MotionPanels, AnAnimationAtRestIsBlurred) {
     session_.settings().motion_blur.enabled = true;
     session_.settings().motion_blur.shutter = 1;
     session_.settings().image.samples = 6;
-    view_.state().form.fps = 2;  // A frame before the ball was a quarter of a unit to the left.
+    view_.drawing().recording_form().fps = 2;  // A frame before the ball was a quarter of a unit to the left.
     player_.play(0);
     player_.pause();
     player_.seek(2);
     settle();
-    const Image shown = session_.last_picture();
+    const Image shown = view_.drawing().picture().image();
     const auto put = [&](double time) { return [this, time] { player_.seek(time); }; };
     EXPECT_TRUE(same(shown, still_after(session_, put(1.5), put(2))));
     const Image sharp = still_after(session_, put(2), put(2));
@@ -374,10 +375,10 @@ TEST_F(MotionPanels, AnAnimationAtRestIsBlurred) {
     player_.set_speed(2);
     step();
     settle();
-    EXPECT_TRUE(same(session_.last_picture(), still_after(session_, put(1), put(2))));
+    EXPECT_TRUE(same(view_.drawing().picture().image(), still_after(session_, put(1), put(2))));
     session_.settings().motion_blur.enabled = false;
     settle();
-    const Image off = session_.last_picture();
+    const Image off = view_.drawing().picture().image();
     EXPECT_TRUE(same(off, session_.render({size, 6})));
 }
 
@@ -386,11 +387,11 @@ TEST_F(MotionPanels, ACameraThatRestsOnItsPathIsBlurred) {
     three_keys();
     session_.settings().motion_blur.enabled = true;
     session_.settings().image.samples = 4;
-    const CameraPath path = *view_.state().path.path();
-    view_.state().form.fps = 4;
-    view_.state().path.seek(0.7);
+    const CameraPath path = *view_.drawing().path().editor.path();
+    view_.drawing().recording_form().fps = 4;
+    view_.drawing().path().editor.seek(0.7);
     settle();
-    const Image shown = session_.last_picture();
+    const Image shown = view_.drawing().picture().image();
     const auto look = [&](double time) {
         return [this, time, &path] { session_.set_camera(path.camera(time, session_.camera())); };
     };
@@ -398,7 +399,7 @@ TEST_F(MotionPanels, ACameraThatRestsOnItsPathIsBlurred) {
     // Elsewhere it has not come along the path.
     look_from({1, 1, 5});
     settle();
-    const Image sharp = session_.last_picture();
+    const Image sharp = view_.drawing().picture().image();
     const auto nothing = [] {};
     EXPECT_TRUE(same(sharp, still_after(session_, nothing, nothing)));
 }

@@ -1,5 +1,5 @@
 // Panels and callbacks of users, driven by events, without a window.
-#include "easypbr/gui/user_panels.h"
+#include "easypbr/app/user_panels.h"
 
 #include <gtest/gtest.h>
 
@@ -33,9 +33,9 @@ class UserPanel : public testing::Test {
     }
     /// Left and right quarter of a widget's place, and its middle.
     Vec2d place(const std::string& name, double x = 0.5) {
-        const auto found = view_.state().places.find(name);
-        EXPECT_NE(found, view_.state().places.end()) << name;
-        if (found == view_.state().places.end()) return {0, 0};
+        const auto found = view_.places().find(name);
+        EXPECT_NE(found, view_.places().end()) << name;
+        if (found == view_.places().end()) return {0, 0};
         const Vec2d low = found->second.min(), high = found->second.max();
         return {low.x() + x * (high.x() - low.x()), (low.y() + high.y()) / 2};
     }
@@ -61,7 +61,7 @@ TEST_F(UserPanel, WidgetsTakeWhatIsClicked) {
     int count = 3, clicks = 0;
     bool on = false;
     std::string choice = "near", name = "run";
-    view_.add_panel("Training", [&](Widgets& ui) {
+    view_.add_panel("Training", [&](app::Widgets& ui) {
         ui.text("A paragraph");
         ui.slider("rate", rate, 0, 1);
         ui.slider("count", count, 0, 10);
@@ -95,7 +95,7 @@ TEST_F(UserPanel, WidgetsTakeWhatIsClicked) {
 
 TEST_F(UserPanel, ShowsWhatItsFunctionThrowsAndGoesOn) {
     int calls = 0;
-    view_.add_panel("Broken", [&](Widgets& ui) {
+    view_.add_panel("Broken", [&](app::Widgets& ui) {
         ++calls;
         ui.section("open");
         ui.slider("empty", *std::make_unique<double>(0.5), 1, 1);
@@ -103,24 +103,24 @@ TEST_F(UserPanel, ShowsWhatItsFunctionThrowsAndGoesOn) {
     settle();
     EXPECT_GT(calls, 2);
     EXPECT_NE(view_.panels().errors().at("Broken").find("slider 'empty'"), std::string::npos);
-    EXPECT_TRUE(view_.state().notifications.empty());
-    view_.add_panel("Broken", [](Widgets& ui) { ui.text("mended"); });
+    EXPECT_TRUE(view_.drawing().notifications().list().empty());
+    view_.add_panel("Broken", [](app::Widgets& ui) { ui.text("mended"); });
     settle();
     EXPECT_EQ(view_.panels().errors().at("Broken"), "");
-    view_.add_panel("Other", [](Widgets&) { throw 1; });
+    view_.add_panel("Other", [](app::Widgets&) { throw 1; });
     settle();
     EXPECT_NE(view_.panels().errors().at("Other"), "");
 }
 
 TEST_F(UserPanel, IsCalledWhileNothingHappensButDrawnOnlyWhenItChanges) {
     int shown = 0;
-    view_.add_panel("Counter", [&](Widgets& ui) { ui.text(std::to_string(shown)); });
+    view_.add_panel("Counter", [&](app::Widgets& ui) { ui.text(std::to_string(shown)); });
     settle();
     EXPECT_FALSE(view_.update({}, size, 1, 0.1));
     shown = 1;
     EXPECT_TRUE(view_.update({}, size, 1, 0.1));
     EXPECT_FALSE(view_.update({}, size, 1, 0.1));
-    view_.state().show_panels = false;
+    view_.state().panels.shown = false;
     view_.touch();
     settle();
     shown = 2;
@@ -129,8 +129,8 @@ TEST_F(UserPanel, IsCalledWhileNothingHappensButDrawnOnlyWhenItChanges) {
 
 TEST_F(UserPanel, MayChangePanelsAndSceneButNotDrawItself) {
     std::string refused;
-    view_.add_panel("Adds", [&](Widgets&) {
-        view_.add_panel("Added", [](Widgets& ui) { ui.text("here"); });
+    view_.add_panel("Adds", [&](app::Widgets&) {
+        view_.add_panel("Added", [](app::Widgets& ui) { ui.text("here"); });
         session_.render({Vec2i(32, 24), 1});
         try {
             view_.update({}, size, 1, 0);
@@ -149,7 +149,7 @@ TEST_F(UserPanel, MayUseAnotherViewThatWaitsForItsOwnTurn) {
     other_session.settings().image.samples = 1;
     LiveView other(other_session);
     std::atomic<bool> inside = false, drawn = false;
-    view_.add_panel("Waits", [&](Widgets&) {
+    view_.add_panel("Waits", [&](app::Widgets&) {
         inside = true;
         while (!drawn) std::this_thread::yield();
     });
@@ -164,7 +164,7 @@ TEST_F(UserPanel, MayUseAnotherViewThatWaitsForItsOwnTurn) {
 }
 
 TEST_F(UserPanel, WrongUseIsRefused) {
-    EXPECT_THROW(view_.add_panel("", [](Widgets&) {}), ArgumentError);
+    EXPECT_THROW(view_.add_panel("", [](app::Widgets&) {}), ArgumentError);
     EXPECT_THROW(view_.add_panel("x", nullptr), ArgumentError);
     EXPECT_THROW(view_.remove_panel("x"), NameError);
     EXPECT_THROW(view_.on_event(nullptr), ArgumentError);
@@ -180,7 +180,7 @@ TEST_F(UserPanel, WidgetsRefuseWhatCannotBeShown) {
             refused.push_back(error.what());
         }
     };
-    view_.add_panel("Bad", [&](Widgets& ui) {
+    view_.add_panel("Bad", [&](app::Widgets& ui) {
         refused.clear();
         double nan = std::nan(""), number = 1;
         std::string text;
@@ -214,19 +214,19 @@ TEST_F(UserPanel, HandlersSeeEventsBeforeTheViewDoes) {
     h.kind = Kind::key_down;
     h.key = 'H';
     step({h});
-    EXPECT_FALSE(view_.state().show_panels);
+    EXPECT_FALSE(view_.state().panels.shown);
     take = true;
     step({h});
-    EXPECT_FALSE(view_.state().show_panels);
+    EXPECT_FALSE(view_.state().panels.shown);
     InputEvent drop;
     drop.kind = Kind::drop;
     drop.paths = {"/nowhere.ply"};
     step({drop});
-    EXPECT_TRUE(view_.state().notifications.empty());
+    EXPECT_TRUE(view_.drawing().notifications().list().empty());
     EXPECT_EQ(seen.size(), 4u);
     view_.remove_event_handler(number);
     step({h});
-    EXPECT_TRUE(view_.state().show_panels);
+    EXPECT_TRUE(view_.state().panels.shown);
     // A click on a panel is the panel's.
     settle();
     seen.clear();
@@ -239,8 +239,8 @@ TEST_F(UserPanel, HandlersSeeEventsBeforeTheViewDoes) {
     view_.on_event([](const InputEvent&) -> bool { throw ArgumentError("oh no"); });
     step({at(Kind::move, {450, 300})});
     step({at(Kind::move, {451, 300})});
-    ASSERT_EQ(view_.state().notifications.size(), 1u);
-    EXPECT_EQ(view_.state().notifications[0].text, "oh no");
+    ASSERT_EQ(view_.drawing().notifications().list().size(), 1u);
+    EXPECT_EQ(view_.drawing().notifications().list()[0].text, "oh no");
 }
 
 }  // namespace

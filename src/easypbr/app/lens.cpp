@@ -121,4 +121,21 @@ Image warp(const Image& drawn, const LensMap& map) {
     return picture;
 }
 
+const std::shared_ptr<const LensMap>& LensCache::get(const Camera& camera, Vec2i size) {
+    std::vector<double> key = {double(size.x()), double(size.y())};
+    if (camera.is_warped()) {
+        const Intrinsics& k = *camera.intrinsics;
+        key.insert(key.end(), {k.fx, k.fy, k.cx, k.cy, double(k.width), double(k.height), k.skew});
+        if (camera.distortion) {
+            key.push_back(double(camera.distortion->model));
+            key.insert(key.end(), camera.distortion->k.begin(), camera.distortion->k.end());
+        }
+    }
+    if (key != key_) {
+        map_ = std::make_shared<const LensMap>(lens_map(camera, size));
+        key_ = std::move(key);
+    }
+    return map_;
+}
+
 }  // namespace easypbr::app

@@ -1,6 +1,7 @@
 // Pictures of lenses with distortion or skew: a wider picture without them is drawn and warped.
 #pragma once
 
+#include <memory>
 #include <vector>
 
 #include "easypbr/core/image.h"
@@ -25,6 +26,17 @@ struct LensMap {
 /// The map of a camera for a picture of this size. Throws ArgumentError where the lens has no inverse
 /// (Distortion::undistort) or when the picture to draw would be larger than `max_image_side`.
 LensMap lens_map(const Camera& camera, Vec2i size);
+
+/// Keeps the map that was asked for last.
+class LensCache {
+  public:
+    /// lens_map() of the camera.
+    const std::shared_ptr<const LensMap>& get(const Camera& camera, Vec2i size);
+
+  private:
+    std::shared_ptr<const LensMap> map_;
+    std::vector<double> key_;
+};
 
 /// The picture as the lens shows it: bilinear, 0 where nothing was drawn.
 Image warp(const Image& drawn, const LensMap& map);

@@ -16,11 +16,11 @@ void PictureRing::draw(const PictureOptions& options, int times) {
         memory = std::move(spare_.back());
         spare_.pop_back();
     }
-    slots_.push_back({session_.render_later(options, std::move(memory)), times});
+    slots_.push_back({session_.draw(options).read_later(std::move(memory)), times});
 }
 
 void PictureRing::take_read() {
-    while (!slots_.empty() && session_.is_read(slots_.front().pending)) take_oldest();
+    while (!slots_.empty() && slots_.front().pending.is_read()) take_oldest();
 }
 
 void PictureRing::drain() {
@@ -30,8 +30,8 @@ void PictureRing::drain() {
 void PictureRing::take_oldest() {
     Slot slot = std::move(slots_.front());
     slots_.pop_front();
-    Image picture = session_.finish(slot.pending);
-    spare_.push_back(std::move(slot.pending.pixels));
+    Image picture = slot.pending.take();
+    spare_.push_back(slot.pending.take_memory());
     take_(std::move(picture), slot.times);
 }
 

@@ -34,7 +34,7 @@ class PictureRing {
 
   private:
     struct Slot {
-        Session::Pending pending;
+        PendingPicture pending;
         int times;
     };
     void take_oldest();

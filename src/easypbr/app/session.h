@@ -8,16 +8,19 @@
 #include <string>
 #include <vector>
 
-#include "easypbr/app/annotation.h"
+#include "easypbr/app/drawn.h"
 #include "easypbr/app/lens.h"
+#include "easypbr/app/motion_memory.h"
 #include "easypbr/app/picking.h"
+#include "easypbr/app/pinned_camera.h"
+#include "easypbr/app/prepared.h"
+#include "easypbr/app/scene_warnings.h"
+#include "easypbr/app/settings_files.h"
 #include "easypbr/app/tiled_picture.h"
 #include "easypbr/app/view_point.h"
 #include "easypbr/core/image.h"
 #include "easypbr/gl/context.h"
-#include "easypbr/gl/readback.h"
 #include "easypbr/render/pipeline/renderer.h"
-#include "easypbr/scene/motion.h"
 #include "easypbr/scene/resolve.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/scene/settings.h"
@@ -66,43 +69,18 @@ class Session {
     /// has more than max_picture_pixels), FileError (images that the settings name), ContextError.
     Image render(const PictureOptions& options = {});
 
-    /// A picture on its way to memory.
-    struct Pending {
-        Image picture;        ///< as it is drawn; filled by `pixels`, where that is pending
-        gl::Readback pixels;  ///< may be handed to the next render_later(), which uses its memory
-        std::shared_ptr<const LensMap> lens;
-        Annotation annotation;
-        AnnotationSettings annotation_settings;
-    };
-    /// render() that waits for nothing: finish() has the picture, bit for bit, whatever is drawn meanwhile.
-    /// What is drawn in tiles is read at once. Throws as render() does.
-    Pending render_later(const PictureOptions& options = {}, gl::Readback memory = {});
-    /// Whether finish() would not have to wait for the driver.
-    bool is_read(const Pending& pending);
-    Image finish(Pending& pending);
+    /// The same picture, not read: see Drawn.
+    Drawn draw(const PictureOptions& options = {});
+    /// draw() that waits until the driver is done: for measuring.
+    Drawn draw_frame(const PictureOptions& options = {});
 
     /// The same scene, camera and size in exact values through the pixels' centres (no anti-aliasing).
     std::map<std::string, Image> render_layers(const std::vector<std::string>& names,
                                                std::optional<Vec2i> size = std::nullopt);
 
-    /// What the pixels' centres see, as it is drawn: of a warped camera a wider picture, see lens(). With
-    /// `picture` the picture that the options ask for is drawn in the same go; drawn_picture() reads it.
-    /// `moment` is drawn in place of the session's scene and camera (no picture then).
-    render::SurfaceFrame draw_surfaces(const PictureOptions& options, bool picture,
-                                       const Moment* moment = nullptr);
-    /// The same without reading anything: renderer() has the targets.
-    void draw_centres(const PictureOptions& options, bool picture, const Moment* moment = nullptr);
-    /// A legend or colour bar belongs to the picture drawn last, and is drawn into it as it is read.
-    bool is_annotated() const { return !annotation_.empty(); }
-    /// From the pixels of the picture drawn last to what was drawn.
-    const LensMap& lens() const { return *lens_; }
-    /// The picture of the last draw_surfaces().
-    Image drawn_picture();
-    /// A layer of the last draw_surfaces(), as it was drawn.
-    Image drawn_layer(render::Layer layer);
-    /// See render::Renderer::coverage(); of the last draw_surfaces().
-    std::vector<uint8_t> coverage(const render::PixelRect& area,
-                                  const std::function<bool(size_t object, int first_face)>& wanted);
+    /// What the pixels' centres see. With `picture` the picture that the options ask for is drawn in the same
+    /// go. `moment` is drawn in place of the session's scene and camera (no picture then).
+    Drawn draw_surfaces(const PictureOptions& options, bool picture, const Moment* moment = nullptr);
     /// The scene as it is now and the camera of the next picture.
     Moment moment(std::optional<Vec2i> size = std::nullopt);
 
@@ -113,22 +91,18 @@ class Session {
 
     /// With motion_blur.enabled a picture of several samples shows how things moved since the picture before.
     /// After this the next one shows none: nothing is known of before.
-    void forget_motion() { motion_.reset(); }
+    void forget_motion() { motion_.forget(); }
     /// The next picture's motion begins where things are now, as if they had been drawn from this camera;
     /// none: from where the picture's own is.
     void begin_motion(const std::optional<Camera>& from = std::nullopt) {
-        motion_begin_.emplace(scene_.snapshot(), from);
+        motion_.begin(scene_.snapshot(), from);
     }
 
     /// Names of what is visible; the layer "object_id" holds 1 + the place in this list.
     std::vector<std::string> object_names() const;
 
-    /// Draws one frame without reading the picture back, but for its first pixel, which makes the driver
-    /// finish: for measuring.
-    void draw_frame(const PictureOptions& options = {});
-
-    /// A picture that gets better with every call: one more frame of draw_frame()'s, whose picture it is, bit
-    /// for bit, after the last. Begins anew when anything that is drawn has changed, or when something else
+    /// A picture that gets better with every call: one more frame of draw()'s, whose picture it is, bit for
+    /// bit, after the last. Begins anew when anything that is drawn has changed, or when something else
     /// was drawn meanwhile; does nothing when all frames are there. Without `finish`, the frame is added but
     /// the picture stays as it was. What it shows of motion is `motion`, not what was drawn before; another
     /// object begins anew.
@@ -137,6 +111,7 @@ class Session {
         int frames = 0, total = 0;
         bool began = false;  ///< with this call
         bool drew = false;   ///< in this call
+        Drawn drawn = {};    ///< the picture of the frames so far, as it was finished last
     };
     Refinement refine(const PictureOptions& options = {}, bool finish = true,
                       const RefinedMotion& motion = {});
@@ -156,7 +131,7 @@ class Session {
     ViewPoint view_point(std::optional<Vec2i> size = std::nullopt);
     /// Pins the camera, as set_camera(), and keeps its target; an automatic near plane comes as near as the
     /// camera.
-    void set_view_point(const ViewPoint& view);
+    void set_view_point(const ViewPoint& view) { pin_view_point(settings_.camera, view); }
 
     /// Draws a pass of the program's own in every picture from now on; one of the same name is replaced. See
     /// render/custom_pass.h.
@@ -168,9 +143,6 @@ class Session {
     gl::Context& context();
     render::Renderer& renderer();
 
-    /// The picture that was drawn last, read back. Throws ArgumentError when there is none.
-    Image last_picture();
-
     /// Everything that the next picture would be drawn with. Nothing is latched.
     ResolvedSettings resolve(std::optional<Vec2i> size = std::nullopt);
 
@@ -179,7 +151,7 @@ class Session {
     void load_environment(const std::filesystem::path& path);
 
     /// Pins the camera to a pose: settings().camera follows. A near plane that was inferred is inferred anew.
-    void set_camera(const Camera& camera);
+    void set_camera(const Camera& camera) { pin_camera(settings_.camera, camera); }
     /// The camera of the next picture.
     Camera camera() { return resolve().camera; }
 
@@ -201,93 +173,50 @@ class Session {
     void allow_native_geometry(bool allow) { renderer().allow_native_geometry(allow); }
 
     /// See render::Renderer. 0 before the first picture.
-    uint64_t shadow_maps_drawn() const { return renderer_ ? renderer_->shadow_maps_drawn() : 0; }
-
-    /// Milliseconds of each pass of a frame that draw_frame() draws now, each pass finished before the next
-    /// begins.
-    std::vector<std::pair<std::string, double>> measure_passes(const PictureOptions& options = {});
+    uint64_t shadow_maps_drawn() const {
+        return device_->renderer ? device_->renderer->shadow_maps_drawn() : 0;
+    }
 
   private:
-    struct Prepared {
-        SceneSnapshot scene;
-        ResolvedSettings resolved;
-        render::DrawOptions options;
-        std::vector<std::pair<const render::Pass*, uint64_t>> passes = {};  ///< with their revisions
-    };
     /// Snapshot, images, auto parameters.
     Prepared prepare(const PictureOptions& options);
-    void load_images();
-    /// Reads the files that are new or have changed, all at once.
-    void read_images(const std::vector<std::string>& paths);
-    std::shared_ptr<const Image> image(const std::string& path);
     SceneSnapshot snapshot();
-    /// Reads the files of shaders that are new or have changed.
-    void load_shaders(const SceneSnapshot& scene);
-    const std::string& shader_text(const std::string& path);
-    /// The renderer's picture with its annotation.
-    Image read_annotated();
-    /// draw_frame(), but that the driver may still be busy with it.
-    void begin_frame(const PictureOptions& options);
+    /// Before anything is drawn: replaces a camera that is warped, and the size, by what has to be drawn;
+    /// outdates what was drawn before. Returns what will be drawn, a picture, surfaces, or both.
+    Drawn begin(Prepared& prepared, bool picture, bool surfaces);
+    /// What lies over the picture.
+    static void annotate(Drawn& drawn, const Prepared& prepared);
     TiledPicture tiled(const Prepared& prepared) const;
-    /// What the last picture is annotated with.
-    void annotate(const Prepared& prepared);
     /// Keeps what was inferred, unless there was nothing to infer it from.
     void latch_from(const Prepared& prepared);
-    /// Says when a material has a shader and nothing that it could act on.
-    void warn_of_shaders(const SceneSnapshot& scene);
-    /// Says when surfels are asked for and a mesh has no normals to make them from: it is drawn as points.
-    void warn_of_surfels(const SceneSnapshot& scene);
     Vec2i size_or(std::optional<Vec2i> size) const { return size.value_or(settings_.image.size); }
 
     Scene scene_;
     Settings settings_;
     Timing timing_;
-    bool warned_of_lens_ = false, warned_of_surfels_ = false, warned_of_shaders_ = false;
-    std::shared_ptr<const Motion> motion_;  ///< where things were in the picture that was drawn last
-    std::optional<std::pair<SceneSnapshot, std::optional<Camera>>> motion_begin_;
+    SettingsFiles files_;
+    std::optional<std::string> environment_hash_;  ///< what was latched belongs to this environment
+    LensCache lenses_;
+    MotionMemory motion_;
+    SceneWarnings warnings_;
+    std::vector<render::CustomPass> passes_;
+    std::optional<render::TileLimits> tile_limits_;
+    std::shared_ptr<Device> device_ = std::make_shared<Device>();
 
     /// What refine() adds frames to; nothing: it has to begin.
     struct Refined {
         Prepared prepared;
-        render::SettingsImages images;
+        Drawn frames_drawn;  ///< of all frames, when they are finished
+        Drawn drawn;         ///< finished last
         int frames = 0;
-        bool is_of(const Prepared& other, const render::SettingsImages& other_images) const;
     };
     std::unique_ptr<Refined> refined_;
-    std::unique_ptr<Refined> versioned_;  ///< what picture_version() saw last
-    uint64_t version_ = 0;
-
-    /// Replaces a camera that is warped, and the size, by what has to be drawn.
-    void apply_lens(Prepared& prepared);
-    std::shared_ptr<const LensMap> lens_ = std::make_shared<const LensMap>();
-    std::vector<double> lens_key_;
-
-    Annotation annotation_;  ///< of the picture that was drawn last
-    AnnotationSettings annotation_settings_;
-
-    std::optional<render::TileLimits> tile_limits_;
-    Image tiled_;  ///< the picture that was drawn last, where it was drawn in tiles
-
-    std::unique_ptr<gl::Context> context_;
-    std::unique_ptr<render::Renderer> renderer_;
-
-    /// Images that the settings name, by path; read again when the file has changed.
-    struct LoadedImage {
-        std::filesystem::file_time_type time;
-        std::shared_ptr<const Image> image;
+    /// What picture_version() saw last.
+    struct Version {
+        std::unique_ptr<Prepared> of;
+        uint64_t number = 0;
     };
-    std::map<std::string, LoadedImage> images_;
-    std::string environment_file_;
-    std::optional<std::string> environment_hash_;  ///< what was latched belongs to this environment
-    Environment environment_;
-    render::SettingsImages settings_images_;
-    /// Files of shaders by path.
-    struct ShaderFile {
-        std::filesystem::file_time_type time;
-        std::string text;
-    };
-    std::map<std::string, ShaderFile> shader_files_;
-    std::vector<render::CustomPass> passes_;
+    Version version_;
 };
 
 }  // namespace easypbr::app

@@ -91,12 +91,12 @@ int run(const ViewOptions& options) {
         show(view.scene(), loaded, names[i]);
         if (!loaded.animations.empty()) view.player().add(names[i], loaded.animations);
         if (options.watch && options.files[i] != standard_input)
-            view.live().watch(options.files[i], names[i]);
+            view.live().drawing().files().watch(options.files[i], names[i]);
     }
     if (!options.animation.empty()) play(view, names, options.animation);
-    if (!options.path.empty()) view.live().state().path.set(io::load_camera_path(options.path));
+    if (!options.path.empty()) view.live().drawing().path().editor.set(io::load_camera_path(options.path));
     view.live().set_panel_scale(options.panel_scale);
-    if (options.light) view.live().state().theme = gui::Theme::light;
+    if (options.light) view.live().state().screen.theme = gui::Theme::light;
     if (options.screenshot.empty())
         view.show();
     else

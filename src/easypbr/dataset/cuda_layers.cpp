@@ -10,10 +10,10 @@
 namespace easypbr::dataset {
 namespace {
 
-/// Why the last picture's targets are not the layers; empty when they are.
-std::string obstacle(app::Session& session, const InstanceTable& table) {
-    if (!session.lens().is_identity()) return "the camera's lens distorts";
-    if (session.is_annotated()) return "a legend or colour bar is drawn into the picture";
+/// Why the picture's targets are not the layers; empty when they are.
+std::string obstacle(const app::Drawn& drawn, const InstanceTable& table) {
+    if (!drawn.lens().is_identity()) return "the camera's lens distorts";
+    if (!drawn.annotation().empty()) return "a legend or colour bar is drawn into the picture";
     if (table.has_parts()) return "instances are parts of objects";
     return "";
 }
@@ -60,20 +60,19 @@ std::optional<CudaLayers> cuda_layers(app::Session& session, const std::vector<s
     const app::Moment now = session.moment(options.size);
     const InstanceTable table(now.scene, session.scene().names(), options.instances_by, options.classes);
     app::PictureOptions picture{options.size, options.samples, app::Encoding::srgb8};
-    bool drawn = false;
+    std::optional<app::Drawn> drawn;
     for (const std::string name : {"hdr", "color"}) {
         if (std::ranges::find(layers, name) == layers.end()) continue;
         picture.encoding = name == "hdr" ? app::Encoding::scene_linear : app::Encoding::srgb8;
-        session.draw_centres(picture, true);
-        drawn = true;
-        if (const std::string why = obstacle(session, table); !why.empty()) return leave(why);
-        result.targets.emplace(name, gl::copy_to_cuda(session.renderer().picture()));
+        drawn = session.draw_surfaces(picture, true);
+        if (const std::string why = obstacle(*drawn, table); !why.empty()) return leave(why);
+        result.targets.emplace(name, gl::copy_to_cuda(drawn->texture()));
     }
-    if (!drawn) session.draw_centres(picture, false);
-    if (const std::string why = obstacle(session, table); !why.empty()) return leave(why);
+    if (!drawn) drawn = session.draw_surfaces(picture, false);
+    if (const std::string why = obstacle(*drawn, table); !why.empty()) return leave(why);
     for (const std::string& name : targets_of(layers))
         if (!result.targets.contains(name))
-            result.targets.emplace(name, gl::copy_to_cuda(target(session.renderer().targets(), name)));
+            result.targets.emplace(name, gl::copy_to_cuda(target(drawn->targets(), name)));
     result.near = now.camera.near;
     result.far = now.camera.far;
     result.orthographic = now.camera.projection == Projection::orthographic;

@@ -43,11 +43,8 @@ LayerArray picture_layer(const Image& image) {
     return layer;
 }
 
-Surfaces draw(app::Session& session, const app::PictureOptions& picture, bool with_picture,
-              const app::Moment* moment) {
-    const Camera camera = moment ? moment->camera : session.resolve(picture.size).camera;
-    render::SurfaceFrame frame = session.draw_surfaces(picture, with_picture, moment);
-    return surfaces_of(std::move(frame), camera, session.lens());
+Surfaces read(const app::Drawn& drawn) {
+    return surfaces_of(drawn.surfaces(), drawn.camera(), drawn.lens());
 }
 
 }  // namespace
@@ -83,17 +80,19 @@ GroundTruth ground_truth(app::Session& session, const std::vector<std::string>& 
     app::PictureOptions picture{options.size, options.samples, app::Encoding::srgb8};
     const bool color = wants(layers, "color"), hdr = wants(layers, "hdr");
     std::optional<Surfaces> next, previous;
-    if (wants_flow(layers, "forward")) next = draw(session, picture, false, options.next);
-    if (wants_flow(layers, "backward")) previous = draw(session, picture, false, options.previous);
+    if (wants_flow(layers, "forward")) next = read(session.draw_surfaces(picture, false, options.next));
+    if (wants_flow(layers, "backward"))
+        previous = read(session.draw_surfaces(picture, false, options.previous));
     if (color && hdr)
         truth.layers["hdr"] =
             picture_layer(session.render({options.size, options.samples, app::Encoding::scene_linear}));
     else if (hdr)
         picture.encoding = app::Encoding::scene_linear;
-    const Surfaces now = draw(session, picture, color || hdr, nullptr);
+    const app::Drawn drawn = session.draw_surfaces(picture, color || hdr);
+    const Surfaces now = read(drawn);
     truth.size = now.size;
     truth.camera = now.camera;
-    if (color || hdr) truth.layers[color ? "color" : "hdr"] = picture_layer(session.drawn_picture());
+    if (color || hdr) truth.layers[color ? "color" : "hdr"] = picture_layer(drawn.picture());
     if (next) optical_flow(now, *next, truth.layers["flow_forward"], truth.layers["occlusion_forward"]);
     if (previous)
         optical_flow(now, *previous, truth.layers["flow_backward"], truth.layers["occlusion_backward"]);
@@ -101,11 +100,11 @@ GroundTruth ground_truth(app::Session& session, const std::vector<std::string>& 
     for (const std::string& name : layers) {
         if (truth.layers.contains(name)) continue;
         std::optional<LayerArray> layer = surface_layer(name, now, table);
-        if (!layer) layer = drawn_layer(name, session, now);
+        if (!layer) layer = drawn_layer(name, drawn, now);
         truth.layers[name] = std::move(*layer);
     }
     std::erase_if(truth.layers, [&](const auto& item) { return !wants(layers, item.first); });
-    if (options.instances) truth.instances = annotate(session, now, table, options.amodal);
+    if (options.instances) truth.instances = annotate(drawn, now, table, options.amodal);
     return truth;
 }
 

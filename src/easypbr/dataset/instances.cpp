@@ -280,7 +280,7 @@ InstanceTable::InstanceTable(const SceneSnapshot& scene, const std::vector<std::
     }
 }
 
-std::vector<Instance> annotate(app::Session& session, const Surfaces& s, const InstanceTable& table,
+std::vector<Instance> annotate(const app::Drawn& drawn, const Surfaces& s, const InstanceTable& table,
                                bool amodal) {
     std::vector<Instance> instances = table.instances();
     for (Instance& instance : instances) add_geometry(instance, s);
@@ -289,21 +289,21 @@ std::vector<Instance> annotate(app::Session& session, const Surfaces& s, const I
         instances[k].picture = s.size;
         instances[k].visible = visible_bitmap(instances[k], s, table, k);
     }
-    const app::LensMap& lens = session.lens();
-    Camera drawn = lens.is_identity() ? s.camera : lens.drawn;
+    const app::LensMap& lens = drawn.lens();
+    const Camera camera = lens.is_identity() ? s.camera : lens.drawn;
     std::vector<bool> splats(instances.size());
     for (size_t o = 0; o < s.scene.objects.size(); ++o)
         if (!s.only_faces[o]) splats[table.of(o, 0)] = true;
     std::vector<PixelBox> reaches;
     for (size_t k = 0; k < instances.size(); ++k)
-        reaches.push_back(reach_of(instances[k], lens, drawn, splats[k]));
+        reaches.push_back(reach_of(instances[k], lens, camera, splats[k]));
     for (size_t k = 0; k < instances.size(); ++k) {
         Instance& instance = instances[k];
         const PixelBox& area = reaches[k];
         if (!amodal || seen_whole(reaches, k, lens)) {
             take_visible(instance);
         } else if (area.width > 0) {
-            const auto alone = session.coverage(area, [&](size_t object, int first_face) {
+            const auto alone = drawn.coverage(area, [&](size_t object, int first_face) {
                 const auto& parts = s.scene.objects[object].mesh->parts;
                 size_t part = 0;
                 while (part + 1 < parts.size() && parts[part].first_face != first_face) ++part;

@@ -76,11 +76,11 @@ class InstanceTable {
     std::vector<Instance> instances_;
 };
 
-/// All instances of the picture that `session` drew last with draw_surfaces(), in the order of their ids.
+/// All instances of a picture whose surfaces have been drawn, in the order of their ids.
 /// Without `amodal`, amodal values are those of the visible pixels. With a lens that distorts, what lies
 /// outside of the picture counts for `truncation` and `visible_fraction` as large as it is without
 /// distortion, and for the box as far as the lens's polynomial grows.
-std::vector<Instance> annotate(app::Session& session, const Surfaces& surfaces, const InstanceTable& table,
+std::vector<Instance> annotate(const app::Drawn& drawn, const Surfaces& surfaces, const InstanceTable& table,
                                bool amodal);
 
 }  // namespace easypbr::dataset

@@ -85,9 +85,9 @@ LayerArray object_coordinates(const Surfaces& s, const InstanceTable& table) {
 
 /// Channels of a drawn layer, in the picture's pixels.
 template <int Channels>
-LayerArray picked(app::Session& session, render::Layer layer, const Surfaces& s,
+LayerArray picked(const app::Drawn& picture, render::Layer layer, const Surfaces& s,
                   const Mat3& turn = Mat3::Identity()) {
-    const Image drawn = app::pick_nearest(session.drawn_layer(layer), session.lens());
+    const Image drawn = app::pick_nearest(picture.layer(layer), picture.lens());
     const float* from = drawn.pixels<float>().data();
     const size_t stride = size_t(drawn.channels());
     return vectors<Channels>(s, [&](size_t i) {
@@ -125,16 +125,16 @@ std::optional<LayerArray> surface_layer(const std::string& name, const Surfaces&
     return std::nullopt;
 }
 
-std::optional<LayerArray> drawn_layer(const std::string& name, app::Session& session, const Surfaces& s) {
-    if (name == "normal_world") return picked<3>(session, render::Layer::normal_world, s);
+std::optional<LayerArray> drawn_layer(const std::string& name, const app::Drawn& drawn, const Surfaces& s) {
+    if (name == "normal_world") return picked<3>(drawn, render::Layer::normal_world, s);
     if (name == "normal_camera") {
         const Mat4d T = s.camera.opencv_T_world_cam();
-        return picked<3>(session, render::Layer::normal_world, s,
+        return picked<3>(drawn, render::Layer::normal_world, s,
                          Mat3(T.topLeftCorner<3, 3>().transpose().cast<float>()));
     }
-    if (name == "albedo") return picked<3>(session, render::Layer::albedo, s);
-    if (name == "roughness") return picked<1>(session, render::Layer::roughness, s);
-    if (name == "metallic") return picked<1>(session, render::Layer::metallic, s);
+    if (name == "albedo") return picked<3>(drawn, render::Layer::albedo, s);
+    if (name == "roughness") return picked<1>(drawn, render::Layer::roughness, s);
+    if (name == "metallic") return picked<1>(drawn, render::Layer::metallic, s);
     return std::nullopt;
 }
 

@@ -11,7 +11,7 @@ std::optional<LayerArray> surface_layer(const std::string& name, const Surfaces&
                                         const InstanceTable& table);
 
 /// The same of what the G-buffer holds: normals, albedo, roughness, metallic.
-std::optional<LayerArray> drawn_layer(const std::string& name, app::Session& session,
+std::optional<LayerArray> drawn_layer(const std::string& name, const app::Drawn& drawn,
                                       const Surfaces& surfaces);
 
 /// Zeros.

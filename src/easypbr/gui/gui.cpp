@@ -37,9 +37,9 @@ const Panel folded[] = {Panel::lights,     Panel::environment, Panel::camera,
                         Panel::animations, Panel::camera_path, Panel::recorder};
 
 void draw_panel(GuiState& state, Panel panel, void (*contents)(GuiState&)) {
-    if (state.unfold.erase(panel)) ImGui::SetNextItemOpen(true);
+    if (state.panels.unfold.erase(panel)) ImGui::SetNextItemOpen(true);
     const bool open = heading(panel_name(panel), std::ranges::find(folded, panel) == std::end(folded));
-    note_place(state, panel_name(panel));
+    note_place(panel_name(panel));
     if (!open) return;
     ImGui::PushID(panel_name(panel));
     ImGui::Spacing();
@@ -50,18 +50,18 @@ void draw_panel(GuiState& state, Panel panel, void (*contents)(GuiState&)) {
 
 void draw_column(GuiState& state, const Column& column, float x, float top, float width) {
     const bool any =
-        std::ranges::any_of(column.panels, [&](const auto& p) { return state.is_open(p.first); });
+        std::ranges::any_of(column.panels, [&](const auto& p) { return state.panels.is_open(p.first); });
     if (!any) return;
     ImGui::SetNextWindowPos(ImVec2(x, top));
     // As high as what is in it, down to the bottom of the window.
-    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, float(state.size.y()) - top));
+    ImGui::SetNextWindowSizeConstraints(ImVec2(width, 0), ImVec2(width, float(state.screen.size.y()) - top));
     ImGui::SetNextWindowSize(ImVec2(width, 0));
     const ImGuiWindowFlags flags = ImGuiWindowFlags_NoTitleBar | ImGuiWindowFlags_NoMove |
                                    ImGuiWindowFlags_NoResize | ImGuiWindowFlags_NoSavedSettings |
                                    ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_AlwaysAutoResize;
     if (ImGui::Begin(column.id, nullptr, flags))
         for (const auto& [panel, contents] : column.panels)
-            if (state.is_open(panel)) draw_panel(state, panel, contents);
+            if (state.panels.is_open(panel)) draw_panel(state, panel, contents);
     ImGui::End();
 }
 
@@ -70,7 +70,7 @@ void show_picture(const GuiState& state, const gl::Texture& picture) {
     const ImVec2 window = ImGui::GetIO().DisplaySize;
     ImDrawList& list = *ImGui::GetBackgroundDrawList();
     ImVec2 size = window;
-    if (state.shows_recording) {
+    if (state.live.picture().shows_other()) {
         const float fit = std::min(window.x / float(picture.width()), window.y / float(picture.height()));
         size = ImVec2(fit * float(picture.width()), fit * float(picture.height()));
         list.AddRectFilled(ImVec2(0, 0), window, IM_COL32_BLACK);
@@ -102,6 +102,7 @@ Gui::Gui() {
     ImGuiIO& io = ImGui::GetIO();
     io.IniFilename = nullptr;
     io.LogFilename = nullptr;
+    io.UserData = &places_;
     io.BackendFlags |= ImGuiBackendFlags_RendererHasVtxOffset;
     namespace k = app::key;
     const std::pair<ImGuiKey, int> keys[] = {{ImGuiKey_Tab, k::tab},
@@ -190,18 +191,18 @@ bool Gui::take(const app::InputEvent& event) {
 
 void Gui::prepare(const GuiState& state, double seconds) {
     ImGuiIO& io = ImGui::GetIO();
-    if (font_scale_ != state.scale) {
+    if (font_scale_ != state.screen.scale) {
         io.Fonts->Clear();
-        add_font(*io.Fonts, state.scale);
+        add_font(*io.Fonts, state.screen.scale);
         renderer_.make_font_texture(*io.Fonts);
-        font_scale_ = state.scale;
+        font_scale_ = state.screen.scale;
     }
-    if (theme_ != state.theme || theme_scale_ != state.scale) {
-        apply_theme(state.theme, state.scale);
-        theme_ = state.theme;
-        theme_scale_ = state.scale;
+    if (theme_ != state.screen.theme || theme_scale_ != state.screen.scale) {
+        apply_theme(state.screen.theme, state.screen.scale);
+        theme_ = state.screen.theme;
+        theme_scale_ = state.screen.scale;
     }
-    io.DisplaySize = ImVec2(float(state.size.x()), float(state.size.y()));
+    io.DisplaySize = ImVec2(float(state.screen.size.x()), float(state.screen.size.y()));
     io.DeltaTime = float(std::max(seconds, 1e-4));
     for (size_t i = 0; i < down_.size(); ++i) {
         const bool pressed = std::exchange(pressed_[i], false);
@@ -211,14 +212,14 @@ void Gui::prepare(const GuiState& state, double seconds) {
 
 void Gui::draw_panels(GuiState& state, const std::function<void()>& more) {
     state.image_value.clear();
-    if (state.show_panels) draw_path(state);
-    state.handles_pointer = state.show_panels && manipulate(state);
-    if (state.show_panels) {
+    if (state.panels.shown) draw_path(state);
+    state.manipulator.has_pointer = state.panels.shown && manipulate(state);
+    if (state.panels.shown) {
         menu_bar(state);
         const float top = ImGui::GetFrameHeight();
-        draw_column(state, left, 0, top, left_width * state.scale);
-        const float width = right_width * state.scale;
-        draw_column(state, right, float(state.size.x()) - width, top, width);
+        draw_column(state, left, 0, top, left_width * state.screen.scale);
+        const float width = right_width * state.screen.scale;
+        draw_column(state, right, float(state.screen.size.x()) - width, top, width);
         status_line(state);
     }
     if (more) more();
@@ -230,7 +231,7 @@ bool Gui::lay_out(GuiState& state, double seconds, const gl::Texture& picture,
                   const std::function<void()>& more) {
     const GuiScope scope(context_);
     prepare(state, seconds);
-    state.places.clear();
+    places_.clear();
     ImGui::NewFrame();
     if (picture) show_picture(state, picture);
     try {

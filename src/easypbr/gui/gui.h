@@ -8,6 +8,7 @@
 
 #include "easypbr/app/input.h"
 #include "easypbr/gui/imgui_renderer.h"
+#include "easypbr/gui/item_places.h"
 #include "easypbr/gui/state.h"
 
 struct ImGuiContext;
@@ -35,6 +36,8 @@ class Gui {
                  const std::function<void()>& more = {});
     /// Draws what was laid out last. The session's context must be current.
     void paint(const gl::Framebuffer& target);
+    /// Where the named items of the last lay_out() are.
+    const ItemPlaces& places() const { return places_; }
 
   private:
     void prepare(const GuiState& state, double seconds);
@@ -42,6 +45,7 @@ class Gui {
 
     ImGuiContext* context_ = nullptr;
     ImGuiRenderer renderer_;
+    ItemPlaces places_;     ///< ImGui's UserData, see note_place()
     std::string laid_out_;  ///< hash of what was laid out last
     float font_scale_ = 0, theme_scale_ = 0;
     Theme theme_ = Theme::dark;

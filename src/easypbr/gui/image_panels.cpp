@@ -127,19 +127,20 @@ const Image& ImagePanels::image(const std::string& name) const {
 }
 
 void ImagePanels::draw(GuiState& state) {
-    const bool rescaled = std::exchange(scale_, state.scale) != state.scale;
-    const float step = (image_panel_width + gap) * state.scale, left = (left_width + gap) * state.scale;
-    const float right = float(state.size.x()) - right_width * state.scale;
-    float x = left, bottom = float(state.size.y()) - gap * state.scale;
+    const bool rescaled = std::exchange(scale_, state.screen.scale) != state.screen.scale;
+    const float step = (image_panel_width + gap) * state.screen.scale,
+                left = (left_width + gap) * state.screen.scale;
+    const float right = float(state.screen.size.x()) - right_width * state.screen.scale;
+    float x = left, bottom = float(state.screen.size.y()) - gap * state.screen.scale;
     for (auto& [name, panel] : panels_) {
         if (!panel.open) continue;
-        const float width = image_panel_width * state.scale;
+        const float width = image_panel_width * state.screen.scale;
         const float shape = float(panel.image.height()) / float(panel.image.width());
         const float rows = 2.2f * ImGui::GetFrameHeightWithSpacing() + ImGui::GetFrameHeight();
         const float height = std::clamp(width * shape, 0.3f * width, 1.5f * width) + rows;
         if (x + width > right && x > left) {
             x = left;
-            bottom -= height + gap * state.scale;
+            bottom -= height + gap * state.screen.scale;
         }
         const ImGuiCond when = rescaled ? ImGuiCond_Always : ImGuiCond_FirstUseEver;
         ImGui::SetNextWindowPos(ImVec2(x, std::max(bottom - height, ImGui::GetFrameHeight())), when);
@@ -178,7 +179,7 @@ void ImagePanels::draw_canvas(GuiState& state, const std::string& name, Panel& p
         canvas.centre = Vec2(float(image.width()), float(image.height())) / 2;
     }
     ImGui::InvisibleButton("canvas", size);
-    note_place(state, name);
+    note_place(name);
     const ImGuiIO& io = ImGui::GetIO();
     if (ImGui::IsItemActive() && (io.MouseDelta.x != 0 || io.MouseDelta.y != 0)) {
         panel.centre = canvas.centre -= Vec2(io.MouseDelta.x, io.MouseDelta.y) / canvas.zoom;

@@ -52,7 +52,7 @@ float distance_to_segment(ImVec2 p, ImVec2 a, ImVec2 b) {
 Eigen::Affine3d parent_pose(const Scene& scene, const std::string& name) {
     Eigen::Affine3d T = Eigen::Affine3d::Identity();
     for (size_t at = name.find('/'); at != name.npos; at = name.find('/', at + 1))
-        if (const auto node = node_named(scene, name.substr(0, at))) T = T * node->T_parent_mesh();
+        if (const auto node = app::node_named(scene, name.substr(0, at))) T = T * node->T_parent_mesh();
     return T;
 }
 
@@ -65,17 +65,17 @@ Box3d bounds_of(const SceneSnapshot& scene, const std::string& name) {
 }
 
 std::optional<Subject> selected_object(GuiState& state) {
-    const Scene& scene = state.session.scene();
-    const std::optional<Mesh> node = node_named(scene, state.object);
+    const Scene& scene = state.session().scene();
+    const std::optional<Mesh> node = app::node_named(scene, state.selection().object);
     if (!node) return {};
-    const Box3d box = bounds_of(scene.snapshot(), state.object);
+    const Box3d box = bounds_of(scene.snapshot(), state.selection().object);
     if (box.isEmpty()) return {};
     Subject subject;
     subject.centre = box.center();
-    const Eigen::Affine3d parent = parent_pose(scene, state.object), own = node->T_parent_mesh();
-    subject.apply = [&state, name = state.object, mesh = *node, parent,
+    const Eigen::Affine3d parent = parent_pose(scene, state.selection().object), own = node->T_parent_mesh();
+    subject.apply = [&state, name = state.selection().object, mesh = *node, parent,
                      own](const Eigen::Affine3d& change) mutable {
-        will_move(state, name, mesh);
+        state.live.edits().will_move(name, mesh);
         mesh.set_T_parent_mesh(parent.inverse(Eigen::Affine) * change * parent * own);
     };
     return subject;
@@ -84,10 +84,10 @@ std::optional<Subject> selected_object(GuiState& state) {
 std::optional<Subject> selected_light(GuiState& state) {
     Subject subject;
     subject.only_moves = true;
-    if (StudioLight* light = state.light == "key"    ? &state.settings().lights.key
-                             : state.light == "fill" ? &state.settings().lights.fill
-                             : state.light == "rim"  ? &state.settings().lights.rim
-                                                     : nullptr) {
+    if (StudioLight* light = state.selection().light == "key"    ? &state.settings().lights.key
+                             : state.selection().light == "fill" ? &state.settings().lights.fill
+                             : state.selection().light == "rim"  ? &state.settings().lights.rim
+                                                                 : nullptr) {
         if (!light->position.value()) return {};
         const Vec3 position = *light->position;
         subject.centre = position.cast<double>();
@@ -96,16 +96,16 @@ std::optional<Subject> selected_light(GuiState& state) {
         };
         return subject;
     }
-    const Scene& scene = state.session.scene();
+    const Scene& scene = state.session().scene();
     const auto names = scene.light_names();
-    if (std::ranges::find(names, state.light) == names.end()) return {};
-    const Light light = scene.light(state.light);
+    if (std::ranges::find(names, state.selection().light) == names.end()) return {};
+    const Light light = scene.light(state.selection().light);
     subject.centre = light.position.cast<double>();
-    subject.apply = [&state, light, name = state.light](const Eigen::Affine3d& change) {
+    subject.apply = [&state, light, name = state.selection().light](const Eigen::Affine3d& change) {
         Light moved = light;
         moved.position = (change * light.position.cast<double>()).cast<float>();
-        will_change_light(state, name);
-        state.session.scene().set_light(name, moved);
+        state.live.edits().will_change_light(name);
+        state.session().scene().set_light(name, moved);
     };
     return subject;
 }
@@ -184,20 +184,20 @@ void draw_handle(const std::vector<ImVec2>& points, ImU32 color, Handle handle, 
 }  // namespace
 
 bool manipulate(GuiState& state) {
-    HandleDrag& drag = state.drag;
-    if (!state.resolved) return false;
-    const bool has_light = !state.light.empty();
+    HandleDrag& drag = state.manipulator.drag;
+    if (!state.live.picture().resolved()) return false;
+    const bool has_light = !state.selection().light.empty();
     const std::optional<Subject> subject = has_light ? selected_light(state) : selected_object(state);
     if (!subject) {
         drag.axis = -1;
         return false;
     }
-    const View view{state.resolved->camera, state.size};
-    const Handle handle = subject->only_moves ? Handle::move : state.handle;
-    const double length = view.length_of(length_pixels * state.scale, subject->centre);
+    const View view{state.live.picture().resolved()->camera, state.screen.size};
+    const Handle handle = subject->only_moves ? Handle::move : state.manipulator.handle;
+    const double length = view.length_of(length_pixels * state.screen.scale, subject->centre);
     const ImVec2 pointer = ImGui::GetIO().MousePos;
     int hovered = -1;
-    float nearest = grab_pixels * state.scale;
+    float nearest = grab_pixels * state.screen.scale;
     std::array<std::vector<ImVec2>, 3> points;
     for (int axis = 0; axis < 3; ++axis) {
         points[size_t(axis)] = handle_points(view, subject->centre, axis, handle, length);
@@ -222,7 +222,7 @@ bool manipulate(GuiState& state) {
     for (int axis = 0; axis < 3; ++axis)
         if (points[size_t(axis)].size() > 1)
             draw_handle(points[size_t(axis)], axis == hot ? hot_color : axis_colors[axis], handle,
-                        state.scale);
+                        state.screen.scale);
     return drag.axis >= 0 || (free && hovered >= 0);
 }
 

@@ -12,12 +12,12 @@ namespace {
 
 /// A button that selects a light, so that it can be moved in the scene.
 void select_button(GuiState& state, const std::string& name) {
-    const bool chosen = state.light == name;
+    const bool chosen = state.selection().light == name;
     const bool pressed = ImGui::Button(chosen ? "Stop moving" : "Move in the scene", ImVec2(-FLT_MIN, 0));
-    note_place(state, "Lights/move " + name);
+    note_place("Lights/move " + name);
     if (pressed) {
-        state.light = chosen ? "" : name;
-        state.object.clear();
+        state.selection().light = chosen ? "" : name;
+        state.selection().object.clear();
     }
 }
 
@@ -38,7 +38,7 @@ bool direction_row(const char* name, Vec3& value) {
 
 /// Half the view's distance beside, above and before the target, as bright there as 3 lux.
 Light new_light(GuiState& state) {
-    const app::ViewPoint view = state.session.view_point(state.size);
+    const app::ViewPoint view = state.session().view_point(state.screen.size);
     Light light;
     const Vec3d offset = view.camera.T_world_cam.linear() * Vec3d(0.5, 0.5, 0.5) * view.distance();
     light.position = (view.target + offset).cast<float>();
@@ -47,29 +47,29 @@ Light new_light(GuiState& state) {
 }
 
 void add_button(GuiState& state) {
-    if (!named_button(state, "Lights", "Add a light", -FLT_MIN)) return;
-    const std::vector<std::string> names = state.session.scene().light_names();
+    if (!named_button("Lights", "Add a light", -FLT_MIN)) return;
+    const std::vector<std::string> names = state.session().scene().light_names();
     std::string name = "light";
     for (int number = 2; std::ranges::find(names, name) != names.end(); ++number)
         name = fmt::format("light-{}", number);
     const Light light = new_light(state);
-    will_change_light(state, name);
-    state.session.scene().set_light(name, light);
-    state.light = name;
-    state.object.clear();
+    state.live.edits().will_change_light(name);
+    state.session().scene().set_light(name, light);
+    state.selection().light = name;
+    state.selection().object.clear();
 }
 
 void scene_light(GuiState& state, const std::string& name) {
     const bool open = ImGui::TreeNodeEx(name.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth);
-    note_place(state, "Lights/" + name);
+    note_place("Lights/" + name);
     if (!open) return;
-    Light light = state.session.scene().light(name);
+    Light light = state.session().scene().light(name);
     if (light.type != LightType::directional) select_button(state, name);
     bool changed = false;
     if (begin_rows("light", false)) {
         begin_row("enabled");
         changed |= ImGui::Checkbox("##enabled", &light.enabled);
-        note_place(state, "Lights/enabled " + name);
+        note_place("Lights/enabled " + name);
         begin_row("intensity", light.type == LightType::directional ? "lux" : "candela");
         changed |= ImGui::DragFloat("##intensity", &light.intensity, std::max(light.intensity, 1e-3f) * 0.01f,
                                     0, 1e9f, "%.3g", ImGuiSliderFlags_AlwaysClamp);
@@ -93,15 +93,15 @@ void scene_light(GuiState& state, const std::string& name) {
         end_rows();
     }
     if (changed) {
-        will_change_light(state, name);
-        state.session.scene().set_light(name, light);
+        state.live.edits().will_change_light(name);
+        state.session().scene().set_light(name, light);
     }
     const bool removed = ImGui::Button("Remove", ImVec2(-FLT_MIN, 0));
-    note_place(state, "Lights/remove " + name);
+    note_place("Lights/remove " + name);
     if (removed) {
-        will_change_light(state, name);
-        state.session.scene().remove_light(name);
-        if (state.light == name) state.light.clear();
+        state.live.edits().will_change_light(name);
+        state.session().scene().remove_light(name);
+        if (state.selection().light == name) state.selection().light.clear();
     }
     ImGui::TreePop();
 }
@@ -118,7 +118,7 @@ void lights_panel(GuiState& state) {
     studio_light(state, "key", "Key");
     studio_light(state, "fill", "Fill");
     studio_light(state, "rim", "Rim");
-    for (const std::string& name : state.session.scene().light_names()) scene_light(state, name);
+    for (const std::string& name : state.session().scene().light_names()) scene_light(state, name);
     add_button(state);
 }
 

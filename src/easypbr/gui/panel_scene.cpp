@@ -32,12 +32,12 @@ void node_row(GuiState& state, const Mesh& node, const std::string& path, const 
     ImGuiTreeNodeFlags flags = ImGuiTreeNodeFlags_SpanAvailWidth | ImGuiTreeNodeFlags_OpenOnArrow;
     if (data->children.empty()) flags |= ImGuiTreeNodeFlags_Leaf | ImGuiTreeNodeFlags_NoTreePushOnOpen;
     if (depth < 2) flags |= ImGuiTreeNodeFlags_DefaultOpen;
-    if (path == state.object) flags |= ImGuiTreeNodeFlags_Selected;
+    if (path == state.selection().object) flags |= ImGuiTreeNodeFlags_Selected;
     ImGui::AlignTextToFramePadding();
     const bool open = ImGui::TreeNodeEx("node", flags, "%s", name.empty() ? "(unnamed)" : name.c_str());
     if (ImGui::IsItemClicked() && !ImGui::IsItemToggledOpen()) {
-        state.object = state.object == path ? "" : path;
-        state.light.clear();
+        state.selection().object = state.selection().object == path ? "" : path;
+        state.selection().light.clear();
     }
     if (ImGui::IsItemHovered())
         ImGui::SetTooltip("%s\n%s vertices, %s faces", path.c_str(), count_text(data->V.rows()).c_str(),
@@ -76,10 +76,11 @@ void number_row(GuiState& state, const char* name, const Material& material, flo
     float value = material.*member;
     ImGui::PushID(name);
     if (ImGui::SliderFloat("##number", &value, low, high, "%.3g", ImGuiSliderFlags_AlwaysClamp))
-        change_look(state, state.object, std::string("material.") + name, [member, value](MeshData& data) {
-            if (data.materials.empty()) data.materials.emplace_back();
-            for (Material& each : data.materials) each.*member = value;
-        });
+        change_look(state, state.selection().object, std::string("material.") + name,
+                    [member, value](MeshData& data) {
+                        if (data.materials.empty()) data.materials.emplace_back();
+                        for (Material& each : data.materials) each.*member = value;
+                    });
     ImGui::PopID();
 }
 
@@ -89,7 +90,7 @@ void material_rows(GuiState& state, const Mesh& mesh) {
     using M = Material;
     const auto put_color = [&](const char* property, Vec3 Material::*member) {
         return [&state, property, member](const Vec3& color) {
-            change_look(state, state.object, property, [member, color](MeshData& data) {
+            change_look(state, state.selection().object, property, [member, color](MeshData& data) {
                 if (data.materials.empty()) data.materials.emplace_back();
                 for (Material& each : data.materials) each.*member = color;
             });
@@ -117,7 +118,7 @@ void style_rows(GuiState& state, const Mesh& mesh) {
         if (!field.name.starts_with(prefix)) continue;
         const std::string name = field.name.substr(prefix.size());
         field_row(field, get(style, name), std::nullopt, [&, name](const Value& value) {
-            change_look(state, state.object, "style." + name,
+            change_look(state, state.selection().object, "style." + name,
                         [name, value](MeshData& data) { set(data.style, name, value); });
         });
     }
@@ -127,41 +128,41 @@ void style_rows(GuiState& state, const Mesh& mesh) {
 }  // namespace
 
 void scene_panel(GuiState& state) {
-    const std::vector<std::string> names = state.session.scene().names();
+    const std::vector<std::string> names = state.session().scene().names();
     if (names.empty()) {
         dim_text("Nothing is shown yet: drop a file on the window.");
         return;
     }
     // As high as its rows, whose number is one frame late when a node is opened.
     const float row = ImGui::GetFrameHeight() + 2 * ImGui::GetStyle().CellPadding.y;
-    const float height =
-        std::min(0.4f * float(state.size.y()), float(std::max(state.tree_rows, int(names.size()))) * row);
+    const float height = std::min(0.4f * float(state.screen.size.y()),
+                                  float(std::max(state.panels.tree_rows, int(names.size()))) * row);
     if (!ImGui::BeginTable("tree", 2, ImGuiTableFlags_ScrollY | ImGuiTableFlags_NoSavedSettings,
                            ImVec2(0, height)))
         return;
     ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch);
     ImGui::TableSetupColumn("seen", ImGuiTableColumnFlags_WidthFixed, ImGui::GetFrameHeight());
-    for (const std::string& name : names) node_row(state, state.session.scene().get(name), name, name, 0);
-    state.tree_rows = ImGui::TableGetRowIndex() + 1;
+    for (const std::string& name : names) node_row(state, state.session().scene().get(name), name, name, 0);
+    state.panels.tree_rows = ImGui::TableGetRowIndex() + 1;
     ImGui::EndTable();
 }
 
 void object_panel(GuiState& state) {
-    const std::optional<Mesh> mesh = node_named(state.session.scene(), state.object);
+    const std::optional<Mesh> mesh = app::node_named(state.session().scene(), state.selection().object);
     if (!mesh) {
         dim_text("Click an object to select it.");
         return;
     }
     const auto data = mesh->snapshot();
-    ImGui::TextUnformatted(state.object.c_str());
+    ImGui::TextUnformatted(state.selection().object.c_str());
     dim_text(fmt::format("{} vertices, {} faces", count_text(data->V.rows()), count_text(data->F.rows())));
     const char* labels[] = {"Move (T)", "Turn (R)", "Scale (Y)"};
     const float third = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
     for (int i = 0; i < 3; ++i) {
         if (i) ImGui::SameLine();
-        const bool chosen = int(state.handle) == i;
+        const bool chosen = int(state.manipulator.handle) == i;
         if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
-        if (ImGui::Button(labels[i], ImVec2(third, 0))) state.handle = Handle(i);
+        if (ImGui::Button(labels[i], ImVec2(third, 0))) state.manipulator.handle = Handle(i);
         if (chosen) ImGui::PopStyleColor();
     }
     if (ImGui::TreeNodeEx("Material", ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_SpanAvailWidth)) {

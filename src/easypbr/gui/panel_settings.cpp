@@ -43,7 +43,7 @@ void settings_rows(GuiState& state, const std::string& prefix) {
     for (const Field& field : fields()) {
         if (!field.name.starts_with(prefix)) continue;
         std::optional<Value> inferred;
-        if (state.resolved) inferred = field.get(state.resolved->settings);
+        if (state.live.picture().resolved()) inferred = field.get(state.live.picture().resolved()->settings);
         field_row(field, field.get(state.settings()), inferred,
                   [&](const Value& value) { try_set(state, field.name, value); });
     }
@@ -77,14 +77,14 @@ void environment_panel(GuiState& state) {
 
 void camera_panel(GuiState& state) {
     const float half = (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x) / 2;
-    if (ImGui::Button("Fit (F)", ImVec2(half, 0))) state.fit = true;
+    if (ImGui::Button("Fit (F)", ImVec2(half, 0))) state.live.navigation().ask_fit();
     ImGui::SameLine();
-    if (ImGui::Button("Save (Ctrl+S)", ImVec2(half, 0))) state.save = true;
+    if (ImGui::Button("Save (Ctrl+S)", ImVec2(half, 0))) state.live.wishes().save = true;
     if (ImGui::Button("Copy pose (Ctrl+C)", ImVec2(half, 0)))
-        state.write_clipboard(app::camera_text(state.session, state.size));
+        state.live.clipboard().write(app::camera_text(state.session(), state.screen.size));
     ImGui::SameLine();
     if (ImGui::Button("Paste pose (Ctrl+V)", ImVec2(half, 0))) try {
-            app::apply_camera_text(state.read_clipboard(), state.settings());
+            app::apply_camera_text(state.live.clipboard().read(), state.settings());
         } catch (const Error& error) {
             state.notify(error.what(), true);
         }
@@ -97,10 +97,10 @@ void channels_panel(GuiState& state) {
     const float width = (ImGui::GetContentRegionAvail().x - 2 * ImGui::GetStyle().ItemSpacing.x) / 3;
     for (size_t i = 0; i < names.size(); ++i) {
         if (i % 3 != 0) ImGui::SameLine();
-        const bool chosen = names[i] == state.channel;
+        const bool chosen = names[i] == state.live.channel;
         if (chosen) ImGui::PushStyleColor(ImGuiCol_Button, ImGui::GetStyleColorVec4(ImGuiCol_ButtonActive));
         const std::string label = readable(names[i] == "ambient_occlusion" ? "occlusion (ss)" : names[i]);
-        if (ImGui::Button((label + "##" + names[i]).c_str(), ImVec2(width, 0))) state.channel = names[i];
+        if (ImGui::Button((label + "##" + names[i]).c_str(), ImVec2(width, 0))) state.live.channel = names[i];
         if (chosen) ImGui::PopStyleColor();
     }
 }

@@ -32,7 +32,7 @@ constexpr KeyLine key_lines[] = {{"Left drag", "turn about the target"},
 }  // namespace
 
 void statistics_panel(GuiState& state) {
-    const Statistics& now = state.statistics;
+    const app::LiveStatistics& now = state.live.picture().statistics();
     if (!ImGui::BeginTable("statistics", 2,
                            ImGuiTableFlags_NoSavedSettings | ImGuiTableFlags_SizingStretchSame))
         return;
@@ -56,45 +56,49 @@ void menu_bar(GuiState& state) {
     if (!ImGui::BeginMainMenuBar()) return;
     if (ImGui::BeginMenu("View")) {
         for (int i = 0; i < panel_count; ++i)
-            ImGui::MenuItem(panel_name(Panel(i)), fmt::format("F{}", i + 1).c_str(), &state.open[size_t(i)]);
+            ImGui::MenuItem(panel_name(Panel(i)), fmt::format("F{}", i + 1).c_str(),
+                            &state.panels.open[size_t(i)]);
         if (state.own_menu) state.own_menu();
         ImGui::Separator();
-        ImGui::MenuItem("All panels", "H", &state.show_panels);
-        bool light = state.theme == Theme::light;
-        if (ImGui::MenuItem("Light theme", nullptr, &light)) state.theme = light ? Theme::light : Theme::dark;
+        ImGui::MenuItem("All panels", "H", &state.panels.shown);
+        bool light = state.screen.theme == Theme::light;
+        if (ImGui::MenuItem("Light theme", nullptr, &light))
+            state.screen.theme = light ? Theme::light : Theme::dark;
         if (ImGui::BeginMenu("Size of the panels")) {
             for (const int percent : {75, 100, 125, 150, 200})
                 if (const float scale = float(percent) / 100; ImGui::MenuItem(
-                        fmt::format("{} %", percent).c_str(), nullptr, state.panel_scale == scale))
-                    state.panel_scale = scale;
+                        fmt::format("{} %", percent).c_str(), nullptr, state.screen.panel_scale == scale))
+                    state.screen.panel_scale = scale;
             ImGui::EndMenu();
         }
         ImGui::EndMenu();
     }
     if (ImGui::BeginMenu("Edit")) {
-        if (ImGui::MenuItem("Undo", "Ctrl+Z", false, state.history.can_undo())) undo(state);
-        if (ImGui::MenuItem("Redo", "Ctrl+Y", false, state.history.can_redo())) redo(state);
+        if (ImGui::MenuItem("Undo", "Ctrl+Z", false, state.live.edits().can_undo()))
+            state.live.edits().undo();
+        if (ImGui::MenuItem("Redo", "Ctrl+Y", false, state.live.edits().can_redo()))
+            state.live.edits().redo();
         ImGui::EndMenu();
     }
     if (ImGui::BeginMenu("Help")) {
-        ImGui::MenuItem("Keys", "?", &state.show_keys);
+        ImGui::MenuItem("Keys", "?", &state.panels.keys);
         ImGui::EndMenu();
     }
-    const Statistics& now = state.statistics;
+    const app::LiveStatistics& now = state.live.picture().statistics();
     const std::string text = fmt::format("{} x {}   {:.0f} ms   {} / {}", now.size.x(), now.size.y(),
                                          now.frame_seconds * 1e3, now.frames, now.total);
-    ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(text.c_str()).x - 24 * state.scale);
+    ImGui::SameLine(ImGui::GetWindowWidth() - ImGui::CalcTextSize(text.c_str()).x - 24 * state.screen.scale);
     dim_text(text);
     ImGui::EndMainMenuBar();
 }
 
 void keys_window(GuiState& state) {
-    if (!state.show_keys) return;
-    ImGui::SetNextWindowPos(ImVec2(float(state.size.x()) / 2, float(state.size.y()) / 2), ImGuiCond_Appearing,
-                            ImVec2(0.5f, 0.5f));
+    if (!state.panels.keys) return;
+    ImGui::SetNextWindowPos(ImVec2(float(state.screen.size.x()) / 2, float(state.screen.size.y()) / 2),
+                            ImGuiCond_Appearing, ImVec2(0.5f, 0.5f));
     const ImGuiWindowFlags flags =
         ImGuiWindowFlags_AlwaysAutoResize | ImGuiWindowFlags_NoCollapse | ImGuiWindowFlags_NoSavedSettings;
-    if (ImGui::Begin("Keys and mouse", &state.show_keys, flags) && ImGui::BeginTable("keys", 2)) {
+    if (ImGui::Begin("Keys and mouse", &state.panels.keys, flags) && ImGui::BeginTable("keys", 2)) {
         for (const KeyLine& line : key_lines) {
             ImGui::TableNextRow();
             ImGui::TableNextColumn();
@@ -108,31 +112,35 @@ void keys_window(GuiState& state) {
 }
 
 void status_line(GuiState& state) {
-    if (!state.hovered) return;
-    const app::Pick& pick = *state.hovered;
+    if (!state.live.picture().hovered()) return;
+    const app::Pick& pick = *state.live.picture().hovered();
     std::string text = pick.object;
     if (!pick.part.empty()) text += " / " + pick.part;
     text += fmt::format("   {} {}   ({:.4g}, {:.4g}, {:.4g})", pick.is_face ? "face" : "point", pick.element,
                         pick.position.x(), pick.position.y(), pick.position.z());
-    const float pad = 6 * state.scale, width = ImGui::CalcTextSize(text.c_str()).x;
-    const float x = (float(state.size.x()) - width) / 2;
-    const float y = float(state.size.y()) - ImGui::GetTextLineHeight() - 2 * pad;
+    const float pad = 6 * state.screen.scale, width = ImGui::CalcTextSize(text.c_str()).x;
+    const float x = (float(state.screen.size.x()) - width) / 2;
+    const float y = float(state.screen.size.y()) - ImGui::GetTextLineHeight() - 2 * pad;
     ImDrawList& list = *ImGui::GetForegroundDrawList();
-    list.AddRectFilled(ImVec2(x - 2 * pad, y - pad), ImVec2(x + width + 2 * pad, float(state.size.y()) - pad),
-                       ImGui::GetColorU32(ImGuiCol_WindowBg), 4 * state.scale);
+    list.AddRectFilled(ImVec2(x - 2 * pad, y - pad),
+                       ImVec2(x + width + 2 * pad, float(state.screen.size.y()) - pad),
+                       ImGui::GetColorU32(ImGuiCol_WindowBg), 4 * state.screen.scale);
     list.AddText(ImVec2(x, y), ImGui::GetColorU32(ImGuiCol_Text), text.c_str());
 }
 
 void notifications(GuiState& state) {
-    float bottom = float(state.size.y()) - 40 * state.scale;
-    const float pad = 8 * state.scale, wrap = std::min(0.5f * float(state.size.x()), 620 * state.scale);
+    float bottom = float(state.screen.size.y()) - 40 * state.screen.scale;
+    const float pad = 8 * state.screen.scale,
+                wrap = std::min(0.5f * float(state.screen.size.x()), 620 * state.screen.scale);
     ImDrawList& list = *ImGui::GetForegroundDrawList();
-    for (auto n = state.notifications.rbegin(); n != state.notifications.rend(); ++n) {
+    for (auto n = state.live.notifications().list().rbegin(); n != state.live.notifications().list().rend();
+         ++n) {
         const ImVec2 size = ImGui::CalcTextSize(n->text.c_str(), nullptr, false, wrap);
-        const ImVec2 from((float(state.size.x()) - size.x) / 2, bottom - size.y);
+        const ImVec2 from((float(state.screen.size.x()) - size.x) / 2, bottom - size.y);
         const ImU32 color = n->is_error ? IM_COL32(168, 52, 48, 240) : ImGui::GetColorU32(ImGuiCol_WindowBg);
         list.AddRectFilled(ImVec2(from.x - pad, from.y - pad),
-                           ImVec2(from.x + size.x + pad, from.y + size.y + pad), color, 4 * state.scale);
+                           ImVec2(from.x + size.x + pad, from.y + size.y + pad), color,
+                           4 * state.screen.scale);
         list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), from,
                      n->is_error ? IM_COL32_WHITE : ImGui::GetColorU32(ImGuiCol_Text), n->text.c_str(),
                      nullptr, wrap);

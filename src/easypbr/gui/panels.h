@@ -25,8 +25,6 @@ void camera_path_panel(GuiState& state);
 /// What is recorded, and how far it is.
 void recorder_panel(GuiState& state);
 
-/// A key of the camera path from what is seen now, after the chosen one.
-void add_path_key(GuiState& state);
 /// The camera path over the picture.
 void draw_path(GuiState& state);
 

@@ -25,11 +25,12 @@ class Overlay {
     /// A straight piece, short enough to be seen or hidden as a whole.
     void piece(Vec3d a, Vec3d b, ImU32 color, float width) const {
         if (!clip(a, b)) return;
-        const Vec3d p = app::pixel_of(camera_, a, state_.size), q = app::pixel_of(camera_, b, state_.size);
+        const Vec3d p = app::pixel_of(camera_, a, state_.screen.size),
+                    q = app::pixel_of(camera_, b, state_.screen.size);
         const Vec3d middle = (p + q) / 2;
         if (is_hidden(middle)) color = (color & ~IM_COL32_A_MASK) | (60u << IM_COL32_A_SHIFT);
         list_.AddLine(ImVec2(float(p.x()), float(p.y())), ImVec2(float(q.x()), float(q.y())), color,
-                      width * state_.scale);
+                      width * state_.screen.scale);
     }
     void edge(const Vec3d& a, const Vec3d& b, ImU32 color, float width) const {
         for (int i = 0; i < pieces_of_edge; ++i)
@@ -38,7 +39,8 @@ class Overlay {
     /// What a camera at a pose sees, `depth` far.
     void outline(const Eigen::Isometry3d& T_world_cam, double fov_y_deg, double depth, ImU32 color,
                  float width) const {
-        const double y = depth * std::tan(radians(fov_y_deg) / 2), x = y * state_.size.x() / state_.size.y();
+        const double y = depth * std::tan(radians(fov_y_deg) / 2),
+                     x = y * state_.screen.size.x() / state_.screen.size.y();
         std::array<Vec3d, 4> corners = {Vec3d(-x, -y, -depth), Vec3d(x, -y, -depth), Vec3d(x, y, -depth),
                                         Vec3d(-x, y, -depth)};
         for (Vec3d& corner : corners) corner = T_world_cam * corner;
@@ -62,8 +64,9 @@ class Overlay {
         return true;
     }
     bool is_hidden(const Vec3d& pixel) const {
-        if (!state_.surfaces) return false;
-        const auto pick = state_.surfaces->at(pixel.head<2>());
+        const app::PickBuffer* surfaces = state_.live.picture().known_surfaces();
+        if (!surfaces) return false;
+        const auto pick = surfaces->at(pixel.head<2>());
         return pick && pixel.z() > slack * pick->depth;
     }
 
@@ -93,19 +96,19 @@ std::vector<Vec3d> curve_of(const CameraPath& path) {
 }  // namespace
 
 void draw_path(GuiState& state) {
-    const app::PathEditor& path = state.path;
-    if (!state.show_path || (path.keys().empty() && !path.path())) return;
-    const Camera camera = state.session.view_point(state.size).camera;
+    const app::PathEditor& path = state.path().editor;
+    if (!state.path_panel.shows_path || (path.keys().empty() && !path.path())) return;
+    const Camera camera = state.session().view_point(state.screen.size).camera;
     const Overlay overlay(state, camera);
     std::vector<Vec3d> places;
     if (path.path()) places = curve_of(*path.path());
     for (size_t i = 0; i + 1 < places.size(); ++i) overlay.piece(places[i], places[i + 1], curve_color, 2.2f);
     double depth = outline_part * extent_of(places);
-    if (depth <= 0) depth = outline_part * state.session.view_point(state.size).distance();
+    if (depth <= 0) depth = outline_part * state.session().view_point(state.screen.size).distance();
     const double fov = camera.fov_y_deg;
     for (size_t i = 0; i < path.keys().size(); ++i) {
         const CameraKey& key = path.keys()[i];
-        const bool chosen = state.path_key == i;
+        const bool chosen = state.path().key == i;
         overlay.outline(key.T_world_cam, key.fov_y_deg.value_or(fov), depth,
                         chosen ? chosen_color : key_color, chosen ? 2.2f : 1.4f);
     }

@@ -203,16 +203,16 @@ bool heading(const char* text, bool open) {
     return result;
 }
 
-void note_place(GuiState& state, const std::string& name) {
+void note_place(const std::string& name) {
     const ImVec2 from = ImGui::GetItemRectMin(), to = ImGui::GetItemRectMax();
-    state.places[name] = {Vec2d(from.x, from.y), Vec2d(to.x, to.y)};
+    (*static_cast<ItemPlaces*>(ImGui::GetIO().UserData))[name] = {Vec2d(from.x, from.y), Vec2d(to.x, to.y)};
 }
 
-bool named_button(GuiState& state, const char* panel, const char* name, float width, bool enabled) {
+bool named_button(const char* panel, const char* name, float width, bool enabled) {
     ImGui::BeginDisabled(!enabled);
     const bool clicked = ImGui::Button(name, ImVec2(width, 0));
     ImGui::EndDisabled();
-    note_place(state, fmt::format("{}/{}", panel, name));
+    note_place(fmt::format("{}/{}", panel, name));
     return clicked;
 }
 

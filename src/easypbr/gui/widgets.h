@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "easypbr/gui/state.h"
+#include "easypbr/gui/item_places.h"
 #include "easypbr/scene/fields.h"
 
 namespace easypbr::gui {
@@ -32,10 +32,7 @@ void field_row(const Field& field, const Value& value, const std::optional<Value
 bool heading(const char* text, bool open = true);
 
 /// A button that notes its place as "panel/name".
-bool named_button(GuiState& state, const char* panel, const char* name, float width, bool enabled = true);
-
-/// Notes where the last item is, under "panel/item", so that a test can point at it.
-void note_place(GuiState& state, const std::string& name);
+bool named_button(const char* panel, const char* name, float width, bool enabled = true);
 
 /// Text that is less important.
 void dim_text(const std::string& text);

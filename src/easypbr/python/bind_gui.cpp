@@ -4,6 +4,7 @@
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/vector.h>
 
+#include "easypbr/app/widgets.h"
 #include "easypbr/gui/live_view.h"
 #include "easypbr/python/shared_viewer.h"
 #include "easypbr/python/text.h"
@@ -12,7 +13,7 @@ namespace easypbr::python {
 namespace {
 
 using app::InputEvent;
-using gui::Widgets;
+using app::Widgets;
 using ViewerClass = nb::class_<SharedViewer>;
 
 /// A Python function that C++ may drop on any thread.

@@ -89,40 +89,73 @@ nb::object pick(SharedViewer& self, double x, double y, const nb::object& size) 
 }
 
 /// What tests and programs may ask about the window.
+struct GuiReport {
+    app::Selection selection;
+    app::LiveStatistics statistics;
+    app::RecordingReport recorder;
+    gui::PanelLayout panels;
+    gui::Screen screen;
+    gui::ItemPlaces places;
+    std::vector<app::Notification> messages;
+    std::map<std::string, std::string> errors;  ///< of the user's panels
+    std::string channel, image_value;
+    size_t path_keys = 0;
+    double path_time = 0;
+    bool path_plays = false, records = false;
+};
+
+GuiReport report_of(gui::LiveView& view) {
+    gui::GuiState& state = view.state();
+    app::LiveDrawing& live = view.drawing();
+    GuiReport report;
+    report.selection = live.selection();
+    report.statistics = live.picture().statistics();
+    report.recorder = live.report();
+    report.panels = state.panels;
+    report.screen = state.screen;
+    report.places = view.places();
+    report.messages = live.notifications().list();
+    report.errors = live.panels().errors();
+    report.channel = live.channel;
+    report.image_value = state.image_value;
+    const app::PathEditor& path = live.path().editor;
+    report.path_keys = path.keys().size();
+    report.path_time = path.time();
+    report.path_plays = path.is_playing();
+    report.records = live.recording().is_running();
+    return report;
+}
+
 nb::dict gui_state(SharedViewer& self) {
     nb::dict result;
     const auto put = [&](const char* name, const auto& value) { result[name] = nb::cast(value); };
-    std::map<std::string, std::string> errors;
-    const gui::GuiState state = self.run([&](Viewer& viewer) {
-        errors = viewer.live().panels().errors();
-        return viewer.live().state();
-    });
-    put("object", state.object);
-    put("show_panels", state.show_panels);
-    put("show_keys", state.show_keys);
-    put("path_keys", state.path.keys().size());
-    put("path_time", state.path.time());
-    put("path_plays", state.path.is_playing());
-    put("records", state.recording->is_running());
-    put("recorder_says", state.recorder_says);
-    put("image_value", state.image_value);
-    put("channel", state.channel);
-    put("scale", state.scale);
-    put("light", state.light);
-    put("pictures", state.statistics.pictures);
-    put("frames", state.statistics.frames);
-    put("total", state.statistics.total);
-    put("size", std::vector<int>{state.size.x(), state.size.y()});
-    put("drawn_size", std::vector<int>{state.statistics.size.x(), state.statistics.size.y()});
-    put("frame_seconds", state.statistics.frame_seconds);
+    const GuiReport report = self.run([](Viewer& viewer) { return report_of(viewer.live()); });
+    put("object", report.selection.object);
+    put("show_panels", report.panels.shown);
+    put("show_keys", report.panels.keys);
+    put("path_keys", report.path_keys);
+    put("path_time", report.path_time);
+    put("path_plays", report.path_plays);
+    put("records", report.records);
+    put("recorder_says", report.recorder.text);
+    put("image_value", report.image_value);
+    put("channel", report.channel);
+    put("scale", report.screen.scale);
+    put("light", report.selection.light);
+    put("pictures", report.statistics.pictures);
+    put("frames", report.statistics.frames);
+    put("total", report.statistics.total);
+    put("size", std::vector<int>{report.screen.size.x(), report.screen.size.y()});
+    put("drawn_size", std::vector<int>{report.statistics.size.x(), report.statistics.size.y()});
+    put("frame_seconds", report.statistics.frame_seconds);
     nb::list panels, messages;
     for (int i = 0; i < gui::panel_count; ++i)
-        if (state.open[size_t(i)]) panels.append(gui::panel_name(gui::Panel(i)));
-    for (const gui::Notification& message : state.notifications) messages.append(message.text);
+        if (report.panels.open[size_t(i)]) panels.append(gui::panel_name(gui::Panel(i)));
+    for (const app::Notification& message : report.messages) messages.append(message.text);
     nb::dict own_panels, places;
-    for (const auto& [name, error] : errors) own_panels[name.c_str()] = error;
+    for (const auto& [name, error] : report.errors) own_panels[name.c_str()] = error;
     result["own_panels"] = own_panels;
-    for (const auto& [name, box] : state.places)
+    for (const auto& [name, box] : report.places)
         places[name.c_str()] =
             std::vector<double>{box.min().x(), box.min().y(), box.max().x(), box.max().y()};
     result["places"] = places;
@@ -138,30 +171,30 @@ void set_gui(SharedViewer& self, const std::string& name, nb::handle value) {
         viewer.live().touch();
         gui::GuiState& state = viewer.live().state();
         if (name == "object")
-            state.object = text;
+            state.selection().object = text;
         else if (name == "channel")
-            state.channel = text;
+            state.live.channel = text;
         else if (name == "light_theme")
-            state.theme = flag ? gui::Theme::light : gui::Theme::dark;
+            state.screen.theme = flag ? gui::Theme::light : gui::Theme::dark;
         else if (name == "show_panels")
-            state.show_panels = flag;
+            state.panels.shown = flag;
         else if (name == "show_keys")
-            state.show_keys = flag;
+            state.panels.keys = flag;
         else if (name == "picture_file")
-            state.form.picture = text;
+            state.live.recording_form().picture = text;
         else if (name == "video_file")
-            state.form.video = text;
+            state.live.recording_form().video = text;
         else if (name == "path_file")
-            state.path_file = text;
+            state.path_panel.file = text;
         else if (name == "with_panels")
-            state.form.panels = flag;
+            state.live.recording_form().panels = flag;
         else if (name == "transparent")
-            state.form.transparent = flag;
+            state.live.recording_form().transparent = flag;
         for (int i = 0; i < gui::panel_count; ++i)
             if (name == "unfold" && text == gui::panel_name(gui::Panel(i)))
-                state.unfold.insert(gui::Panel(i));
+                state.panels.unfold.insert(gui::Panel(i));
         for (int i = 0; i < gui::panel_count; ++i)
-            if (name == gui::panel_name(gui::Panel(i))) state.open[size_t(i)] = flag;
+            if (name == gui::panel_name(gui::Panel(i))) state.panels.open[size_t(i)] = flag;
     });
 }
 
@@ -199,11 +232,13 @@ void bind_window(ViewerClass& viewer) {
             },
             nb::arg("size").none() = nb::none(), nb::arg("scale") = 1.0f,
             nb::sig("def screenshot(self, size: object | None = None, scale: float = 1.0) -> numpy.ndarray"))
-        .def("open", [](SharedViewer& self,
-                        const fs::path& path) { self.run([&](Viewer& v) { v.live().open(path); }); })
+        .def("open",
+             [](SharedViewer& self, const fs::path& path) {
+                 self.run([&](Viewer& v) { v.live().drawing().files().open(path); });
+             })
         .def("watch",
              [](SharedViewer& self, const fs::path& path, const std::string& name) {
-                 self.run([&](Viewer& v) { v.live().watch(path, name); });
+                 self.run([&](Viewer& v) { v.live().drawing().files().watch(path, name); });
              })
         .def("set_path",
              [](SharedViewer& self, const CameraPath& path) {
@@ -226,7 +261,7 @@ void bind_window(ViewerClass& viewer) {
         .def_prop_rw(
             "panel_scale",
             [](SharedViewer& self) {
-                return self.run([](Viewer& v) { return v.live().state().panel_scale; });
+                return self.run([](Viewer& v) { return v.live().state().screen.panel_scale; });
             },
             [](SharedViewer& self, float scale) {
                 self.run([&](Viewer& v) { v.live().set_panel_scale(scale); });

@@ -63,8 +63,8 @@ struct Viewer::Window {
 
     void open(Vec2i size) {
         window = std::make_unique<gui::Window>(title, size);
-        live.state().read_clipboard = [this] { return window->clipboard(); };
-        live.state().write_clipboard = [this](const std::string& text) { window->set_clipboard(text); };
+        live.drawing().clipboard() = {[this] { return window->clipboard(); },
+                                      [this](const std::string& text) { window->set_clipboard(text); }};
     }
 
     /// Seconds since the last call.
@@ -136,7 +136,7 @@ void Viewer::show() {
 void Viewer::shut(Window& window) {
     window.live.stop_recording();
     window.closed = true;
-    window.live.state().close = false;
+    window.live.close(false);
     window.window.reset();
 }
 
@@ -144,7 +144,7 @@ void Viewer::close() {
     if (!window_) return;
     // In a callback it is update() that closes, for it still needs the window.
     if (window_->updating)
-        window_->live.state().close = true;
+        window_->live.close();
     else
         shut(*window_);
 }
@@ -153,7 +153,7 @@ bool Viewer::is_open() const {
     return window_ && window_->window;
 }
 
-void Viewer::add_panel(const std::string& name, std::function<void(gui::Widgets&)> function) {
+void Viewer::add_panel(const std::string& name, std::function<void(app::Widgets&)> function) {
     live().add_panel(name, std::move(function));
 }
 

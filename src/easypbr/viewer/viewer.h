@@ -18,10 +18,12 @@
 
 namespace easypbr {
 
+namespace app {
+class Widgets;
+}
 namespace gui {
 class LiveView;
-class Widgets;
-}  // namespace gui
+}
 
 /// The one scene there is without being made: what show() fills and a Viewer without a scene draws.
 Scene& default_scene();
@@ -108,9 +110,9 @@ class Viewer {
     Image screenshot(std::optional<Vec2i> size = std::nullopt, float scale = 1);
 
     /// A panel of the user's own in the window, drawn by `function` in each of its frames:
-    /// view.add_panel("Training", [&](gui::Widgets& ui) { ui.slider("rate", rate, 0, 1); }). What it throws
+    /// view.add_panel("Training", [&](app::Widgets& ui) { ui.slider("rate", rate, 0, 1); }). What it throws
     /// is shown in the panel. It may use this viewer, but for update(), show() and screenshot().
-    void add_panel(const std::string& name, std::function<void(gui::Widgets&)> function);
+    void add_panel(const std::string& name, std::function<void(app::Widgets&)> function);
     void remove_panel(const std::string& name);
 
     /// Shows an image in the window, beside the scene; headless it is kept for screenshots. Of 1, 3 or 4

@@ -1,5 +1,5 @@
-// What the recorder's panel records: a picture, what happens in the window, a camera path; a step with every
-// frame of the window, so that it stays alive meanwhile.
+// What a person records while looking: a picture, what happens, a camera path; a step with every frame that
+// is shown, so that it stays alive meanwhile.
 #pragma once
 
 #include <chrono>
@@ -10,7 +10,7 @@
 
 #include "easypbr/app/recorder.h"
 
-namespace easypbr::gui {
+namespace easypbr::app {
 
 /// What is asked for.
 struct RecordingForm {
@@ -27,12 +27,12 @@ class LiveRecording {
     using Screen = std::function<Image()>;
 
     /// All must outlive it.
-    LiveRecording(app::Session& session, app::Recorder& recorder) : session_(session), recorder_(recorder) {}
+    LiveRecording(Session& session, Recorder& recorder) : session_(session), recorder_(recorder) {}
 
-    /// Writes one picture at once. Returns what it was written to. Throws as app::Recorder::record().
+    /// Writes one picture at once. Returns what it was written to. Throws as Recorder::record().
     std::string picture(const RecordingForm& form, const Screen& screen);
     /// Begins a video of what happens, in real time: each frame as often as its time asks for, in one sample.
-    /// Throws as app::Recorder::start().
+    /// Throws as Recorder::start().
     void start(const RecordingForm& form, Vec2i window);
     /// Begins to record the camera on its way, a frame with every advance(), in full quality.
     void start_path(const RecordingForm& form, Vec2i window, const CameraPath& path);
@@ -70,10 +70,10 @@ class LiveRecording {
     void draw_frame(int times);
     void end();
 
-    app::Session& session_;
-    app::Recorder& recorder_;
+    Session& session_;
+    Recorder& recorder_;
     std::optional<Running> running_;
     Image frame_;
 };
 
-}  // namespace easypbr::gui
+}  // namespace easypbr::app

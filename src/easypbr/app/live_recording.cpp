@@ -1,11 +1,11 @@
-#include "easypbr/gui/live_recording.h"
+#include "easypbr/app/live_recording.h"
 
 #include <utility>
 
 #include "easypbr/core/error.h"
 #include "easypbr/io/image/image_io.h"
 
-namespace easypbr::gui {
+namespace easypbr::app {
 namespace {
 
 /// After a pause as long as this a video of what happens goes on without it.
@@ -36,7 +36,7 @@ Vec2i size_of(const RecordingForm& form, Vec2i window, const Settings& settings)
 
 std::string LiveRecording::picture(const RecordingForm& form, const Screen& screen) {
     if (form.panels) {
-        app::check_picture(form.picture, session_.settings());
+        check_picture(form.picture, session_.settings());
         io::save_image(screen(), form.picture);
         return form.picture;
     }
@@ -145,4 +145,4 @@ double LiveRecording::seconds_left() const {
     return passed / running_->frames * double(running_->times.size() - size_t(running_->frames));
 }
 
-}  // namespace easypbr::gui
+}  // namespace easypbr::app

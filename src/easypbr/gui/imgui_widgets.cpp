@@ -1,3 +1,5 @@
+#include "easypbr/gui/imgui_widgets.h"
+
 #include <fmt/format.h>
 #include <imgui.h>
 #include <imgui_stdlib.h>
@@ -5,37 +7,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "easypbr/core/error.h"
 #include "easypbr/gui/gui_scope.h"
-#include "easypbr/gui/user_panels.h"
 #include "easypbr/gui/widgets.h"
 
 namespace easypbr::gui {
 namespace {
 
 constexpr float plot_height = 72;
-
-void require_finite(const char* widget, const std::string& name, double value) {
-    if (!std::isfinite(value))
-        throw ArgumentError(fmt::format("{} '{}': expected a finite number, got {}", widget, name, value));
-}
-
-void require_range(const char* widget, const std::string& name, double low, double high, double limit) {
-    if (!(low < high) || std::abs(low) > limit || std::abs(high) > limit)
-        throw ArgumentError(
-            fmt::format("{} '{}': expected a range from low to high within +-{:g}, got {:g} to {:g}", widget,
-                        name, limit, low, high));
-}
-
-/// The lowest and the highest finite value; 0 and 1 without any.
-Vec2 range_of(std::span<const float> values) {
-    Vec2 range(HUGE_VALF, -HUGE_VALF);
-    for (const float value : values)
-        if (std::isfinite(value)) range = {std::min(range.x(), value), std::max(range.y(), value)};
-    if (range.x() > range.y()) return {0, 1};
-    if (range.x() == range.y()) return {range.x() - 0.5f, range.y() + 0.5f};
-    return range;
-}
 
 /// A curve in a frame. Where several values share a column of pixels it covers all of them.
 void draw_curve(std::span<const float> values, const Vec2& range, ImVec2 from, ImVec2 to) {
@@ -70,9 +48,9 @@ void draw_curve(std::span<const float> values, const Vec2& range, ImVec2 from, I
 }  // namespace
 
 /// The name on the left, the widget on the right, under an id of its own.
-class Widgets::Row {
+class ImGuiWidgets::Row {
   public:
-    Row(Widgets& widgets, const std::string& name)
+    Row(ImGuiWidgets& widgets, const std::string& name)
         : scope_(widgets.context_), widgets_(widgets), name_(name) {
         ImGui::PushID(name.c_str());
         ImGui::PushID(widgets.used_[name]++);
@@ -92,69 +70,62 @@ class Widgets::Row {
         return in_table_;
     }
     bool changed(bool value) {
-        note_place(widgets_.state_, widgets_.panel_ + "/" + name_);
+        note_place(widgets_.panel_ + "/" + name_);
         return value;
     }
 
   private:
     GuiScope scope_;
-    Widgets& widgets_;
+    ImGuiWidgets& widgets_;
     const std::string& name_;
     bool in_table_ = false;
 };
 
-Widgets::Widgets(ImGuiContext* context, GuiState& state, std::string panel)
-    : context_(context), state_(state), panel_(std::move(panel)) {}
-
-void Widgets::text(const std::string& text) {
+void ImGuiWidgets::text(const std::string& text) {
     const GuiScope scope(context_);
     ImGui::PushTextWrapPos();
     ImGui::TextUnformatted(text.c_str());
     ImGui::PopTextWrapPos();
 }
 
-void Widgets::separator() {
+void ImGuiWidgets::separator() {
     const GuiScope scope(context_);
     ImGui::Separator();
 }
 
-void Widgets::same_line() {
+void ImGuiWidgets::same_line() {
     const GuiScope scope(context_);
     ImGui::SameLine();
 }
 
-bool Widgets::section(const std::string& title, bool open) {
+bool ImGuiWidgets::section(const std::string& title, bool open) {
     Row row(*this, title);
     return row.changed(heading(title.c_str(), open));
 }
 
-bool Widgets::button(const std::string& name) {
+bool ImGuiWidgets::button(const std::string& name) {
     Row row(*this, name);
     return row.changed(ImGui::Button(name.c_str()));
 }
 
-bool Widgets::checkbox(const std::string& name, bool& value) {
+bool ImGuiWidgets::checkbox(const std::string& name, bool& value) {
     Row row(*this, name);
     return row.begin() && row.changed(ImGui::Checkbox("##value", &value));
 }
 
-bool Widgets::slider(const std::string& name, double& value, double low, double high) {
-    require_finite("slider", name, value);
-    require_range("slider", name, low, high, 1e300);
+bool ImGuiWidgets::draw_slider(const std::string& name, double& value, double low, double high) {
     Row row(*this, name);
     return row.begin() && row.changed(ImGui::SliderScalar("##value", ImGuiDataType_Double, &value, &low,
                                                           &high, "%.4g", ImGuiSliderFlags_AlwaysClamp));
 }
 
-bool Widgets::slider(const std::string& name, int& value, int low, int high) {
-    require_range("slider", name, low, high, double(1 << 30));
+bool ImGuiWidgets::draw_slider(const std::string& name, int& value, int low, int high) {
     Row row(*this, name);
     return row.begin() &&
            row.changed(ImGui::SliderInt("##value", &value, low, high, "%d", ImGuiSliderFlags_AlwaysClamp));
 }
 
-bool Widgets::number(const std::string& name, double& value) {
-    require_finite("number", name, value);
+bool ImGuiWidgets::draw_number(const std::string& name, double& value) {
     Row row(*this, name);
     const float speed = float(std::max(std::abs(value), 1e-3) * 0.01);
     double typed = value;
@@ -166,8 +137,8 @@ bool Widgets::number(const std::string& name, double& value) {
     return changed;
 }
 
-bool Widgets::combo(const std::string& name, std::string& value, const std::vector<std::string>& choices) {
-    if (choices.empty()) throw ArgumentError(fmt::format("combo '{}': expected at least one choice", name));
+bool ImGuiWidgets::draw_combo(const std::string& name, std::string& value,
+                              const std::vector<std::string>& choices) {
     Row row(*this, name);
     if (!row.begin()) return false;
     const bool open = ImGui::BeginCombo("##value", value.c_str());
@@ -180,55 +151,50 @@ bool Widgets::combo(const std::string& name, std::string& value, const std::vect
             value = choices[i];
             changed = true;
         }
-        note_place(state_, panel_ + "/" + name + "/" + choices[i]);
+        note_place(panel_ + "/" + name + "/" + choices[i]);
         ImGui::PopID();
     }
     ImGui::EndCombo();
     return changed;
 }
 
-bool Widgets::text_field(const std::string& name, std::string& value) {
+bool ImGuiWidgets::text_field(const std::string& name, std::string& value) {
     Row row(*this, name);
     return row.begin() && row.changed(ImGui::InputText("##value", &value));
 }
 
-bool Widgets::color(const std::string& name, Vec3& value) {
-    if (!value.allFinite()) throw ArgumentError(fmt::format("color '{}': expected finite numbers", name));
+bool ImGuiWidgets::draw_color(const std::string& name, Vec3& value) {
     Row row(*this, name);
     return row.begin() &&
            row.changed(ImGui::ColorEdit3("##value", value.data(),
                                          ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoInputs));
 }
 
-void Widgets::plot(const std::string& name, std::span<const float> values, const std::optional<Vec2>& range) {
-    if (range) require_range("plot", name, range->x(), range->y(), 1e30);
+void ImGuiWidgets::draw_plot(const std::string& name, std::span<const float> values, const Vec2& range) {
     const Row row(*this, name);
-    const Vec2 shown = range ? *range : range_of(values);
     ImGui::TextUnformatted(name.c_str());
     if (!values.empty()) {
         const std::string last = fmt::format("{:.4g}", values.back());
         ImGui::SameLine(ImGui::GetContentRegionMax().x - ImGui::CalcTextSize(last.c_str()).x);
         ImGui::TextUnformatted(last.c_str());
     }
-    const ImVec2 size(std::max(ImGui::GetContentRegionAvail().x, 20.0f), plot_height * state_.scale);
+    const ImVec2 size(std::max(ImGui::GetContentRegionAvail().x, 20.0f), plot_height * scale_);
     const ImVec2 from = ImGui::GetCursorScreenPos(), to(from.x + size.x, from.y + size.y);
     ImGui::Dummy(size);
-    note_place(state_, panel_ + "/" + name);
+    note_place(panel_ + "/" + name);
     ImDrawList& list = *ImGui::GetWindowDrawList();
     list.AddRectFilled(from, to, ImGui::GetColorU32(ImGuiCol_FrameBg), ImGui::GetStyle().FrameRounding);
-    const float pad = 3 * state_.scale;
-    draw_curve(values, shown, ImVec2(from.x + pad, from.y + pad), ImVec2(to.x - pad, to.y - pad));
+    const float pad = 3 * scale_;
+    draw_curve(values, range, ImVec2(from.x + pad, from.y + pad), ImVec2(to.x - pad, to.y - pad));
     const ImU32 dim = ImGui::GetColorU32(ImGuiCol_TextDisabled);
-    list.AddText(ImVec2(from.x + pad, from.y), dim, fmt::format("{:.4g}", shown.y()).c_str());
+    list.AddText(ImVec2(from.x + pad, from.y), dim, fmt::format("{:.4g}", range.y()).c_str());
     list.AddText(ImVec2(from.x + pad, to.y - ImGui::GetTextLineHeight()), dim,
-                 fmt::format("{:.4g}", shown.x()).c_str());
+                 fmt::format("{:.4g}", range.x()).c_str());
 }
 
-void Widgets::progress(double fraction, const std::string& text) {
-    require_finite("progress", text, fraction);
+void ImGuiWidgets::draw_progress(double fraction, const std::string& text) {
     const GuiScope scope(context_);
-    ImGui::ProgressBar(float(std::clamp(fraction, 0.0, 1.0)), ImVec2(-FLT_MIN, 0),
-                       text.empty() ? nullptr : text.c_str());
+    ImGui::ProgressBar(float(fraction), ImVec2(-FLT_MIN, 0), text.empty() ? nullptr : text.c_str());
 }
 
 }  // namespace easypbr::gui

@@ -1,0 +1,129 @@
+#include "easypbr/app/edits.h"
+
+#include <algorithm>
+#include <utility>
+
+namespace easypbr::app {
+namespace {
+
+std::optional<Light> light_named(const Scene& scene, const std::string& name) {
+    const auto names = scene.light_names();
+    if (std::ranges::find(names, name) == names.end()) return {};
+    return scene.light(name);
+}
+
+ObjectState look_of(const Mesh& node) {
+    const auto data = node.snapshot();
+    ObjectState object;
+    object.materials = data->materials;
+    object.style = data->style;
+    return object;
+}
+
+}  // namespace
+
+std::optional<Mesh> node_named(const Scene& scene, const std::string& name) {
+    for (const std::string& root : scene.names()) {
+        if (name != root && !name.starts_with(root + "/")) continue;
+        Mesh node = scene.get(root);
+        std::string path = root;
+        for (bool found = true; found && path != name;) {
+            found = false;
+            for (const Mesh& child : node.snapshot()->children) {
+                const std::string child_path = path + "/" + child.name();
+                if (name != child_path && !name.starts_with(child_path + "/")) continue;
+                const Mesh next = child;
+                node = next;
+                path = child_path;
+                found = true;
+                break;
+            }
+        }
+        if (path == name) return node;
+    }
+    return {};
+}
+
+void Edits::change_look(const std::string& object, const std::string& property, const LookChange& change) {
+    std::optional<Mesh> node = node_named(session_.scene(), object);
+    if (!node) return;
+    history_.know(object, look_of(*node));
+    node->edit(change);
+    changed_looks_.insert(object);
+    looks_[object][property] = change;
+}
+
+void Edits::keep_looks() {
+    std::map<std::string, Mesh> present;
+    for (const auto& [object, changes] : looks_) {
+        const std::optional<Mesh> node = node_named(session_.scene(), object);
+        if (!node) continue;
+        present.insert_or_assign(object, *node);
+        const auto known = shown_.find(object);
+        if (known == shown_.end() || known->second == *node) continue;
+        Mesh shown = *node;
+        for (const auto& [property, change] : changes) shown.edit(change);
+    }
+    shown_ = std::move(present);
+}
+
+void Edits::will_move(const std::string& object, const Mesh& node) {
+    ObjectState before;
+    before.T_parent_mesh = node.T_parent_mesh();
+    history_.know(object, before);
+    changed_poses_.insert(object);
+}
+
+void Edits::will_change_light(const std::string& name) {
+    history_.know_light(name, light_named(session_.scene(), name));
+    changed_lights_.insert(name);
+}
+
+void Edits::note() {
+    const Scene& scene = session_.scene();
+    ObjectStates changed;
+    for (const std::string& name : std::exchange(changed_looks_, {})) {
+        const std::optional<Mesh> node = node_named(scene, name);
+        if (!node) continue;
+        changed[name] = look_of(*node);
+        changed[name].changes = looks_[name];
+    }
+    for (const std::string& name : std::exchange(changed_poses_, {}))
+        if (const std::optional<Mesh> node = node_named(scene, name))
+            changed[name].T_parent_mesh = node->T_parent_mesh();
+    LightStates lights;
+    for (const std::string& name : std::exchange(changed_lights_, {}))
+        lights[name] = light_named(scene, name);
+    history_.note(session_.settings(), changed, lights);
+}
+
+void Edits::restore(const History::Step& step) {
+    session_.replace_settings(step.settings);
+    for (const auto& [name, object] : step.objects) {
+        std::optional<Mesh> node = node_named(session_.scene(), name);
+        if (!node) continue;
+        if (object.T_parent_mesh) node->set_T_parent_mesh(*object.T_parent_mesh);
+        if (object.materials && object.style)
+            node->edit([&look = object](MeshData& data) {
+                data.materials = *look.materials;
+                data.style = *look.style;
+            });
+        if (object.materials) looks_[name] = object.changes;
+    }
+    for (const auto& [name, light] : step.lights) {
+        if (light)
+            session_.scene().set_light(name, *light);
+        else if (light_named(session_.scene(), name))
+            session_.scene().remove_light(name);
+    }
+}
+
+void Edits::undo() {
+    if (can_undo()) restore(history_.undo());
+}
+
+void Edits::redo() {
+    if (can_redo()) restore(history_.redo());
+}
+
+}  // namespace easypbr::app

@@ -1,0 +1,53 @@
+// What a person changes in a session by hand, with undo and redo.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "easypbr/app/history.h"
+#include "easypbr/app/session.h"
+
+namespace easypbr::app {
+
+/// The mesh of a node's name, "car" or "car/wheel"; nothing when there is none.
+std::optional<Mesh> node_named(const Scene& scene, const std::string& name);
+
+/// Changes of settings are found by note(); those of objects and lights are announced.
+class Edits {
+  public:
+    /// The session must outlive it.
+    explicit Edits(Session& session) : session_(session) {}
+
+    /// Changes a node's look now and whenever other data are shown under its name (keep_looks()). `property`
+    /// names what is changed: a later change of the same one takes its place. Throws what the change throws.
+    void change_look(const std::string& object, const std::string& property, const LookChange& change);
+    /// Makes the changes again where other data are shown under a name than at the last call.
+    void keep_looks();
+
+    /// Before an object is moved: undo() puts it back.
+    void will_move(const std::string& object, const Mesh& node);
+    /// Before a light of the scene is added, changed or removed.
+    void will_change_light(const std::string& name);
+
+    /// Notes settings and what was changed as one state.
+    void note();
+    bool can_undo() const { return history_.can_undo(); }
+    bool can_redo() const { return history_.can_redo(); }
+    /// Nothing happens when there is nothing to.
+    void undo();
+    void redo();
+
+  private:
+    void restore(const History::Step& step);
+
+    Session& session_;
+    History history_;
+    std::map<std::string, std::map<std::string, LookChange>> looks_;  ///< by object, by property
+    std::map<std::string, Mesh> shown_;  ///< the objects with looks, at the last keep_looks()
+    /// Objects and lights that were changed since the last note().
+    std::set<std::string> changed_looks_, changed_poses_, changed_lights_;
+};
+
+}  // namespace easypbr::app

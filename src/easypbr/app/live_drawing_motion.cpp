@@ -1,0 +1,104 @@
+// What a live drawing does by itself, frame by frame: camera paths and recordings.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "easypbr/app/live_drawing.h"
+#include "easypbr/core/error.h"
+
+namespace easypbr::app {
+namespace {
+
+using Moved = std::vector<std::pair<Mesh, Eigen::Affine3d>>;
+
+/// Where a node was, "car/wheel" and T_world_mesh, before it and what it hangs from moved.
+Eigen::Affine3d pose_before(const Scene& scene, const std::string& name, const Eigen::Affine3d& T_world_mesh,
+                            const Moved& moved) {
+    Eigen::Affine3d now = Eigen::Affine3d::Identity(), before = now;
+    for (size_t at = 0; at != name.npos;) {
+        at = name.find('/', at + 1);
+        const std::optional<Mesh> node = node_named(scene, name.substr(0, at));
+        if (!node) continue;
+        const Eigen::Affine3d own = node->T_parent_mesh();
+        const auto motion = std::ranges::find(moved, *node, &Moved::value_type::first);
+        now = now * own;
+        before = before * own * (motion == moved.end() ? Eigen::Affine3d::Identity() : motion->second);
+    }
+    if (before.matrix() == now.matrix()) return T_world_mesh;
+    // By what it moved in the world, so that the scene's origin does not matter.
+    return before * now.inverse(Eigen::Affine) * T_world_mesh;
+}
+
+}  // namespace
+
+void LiveDrawing::move_along_path(double seconds) {
+    const bool moves = path_.editor.advance(seconds);
+    const auto key = std::exchange(path_.look_at_key, {});
+    if (recording_.is_path() || (!moves && !key) || session_.scene().names().empty()) return;
+    ViewPoint view = session_.view_point(size_);
+    const double distance = view.distance();
+    if (key && *key < path_.editor.keys().size())
+        view.camera.T_world_cam = path_.editor.keys()[*key].T_world_cam;
+    else if (path_.editor.path())
+        view.camera = path_.editor.path()->camera(path_.editor.time(), view.camera);
+    view.target = view.camera.position() - distance * view.camera.T_world_cam.linear().col(2);
+    session_.set_view_point(view);
+}
+
+Session::RefinedMotion LiveDrawing::shown_motion(const Camera& now) const {
+    if (!(form_.fps > 0)) return nullptr;
+    const double frame_s = 1 / form_.fps;
+    Motion motion(session_.scene().snapshot(), now);
+    const auto moved = player_.motion(frame_s);
+    for (auto& [name, pose] : motion.poses) pose = pose_before(session_.scene(), name, pose, moved);
+    const auto& path = path_.editor.path();
+    if (const auto before = recording_.camera_before())
+        motion.camera = *before;
+    else if (path && now.T_world_cam.isApprox(path->pose(path_.editor.time()), 1e-9))
+        motion.camera = path->camera(path_.editor.time() - frame_s, now);
+    return std::make_shared<const Motion>(std::move(motion));
+}
+
+void LiveDrawing::tell(const std::string& text, bool failed) {
+    report_ = {text, failed};
+    notifications_.add(text, failed);
+}
+
+void LiveDrawing::begin_recording(LiveWishes::Recording wish, const LiveScreens& screens) {
+    using Wish = LiveWishes::Recording;
+    RecordingForm form = form_;
+    form.panels &= bool(screens.shown);
+    if (wish == Wish::picture) tell("Wrote " + recording_.picture(form, screens.finished), false);
+    if (wish == Wish::video) recording_.start(form, size_);
+    if (wish == Wish::path && path_.editor.path()) {
+        path_.editor.pause();
+        recording_.start_path(form, size_, *path_.editor.path());
+    }
+}
+
+void LiveDrawing::record(const LiveScreens& screens) {
+    const LiveWishes::Recording wish = std::exchange(wishes_.recording, LiveWishes::Recording::none);
+    try {
+        begin_recording(wish, screens);
+        if (wish == LiveWishes::Recording::stop) return stop_recording();
+        if (!recording_.is_running()) return;
+        recording_.advance(screens.finished, screens.shown);
+        if (!recording_.frame().empty()) picture_.show(with_channels(to_u8(recording_.frame()), 4));
+        if (recording_.is_path() && recording_.frames() == recording_.total()) stop_recording();
+    } catch (const std::exception& error) {
+        tell(error.what(), true);
+    }
+}
+
+void LiveDrawing::stop_recording() {
+    if (!recording_.is_running()) return;
+    const std::string video = form_.video;
+    try {
+        tell(fmt::format("Wrote {}: {} frames", video, recording_.stop()), false);
+    } catch (const std::exception& error) {
+        tell(error.what(), true);
+    }
+}
+
+}  // namespace easypbr::app

@@ -1,0 +1,44 @@
+#include "easypbr/app/prepared.h"
+
+#include <algorithm>
+
+#include "easypbr/app/named_textures.h"
+#include "easypbr/scene/fields.h"
+
+namespace easypbr::app {
+namespace {
+
+/// The same data at the same places.
+bool same_scene(const SceneSnapshot& a, const SceneSnapshot& b) {
+    const auto same_object = [](const SceneSnapshot::Object& x, const SceneSnapshot::Object& y) {
+        return x.mesh == y.mesh && x.name == y.name && x.T_world_mesh.matrix() == y.T_world_mesh.matrix();
+    };
+    const auto hash = [](const Environment& environment) {
+        return environment.empty() ? std::string() : environment.hash();
+    };
+    return std::ranges::equal(a.objects, b.objects, same_object) && a.origin == b.origin &&
+           hash(a.environment) == hash(b.environment);
+}
+
+bool same_settings(const Settings& a, const Settings& b) {
+    return std::ranges::all_of(fields(), [&](const Field& field) { return field.get(a) == field.get(b); });
+}
+
+bool same_images(const render::SettingsImages& a, const render::SettingsImages& b) {
+    const auto same_texture = [&](const NamedTexture& named) {
+        return (a.textures.*named.texture).image == (b.textures.*named.texture).image;
+    };
+    return a.background == b.background && a.textures.shader == b.textures.shader &&
+           a.shader_files == b.shader_files && std::ranges::all_of(named_textures, same_texture);
+}
+
+}  // namespace
+
+bool same_picture(const Prepared& a, const Prepared& b) {
+    const render::DrawOptions &x = a.options, &y = b.options;
+    return x.size == y.size && x.samples == y.samples && x.encoding == y.encoding && x.motion == y.motion &&
+           a.passes == b.passes && same_images(a.images, b.images) && same_scene(a.scene, b.scene) &&
+           a.resolved.lights == b.resolved.lights && same_settings(a.resolved.settings, b.resolved.settings);
+}
+
+}  // namespace easypbr::app

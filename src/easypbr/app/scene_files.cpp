@@ -1,0 +1,79 @@
+#include "easypbr/app/scene_files.h"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "easypbr/app/output.h"
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/io/mesh/mesh_io.h"
+
+namespace easypbr::app {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double watch_seconds = 0.5;
+
+bool is_environment_file(const fs::path& path) {
+    const std::string extension = extension_of(path);
+    return extension == "hdr" || extension == "exr";
+}
+
+std::string unique_name(const Scene& scene, const std::string& stem) {
+    std::string name = stem;
+    for (int number = 2; scene.contains(name); ++number) name = fmt::format("{}-{}", stem, number);
+    return name;
+}
+
+void show_loaded(Session& session, AnimationPlayer& player, const fs::path& path, const std::string& name) {
+    const io::LoadedScene loaded =
+        io::load_scene(path, {.crease_angle_deg = session.settings().load.crease_deg});
+    session.scene().show(loaded.mesh, name);
+    if (!loaded.animations.empty()) player.add(name, loaded.animations);
+    for (const auto& [light, value] : loaded.lights) session.scene().set_light(name + "/" + light, value);
+}
+
+}  // namespace
+
+void SceneFiles::open(const fs::path& path) {
+    if (is_environment_file(path)) {
+        session_.load_environment(path);
+        return notifications_.add("Environment: " + path.filename().string());
+    }
+    const std::string name = unique_name(session_.scene(), path.stem().string());
+    show_loaded(session_, player_, path, name);
+    notifications_.add("Added " + name);
+}
+
+void SceneFiles::watch(const fs::path& path, const std::string& name) {
+    watched_.push_back({path, name, fs::last_write_time(path)});
+}
+
+void SceneFiles::advance(double seconds) {
+    if (watched_.empty() || (since_watch_ += seconds) < watch_seconds) return;
+    since_watch_ = 0;
+    for (Watched& file : watched_) try {
+            std::error_code gone;  // A file that is being replaced may be missing for a moment.
+            const auto time = fs::last_write_time(file.path, gone);
+            if (gone || time == file.time) continue;
+            file.time = time;
+            show_loaded(session_, player_, file.path, file.name);
+            notifications_.add("Reloaded " + file.name);
+        } catch (const Error& error) {
+            notifications_.add(error.what(), true);
+        }
+}
+
+void SceneFiles::save_settings(const fs::path& path) {
+    std::set<fs::path> files;
+    for (const std::string& name : session_.scene().names())
+        if (const fs::path source = session_.scene().get(name).snapshot()->source; !source.empty())
+            files.insert(source);
+    app::save_settings(session_, {files.begin(), files.end()}, path);
+    notifications_.add(fmt::format("Saved {}: easypbr render --settings {} makes this picture", path.string(),
+                                   path.filename().string()));
+}
+
+}  // namespace easypbr::app

@@ -1,0 +1,47 @@
+// Files that a person brings into a session while looking at it, and watches.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "easypbr/app/animation_player.h"
+#include "easypbr/app/notifications.h"
+#include "easypbr/app/session.h"
+
+namespace easypbr::app {
+
+/// Tells by notifications what it has done.
+class SceneFiles {
+  public:
+    /// All must outlive it.
+    SceneFiles(Session& session, AnimationPlayer& player, Notifications& notifications)
+        : session_(session), player_(player), notifications_(notifications) {}
+
+    /// Adds what a file holds under the file's name, made unique; pictures with high range become the
+    /// environment. Throws FileError, FormatError.
+    void open(const std::filesystem::path& path);
+
+    /// Shows the file again under `name` whenever it changes.
+    void watch(const std::filesystem::path& path, const std::string& name);
+    /// Lets time pass: looks now and then whether watched files have changed. Errors become notifications.
+    void advance(double seconds);
+
+    /// Writes the settings, with the hashes of the files that are shown. Throws as app::save_settings().
+    void save_settings(const std::filesystem::path& path);
+
+  private:
+    struct Watched {
+        std::filesystem::path path;
+        std::string name;
+        std::filesystem::file_time_type time;
+    };
+
+    Session& session_;
+    AnimationPlayer& player_;
+    Notifications& notifications_;
+    std::vector<Watched> watched_;
+    double since_watch_ = 0;
+};
+
+}  // namespace easypbr::app

@@ -1,0 +1,26 @@
+// Warnings about what is asked for and cannot be seen, each told once until it is mended.
+#pragma once
+
+#include <string>
+
+#include "easypbr/scene/resolve.h"
+#include "easypbr/scene/scene.h"
+
+namespace easypbr::app {
+
+class SceneWarnings {
+  public:
+    /// Logs what is new: a lens for an orthographic camera; surfels of a mesh without normals, which is drawn
+    /// as points; a material with a shader that has no faces to act on.
+    void check(const SceneSnapshot& scene, const Settings& settings, const ResolvedSettings& resolved);
+
+  private:
+    /// Remembers whether something is wrong; logs `text` when it was not before.
+    struct Once {
+        bool told = false;
+        void tell(const std::string& text);
+    };
+    Once lens_, surfels_, shaders_;
+};
+
+}  // namespace easypbr::app

@@ -1,0 +1,33 @@
+// Of Session: passes of a program's own.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "easypbr/app/session.h"
+#include "easypbr/core/error.h"
+#include "easypbr/core/suggest.h"
+
+namespace easypbr::app {
+
+void Session::add_pass(const std::string& name, render::Stage stage, std::shared_ptr<render::Pass> pass) {
+    if (!pass) throw ArgumentError(fmt::format("pass '{}': expected a pass, got none", name));
+    const auto same = [&](const render::CustomPass& custom) { return custom.name == name; };
+    if (const auto old = std::ranges::find_if(passes_, same); old != passes_.end())
+        *old = {name, stage, std::move(pass)};
+    else
+        passes_.push_back({name, stage, std::move(pass)});
+    if (device_->renderer) device_->renderer->set_passes(passes_);
+}
+
+void Session::remove_pass(const std::string& name) {
+    const auto same = [&](const render::CustomPass& custom) { return custom.name == name; };
+    if (std::erase_if(passes_, same) == 0) {
+        std::vector<std::string> names;
+        for (const render::CustomPass& custom : passes_) names.push_back(custom.name);
+        throw NameError(fmt::format("there is no pass '{}'{}", name, did_you_mean(name, names)));
+    }
+    if (device_->renderer) device_->renderer->set_passes(passes_);
+}
+
+}  // namespace easypbr::app

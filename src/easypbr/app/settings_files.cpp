@@ -1,0 +1,76 @@
+#include "easypbr/app/settings_files.h"
+
+#include <set>
+
+#include "easypbr/app/named_textures.h"
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/io/image/image_io.h"
+
+namespace easypbr::app {
+
+void ImageFiles::read(const std::vector<std::string>& paths) {
+    for (const std::string& path : paths) files_[path];  // The map must not change while threads use it.
+    parallel_for(paths.size(), 1, [&](size_t i) {
+        File& file = files_.at(paths[i]);
+        std::error_code ignored;  // A file that is missing is reported by load_image().
+        const auto time = std::filesystem::last_write_time(paths[i], ignored);
+        if (!file.image || file.time != time)
+            file = {time, std::make_shared<const Image>(io::load_image(paths[i]))};
+    });
+}
+
+std::shared_ptr<const Image> ImageFiles::get(const std::string& path) const {
+    return path.empty() ? nullptr : files_.at(path).image;
+}
+
+const std::string& ShaderTexts::get(const std::string& path) {
+    File& file = files_[path];
+    std::error_code gone;  // A file that is being replaced may be missing for a moment.
+    const auto time = std::filesystem::last_write_time(path, gone);
+    if (!file.text.empty() && (gone || time == file.time)) return file.text;
+    file = {time, std::string(FileBytes(path).text())};
+    return file.text;
+}
+
+void SettingsFiles::load(const Settings& settings) {
+    std::set<std::string> paths;
+    for (const NamedTexture& named : named_textures) paths.insert(settings.material.*named.path);
+    const bool has_background = settings.background.mode == BackgroundMode::image;
+    if (has_background) {
+        if (settings.background.image.empty())
+            throw ArgumentError("background.mode is image, but background.image names no file");
+        paths.insert(settings.background.image);
+    }
+    paths.erase("");
+    image_files_.read({paths.begin(), paths.end()});
+    images_ = {};
+    for (const NamedTexture& named : named_textures) {
+        Texture& texture = images_.textures.*named.texture;
+        texture.path = settings.material.*named.path;
+        texture.image = image_files_.get(texture.path);
+    }
+    if (has_background) images_.background = image_files_.get(settings.background.image);
+    if (settings.environment.file != environment_file_) {
+        const std::filesystem::path file = settings.environment.file;
+        environment_ = file.empty() ? Environment() : Environment(file);
+        environment_file_ = settings.environment.file;
+    }
+}
+
+void SettingsFiles::load_shaders(const Settings& settings, const SceneSnapshot& scene) {
+    if (const std::string& path = settings.material.shader; !path.empty())
+        images_.textures.shader = {shader_texts_.get(path), path};
+    for (const SceneSnapshot::Object& object : scene.objects)
+        for (const Material& material : object.mesh->materials)
+            if (const std::string& path = material.shader.path; !path.empty())
+                images_.shader_files[path] = shader_texts_.get(path);
+}
+
+void SettingsFiles::load_environment(const std::filesystem::path& path) {
+    environment_ = Environment(path);
+    environment_file_ = path.string();
+}
+
+}  // namespace easypbr::app

@@ -1,0 +1,71 @@
+// Files that settings and materials name: images, shaders and the environment, read again when they change.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/image.h"
+#include "easypbr/render/pipeline/renderer.h"
+#include "easypbr/scene/environment.h"
+#include "easypbr/scene/scene.h"
+#include "easypbr/scene/settings.h"
+
+namespace easypbr::app {
+
+/// Images by path.
+class ImageFiles {
+  public:
+    /// Reads those that are new or have changed, all at once. Throws FileError, FormatError.
+    void read(const std::vector<std::string>& paths);
+    /// One that has been read; null for an empty path.
+    std::shared_ptr<const Image> get(const std::string& path) const;
+
+  private:
+    struct File {
+        std::filesystem::file_time_type time;
+        std::shared_ptr<const Image> image;
+    };
+    std::map<std::string, File> files_;
+};
+
+/// Texts of shaders by path.
+class ShaderTexts {
+  public:
+    /// The file's text, read when it is new or has changed. Throws FileError.
+    const std::string& get(const std::string& path);
+
+  private:
+    struct File {
+        std::filesystem::file_time_type time;
+        std::string text;
+    };
+    std::map<std::string, File> files_;
+};
+
+class SettingsFiles {
+  public:
+    /// Images that the settings name, and the environment. Throws FileError, FormatError; ArgumentError when
+    /// the background is an image and none is named.
+    void load(const Settings& settings);
+    /// The shaders of settings and materials, after load(). Throws FileError.
+    void load_shaders(const Settings& settings, const SceneSnapshot& scene);
+    /// Reads the environment at once, even if it has been read before.
+    void load_environment(const std::filesystem::path& path);
+
+    /// What was loaded last.
+    const render::SettingsImages& images() const { return images_; }
+    /// settings.environment.file's; empty when none is named.
+    const Environment& environment() const { return environment_; }
+
+  private:
+    ImageFiles image_files_;
+    ShaderTexts shader_texts_;
+    render::SettingsImages images_;
+    std::string environment_file_;
+    Environment environment_;
+};
+
+}  // namespace easypbr::app
