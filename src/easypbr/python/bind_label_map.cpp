@@ -27,7 +27,7 @@ class NamesLike : public nb::object {
 /// Throws ArgumentError that says what was expected.
 template <class T>
 T taken(nb::handle object, std::string_view what, std::string_view expected) {
-    T value;
+    T value{};
     if (!nb::try_cast(object, value))
         throw ArgumentError(fmt::format("LabelMap {}: expected {}, got {}", what, expected,
                                         nb::cast<std::string>(nb::repr(object))));
