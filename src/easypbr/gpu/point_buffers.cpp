@@ -36,15 +36,8 @@ PointBuffers make_buffers(const MeshData& mesh) {
 }  // namespace
 
 const PointBuffers& PointCache::get(const MeshData& mesh) {
-    Entry& entry = entries_[{mesh.V.revision(), mesh.N.revision(), mesh.C.revision()}];
-    entry.used = true;
-    if (!entry.buffers) entry.buffers = std::make_unique<PointBuffers>(make_buffers(mesh));
-    return *entry.buffers;
-}
-
-void PointCache::evict_unused() {
-    std::erase_if(entries_, [](const auto& item) { return !item.second.used; });
-    for (auto& [key, entry] : entries_) entry.used = false;
+    return buffers_.get({mesh.V.revision(), mesh.N.revision(), mesh.C.revision()},
+                        [&] { return make_buffers(mesh); });
 }
 
 }  // namespace easypbr::gpu

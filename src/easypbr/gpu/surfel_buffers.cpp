@@ -41,16 +41,9 @@ SurfelBuffers make_buffers(const MeshData& mesh) {
 }  // namespace
 
 const SurfelBuffers& SurfelCache::get(const MeshData& mesh) {
-    Entry& entry = entries_[{mesh.V.revision(), mesh.N.revision(), mesh.T.revision(), mesh.B.revision(),
-                             mesh.C.revision()}];
-    entry.used = true;
-    if (!entry.buffers) entry.buffers = std::make_unique<SurfelBuffers>(make_buffers(mesh));
-    return *entry.buffers;
-}
-
-void SurfelCache::evict_unused() {
-    std::erase_if(entries_, [](const auto& item) { return !item.second.used; });
-    for (auto& [key, entry] : entries_) entry.used = false;
+    const Key key{mesh.V.revision(), mesh.N.revision(), mesh.T.revision(), mesh.B.revision(),
+                  mesh.C.revision()};
+    return buffers_.get(key, [&] { return make_buffers(mesh); });
 }
 
 }  // namespace easypbr::gpu

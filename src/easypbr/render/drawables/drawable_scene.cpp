@@ -198,9 +198,11 @@ ElementSources of_voxels(const MeshData& cubes) {
 template <class Make>
 std::shared_ptr<const MeshData> DrawableCache::get(const std::string& key, const MeshData& current,
                                                    ElementSources& sources, Make&& make) {
-    Entry& entry = entries_[key];
-    if (!entry.arrays) entry.arrays = std::make_shared<const MeshData>(make(entry));
-    entry.used = true;
+    const Entry& entry = entries_.get(key, [&] {
+        Entry made;
+        made.arrays = std::make_shared<const MeshData>(make(made));
+        return made;
+    });
     sources = {composed(entry.sources.faces, sources.faces), composed(entry.sources.points, sources.points)};
     auto mesh = std::make_shared<MeshData>(current);
     replace_arrays(*mesh, *entry.arrays);
@@ -269,11 +271,6 @@ void DrawableCache::apply(SceneSnapshot::Object& object, const Settings& setting
         });
         sources = {composed(cubes.faces, sources.points), composed(cubes.points, sources.points)};
     }
-}
-
-void DrawableCache::evict_unused() {
-    std::erase_if(entries_, [](const auto& item) { return !item.second.used; });
-    for (auto& [key, entry] : entries_) entry.used = false;
 }
 
 }  // namespace easypbr::render
