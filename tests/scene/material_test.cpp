@@ -1,9 +1,11 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
 #include "easypbr/core/error.h"
+#include "easypbr/scene/fields.h"
 #include "easypbr/scene/material_table.h"
 #include "easypbr/scene/mesh.h"
 
@@ -118,4 +120,21 @@ TEST(Material, EveryTextureStandsInTheTableOnce) {
         (m.*use.texture).image = nullptr;
     }
     EXPECT_EQ(names.size(), 19u);
+}
+
+// Its setting is the one that is named after it, and no other.
+TEST(Material, ReplaceableTexturesHaveTheirSetting) {
+    ASSERT_EQ(replaceable_textures().size(), 7u) << "of glTF's core model, with metallic and roughness apart";
+    for (const MaterialTexture& row : material_textures()) {
+        const std::string name = fmt::format("material.{}_texture", row.name);
+        if (!row.setting) {
+            EXPECT_THROW(field(name), NameError) << name;
+            continue;
+        }
+        Settings settings;
+        settings.material.*row.setting = "file.png";
+        for (const Field& other : fields())
+            EXPECT_EQ(other.get(settings) == other.get(Settings()), other.name != name)
+                << name << ", " << other.name;
+    }
 }

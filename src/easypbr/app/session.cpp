@@ -13,6 +13,7 @@
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/material_table.h"
 
 namespace easypbr::app {
 namespace {
@@ -27,22 +28,8 @@ void check_size(Vec2i size) {
                         size.x(), size.y(), max_picture_pixels));
 }
 
-struct NamedTexture {
-    std::string MaterialSettings::*path;
-    Texture Material::*texture;
-};
-
 /// An automatic near plane stays within this part of the target's distance (auto_camera.cpp begins there).
 constexpr double near_part = 1e-3;
-
-constexpr NamedTexture named_textures[] = {
-    {&MaterialSettings::base_color_texture, &Material::base_color_texture},
-    {&MaterialSettings::metallic_texture, &Material::metallic_texture},
-    {&MaterialSettings::roughness_texture, &Material::roughness_texture},
-    {&MaterialSettings::normal_texture, &Material::normal_texture},
-    {&MaterialSettings::occlusion_texture, &Material::occlusion_texture},
-    {&MaterialSettings::emissive_texture, &Material::emissive_texture},
-    {&MaterialSettings::opacity_texture, &Material::opacity_texture}};
 
 /// The same data at the same places. Data never change, so those that are the same object are the same.
 bool same_scene(const SceneSnapshot& a, const SceneSnapshot& b) {
@@ -95,7 +82,7 @@ void Session::read_images(const std::vector<std::string>& paths) {
 
 void Session::load_images() {
     std::set<std::string> paths;
-    for (const NamedTexture& named : named_textures) paths.insert(settings_.material.*named.path);
+    for (const MaterialTexture& row : replaceable_textures()) paths.insert(settings_.material.*row.setting);
     if (settings_.background.mode == BackgroundMode::image) {
         if (settings_.background.image.empty())
             throw ArgumentError("background.mode is image, but background.image names no file");
@@ -104,9 +91,9 @@ void Session::load_images() {
     paths.erase("");
     read_images({paths.begin(), paths.end()});
     settings_images_ = {};
-    for (const NamedTexture& named : named_textures) {
-        Texture& texture = settings_images_.textures.*named.texture;
-        texture.path = settings_.material.*named.path;
+    for (const MaterialTexture& row : replaceable_textures()) {
+        Texture& texture = settings_images_.textures.*row.texture;
+        texture.path = settings_.material.*row.setting;
         texture.image = image(texture.path);
     }
     if (settings_.background.mode == BackgroundMode::image)
@@ -223,15 +210,15 @@ void Session::begin_frame(const PictureOptions& options) {
 
 bool Session::Refined::is_of(const Prepared& other, const render::SettingsImages& other_images) const {
     const render::DrawOptions &a = prepared.options, &b = other.options;
-    const auto same_texture = [&](const NamedTexture& named) {
-        return (images.textures.*named.texture).image == (other_images.textures.*named.texture).image;
+    const auto same_texture = [&](const MaterialTexture& row) {
+        return (images.textures.*row.texture).image == (other_images.textures.*row.texture).image;
     };
     return a.size == b.size && a.samples == b.samples && a.encoding == b.encoding && a.motion == b.motion &&
            images.background == other_images.background && prepared.passes == other.passes &&
            images.textures.shader == other_images.textures.shader &&
            images.shader_files == other_images.shader_files &&
-           std::ranges::all_of(named_textures, same_texture) && same_scene(prepared.scene, other.scene) &&
-           prepared.resolved.lights == other.resolved.lights &&
+           std::ranges::all_of(replaceable_textures(), same_texture) &&
+           same_scene(prepared.scene, other.scene) && prepared.resolved.lights == other.resolved.lights &&
            same_settings(prepared.resolved.settings, other.resolved.settings);
 }
 

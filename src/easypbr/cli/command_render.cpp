@@ -21,6 +21,7 @@
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/io/settings/label_map_io.h"
+#include "easypbr/scene/setting_files.h"
 
 namespace easypbr::cli {
 namespace {
@@ -83,12 +84,9 @@ void check_files(const Picture& picture, const Settings& settings, const RenderO
     for (const std::string& layer : options.layers) check_writable(truth_path(picture.output, layer));
     if (!picture.save_settings.empty()) check_writable(picture.save_settings);
     for (const std::string& file : picture.files) MappedFile{file};
-    const MaterialSettings& m = settings.material;
-    for (const std::string& file :
-         {settings.environment.file, settings.background.image, m.base_color_texture, m.metallic_texture,
-          m.roughness_texture, m.normal_texture, m.occlusion_texture, m.emissive_texture, m.opacity_texture,
-          m.shader})
+    for_each_file(settings, [](const std::string& file) {
         if (!file.empty()) MappedFile{file};
+    });
 }
 
 std::vector<io::LoadedScene> load_all(const std::vector<std::string>& files, const io::LoadOptions& options) {

@@ -1,8 +1,11 @@
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "easypbr/core/image.h"
 #include "easypbr/scene/field_builder.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/material_table.h"
 
 namespace easypbr {
 namespace detail {
@@ -317,8 +320,8 @@ void add_extended_overrides(Table& table) {
 
 void add_overrides(Table& table) {
     const auto material = [](auto member) { return at(&Settings::material, member); };
-    const auto texture = [&](const std::string& name, std::string MaterialSettings::*member,
-                             const std::string& doc) {
+    const auto file = [&](const std::string& name, std::string MaterialSettings::*member,
+                          const std::string& doc) {
         table.push_back(make("material." + name, material(member), doc + " Empty: the material's own."));
     };
     table.push_back(color("material.color", material(&MaterialSettings::color),
@@ -332,22 +335,11 @@ void add_overrides(Table& table) {
     table.push_back(color("material.emissive", material(&MaterialSettings::emissive),
                           "Colour that every material glows in; automatic: the material's own."));
     add_extended_overrides(table);
-    texture("base_color_texture", &MaterialSettings::base_color_texture,
-            "Image file for the base colour (sRGB) of every material.");
-    texture("metallic_texture", &MaterialSettings::metallic_texture,
-            "Image file for the metalness of every material.");
-    texture("roughness_texture", &MaterialSettings::roughness_texture,
-            "Image file for the roughness of every material.");
-    texture("normal_texture", &MaterialSettings::normal_texture,
-            "Image file for the tangent-space normals (+Y up) of every material.");
-    texture("occlusion_texture", &MaterialSettings::occlusion_texture,
-            "Image file for the baked ambient occlusion of every material.");
-    texture("emissive_texture", &MaterialSettings::emissive_texture,
-            "Image file for the glow (sRGB) of every material.");
-    texture("opacity_texture", &MaterialSettings::opacity_texture,
-            "Image file for the opacity of every material.");
-    texture("shader", &MaterialSettings::shader,
-            "File with GLSL that changes the surface of every material, read again whenever it changes.");
+    for (const MaterialTexture& row : replaceable_textures())
+        file(std::string(row.name) + "_texture", row.setting,
+             fmt::format("Image file for the {} of every material.", row.content));
+    file("shader", &MaterialSettings::shader,
+         "File with GLSL that changes the surface of every material, read again whenever it changes.");
 }
 
 /// Each is a row of every object's style and, as a setting, overrides them all.

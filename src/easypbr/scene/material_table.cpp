@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "easypbr/core/error.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr {
 namespace {
@@ -54,27 +55,35 @@ constexpr MaterialColor colors[] = {
      "Linear colour that white light has after the attenuation distance within a volume."}};
 
 constexpr MaterialTexture textures[] = {
-    {"base_color", &Material::base_color_texture, true, "Its alpha multiplies opacity."},
-    {"metallic", &Material::metallic_texture, false, "Its first channel is read."},
-    {"roughness", &Material::roughness_texture, false, "Its first channel is read."},
-    {"normal", &Material::normal_texture, false, "Tangent space, +Y up."},
-    {"occlusion", &Material::occlusion_texture, false, "Its first channel is read."},
-    {"emissive", &Material::emissive_texture, true, "Colour of the glow."},
-    {"opacity", &Material::opacity_texture, false, "Used by alpha modes mask and blend."},
-    {"clearcoat", &Material::clearcoat_texture, false, "Its first channel is read."},
-    {"clearcoat_roughness", &Material::clearcoat_roughness_texture, false, "Its first channel is read."},
-    {"clearcoat_normal", &Material::clearcoat_normal_texture, false,
+    {"base_color", &Material::base_color_texture, TexelUse::color, "Its alpha multiplies opacity.",
+     &MaterialSettings::base_color_texture, "base colour (sRGB)"},
+    {"metallic", &Material::metallic_texture, TexelUse::number, "Its first channel is read.",
+     &MaterialSettings::metallic_texture, "metalness"},
+    {"roughness", &Material::roughness_texture, TexelUse::number, "Its first channel is read.",
+     &MaterialSettings::roughness_texture, "roughness"},
+    {"occlusion", &Material::occlusion_texture, TexelUse::number, "Its first channel is read.",
+     &MaterialSettings::occlusion_texture, "baked ambient occlusion"},
+    {"normal", &Material::normal_texture, TexelUse::vector, "Tangent space, +Y up.",
+     &MaterialSettings::normal_texture, "tangent-space normals (+Y up)"},
+    {"emissive", &Material::emissive_texture, TexelUse::color, "Colour of the glow.",
+     &MaterialSettings::emissive_texture, "glow (sRGB)"},
+    {"opacity", &Material::opacity_texture, TexelUse::number, "Used by alpha modes mask and blend.",
+     &MaterialSettings::opacity_texture, "opacity"},
+    {"clearcoat", &Material::clearcoat_texture, TexelUse::number, "Its first channel is read."},
+    {"clearcoat_roughness", &Material::clearcoat_roughness_texture, TexelUse::number,
+     "Its first channel is read."},
+    {"clearcoat_normal", &Material::clearcoat_normal_texture, TexelUse::vector,
      "Normals of the varnish alone, tangent space, +Y up."},
-    {"sheen_color", &Material::sheen_color_texture, true, "Colour of the sheen."},
-    {"sheen_roughness", &Material::sheen_roughness_texture, false, "Its first channel is read."},
-    {"specular", &Material::specular_texture, false, "Its first channel is read."},
-    {"specular_color", &Material::specular_color_texture, true, "Tint of the reflection."},
-    {"transmission", &Material::transmission_texture, false, "Its first channel is read."},
-    {"thickness", &Material::thickness_texture, false, "Its first channel is read."},
-    {"iridescence", &Material::iridescence_texture, false, "Its first channel is read."},
-    {"iridescence_thickness", &Material::iridescence_thickness_texture, false,
+    {"sheen_color", &Material::sheen_color_texture, TexelUse::color, "Colour of the sheen."},
+    {"sheen_roughness", &Material::sheen_roughness_texture, TexelUse::number, "Its first channel is read."},
+    {"specular", &Material::specular_texture, TexelUse::number, "Its first channel is read."},
+    {"specular_color", &Material::specular_color_texture, TexelUse::color, "Tint of the reflection."},
+    {"transmission", &Material::transmission_texture, TexelUse::number, "Its first channel is read."},
+    {"thickness", &Material::thickness_texture, TexelUse::number, "Its first channel is read."},
+    {"iridescence", &Material::iridescence_texture, TexelUse::number, "Its first channel is read."},
+    {"iridescence_thickness", &Material::iridescence_thickness_texture, TexelUse::number,
      "From the least to the greatest thickness; its first channel is read."},
-    {"anisotropy", &Material::anisotropy_texture, false,
+    {"anisotropy", &Material::anisotropy_texture, TexelUse::vector,
      "Red and green: direction in tangent space; blue: strength."}};
 
 std::string range_text(float min, float max) {
@@ -120,6 +129,12 @@ std::span<const MaterialColor> material_colors() {
 
 std::span<const MaterialTexture> material_textures() {
     return textures;
+}
+
+std::span<const MaterialTexture> replaceable_textures() {
+    constexpr auto has_none = [](const MaterialTexture& row) { return !row.setting; };
+    static const auto end = std::ranges::find_if(textures, has_none);
+    return {std::begin(textures), end};
 }
 
 void validate(const Material& material) {

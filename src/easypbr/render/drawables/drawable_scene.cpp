@@ -9,6 +9,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/scene/cut.h"
 #include "easypbr/scene/draw_style.h"
+#include "easypbr/scene/material_table.h"
 #include "easypbr/scene/resolve.h"
 #include "easypbr/scene/voxels.h"
 
@@ -113,10 +114,7 @@ MeshData with_values(const MeshData& mesh, const ElementColors& values) {
 
 /// The table in place of all that a material's textures say.
 void show_table(Material& material, const Texture& table) {
-    for (Texture Material::*texture :
-         {&Material::metallic_texture, &Material::roughness_texture, &Material::normal_texture,
-          &Material::occlusion_texture, &Material::emissive_texture, &Material::opacity_texture})
-        material.*texture = {};
+    for (const MaterialTexture& row : replaceable_textures()) material.*row.texture = {};
     material.base_color_texture = table;
 }
 
