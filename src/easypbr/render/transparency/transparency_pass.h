@@ -49,8 +49,6 @@ class TransparencyPass {
 
     const GBuffer& layer() const { return layer_; }
     const GBuffer& exits() const { return exits_; }
-    /// Layers that the last frame had.
-    int layer_count() const { return count_; }
 
   private:
     void merge_overlay(const Frame& frame, const GBuffer& targets);
