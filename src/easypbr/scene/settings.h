@@ -1,4 +1,4 @@
-// Settings: one plain struct per effect. Defaults stand here; unit, range and documentation in fields.cpp.
+// Settings: one plain struct per effect. Defaults stand here; unit, range and documentation in fields_*.cpp.
 #pragma once
 
 #include <array>
