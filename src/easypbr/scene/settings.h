@@ -61,6 +61,11 @@ struct BackgroundSettings {
     Vec3 color{0.25f, 0.25f, 0.25f};
     std::string image;
     float blur = 0.4f;
+
+    /// The environment is seen behind the content.
+    bool shows_environment() const {
+        return mode == BackgroundMode::environment || mode == BackgroundMode::blur;
+    }
 };
 
 inline StudioLight studio_light(int red, int green, int blue) {

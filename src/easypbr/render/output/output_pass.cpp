@@ -41,14 +41,9 @@ float exposure_of(const Frame& frame, Encoding encoding) {
     return encoding == Encoding::scene_linear ? 1.0f : frame.resolved->exposure;
 }
 
-bool sees_environment(const Frame& frame) {
-    const BackgroundMode mode = frame.resolved->settings.background.mode;
-    return mode == BackgroundMode::environment || mode == BackgroundMode::blur;
-}
-
 Vec4 background_color(const Frame& frame) {
     const BackgroundSettings& background = frame.resolved->settings.background;
-    if (background.mode == BackgroundMode::transparent || sees_environment(frame)) return Vec4::Zero();
+    if (background.mode == BackgroundMode::transparent || background.shows_environment()) return Vec4::Zero();
     const Vec3 c = linear_from_srgb(background.color);
     return {c.x(), c.y(), c.z(), 1};
 }
@@ -95,7 +90,7 @@ PixelRect united(const PixelRect& a, const PixelRect& b) {
 
 /// Screen passes touch only where geometry may be, when nothing else was drawn.
 void limit_to(const PixelRect& area, const Frame& frame) {
-    if (sees_environment(frame) || frame.spreads) return;
+    if (frame.resolved->settings.background.shows_environment() || frame.spreads) return;
     glEnable(GL_SCISSOR_TEST);
     glScissor(area.x, area.y, area.width, area.height);
 }

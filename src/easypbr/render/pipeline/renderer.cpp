@@ -16,11 +16,6 @@
 namespace easypbr::render {
 namespace {
 
-bool sees_environment(const ResolvedSettings& resolved) {
-    const BackgroundMode mode = resolved.settings.background.mode;
-    return mode == BackgroundMode::environment || mode == BackgroundMode::blur;
-}
-
 std::optional<RayGround> ray_ground(const Frame& frame) {
     if (!frame.with_ground) return std::nullopt;
     const GroundSettings& ground = frame.resolved->settings.ground;
@@ -107,7 +102,7 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
     output_.begin(options.size, options.encoding);
     if (!resolved.environment.empty())
         run("environment", [&] {
-            const bool seen = sees_environment(resolved);
+            const bool seen = resolved.settings.background.shows_environment();
             environment_.prepare(resolved.environment, seen ? resolved.seen_environment : Environment());
         });
     auto picture = std::make_unique<Picture>(scene, resolved, options, images);
@@ -337,7 +332,7 @@ void Renderer::draw_frame(Frame& frame, const DrawList& list, const DrawList& ca
     if (frame.with_overlay) run("display", [&] { display_.draw(frame, targets_); });
     if (!has_layers) run("lines", [&] { draw_lines(frame, list); });
     no_attributes_.bind();
-    if (with_environment && sees_environment(*frame.resolved))
+    if (with_environment && frame.resolved->settings.background.shows_environment())
         run("background", [&] { background_.draw(frame, targets_, environment_, frame.with_ground); });
     if (has_layers) {
         frame.covered = everything;

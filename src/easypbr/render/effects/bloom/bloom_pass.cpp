@@ -7,14 +7,9 @@
 namespace easypbr::render {
 namespace {
 
-bool sees_environment(const Frame& frame) {
-    const BackgroundMode mode = frame.resolved->settings.background.mode;
-    return mode == BackgroundMode::environment || mode == BackgroundMode::blur;
-}
-
 /// Texels of the first level that content gives light to.
 PixelRect lit_texels(const Frame& frame, const gl::Texture& level) {
-    if (sees_environment(frame)) return {0, 0, level.width(), level.height()};
+    if (frame.resolved->settings.background.shows_environment()) return {0, 0, level.width(), level.height()};
     const PixelRect& r = frame.covered;
     const int x0 = std::max(r.x / glow_texel - 1, 0), y0 = std::max(r.y / glow_texel - 1, 0);
     const int x1 = std::min((r.x + r.width) / glow_texel + 2, level.width()),
