@@ -6,10 +6,10 @@
 #include <set>
 #include <utility>
 
-#include "easypbr/app/stopwatch.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/core/stopwatch.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/fields.h"

@@ -2,8 +2,8 @@
 #include <utility>
 
 #include "easypbr/app/session.h"
-#include "easypbr/app/stopwatch.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/stopwatch.h"
 
 namespace easypbr::app {
 
