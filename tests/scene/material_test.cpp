@@ -122,6 +122,18 @@ TEST(Material, EveryTextureStandsInTheTableOnce) {
     EXPECT_EQ(names.size(), 19u);
 }
 
+TEST(Material, ReflectanceOfItsDielectricPart) {
+    Material m;
+    EXPECT_FALSE(m.names_ior());
+    EXPECT_EQ(m.dielectric_f0(0.07f), 0.07f) << "names no index: what the settings say";
+    m.ior = 1.33f;
+    EXPECT_TRUE(m.names_ior());
+    // ((1.33 - 1) / (1.33 + 1))^2
+    EXPECT_NEAR(m.dielectric_f0(0.07f), 0.0200593f, 1e-6f);
+    m.ior = 0;
+    EXPECT_EQ(m.dielectric_f0(0.07f), 1);
+}
+
 // Its setting is the one that is named after it, and no other.
 TEST(Material, ReplaceableTexturesHaveTheirSetting) {
     ASSERT_EQ(replaceable_textures().size(), 7u) << "of glTF's core model, with metallic and roughness apart";

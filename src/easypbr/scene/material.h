@@ -67,7 +67,8 @@ struct Material {
     float sheen_roughness = 0;
 
     // KHR_materials_specular, KHR_materials_ior: the reflection of a dielectric.
-    float ior = 1.5f;  ///< index of refraction; 0: reflects all
+    static constexpr float default_ior = 1.5f;
+    float ior = default_ior;  ///< index of refraction; 0: reflects all
     float specular = 1;
     Vec3 specular_color{1, 1, 1};
 
@@ -114,6 +115,11 @@ struct Material {
 
     /// Whether the shading needs more than glTF's core model.
     bool is_extended() const;
+
+    /// Whether it says what its index of refraction is. glTF's default says nothing.
+    bool names_ior() const { return ior != default_ior; }
+    /// Reflectance of its dielectric part at normal incidence; `unnamed` where it names no index.
+    float dielectric_f0(float unnamed) const;
     /// Whether light goes through the surface itself (not: around it, as with opacity).
     bool transmits() const { return transmission > 0; }
 

@@ -92,6 +92,11 @@ std::string range_text(float min, float max) {
     return fmt::format("{} to {}", min, max);
 }
 
+/// At normal incidence from air; everything where the index is 0.
+float reflectance(float ior) {
+    return ior > 0 ? std::pow((ior - 1) / (ior + 1), 2.0f) : 1.0f;
+}
+
 /// Calls problem(name, expected, given, fix) for every value outside of its range.
 template <class M, class Problem>
 void for_each_problem(M& material, Problem&& problem) {
@@ -162,7 +167,7 @@ bool Material::has_textures() const {
 }
 
 bool Material::is_extended() const {
-    return clearcoat > 0 || !sheen_color.isZero() || ior != 1.5f || specular != 1 ||
+    return clearcoat > 0 || !sheen_color.isZero() || names_ior() || specular != 1 ||
            specular_color != Vec3::Ones() || transmission > 0 || iridescence > 0 || anisotropy > 0 ||
            specular_texture || specular_color_texture;
 }
@@ -173,10 +178,13 @@ AlphaMode Material::alpha_mode_for(bool transparent_vertices) const {
     return opacity_texture ? AlphaMode::mask : AlphaMode::opaque;
 }
 
+float Material::dielectric_f0(float unnamed) const {
+    return names_ior() ? reflectance(ior) : unnamed;
+}
+
 Vec3 Material::transmittance(AlphaMode mode) const {
     const float coverage = mode == AlphaMode::blend ? opacity : 1;
-    const float f0 = ior > 0 ? std::pow((ior - 1) / (ior + 1), 2.0f) : 1.0f;
-    Vec3 through = base_color.cwiseMin(1.0f) * (transmission * (1 - metallic) * (1 - f0));
+    Vec3 through = base_color.cwiseMin(1.0f) * (transmission * (1 - metallic) * (1 - reflectance(ior)));
     if (thickness > 0 && std::isfinite(attenuation_distance))
         through.array() *= attenuation_color.array().pow(thickness / attenuation_distance);
     return Vec3::Constant(1 - coverage) + coverage * through;

@@ -81,10 +81,7 @@ void set_extension_uniforms(const gl::Program& program, const Frame& frame, cons
     const Material& m = item.material;
     program.set("u_coat", Vec3(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale));
     program.set("u_sheen", with_w(m.sheen_color, m.sheen_roughness));
-    // A material that says nothing of its index has the settings' reflectance.
-    const float f0 = m.ior == 1.5f ? frame.resolved->settings.shading.dielectric_f0
-                     : m.ior > 0   ? std::pow((m.ior - 1) / (m.ior + 1), 2.0f)
-                                   : 1.0f;
+    const float f0 = m.dielectric_f0(frame.resolved->settings.shading.dielectric_f0);
     program.set("u_specular", with_w(m.specular_color * f0, m.specular));
     program.set("u_film", Vec4(m.iridescence, m.iridescence_ior, m.iridescence_thickness_min,
                                m.iridescence_thickness_max));
