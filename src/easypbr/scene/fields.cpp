@@ -54,14 +54,23 @@ std::string describe_range(const FieldInfo& field) {
     return "a " + kind;
 }
 
+/// "2 numbers", "none, 6 or 7 numbers", "a multiple of 4 numbers, up to 64", of ascending sizes.
+std::string describe_sizes(const std::vector<size_t>& sizes) {
+    const auto other_step = [&](size_t a, size_t b) { return b - a != sizes[1]; };
+    const bool even = sizes.front() == 0 && std::ranges::adjacent_find(sizes, other_step) == sizes.end();
+    if (sizes.size() > 2 && even)
+        return fmt::format("a multiple of {} numbers, up to {}", sizes[1], sizes.back());
+    std::string text;
+    for (size_t i = 0; i < sizes.size(); ++i) {
+        if (i > 0) text += i + 1 == sizes.size() ? " or " : ", ";
+        text += sizes[i] == 0 ? "none" : fmt::format("{}", sizes[i]);
+    }
+    return text + " numbers";
+}
+
 std::string describe_vector(const FieldInfo& field) {
-    const auto [shortest, longest] = std::minmax_element(field.sizes.begin(), field.sizes.end());
-    if (field.sizes.size() > 2)
-        return fmt::format("a multiple of {} numbers, up to {}", field.sizes[1] - field.sizes[0], *longest);
-    const std::string count =
-        *shortest == *longest ? fmt::format("{}", *longest) : fmt::format("none or {}", *longest);
     const bool free = field.min <= -FLT_MAX && field.max >= FLT_MAX;
-    return fmt::format("{} numbers{}", count, free ? "" : ", each " + describe_range(field));
+    return describe_sizes(field.sizes) + (free ? "" : ", each " + describe_range(field));
 }
 
 std::string describe_expected(const FieldInfo& field) {
