@@ -140,7 +140,8 @@ Session::Prepared Session::prepare(const PictureOptions& options) {
         prepared.scene = snapshot();
     }
     const Stopwatch watch(timing_.draw);
-    prepared.resolved = easypbr::resolve(prepared.scene, settings_, prepared.options.size);
+    prepared.resolved =
+        easypbr::resolve(prepared.scene, settings_, prepared.options.size, prepared.options.samples);
     const bool no_lens =
         settings_.depth_of_field.enabled && prepared.resolved.camera.projection == Projection::orthographic;
     if (no_lens && !warned_of_lens_)

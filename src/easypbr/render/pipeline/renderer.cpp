@@ -369,8 +369,11 @@ void Renderer::run_custom(Stage stage, const Frame& frame) {
 }
 
 bool Renderer::traces(const Frame& frame) const {
-    // Layers are not lit.
-    return RayPass::is_on(*frame.resolved, frame.sample_count) && !picture_->options.layers;
+    // Layers are not lit. A frame of exact colours stands beside the averaged ones, whose rays are spread
+    // over all of them: it would have to send as many alone.
+    const bool alone = frame.sample_count < picture_->options.samples;
+    const bool wanted = !alone || frame.resolved->settings.rays.enabled.value().has_value();
+    return frame.resolved->traces_rays && wanted && !picture_->options.layers;
 }
 
 void Renderer::draw_lights(Frame& frame, const GBuffer& targets) {
