@@ -1,20 +1,10 @@
 #include "easypbr/gpu/point_buffers.h"
 
-#include "easypbr/core/parallel.h"
 #include "easypbr/gpu/mesh_buffers.h"
 #include "easypbr/gpu/packing.h"
 
 namespace easypbr::gpu {
 namespace {
-
-constexpr size_t grain = 1 << 15;
-
-template <class To, class Convert>
-gl::Buffer converted(Eigen::Index count, Convert&& convert) {
-    std::vector<To> values(static_cast<size_t>(count));
-    parallel_for(values.size(), grain, [&](size_t i) { values[i] = convert(Eigen::Index(i)); });
-    return upload(values);
-}
 
 PointBuffers make_buffers(const MeshData& mesh) {
     PointBuffers buffers;
