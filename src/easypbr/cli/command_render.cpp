@@ -83,9 +83,10 @@ void check_files(const Picture& picture, const Settings& settings, const RenderO
         app::check_picture(picture.output, settings);
     for (const std::string& layer : options.layers) check_writable(truth_path(picture.output, layer));
     if (!picture.save_settings.empty()) check_writable(picture.save_settings);
-    for (const std::string& file : picture.files) MappedFile{file};
+    for (const std::string& file : picture.files)
+        if (file != standard_input) check_readable(file);
     for_each_file(settings, [](const std::string& file) {
-        if (!file.empty()) MappedFile{file};
+        if (!file.empty()) check_readable(file);
     });
 }
 
@@ -210,7 +211,8 @@ class RenderJob {
 
     /// Reads the files while the GL context is made, for all of it takes long.
     void load(const Picture& picture, StageTimes& times) {
-        const io::LoadOptions load_options{.crease_angle_deg = look_.settings.load.crease_deg};
+        const io::LoadOptions load_options{.crease_angle_deg = look_.settings.load.crease_deg,
+                                           .format = options_.format};
         auto loading = std::async(std::launch::async, load_all, picture.files, load_options);
         auto lighting = std::async(std::launch::async, [this] { load_environment(); });
         session_.context_info();
@@ -282,7 +284,7 @@ int run_render(const RenderOptions& options) {
 }  // namespace
 
 void add_render(CLI::App& app, Job& job) {
-    set_job<RenderOptions>(*app.add_subcommand("render", "Draw mesh files into a picture"), job,
+    set_job<RenderOptions>(*app.add_subcommand("render", "Render mesh files to an image"), job,
                            declare_render_options, run_render);
 }
 

@@ -1,9 +1,9 @@
 // Light: point, directional or spot.
 #include <fmt/format.h>
-#include <nanobind/stl/string.h>
 
 #include "easypbr/python/convert.h"
 #include "easypbr/python/settings_value.h"
+#include "easypbr/python/text.h"
 #include "easypbr/scene/light_table.h"
 
 namespace easypbr::python {
@@ -13,12 +13,12 @@ const LightField& type_field() {
     return light_fields().front();
 }
 
-void put(Light& light, const LightField& field, const Value& value) {
+void put_field(Light& light, const LightField& field, const Value& value) {
     field.put(light, checked(field, value, "light."));
 }
 
 template <class Data>
-Data get(const Light& light, const LightField& field) {
+Data light_data(const Light& light, const LightField& field) {
     return std::get<Data>(field.get(light).data);
 }
 
@@ -28,7 +28,7 @@ void vector_property(nb::class_<Light>& light, const LightField& field) {
         [&field](const Light& l) { return nb::tuple(value_to_python(field, field.get(l))); },
         [&field](Light& l, const ArrayLike& value) {
             const Vec3d v = to_vector3(value, field.name.c_str());
-            put(l, field, {std::vector<double>{v.x(), v.y(), v.z()}});
+            put_field(l, field, {std::vector<double>{v.x(), v.y(), v.z()}});
         },
         field.doc.c_str());
 }
@@ -39,7 +39,7 @@ void color_property(nb::class_<Light>& light, const LightField& field) {
         [&field](const Light& l) { return nb::tuple(value_to_python(field, field.get(l))); },
         [&field](Light& l, const ColorLike& value) {
             const Vec3d v = to_linear_color(value, ("light." + field.name).c_str()).cast<double>();
-            put(l, field, {std::vector<double>{v.x(), v.y(), v.z()}});
+            put_field(l, field, {std::vector<double>{v.x(), v.y(), v.z()}});
         },
         field.doc.c_str());
 }
@@ -48,8 +48,8 @@ void color_property(nb::class_<Light>& light, const LightField& field) {
 template <class T>
 void plain_property(nb::class_<Light>& light, const LightField& field) {
     light.def_prop_rw(
-        field.name.c_str(), [&field](const Light& l) { return get<T>(l, field); },
-        [&field](Light& l, const T& value) { put(l, field, {value}); }, field.doc.c_str());
+        field.name.c_str(), [&field](const Light& l) { return light_data<T>(l, field); },
+        [&field](Light& l, const T& value) { put_field(l, field, {value}); }, field.doc.c_str());
 }
 
 void automatic_property(nb::class_<Light>& light, const LightField& field) {
@@ -58,11 +58,11 @@ void automatic_property(nb::class_<Light>& light, const LightField& field) {
         fmt::format("def {}(self, value: float | Automatic | Follow) -> None", field.name);
     light.def_prop_rw(
         field.name.c_str(), [&field](const Light& l) { return value_to_python(field, field.get(l)); },
-        [&field](Light& l, const nb::object& value) { put(l, field, value_from_python(field, value)); },
+        [&field](Light& l, const nb::object& value) { put_field(l, field, value_from_python(field, value)); },
         nb::for_getter(nb::sig(getter.c_str())), nb::for_setter(nb::sig(setter.c_str())), field.doc.c_str());
 }
 
-void property(nb::class_<Light>& light, const LightField& field) {
+void light_property(nb::class_<Light>& light, const LightField& field) {
     if (field.can_be_automatic) return automatic_property(light, field);
     if (field.is_color) return color_property(light, field);
     if (field.type == FieldType::vector) return vector_property(light, field);
@@ -71,9 +71,9 @@ void property(nb::class_<Light>& light, const LightField& field) {
     plain_property<std::string>(light, field);
 }
 
-void construct(Light* self, const std::string& type, const nb::kwargs& values) {
+void construct_light(Light* self, const std::string& type, const nb::kwargs& values) {
     Light light;
-    put(light, type_field(), {type});
+    put_field(light, type_field(), {type});
     // Python owns the object: an AttributeError holds on to it.
     nb::object object = nb::cast(light);
     for (auto [name, value] : values) nb::setattr(object, name, value);
@@ -84,10 +84,11 @@ void construct(Light* self, const std::string& type, const nb::kwargs& values) {
 
 void bind_light(nb::module_& module) {
     nb::class_<Light> light(
-        module, "Light", "A light in world space. Its colour is linear numbers, or text ('#rrggbb', sRGB).");
-    light.def("__init__", construct, nb::arg("type") = "point", nb::arg("values"),
+        module, "Light",
+        "A light in world space. Its colour is given as linear numbers, or as text ('#rrggbb', sRGB).");
+    light.def("__init__", construct_light, nb::arg("type") = "point", nb::arg("values"),
               nb::sig("def __init__(self, type: str = 'point', **values: object) -> None"));
-    for (const LightField& field : light_fields()) property(light, field);
+    for (const LightField& field : light_fields()) light_property(light, field);
 }
 
 }  // namespace easypbr::python

@@ -60,6 +60,9 @@ const Field& field(std::string_view name);
 void set(Settings& settings, std::string_view name, const Value& value);
 Value get(const Settings& settings, std::string_view name);
 
+/// Whether the data of a value are in the field's range, and finite.
+bool is_valid(const Field& field, const Value& value);
+
 /// The value in the form in which `put` takes it. Throws ArgumentError that says what was expected of the
 /// setting, or, of another struct's field, of `owner` followed by its name ("light.", "light 'sun': ").
 Value checked(const FieldInfo& field, const Value& value, std::string_view owner = {});

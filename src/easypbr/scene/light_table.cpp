@@ -31,25 +31,24 @@ std::vector<LightField> all_rows() {
     const Range from_zero{0, unlimited};
     return {
         row("type", &Light::type, "Point, directional or spot."),
-        row("enabled", &Light::enabled, "Whether it shines."),
-        row("position", &Light::position, "Point and spot.", placed, "world units"),
-        row("direction", &Light::direction, "Where the light goes; directional and spot.", aimed),
-        colored(row("color", &Light::color, "Multiplies the intensity.")),
+        row("enabled", &Light::enabled, "Enables the light."),
+        row("position", &Light::position, "Position in world space; point and spot.", placed, "world units"),
+        row("direction", &Light::direction, "Direction of propagation; directional and spot.", aimed),
+        colored(row("color", &Light::color, "Colour, multiplies the intensity.")),
         row("intensity", &Light::intensity, "Candela (point, spot) or lux (directional).", any, "",
             from_zero),
-        row("inner_cone_deg", &Light::inner_cone_deg, "Half angle of a spot's full-intensity cone.", spot,
-            "degrees"),
-        row("outer_cone_deg", &Light::outer_cone_deg, "Half angle at which a spot ends.", spot, "degrees"),
-        row("range", &Light::range, "Distance at which the light ends; 0: unlimited.", placed, "world units",
+        row("inner_cone_deg", &Light::inner_cone_deg, "Spot: half angle of full intensity.", spot, "degrees"),
+        row("outer_cone_deg", &Light::outer_cone_deg, "Spot: half angle of zero intensity.", spot, "degrees"),
+        row("range", &Light::range, "Distance of zero intensity; 0: unlimited.", placed, "world units",
             from_zero),
-        row("casts_shadows", &Light::casts_shadows, "Whether anything casts a shadow in this light."),
+        row("casts_shadows", &Light::casts_shadows, "Enables the shadows of this light."),
         row("radius", &Light::radius,
-            "Of the glowing sphere of a point or spot light: what softens its shadows. Automatic: a "
-            "twentieth of the content's radius.",
+            "Point and spot: radius of the spherical emitter, which sets the size of penumbrae. Automatic: "
+            "0.05 of the content's radius.",
             placed, "world units", from_zero),
         row("angular_radius_deg", &Light::angular_radius_deg,
-            "Directional: half the angle under which the light is seen; by default the sun's.", directional,
-            "degrees", {0, 45})};
+            "Directional: angular radius of the emitter; default: that of the sun.", directional, "degrees",
+            {0, 45})};
 }
 
 }  // namespace

@@ -40,7 +40,7 @@ struct MaterialTexture {
     /// File that replaces the texture in every material, "material.NAME_texture"; null: there is no such
     /// setting. Those of glTF's core model have one, those of its extensions have none.
     std::string MaterialSettings::*setting = nullptr;
-    const char* content = nullptr;  ///< of that file, for its documentation
+    const char* setting_doc = nullptr;
 };
 
 std::span<const MaterialNumber> material_numbers();

@@ -17,32 +17,32 @@ namespace easypbr::io {
 namespace {
 
 /// Keeps the order of the reference.
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-constexpr int version = 1;
+constexpr int format_version = 1;
 
-Json json_of(const FieldInfo& field, double number) {
-    return field.whole ? Json(int64_t(number)) : Json(number);
+OrderedJson json_of(const FieldInfo& field, double number) {
+    return field.whole ? OrderedJson(int64_t(number)) : OrderedJson(number);
 }
 
-Json json_of(const FieldInfo& field, const Value::Data& data) {
+OrderedJson json_of(const FieldInfo& field, const Value::Data& data) {
     if (const auto* flag = std::get_if<bool>(&data)) return *flag;
     if (const auto* number = std::get_if<double>(&data)) return json_of(field, *number);
     if (const auto* text = std::get_if<std::string>(&data)) return *text;
-    Json list = Json::array();
+    OrderedJson list = OrderedJson::array();
     for (const double number : std::get<std::vector<double>>(data)) list.push_back(json_of(field, number));
     return list;
 }
 
-Json json_of(const FieldInfo& field, const Value& value) {
+OrderedJson json_of(const FieldInfo& field, const Value& value) {
     if (value.state == Value::State::follow) return "follow";
     if (value.state == Value::State::given) return json_of(field, value.data);
-    return value.latched ? Json{{"auto", json_of(field, value.data)}} : Json("auto");
+    return value.latched ? OrderedJson{{"auto", json_of(field, value.data)}} : OrderedJson("auto");
 }
 
 /// The place of "group.name" in nested objects.
-Json& place_of(Json& settings, const std::string& name) {
-    Json* place = &settings;
+OrderedJson& place_of(OrderedJson& settings, const std::string& name) {
+    OrderedJson* place = &settings;
     size_t begin = 0;
     for (size_t dot = name.find('.'); dot != std::string::npos; begin = dot + 1, dot = name.find('.', begin))
         place = &(*place)[name.substr(begin, dot - begin)];
@@ -50,27 +50,27 @@ Json& place_of(Json& settings, const std::string& name) {
 }
 
 /// Throws ArgumentError when the light cannot be read again.
-Json json_of(const std::string& name, const Light& light) {
+OrderedJson json_of(const std::string& name, const Light& light) {
     validate(light, name);
-    Json json = Json::object();
+    OrderedJson json = OrderedJson::object();
     for (const LightField& field : light_fields()) json[field.name] = json_of(field, field.get(light));
     return json;
 }
 
-class Parser {
+class SettingsParser {
   public:
-    explicit Parser(const std::string& name) : name_(name) {}
+    explicit SettingsParser(const std::string& name) : name_(name) {}
 
     SettingsFile parse(const std::string& text) {
-        Json root;
+        OrderedJson root;
         try {
-            root = Json::parse(text);
-        } catch (const Json::exception& error) {
+            root = OrderedJson::parse(text);
+        } catch (const OrderedJson::exception& error) {
             fail(error.what());
         }
         if (!root.is_object() || !root.contains("easypbr")) fail("expected an object with \"easypbr\": 1");
-        if (root["easypbr"] != version)
-            fail(fmt::format("expected \"easypbr\": {}, got {}", version, root["easypbr"].dump()));
+        if (root["easypbr"] != format_version)
+            fail(fmt::format("expected \"easypbr\": {}, got {}", format_version, root["easypbr"].dump()));
         SettingsFile file;
         for (const auto& [key, value] : root.items()) section(key, value, file);
         return file;
@@ -81,12 +81,12 @@ class Parser {
         throw FormatError(fmt::format("cannot read settings from {}: {}", name_, what));
     }
 
-    void require_object(const std::string& where, const Json& json) const {
+    void require_object(const std::string& where, const OrderedJson& json) const {
         if (!json.is_object())
             fail(fmt::format("'{}': expected an object, got {}", where, json.dump().substr(0, 80)));
     }
 
-    void section(const std::string& key, const Json& json, SettingsFile& file) const {
+    void section(const std::string& key, const OrderedJson& json, SettingsFile& file) const {
         if (key == "easypbr") return;
         if (key != "settings" && key != "lights" && key != "files")
             fail(fmt::format("unknown key '{}' (expected settings, lights, files)", key));
@@ -109,7 +109,7 @@ class Parser {
         return std::any_of(all.begin(), all.end(), [&](const Field& field) { return field.name == name; });
     }
 
-    void group(const std::string& prefix, const Json& json, Settings& settings) const {
+    void group(const std::string& prefix, const OrderedJson& json, Settings& settings) const {
         for (const auto& [key, value] : json.items()) {
             const std::string full = prefix + key;
             if (!is_field(full) && value.is_object())
@@ -119,7 +119,7 @@ class Parser {
         }
     }
 
-    void assign(const std::string& full, const Json& json, Settings& settings) const {
+    void assign(const std::string& full, const OrderedJson& json, Settings& settings) const {
         try {
             const Field& target = field(full);
             set(settings, full, value_of(target, fmt::format("setting '{}'", full), json));
@@ -130,7 +130,7 @@ class Parser {
         }
     }
 
-    Value value_of(const FieldInfo& target, const std::string& place, const Json& json) const {
+    Value value_of(const FieldInfo& target, const std::string& place, const OrderedJson& json) const {
         Value value;
         if (json.is_object() && json.size() == 1 && json.contains("auto")) {
             value.data = data_of(place, json["auto"]);
@@ -146,7 +146,7 @@ class Parser {
         return value;
     }
 
-    Value::Data data_of(const std::string& place, const Json& json) const {
+    Value::Data data_of(const std::string& place, const OrderedJson& json) const {
         if (json.is_boolean()) return json.get<bool>();
         if (json.is_number()) return json.get<double>();
         if (json.is_string()) return json.get<std::string>();
@@ -154,9 +154,9 @@ class Parser {
         return numbers_of(place, json);
     }
 
-    std::vector<double> numbers_of(const std::string& where, const Json& json) const {
+    std::vector<double> numbers_of(const std::string& where, const OrderedJson& json) const {
         std::vector<double> numbers;
-        for (const Json& entry : json) {
+        for (const OrderedJson& entry : json) {
             if (!entry.is_number())
                 fail(fmt::format("{}: expected numbers, got {}", where, entry.dump().substr(0, 80)));
             numbers.push_back(entry.get<double>());
@@ -164,7 +164,7 @@ class Parser {
         return numbers;
     }
 
-    Light light_of(const std::string& name, const Json& json) const {
+    Light light_of(const std::string& name, const OrderedJson& json) const {
         const std::string where = fmt::format("lights '{}'", name);
         require_object(where, json);
         Light light;
@@ -189,12 +189,12 @@ class Parser {
 }  // namespace
 
 SettingsFile load_settings(const std::filesystem::path& path) {
-    const MappedFile file(path);
+    const FileBytes file(path);
     return parse_settings(std::string(file.text()), path.string());
 }
 
 SettingsFile parse_settings(const std::string& json, const std::string& name) {
-    return Parser(name).parse(json);
+    return SettingsParser(name).parse(json);
 }
 
 void save_settings(const SettingsFile& file, const std::filesystem::path& path) {
@@ -202,19 +202,19 @@ void save_settings(const SettingsFile& file, const std::filesystem::path& path) 
 }
 
 std::string to_json(const SettingsFile& file) {
-    Json root;
-    root["easypbr"] = version;
-    root["settings"] = Json::object();
+    OrderedJson root;
+    root["easypbr"] = format_version;
+    root["settings"] = OrderedJson::object();
     for (const Field& field : fields())
         place_of(root["settings"], field.name) = json_of(field, field.get(file.settings));
-    root["lights"] = Json::object();
+    root["lights"] = OrderedJson::object();
     for (const auto& [name, light] : file.lights) root["lights"][name] = json_of(name, light);
     root["files"] = file.files;
-    return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return root.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 std::string hash_file(const std::filesystem::path& path) {
-    return content_hash(MappedFile(path).bytes());
+    return content_hash(FileBytes(path).bytes());
 }
 
 }  // namespace easypbr::io

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "easypbr/core/revision_cache.h"
+#include "easypbr/gl/draw.h"
 #include "easypbr/gpu/point_buffers.h"
 #include "easypbr/gpu/surfel_buffers.h"
 #include "easypbr/render/drawables/draw_list.h"
@@ -29,8 +30,9 @@ class SplatShadows {
     double reach(const DrawItem& item, bool surfels);
 
     /// Into the bound layer of a map of `resolution` texels.
-    void draw_points(const ShadowView& view, const DrawItem& item, int resolution);
-    void draw_surfels(const ShadowView& view, const DrawItem& item);
+    void draw_points(const ShadowView& view, const DrawItem& item, int resolution,
+                     const gl::DrawState& state);
+    void draw_surfels(const ShadowView& view, const DrawItem& item, const gl::DrawState& state);
 
     static bool suits_native(const DrawItem& item) {
         return item.alpha == AlphaMode::opaque && !item.casts_tint();
@@ -44,8 +46,8 @@ class SplatShadows {
     gpu::PointCache& points_;
     gpu::SurfelCache& surfels_;
     RevisionCache<std::pair<uint64_t, uint64_t>, double> reaches_;  ///< of surfels, by those of T and B
-    ProgramVariants point_programs_{"shadow_points.vert", "shadow_splats.frag"};
-    ProgramVariants surfel_programs_{"shadow_surfels.vert", "shadow_splats.frag"};
+    ProgramVariants point_programs_{"shadow_points.vert", "shadow_points.frag"};
+    ProgramVariants surfel_programs_{"shadow_surfels.vert", "shadow_surfels.frag"};
 };
 
 }  // namespace easypbr::render
