@@ -9,8 +9,11 @@
 
 #include "easypbr/app/output.h"
 #include "easypbr/core/compare.h"
+#include "easypbr/core/file.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/io/settings/settings_io.h"
+#include "easypbr/scene/setting_files.h"
 
 namespace easypbr::app {
 namespace {
@@ -75,6 +78,28 @@ TEST_F(SessionFiles, SavedSettingsReproduceThePicture) {
     render_to_file(second, folder_ / "second.png");
     EXPECT_EQ(
         compare(io::load_image(folder_ / "first.png"), io::load_image(folder_ / "second.png")).different, 0u);
+}
+
+// The file can be used from any folder and says when one of the files has changed since.
+TEST_F(SessionFiles, SavedSettingsNameEveryFileAbsolutely) {
+    io::save_image(constant_image(Vec3(1, 1, 1)), folder_ / "white.hdr");
+    write_file(folder_ / "plain.glsl", "void surface(inout Surface s) {}");
+    Session session = small_session();
+    Settings& settings = session.settings();
+    const auto relative = [&](const char* name) { return fs::relative(folder_ / name).string(); };
+    settings.environment.file = settings.background.image = relative("white.hdr");
+    for (const MaterialTexture& row : replaceable_textures())
+        settings.material.*row.setting = relative("white.hdr");
+    settings.material.shader = relative("plain.glsl");
+    save_settings(session, {}, folder_ / "look.json");
+    const io::SettingsFile saved = io::load_settings(folder_ / "look.json");
+    int count = 0;
+    for_each_file(saved.settings, [&](const std::string& file) {
+        ++count;
+        EXPECT_TRUE(fs::path(file).is_absolute()) << file;
+        EXPECT_TRUE(saved.files.contains(file)) << file;
+    });
+    EXPECT_EQ(count, 10) << "environment, background, seven textures, shader";
 }
 
 // The camera and lights stay where they were put when the content grows; refit() infers them anew.

@@ -4,6 +4,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/gui/live_view.h"
+#include "easypbr/scene/light_table.h"
 
 namespace easypbr::gui {
 namespace {
@@ -85,6 +86,22 @@ TEST_F(LightsPanel, ChangesAreUndoneAndRedone) {
     key('Z');
     EXPECT_EQ(session_.settings().tonemap.exposure_compensation, 0);
     EXPECT_EQ(lamp().intensity, 9);
+}
+
+// A point light has no cone and a spot has one: the rows are those of the table.
+TEST_F(LightsPanel, ShowsEveryFieldThatConcernsTheLight) {
+    click("Lights/lamp");
+    for (const LightType type : {LightType::point, LightType::spot, LightType::directional}) {
+        Light light = lamp();
+        light.type = type;
+        session_.scene().set_light("lamp", light);
+        view_.state().places.clear();
+        settle();
+        step();
+        for (const LightField& field : light_fields())
+            EXPECT_EQ(view_.state().places.contains("Lights/" + field.name + " lamp"), field.concerns(type))
+                << field.name << ", " << int(type);
+    }
 }
 
 TEST_F(LightsPanel, RemovingIsUndone) {

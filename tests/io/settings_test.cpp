@@ -98,6 +98,8 @@ TEST(SettingsFile, KeepsLightsAndFiles) {
     EXPECT_EQ(*read.lights.at("inferred").radius, 0.3f);
     EXPECT_FALSE(read.lights.at("plain").radius.value().has_value());
     EXPECT_EQ(read.files.at("a/b.ply"), "0123");
+    lamp.range = -1;
+    EXPECT_THROW(io::to_json({{}, {{"lamp", lamp}}, {}}), ArgumentError) << "it could not be read again";
 }
 
 TEST(SettingsFile, SaysWhatIsWrong) {
@@ -116,7 +118,12 @@ TEST(SettingsFile, SaysWhatIsWrong) {
         {"{\"easypbr\": 1, \"settings\": {\"image\": {\"size\": [1, \"x\"]}}}", "image.size"},
         {"{\"easypbr\": 1, \"lights\": {\"a\": {\"type\": \"spott\"}}}", "did you mean 'spot'"},
         {"{\"easypbr\": 1, \"lights\": {\"a\": {\"colour\": [1, 1, 1]}}}", "colour"},
-        {"{\"easypbr\": 1, \"lights\": {\"a\": {\"color\": [1, 1]}}}", "3 numbers"},
+        {"{\"easypbr\": 1, \"lights\": {\"a\": {\"color\": [1, 1]}}}",
+         "light 'a': color: expected 3 numbers, got (1, 1)"},
+        {"{\"easypbr\": 1, \"lights\": {\"a\": {\"range\": null}}}", "light 'a': range: got null"},
+        {"{\"easypbr\": 1, \"lights\": {\"a\": {\"range\": 1e39}}}", "light 'a': range: expected"},
+        {"{\"easypbr\": 1, \"lights\": {\"a\": {\"enabled\": 1}}}",
+         "light 'a': enabled: expected true or false, got 1"},
         {"{\"easypbr\": 1, \"lights\": {\"a\": {\"radius\": -2}}}", "light 'a': radius: expected"},
         {"{\"easypbr\": 1, \"files\": {\"a\": 1}}", "files 'a'"},
     };

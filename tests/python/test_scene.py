@@ -106,9 +106,10 @@ def test_radius_of_a_light_is_inferred_and_latched(size):
     assert light.radius == 0.25
     light.radius = auto
     assert light.radius == auto
-    with pytest.raises(ValueError, match="light.radius: expected a number of at least 0, got -1"):
+    expected = "light.radius: expected a number of at least 0, or 'auto' or 'follow', got "
+    with pytest.raises(ValueError, match=expected + "-1"):
         light.radius = -1
-    with pytest.raises(ValueError, match="light.radius: expected a number of at least 0, auto or follow, got 'big'"):
+    with pytest.raises(ValueError, match=expected + "'big'"):
         light.radius = "big"
     assert view.add_light("sun", "directional", direction=(0, -1, 0), angular_radius_deg=2).angular_radius_deg == 2
 

@@ -109,8 +109,8 @@ TEST(Extensions, TexturesAreFactors) {
             continue;
         Material plain = extended(), textured = extended();
         (textured.*use.texture).image = flat_image(4, 128);
-        (textured.*use.texture).channel = use.color ? 0 : 2;
-        const float factor = use.color ? linear_from_srgb(128 / 255.0f) : 128 / 255.0f;
+        (textured.*use.texture).channel = use.use == TexelUse::color ? 0 : 2;
+        const float factor = use.use == TexelUse::color ? linear_from_srgb(128 / 255.0f) : 128 / 255.0f;
         for (const MaterialNumber& number : material_numbers())
             if (name == number.name) plain.*number.value *= factor;
         for (const MaterialColor& color : material_colors())

@@ -181,6 +181,14 @@ TEST(Fields, SayWhatTheyExpected) {
               "'aces'?)");
     EXPECT_EQ(message_of("shading.multiple_scattering", "maybe"),
               "setting 'shading.multiple_scattering': expected true or false, got 'maybe'");
+    EXPECT_EQ(message_of("camera.intrinsics", "1,2,3"),
+              "setting 'camera.intrinsics': expected none, 6 or 7 numbers, got (1, 2, 3)");
+    EXPECT_EQ(message_of("camera.distortion", "1"),
+              "setting 'camera.distortion': expected none, 4, 5 or 8 numbers, got (1)");
+    EXPECT_EQ(message_of("camera.pose", "1,2"),
+              "setting 'camera.pose': expected none or 16 numbers, got (1, 2)");
+    EXPECT_NE(message_of("clip.planes", "1,2,3").find("expected a multiple of 4 numbers, up to "),
+              std::string::npos);
     EXPECT_EQ(message_of("camera.margin", "auto"), "setting 'camera.margin': expected 0 to 0.9, got 'auto'");
     for (const char* text : {"", "nan", "inf", "1e999", "12abc", "1,2"})
         EXPECT_NE(message_of("environment.rotation_deg", text), "accepted") << text;

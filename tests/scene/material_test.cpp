@@ -1,9 +1,11 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <set>
 
 #include "easypbr/core/error.h"
+#include "easypbr/scene/fields.h"
 #include "easypbr/scene/material_table.h"
 #include "easypbr/scene/mesh.h"
 
@@ -118,4 +120,33 @@ TEST(Material, EveryTextureStandsInTheTableOnce) {
         (m.*use.texture).image = nullptr;
     }
     EXPECT_EQ(names.size(), 19u);
+}
+
+TEST(Material, ReflectanceOfItsDielectricPart) {
+    Material m;
+    EXPECT_FALSE(m.names_ior());
+    EXPECT_EQ(m.dielectric_f0(0.07f), 0.07f) << "names no index: what the settings say";
+    m.ior = 1.33f;
+    EXPECT_TRUE(m.names_ior());
+    // ((1.33 - 1) / (1.33 + 1))^2
+    EXPECT_NEAR(m.dielectric_f0(0.07f), 0.0200593f, 1e-6f);
+    m.ior = 0;
+    EXPECT_EQ(m.dielectric_f0(0.07f), 1);
+}
+
+// Its setting is the one that is named after it, and no other.
+TEST(Material, ReplaceableTexturesHaveTheirSetting) {
+    ASSERT_EQ(replaceable_textures().size(), 7u) << "of glTF's core model, with metallic and roughness apart";
+    for (const MaterialTexture& row : material_textures()) {
+        const std::string name = fmt::format("material.{}_texture", row.name);
+        if (!row.setting) {
+            EXPECT_THROW(field(name), NameError) << name;
+            continue;
+        }
+        Settings settings;
+        settings.material.*row.setting = "file.png";
+        for (const Field& other : fields())
+            EXPECT_EQ(other.get(settings) == other.get(Settings()), other.name != name)
+                << name << ", " << other.name;
+    }
 }

@@ -65,6 +65,34 @@ TEST(Resolve, LeavesNothingToInfer) {
     EXPECT_GT(resolved.exposure, 0);
 }
 
+// Whether rays are cast depends on the picture's samples, so it is said beside the settings and never
+// latched.
+TEST(Resolve, RaysAreForPicturesOfManySamples) {
+    const SceneSnapshot scene = scene_of(blob());
+    Settings settings;
+    const auto traces = [&](std::optional<int> samples) {
+        const ResolvedSettings resolved = resolve(scene, settings, size, samples);
+        EXPECT_FALSE(resolved.settings.rays.enabled.value() && !settings.rays.enabled.value());
+        return resolved.traces_rays;
+    };
+    EXPECT_FALSE(traces(31));
+    EXPECT_TRUE(traces(32));
+    settings.image.samples = 64;
+    EXPECT_TRUE(traces(std::nullopt)) << "image.samples";
+    settings.image.samples = 16;
+    EXPECT_FALSE(traces(std::nullopt));
+    settings.rays.enabled = true;
+    EXPECT_TRUE(traces(1));
+    settings.rays.enabled = false;
+    EXPECT_FALSE(traces(32));
+    settings.rays.enabled = automatic;
+    settings.ssao.enabled = false;
+    EXPECT_FALSE(traces(32)) << "rays find what occlusion stands for";
+    settings.rays.enabled = true;
+    settings.environment.enabled = false;
+    EXPECT_FALSE(traces(32)) << "there is no sky to look for";
+}
+
 // Scaling by a power of two changes exponents alone: every length must come out scaled, and all else the
 // same, bit for bit. A constant with a length's unit anywhere would break this.
 TEST(Resolve, ScalesWithTheScene) {

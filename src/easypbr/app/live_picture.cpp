@@ -3,7 +3,7 @@
 #include <algorithm>
 
 #include "easypbr/app/channels.h"
-#include "easypbr/app/stopwatch.h"
+#include "easypbr/core/stopwatch.h"
 #include "easypbr/core/error.h"
 #include "easypbr/gl/context.h"
 #include "easypbr/gl/draw.h"

@@ -10,6 +10,7 @@
 #include "easypbr/core/suggest.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/settings/settings_io.h"
+#include "easypbr/scene/setting_files.h"
 
 namespace easypbr::app {
 
@@ -66,15 +67,11 @@ void save_settings(const Session& session, const std::vector<fs::path>& files, c
     for (const std::string& name : scene.light_names()) file.lights[name] = scene.light(name);
     for (const fs::path& source : files) file.files[fs::absolute(source).string()] = io::hash_file(source);
     // Absolute, so that the picture can be made again from any folder.
-    Settings& s = file.settings;
-    for (std::string* named :
-         {&s.environment.file, &s.background.image, &s.material.base_color_texture,
-          &s.material.metallic_texture, &s.material.roughness_texture, &s.material.normal_texture,
-          &s.material.occlusion_texture, &s.material.emissive_texture, &s.material.opacity_texture})
-        if (!named->empty()) {
-            *named = fs::absolute(*named).string();
-            file.files[*named] = io::hash_file(*named);
-        }
+    for_each_file(file.settings, [&](std::string& named) {
+        if (named.empty()) return;
+        named = fs::absolute(named).string();
+        file.files[named] = io::hash_file(named);
+    });
     io::save_settings(file, path);
 }
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "easypbr/app/named_textures.h"
+#include "easypbr/app/replaceable_textures().h"
 #include "easypbr/scene/fields.h"
 
 namespace easypbr::app {
@@ -25,11 +25,11 @@ bool same_settings(const Settings& a, const Settings& b) {
 }
 
 bool same_images(const render::SettingsImages& a, const render::SettingsImages& b) {
-    const auto same_texture = [&](const NamedTexture& named) {
-        return (a.textures.*named.texture).image == (b.textures.*named.texture).image;
+    const auto same_texture = [&](const MaterialTexture& row) {
+        return (a.textures.*row.texture).image == (b.textures.*row.texture).image;
     };
     return a.background == b.background && a.textures.shader == b.textures.shader &&
-           a.shader_files == b.shader_files && std::ranges::all_of(named_textures, same_texture);
+           a.shader_files == b.shader_files && std::ranges::all_of(replaceable_textures(), same_texture);
 }
 
 }  // namespace

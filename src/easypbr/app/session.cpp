@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <utility>
 
-#include "easypbr/app/stopwatch.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/stopwatch.h"
 
 namespace easypbr::app {
 namespace {
@@ -80,7 +80,8 @@ Prepared Session::prepare(const PictureOptions& options) {
         prepared.images = files_.images();
     }
     const Stopwatch watch(timing_.draw);
-    prepared.resolved = easypbr::resolve(prepared.scene, settings_, prepared.options.size);
+    prepared.resolved = 
+        easypbr::resolve(prepared.scene, settings_, prepared.options.size, prepared.options.samples);
     warnings_.check(prepared.scene, settings_, prepared.resolved);
     for (const render::CustomPass& custom : passes_)
         prepared.passes.emplace_back(custom.pass.get(), custom.pass->revision());

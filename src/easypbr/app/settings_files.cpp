@@ -2,7 +2,7 @@
 
 #include <set>
 
-#include "easypbr/app/named_textures.h"
+#include "easypbr/app/replaceable_textures().h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/parallel.h"
@@ -36,7 +36,7 @@ const std::string& ShaderTexts::get(const std::string& path) {
 
 void SettingsFiles::load(const Settings& settings) {
     std::set<std::string> paths;
-    for (const NamedTexture& named : named_textures) paths.insert(settings.material.*named.path);
+    for (const MaterialTexture& row : replaceable_textures()) paths.insert(settings.material.*row.setting);
     const bool has_background = settings.background.mode == BackgroundMode::image;
     if (has_background) {
         if (settings.background.image.empty())
@@ -46,9 +46,9 @@ void SettingsFiles::load(const Settings& settings) {
     paths.erase("");
     image_files_.read({paths.begin(), paths.end()});
     images_ = {};
-    for (const NamedTexture& named : named_textures) {
-        Texture& texture = images_.textures.*named.texture;
-        texture.path = settings.material.*named.path;
+    for (const MaterialTexture& row : replaceable_textures()) {
+        Texture& texture = images_.textures.*row.texture;
+        texture.path = settings.material.*row.setting;
         texture.image = image_files_.get(texture.path);
     }
     if (has_background) images_.background = image_files_.get(settings.background.image);

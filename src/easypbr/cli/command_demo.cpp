@@ -6,7 +6,7 @@
 #include "easypbr/app/session.h"
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/render_options.h"
-#include "easypbr/cli/stopwatch.h"
+#include "easypbr/cli/stage_times.h"
 #include "easypbr/core/file.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/image/image_io.h"
@@ -33,22 +33,22 @@ int run(const DemoOptions& options) {
     const Vec2i size = parse_size(options.size);
     const app::Encoding encoding = app::encoding_for(options.output);
     check_writable(options.output);
-    Stopwatch watch;
+    StageTimes times;
     app::Session session(make_demo_scene());
     CameraSettings& camera = session.settings().camera;
     camera.position = Vec3d(3.75, 2.35, 6.45);
     camera.target = Vec3d(0.02, 0.36, 0.02);
     camera.fov_y_deg = 26;
     session.settings().background.color = Vec3(0.36f, 0.375f, 0.40f);
-    watch.lap("make the scene");
+    times.lap("make the scene");
     session.context_info();
-    watch.lap("open an OpenGL context");
+    times.lap("open an OpenGL context");
     const Image image = session.render({size, options.samples, encoding});
-    watch.lap("draw");
+    times.lap("draw");
     io::save_image(image, options.output);
-    watch.lap("write the picture");
-    for (const auto& [stage, seconds] : watch.stages()) fmt::print("{:<24}{:8.3f} s\n", stage, seconds);
-    fmt::print("{:<24}{:8.3f} s\n{}\n", "total", watch.total(), fs::absolute(options.output).string());
+    times.lap("write the picture");
+    for (const auto& [stage, seconds] : times.stages()) fmt::print("{:<24}{:8.3f} s\n", stage, seconds);
+    fmt::print("{:<24}{:8.3f} s\n{}\n", "total", times.total(), fs::absolute(options.output).string());
     return 0;
 }
 

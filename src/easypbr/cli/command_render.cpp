@@ -14,13 +14,14 @@
 #include "easypbr/cli/drawable.h"
 #include "easypbr/cli/object_styles.h"
 #include "easypbr/cli/render_options.h"
-#include "easypbr/cli/stopwatch.h"
+#include "easypbr/cli/stage_times.h"
 #include "easypbr/cli/truth_layers.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/io/settings/label_map_io.h"
+#include "easypbr/scene/setting_files.h"
 
 namespace easypbr::cli {
 namespace {
@@ -84,12 +85,9 @@ void check_files(const Picture& picture, const Settings& settings, const RenderO
     if (!picture.save_settings.empty()) check_writable(picture.save_settings);
     for (const std::string& file : picture.files)
         if (file != standard_input) check_readable(file);
-    const MaterialSettings& m = settings.material;
-    for (const std::string& file :
-         {settings.environment.file, settings.background.image, m.base_color_texture, m.metallic_texture,
-          m.roughness_texture, m.normal_texture, m.occlusion_texture, m.emissive_texture, m.opacity_texture,
-          m.shader})
+    for_each_file(settings, [](const std::string& file) {
         if (!file.empty()) check_readable(file);
+    });
 }
 
 std::vector<io::LoadedScene> load_all(const std::vector<std::string>& files, const io::LoadOptions& options) {
@@ -141,27 +139,27 @@ class RenderJob {
     }
 
     void make(const Picture& picture) {
-        Stopwatch watch;
+        StageTimes times;
         start_look();
-        load(picture, watch);
+        load(picture, times);
         if (const auto pixel = parse_focus(options_.focus)) session_.focus_at(pixel->x(), pixel->y());
         if (options_.records()) {
             record(picture);
-            watch.lap("record");
+            times.lap("record");
             save_settings(picture);
-            if (options_.timing) fmt::print(stderr, "easypbr: timing: {}\n", watch.summary());
+            if (options_.timing) fmt::print(stderr, "easypbr: timing: {}\n", times.summary());
             return;
         }
         begin_motion();
         const Image image = session_.render({std::nullopt, std::nullopt, encoding_of(picture)});
-        watch.add("context", session_.timing().context);
-        watch.add("images", session_.timing().images);
-        watch.add("draw", session_.timing().draw);
-        watch.add("read", session_.timing().read);
-        watch.restart();
+        times.add("context", session_.timing().context);
+        times.add("images", session_.timing().images);
+        times.add("draw", session_.timing().draw);
+        times.add("read", session_.timing().read);
+        times.restart();
         write(picture, image);
-        watch.lap("write");
-        if (options_.timing) fmt::print(stderr, "easypbr: timing: {}\n", watch.summary());
+        times.lap("write");
+        if (options_.timing) fmt::print(stderr, "easypbr: timing: {}\n", times.summary());
     }
 
     void record(const Picture& picture) {
@@ -212,16 +210,16 @@ class RenderJob {
     }
 
     /// Reads the files while the GL context is made, for all of it takes long.
-    void load(const Picture& picture, Stopwatch& watch) {
+    void load(const Picture& picture, StageTimes& times) {
         const io::LoadOptions load_options{.crease_angle_deg = look_.settings.load.crease_deg,
                                            .format = options_.format};
         auto loading = std::async(std::launch::async, load_all, picture.files, load_options);
         auto lighting = std::async(std::launch::async, [this] { load_environment(); });
         session_.context_info();
-        watch.lap("context");
+        times.lap("context");
         const std::vector<io::LoadedScene> loaded = loading.get();
         lighting.get();
-        watch.lap("load");
+        times.lap("load");
         for (size_t i = 0; i < loaded.size(); ++i) {
             style_object(picture.names[i], styles_, label_map_, loaded[i].mesh);
             show(session_.scene(), loaded[i], picture.names[i]);

@@ -19,6 +19,7 @@
 #include "easypbr/io/video/video.h"
 #include "easypbr/render/pipeline/renderer.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/material_table.h"
 
 namespace easypbr::cli {
 namespace {
@@ -43,9 +44,6 @@ constexpr ShorthandOption shorthand_options[] = {{"--samples", "image.samples", 
                                                  {"--roughness", "material.roughness", "X"},
                                                  {"--shader", "material.shader", "FILE"},
                                                  {"--crease", "load.crease_deg", "DEG"}};
-
-const std::vector<std::string> texture_names{"base_color", "metallic", "roughness", "normal",
-                                             "occlusion",  "emissive", "opacity"};
 
 void declare_shorthands(CLI::App& command, RenderOptions& options) {
     for (const ShorthandOption& shorthand : shorthand_options) {
@@ -190,9 +188,11 @@ void apply_background(const std::string& text, BackgroundSettings& background) {
 void apply_texture(const std::string& text, Settings& settings) {
     auto [name, file] = split("--texture", text);
     if (name == "ao") name = "occlusion";
-    if (std::find(texture_names.begin(), texture_names.end(), name) == texture_names.end())
+    std::vector<std::string> names;
+    for (const MaterialTexture& row : replaceable_textures()) names.emplace_back(row.name);
+    if (std::ranges::find(names, name) == names.end())
         throw UsageError(fmt::format("--texture: there is no texture '{}'{}; expected one of {}", name,
-                                     did_you_mean(name, texture_names), fmt::join(texture_names, ", ")));
+                                     did_you_mean(name, names), fmt::join(names, ", ")));
     set_value(settings, "--texture", "material." + name + "_texture", file);
 }
 

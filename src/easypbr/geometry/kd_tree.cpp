@@ -9,6 +9,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/geometry/require.h"
 #include "easypbr/geometry/spatial_order.h"
+#include "easypbr/scene/mesh_arrays.h"
 
 namespace easypbr {
 namespace {

@@ -8,6 +8,7 @@
 #include "easypbr/geometry/require.h"
 #include "easypbr/geometry/spatial_order.h"
 #include "easypbr/geometry/weld.h"
+#include "easypbr/scene/mesh_arrays.h"
 
 namespace easypbr::geometry {
 namespace {

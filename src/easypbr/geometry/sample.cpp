@@ -10,6 +10,7 @@
 #include "easypbr/geometry/random.h"
 #include "easypbr/geometry/require.h"
 #include "easypbr/geometry/spatial_order.h"
+#include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr {

@@ -12,6 +12,7 @@
 #include "easypbr/geometry/require.h"
 #include "easypbr/geometry/spatial_order.h"
 #include "easypbr/geometry/surfel_cell.h"
+#include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr {

@@ -1,9 +1,9 @@
 // Which meshes need no back faces, by the revisions of their geometry.
 #pragma once
 
-#include <map>
 #include <utility>
 
+#include "easypbr/core/revision_cache.h"
 #include "easypbr/gpu/facing.h"
 #include "easypbr/scene/mesh.h"
 
@@ -15,33 +15,29 @@ class ClosedMeshes {
     /// is found out when it is drawn for the second time: it takes passes over all faces, which a single
     /// picture would not earn back.
     bool draw(const MeshData& mesh) {
-        Entry& entry = entries_[key_of(mesh)];
-        entry.used = true;
+        Entry& entry = entries_.get(key_of(mesh), [] { return Entry(); });
         if (++entry.draws == 2) entry.closed_outward = is_closed_outward(mesh.V, mesh.F);
         return entry.closed_outward;
     }
 
     /// The same of a mesh that is not noted.
     bool is_known(const MeshData& mesh) const {
-        const auto found = entries_.find(key_of(mesh));
-        return found != entries_.end() && found->second.closed_outward;
+        const Entry* const entry = entries_.find(key_of(mesh));
+        return entry && entry->closed_outward;
     }
 
     /// Drops what was not drawn since the last call.
-    void evict_unused() {
-        std::erase_if(entries_, [](const auto& item) { return !item.second.used; });
-        for (auto& [key, entry] : entries_) entry.used = false;
-    }
+    void evict_unused() { entries_.evict_unused(); }
 
   private:
     struct Entry {
         int draws = 0;
-        bool closed_outward = false, used = false;
+        bool closed_outward = false;
     };
     using Key = std::pair<uint64_t, uint64_t>;
     static Key key_of(const MeshData& mesh) { return {mesh.V.revision(), mesh.F.revision()}; }
 
-    std::map<Key, Entry> entries_;
+    RevisionCache<Key, Entry> entries_;
 };
 
 }  // namespace easypbr::gpu

@@ -35,17 +35,14 @@ LineBuffers make_buffers(const std::vector<Segment>& segments) {
 }  // namespace
 
 const LineBuffers& LineCache::get(const MeshData& mesh, LineKind kind, float length) {
-    Entry& entry = entries_[{mesh.V.revision(), mesh.E.revision(), mesh.F.revision(), mesh.N.revision(),
-                             mesh.C.revision(), kind, length}];
-    entry.used = true;
-    if (!entry.buffers)
-        entry.buffers = std::make_unique<LineBuffers>(make_buffers(segments_of(mesh, kind, length)));
-    return *entry.buffers;
-}
-
-void LineCache::evict_unused() {
-    std::erase_if(entries_, [](const auto& item) { return !item.second.used; });
-    for (auto& [key, entry] : entries_) entry.used = false;
+    const Key key{mesh.V.revision(),
+                  mesh.E.revision(),
+                  mesh.F.revision(),
+                  mesh.N.revision(),
+                  mesh.C.revision(),
+                  kind,
+                  length};
+    return buffers_.get(key, [&] { return make_buffers(segments_of(mesh, kind, length)); });
 }
 
 }  // namespace easypbr::gpu

@@ -1,10 +1,9 @@
 // Line segments on the device: 32 bytes each.
 #pragma once
 
-#include <map>
-#include <memory>
 #include <tuple>
 
+#include "easypbr/core/revision_cache.h"
 #include "easypbr/gl/buffer.h"
 #include "easypbr/gpu/line_segments.h"
 
@@ -23,15 +22,11 @@ class LineCache {
     const LineBuffers& get(const MeshData& mesh, LineKind kind, float length);
 
     /// Drops what was not asked for since the last call.
-    void evict_unused();
+    void evict_unused() { buffers_.evict_unused(); }
 
   private:
     using Key = std::tuple<uint64_t, uint64_t, uint64_t, uint64_t, uint64_t, LineKind, float>;
-    struct Entry {
-        std::unique_ptr<LineBuffers> buffers;
-        bool used = false;
-    };
-    std::map<Key, Entry> entries_;
+    RevisionCache<Key, LineBuffers> buffers_;
 };
 
 }  // namespace easypbr::gpu

@@ -118,15 +118,7 @@ MeshBuffers make_buffers(const MeshData& mesh, bool with_tangents) {
 const MeshBuffers& MeshCache::get(const MeshData& mesh, bool with_tangents) {
     const Key key{mesh.V.revision(),  mesh.N.revision(), mesh.C.revision(),
                   mesh.UV.revision(), mesh.F.revision(), with_tangents};
-    Entry& entry = entries_[key];
-    entry.used = true;
-    if (!entry.buffers) entry.buffers = std::make_unique<MeshBuffers>(make_buffers(mesh, with_tangents));
-    return *entry.buffers;
-}
-
-void MeshCache::evict_unused() {
-    std::erase_if(entries_, [](const auto& item) { return !item.second.used; });
-    for (auto& [key, entry] : entries_) entry.used = false;
+    return buffers_.get(key, [&] { return make_buffers(mesh, with_tangents); });
 }
 
 }  // namespace easypbr::gpu

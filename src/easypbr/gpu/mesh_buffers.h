@@ -1,10 +1,9 @@
 // Mesh data on the device.
 #pragma once
 
-#include <map>
-#include <memory>
 #include <tuple>
 
+#include "easypbr/core/revision_cache.h"
 #include "easypbr/gl/buffer.h"
 #include "easypbr/scene/mesh.h"
 
@@ -34,15 +33,11 @@ class MeshCache {
     const MeshBuffers& get(const MeshData& mesh, bool with_tangents);
 
     /// Drops what was not asked for since the last call.
-    void evict_unused();
+    void evict_unused() { buffers_.evict_unused(); }
 
   private:
     using Key = std::tuple<uint64_t, uint64_t, uint64_t, uint64_t, uint64_t, bool>;
-    struct Entry {
-        std::unique_ptr<MeshBuffers> buffers;
-        bool used = false;
-    };
-    std::map<Key, Entry> entries_;
+    RevisionCache<Key, MeshBuffers> buffers_;
 };
 
 }  // namespace easypbr::gpu

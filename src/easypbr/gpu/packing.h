@@ -9,6 +9,7 @@
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/octahedral.h"
+#include "easypbr/core/parallel.h"
 #include "easypbr/gl/buffer.h"
 #include "easypbr/scene/array.h"
 
@@ -37,6 +38,14 @@ inline Rgba8 rgba8(const ArrayXf& C, Eigen::Index i) {
 template <class T>
 gl::Buffer upload(const std::vector<T>& values) {
     return gl::Buffer(std::as_bytes(std::span(values)));
+}
+
+/// A buffer of convert(row) for each of `count` rows.
+template <class To, class Convert>
+gl::Buffer converted(Eigen::Index count, Convert&& convert) {
+    std::vector<To> values(static_cast<size_t>(count));
+    parallel_for(values.size(), 1 << 15, [&](size_t i) { values[i] = convert(Eigen::Index(i)); });
+    return upload(values);
 }
 
 }  // namespace easypbr::gpu

@@ -1,20 +1,10 @@
 #include "easypbr/gpu/point_buffers.h"
 
-#include "easypbr/core/parallel.h"
 #include "easypbr/gpu/mesh_buffers.h"
 #include "easypbr/gpu/packing.h"
 
 namespace easypbr::gpu {
 namespace {
-
-constexpr size_t point_grain = 1 << 15;
-
-template <class To, class Convert>
-gl::Buffer converted(Eigen::Index count, Convert&& convert) {
-    std::vector<To> values(static_cast<size_t>(count));
-    parallel_for(values.size(), point_grain, [&](size_t i) { values[i] = convert(Eigen::Index(i)); });
-    return upload(values);
-}
 
 PointBuffers make_buffers(const MeshData& mesh) {
     PointBuffers buffers;
@@ -36,15 +26,8 @@ PointBuffers make_buffers(const MeshData& mesh) {
 }  // namespace
 
 const PointBuffers& PointCache::get(const MeshData& mesh) {
-    Entry& entry = entries_[{mesh.V.revision(), mesh.N.revision(), mesh.C.revision()}];
-    entry.used = true;
-    if (!entry.buffers) entry.buffers = std::make_unique<PointBuffers>(make_buffers(mesh));
-    return *entry.buffers;
-}
-
-void PointCache::evict_unused() {
-    std::erase_if(entries_, [](const auto& item) { return !item.second.used; });
-    for (auto& [key, entry] : entries_) entry.used = false;
+    return buffers_.get({mesh.V.revision(), mesh.N.revision(), mesh.C.revision()},
+                        [&] { return make_buffers(mesh); });
 }
 
 }  // namespace easypbr::gpu

@@ -1,10 +1,9 @@
 // Point clouds on the device: 20 bytes per point, 16 without normals.
 #pragma once
 
-#include <map>
-#include <memory>
 #include <tuple>
 
+#include "easypbr/core/revision_cache.h"
 #include "easypbr/gl/buffer.h"
 #include "easypbr/scene/mesh.h"
 
@@ -23,15 +22,11 @@ class PointCache {
     const PointBuffers& get(const MeshData& mesh);
 
     /// Drops what was not asked for since the last call.
-    void evict_unused();
+    void evict_unused() { buffers_.evict_unused(); }
 
   private:
     using Key = std::tuple<uint64_t, uint64_t, uint64_t>;
-    struct Entry {
-        std::unique_ptr<PointBuffers> buffers;
-        bool used = false;
-    };
-    std::map<Key, Entry> entries_;
+    RevisionCache<Key, PointBuffers> buffers_;
 };
 
 }  // namespace easypbr::gpu

@@ -2,22 +2,13 @@
 
 #include <array>
 
-#include "easypbr/core/parallel.h"
 #include "easypbr/gpu/packing.h"
 
 namespace easypbr::gpu {
 namespace {
 
-constexpr size_t surfel_grain = 1 << 15;
 /// As in shaders/geometry_surfels.vert.
 enum Location { position_at, normal_at, color_at, axes_at };
-
-template <class To, class Convert>
-gl::Buffer converted(Eigen::Index count, Convert&& convert) {
-    std::vector<To> values(static_cast<size_t>(count));
-    parallel_for(values.size(), surfel_grain, [&](size_t i) { values[i] = convert(Eigen::Index(i)); });
-    return upload(values);
-}
 
 SurfelBuffers make_buffers(const MeshData& mesh) {
     SurfelBuffers buffers;
@@ -41,16 +32,9 @@ SurfelBuffers make_buffers(const MeshData& mesh) {
 }  // namespace
 
 const SurfelBuffers& SurfelCache::get(const MeshData& mesh) {
-    Entry& entry = entries_[{mesh.V.revision(), mesh.N.revision(), mesh.T.revision(), mesh.B.revision(),
-                             mesh.C.revision()}];
-    entry.used = true;
-    if (!entry.buffers) entry.buffers = std::make_unique<SurfelBuffers>(make_buffers(mesh));
-    return *entry.buffers;
-}
-
-void SurfelCache::evict_unused() {
-    std::erase_if(entries_, [](const auto& item) { return !item.second.used; });
-    for (auto& [key, entry] : entries_) entry.used = false;
+    const Key key{mesh.V.revision(), mesh.N.revision(), mesh.T.revision(), mesh.B.revision(),
+                  mesh.C.revision()};
+    return buffers_.get(key, [&] { return make_buffers(mesh); });
 }
 
 }  // namespace easypbr::gpu

@@ -1,10 +1,9 @@
 // Surfels on the device: 44 bytes each.
 #pragma once
 
-#include <map>
-#include <memory>
 #include <tuple>
 
+#include "easypbr/core/revision_cache.h"
 #include "easypbr/gl/buffer.h"
 #include "easypbr/scene/mesh.h"
 
@@ -25,15 +24,11 @@ class SurfelCache {
     const SurfelBuffers& get(const MeshData& mesh);
 
     /// Drops what was not asked for since the last call.
-    void evict_unused();
+    void evict_unused() { buffers_.evict_unused(); }
 
   private:
     using Key = std::tuple<uint64_t, uint64_t, uint64_t, uint64_t, uint64_t>;
-    struct Entry {
-        std::unique_ptr<SurfelBuffers> buffers;
-        bool used = false;
-    };
-    std::map<Key, Entry> entries_;
+    RevisionCache<Key, SurfelBuffers> buffers_;
 };
 
 }  // namespace easypbr::gpu

@@ -87,23 +87,17 @@ gl::Texture make_texture(const Image& image, bool color, const std::string& name
 }
 
 const gl::Texture& TextureCache::get(const Texture& texture, bool color) {
-    Entry& entry = entries_[Key{texture.image.get(), color, texture.wrap_u, texture.wrap_v, texture.filter}];
-    entry.used = true;
-    if (!entry.texture) {
-        entry.image = texture.image;
-        entry.texture = make_texture(*texture.image, color, texture.path);
+    const Key key{texture.image.get(), color, texture.wrap_u, texture.wrap_v, texture.filter};
+    const auto make = [&] {
+        Entry entry{texture.image, make_texture(*texture.image, color, texture.path)};
         // Anisotropic filtering is cheap on a GPU and costs several times the fetch on a CPU rasteriser.
         const float anisotropy = gl::Context::current().info().software ? 1.0f : 8.0f;
         entry.texture.sampling(
             texture.filter == Filter::nearest ? gl::Filtering::nearest : gl::Filtering::trilinear,
             wrapping(texture.wrap_u), wrapping(texture.wrap_v), anisotropy);
-    }
-    return entry.texture;
-}
-
-void TextureCache::evict_unused() {
-    std::erase_if(entries_, [](const auto& item) { return !item.second.used; });
-    for (auto& [key, entry] : entries_) entry.used = false;
+        return entry;
+    };
+    return entries_.get(key, make).texture;
 }
 
 }  // namespace easypbr::gpu

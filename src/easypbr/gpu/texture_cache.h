@@ -1,11 +1,11 @@
 // Material images on the device, with mip levels.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
 #include <tuple>
 
+#include "easypbr/core/revision_cache.h"
 #include "easypbr/gl/texture.h"
 #include "easypbr/scene/material.h"
 
@@ -18,16 +18,15 @@ class TextureCache {
     const gl::Texture& get(const Texture& texture, bool color);
 
     /// Drops what was not asked for since the last call.
-    void evict_unused();
+    void evict_unused() { entries_.evict_unused(); }
 
   private:
     using Key = std::tuple<const Image*, bool, Wrap, Wrap, Filter>;
     struct Entry {
         std::shared_ptr<const Image> image;  ///< keeps the address from being used again
         gl::Texture texture;
-        bool used = false;
     };
-    std::map<Key, Entry> entries_;
+    RevisionCache<Key, Entry> entries_;
 };
 
 /// An image as 8-bit RGBA with all mip levels, on its own: for backgrounds. Values that are NaN or infinite

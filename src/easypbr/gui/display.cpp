@@ -2,12 +2,9 @@
 
 #include <dlfcn.h>
 #include <poll.h>
-#include <sys/eventfd.h>
-#include <unistd.h>
 
 #include <atomic>
 #include <cmath>
-#include <cstdint>
 
 #include "easypbr/core/error.h"
 
@@ -22,7 +19,6 @@ using ExitHandler = void (*)(Display*, void*);
 Display* display = nullptr;
 const char* name_of_display = nullptr;
 std::atomic<int> connection = -1;
-int wake_file = -1;
 std::atomic<bool> lost = false;
 IoErrorHandler handler_before = nullptr;
 
@@ -58,8 +54,7 @@ void watch_display() {
     name_of_display = name(display);
     set_exit(display, on_exit, nullptr);
     handler_before = set_handler(on_io_error);
-    wake_file = eventfd(0, EFD_CLOEXEC | EFD_NONBLOCK);
-    if (wake_file >= 0) connection = number(display);
+    connection = number(display);
 }
 
 bool display_is_lost() {
@@ -75,22 +70,13 @@ void require_display() {
 
 bool wait_for_display(double seconds) {
     if (connection < 0) return false;
-    pollfd files[] = {{connection, POLLIN, 0}, {wake_file, POLLIN, 0}};
-    poll(files, 2, int(std::ceil(seconds * 1000)));
-    uint64_t count = 0;
-    if (files[1].revents) [[maybe_unused]]
-        const ssize_t ignored = read(wake_file, &count, sizeof count);
+    pollfd file{connection, POLLIN, 0};
+    poll(&file, 1, int(std::ceil(seconds * 1000)));
     return true;
 }
 
 const char* display_name() {
     return name_of_display;
-}
-
-void wake_display() {
-    const uint64_t one = 1;
-    if (connection >= 0) [[maybe_unused]]
-        const ssize_t ignored = write(wake_file, &one, sizeof one);
 }
 
 }  // namespace easypbr::gui

@@ -14,12 +14,9 @@ bool display_is_lost();
 /// Throws ContextError when the display is lost.
 void require_display();
 
-/// Waits until the display has something to tell, wake_display() is called or the time is over. False where
-/// it cannot: windows are not X11's. Needs no lock, unlike GLFW's own wait, which never ends when the
-/// connection is broken.
+/// Waits until the display has something to tell or the time is over. False where it cannot: windows are not
+/// X11's. Needs no lock, unlike GLFW's own wait, which never ends when the connection is broken.
 bool wait_for_display(double seconds);
-
-void wake_display();
 
 /// The name of the X display that windows are on, for a connection of one's own; null where they are not
 /// X11's.

@@ -15,7 +15,6 @@ class ImGuiRenderer {
   public:
     /// Uploads the font's picture and tells the atlas its texture.
     void make_font_texture(ImFontAtlas& atlas);
-    bool has_font() const { return bool(font_); }
 
     /// Draws over the framebuffer, whose row 0 is the top.
     void draw(const ImDrawData& data, const gl::Framebuffer& target);

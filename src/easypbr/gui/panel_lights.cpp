@@ -6,6 +6,7 @@
 #include "easypbr/core/color.h"
 #include "easypbr/gui/panels.h"
 #include "easypbr/gui/widgets.h"
+#include "easypbr/scene/light_table.h"
 
 namespace easypbr::gui {
 namespace {
@@ -26,14 +27,6 @@ void studio_light(GuiState& state, const std::string& name, const char* title) {
     select_button(state, name);
     settings_rows(state, "lights." + name + ".");
     ImGui::TreePop();
-}
-
-bool direction_row(const char* name, Vec3& value) {
-    begin_row(name);
-    ImGui::PushID(name);
-    const bool changed = ImGui::DragFloat3("##vector", value.data(), 0.01f, 0, 0, "%.3g");
-    ImGui::PopID();
-    return changed;
 }
 
 /// Half the view's distance beside, above and before the target, as bright there as 3 lux.
@@ -59,6 +52,34 @@ void add_button(GuiState& state) {
     state.selection().object.clear();
 }
 
+/// A row of one of the light's fields. Returns whether the person has changed it.
+bool light_row(GuiState& state, const std::string& name, const LightField& field, Light& light) {
+    FieldInfo info = field;
+    Value value = field.get(light);
+    if (field.is_color) {
+        // A person chooses colours as they are shown.
+        info.type = FieldType::color;
+        const Vec3 srgb = srgb_from_linear(light.color);
+        value.data = std::vector<double>{srgb[0], srgb[1], srgb[2]};
+    }
+    std::optional<Value> inferred;
+    if (field.can_be_automatic && state.resolved && state.resolved->light_radii.contains(name))
+        inferred = Value{double(state.resolved->light_radii.at(name))};
+    const Light before = light;
+    field_row(info, value, inferred, [&](Value chosen) {
+        if (field.is_color) {
+            const auto& srgb = std::get<std::vector<double>>(chosen.data);
+            const Vec3 linear = linear_from_srgb(Vec3(float(srgb[0]), float(srgb[1]), float(srgb[2])));
+            chosen.data = std::vector<double>{linear[0], linear[1], linear[2]};
+        }
+        field.put(light, chosen);
+    });
+    note_place("Lights/" + field.name + " " + name);
+    // A direction on its way through zero would be none.
+    if (!(light.direction.norm() > 1e-6f)) light.direction = before.direction;
+    return !(light == before);
+}
+
 void scene_light(GuiState& state, const std::string& name) {
     const bool open = ImGui::TreeNodeEx(name.c_str(), ImGuiTreeNodeFlags_SpanAvailWidth);
     note_place("Lights/" + name);
@@ -67,29 +88,8 @@ void scene_light(GuiState& state, const std::string& name) {
     if (light.type != LightType::directional) select_button(state, name);
     bool changed = false;
     if (begin_rows("light", false)) {
-        begin_row("enabled");
-        changed |= ImGui::Checkbox("##enabled", &light.enabled);
-        note_place("Lights/enabled " + name);
-        begin_row("intensity", light.type == LightType::directional ? "lux" : "candela");
-        changed |= ImGui::DragFloat("##intensity", &light.intensity, std::max(light.intensity, 1e-3f) * 0.01f,
-                                    0, 1e9f, "%.3g", ImGuiSliderFlags_AlwaysClamp);
-        begin_row("color");
-        Vec3 color = srgb_from_linear(light.color);
-        if (ImGui::ColorEdit3("##color", color.data(),
-                              ImGuiColorEditFlags_NoLabel | ImGuiColorEditFlags_NoInputs)) {
-            light.color = linear_from_srgb(color);
-            changed = true;
-        }
-        if (light.type != LightType::directional) changed |= direction_row("position", light.position);
-        if (light.type != LightType::point) {
-            Vec3 direction = light.direction;
-            if (direction_row("direction", direction) && direction.norm() > 1e-6f) {
-                light.direction = direction;
-                changed = true;
-            }
-        }
-        begin_row("casts shadows");
-        changed |= ImGui::Checkbox("##shadows", &light.casts_shadows);
+        for (const LightField& field : light_fields())
+            if (field.concerns(light.type)) changed |= light_row(state, name, field, light);
         end_rows();
     }
     if (changed) {

@@ -17,7 +17,7 @@ std::string limit_text(double value) {
     return std::abs(value) > 1e29 ? std::string() : fmt::format("{:g}", value);
 }
 
-bool edit_number(const Field& field, double& value) {
+bool edit_number(const FieldInfo& field, double& value) {
     float shown = float(value);
     const float low = float(std::max(field.min, -1e30)), high = float(std::min(field.max, 1e30));
     const bool whole = field.whole || field.type == FieldType::integer;
@@ -34,7 +34,7 @@ bool edit_number(const Field& field, double& value) {
     return true;
 }
 
-bool edit_choice(const Field& field, std::string& value) {
+bool edit_choice(const FieldInfo& field, std::string& value) {
     bool changed = false;
     if (!ImGui::BeginCombo("##value", readable(value).c_str())) return false;
     for (const std::string& choice : field.choices)
@@ -61,7 +61,7 @@ const char* format_for(double largest) {
     return largest < 10 ? "%.3f" : largest < 100 ? "%.2f" : "%.1f";
 }
 
-bool edit_list(const Field& field, std::vector<double>& value) {
+bool edit_list(const FieldInfo& field, std::vector<double>& value) {
     if (value.size() < 2 || value.size() > 4) {
         ImGui::AlignTextToFramePadding();
         ImGui::TextDisabled(value.empty() ? "none" : "%d numbers", int(value.size()));
@@ -84,7 +84,7 @@ bool edit_list(const Field& field, std::vector<double>& value) {
 }
 
 /// The widget of a field's type. Returns whether the person changed the data.
-bool edit(const Field& field, Value::Data& data) {
+bool edit(const FieldInfo& field, Value::Data& data) {
     ImGui::SetNextItemWidth(-FLT_MIN);
     if (auto* flag = std::get_if<bool>(&data)) return ImGui::Checkbox("##value", flag);
     if (auto* number = std::get_if<double>(&data)) return edit_number(field, *number);
@@ -129,7 +129,7 @@ std::string readable(const std::string& name) {
     return text;
 }
 
-std::string tooltip_of(const Field& field) {
+std::string tooltip_of(const FieldInfo& field) {
     std::string text = field.doc;
     const std::string low = limit_text(field.min), high = limit_text(field.max);
     const bool is_number = field.type == FieldType::number || field.type == FieldType::integer;
@@ -170,7 +170,7 @@ void begin_row(const std::string& name, const std::string& tooltip) {
     ImGui::SetNextItemWidth(-FLT_MIN);
 }
 
-void field_row(const Field& field, const Value& value, const std::optional<Value>& inferred,
+void field_row(const FieldInfo& field, const Value& value, const std::optional<Value>& inferred,
                const std::function<void(const Value&)>& put) {
     ImGui::PushID(field.name.c_str());
     begin_row(readable(field.name.substr(field.name.rfind('.') + 1)), tooltip_of(field));

@@ -21,11 +21,11 @@ void begin_row(const std::string& name, const std::string& tooltip = {});
 /// A field's name as it is read: "exposure compensation".
 std::string readable(const std::string& name);
 /// What the field means, its unit, range and full name.
-std::string tooltip_of(const Field& field);
+std::string tooltip_of(const FieldInfo& field);
 
 /// A row for a field whose value is `value`; `inferred` is shown while it is automatic. Calls `put` with what
 /// the person chose.
-void field_row(const Field& field, const Value& value, const std::optional<Value>& inferred,
+void field_row(const FieldInfo& field, const Value& value, const std::optional<Value>& inferred,
                const std::function<void(const Value&)>& put);
 
 /// A heading that folds its panel or group.

@@ -48,8 +48,6 @@ class GlfwLock {
         return *glfw_;
     }
 
-    static bool started() { return started_; }
-
   private:
     std::unique_lock<std::recursive_mutex> lock_;
     static inline const Glfw* glfw_ = nullptr;
@@ -260,11 +258,6 @@ void Window::set_clipboard(const std::string& text) {
 void Window::set_title(const std::string& title) {
     const GlfwLock lock;
     glfw().glfwSetWindowTitle(window_, title.c_str());
-}
-
-void wake_windows() {
-    wake_display();
-    if (GlfwLock::started()) glfw().glfwPostEmptyEvent();
 }
 
 }  // namespace easypbr::gui

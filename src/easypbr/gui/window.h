@@ -60,7 +60,4 @@ class Window {
     Vec2i target_size_{0, 0};
 };
 
-/// Ends the wait of events() on whatever thread: something is to be shown.
-void wake_windows();
-
 }  // namespace easypbr::gui

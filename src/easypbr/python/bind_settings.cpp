@@ -24,7 +24,7 @@ nb::object data_to_python(const Value::Data& data, bool whole) {
     return nb::tuple(list);
 }
 
-std::vector<double> numbers_of(const Field& field, nb::handle object) {
+std::vector<double> numbers_of(const FieldInfo& field, nb::handle object) {
     const std::string what = fmt::format("setting '{}'", field.name);
     const nb::object array = numeric_object(object, what.c_str());
     const nb::object flat = array.attr("astype")("float64").attr("ravel")().attr("tolist")();
@@ -38,7 +38,7 @@ nb::object unboxed(nb::handle object) {
     return boxed ? object.attr("item")() : nb::borrow(object);
 }
 
-Value::Data data_from_python(const Field& field, nb::handle given) {
+Value::Data data_from_python(const FieldInfo& field, nb::handle given) {
     if (given.is_none()) {
         if (field.type == FieldType::text) return std::string();
         if (field.type == FieldType::vector) return std::vector<double>();
@@ -90,7 +90,7 @@ void bind_automatic(nb::module_& module) {
 
 }  // namespace
 
-Value value_from_python(const Field& field, nb::handle object) {
+Value value_from_python(const FieldInfo& field, nb::handle object) {
     if (nb::isinstance<Follow>(object)) return {{}, Value::State::follow};
     if (nb::isinstance<Automatic>(object)) {
         const auto& automatic = nb::cast<const Automatic&>(object);
@@ -104,7 +104,7 @@ Value value_from_python(const Field& field, nb::handle object) {
     return value;
 }
 
-nb::object value_to_python(const Field& field, const Value& value) {
+nb::object value_to_python(const FieldInfo& field, const Value& value) {
     if (value.state == Value::State::follow) return nb::cast(Follow{});
     if (value.state == Value::State::given) return data_to_python(value.data, field.whole);
     return nb::cast(value.latched ? Automatic{value.data} : Automatic{});

@@ -17,7 +17,7 @@ struct Automatic {
 struct Follow {};
 
 /// Throws ArgumentError when the object is no setting's value at all; the field's own check comes later.
-Value value_from_python(const Field& field, nb::handle object);
-nb::object value_to_python(const Field& field, const Value& value);
+Value value_from_python(const FieldInfo& field, nb::handle object);
+nb::object value_to_python(const FieldInfo& field, const Value& value);
 
 }  // namespace easypbr::python

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "easypbr/core/parallel.h"
+#include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr {
@@ -42,21 +43,14 @@ ArrayType mixed(const ArrayType& array, const std::vector<Mixture>& vertices) {
 
 /// The attributes of vertices that are mixtures of the mesh's.
 MeshData with_vertices(const MeshData& mesh, const std::vector<Mixture>& vertices) {
-    MeshData out = mesh;
+    MeshData out = without_arrays(mesh);
     out.V = mixed(mesh.V, vertices);
     out.N = mixed(mesh.N, vertices);
     out.C = mixed(mesh.C, vertices);
     out.UV = mixed(mesh.UV, vertices);
     out.T = mixed(mesh.T, vertices);
     out.B = mixed(mesh.B, vertices);
-    out.F = {};
-    out.E = {};
-    out.L = {};
-    out.I = {};
-    out.scalars.clear();
-    out.parts.clear();
-    out.source_vertex = {};
-    out.source_face = {};
+    out.voxel_size = mesh.voxel_size;
     return out;
 }
 

@@ -1,4 +1,5 @@
-// How a member of a settings struct becomes a row of the table of fields. Used by fields_*.cpp alone.
+// How a member of a struct becomes a row of a table of fields. Used by fields_*.cpp and light_table.cpp
+// alone.
 #pragma once
 
 #include <algorithm>
@@ -133,7 +134,7 @@ struct Unwrapped<Auto<T>> {
 
 /// Type, choices, lengths and the range that the member itself can hold.
 template <class T>
-void describe(Field& field) {
+void describe(FieldInfo& field) {
     if constexpr (std::is_same_v<T, bool>) {
         field.type = FieldType::boolean;
     } else if constexpr (std::is_enum_v<T>) {
@@ -155,11 +156,11 @@ void describe(Field& field) {
     }
 }
 
-/// Follows a chain of pointers to members from the settings to a field.
+/// Follows a chain of pointers to members to a field.
 template <class... Members>
 auto at(Members... members) {
-    return [members...](auto& settings) -> auto& {
-        return (settings.*....*members);
+    return [members...](auto& owner) -> auto& {
+        return (owner.*....*members);
     };
 }
 
@@ -171,10 +172,11 @@ struct Range {
     double min = -unlimited, max = unlimited;
 };
 
-template <class Access>
-Field make(std::string name, Access access, std::string doc, std::string unit = {}, Range range = {}) {
-    using Member = std::remove_cvref_t<decltype(access(std::declval<Settings&>()))>;
-    Field field;
+template <class Owner = Settings, class Access>
+FieldOf<Owner> make(std::string name, Access access, std::string doc, std::string unit = {},
+                    Range range = {}) {
+    using Member = std::remove_cvref_t<decltype(access(std::declval<Owner&>()))>;
+    FieldOf<Owner> field;
     field.name = std::move(name);
     field.doc = std::move(doc);
     field.unit = std::move(unit);
@@ -182,8 +184,8 @@ Field make(std::string name, Access access, std::string doc, std::string unit = 
     field.can_be_automatic = Unwrapped<Member>::is_auto;
     field.min = std::max(field.min, range.min);
     field.max = std::min(field.max, range.max);
-    field.get = [access](const Settings& settings) { return to_value(access(settings)); };
-    field.put = [access](Settings& settings, const Value& value) { from_value(value, access(settings)); };
+    field.get = [access](const Owner& owner) { return to_value(access(owner)); };
+    field.put = [access](Owner& owner, const Value& value) { from_value(value, access(owner)); };
     return field;
 }
 
@@ -207,7 +209,7 @@ inline Field with_sizes(Field field, std::vector<size_t> sizes) {
 
 using Table = std::vector<Field>;
 
-/// Rows of the effects: ambient occlusion.
+/// Rows of the effects, see fields_effects.cpp.
 void add_effects(Table& table);
 
 }  // namespace easypbr::detail

@@ -42,7 +42,7 @@ std::string hint_for(std::string_view wrong) {
     return last.empty() ? "" : fmt::format(" (did you mean {}?)", names_ending_in(last));
 }
 
-std::string describe_range(const Field& field) {
+std::string describe_range(const FieldInfo& field) {
     const std::string kind = field.whole ? "whole number" : "number";
     const bool from = field.min > -FLT_MAX, to = field.max < FLT_MAX;
     const std::string unit = field.unit.empty() ? "" : " " + field.unit;
@@ -54,17 +54,26 @@ std::string describe_range(const Field& field) {
     return "a " + kind;
 }
 
-std::string describe_vector(const Field& field) {
-    const auto [shortest, longest] = std::minmax_element(field.sizes.begin(), field.sizes.end());
-    if (field.sizes.size() > 2)
-        return fmt::format("a multiple of {} numbers, up to {}", field.sizes[1] - field.sizes[0], *longest);
-    const std::string count =
-        *shortest == *longest ? fmt::format("{}", *longest) : fmt::format("none or {}", *longest);
-    const bool free = field.min <= -FLT_MAX && field.max >= FLT_MAX;
-    return fmt::format("{} numbers{}", count, free ? "" : ", each " + describe_range(field));
+/// "2 numbers", "none, 6 or 7 numbers", "a multiple of 4 numbers, up to 64", of ascending sizes.
+std::string describe_sizes(const std::vector<size_t>& sizes) {
+    const auto other_step = [&](size_t a, size_t b) { return b - a != sizes[1]; };
+    const bool even = sizes.front() == 0 && std::ranges::adjacent_find(sizes, other_step) == sizes.end();
+    if (sizes.size() > 2 && even)
+        return fmt::format("a multiple of {} numbers, up to {}", sizes[1], sizes.back());
+    std::string text;
+    for (size_t i = 0; i < sizes.size(); ++i) {
+        if (i > 0) text += i + 1 == sizes.size() ? " or " : ", ";
+        text += sizes[i] == 0 ? "none" : fmt::format("{}", sizes[i]);
+    }
+    return text + " numbers";
 }
 
-std::string describe_expected(const Field& field) {
+std::string describe_vector(const FieldInfo& field) {
+    const bool free = field.min <= -FLT_MAX && field.max >= FLT_MAX;
+    return describe_sizes(field.sizes) + (free ? "" : ", each " + describe_range(field));
+}
+
+std::string describe_expected(const FieldInfo& field) {
     const std::string or_auto = field.can_be_automatic ? ", or 'auto' or 'follow'" : "";
     switch (field.type) {
         case FieldType::boolean:
@@ -99,27 +108,29 @@ std::string describe_given(const Value& value) {
     return std::visit(Printer{}, value.data);
 }
 
-[[noreturn]] void reject(const Field& field, const Value& value) {
+[[noreturn]] void reject(const FieldInfo& field, const Value& value, std::string_view owner) {
     std::string hint;
     if (field.type == FieldType::choice)
         if (const auto* text = std::get_if<std::string>(&value.data))
             hint = did_you_mean(*text, field.choices);
-    throw ArgumentError(fmt::format("setting '{}': expected {}, got {}{}", field.name,
-                                    describe_expected(field), describe_given(value), hint));
+    const std::string place =
+        owner.empty() ? fmt::format("setting '{}'", field.name) : fmt::format("{}{}", owner, field.name);
+    throw ArgumentError(fmt::format("{}: expected {}, got {}{}", place, describe_expected(field),
+                                    describe_given(value), hint));
 }
 
-bool is_allowed(const Field& field, double number) {
+bool is_allowed(const FieldInfo& field, double number) {
     return std::isfinite(number) && number >= field.min && number <= field.max &&
            (!field.whole || number == std::floor(number));
 }
 
-bool is_allowed(const Field& field, const std::vector<double>& numbers) {
+bool is_allowed(const FieldInfo& field, const std::vector<double>& numbers) {
     return std::find(field.sizes.begin(), field.sizes.end(), numbers.size()) != field.sizes.end() &&
            std::all_of(numbers.begin(), numbers.end(),
                        [&](double number) { return is_allowed(field, number); });
 }
 
-bool is_allowed(const Field& field, const Value::Data& data) {
+bool is_allowed(const FieldInfo& field, const Value::Data& data) {
     switch (field.type) {
         case FieldType::boolean:
             return std::holds_alternative<bool>(data);
@@ -162,18 +173,18 @@ bool is_valid(const Field& field, const Value& value) {
     return is_allowed(field, value.data);
 }
 
-Value checked(const Field& field, const Value& value) {
+Value checked(const FieldInfo& field, const Value& value, std::string_view owner) {
     const bool has_data = value.state == Value::State::given || value.latched;
-    if (value.state != Value::State::given && !field.can_be_automatic) reject(field, value);
+    if (value.state != Value::State::given && !field.can_be_automatic) reject(field, value, owner);
     if (!has_data) return {{}, value.state};
     if (field.type == FieldType::color && std::holds_alternative<std::string>(value.data)) {
         Value parsed = parse_value(field, std::get<std::string>(value.data));
-        if (parsed.state != Value::State::given) reject(field, value);
+        if (parsed.state != Value::State::given) reject(field, value, owner);
         parsed.state = value.state;
         parsed.latched = value.latched;
         return parsed;
     }
-    if (!is_allowed(field, value.data)) reject(field, value);
+    if (!is_allowed(field, value.data)) reject(field, value, owner);
     return value;
 }
 

@@ -27,8 +27,9 @@ struct Value {
 
 enum class FieldType { boolean, integer, number, color, vector, text, choice };
 
-struct Field {
-    std::string name;  ///< "group.name"
+/// What a field of a struct is: of the settings, or of a light (scene/light_table.h).
+struct FieldInfo {
+    std::string name;  ///< "group.name" of a setting
     std::string doc;   ///< one sentence
     std::string unit;
     FieldType type = FieldType::number;
@@ -38,11 +39,16 @@ struct Field {
     std::vector<std::string> choices;
     std::vector<size_t> sizes;  ///< allowed lengths of a vector
     bool whole = false;         ///< the number, or each of a vector's, is a whole one
-
-    std::function<Value(const Settings&)> get;
-    /// Sets an already checked value.
-    std::function<void(Settings&, const Value&)> put;
 };
+
+template <class Owner>
+struct FieldOf : FieldInfo {
+    std::function<Value(const Owner&)> get;
+    /// Sets an already checked value.
+    std::function<void(Owner&, const Value&)> put;
+};
+
+using Field = FieldOf<Settings>;
 
 /// All fields in the order of the reference.
 const std::vector<Field>& fields();
@@ -57,13 +63,14 @@ Value get(const Settings& settings, std::string_view name);
 /// Whether the data of a value are in the field's range, and finite.
 bool is_valid(const Field& field, const Value& value);
 
-/// The value in the form in which `put` takes it. Throws ArgumentError that says what was expected.
-Value checked(const Field& field, const Value& value);
+/// The value in the form in which `put` takes it. Throws ArgumentError that says what was expected of the
+/// setting, or, of another struct's field, of `owner` followed by its name ("light.", "light 'sun': ").
+Value checked(const FieldInfo& field, const Value& value, std::string_view owner = {});
 
 /// The value written as on the command line: numbers separated by commas, '#rrggbb', true/false, 'auto',
 /// 'follow'.
-Value parse_value(const Field& field, std::string_view text);
-std::string to_text(const Field& field, const Value& value);
+Value parse_value(const FieldInfo& field, std::string_view text);
+std::string to_text(const FieldInfo& field, const Value& value);
 
 /// A field of an object's own style, by its name without "style.". Throws NameError or ArgumentError.
 void set(Style& style, std::string_view name, const Value& value);

@@ -1,8 +1,11 @@
+#include <fmt/format.h>
+
 #include <utility>
 
 #include "easypbr/core/image.h"
 #include "easypbr/scene/field_builder.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/material_table.h"
 
 namespace easypbr {
 namespace detail {
@@ -312,8 +315,8 @@ void add_extended_overrides(Table& table) {
 
 void add_overrides(Table& table) {
     const auto material = [](auto member) { return at(&Settings::material, member); };
-    const auto texture = [&](const std::string& name, std::string MaterialSettings::*member,
-                             const std::string& doc) {
+    const auto file = [&](const std::string& name, std::string MaterialSettings::*member,
+                          const std::string& doc) {
         table.push_back(make("material." + name, material(member), doc + " Empty: the material's own."));
     };
     table.push_back(color("material.color", material(&MaterialSettings::color),
@@ -329,21 +332,10 @@ void add_overrides(Table& table) {
     table.push_back(color("material.emissive", material(&MaterialSettings::emissive),
                           "Emitted radiance of every material; automatic: the material's own."));
     add_extended_overrides(table);
-    texture("base_color_texture", &MaterialSettings::base_color_texture,
-            "Base colour texture file (sRGB) of every material.");
-    texture("metallic_texture", &MaterialSettings::metallic_texture,
-            "Metallic texture file of every material.");
-    texture("roughness_texture", &MaterialSettings::roughness_texture,
-            "Roughness texture file of every material.");
-    texture("normal_texture", &MaterialSettings::normal_texture,
-            "Normal map file of every material, tangent space, +Y up (OpenGL).");
-    texture("occlusion_texture", &MaterialSettings::occlusion_texture,
-            "Baked ambient occlusion texture file of every material.");
-    texture("emissive_texture", &MaterialSettings::emissive_texture,
-            "Emissive texture file (sRGB) of every material.");
-    texture("opacity_texture", &MaterialSettings::opacity_texture, "Opacity texture file of every material.");
-    texture("shader", &MaterialSettings::shader,
-            "GLSL surface shader file of every material, reloaded when it changes.");
+    for (const MaterialTexture& row : replaceable_textures())
+        file(std::string(row.name) + "_texture", row.setting, row.setting_doc);
+    file("shader", &MaterialSettings::shader,
+         "GLSL surface shader file of every material, reloaded when it changes.");
 }
 
 /// Each is a row of every object's style and, as a setting, overrides them all.

@@ -2,45 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
-
 #include "easypbr/core/error.h"
+#include "easypbr/scene/light_table.h"
 
 namespace easypbr {
-namespace {
-
-void require(bool valid, const std::string& name, const char* member, const char* expected, float given) {
-    if (!valid)
-        throw ArgumentError(
-            fmt::format("light '{}': {}: expected {}, got {}", name, member, expected, given));
-}
-
-void require_finite(const Vec3& v, const std::string& name, const char* member) {
-    if (!v.allFinite())
-        throw ArgumentError(fmt::format("light '{}': {}: expected finite numbers, got ({}, {}, {})", name,
-                                        member, v.x(), v.y(), v.z()));
-}
-
-bool is_length(float v) {
-    return std::isfinite(v) && v >= 0;
-}
-
-}  // namespace
 
 void validate(const Light& light, const std::string& name) {
-    require_finite(light.position, name, "position");
-    require_finite(light.direction, name, "direction");
-    require_finite(light.color, name, "color");
-    const bool aims = light.type != LightType::point;
-    if (aims && !(light.direction.norm() > 0))
-        throw ArgumentError(
-            fmt::format("light '{}': direction: expected a vector with a length, got (0, 0, 0)", name));
-    require(is_length(light.intensity), name, "intensity", "a finite number of at least 0", light.intensity);
-    require(is_length(light.range), name, "range", "a finite number of at least 0", light.range);
-    if (light.radius.value())
-        require(is_length(*light.radius), name, "radius", "a finite number of at least 0", *light.radius);
-    const float angle = light.angular_radius_deg;
-    require(angle >= 0 && angle <= 45, name, "angular_radius_deg", "0 to 45 degrees", angle);
+    const std::string owner = fmt::format("light '{}': ", name);
+    for (const LightField& field : light_fields()) checked(field, field.get(light), owner);
+    if (light.type != LightType::point && !(light.direction.norm() > 0))
+        throw ArgumentError(owner + "direction: expected a vector with a length, got (0, 0, 0)");
 }
 
 }  // namespace easypbr

@@ -67,7 +67,8 @@ struct Material {
     float sheen_roughness = 0;  ///< 0 to 1
 
     // KHR_materials_specular, KHR_materials_ior: the specular reflection of dielectrics.
-    float ior = 1.5f;              ///< index of refraction, 1 to 100; 0: reflectance 1
+    static constexpr float default_ior = 1.5f;
+    float ior = default_ior;       ///< index of refraction, 1 to 100; 0: reflectance 1
     float specular = 1;            ///< strength, 0 to 1
     Vec3 specular_color{1, 1, 1};  ///< at normal incidence
 
@@ -114,6 +115,11 @@ struct Material {
 
     /// Whether a material extension is in use, beyond the metallic-roughness core of glTF.
     bool is_extended() const;
+
+    /// Whether it specifies an index of refraction: glTF's default does not.
+    bool names_ior() const { return ior != default_ior; }
+    /// Reflectance of its dielectric part at normal incidence; `unnamed` where it specifies no index.
+    float dielectric_f0(float unnamed) const;
     /// Whether the surface transmits light (KHR_materials_transmission), as opposed to alpha coverage.
     bool transmits() const { return transmission > 0; }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "easypbr/core/error.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr {
 namespace {
@@ -55,33 +56,46 @@ constexpr MaterialColor colors[] = {
      "Linear colour of white light after the attenuation distance."}};
 
 constexpr MaterialTexture textures[] = {
-    {"base_color", &Material::base_color_texture, true, "Its alpha multiplies opacity."},
-    {"metallic", &Material::metallic_texture, false, "Its first channel is read."},
-    {"roughness", &Material::roughness_texture, false, "Its first channel is read."},
-    {"normal", &Material::normal_texture, false, "Tangent space, +Y up."},
-    {"occlusion", &Material::occlusion_texture, false, "Its first channel is read."},
-    {"emissive", &Material::emissive_texture, true, "Emitted radiance."},
-    {"opacity", &Material::opacity_texture, false, "Used by alpha modes mask and blend."},
-    {"clearcoat", &Material::clearcoat_texture, false, "Its first channel is read."},
-    {"clearcoat_roughness", &Material::clearcoat_roughness_texture, false, "Its first channel is read."},
-    {"clearcoat_normal", &Material::clearcoat_normal_texture, false,
+    {"base_color", &Material::base_color_texture, TexelUse::color, "Its alpha multiplies opacity.",
+     &MaterialSettings::base_color_texture, "Base colour texture file (sRGB) of every material."},
+    {"metallic", &Material::metallic_texture, TexelUse::number, "Its first channel is read.",
+     &MaterialSettings::metallic_texture, "Metallic texture file of every material."},
+    {"roughness", &Material::roughness_texture, TexelUse::number, "Its first channel is read.",
+     &MaterialSettings::roughness_texture, "Roughness texture file of every material."},
+    {"occlusion", &Material::occlusion_texture, TexelUse::number, "Its first channel is read.",
+     &MaterialSettings::occlusion_texture, "Baked ambient occlusion texture file of every material."},
+    {"normal", &Material::normal_texture, TexelUse::vector, "Tangent space, +Y up.",
+     &MaterialSettings::normal_texture, "Normal map file of every material, tangent space, +Y up (OpenGL)."},
+    {"emissive", &Material::emissive_texture, TexelUse::color, "Emitted radiance.",
+     &MaterialSettings::emissive_texture, "Emissive texture file (sRGB) of every material."},
+    {"opacity", &Material::opacity_texture, TexelUse::number, "Used by alpha modes mask and blend.",
+     &MaterialSettings::opacity_texture, "Opacity texture file of every material."},
+    {"clearcoat", &Material::clearcoat_texture, TexelUse::number, "Its first channel is read."},
+    {"clearcoat_roughness", &Material::clearcoat_roughness_texture, TexelUse::number,
+     "Its first channel is read."},
+    {"clearcoat_normal", &Material::clearcoat_normal_texture, TexelUse::vector,
      "Normals of the clearcoat, tangent space, +Y up."},
-    {"sheen_color", &Material::sheen_color_texture, true, "Sheen colour."},
-    {"sheen_roughness", &Material::sheen_roughness_texture, false, "Its first channel is read."},
-    {"specular", &Material::specular_texture, false, "Its first channel is read."},
-    {"specular_color", &Material::specular_color_texture, true, "Specular colour."},
-    {"transmission", &Material::transmission_texture, false, "Its first channel is read."},
-    {"thickness", &Material::thickness_texture, false, "Its first channel is read."},
-    {"iridescence", &Material::iridescence_texture, false, "Its first channel is read."},
-    {"iridescence_thickness", &Material::iridescence_thickness_texture, false,
+    {"sheen_color", &Material::sheen_color_texture, TexelUse::color, "Sheen colour."},
+    {"sheen_roughness", &Material::sheen_roughness_texture, TexelUse::number, "Its first channel is read."},
+    {"specular", &Material::specular_texture, TexelUse::number, "Its first channel is read."},
+    {"specular_color", &Material::specular_color_texture, TexelUse::color, "Specular colour."},
+    {"transmission", &Material::transmission_texture, TexelUse::number, "Its first channel is read."},
+    {"thickness", &Material::thickness_texture, TexelUse::number, "Its first channel is read."},
+    {"iridescence", &Material::iridescence_texture, TexelUse::number, "Its first channel is read."},
+    {"iridescence_thickness", &Material::iridescence_thickness_texture, TexelUse::number,
      "Interpolates from the minimum to the maximum thickness; its first channel is read."},
-    {"anisotropy", &Material::anisotropy_texture, false,
+    {"anisotropy", &Material::anisotropy_texture, TexelUse::vector,
      "Red and green: direction in tangent space; blue: strength."}};
 
 std::string range_text(float min, float max) {
     if (max >= unlimited && min <= -unlimited) return "a finite number";
     if (max >= unlimited) return min > 0 ? "more than 0" : fmt::format("at least {}", min);
     return fmt::format("{} to {}", min, max);
+}
+
+/// At normal incidence from air; everything where the index is 0.
+float reflectance(float ior) {
+    return ior > 0 ? std::pow((ior - 1) / (ior + 1), 2.0f) : 1.0f;
 }
 
 /// Calls problem(name, expected, given, fix) for every value outside of its range.
@@ -123,6 +137,12 @@ std::span<const MaterialTexture> material_textures() {
     return textures;
 }
 
+std::span<const MaterialTexture> replaceable_textures() {
+    constexpr auto has_none = [](const MaterialTexture& row) { return !row.setting; };
+    static const auto end = std::ranges::find_if(textures, has_none);
+    return {std::begin(textures), end};
+}
+
 void validate(const Material& material) {
     for_each_problem(material, [&](const char* name, const std::string& expected, const std::string& given,
                                    const float&, float) {
@@ -148,7 +168,7 @@ bool Material::has_textures() const {
 }
 
 bool Material::is_extended() const {
-    return clearcoat > 0 || !sheen_color.isZero() || ior != 1.5f || specular != 1 ||
+    return clearcoat > 0 || !sheen_color.isZero() || names_ior() || specular != 1 ||
            specular_color != Vec3::Ones() || transmission > 0 || iridescence > 0 || anisotropy > 0 ||
            specular_texture || specular_color_texture;
 }
@@ -159,10 +179,13 @@ AlphaMode Material::alpha_mode_for(bool transparent_vertices) const {
     return opacity_texture ? AlphaMode::mask : AlphaMode::opaque;
 }
 
+float Material::dielectric_f0(float unnamed) const {
+    return names_ior() ? reflectance(ior) : unnamed;
+}
+
 Vec3 Material::transmittance(AlphaMode mode) const {
     const float coverage = mode == AlphaMode::blend ? opacity : 1;
-    const float f0 = ior > 0 ? std::pow((ior - 1) / (ior + 1), 2.0f) : 1.0f;
-    Vec3 through = base_color.cwiseMin(1.0f) * (transmission * (1 - metallic) * (1 - f0));
+    Vec3 through = base_color.cwiseMin(1.0f) * (transmission * (1 - metallic) * (1 - reflectance(ior)));
     if (thickness > 0 && std::isfinite(attenuation_distance))
         through.array() *= attenuation_color.array().pow(thickness / attenuation_distance);
     return Vec3::Constant(1 - coverage) + coverage * through;

@@ -9,6 +9,8 @@
 
 namespace easypbr {
 
+struct MaterialSettings;
+
 struct MaterialNumber {
     const char* name;  ///< of the member, and of the attribute in Python
     float Material::*value;
@@ -23,16 +25,30 @@ struct MaterialColor {
     const char* doc;
 };
 
+/// How a texture's texels are meant.
+enum class TexelUse {
+    color,   ///< sRGB
+    vector,  ///< linear; a direction in tangent space
+    number   ///< linear; the one channel that Texture::channel names
+};
+
 struct MaterialTexture {
     const char* name;  ///< without "_texture"
     Texture Material::*texture;
-    bool color;  ///< sRGB, else data
+    TexelUse use;
     const char* doc;
+    /// File that replaces the texture in every material, "material.NAME_texture"; null: there is no such
+    /// setting. Those of glTF's core model have one, those of its extensions have none.
+    std::string MaterialSettings::*setting = nullptr;
+    const char* setting_doc = nullptr;
 };
 
 std::span<const MaterialNumber> material_numbers();
 std::span<const MaterialColor> material_colors();
+/// In the order of the rows of u_uv_transform in shaders/geometry_mesh.frag, those with a setting first.
 std::span<const MaterialTexture> material_textures();
+/// Those with a setting.
+std::span<const MaterialTexture> replaceable_textures();
 
 /// Throws ArgumentError that names the material, the value and its range, when one is outside of it.
 void validate(const Material& material);

@@ -238,7 +238,8 @@ class Mesh {
     /// A deep copy, children included; arrays are shared until one of the two is assigned others.
     Mesh clone() const;
 
-    /// Writes PLY, OBJ or GLB, by the extension. Throws FileError, FormatError.
+    /// Writes the format of the extension, one of io::writable_extensions() (io/mesh/mesh_io.h). Throws
+    /// FileError, FormatError.
     void save(const std::filesystem::path& path) const;
 
     /// The same object (not: equal data).

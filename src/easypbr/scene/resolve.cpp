@@ -115,11 +115,22 @@ void resolve_lens(const detail::Content& content, Vec2i size, ResolvedSettings& 
     resolved.lens_radius = focal_length / lens.f_number / 2;
 }
 
-void resolve_effects(const detail::Content& content, Vec2i size, ResolvedSettings& resolved) {
+/// Pictures of fewer samples are previews, and refine in a window.
+constexpr int least_samples_for_rays = 32;
+
+/// The sky is what rays look for.
+bool traces_rays(const ResolvedSettings& resolved, int samples) {
+    if (resolved.environment.empty()) return false;
+    const bool automatic = samples >= least_samples_for_rays && *resolved.settings.ssao.enabled;
+    return resolved.settings.rays.enabled.value_or(automatic);
+}
+
+void resolve_effects(const detail::Content& content, Vec2i size, int samples, ResolvedSettings& resolved) {
     SsaoSettings& ssao = resolved.settings.ssao;
     if (!ssao.enabled.value()) detail::fill(ssao.enabled, has_surfaces(content.scene()));
     if (!ssao.radius.value())
         detail::fill(ssao.radius, float(std::max(occlusion_radius * 2 * content.radius(), 1e-30)));
+    resolved.traces_rays = traces_rays(resolved, samples);
     const BloomSettings& bloom = resolved.settings.bloom;
     resolved.bloom_levels = bloom.levels.value_or(automatic_bloom_levels(size));
     resolved.suppress_fireflies = bloom.suppress_fireflies.value_or(bloom.threshold > 0);
@@ -168,7 +179,8 @@ void require_representable(const SceneSnapshot& scene, const ResolvedSettings& r
 
 }  // namespace
 
-ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, Vec2i size) {
+ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, Vec2i size,
+                         std::optional<int> samples) {
     if (size.minCoeff() < 1 || size.maxCoeff() > max_image_side)
         throw ArgumentError(fmt::format("picture size: expected width and height from 1 to {}, got {}x{}",
                                         max_image_side, size.x(), size.y()));
@@ -183,7 +195,7 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, V
     resolve_exposure(content, resolved);
     detail::fill(resolved.settings.annotation.legend, false);
     detail::fill(resolved.settings.annotation.colorbar, false);
-    resolve_effects(content, size, resolved);
+    resolve_effects(content, size, samples.value_or(settings.image.samples), resolved);
     resolve_ground(content, resolved);
     require_representable(scene, resolved);
     return resolved;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,9 +15,10 @@ namespace easypbr {
 /// All inputs of the renderer from the settings, fully inferred.
 struct ResolvedSettings {
     Settings settings;  ///< every automatic field holds its value, but overrides of materials and styles, and
-                        ///< what is inferred for every picture anew: the next three
+                        ///< what is inferred for every picture anew: the next four
     int bloom_levels = 1;
     bool suppress_fireflies = false;
+    bool traces_rays = false;   ///< rays replace ambient occlusion, see RaySettings
     double focus_distance = 1;  ///< of the depth of field
     Camera camera;
     std::vector<Light> lights;                 ///< enabled lights of the scene, then key, fill, rim and sun
@@ -28,10 +30,12 @@ struct ResolvedSettings {
     float exposure = 1;                   ///< scale factor before tone mapping, compensation included
 };
 
-/// Pure: the same scene, settings and size give the same result. Throws ArgumentError when settings
-/// contradict each other, when there is nothing to place a camera for, and, with its name, when a mesh is so
-/// large that the camera or a light leaves single precision.
-ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, Vec2i size);
+/// Pure: the same scene, settings, size and samples give the same result. Samples are those that the picture
+/// averages, by default image.samples. Throws ArgumentError when settings contradict each other, when there
+/// is nothing to place a camera for, and, with its name, when a mesh is so large that the camera or a light
+/// leaves single precision.
+ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, Vec2i size,
+                         std::optional<int> samples = std::nullopt);
 
 /// Copies inferred values into the automatic (not pinned, not following) fields of `settings`, but those that
 /// are not finite or out of the field's range.

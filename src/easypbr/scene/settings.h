@@ -66,6 +66,11 @@ struct BackgroundSettings {
     Vec3 color{0.25f, 0.25f, 0.25f};              ///< sRGB-encoded; neither exposed nor tone mapped
     std::string image;                            ///< file, for mode image
     float blur = 0.4f;                            ///< of the environment map in mode blur: 0 none, 1 the most
+
+    /// Whether the environment is visible behind the content.
+    bool shows_environment() const {
+        return mode == BackgroundMode::environment || mode == BackgroundMode::blur;
+    }
 };
 
 /// A three-point light of a colour given in 8 bits per channel, sRGB-encoded.

@@ -1,8 +1,7 @@
 // Spacings of clouds by the revision of their points.
 #pragma once
 
-#include <map>
-
+#include "easypbr/core/revision_cache.h"
 #include "easypbr/scene/spacing.h"
 
 namespace easypbr {
@@ -10,24 +9,14 @@ namespace easypbr {
 class SpacingCache {
   public:
     double get(const Array3f& V) {
-        const auto [entry, is_new] = entries_.try_emplace(V.revision());
-        if (is_new) entry->second.spacing = point_spacing(V);
-        entry->second.used = true;
-        return entry->second.spacing;
+        return spacings_.get(V.revision(), [&] { return point_spacing(V); });
     }
 
     /// Drops what was not asked for since the last call.
-    void evict_unused() {
-        std::erase_if(entries_, [](const auto& item) { return !item.second.used; });
-        for (auto& [revision, entry] : entries_) entry.used = false;
-    }
+    void evict_unused() { spacings_.evict_unused(); }
 
   private:
-    struct Entry {
-        double spacing = 0;
-        bool used = false;
-    };
-    std::map<uint64_t, Entry> entries_;
+    RevisionCache<uint64_t, double> spacings_;
 };
 
 }  // namespace easypbr

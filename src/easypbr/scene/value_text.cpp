@@ -57,7 +57,7 @@ Value value_or_text(std::optional<T> parsed, std::string_view text) {
     return {std::string(text)};
 }
 
-Value parse_color_value(const Field& field, std::string_view text) {
+Value parse_color_value(const FieldInfo& field, std::string_view text) {
     try {
         return {detail::to_data(parse_color(text))};
     } catch (const ArgumentError& error) {
@@ -73,7 +73,7 @@ std::string color_text(const std::vector<double>& numbers) {
 
 }  // namespace
 
-Value parse_value(const Field& field, std::string_view given) {
+Value parse_value(const FieldInfo& field, std::string_view given) {
     const std::string_view text = trimmed(given);
     if (field.can_be_automatic && text == "auto") return {{}, Value::State::automatic};
     if (field.can_be_automatic && text == "follow") return {{}, Value::State::follow};
@@ -96,7 +96,7 @@ Value parse_value(const Field& field, std::string_view given) {
     return {std::string(given)};
 }
 
-std::string to_text(const Field& field, const Value& value) {
+std::string to_text(const FieldInfo& field, const Value& value) {
     if (value.state == Value::State::automatic) return "auto";
     if (value.state == Value::State::follow) return "follow";
     if (const auto* flag = std::get_if<bool>(&value.data)) return *flag ? "true" : "false";

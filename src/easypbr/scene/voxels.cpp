@@ -11,6 +11,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/scene/mesh_arrays.h"
 
 namespace easypbr {
 namespace {
@@ -66,19 +67,7 @@ std::vector<Cell> cells_of(const Array3f& V, double size) {
 MeshData voxel_mesh(const MeshData& mesh, double size) {
     if (!(size > 0) || !std::isfinite(size))
         throw ArgumentError(fmt::format("voxel size: expected a positive number, got {}", size));
-    MeshData out = mesh;
-    out.N = {};
-    out.C = {};
-    out.UV = {};
-    out.T = {};
-    out.B = {};
-    out.E = {};
-    out.L = {};
-    out.I = {};
-    out.scalars.clear();
-    out.parts.clear();
-    out.source_vertex = {};
-    out.voxel_size = 0;
+    MeshData out = without_arrays(mesh);
     if (mesh.V.empty()) return out;
 
     const std::vector<Cell> vertices = cells_of(mesh.V, size);

@@ -11,6 +11,7 @@
 #include "easypbr/core/hash.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/light_table.h"
 
 namespace easypbr::io {
 namespace {
@@ -19,13 +20,12 @@ namespace {
 using OrderedJson = nlohmann::ordered_json;
 
 constexpr int format_version = 1;
-const std::vector<std::string> light_types = {"point", "directional", "spot"};
 
-OrderedJson json_of(const Field& field, double number) {
+OrderedJson json_of(const FieldInfo& field, double number) {
     return field.whole ? OrderedJson(int64_t(number)) : OrderedJson(number);
 }
 
-OrderedJson json_of(const Field& field, const Value::Data& data) {
+OrderedJson json_of(const FieldInfo& field, const Value::Data& data) {
     if (const auto* flag = std::get_if<bool>(&data)) return *flag;
     if (const auto* number = std::get_if<double>(&data)) return json_of(field, *number);
     if (const auto* text = std::get_if<std::string>(&data)) return *text;
@@ -34,7 +34,7 @@ OrderedJson json_of(const Field& field, const Value::Data& data) {
     return list;
 }
 
-OrderedJson json_of(const Field& field, const Value& value) {
+OrderedJson json_of(const FieldInfo& field, const Value& value) {
     if (value.state == Value::State::follow) return "follow";
     if (value.state == Value::State::given) return json_of(field, value.data);
     return value.latched ? OrderedJson{{"auto", json_of(field, value.data)}} : OrderedJson("auto");
@@ -49,36 +49,12 @@ OrderedJson& place_of(OrderedJson& settings, const std::string& name) {
     return (*place)[name.substr(begin)];
 }
 
-/// A number with the fewest digits that give the same float again.
-OrderedJson json_of(float number) {
-    if (!std::isfinite(number))
-        throw ArgumentError(fmt::format("cannot save a light: {} is not finite", number));
-    return OrderedJson::parse(fmt::format("{}", number));
-}
-
-OrderedJson json_of(const Vec3& v) {
-    return OrderedJson::array({json_of(v[0]), json_of(v[1]), json_of(v[2])});
-}
-
-OrderedJson json_of(const Auto<float>& setting) {
-    if (setting.is_follow()) return "follow";
-    if (setting.is_pinned()) return json_of(*setting);
-    return setting.value() ? OrderedJson{{"auto", json_of(*setting)}} : OrderedJson("auto");
-}
-
-OrderedJson json_of(const Light& light) {
-    return {{"type", light_types[size_t(light.type)]},
-            {"enabled", light.enabled},
-            {"position", json_of(light.position)},
-            {"direction", json_of(light.direction)},
-            {"color", json_of(light.color)},
-            {"intensity", json_of(light.intensity)},
-            {"inner_cone_deg", json_of(light.inner_cone_deg)},
-            {"outer_cone_deg", json_of(light.outer_cone_deg)},
-            {"range", json_of(light.range)},
-            {"casts_shadows", light.casts_shadows},
-            {"radius", json_of(light.radius)},
-            {"angular_radius_deg", json_of(light.angular_radius_deg)}};
+/// Throws ArgumentError when the light cannot be read again.
+OrderedJson json_of(const std::string& name, const Light& light) {
+    validate(light, name);
+    OrderedJson json = OrderedJson::object();
+    for (const LightField& field : light_fields()) json[field.name] = json_of(field, field.get(light));
+    return json;
 }
 
 class SettingsParser {
@@ -146,7 +122,7 @@ class SettingsParser {
     void assign(const std::string& full, const OrderedJson& json, Settings& settings) const {
         try {
             const Field& target = field(full);
-            set(settings, full, value_of(target, json));
+            set(settings, full, value_of(target, fmt::format("setting '{}'", full), json));
         } catch (const NameError& error) {
             throw NameError(fmt::format("cannot read settings from {}: {}", name_, error.what()));
         } catch (const ArgumentError& error) {
@@ -154,10 +130,10 @@ class SettingsParser {
         }
     }
 
-    Value value_of(const Field& target, const OrderedJson& json) const {
+    Value value_of(const FieldInfo& target, const std::string& place, const OrderedJson& json) const {
         Value value;
         if (json.is_object() && json.size() == 1 && json.contains("auto")) {
-            value.data = data_of(target, json["auto"]);
+            value.data = data_of(place, json["auto"]);
             value.state = Value::State::automatic;
             value.latched = true;
         } else if (json == "auto" && target.can_be_automatic) {
@@ -165,18 +141,17 @@ class SettingsParser {
         } else if (json == "follow" && target.can_be_automatic) {
             value.state = Value::State::follow;
         } else {
-            value.data = data_of(target, json);
+            value.data = data_of(place, json);
         }
         return value;
     }
 
-    Value::Data data_of(const Field& target, const OrderedJson& json) const {
+    Value::Data data_of(const std::string& place, const OrderedJson& json) const {
         if (json.is_boolean()) return json.get<bool>();
         if (json.is_number()) return json.get<double>();
         if (json.is_string()) return json.get<std::string>();
-        if (!json.is_array())
-            fail(fmt::format("setting '{}': got {}", target.name, json.dump().substr(0, 80)));
-        return numbers_of("setting '" + target.name + "'", json);
+        if (!json.is_array()) fail(fmt::format("{}: got {}", place, json.dump().substr(0, 80)));
+        return numbers_of(place, json);
     }
 
     std::vector<double> numbers_of(const std::string& where, const OrderedJson& json) const {
@@ -193,75 +168,19 @@ class SettingsParser {
         const std::string where = fmt::format("lights '{}'", name);
         require_object(where, json);
         Light light;
-        for (const auto& [key, value] : json.items()) {
-            const std::string place = fmt::format("{}, {}", where, key);
-            if (key == "type")
-                light.type = light_type_of(place, value);
-            else if (key == "enabled")
-                light.enabled = flag_of(place, value);
-            else if (key == "position")
-                light.position = vec3_of(place, value);
-            else if (key == "direction")
-                light.direction = vec3_of(place, value);
-            else if (key == "color")
-                light.color = vec3_of(place, value);
-            else if (key == "intensity")
-                light.intensity = float_of(place, value);
-            else if (key == "inner_cone_deg")
-                light.inner_cone_deg = float_of(place, value);
-            else if (key == "outer_cone_deg")
-                light.outer_cone_deg = float_of(place, value);
-            else if (key == "range")
-                light.range = float_of(place, value);
-            else if (key == "casts_shadows")
-                light.casts_shadows = flag_of(place, value);
-            else if (key == "radius")
-                light.radius = auto_float_of(place, value);
-            else if (key == "angular_radius_deg")
-                light.angular_radius_deg = float_of(place, value);
-            else
-                fail(fmt::format("{}: unknown key", place));
-        }
+        const std::string owner = fmt::format("light '{}': ", name);
         try {
+            for (const auto& [key, value] : json.items()) {
+                const auto found = std::ranges::find(light_fields(), key, &LightField::name);
+                if (found == light_fields().end())
+                    throw ArgumentError(fmt::format("{}unknown key '{}'", owner, key));
+                found->put(light, checked(*found, value_of(*found, owner + key, value), owner));
+            }
             validate(light, name);
         } catch (const ArgumentError& error) {
             fail(error.what());
         }
         return light;
-    }
-
-    LightType light_type_of(const std::string& place, const OrderedJson& json) const {
-        const std::string text = json.is_string() ? json.get<std::string>() : json.dump();
-        for (size_t i = 0; i < light_types.size(); ++i)
-            if (light_types[i] == text) return LightType(i);
-        fail(fmt::format("{}: expected point, directional or spot, got '{}'{}", place, text,
-                         did_you_mean(text, light_types)));
-    }
-
-    bool flag_of(const std::string& place, const OrderedJson& json) const {
-        if (!json.is_boolean()) fail(fmt::format("{}: expected true or false", place));
-        return json.get<bool>();
-    }
-
-    float float_of(const std::string& place, const OrderedJson& json) const {
-        const double number = json.is_number() ? json.get<double>() : std::nan("");
-        if (!(std::abs(number) <= std::numeric_limits<float>::max()))
-            fail(fmt::format("{}: expected a number", place));
-        return float(number);
-    }
-
-    Auto<float> auto_float_of(const std::string& place, const OrderedJson& json) const {
-        if (json == "follow") return follow;
-        if (json == "auto") return automatic;
-        if (!json.is_object() || json.size() != 1 || !json.contains("auto")) return float_of(place, json);
-        Auto<float> setting;
-        setting.latch(float_of(place, json["auto"]));
-        return setting;
-    }
-
-    Vec3 vec3_of(const std::string& place, const OrderedJson& json) const {
-        if (!json.is_array() || json.size() != 3) fail(fmt::format("{}: expected 3 numbers", place));
-        return {float_of(place, json[0]), float_of(place, json[1]), float_of(place, json[2])};
     }
 
     const std::string& name_;
@@ -289,7 +208,7 @@ std::string to_json(const SettingsFile& file) {
     for (const Field& field : fields())
         place_of(root["settings"], field.name) = json_of(field, field.get(file.settings));
     root["lights"] = OrderedJson::object();
-    for (const auto& [name, light] : file.lights) root["lights"][name] = json_of(light);
+    for (const auto& [name, light] : file.lights) root["lights"][name] = json_of(name, light);
     root["files"] = file.files;
     return root.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }

@@ -9,6 +9,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/scene/mesh_arrays.h"
 
 namespace easypbr::io {
 namespace {
@@ -166,18 +167,10 @@ CornerSplit split_corners(std::span<int32_t> corner_vertices, std::span<const ui
 namespace {
 
 template <class A>
-void gather_rows(A& array, const std::vector<int32_t>& source) {
-    if (array.empty()) return;
-    typename A::Dense gathered(Eigen::Index(source.size()), array.cols());
-    parallel_for(source.size(), polygon_grain,
-                 [&](size_t i) { gathered.row(Eigen::Index(i)) = array.row(source[i]); });
-    array = std::move(gathered);
-}
-
-template <class A>
 void permute_rows(A& array, const std::vector<uint32_t>& order) {
     typename A::Dense permuted(Eigen::Index(order.size()), array.cols());
-    parallel_for(order.size(), polygon_grain, [&](size_t i) { permuted.row(Eigen::Index(i)) = array.row(order[i]); });
+    parallel_for(order.size(), polygon_grain,
+                 [&](size_t i) { permuted.row(Eigen::Index(i)) = array.row(order[i]); });
     array = std::move(permuted);
 }
 
@@ -186,15 +179,7 @@ void permute_rows(A& array, const std::vector<uint32_t>& order) {
 void gather_vertices(const CornerSplit& split, MeshData& mesh) {
     const auto& source = split.source_vertex;
     if (source.size() == size_t(mesh.V.rows())) return;
-    gather_rows(mesh.V, source);
-    gather_rows(mesh.N, source);
-    gather_rows(mesh.C, source);
-    gather_rows(mesh.UV, source);
-    gather_rows(mesh.T, source);
-    gather_rows(mesh.B, source);
-    gather_rows(mesh.L, source);
-    gather_rows(mesh.I, source);
-    for (ScalarArray& scalar : mesh.scalars) gather_rows(scalar.values, source);
+    choose_vertex_rows(mesh, source);
     mesh.source_vertex =
         Array1i::Dense(Eigen::Map<const Eigen::VectorXi>(source.data(), Eigen::Index(source.size())));
 }

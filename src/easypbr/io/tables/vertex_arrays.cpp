@@ -11,6 +11,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/tables/attributes.h"
+#include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/offset.h"
 
 namespace easypbr::io {
@@ -98,16 +99,6 @@ double color_scale(ScalarType type) {
         default:
             return is_integer(type) ? 1 / 255.0 : 1;
     }
-}
-
-/// Keeps the rows of `kept`.
-template <class A>
-void keep_rows(A& array, const Array1i::Dense& kept) {
-    if (array.empty()) return;
-    typename A::Dense rows(kept.size(), array.cols());
-    parallel_for(size_t(kept.size()), array_grain,
-                 [&](size_t i) { rows.row(Eigen::Index(i)) = array.row(kept(Eigen::Index(i))); });
-    array = std::move(rows);
 }
 
 }  // namespace
@@ -291,15 +282,7 @@ void drop_points_without_position(const Source& source, MeshData& mesh) {
         for (size_t i = begin; i < end; ++i)
             if (is_good(i)) kept(Eigen::Index(next++)) = int32_t(i);
     });
-    keep_rows(mesh.V, kept);
-    keep_rows(mesh.N, kept);
-    keep_rows(mesh.C, kept);
-    keep_rows(mesh.UV, kept);
-    keep_rows(mesh.T, kept);
-    keep_rows(mesh.B, kept);
-    keep_rows(mesh.L, kept);
-    keep_rows(mesh.I, kept);
-    for (ScalarArray& scalar : mesh.scalars) keep_rows(scalar.values, kept);
+    choose_vertex_rows(mesh, {kept.data(), kept_count});
     mesh.source_vertex = std::move(kept);
     log_warning(fmt::format("{}: {} of {} points have no finite position and are left out",
                             source.path.string(), count - kept_count, count));

@@ -9,6 +9,8 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/scene/cut.h"
 #include "easypbr/scene/draw_style.h"
+#include "easypbr/scene/material_table.h"
+#include "easypbr/scene/mesh_arrays.h"
 #include "easypbr/scene/resolve.h"
 #include "easypbr/scene/voxels.h"
 
@@ -28,29 +30,17 @@ ArrayXf colors_of(const std::vector<Rgba8>& colors) {
     return ArrayXf(std::move(C));
 }
 
-/// Rows of an array for each corner of each face.
-template <class ArrayType>
-ArrayType per_corner(const ArrayType& array, const Array3i& F) {
-    if (array.empty()) return {};
-    typename ArrayType::Dense rows(F.size(), array.cols());
-    parallel_for(size_t(F.size()), drawable_grain,
-                 [&](size_t i) { rows.row(Eigen::Index(i)) = array.row(F.data()[i]); });
-    return ArrayType(std::move(rows));
-}
-
 /// Each face with three vertices of its own. Vertices that were one stay one for normals (source_vertex).
 MeshData with_own_corners(const MeshData& mesh) {
-    MeshData out = mesh;
-    out.V = per_corner(mesh.V, mesh.F);
-    out.N = per_corner(mesh.N, mesh.F);
-    out.C = per_corner(mesh.C, mesh.F);
-    out.UV = per_corner(mesh.UV, mesh.F);
-    out.T = {};
-    out.B = {};
-    out.E = {};
-    out.L = {};
-    out.I = {};
-    out.scalars.clear();
+    const std::span<const int32_t> corners(mesh.F.data(), size_t(mesh.F.size()));
+    MeshData out = without_arrays(mesh);
+    out.V = rows_of(mesh.V, corners);
+    out.N = rows_of(mesh.N, corners);
+    out.C = rows_of(mesh.C, corners);
+    out.UV = rows_of(mesh.UV, corners);
+    out.parts = mesh.parts;
+    out.voxel_size = mesh.voxel_size;
+    out.source_face = mesh.source_face;
     Array3i::Dense F(mesh.F.rows(), 3);
     Array1i::Dense source(mesh.F.size());
     for (Eigen::Index i = 0; i < mesh.F.size(); ++i) {
@@ -113,30 +103,8 @@ MeshData with_values(const MeshData& mesh, const ElementColors& values) {
 
 /// The table in place of all that a material's textures say.
 void show_table(Material& material, const Texture& table) {
-    for (Texture Material::*texture :
-         {&Material::metallic_texture, &Material::roughness_texture, &Material::normal_texture,
-          &Material::occlusion_texture, &Material::emissive_texture, &Material::opacity_texture})
-        material.*texture = {};
+    for (const MaterialTexture& row : replaceable_textures()) material.*row.texture = {};
     material.base_color_texture = table;
-}
-
-/// The arrays that are drawn in place of the object's own.
-void replace_arrays(MeshData& mesh, const MeshData& arrays) {
-    mesh.V = arrays.V;
-    mesh.N = arrays.N;
-    mesh.C = arrays.C;
-    mesh.UV = arrays.UV;
-    mesh.T = arrays.T;
-    mesh.B = arrays.B;
-    mesh.F = arrays.F;
-    mesh.E = arrays.E;
-    mesh.L = arrays.L;
-    mesh.I = arrays.I;
-    mesh.scalars = arrays.scalars;
-    mesh.parts = arrays.parts;
-    mesh.voxel_size = arrays.voxel_size;
-    mesh.source_vertex = arrays.source_vertex;
-    mesh.source_face = arrays.source_face;
 }
 
 MeshData with_colors(const MeshData& mesh, const ColorPlan& plan, Texture& table) {
@@ -198,9 +166,11 @@ ElementSources of_voxels(const MeshData& cubes) {
 template <class Make>
 std::shared_ptr<const MeshData> DrawableCache::get(const std::string& key, const MeshData& current,
                                                    ElementSources& sources, Make&& make) {
-    Entry& entry = entries_[key];
-    if (!entry.arrays) entry.arrays = std::make_shared<const MeshData>(make(entry));
-    entry.used = true;
+    const Entry& entry = entries_.get(key, [&] {
+        Entry made;
+        made.arrays = std::make_shared<const MeshData>(make(made));
+        return made;
+    });
     sources = {composed(entry.sources.faces, sources.faces), composed(entry.sources.points, sources.points)};
     auto mesh = std::make_shared<MeshData>(current);
     replace_arrays(*mesh, *entry.arrays);
@@ -269,11 +239,6 @@ void DrawableCache::apply(SceneSnapshot::Object& object, const Settings& setting
         });
         sources = {composed(cubes.faces, sources.points), composed(cubes.points, sources.points)};
     }
-}
-
-void DrawableCache::evict_unused() {
-    std::erase_if(entries_, [](const auto& item) { return !item.second.used; });
-    for (auto& [key, entry] : entries_) entry.used = false;
 }
 
 }  // namespace easypbr::render

@@ -2,11 +2,11 @@
 // colours.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "easypbr/core/revision_cache.h"
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/scene/element_colors.h"
 #include "easypbr/scene/scene.h"
@@ -53,16 +53,15 @@ class DrawableCache {
     DrawableScene apply(const SceneSnapshot& scene, const Settings& settings);
 
     /// Drops what was not asked for since the last call.
-    void evict_unused();
+    void evict_unused() { entries_.evict_unused(); }
 
   private:
     struct Entry {
         std::shared_ptr<const MeshData> arrays;
         ElementSources sources;  ///< of the arrays that they were made of
         Texture table;           ///< of values; empty for colours
-        bool used = false;
     };
-    /// The entry's arrays as the current object's; made by make(entry) when there are none.
+    /// The entry's arrays as the current object's; where there is none, make(entry) gives its arrays.
     template <class Make>
     std::shared_ptr<const MeshData> get(const std::string& key, const MeshData& current,
                                         ElementSources& sources, Make&& make);
@@ -70,7 +69,7 @@ class DrawableCache {
                ElementSources& sources);
 
     SpacingCache& spacings_;
-    std::map<std::string, Entry> entries_;
+    RevisionCache<std::string, Entry> entries_;
 };
 
 }  // namespace easypbr::render

@@ -39,14 +39,9 @@ float exposure_of(const Frame& frame, Encoding encoding) {
     return encoding == Encoding::scene_linear ? 1.0f : frame.resolved->exposure;
 }
 
-bool sees_environment(const Frame& frame) {
-    const BackgroundMode mode = frame.resolved->settings.background.mode;
-    return mode == BackgroundMode::environment || mode == BackgroundMode::blur;
-}
-
 Vec4 background_color(const Frame& frame) {
     const BackgroundSettings& background = frame.resolved->settings.background;
-    if (background.mode == BackgroundMode::transparent || sees_environment(frame)) return Vec4::Zero();
+    if (background.mode == BackgroundMode::transparent || background.shows_environment()) return Vec4::Zero();
     const Vec3 c = linear_from_srgb(background.color);
     return {c.x(), c.y(), c.z(), 1};
 }
@@ -89,7 +84,7 @@ PixelRect united(const PixelRect& a, const PixelRect& b) {
 /// Screen passes touch only where geometry may be, when nothing else was drawn.
 gl::DrawState limited_to(const PixelRect& area, const Frame& frame, const LitPicture& lit,
                          const gl::Blending& blending = gl::replace) {
-    if (sees_environment(frame) || lit.spreads) return {.blending = blending};
+    if (frame.resolved->settings.background.shows_environment() || lit.spreads) return {.blending = blending};
     return screen_state(area, blending);
 }
 

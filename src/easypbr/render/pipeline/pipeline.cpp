@@ -12,12 +12,6 @@ bool is_layered(const DrawItem& item) {
     return item.layered;
 }
 
-bool sees_environment(const ResolvedSettings& resolved) {
-    const BackgroundMode mode = resolved.settings.background.mode;
-    return !resolved.environment.empty() &&
-           (mode == BackgroundMode::environment || mode == BackgroundMode::blur);
-}
-
 RayGround ray_ground(const ResolvedSettings& resolved) {
     const GroundSettings& ground = resolved.settings.ground;
     return {.up = parse_up(resolved.settings.camera.up),
@@ -40,7 +34,7 @@ void Pipeline::begin(Vec2i size, const ResolvedSettings& resolved) {
 void Pipeline::prepare_environment(const ResolvedSettings& resolved) {
     if (resolved.environment.empty()) return;
     timer_.run("environment", [&] {
-        const bool seen = sees_environment(resolved);
+        const bool seen = resolved.settings.background.shows_environment();
         environment_.prepare(resolved.environment, seen ? resolved.seen_environment : Environment());
     });
 }
@@ -70,7 +64,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     if (contents.ground) timer_.run("ground", [&] { ground_.finish(seen, targets_, bounds); });
     if (with_overlay) timer_.run("display", [&] { display_.draw(seen, targets_); });
     if (!has_layers) timer_.run("lines", [&] { draw_lines(seen, list); });
-    if (sees_environment(resolved))
+    if (!resolved.environment.empty() && resolved.settings.background.shows_environment())
         timer_.run("background", [&] { background_.draw(seen, targets_, environment_, contents.ground); });
 
     LitPicture lit{.radiance = &targets_.radiance,

@@ -119,7 +119,7 @@ void Renderer::prepare(Picture& picture) {
     picture.contents = {.ids = options.ids || picture.holds_surfaces,
                         // Layers are of the content, and are not lit.
                         .ground = GroundPass::is_on(resolved) && is_picture,
-                        .traced = RayPass::is_on(resolved, options.samples) && !options.layers,
+                        .traced = resolved.traces_rays && !options.layers,
                         .layers = options.layers,
                         .custom = is_picture ? &custom_ : nullptr};
     picture.with_exact = picture.list.has(
@@ -191,7 +191,8 @@ void Renderer::draw_exact() {
     // What lies before exact colours is lit and mixed with them in a whole frame.
     if (averaged && has_layers) {
         FrameContents contents = picture.contents;
-        contents.traced = RayPass::is_on(picture.resolved, 1) && !contents.layers;
+        contents.traced = picture.resolved.traces_rays && picture.resolved.settings.rays.enabled.value() &&
+                          !contents.layers;
         lit = pipeline_.draw(frame, picture.list, picture.list, contents);
         lit.partly_covered |= picture.lit.partly_covered;
     }

@@ -11,7 +11,6 @@ struct MeshFacts {
     bool normals_agree = true;    ///< the winding tells the normals' side
     bool closed_outward = false;  ///< from outside, back faces need not be drawn
     Box3d box;                    ///< of the vertices, when it is closed
-    bool used = false;
 };
 
 /// A mesh item with all that its pixels need.

@@ -66,20 +66,15 @@ bool SoftwareGeometryPass::handles_points(const DrawList& list) {
 }
 
 const MeshFacts& SoftwareGeometryPass::facts_of(const MeshData& mesh) {
-    MeshFacts& known = facts_[{mesh.V.revision(), mesh.N.revision(), mesh.F.revision()}];
-    known.used = true;
-    if (known.N.empty()) {
-        known.N = mesh.N.empty() ? smooth_normals(mesh) : mesh.N;
-        known.normals_agree = mesh.N.empty() || gpu::normals_agree_with_winding(mesh.V, known.N, mesh.F);
-    }
+    MeshFacts& known = facts_.get({mesh.V.revision(), mesh.N.revision(), mesh.F.revision()}, [&] {
+        MeshFacts made;
+        made.N = mesh.N.empty() ? smooth_normals(mesh) : mesh.N;
+        made.normals_agree = mesh.N.empty() || gpu::normals_agree_with_winding(mesh.V, made.N, mesh.F);
+        return made;
+    });
     known.closed_outward = closed_.draw(mesh);
     if (known.closed_outward && known.box.isEmpty()) known.box = gpu::box_of(mesh.V);
     return known;
-}
-
-void SoftwareGeometryPass::evict_unused() {
-    std::erase_if(facts_, [](const auto& item) { return !item.second.used; });
-    for (auto& [key, known] : facts_) known.used = false;
 }
 
 bool SoftwareGeometryPass::add_meshes(const Frame& frame, const DrawList& list,

@@ -1,10 +1,10 @@
 // Triangles and points into the G-buffer without the driver's rasteriser: for machines without a GPU.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <tuple>
 
+#include "easypbr/core/revision_cache.h"
 #include "easypbr/gpu/closed_meshes.h"
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/render/raster/mesh_surface.h"
@@ -40,7 +40,7 @@ class SoftwareGeometryPass {
     /// the driver can draw them.
     bool cover(const Frame& frame, const DrawList& list, std::vector<uint8_t>& covered);
 
-    void evict_unused();
+    void evict_unused() { facts_.evict_unused(); }
 
   private:
     struct Surface;
@@ -49,7 +49,7 @@ class SoftwareGeometryPass {
     void add_points(const Frame& frame, const DrawList& list, std::vector<Surface>& surfaces);
     void resolve(const Frame& frame, const std::vector<Surface>& surfaces, bool ids);
 
-    std::map<std::tuple<uint64_t, uint64_t, uint64_t>, MeshFacts> facts_;
+    RevisionCache<std::tuple<uint64_t, uint64_t, uint64_t>, MeshFacts> facts_;
     SpacingCache& spacings_;
     gpu::ClosedMeshes& closed_;
     VisibilityBuffer visibility_;

@@ -10,8 +10,6 @@
 namespace easypbr::render {
 namespace {
 
-/// Stills of fewer frames are previews, and refine in a window.
-constexpr int least_frames = 32;
 /// Rays of a frame whose mean may count: the ratio of few is not the ratio of many.
 constexpr int least_rays = 4;
 /// Rays that a frame sends into the mirrored lobe at least and at most.
@@ -87,12 +85,6 @@ struct RayPass::Pixels {
     std::vector<Half4> sky_visibility, indirect_diffuse, indirect_specular;
     Mat3d world_from_view;
 };
-
-bool RayPass::is_on(const ResolvedSettings& resolved, int sample_count) {
-    if (resolved.environment.empty()) return false;
-    const bool automatic = sample_count >= least_frames && *resolved.settings.ssao.enabled;
-    return resolved.settings.rays.enabled.value_or(automatic);
-}
 
 void RayPass::make_targets(Vec2i size) {
     if (light_.sky_visibility && light_.sky_visibility.width() == size.x() &&

@@ -11,9 +11,6 @@ namespace easypbr::render {
 /// For the frames of a still: each sends a few rays from every pixel, evenly spread over all frames.
 class RayPass {
   public:
-    /// Whether the frames of a picture are traced.
-    static bool is_on(const ResolvedSettings& resolved, int sample_count);
-
     /// Fills what light() gives from the G-buffer's surfaces that are lit.
     void draw(const Frame& frame, const GBuffer& targets, const RayScene& scene);
     const TracedLight& light() const { return light_; }

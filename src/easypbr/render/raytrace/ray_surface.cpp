@@ -144,8 +144,8 @@ RaySurface surface_at(const RayHit& hit, float dielectric_f0) {
         s.emission = base;
         return s;
     }
-    const float dielectric = m.ior == 1.5f ? dielectric_f0 : std::pow((m.ior - 1) / (m.ior + 1), 2.0f);
-    s.f0 = (1 - metallic) * std::min(dielectric * m.specular, 1.0f) * m.specular_color + metallic * base;
+    const float f0 = std::min(m.dielectric_f0(dielectric_f0) * m.specular, 1.0f);
+    s.f0 = (1 - metallic) * f0 * m.specular_color + metallic * base;
     s.diffuse = (1 - metallic) * (1 - m.transmission) * base;
     return s;
 }

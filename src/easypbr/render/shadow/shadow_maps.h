@@ -60,7 +60,6 @@ class ShadowMaps {
         ShadowProjection projection;
         double radius = 0;
     };
-    /// A part of an object as far as its shadow is concerned.
     /// What the shader of a caster sees of its material.
     struct Shaded {
         std::string text;
@@ -68,6 +67,7 @@ class ShadowMaps {
         std::array<const void*, 7> images{};
         bool operator==(const Shaded&) const = default;
     };
+    /// A part of an object as far as its shadow is concerned.
     struct Caster {
         Shaded shaded;
         std::array<uint64_t, 8> revisions;

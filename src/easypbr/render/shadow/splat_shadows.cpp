@@ -47,6 +47,16 @@ Mat4 clip_from_mesh(const ShadowView& view, const DrawItem& item) {
     return (view.clip_from_world() * item.object->T_world_mesh.matrix()).cast<float>();
 }
 
+/// Of all surfels, in the mesh's units.
+double longest_axis(const MeshData& mesh) {
+    double longest = 0;
+    for (Eigen::Index i = 0; i < mesh.T.rows(); ++i) {
+        longest = std::max(longest, double(Vec3(mesh.T.row(i)).norm()));
+        if (!mesh.B.empty()) longest = std::max(longest, double(std::abs(mesh.B(i))));
+    }
+    return longest;
+}
+
 }  // namespace
 
 double SplatShadows::point_radius(const DrawItem& item) {
@@ -65,20 +75,7 @@ double SplatShadows::reach(const DrawItem& item, bool surfels) {
     const double scale =
         item.object->T_world_mesh.linear().colwise().norm().maxCoeff() * item.style.surfel_scale;
     if (mesh.T.empty()) return surfel_radius(item) * scale;
-    Reach& known = reaches_[{mesh.T.revision(), mesh.B.revision()}];
-    if (!known.used && known.radius == 0) {
-        for (Eigen::Index i = 0; i < mesh.T.rows(); ++i) {
-            known.radius = std::max(known.radius, double(Vec3(mesh.T.row(i)).norm()));
-            if (!mesh.B.empty()) known.radius = std::max(known.radius, double(std::abs(mesh.B(i))));
-        }
-    }
-    known.used = true;
-    return known.radius * scale;
-}
-
-void SplatShadows::evict_unused() {
-    std::erase_if(reaches_, [](const auto& item) { return !item.second.used; });
-    for (auto& [key, known] : reaches_) known.used = false;
+    return scale * reaches_.get({mesh.T.revision(), mesh.B.revision()}, [&] { return longest_axis(mesh); });
 }
 
 void SplatShadows::draw_points(const ShadowView& view, const DrawItem& item, int resolution,

@@ -1,8 +1,7 @@
 // Points and surfels as casters of shadows.
 #pragma once
 
-#include <map>
-
+#include "easypbr/core/revision_cache.h"
 #include "easypbr/gl/draw.h"
 #include "easypbr/gpu/point_buffers.h"
 #include "easypbr/gpu/surfel_buffers.h"
@@ -40,18 +39,13 @@ class SplatShadows {
     }
     void draw_points_natively(const ShadowView& view, const DrawItem& item, VisibilityBuffer& visibility);
 
-    void evict_unused();
+    void evict_unused() { reaches_.evict_unused(); }
 
   private:
-    struct Reach {
-        double radius = 0;
-        bool used = false;
-    };
-
     SpacingCache& spacings_;
     gpu::PointCache& points_;
     gpu::SurfelCache& surfels_;
-    std::map<std::pair<uint64_t, uint64_t>, Reach> reaches_;  ///< of surfels, by the revisions of T and B
+    RevisionCache<std::pair<uint64_t, uint64_t>, double> reaches_;  ///< of surfels, by those of T and B
     ProgramVariants point_programs_{"shadow_points.vert", "shadow_points.frag"};
     ProgramVariants surfel_programs_{"shadow_surfels.vert", "shadow_surfels.frag"};
 };

@@ -212,7 +212,7 @@ void GlbMaterials::add_layers(const Material& material, OrderedJson& json) {
 }
 
 void GlbMaterials::add_dielectric(const Material& material, OrderedJson& json) {
-    if (material.ior != Material().ior) extend(json, khr_ior) = {{"ior", material.ior}};
+    if (material.names_ior()) extend(json, khr_ior) = {{"ior", material.ior}};
     if (material.specular != 1 || material.specular_color != Vec3::Ones() || material.specular_texture ||
         material.specular_color_texture) {
         OrderedJson e = {{"specularFactor", material.specular},

@@ -144,10 +144,6 @@ LasHeader parse_las_header(const Source& source) {
     return LasHeaderParser(source).parse();
 }
 
-size_t las_standard_size(int format) {
-    return standard_sizes[size_t(format)];
-}
-
 std::vector<Property> las_fields(const LasHeader& header) {
     std::vector<Property> fields;
     const auto add = [&](const char* name, ScalarType type, double scale = 1, double shift = 0) {

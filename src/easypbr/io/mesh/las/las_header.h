@@ -30,7 +30,4 @@ LasHeader parse_las_header(const Source& source);
 /// the number of returns is called "return_number"; legacy classifications have flags in their upper 3 bits.
 std::vector<Property> las_fields(const LasHeader& header);
 
-/// Size of the standard fields.
-size_t las_standard_size(int format);
-
 }  // namespace easypbr::io

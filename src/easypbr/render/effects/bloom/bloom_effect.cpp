@@ -8,14 +8,9 @@ namespace {
 /// Widest texels of the pyramid after which a light's glow has faded to 4e-8 of its sum.
 constexpr int visible_texels = 6;
 
-bool shows_environment(const Frame& frame) {
-    const BackgroundMode mode = frame.resolved->settings.background.mode;
-    return mode == BackgroundMode::environment || mode == BackgroundMode::blur;
-}
-
 /// Texels of the first level that content gives light to.
 PixelRect lit_texels(const Frame& frame, const gl::Texture& level) {
-    if (shows_environment(frame)) return {0, 0, level.width(), level.height()};
+    if (frame.resolved->settings.background.shows_environment()) return {0, 0, level.width(), level.height()};
     const PixelRect& r = frame.covered;
     const int x0 = std::max(r.x / glow_texel - 1, 0), y0 = std::max(r.y / glow_texel - 1, 0);
     const int x1 = std::min((r.x + r.width) / glow_texel + 2, level.width()),

@@ -3,49 +3,38 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
+#include <string>
+#include <vector>
+
+#include "easypbr/scene/material_table.h"
 
 namespace easypbr::render {
 namespace {
 
 /// A texture of the shader; its place in the table is its row of u_uv_transform.
 struct TextureUse {
-    const char* define;
-    const char* sampler;
-    const char* channel;  ///< uniform that picks one channel, or null
-    Texture Material::*member;
-    bool color;
+    explicit TextureUse(const MaterialTexture& row_)
+        : row(row_), sampler(fmt::format("u_{}_texture", row.name)), define(sampler.substr(2)) {
+        for (char& letter : define) letter = char(std::toupper(static_cast<unsigned char>(letter)));
+        if (row.use == TexelUse::number) channel = fmt::format("u_{}_channel", row.name);
+    }
+
+    const MaterialTexture& row;
+    std::string sampler, define;
+    std::string channel;  ///< uniform that picks one channel; empty where all are read
 };
 
-/// The first seven belong to glTF's core model, the others to its extensions.
-constexpr TextureUse texture_uses[] = {
-    {"BASE_COLOR_TEXTURE", "u_base_color_texture", nullptr, &Material::base_color_texture, true},
-    {"METALLIC_TEXTURE", "u_metallic_texture", "u_metallic_channel", &Material::metallic_texture, false},
-    {"ROUGHNESS_TEXTURE", "u_roughness_texture", "u_roughness_channel", &Material::roughness_texture, false},
-    {"OCCLUSION_TEXTURE", "u_occlusion_texture", "u_occlusion_channel", &Material::occlusion_texture, false},
-    {"NORMAL_TEXTURE", "u_normal_texture", nullptr, &Material::normal_texture, false},
-    {"EMISSIVE_TEXTURE", "u_emissive_texture", nullptr, &Material::emissive_texture, true},
-    {"OPACITY_TEXTURE", "u_opacity_texture", "u_opacity_channel", &Material::opacity_texture, false},
-    {"CLEARCOAT_TEXTURE", "u_clearcoat_texture", "u_clearcoat_channel", &Material::clearcoat_texture, false},
-    {"CLEARCOAT_ROUGHNESS_TEXTURE", "u_clearcoat_roughness_texture", "u_clearcoat_roughness_channel",
-     &Material::clearcoat_roughness_texture, false},
-    {"CLEARCOAT_NORMAL_TEXTURE", "u_clearcoat_normal_texture", nullptr, &Material::clearcoat_normal_texture,
-     false},
-    {"SHEEN_COLOR_TEXTURE", "u_sheen_color_texture", nullptr, &Material::sheen_color_texture, true},
-    {"SHEEN_ROUGHNESS_TEXTURE", "u_sheen_roughness_texture", "u_sheen_roughness_channel",
-     &Material::sheen_roughness_texture, false},
-    {"SPECULAR_TEXTURE", "u_specular_texture", "u_specular_channel", &Material::specular_texture, false},
-    {"SPECULAR_COLOR_TEXTURE", "u_specular_color_texture", nullptr, &Material::specular_color_texture, true},
-    {"TRANSMISSION_TEXTURE", "u_transmission_texture", "u_transmission_channel",
-     &Material::transmission_texture, false},
-    {"THICKNESS_TEXTURE", "u_thickness_texture", "u_thickness_channel", &Material::thickness_texture, false},
-    {"IRIDESCENCE_TEXTURE", "u_iridescence_texture", "u_iridescence_channel", &Material::iridescence_texture,
-     false},
-    {"IRIDESCENCE_THICKNESS_TEXTURE", "u_iridescence_thickness_texture", "u_iridescence_thickness_channel",
-     &Material::iridescence_thickness_texture, false},
-    {"ANISOTROPY_TEXTURE", "u_anisotropy_texture", nullptr, &Material::anisotropy_texture, false}};
+const std::vector<TextureUse>& texture_uses() {
+    static const std::vector<TextureUse> uses(material_textures().begin(), material_textures().end());
+    return uses;
+}
 
-constexpr size_t core_texture_count = 7;
+/// How many rows of u_uv_transform the shader has: those of the core model stand first.
+size_t texture_count(bool extended) {
+    return extended ? material_textures().size() : replaceable_textures().size();
+}
 
 bool same_texels(const Texture& a, const Texture& b) {
     return a.image == b.image && a.uv_transform == b.uv_transform && a.wrap_u == b.wrap_u &&
@@ -66,12 +55,13 @@ bool is_extended(const MaterialContext& context, const DrawItem& item) {
 template <class Visit>
 void for_each_texture(const MaterialContext& context, const DrawItem& item, Visit&& visit) {
     if (!item.textured()) return;
-    const size_t count = is_extended(context, item) ? std::size(texture_uses) : core_texture_count;
+    const size_t count = texture_count(is_extended(context, item));
     for (size_t i = 0; i < count; ++i) {
-        const TextureUse& use = texture_uses[i];
+        const TextureUse& use = texture_uses()[i];
+        const Texture Material::*texture = use.row.texture;
         const bool of_normals =
-            use.member == &Material::normal_texture || use.member == &Material::clearcoat_normal_texture;
-        if ((item.material.*use.member) && !(of_normals && item.style.flat)) visit(use, i);
+            texture == &Material::normal_texture || texture == &Material::clearcoat_normal_texture;
+        if ((item.material.*texture) && !(of_normals && item.style.flat)) visit(use, i);
     }
 }
 
@@ -92,10 +82,7 @@ void set_extension_uniforms(const gl::Program& program, const ResolvedSettings& 
     const Material& m = item.material;
     program.set("u_coat", Vec3(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale));
     program.set("u_sheen", with_w(m.sheen_color, m.sheen_roughness));
-    // A material that says nothing of its index has the settings' reflectance.
-    const float f0 = m.ior == 1.5f ? resolved.settings.shading.dielectric_f0
-                     : m.ior > 0   ? std::pow((m.ior - 1) / (m.ior + 1), 2.0f)
-                                   : 1.0f;
+    const float f0 = m.dielectric_f0(resolved.settings.shading.dielectric_f0);
     program.set("u_specular", with_w(m.specular_color * f0, m.specular));
     program.set("u_film", Vec4(m.iridescence, m.iridescence_ior, m.iridescence_thickness_min,
                                m.iridescence_thickness_max));
@@ -117,8 +104,7 @@ void add_material_defines(const MaterialContext& context, const DrawItem& item,
     if (item.needs_tangents()) defines.emplace_back("TANGENT");
     const bool extended = is_extended(context, item);
     if (extended) defines.emplace_back("EXTENDED");
-    defines.push_back(
-        fmt::format("UV_TRANSFORMS {}", extended ? std::size(texture_uses) : core_texture_count));
+    defines.push_back(fmt::format("UV_TRANSFORMS {}", texture_count(extended)));
     for_each_texture(context, item, [&](const TextureUse& use, size_t) { defines.emplace_back(use.define); });
     const Material& m = item.material;
     if (item.textured() && m.metallic_texture && m.roughness_texture &&
@@ -141,10 +127,10 @@ unsigned set_material(const gl::Program& program, const MaterialContext& context
     if (is_extended(context, item)) set_extension_uniforms(program, *context.resolved, item);
     unsigned unit = 0;
     for_each_texture(context, item, [&](const TextureUse& use, size_t index) {
-        const Texture& texture = m.*use.member;
-        textures.get(texture, use.color).bind(unit);
+        const Texture& texture = m.*use.row.texture;
+        textures.get(texture, use.row.use == TexelUse::color).bind(unit);
         program.set(use.sampler, int(unit++));
-        if (use.channel) program.set(use.channel, channel_mask(texture.channel));
+        if (!use.channel.empty()) program.set(use.channel, channel_mask(texture.channel));
         program.set("u_uv_transform[" + std::to_string(index) + "]", texture.uv_transform);
     });
     return unit;

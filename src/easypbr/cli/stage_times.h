@@ -3,18 +3,19 @@
 
 #include <fmt/format.h>
 
-#include <chrono>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "easypbr/core/stopwatch.h"
+
 namespace easypbr::cli {
 
-class Stopwatch {
+class StageTimes {
   public:
     /// Keeps the time since construction, the last lap or restart under a name.
     void lap(const std::string& stage) {
-        add(stage, seconds_since(lap_));
+        add(stage, lap_.seconds());
         restart();
     }
     /// Adds a time that was measured elsewhere.
@@ -23,10 +24,10 @@ class Stopwatch {
             if (name == stage) return void(sum += seconds);
         stages_.emplace_back(stage, seconds);
     }
-    void restart() { lap_ = Clock::now(); }
+    void restart() { lap_.restart(); }
 
     const std::vector<std::pair<std::string, double>>& stages() const { return stages_; }
-    double total() const { return seconds_since(start_); }
+    double total() const { return since_start_.seconds(); }
 
     /// "load 0.120 s, ..., total 0.520 s"
     std::string summary() const {
@@ -36,11 +37,7 @@ class Stopwatch {
     }
 
   private:
-    using Clock = std::chrono::steady_clock;
-    static double seconds_since(Clock::time_point start) {
-        return std::chrono::duration<double>(Clock::now() - start).count();
-    }
-    Clock::time_point start_ = Clock::now(), lap_ = start_;
+    Timer since_start_, lap_;
     std::vector<std::pair<std::string, double>> stages_;
 };
 

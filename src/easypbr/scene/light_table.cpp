@@ -1,0 +1,62 @@
+#include "easypbr/scene/light_table.h"
+
+#include "easypbr/scene/field_builder.h"
+
+namespace easypbr {
+namespace detail {
+
+template <>
+const std::vector<std::string>& enum_names<LightType>() {
+    static const std::vector<std::string> names = {"point", "directional", "spot"};
+    return names;
+}
+
+namespace {
+
+constexpr std::array<bool, 3> any{true, true, true}, placed{true, false, true}, aimed{false, true, true},
+    spot{false, false, true}, directional{false, true, false};
+
+template <class Member>
+LightField row(const char* name, Member member, const char* doc, const std::array<bool, 3>& types = any,
+               const char* unit = "", Range range = {}) {
+    return {make<Light>(name, at(member), doc, unit, range), types};
+}
+
+LightField colored(LightField field) {
+    field.is_color = true;
+    return field;
+}
+
+std::vector<LightField> all_rows() {
+    const Range from_zero{0, unlimited};
+    return {
+        row("type", &Light::type, "Point, directional or spot."),
+        row("enabled", &Light::enabled, "Enables the light."),
+        row("position", &Light::position, "Position in world space; point and spot.", placed, "world units"),
+        row("direction", &Light::direction, "Direction of propagation; directional and spot.", aimed),
+        colored(row("color", &Light::color, "Colour, multiplies the intensity.")),
+        row("intensity", &Light::intensity, "Candela (point, spot) or lux (directional).", any, "",
+            from_zero),
+        row("inner_cone_deg", &Light::inner_cone_deg, "Spot: half angle of full intensity.", spot, "degrees"),
+        row("outer_cone_deg", &Light::outer_cone_deg, "Spot: half angle of zero intensity.", spot, "degrees"),
+        row("range", &Light::range, "Distance of zero intensity; 0: unlimited.", placed, "world units",
+            from_zero),
+        row("casts_shadows", &Light::casts_shadows, "Enables the shadows of this light."),
+        row("radius", &Light::radius,
+            "Point and spot: radius of the spherical emitter, which sets the size of penumbrae. Automatic: "
+            "0.05 of the content's radius.",
+            placed, "world units", from_zero),
+        row("angular_radius_deg", &Light::angular_radius_deg,
+            "Directional: angular radius of the emitter; default: that of the sun.", directional, "degrees",
+            {0, 45})};
+}
+
+}  // namespace
+}  // namespace detail
+
+const std::vector<LightField>& light_fields() {
+    static const std::vector<LightField> rows = detail::all_rows();
+    return rows;
+}
+
+}  // namespace easypbr

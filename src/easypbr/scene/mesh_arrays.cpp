@@ -1,0 +1,41 @@
+#include "easypbr/scene/mesh_arrays.h"
+
+namespace easypbr {
+
+void choose_vertex_rows(MeshData& mesh, std::span<const int32_t> rows) {
+    mesh.V = rows_of(mesh.V, rows);
+    mesh.N = rows_of(mesh.N, rows);
+    mesh.C = rows_of(mesh.C, rows);
+    mesh.UV = rows_of(mesh.UV, rows);
+    mesh.T = rows_of(mesh.T, rows);
+    mesh.B = rows_of(mesh.B, rows);
+    mesh.L = rows_of(mesh.L, rows);
+    mesh.I = rows_of(mesh.I, rows);
+    for (ScalarArray& scalar : mesh.scalars) scalar.values = rows_of(scalar.values, rows);
+}
+
+void replace_arrays(MeshData& mesh, const MeshData& arrays) {
+    mesh.V = arrays.V;
+    mesh.N = arrays.N;
+    mesh.C = arrays.C;
+    mesh.UV = arrays.UV;
+    mesh.T = arrays.T;
+    mesh.B = arrays.B;
+    mesh.F = arrays.F;
+    mesh.E = arrays.E;
+    mesh.L = arrays.L;
+    mesh.I = arrays.I;
+    mesh.scalars = arrays.scalars;
+    mesh.parts = arrays.parts;
+    mesh.voxel_size = arrays.voxel_size;
+    mesh.source_vertex = arrays.source_vertex;
+    mesh.source_face = arrays.source_face;
+}
+
+MeshData without_arrays(const MeshData& mesh) {
+    MeshData out = mesh;
+    replace_arrays(out, {});
+    return out;
+}
+
+}  // namespace easypbr

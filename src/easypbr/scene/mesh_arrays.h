@@ -1,0 +1,31 @@
+// The arrays of a mesh as a whole.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "easypbr/core/parallel.h"
+#include "easypbr/scene/mesh.h"
+
+namespace easypbr {
+
+/// The rows of an array that the indices name, in their order; of an empty array an empty one.
+template <class Scalar, int Cols>
+Array<Scalar, Cols> rows_of(const Array<Scalar, Cols>& array, std::span<const int32_t> rows) {
+    if (array.empty()) return {};
+    typename Array<Scalar, Cols>::Dense chosen(Eigen::Index(rows.size()), array.cols());
+    parallel_for(rows.size(), 1 << 15, [&](size_t i) { chosen.row(Eigen::Index(i)) = array.row(rows[i]); });
+    return Array<Scalar, Cols>(std::move(chosen));
+}
+
+/// Replaces all that a mesh holds for each vertex by the rows that the indices name. Labels and scalars must
+/// be those of vertices.
+void choose_vertex_rows(MeshData& mesh, std::span<const int32_t> rows);
+
+/// Gives a mesh the arrays, parts and sources of another; its name, materials, style, pose and children stay.
+void replace_arrays(MeshData& mesh, const MeshData& arrays);
+
+/// A mesh without arrays, parts and sources, and otherwise the same.
+MeshData without_arrays(const MeshData& mesh);
+
+}  // namespace easypbr
