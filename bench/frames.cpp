@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "easypbr/core/compare.h"
+#include "easypbr/core/image.h"
 #include "easypbr/easypbr.h"
 
 namespace {

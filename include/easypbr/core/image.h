@@ -92,4 +92,15 @@ size_t replace_non_finite(Image& image);
 /// Every second row and column averaged in 2x2 boxes, as for mip levels (at least 1x1). f32 only.
 Image half_size(const Image& image);
 
+struct ImageDifference {
+    double max = 0;        ///< largest absolute difference of a channel, in units of the type (0..255 for u8)
+    double mean = 0;       ///< mean absolute difference over all channels
+    double rmse = 0;       ///< root of the mean squared difference
+    double psnr = 0;       ///< in dB with peak 255, 65535 or 1 (infinity for equal images)
+    size_t different = 0;  ///< pixels with any difference
+};
+
+/// Throws ArgumentError when size, channels or type differ. Alpha counts as any channel.
+ImageDifference compare(const Image& a, const Image& b);
+
 }  // namespace easypbr

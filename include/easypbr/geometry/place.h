@@ -1,7 +1,8 @@
-// Where a mesh is, and how large: moving, merging, boxes.
+// Where a mesh is, and how large: moving, merging, splitting, boxes.
 #pragma once
 
 #include <span>
+#include <vector>
 
 #include "easypbr/scene/mesh.h"
 
@@ -41,5 +42,18 @@ struct OrientedBox {
 /// falls. The least volume itself is not promised. Never larger than bounding_box(). Throws ArgumentError
 /// when there are no vertices.
 OrientedBox oriented_bounding_box(const Mesh& mesh);
+
+/// For each vertex the number of its piece, from 0 by first vertex. Vertices are connected by faces, by edges
+/// and by being at the same place, so that seams and hard edges do not cut; one that nothing uses is a piece
+/// of its own.
+Array1i vertex_components(const Mesh& mesh);
+
+/// For each face the number of its piece, from 0 by first face.
+Array1i face_components(const Mesh& mesh);
+
+/// Each piece as a mesh of its own with all that belongs to it, by first vertex; vertices that no face and
+/// edge uses are left out. Throws ArgumentError when there are neither faces nor edges: nothing connects a
+/// cloud.
+std::vector<Mesh> split(const Mesh& mesh);
 
 }  // namespace easypbr

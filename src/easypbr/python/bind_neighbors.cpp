@@ -2,7 +2,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
 
-#include "easypbr/geometry/kd_tree.h"
+#include "easypbr/geometry/nearest.h"
 #include "easypbr/geometry/surfels.h"
 #include "easypbr/python/convert.h"
 

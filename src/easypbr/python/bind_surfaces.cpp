@@ -1,7 +1,7 @@
 // Methods of Mesh that measure: normals, points on the surface, distances.
 #include <nanobind/stl/string.h>
 
-#include "easypbr/geometry/distance.h"
+#include "easypbr/geometry/nearest.h"
 #include "easypbr/geometry/sample.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/scene/normals.h"

@@ -1,8 +1,11 @@
-// A camera to look at: where it stands, what it sees, and its picture.
+// Cameras and camera paths to look at.
 #pragma once
+
+#include <optional>
 
 #include "easypbr/core/image.h"
 #include "easypbr/scene/camera.h"
+#include "easypbr/scene/camera_path.h"
 #include "easypbr/scene/mesh.h"
 
 namespace easypbr {
@@ -19,5 +22,12 @@ Mesh make_camera_frustum(const Camera& camera, const Vec2i& size, double depth =
 /// for pictures of that size. Throws ArgumentError when K or the pose is not valid.
 Mesh make_camera_frustum(const Mat3d& K, const Mat4d& T_world_cam, const Vec2i& size, double depth = 1,
                          const Image& image = {});
+
+/// The path's curve as line segments, 32 for each stretch between two keys, with the outlines of its cameras
+/// (make_camera_frustum()) as children: one at each key, twelve on an orbit. Pictures have the given size and
+/// angle of view (the path's own where it has one); their frusta are `depth` long, by default a tenth of the
+/// curve's extent. Throws ArgumentError unless size and depth are above 0.
+Mesh make_camera_path(const CameraPath& path, const Vec2i& size = {4, 3}, double fov_y_deg = 30,
+                      std::optional<double> depth = std::nullopt);
 
 }  // namespace easypbr
