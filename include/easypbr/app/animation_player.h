@@ -15,7 +15,8 @@ namespace easypbr::app {
 class AnimationPlayer {
   public:
     /// The clock must outlive the player.
-    explicit AnimationPlayer(const Clock& clock) : clock_(clock) {}
+    explicit AnimationPlayer(const Clock& clock);
+    ~AnimationPlayer();
 
     /// Makes a file's animations known under its name; those of a file of this name are replaced. Nothing
     /// plays yet.

@@ -1,7 +1,7 @@
 // The time of an animation: what passes between two frames.
 #pragma once
 
-#include <chrono>
+#include <cstdint>
 #include <functional>
 #include <optional>
 
@@ -31,14 +31,13 @@ class Clock {
 
   private:
     void advance();
-    using Moment = std::chrono::steady_clock::time_point;
 
     double start_ = 0;   ///< time when counting began
     double passed_ = 0;  ///< in real time, since then
     long steps_ = 0;     ///< of fixed length, since then
     double delta_ = 0;
     std::optional<double> step_;
-    std::optional<Moment> last_;
+    std::optional<int64_t> last_ns_;  ///< of the steady clock, in real time
 };
 
 }  // namespace easypbr::app

@@ -58,8 +58,8 @@ struct Skin {
 
 struct AnimationNode {
     int parent = -1;
-    Vec3d translation = Vec3d::Zero(), scale = Vec3d::Ones();
-    Eigen::Quaterniond rotation = Eigen::Quaterniond::Identity();
+    Vec3d translation{0, 0, 0}, scale{1, 1, 1};
+    Eigen::Quaterniond rotation{1, 0, 0, 0};
     std::optional<Eigen::Affine3d> matrix;  ///< in place of the three; such a node is not animated
     std::vector<float> weights;             ///< of the morph targets at rest
     std::optional<Mesh> mesh;               ///< whose pose follows; none for nodes that only move others

@@ -6,9 +6,9 @@
 #include <memory>
 #include <utility>
 
-#include "easypbr/core/hash.h"
-
 namespace easypbr {
+
+uint64_t next_revision();  // see core/hash.h
 
 /// Row-major matrix with a fixed or dynamic number of columns. Copies share the data; the data never change.
 /// It is an Eigen::Map, so it goes wherever an Eigen::MatrixBase goes. Every new array has a new revision.

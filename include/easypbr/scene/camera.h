@@ -52,8 +52,8 @@ struct Camera {
         intrinsics;  ///< perspective; replaces fov_y_deg, scaled to the size of the picture
     std::optional<Distortion> distortion;  ///< of the lens; perspective with intrinsics
 
-    Vec3d position() const { return T_world_cam.translation(); }
-    Mat4d view() const { return T_world_cam.inverse().matrix(); }
+    Vec3d position() const;
+    Mat4d view() const;
 
     /// What is drawn has to be warped: skew or distortion are not in projection_matrix() (app/lens.h).
     bool is_warped() const { return distortion || (intrinsics && intrinsics->skew != 0); }
@@ -63,7 +63,7 @@ struct Camera {
 
     /// Looks from `position` to `target`. When the direction is parallel to `up`, another up is chosen.
     /// Throws ArgumentError when position and target coincide.
-    static Camera look_at(const Vec3d& position, const Vec3d& target, const Vec3d& up = Vec3d::UnitY());
+    static Camera look_at(const Vec3d& position, const Vec3d& target, const Vec3d& up = {0, 1, 0});
 
     /// From OpenCV's intrinsic matrix K (pixel centres at integers, skew allowed) for a picture of width x
     /// height, and a pose whose axes are OpenCV's (x right, y down, z forward). Throws ArgumentError when K

@@ -1,11 +1,11 @@
 // Camera paths: where the camera is at each moment, by key poses or around a centre.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
 #include "easypbr/scene/camera.h"
-#include "easypbr/scene/cubic_spline.h"
 
 namespace easypbr {
 
@@ -45,7 +45,7 @@ class CameraPath {
     /// A circle around the line through `center` along `axis`, at constant speed but for `ease`, from the
     /// camera's pose on; the camera turns with it. Closed when the angle is a multiple of 360 degrees. Throws
     /// ArgumentError for an axis without length, an angle of 0, or a duration that is not above 0.
-    static CameraPath orbit(const Camera& start, const Vec3d& center, const Vec3d& axis = Vec3d::UnitY(),
+    static CameraPath orbit(const Camera& start, const Vec3d& center, const Vec3d& axis = {0, 1, 0},
                             double angle_deg = 360, double duration_s = 4, PathEase ease = PathEase::none);
 
     /// What orbit() was given.
@@ -91,7 +91,8 @@ class CameraPath {
     std::optional<Orbit> orbit_;
     double duration_s_ = 0;
     std::vector<double> times_;  ///< of the keys, and the end of a closed path, without easing
-    CubicSpline positions_, rotations_, zooms_;
+    struct Splines;
+    std::shared_ptr<const Splines> splines_;  ///< of the smooth mode
 };
 
 }  // namespace easypbr

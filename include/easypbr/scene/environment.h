@@ -1,14 +1,13 @@
 // Environment: an equirectangular HDR picture that lights the scene from infinitely far.
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "easypbr/core/image.h"
 #include "easypbr/core/math.h"
-#include "easypbr/scene/sun.h"
 
 namespace easypbr {
 
@@ -17,6 +16,13 @@ namespace easypbr {
 Vec3 equirect_direction(float u, float v);
 /// The inverse: (u, v) of a unit direction.
 Vec2 equirect_uv(const Vec3& direction);
+
+/// What shines so brightly from so small a spot that it casts shadows.
+struct Sun {
+    Vec3 towards{0, 1, 0};     ///< unit, in the environment's frame
+    Vec3 irradiance{0, 0, 0};  ///< on a surface that faces it
+    float angular_radius_deg = 0;
+};
 
 /// Immutable, shared by handle. Empty when default-constructed.
 class Environment {
@@ -30,10 +36,10 @@ class Environment {
     explicit Environment(const std::filesystem::path& path);
 
     bool empty() const { return data_ == nullptr; }
-    const Image& image() const { return data_->image; }
-    const std::string& name() const { return data_->name; }
+    const Image& image() const;
+    const std::string& name() const;
     /// Content hash of the pixels: the key of all that is derived from them.
-    const std::string& hash() const { return data_->hash; }
+    const std::string& hash() const;
 
     /// Irradiance divided by pi on a surface with this unit normal, from spherical harmonics up to degree 2
     /// (Ramamoorthi and Hanrahan 2001), never negative. Good to a few percent: for exposure, not for shading.
@@ -46,12 +52,7 @@ class Environment {
 
   private:
     struct Split;
-    struct Data {
-        Image image;
-        std::string name, hash;
-        std::array<Vec3, 9> sh;
-        std::shared_ptr<Split> split;
-    };
+    struct Data;
     const Split& split() const;
     std::shared_ptr<const Data> data_;
 };

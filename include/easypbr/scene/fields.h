@@ -18,7 +18,7 @@ struct Value {
     enum class State { given, automatic, follow };
     using Data = std::variant<bool, double, std::string, std::vector<double>>;
 
-    Data data{};
+    Data data;
     State state = State::given;  ///< automatic with `latched`: data hold the inferred value
     bool latched = false;
 

@@ -28,7 +28,7 @@ struct Light {
     /// Directional: half the angle under which the light is seen; the default is the sun's.
     float angular_radius_deg = 0.265f;
 
-    bool operator==(const Light&) const = default;
+    bool operator==(const Light& other) const;
 };
 
 /// Throws ArgumentError that names the light and what is wrong: a number that is not finite or out of range,

@@ -4,7 +4,6 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -54,7 +53,7 @@ struct MeshData {
     /// What was subtracted from positions far from zero, so that float32 holds them (scene/offset.h). Meshes
     /// of one scene are placed by it: the scene's own frame has an origin (Scene::origin), and a vertex
     /// stands at T_world_mesh * (V + offset - origin).
-    Vec3d offset = Vec3d::Zero();
+    Vec3d offset{0, 0, 0};
     float voxel_size = 0;  ///< edge of the cubes that V are the centres of; 0: V are no voxels
 
     Array1i source_vertex;  ///< n x 1 index of the file's vertex that each vertex came from; empty: the same
@@ -98,7 +97,7 @@ class Mesh {
 
     /// Reads a file (see io/mesh_io.h for formats and errors).
     explicit Mesh(const std::filesystem::path& path);
-    explicit Mesh(const char* path) : Mesh(std::filesystem::path(path)) {}
+    explicit Mesh(const char* path);
 
     /// Vertices (n x 3) and triangles (m x 3). Throws ArgumentError as validate() does.
     Mesh(Array3f V, Array3i F);
@@ -111,98 +110,58 @@ class Mesh {
     /// Changes a copy of the data and puts it in place, whole or (when `change` throws or the result is not
     /// valid) not at all. Readers that hold a snapshot keep theirs. No lock is held meanwhile: `change` may
     /// use this mesh, and is called again with newer data when another thread's edit came first.
-    template <class Change>
-    void edit(Change&& change) {
-        for (;;) {
-            const std::shared_ptr<const MeshData> before = snapshot();
-            MeshData next = *before;
-            change(next);
-            validate(next, *before);
-            if (replace(before, std::make_shared<const MeshData>(std::move(next)))) return;
-        }
-    }
+    void edit(const std::function<void(MeshData&)>& change);
 
-    Array3f V() const { return snapshot()->V; }
-    Array3f N() const { return snapshot()->N; }
-    ArrayXf C() const { return snapshot()->C; }
-    Array2f UV() const { return snapshot()->UV; }
-    Array3f T() const { return snapshot()->T; }
-    Array1f B() const { return snapshot()->B; }
-    Array3i F() const { return snapshot()->F; }
-    Array2i E() const { return snapshot()->E; }
-    Array1i L() const { return snapshot()->L; }
-    Array1f I() const { return snapshot()->I; }
+    Array3f V() const;
+    Array3f N() const;
+    ArrayXf C() const;
+    Array2f UV() const;
+    Array3f T() const;
+    Array1f B() const;
+    Array3i F() const;
+    Array2i E() const;
+    Array1i L() const;
+    Array1f I() const;
 
     /// Local positions; the offset stays.
-    void set_V(Array3f V) {
-        edit([&](MeshData& d) { d.V = V; });
-    }
+    void set_V(Array3f V);
     /// Local positions in double precision. Where float32 would lose what matters (scene/offset.h) they are
     /// recentred: what is subtracted from them is added to the offset, so that offset + V does not move.
     void set_positions(
         const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>& positions);
-    Vec3d offset() const { return snapshot()->offset; }
-    void set_offset(const Vec3d& offset) {
-        edit([&](MeshData& d) { d.offset = offset; });
-    }
-    void set_N(Array3f N) {
-        edit([&](MeshData& d) { d.N = N; });
-    }
-    void set_C(ArrayXf C) {
-        edit([&](MeshData& d) { d.C = C; });
-    }
-    void set_UV(Array2f UV) {
-        edit([&](MeshData& d) { d.UV = UV; });
-    }
-    void set_F(Array3i F) {
-        edit([&](MeshData& d) {
-            d.F = F;
-            d.parts.clear();
-            d.source_face = {};
-        });
-    }
+    Vec3d offset() const;
+    void set_offset(const Vec3d& offset);
+    void set_N(Array3f N);
+    void set_C(ArrayXf C);
+    void set_UV(Array2f UV);
+    void set_F(Array3i F);
 
-    void set_L(Array1i L) {
-        edit([&](MeshData& d) { d.L = L; });
-    }
+    void set_L(Array1i L);
     /// Both at once, when the labels are of another map than before.
-    void set_labels(Array1i L, std::shared_ptr<const LabelMap> label_map) {
-        edit([&](MeshData& d) {
-            d.L = L;
-            d.label_map = label_map;
-        });
-    }
-    std::shared_ptr<const LabelMap> label_map() const { return snapshot()->label_map; }
-    void set_label_map(std::shared_ptr<const LabelMap> label_map) {
-        edit([&](MeshData& d) { d.label_map = label_map; });
-    }
-    void set_label_map(LabelMap label_map) {
-        set_label_map(std::make_shared<const LabelMap>(std::move(label_map)));
-    }
+    void set_labels(Array1i L, std::shared_ptr<const LabelMap> label_map);
+    std::shared_ptr<const LabelMap> label_map() const;
+    void set_label_map(std::shared_ptr<const LabelMap> label_map);
+    void set_label_map(LabelMap label_map);
 
     /// The scalars of that name. Throws NameError with the nearest name.
-    Array1f scalar(const std::string& name) const { return scalar_named(*snapshot(), name).values; }
+    Array1f scalar(const std::string& name) const;
     /// Adds scalars, or replaces those of the same name.
     void add_scalar(const std::string& name, Array1f values);
     /// Throws NameError with the nearest name.
     void remove_scalar(const std::string& name);
 
-    std::string name() const { return snapshot()->name; }
+    std::string name() const;
 
     /// Material `index`; the default material when the mesh has none. Throws NameError when out of range.
     Material material(int index = 0) const;
     /// Replaces material `index`, or adds it when it is the next free one. Throws NameError beyond that.
     void set_material(const Material& material, int index = 0);
 
-    Style style() const { return snapshot()->style; }
-    void set_style(const Style& style) {
-        edit([&](MeshData& d) { d.style = style; });
-    }
+    Style style() const;
+    void set_style(const Style& style);
 
-    Eigen::Affine3d T_parent_mesh() const { return snapshot()->T_parent_mesh; }
-    void set_T_parent_mesh(const Eigen::Affine3d& T) {
-        edit([&](MeshData& d) { d.T_parent_mesh = T; });
-    }
+    Eigen::Affine3d T_parent_mesh() const;
+    void set_T_parent_mesh(const Eigen::Affine3d& T);
 
     /// Pose in the world: those of all parents, applied to T_parent_mesh.
     Eigen::Affine3d T_world_mesh() const;
@@ -222,7 +181,7 @@ class Mesh {
     void orbit(const Vec3d& axis, const Vec3d& center, double angle_deg);
     /// Scales along the mesh's own axes about its own origin. Throws ArgumentError for a factor that is 0.
     void scale(const Vec3d& factors);
-    void scale(double factor) { scale(Vec3d(factor, factor, factor)); }
+    void scale(double factor);
 
     /// Hangs a mesh below this one: its pose is relative to this one's from now on. With `keep_world_pose`
     /// its T_parent_mesh changes so that it stays where it is. Does nothing when it is a child already.
@@ -231,7 +190,7 @@ class Mesh {
     /// Takes a child away; with `keep_world_pose` it stays where it is. Throws ArgumentError when it is no
     /// child of this mesh.
     void remove_child(const Mesh& child, bool keep_world_pose = false);
-    std::vector<Mesh> children() const { return snapshot()->children; }
+    std::vector<Mesh> children() const;
     /// The mesh that this one is a child of. Of several, which only copies of MeshData give, the first.
     std::optional<Mesh> parent() const;
 
@@ -247,11 +206,7 @@ class Mesh {
     const void* identity() const { return shared_.get(); }
 
   private:
-    struct Shared {
-        mutable std::mutex mutex;
-        std::shared_ptr<const MeshData> data;
-        std::vector<std::weak_ptr<Shared>> parents;  ///< guarded by the one mutex of all hierarchies
-    };
+    struct Shared;
     explicit Mesh(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {}
 
     /// Puts `next` in place if the data are still the `expected` ones. Throws ArgumentError when a child of

@@ -3,7 +3,6 @@
 
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <vector>
 
@@ -25,7 +24,7 @@ struct SceneSnapshot {
     std::vector<Object> objects;
     std::map<std::string, Light> lights;
     Environment environment;       ///< empty: none was given
-    Vec3d origin = Vec3d::Zero();  ///< see Scene::origin()
+    Vec3d origin{0, 0, 0};  ///< see Scene::origin()
 
     /// Bounding box of all vertices in world space (exact under rotation); empty when there are none.
     Box3d bounds() const;

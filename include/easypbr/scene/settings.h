@@ -63,11 +63,8 @@ struct BackgroundSettings {
     float blur = 0.4f;
 };
 
-inline StudioLight studio_light(int red, int green, int blue) {
-    StudioLight light;
-    light.color = Vec3(float(red), float(green), float(blue)) / 255.0f;
-    return light;
-}
+/// A light of this colour, sRGB from 0 to 255.
+StudioLight studio_light(int red, int green, int blue);
 
 struct LightsSettings {
     StudioLight key = studio_light(255, 241, 224);   ///< a little warm

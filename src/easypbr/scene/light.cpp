@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "easypbr/core/error.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr {
 namespace {
@@ -26,6 +27,14 @@ bool is_length(float v) {
 }
 
 }  // namespace
+
+bool Light::operator==(const Light&) const = default;
+
+StudioLight studio_light(int red, int green, int blue) {
+    StudioLight light;
+    light.color = Vec3(float(red), float(green), float(blue)) / 255.0f;
+    return light;
+}
 
 void validate(const Light& light, const std::string& name) {
     require_finite(light.position, name, "position");

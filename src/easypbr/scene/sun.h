@@ -4,15 +4,9 @@
 #include <optional>
 
 #include "easypbr/core/image.h"
-#include "easypbr/core/math.h"
+#include "easypbr/scene/environment.h"
 
 namespace easypbr {
-
-struct Sun {
-    Vec3 towards{0, 1, 0};     ///< unit, in the environment's frame (see scene/environment.h)
-    Vec3 irradiance{0, 0, 0};  ///< on a surface that faces it
-    float angular_radius_deg = 0;
-};
 
 struct SunSplit {
     Sun sun;
