@@ -12,6 +12,7 @@
 #include <string>
 #include <vector>
 
+#include "easypbr/app/session.h"
 #include "easypbr/core/image.h"
 #include "easypbr/easypbr.h"
 

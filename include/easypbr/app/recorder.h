@@ -4,14 +4,24 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
+#include <string>
 
 #include "easypbr/app/clock.h"
-#include "easypbr/app/output.h"
-#include "easypbr/app/picture_ring.h"
-#include "easypbr/app/recording_target.h"
+#include "easypbr/app/picture.h"
 #include "easypbr/scene/camera_path.h"
 
 namespace easypbr::app {
+
+class Session;
+
+struct RecordingOptions {
+    double fps = 30;
+    std::optional<Vec2i> size = std::nullopt;   ///< none: the settings'
+    std::optional<int> samples = std::nullopt;  ///< none: the settings'
+    std::string codec = {};  ///< FFmpeg's name of an encoder; empty: the usual one of the file's kind
+    bool deep = false;       ///< PNG with 16 bits
+};
 
 /// Frames are read back while the next ones are drawn, and encoded and written by threads beside it, in the
 /// order they were added, all of them: stop(), the recorder's end and an exception in between finish the
@@ -19,20 +29,23 @@ namespace easypbr::app {
 class Recorder {
   public:
     /// Both must outlive the recorder.
-    Recorder(Session& session, Clock& clock) : session_(session), clock_(clock) {}
+    Recorder(Session& session, Clock& clock);
     /// Finishes a recording; a failure is logged.
     ~Recorder();
-    Recorder(Recorder&&) = default;
+    Recorder(Recorder&&) noexcept;
 
-    /// One picture (PNG, JPEG, HDR, EXR), written when the call returns. See render_to_file().
+    /// One picture (PNG, JPEG, HDR, EXR; `deep`: a PNG with 16 bits), written when the call returns. The
+    /// target is checked before anything is drawn; it appears whole or not at all. Returns the path. Throws
+    /// FileError, ArgumentError, ContextError.
     std::filesystem::path record(const std::filesystem::path& path, const PictureOptions& options = {},
-                                 bool deep = false) {
-        return render_to_file(session_, path, options, deep);
-    }
+                                 bool deep = false);
 
     /// Begins a recording: a video (MP4, MOV, MKV, WebM, GIF) or numbered pictures ("out/frame_%04d.png", or
     /// a folder), by the name. The size stays what it is now. Throws ArgumentError when one is going on
-    /// already, and as check_recording() does.
+    /// already, and, before anything is drawn, when the recording cannot be written there: FileError;
+    /// ArgumentError for an extension that is no video's and no picture's, a picture's name without a number
+    /// (%04d), an encoder that is not there, transparency where the file has none, and a rate that is not
+    /// above 0; FormatError when the module for videos is missing.
     void start(const std::filesystem::path& path, const RecordingOptions& options = {});
     bool is_recording() const { return recording_ != nullptr; }
     /// Frames added since start().
@@ -48,7 +61,7 @@ class Recorder {
     /// Calls `watcher` with every picture of the recording that is going on, once it has been read, before it
     /// is handed on to be written.
     using Watcher = std::function<void(const Image& picture)>;
-    void watch(Watcher watcher) { require_recording().watcher = std::move(watcher); }
+    void watch(Watcher watcher);
 
     /// Waits until all frames are written and finishes the file. Returns how many there are; 0 when nothing
     /// was being recorded. Throws what writing threw.
@@ -66,18 +79,7 @@ class Recorder {
                     const BeforeFrame& before_frame = {});
 
   private:
-    struct Recording {
-        std::filesystem::path path;
-        PictureOptions picture;
-        std::unique_ptr<FrameQueue> queue;
-        std::unique_ptr<PictureRing> ring;  ///< what is drawn, and not in the queue yet
-        Watcher watcher;
-        std::optional<double> step_before;  ///< the clock's, before the recording
-
-        void take(Image picture, int times);
-        /// All that is drawn is written, and the file finished. Throws the first failure.
-        void finish();
-    };
+    struct Recording;
     Recording& require_recording();
     std::unique_ptr<Recording> end();
     /// What `add` throws ends the recording.

@@ -7,17 +7,23 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "easypbr/app/animation_player.h"
 #include "easypbr/app/clock.h"
+#include "easypbr/app/custom_pass.h"
 #include "easypbr/app/input.h"
-#include "easypbr/app/output.h"
+#include "easypbr/app/picture.h"
 #include "easypbr/app/recorder.h"
-#include "easypbr/app/session.h"
-#include "easypbr/gui/shown_image.h"
+#include "easypbr/core/image.h"
+#include "easypbr/scene/scene.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr {
 
+namespace app {
+class Session;
+}  // namespace app
 namespace gui {
 class LiveView;
 class Widgets;
@@ -27,24 +33,19 @@ class Widgets;
 Scene& default_scene();
 
 /// Shows a mesh in the default scene.
-inline void show(const Mesh& mesh, const std::string& name) {
-    default_scene().show(mesh, name);
-}
+void show(const Mesh& mesh, const std::string& name);
 
 /// Removes everything from the default scene.
-inline void clear() {
-    default_scene().clear();
-}
+void clear();
 
 /// Draws a scene. No window is opened and no GL context made until they are needed.
 class Viewer {
-    // First, because the recorder keeps references to them.
-    std::unique_ptr<app::Session> session_;
-    std::unique_ptr<app::Clock> clock_;
-    std::unique_ptr<app::AnimationPlayer> player_;
+    struct Parts;
+    std::unique_ptr<Parts> parts_;  // First, because the recorder keeps references to them.
 
   public:
-    Viewer() : Viewer(default_scene()) {}
+    /// Of the default scene.
+    Viewer();
     explicit Viewer(const Scene& scene);
     ~Viewer();
     Viewer(const Viewer&) = delete;
@@ -54,35 +55,60 @@ class Viewer {
 
     app::Recorder recorder;
 
-    Scene& scene() { return session_->scene(); }
-    Settings& settings() { return session_->settings(); }
-    app::Session& session() { return *session_; }
+    Scene& scene();
+    Settings& settings();
+    /// What draws; its header is the library's own.
+    app::Session& session();
 
     /// The time of animations; see Clock. Frames that the recorder adds let it go on.
-    app::Clock& clock() { return *clock_; }
-    double time() const { return clock_->time(); }
-    double delta_time() const { return clock_->delta_time(); }
+    app::Clock& clock();
+    double time() const;
+    double delta_time() const;
 
     /// Plays an animation of a file (by its name or number) from its start, by the time of the clock: that of
     /// the window, or of the frames that are recorded. Throws NameError, ArgumentError for a speed that is
     /// not finite.
     void play(const Animations& animations, const std::string& animation = "0", double speed = 1,
               bool loop = true);
-    void pause() { player_->pause(); }
+    void pause();
     /// What plays, and where it is.
-    app::AnimationPlayer& player() { return *player_; }
+    app::AnimationPlayer& player();
 
     /// Lights the scene with an equirectangular picture (HDR, EXR, PNG, JPEG). Throws FileError, FormatError.
     void load_environment_map(const std::filesystem::path& path);
 
-    Image render(const app::PictureOptions& options = {}) { return session_->render(options); }
-    Camera camera() { return session_->camera(); }
-    void set_camera(const Camera& camera) { session_->set_camera(camera); }
-    /// See app::Session.
-    void forget_motion() { session_->forget_motion(); }
-    /// See app::Session::focus_at().
-    double focus_at(int x, int y) { return session_->focus_at(x, y); }
-    void refit() { session_->refit(); }
+    /// Draws the scene and returns RGBA, row 0 on top. What was automatic is latched in settings(). Throws
+    /// ArgumentError (among others when the picture has more than 2^30 pixels), FileError (images that the
+    /// settings name), ContextError.
+    Image render(const app::PictureOptions& options = {});
+    /// The same scene, camera and size in exact values through the pixels' centres (no anti-aliasing), one
+    /// image for each name: "depth", "normal", "albedo" and so on. Throws NameError with the nearest name,
+    /// and as render() does.
+    std::map<std::string, Image> render_layers(const std::vector<std::string>& names,
+                                               std::optional<Vec2i> size = std::nullopt);
+    /// The scene as it is now and the camera of the next picture.
+    app::Moment moment(std::optional<Vec2i> size = std::nullopt);
+
+    /// The camera of the next picture.
+    Camera camera();
+    /// Pins the camera to a pose: settings().camera follows. A near plane that was inferred is inferred anew.
+    void set_camera(const Camera& camera);
+    /// With motion_blur.enabled a picture of several samples shows how things moved since the picture before.
+    /// After this the next one shows none: nothing is known of before.
+    void forget_motion();
+    /// Focuses on what a pixel shows, (0, 0) the upper left one of a picture of this size (image.size when
+    /// not given): settings().depth_of_field.focus_distance is pinned to its depth, which is returned; the
+    /// rest stays as it is. Throws ArgumentError when the pixel is outside of the picture or shows nothing.
+    double focus_at(int x, int y, std::optional<Vec2i> size = std::nullopt);
+    /// Forgets what was inferred, so that the next picture infers it anew.
+    void refit();
+
+    /// Every value, chosen and inferred, of the last picture, with the hashes of the files it was made from.
+    void save_settings(const std::filesystem::path& path,
+                       const std::vector<std::filesystem::path>& files = {});
+    /// Takes over settings and lights from a file that save_settings() wrote. Files with another content than
+    /// then are reported as warnings.
+    void load_settings(const std::filesystem::path& path);
 
     /// Opens the window at the first call; then shows what has changed and does what mouse and keys ask for.
     /// Waits up to 16 ms for something to happen and draws nothing while nothing changes. False when the
@@ -100,9 +126,7 @@ class Viewer {
 
     /// What lies under a pixel of a picture of `size` (image.size when not given), counted from its top left
     /// corner; nothing where there is no surface.
-    std::optional<app::Pick> pick(Vec2d pixel, std::optional<Vec2i> size = std::nullopt) {
-        return session_->pick(pixel, size);
-    }
+    std::optional<app::Pick> pick(Vec2d pixel, std::optional<Vec2i> size = std::nullopt);
 
     /// What the window would show: picture and panels, refined; needs no display.
     Image screenshot(std::optional<Vec2i> size = std::nullopt, float scale = 1);
@@ -115,7 +139,7 @@ class Viewer {
 
     /// Shows an image in the window, beside the scene; headless it is kept for screenshots. Of 1, 3 or 4
     /// channels; values are shown as they are. Under the name of one that is there it takes its place.
-    void show_image(const std::string& name, Image image, const gui::ImageLook& look = {});
+    void show_image(const std::string& name, Image image, const app::ImageLook& look = {});
     void remove_image(const std::string& name);
 
     /// Functions that update() calls before and after it draws; what they throw is shown in the window and
@@ -130,15 +154,15 @@ class Viewer {
     gui::LiveView& live();
 
     /// Draws a pass of one's own in every picture from now on; one of the same name is replaced. See
-    /// render/custom_pass.h.
-    void add_pass(const std::string& name, render::Stage stage, std::shared_ptr<render::Pass> pass) {
-        session_->add_pass(name, stage, std::move(pass));
-    }
-    void remove_pass(const std::string& name) { session_->remove_pass(name); }
+    /// app/custom_pass.h. Throws ArgumentError for none.
+    void add_pass(const std::string& name, app::Stage stage, std::shared_ptr<app::Pass> pass);
+    /// Throws NameError when there is none of this name.
+    void remove_pass(const std::string& name);
 
     /// Adds or replaces a light of the scene.
-    void add_light(const std::string& name, const Light& light) { scene().set_light(name, light); }
-    void remove_light(const std::string& name) { scene().remove_light(name); }
+    void add_light(const std::string& name, const Light& light);
+    /// Throws NameError when there is none of this name.
+    void remove_light(const std::string& name);
 
   private:
     bool update_window();

@@ -11,6 +11,7 @@
 #include "easypbr/app/annotation.h"
 #include "easypbr/app/lens.h"
 #include "easypbr/app/picking.h"
+#include "easypbr/app/picture.h"
 #include "easypbr/app/tiled_picture.h"
 #include "easypbr/app/view_point.h"
 #include "easypbr/core/image.h"
@@ -24,20 +25,7 @@
 
 namespace easypbr::app {
 
-using render::Encoding;
-
-/// What to draw; a value that is not given comes from the settings.
-struct PictureOptions {
-    std::optional<Vec2i> size;
-    std::optional<int> samples;
-    Encoding encoding = Encoding::srgb8;
-};
-
-/// A moment that surfaces are drawn of instead of the session's own.
-struct Moment {
-    SceneSnapshot scene;
-    Camera camera;
-};
+class Pass;
 
 /// Seconds that the steps of the last picture took.
 struct Timing {
@@ -159,8 +147,8 @@ class Session {
     void set_view_point(const ViewPoint& view);
 
     /// Draws a pass of the program's own in every picture from now on; one of the same name is replaced. See
-    /// render/custom_pass.h.
-    void add_pass(const std::string& name, render::Stage stage, std::shared_ptr<render::Pass> pass);
+    /// app/custom_pass.h.
+    void add_pass(const std::string& name, Stage stage, std::shared_ptr<Pass> pass);
     /// Throws NameError when there is none of this name.
     void remove_pass(const std::string& name);
 
