@@ -109,7 +109,7 @@ TEST(OwnShader, MovesWithTheMeshAndTurnsItsNormal) {
     session.scene().get("square").set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(-2, 0, 0)));
     const float off = 5 * std::tan(radians(15.0f)) / side;
     EXPECT_NEAR(middle_of(render_linear(session)).x(), 2 + off, 3e-6);
-    const Vec4 normal = middle_of(session.render_layers({"normal"}).at("normal"));
+    const Vec4 normal = middle_of(session.render_layers({"normal_world"}).at("normal_world"));
     EXPECT_NEAR(normal.x(), 1, 1e-4);  // 16 bits of an octahedron: 0.004 degrees
 }
 
@@ -262,6 +262,18 @@ TEST(OwnShader, OfTheSettingsIsForAllMaterials) {
     Session session = square_session({});
     session.settings().material.shader = file.path().string();
     EXPECT_NEAR(middle_of(session.render_layers({"albedo"}).at("albedo")).x(), 0.25, 0.5 / 65535);
+}
+
+TEST(OwnShader, MayHaveLongLines) {
+    const std::string blanks(1'000'000, ' ');
+    Session session = square_session({"//" + blanks + "\nvoid" + blanks + "surface" + blanks +
+                                      "(inout Surface s) { s.base_color = vec3(0.25, 0.5, 1.0); }"});
+    EXPECT_NEAR(middle_of(session.render_layers({"albedo"}).at("albedo")).x(), 0.25, 0.5 / 65535);
+    for (const char* text : {"voidsurface(inout Surface s) {}", "avoid surface(inout Surface s) {}",
+                             "void surface;", "surface(", "void surface"}) {
+        Session without = square_session({text});
+        EXPECT_NE(message_of(without).find("expected GLSL with the function"), std::string::npos) << text;
+    }
 }
 
 std::shared_ptr<Pass> pass_of(const std::string& body, Blend blend = Blend::over) {

@@ -49,6 +49,20 @@ Image constant_image(const Vec3& color) {
     return image;
 }
 
+TEST_F(SessionFiles, DrawsAgainWithoutAMeshThatIsTooLarge) {
+    Session session = small_session();
+    const Image before = small_session().render();
+    session.scene().show(make_sphere(1e38f, 4), "huge");
+    try {
+        session.render();
+        ADD_FAILURE() << "drawn";
+    } catch (const ArgumentError& error) {
+        EXPECT_NE(std::string(error.what()).find("mesh 'huge'"), std::string::npos) << error.what();
+    }
+    session.scene().remove("huge");
+    EXPECT_TRUE(compare(session.render(), before).max == 0);
+}
+
 TEST_F(SessionFiles, SavedSettingsReproduceThePicture) {
     Session first = small_session();
     first.settings().camera.azimuth_deg = 77;
@@ -139,10 +153,10 @@ TEST_F(SessionFiles, ImageBackgroundCoversThePicture) {
 
 TEST_F(SessionFiles, LayersAreWrittenBesideThePicture) {
     Session session = small_session();
-    const auto files = layers_to_files(session, folder_ / "out.png", {"depth", "normal"});
+    const auto files = layers_to_files(session, folder_ / "out.png", {"depth", "normal_world"});
     ASSERT_EQ(files.size(), 2u);
     EXPECT_TRUE(fs::exists(folder_ / "out_depth.exr"));
-    EXPECT_EQ(io::load_image(folder_ / "out_normal.exr").channels(), 3);
+    EXPECT_EQ(io::load_image(folder_ / "out_normal_world.exr").channels(), 3);
 }
 
 TEST_F(SessionFiles, SixteenBitPng) {

@@ -1,12 +1,18 @@
 #include "easypbr/core/file.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/socket.h>
 #include <sys/stat.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
-#include <fstream>
+#include <functional>
+#include <map>
+#include <random>
+#include <thread>
 
 #include "easypbr/core/cache.h"
 #include "easypbr/core/error.h"
@@ -39,6 +45,23 @@ class FileTest : public testing::Test {
 using File = FileTest;
 using Cache = FileTest;
 
+std::string random_text(size_t size) {
+    std::string text(size, ' ');
+    std::minstd_rand generator(1);
+    for (char& c : text) c = char(generator());
+    return text;
+}
+
+/// Of the FileError that is thrown.
+std::string message_of(const std::function<void()>& act) {
+    try {
+        act();
+    } catch (const FileError& error) {
+        return error.what();
+    }
+    return "no FileError";
+}
+
 std::vector<std::byte> bytes_of(const std::string& text) {
     const auto bytes = std::as_bytes(std::span(text));
     return {bytes.begin(), bytes.end()};
@@ -48,11 +71,11 @@ std::vector<std::byte> bytes_of(const std::string& text) {
 
 TEST_F(File, ReplacesTheWholeFile) {
     write_file(folder_ / "a.txt", std::string_view("a long first content"));
-    // The mapping keeps the replaced file: it is another one, not overwritten in place.
-    const MappedFile before(folder_ / "a.txt");
+    // The bytes are those of the replaced file.
+    const FileBytes before(folder_ / "a.txt");
     write_file(folder_ / "a.txt", std::string_view("short"));
     EXPECT_EQ(before.text(), "a long first content");
-    EXPECT_EQ(MappedFile(folder_ / "a.txt").text(), "short");
+    EXPECT_EQ(FileBytes(folder_ / "a.txt").text(), "short");
     EXPECT_EQ(file_count(), 1u);
 }
 
@@ -61,7 +84,7 @@ TEST_F(File, LeavesTheOldFileWhenWritingFails) {
     write_file(folder_ / "taken" / "inside", std::string_view("x"));
     EXPECT_THROW(write_file(folder_ / "taken", std::string_view("y")), FileError);
     EXPECT_THROW(write_file(folder_ / "missing" / "a.txt", std::string_view("y")), FileError);
-    EXPECT_EQ(MappedFile(folder_ / "taken" / "inside").text(), "x");
+    EXPECT_EQ(FileBytes(folder_ / "taken" / "inside").text(), "x");
     EXPECT_EQ(file_count(), 1u);
 }
 
@@ -72,15 +95,76 @@ TEST_F(File, TellsBeforehandWhetherItCanWrite) {
     EXPECT_EQ(file_count(), 0u);
 }
 
-TEST_F(File, MapsOnlyRegularFiles) {
+TEST_F(File, OpensOnlyRegularFilesAndNeverBlocks) {
     write_file(folder_ / "empty", std::string_view());
-    EXPECT_EQ(MappedFile(folder_ / "empty").size(), 0u);
-    EXPECT_THROW(MappedFile(folder_ / "missing"), FileError);
-    EXPECT_THROW(MappedFile{folder_}, FileError);
+    EXPECT_EQ(FileBytes(folder_ / "empty").size(), 0u);
+    // Nobody writes into the pipe: who opens it as a file waits for ever.
     ASSERT_EQ(mkfifo((folder_ / "pipe").c_str(), 0600), 0);
-    // A reader of a pipe without writer would wait for ever; the other end is held open.
-    std::fstream other_end(folder_ / "pipe");
-    EXPECT_THROW(MappedFile(folder_ / "pipe"), FileError);
+    const int socket = ::socket(AF_UNIX, SOCK_STREAM, 0);
+    sockaddr_un address{AF_UNIX, {}};
+    (folder_ / "socket").string().copy(address.sun_path, sizeof address.sun_path - 1);
+    ASSERT_EQ(::bind(socket, reinterpret_cast<const sockaddr*>(&address), sizeof address), 0);
+    const std::map<fs::path, std::string> expected{{folder_, "it is a folder"},
+                                                   {folder_ / "pipe", "it is a pipe"},
+                                                   {folder_ / "socket", "it is a socket"},
+                                                   {"/dev/zero", "it is a device"},
+                                                   {folder_ / "missing", "No such file"}};
+    for (const auto& [path, message] : expected) {
+        EXPECT_EQ(message_of([&] { FileBytes{path}; }).find("cannot read " + path.string() + ": " + message),
+                  0u)
+            << message_of([&] { FileBytes{path}; });
+        EXPECT_THROW(check_readable(path), FileError);
+    }
+    EXPECT_NO_THROW(check_readable(folder_ / "empty"));
+    ::close(socket);
+}
+
+TEST_F(File, KeepsItsBytesWhenItIsTruncated) {
+    const std::string text = random_text(10'000'000);
+    write_file(folder_ / "a", text);
+    const FileBytes whole(folder_ / "a");
+    InputFile opened(folder_ / "a");
+    fs::resize_file(folder_ / "a", 5'000'000);
+    EXPECT_TRUE(whole.text() == text);
+    const std::string message = message_of([&] { FileBytes{std::move(opened)}; });
+    EXPECT_NE(message.find("it had 10000000 bytes, now it ends at byte 5000000"), std::string::npos)
+        << message;
+}
+
+TEST_F(File, GivesMemoryBack) {
+    const std::string text = random_text(10'000'000);
+    write_file(folder_ / "a", text);
+    const FileBytes file(folder_ / "a");
+    file.release_until(3'000'000);
+    file.release_until(7'000'000);
+    EXPECT_TRUE(file.text().substr(7'000'000) == std::string_view(text).substr(7'000'000));
+    file.restore();
+    EXPECT_TRUE(file.text() == text);
+    file.release_until(file.size());
+    fs::resize_file(folder_ / "a", 100);
+    EXPECT_THROW(file.restore(), FileError);
+}
+
+TEST_F(File, ReadsAPipeToItsEnd) {
+    const std::string text = random_text(10'000'000);
+    int ends[2];
+    ASSERT_EQ(::pipe2(ends, O_NONBLOCK), 0);
+    std::thread writer([&, file = Descriptor(ends[1])] {
+        ::fcntl(file.get(), F_SETFL, 0);
+        for (size_t at = 0; at < text.size();) {
+            const ssize_t count =
+                ::write(file.get(), text.data() + at, std::min<size_t>(77'777, text.size() - at));
+            if (count > 0) at += size_t(count);
+        }
+    });
+    const FileBytes bytes(ends[0], "pipe");
+    writer.join();
+    EXPECT_TRUE(bytes.text() == text);
+    // There is no file to read them from again.
+    bytes.release_until(bytes.size());
+    EXPECT_TRUE(bytes.text() == text);
+    ::close(ends[0]);
+    EXPECT_THROW(FileBytes(ends[0], "pipe"), FileError);
 }
 
 TEST_F(File, KnowsExtensions) {
@@ -99,7 +183,7 @@ TEST_F(Cache, GivesBackWhatWasStored) {
 TEST_F(Cache, ForgetsADamagedBlob) {
     cache_store("key", bytes_of("content"));
     const fs::path blob = cache_folder() / "key";
-    std::string text(MappedFile(blob).text());
+    std::string text(FileBytes(blob).text());
     text.back() ^= 1;
     write_file(blob, std::string_view(text));
     EXPECT_FALSE(cache_load("key"));

@@ -24,7 +24,7 @@ Image picture(PixelType type) {
 void fuzz_image(const std::string& extension, PixelType type) {
     const TemporaryFolder folder;
     io::save_image(picture(type), folder / ("a." + extension));
-    const std::string good(MappedFile(folder / ("a." + extension)).text());
+    const std::string good(FileBytes(folder / ("a." + extension)).text());
     fuzz(good, [](const std::string& bytes) {
         io::decode_image(std::as_bytes(std::span(bytes.data(), bytes.size())), "mutant");
     });
@@ -69,7 +69,7 @@ TEST(FuzzImage, ExrPiz) {
     image.num_channels = 1;
     const char* message = nullptr;
     ASSERT_EQ(SaveEXRImageToFile(&image, &header, (folder / "a.exr").c_str(), &message), TINYEXR_SUCCESS);
-    const std::string good(MappedFile(folder / "a.exr").text());
+    const std::string good(FileBytes(folder / "a.exr").text());
     fuzz(good, [](const std::string& bytes) {
         io::decode_image(std::as_bytes(std::span(bytes.data(), bytes.size())), "mutant");
     });

@@ -207,7 +207,7 @@ TEST(Gltf, ReadsMaterialExtensions) {
     GltfBuilder builder;
     builder.triangle()["material"] = 0;
     builder.json["extensionsUsed"] = {"KHR_materials_unlit", "VENDOR_unheard_of"};
-    builder.json["extensionsRequired"] = {"VENDOR_unheard_of"};
+    builder.json["extensionsRequired"] = {"KHR_materials_unlit"};
     builder.json["materials"] = {{{"emissiveFactor", {1, 0.5, 0}},
                                   {"alphaMode", "MASK"},
                                   {"alphaCutoff", 0.25},
@@ -383,6 +383,28 @@ TEST(Gltf, RefusesBadInput) {
                  0;
          }),
          "KHR_draco_mesh_compression"},
+        {broken([](B b) {
+             b.json["extensionsRequired"] = {"KHR_texture_basisu", "KHR_materials_ior"};
+         }),
+         "requires the extension KHR_texture_basisu, which is not supported"},
+        {broken([](B b) { b.json["extensionsRequired"] = {"KHR_materials_ior"}; }), "accepted"},
+        {broken([](B b) { b.json["extensionsRequired"] = {3}; }), "requires the extension"},
+        {broken([](B b) {
+             b.json["buffers"] = {{{"uri", "/etc/passwd"}, {"byteLength", 36}}};
+         }),
+         "URI '/etc/passwd' leads out of the file's folder"},
+        {broken([](B b) {
+             b.json["buffers"] = {{{"uri", "a/../../b.bin"}, {"byteLength", 36}}};
+         }),
+         "URI 'a/../../b.bin' leads out of"},
+        {broken([](B b) {
+             b.json["buffers"] = {{{"uri", "%2e%2E/b.bin"}, {"byteLength", 36}}};
+         }),
+         "leads out of"},
+        {broken([](B b) {
+             b.json["buffers"] = {{{"uri", "b.bin%00"}, {"byteLength", 36}}};
+         }),
+         "leads out of"},
         {broken([](B b) { b.json["bufferViews"][0]["extensions"]["EXT_meshopt_compression"] = 1; }),
          "EXT_meshopt"},
     };

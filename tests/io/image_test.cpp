@@ -334,7 +334,7 @@ TEST(ImageFiles, RefusesEveryTruncation) {
     for (const char* name : {"a.png", "a.jpg", "a.hdr", "a.exr"}) {
         const bool coded = extension_of(name) == "png" || extension_of(name) == "jpg";
         io::save_image(noise(40, 40, 3, coded ? PixelType::u8 : PixelType::f32), folder / name);
-        const MappedFile file(folder / name);
+        const FileBytes file(folder / name);
         // The last 12 bytes of a PNG (IEND) and the last 2 of a JPEG (EOI) hold no pixels.
         for (size_t size = 0; size + 16 < file.size(); size += std::max<size_t>(1, file.size() / 97))
             EXPECT_THROW(io::decode_image(file.bytes().first(size), name), FormatError)

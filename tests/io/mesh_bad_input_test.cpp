@@ -1,3 +1,4 @@
+#include <chrono>
 #include <string>
 #include <vector>
 
@@ -206,6 +207,13 @@ const std::vector<BadFile> bad_files{
     {"none.npy", npy_of("'<f4'", "(0, 3)", 0), "no points"},
     {"fields.npy", npy_of("[('a', '<f4'), ('b', '<f4')]", "(3,)", 24), "found a, b"},
     {"void.npy", npy_of("[('a', '|V0')]", "(1000000000000,)", 0), "numbers"},
+    {"long.npy", npy_of("'|V18446744073709551615'", "(3,)", 36), "is too long"},
+    {"longer.npy", npy_of("'|V18446744073709551616'", "(3,)", 36), "is not understood"},
+    {"wide.npy", npy_of("'<U4611686018427387904'", "(3,)", 36), "is too long"},
+    {"twice.npy",
+     npy_of("[('x', '<f4'), ('y', '<f4'), ('z', '<f4'), ('w', '|V9223372036854775808', (2,))]", "(3,)", 36),
+     "is too long"},
+    {"side.npy", npy_of("'<f4'", "(0, 9223372036854775807)", 0), "more than 10000 values in a row"},
     {"empty.npz", "", "empty"},
     {"text.npz", "hello", "no ZIP archive"},
     {"noarray.npz", npz({{"readme.txt", "hello"}}), "no array of positions"},
@@ -260,6 +268,37 @@ TEST(BadMeshes, AreRefusedWithTheReason) {
             EXPECT_NE(message.find(file.message), std::string::npos) << file.name << ": " << message;
             EXPECT_NE(message.find(file.name), std::string::npos) << "the file is not named: " << message;
         }
+    }
+}
+
+// The array is left out with a warning, as others that cannot be read.
+TEST(BadMeshes, EmptyArraysHaveNoMoreColumnsThanOthers) {
+    const TemporaryFolder folder;
+    write_file(folder / "side.npz", npz({{"V.npy", npy_of("'<f4'", "(3, 3)", 36)},
+                                         {"F.npy", npy_of("'<i4'", "(0, 9223372036854775807)", 0)}}));
+    EXPECT_EQ(io::load_mesh(folder / "side.npz").F().rows(), 0);
+}
+
+// Quadratic time would take minutes.
+TEST(BadMeshes, ManyPropertiesTakeLinearTime) {
+    const TemporaryFolder folder;
+    std::string same = ply_head + "element vertex 1\n" + xyz, different = same, values = "end_header\n0 0 0";
+    std::string of_faces = ply_head + "element vertex 3\n" + xyz + "element face 1\n" + faces;
+    for (int i = 0; i < 50'000; ++i) {
+        same += "property float a\n";
+        different += "property float a" + std::to_string(i) + "\n";
+        of_faces += "property float a" + std::to_string(i) + "\n";
+        values += " 1";
+    }
+    const std::string row = values.substr(values.find(" 1"));
+    write_file(folder / "same.ply", same + values + "\n");
+    write_file(folder / "different.ply", different + values + "\n");
+    write_file(folder / "faces.ply", of_faces + "end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2" + row + "\n");
+    for (const char* name : {"same.ply", "different.ply", "faces.ply"}) {
+        const auto start = std::chrono::steady_clock::now();
+        EXPECT_EQ(io::load_mesh(folder / name).snapshot()->scalars.size(), 50'000u) << name;
+        const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - start;
+        EXPECT_LT(seconds.count(), 5) << name;
     }
 }
 

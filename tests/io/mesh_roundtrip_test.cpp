@@ -185,7 +185,7 @@ TEST(MeshFiles, PlyWritesLabelsOfFacesBesideThem) {
     mesh.F = Array3i(Array3i::Dense{{0, 1, 2}, {0, 2, 3}});
     mesh.L = Array1i(Array1i::Dense{{5}, {-1}});
     Mesh(mesh).save(folder / "m.ply");
-    const MappedFile file(folder / "m.ply");
+    const FileBytes file(folder / "m.ply");
     const std::string text(reinterpret_cast<const char*>(file.bytes().data()), file.bytes().size());
     EXPECT_NE(text.find("element face 2\nproperty list uchar int vertex_indices\nproperty int label\n"),
               text.npos);

@@ -11,7 +11,7 @@ using namespace easypbr;
 namespace {
 
 MeshData read(const std::string& text, const std::string& name = "test.xyz") {
-    MeshData mesh = io::read_xyz(io::Source(std::string_view(text), name));
+    MeshData mesh = io::read_xyz(io::Source(std::string_view(text), name), extension_of(name) == "pts");
     validate(mesh);
     return mesh;
 }

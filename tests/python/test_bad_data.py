@@ -1,4 +1,6 @@
 """Data that is odd or wrong: a message that says what was expected, or a sensible picture. Never a crash, never garbage."""
+import os
+
 import numpy as np
 import pytest
 
@@ -70,7 +72,7 @@ def drawn_share(mesh: Mesh, samples: int = 1) -> float:
     scene.show(mesh, "mesh")
     view = Viewer((200, 150), scene=scene)
     picture = view.render(samples=samples)
-    for name, layer in view.layers(["normal", "depth", "albedo"]).items():
+    for name, layer in view.layers(["normal_world", "depth", "albedo"]).items():
         assert np.isfinite(layer).all(), name
     return (picture[:, :, :3] != 64).any(axis=2).mean()
 
@@ -133,3 +135,23 @@ def test_what_is_no_number_or_has_no_direction_leaves_the_rest(mesh, changed):
 def test_surfels_need_different_points(points):
     with pytest.raises(easypbr.ArgumentError, match="estimate_surfels: expected"):
         mesh_of(V=np.reshape(points, (-1, 3))).estimate_surfels()
+
+
+def test_a_file_name_may_have_any_bytes(tmp_path, caplog):
+    mesh = Mesh(V, None)
+    folder = os.fsencode(tmp_path)
+    path = os.fsdecode(folder + b"/caf\xe9.ply")
+    mesh.save(path)
+    read = Mesh(path)
+    assert os.fsencode(read.name) == b"caf\xe9" and os.fsencode(read.source) == os.fsencode(path)
+    assert "caf" in repr(read)
+    scene = Scene()
+    scene.show(read, read.name)
+    assert scene.names() == [read.name] and scene[read.name] == read
+    with pytest.raises(easypbr.FileError, match="No such file"):
+        Mesh(os.fsdecode(folder + b"/gone\xe9.ply"))
+    # Nor do names in a file need to be UTF-8: it is read with a warning that has one.
+    with open(tmp_path / "a.obj", "wb") as file:
+        file.write(b"mtllib gr\xfcn.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    assert len(Mesh(tmp_path / "a.obj").F) == 1
+    assert "gr\udcfcn.mtl" in caplog.text

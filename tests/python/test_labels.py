@@ -76,6 +76,12 @@ def test_label_maps_have_names_and_colours():
     ({"names": ["a"], "labels": [1, 2]}, "expected a label for each of 1 names, got 2"),
     ({"names": ["a", "b"], "labels": [1, 1]}, "label 1 occurs twice"),
     ({"names": ["a"], "unlabelled": 3}, "the unlabelled class 3 is not among"),
+    ({"names": [1, 2]}, r"LabelMap names: expected a list of texts, got \[1, 2\]"),
+    ({"names": 3}, "LabelMap names: expected a list of texts, got 3"),
+    ({"names": {"a": "b"}}, "LabelMap names: expected labels of 32 bits as keys, got 'a'"),
+    ({"names": {2**40: "b"}}, "LabelMap names: expected labels of 32 bits as keys, got 1099511627776"),
+    ({"names": {1: 2}}, "LabelMap names: expected texts, got 2"),
+    ({"names": ["a", "b"], "colors": ["red", 3]}, "LabelMap colors: expected texts, got 3"),
     ({"names": ["a"], "unknown": "ignored"}, "expected 'refused' or 'unlabelled', got 'ignored'"),
 ])
 def test_bad_label_maps_are_refused(arguments, message):

@@ -133,6 +133,30 @@ TEST(Resolve, LatchesPinsFollowsAndReleases) {
     EXPECT_FALSE(settings.camera.near.value());
 }
 
+// What no later picture could be drawn with is not kept.
+TEST(Resolve, NamesAMeshThatIsTooLarge) {
+    Scene scene;
+    scene.show(blob(), "good");
+    scene.show(cloud(Array3f::Dense{{0, 0, 0}, {1e38f, 0, 0}, {0, -2e38f, 0}}), "bad");
+    try {
+        resolve(scene.snapshot(), {}, size);
+        ADD_FAILURE() << "resolved";
+    } catch (const ArgumentError& error) {
+        EXPECT_EQ(std::string(error.what()).find("mesh 'bad' has coordinates up to 2e+38"), 0u)
+            << error.what();
+    }
+    // Where the studio's lights are off, it does not matter that they would be too bright.
+    scene.show(cloud(Array3f::Dense{{0, 0, 0}, {1e30f, 0, 0}, {0, -2e30f, 0}}), "bad");
+    Settings settings = unlit();
+    latch(settings, resolve(scene.snapshot(), settings, size).settings);
+    EXPECT_FALSE(settings.lights.key.intensity.value());
+    EXPECT_TRUE(settings.camera.position.value());
+    EXPECT_NO_THROW(resolve(scene.snapshot(), settings, size));
+    scene.remove("bad");
+    EXPECT_NO_THROW(resolve(scene.snapshot(), settings, size));
+    EXPECT_NO_THROW(resolve(scene.snapshot(), {}, size));
+}
+
 // Two lights' worth of radiance is half the exposure, whatever stands in the scene.
 TEST(Resolve, HalvesExposureWhenLightDoubles) {
     SceneSnapshot scene = scene_of(blob());

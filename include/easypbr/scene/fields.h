@@ -54,6 +54,9 @@ const Field& field(std::string_view name);
 void set(Settings& settings, std::string_view name, const Value& value);
 Value get(const Settings& settings, std::string_view name);
 
+/// Whether the data of a value are in the field's range, and finite.
+bool is_valid(const Field& field, const Value& value);
+
 /// The value in the form in which `put` takes it. Throws ArgumentError that says what was expected.
 Value checked(const Field& field, const Value& value);
 

@@ -19,7 +19,7 @@ const std::string& Session::shader_text(const std::string& path) {
     std::error_code gone;  // A file that is being replaced may be missing for a moment.
     const auto time = std::filesystem::last_write_time(path, gone);
     if (!file.text.empty() && (gone || time == file.time)) return file.text;
-    file = {time, std::string(MappedFile(path).text())};
+    file = {time, std::string(FileBytes(path).text())};
     return file.text;
 }
 

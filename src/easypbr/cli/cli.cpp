@@ -2,6 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
 #include <exception>
 #include <iostream>
 #include <new>
@@ -72,19 +75,27 @@ void add_commands(CLI::App& app, Job& job) {
     add_dataset(app, job);
 }
 
+/// A full disk shows when what is still buffered is written, which nobody looks at when the process ends.
+int with_output_written(int code) {
+    std::cout.flush();
+    if (std::fflush(stdout) != 0 || std::ferror(stdout) || !std::cout)
+        throw FileError(fmt::format("cannot write to standard output: {}", std::strerror(errno)));
+    return code;
+}
+
 int parse_and_run(int argc, const char* const* argv) {
-    CLI::App app("EasyPBR: give it a mesh, it makes a physically based picture.");
+    CLI::App app("EasyPBR: a physically based renderer for meshes, point clouds and labelled data.");
     Job job;
     add_commands(app, job);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& wanted) {
-        return app.exit(wanted, std::cout, std::cerr);
+        return with_output_written(app.exit(wanted, std::cout, std::cerr));
     } catch (const CLI::ParseError& error) {
         throw UsageError(error.what());
     }
     reject_extras(app);
-    return job();
+    return with_output_written(job());
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 #include "easypbr/cli/command.h"
+#include "easypbr/cli/drawable.h"
 #include "easypbr/cli/mesh_steps.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/image/image_io.h"
@@ -8,24 +9,30 @@ namespace easypbr::cli {
 namespace {
 
 struct ConvertOptions {
-    std::string in, out;
+    std::string in, out, format;
     double crease_deg = io::LoadOptions{}.crease_angle_deg;
     std::vector<MeshStep> steps;
 };
 
 void declare(CLI::App& command, ConvertOptions& options) {
-    command.add_option("IN", options.in, "Mesh or image file");
+    command.add_option("IN", options.in, "Mesh or image file; - is a mesh from standard input");
+    declare_format(command, options.format);
     command.add_option("OUT", options.out, "Mesh (PLY, OBJ, GLB) or image file (PNG, JPEG, HDR, EXR)");
-    command.add_option("--crease", options.crease_deg, "STL: edges sharper than this angle stay sharp")
+    command
+        .add_option("--crease", options.crease_deg,
+                    "Crease angle of STL files: edges between faces at a larger angle stay sharp")
         ->option_text("DEG");
     declare_mesh_steps(command, options.steps);
 }
 
 int run(const ConvertOptions& options) {
     require(!options.out.empty(), "convert", "IN and OUT");
+    check_input("convert", {options.in});
     check_writable(options.out);
     if (!is_image_file(options.in)) {
-        const Mesh mesh = io::load_mesh(options.in, {.crease_angle_deg = float(options.crease_deg)});
+        const Mesh mesh =
+            load_input(options.in, {.crease_angle_deg = float(options.crease_deg), .format = options.format})
+                .mesh;
         io::save_mesh(apply_mesh_steps(mesh, options.steps), options.out);
         return 0;
     }
@@ -41,7 +48,8 @@ int run(const ConvertOptions& options) {
 void add_convert(CLI::App& app, Job& job) {
     set_job<ConvertOptions>(
         *app.add_subcommand(
-            "convert", "Write a mesh or an image in another format, a mesh after changes in the order given"),
+            "convert",
+            "Convert a mesh or an image to another format; mesh operations run in the order given"),
         job, declare, run);
 }
 

@@ -8,6 +8,7 @@
 #include <set>
 
 #include "easypbr/cli/command.h"
+#include "easypbr/cli/drawable.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/scene/material_table.h"
@@ -18,12 +19,13 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 struct InfoOptions {
-    std::string file;
+    std::string file, format;
     bool json = false;
 };
 
 void declare(CLI::App& command, InfoOptions& options) {
-    command.add_option("FILE", options.file, "Mesh or image file");
+    command.add_option("FILE", options.file, "Mesh or image file; - is a mesh from standard input");
+    declare_format(command, options.format);
     command.add_flag("--json", options.json, "Print JSON");
 }
 
@@ -167,9 +169,10 @@ void print_mesh(const Json& mesh) {
 
 int run(const InfoOptions& options) {
     require(!options.file.empty(), "info", "a FILE");
+    check_input("info", {options.file});
     const bool is_image = is_image_file(options.file);
-    const Json json =
-        is_image ? describe(io::load_image(options.file)) : describe(io::load_scene(options.file));
+    const Json json = is_image ? describe(io::load_image(options.file))
+                               : describe(load_input(options.file, {.format = options.format}));
     if (options.json)
         fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
     else if (is_image)
@@ -182,8 +185,8 @@ int run(const InfoOptions& options) {
 }  // namespace
 
 void add_info(CLI::App& app, Job& job) {
-    set_job<InfoOptions>(*app.add_subcommand("info", "Say what a mesh or image file holds"), job, declare,
-                         run);
+    set_job<InfoOptions>(*app.add_subcommand("info", "Print the contents of a mesh or image file"), job,
+                         declare, run);
 }
 
 }  // namespace easypbr::cli

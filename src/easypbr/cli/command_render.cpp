@@ -82,13 +82,14 @@ void check_files(const Picture& picture, const Settings& settings, const RenderO
         app::check_picture(picture.output, settings);
     for (const std::string& layer : options.layers) check_writable(truth_path(picture.output, layer));
     if (!picture.save_settings.empty()) check_writable(picture.save_settings);
-    for (const std::string& file : picture.files) MappedFile{file};
+    for (const std::string& file : picture.files)
+        if (file != standard_input) check_readable(file);
     const MaterialSettings& m = settings.material;
     for (const std::string& file :
          {settings.environment.file, settings.background.image, m.base_color_texture, m.metallic_texture,
           m.roughness_texture, m.normal_texture, m.occlusion_texture, m.emissive_texture, m.opacity_texture,
           m.shader})
-        if (!file.empty()) MappedFile{file};
+        if (!file.empty()) check_readable(file);
 }
 
 std::vector<io::LoadedScene> load_all(const std::vector<std::string>& files, const io::LoadOptions& options) {
@@ -212,7 +213,8 @@ class RenderJob {
 
     /// Reads the files while the GL context is made, for all of it takes long.
     void load(const Picture& picture, Stopwatch& watch) {
-        const io::LoadOptions load_options{.crease_angle_deg = look_.settings.load.crease_deg};
+        const io::LoadOptions load_options{.crease_angle_deg = look_.settings.load.crease_deg,
+                                           .format = options_.format};
         auto loading = std::async(std::launch::async, load_all, picture.files, load_options);
         auto lighting = std::async(std::launch::async, [this] { load_environment(); });
         session_.context_info();
@@ -284,7 +286,7 @@ int run_render(const RenderOptions& options) {
 }  // namespace
 
 void add_render(CLI::App& app, Job& job) {
-    set_job<RenderOptions>(*app.add_subcommand("render", "Draw mesh files into a picture"), job,
+    set_job<RenderOptions>(*app.add_subcommand("render", "Render mesh files to an image"), job,
                            declare_render_options, run_render);
 }
 

@@ -20,13 +20,15 @@ namespace {
 
 struct ViewOptions {
     std::vector<std::string> files, values, passes;
-    std::string size = "1280x720", environment, settings, screenshot, shader, animation, path;
+    std::string size = "1280x720", environment, settings, screenshot, shader, animation, path, format;
     bool watch = false, light = false;
     float panel_scale = 1;
 };
 
 void declare(CLI::App& command, ViewOptions& options) {
-    command.add_option("FILE", options.files, "Meshes: PLY, OBJ, STL, OFF, glTF, GLB and more");
+    command.add_option("FILE", options.files,
+                       "Meshes: PLY, OBJ, STL, OFF, glTF, GLB and more; - is standard input");
+    declare_format(command, options.format);
     command.add_option("--size,--resolution", options.size, "Width and height of the window in pixels")
         ->option_text("WxH");
     command.add_option("--env,--hdri-file", options.environment, field("environment.file").doc)
@@ -37,22 +39,23 @@ void declare(CLI::App& command, ViewOptions& options) {
         ->allow_extra_args(false)
         ->option_text("KEY=VALUE");
     command
-        .add_option("--animation", options.animation, "Play this animation of the file, by name or number")
+        .add_option("--animation", options.animation,
+                    "Play this animation of the file, by name, or by number from 0")
         ->option_text("NAME");
-    command
-        .add_option("--camera-path", options.path, "A camera path for the panel, as easypbr render takes it")
+    command.add_option("--camera-path", options.path, "Camera path from a JSON file, as in easypbr render")
         ->option_text("FILE");
     command.add_option("--shader", options.shader, field("material.shader").doc)->option_text("FILE");
     declare_passes(command, options.passes);
-    command.add_flag("--watch", options.watch, "Show files again when they change");
+    command.add_flag("--watch", options.watch, "Reload files when they change");
     command
         .add_option("--ui-scale", options.panel_scale,
-                    "How large panels and text are, 0.5 to 4; 1 is as the screen asks for")
+                    "Scale of panels and text relative to the screen's own, 0.5 to 4")
         ->option_text("X");
-    command.add_flag("--light", options.light, "Light panels instead of dark ones");
+    command.add_flag("--light", options.light, "Use light panels instead of dark ones");
     command
-        .add_option("--screenshot", options.screenshot,
-                    "Write what the window would show to an image file instead; needs no display")
+        .add_option(
+            "--screenshot", options.screenshot,
+            "Write the contents of the window to an image file instead of opening it; needs no display")
         ->option_text("FILE");
 }
 
@@ -75,6 +78,7 @@ void play(Viewer& view, const std::vector<std::string>& names, const std::string
 }
 
 int run(const ViewOptions& options) {
+    check_input("view", options.files);
     Viewer view{Scene()};
     if (!options.settings.empty()) app::load_settings(view.session(), options.settings);
     apply(look_of(options), view.settings());
@@ -82,11 +86,13 @@ int run(const ViewOptions& options) {
     if (!options.screenshot.empty()) app::encoding_for(options.screenshot);
     const std::vector<std::string> names = unique_names(options.files);
     for (size_t i = 0; i < names.size(); ++i) {
-        const io::LoadOptions load{.crease_angle_deg = view.settings().load.crease_deg};
+        const io::LoadOptions load{.crease_angle_deg = view.settings().load.crease_deg,
+                                   .format = options.format};
         const io::LoadedScene loaded = load_drawable(options.files[i], load);
         show(view.scene(), loaded, names[i]);
         if (!loaded.animations.empty()) view.player().add(names[i], loaded.animations);
-        if (options.watch) view.live().watch(options.files[i], names[i]);
+        if (options.watch && options.files[i] != standard_input)
+            view.live().watch(options.files[i], names[i]);
     }
     if (!options.animation.empty()) play(view, names, options.animation);
     if (!options.path.empty()) view.live().state().path.set(io::load_camera_path(options.path));
@@ -102,7 +108,8 @@ int run(const ViewOptions& options) {
 }  // namespace
 
 void add_view(CLI::App& app, Job& job) {
-    set_job<ViewOptions>(*app.add_subcommand("view", "Show mesh files in a window"), job, declare, run);
+    set_job<ViewOptions>(*app.add_subcommand("view", "Show mesh files in an interactive window"), job,
+                         declare, run);
 }
 
 }  // namespace easypbr::cli

@@ -1,22 +1,50 @@
 #include "easypbr/cli/drawable.h"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
+#include <algorithm>
 #include <set>
 
+#include "easypbr/cli/command.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
 #include "easypbr/core/suggest.h"
 
 namespace easypbr::cli {
 
-io::LoadedScene load_drawable(const std::filesystem::path& path, const io::LoadOptions& options) {
-    io::LoadedScene loaded = io::load_scene(path, options);
+void declare_format(CLI::App& command, std::string& format) {
+    command
+        .add_option("--format", format, "Format of the mesh files, as an extension: ply, obj, glb and so on")
+        ->option_text("NAME");
+}
+
+void check_input(std::string_view command, const std::vector<std::string>& files) {
+    const auto count = std::ranges::count(files, standard_input);
+    if (count > 1) throw UsageError(fmt::format("{}: standard input can be read once only", command));
+    if (count == 1 && ::isatty(STDIN_FILENO))
+        throw UsageError(
+            fmt::format("{}: standard input is a terminal; redirect it or name a file", command));
+}
+
+io::LoadedScene load_input(const std::string& file, const io::LoadOptions& options) {
+    if (file != standard_input) return io::load_scene(file, options);
+    const char* const name = "standard input";
+    try {
+        return io::load_scene(FileBytes(STDIN_FILENO, name), name, options);
+    } catch (const FormatError& error) {
+        if (!options.format.empty()) throw;
+        throw FormatError(fmt::format("{} (--format names the format)", error.what()));
+    }
+}
+
+io::LoadedScene load_drawable(const std::string& file, const io::LoadOptions& options) {
+    io::LoadedScene loaded = load_input(file, options);
     Eigen::Index vertices = 0;
     for_each_node(loaded.mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d&) {
         vertices += data->V.rows();
     });
-    if (vertices == 0)
-        throw FormatError(fmt::format("{} has no vertices: there is nothing to draw", path.string()));
+    if (vertices == 0) throw FormatError(fmt::format("{} has no vertices: there is nothing to draw", file));
     return loaded;
 }
 
@@ -24,7 +52,7 @@ std::vector<std::string> unique_names(const std::vector<std::string>& files) {
     std::set<std::string> taken;
     std::vector<std::string> names;
     for (const std::string& file : files) {
-        const std::string stem = std::filesystem::path(file).stem().string();
+        const std::string stem = file == standard_input ? "stdin" : fs::path(file).stem().string();
         std::string name = stem;
         for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}-{}", stem, number);
         names.push_back(name);

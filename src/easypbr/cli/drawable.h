@@ -1,8 +1,9 @@
 // Mesh files on their way into a scene.
 #pragma once
 
-#include <filesystem>
+#include <CLI/CLI.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "easypbr/io/mesh/mesh_io.h"
@@ -10,11 +11,22 @@
 
 namespace easypbr::cli {
 
-/// Reads a file that has something to draw. Throws as io::load_scene() does; FormatError when it has no
-/// vertices.
-io::LoadedScene load_drawable(const std::filesystem::path& path, const io::LoadOptions& options);
+/// What stands for standard input among the files of a command.
+inline constexpr const char* standard_input = "-";
 
-/// The files' stems, made unique: "a", "b", "a-2".
+/// Adds the option --format, the format of the files.
+void declare_format(CLI::App& command, std::string& format);
+
+/// Throws UsageError when standard input stands among the files more than once, or is a terminal.
+void check_input(std::string_view command, const std::vector<std::string>& files);
+
+/// Reads a file, or standard input. Throws as io::load_scene() does.
+io::LoadedScene load_input(const std::string& file, const io::LoadOptions& options);
+
+/// The same for what has something to draw. Throws FormatError when it has no vertices.
+io::LoadedScene load_drawable(const std::string& file, const io::LoadOptions& options);
+
+/// The files' stems, made unique: "a", "b", "a-2"; standard input is "stdin".
 std::vector<std::string> unique_names(const std::vector<std::string>& files);
 
 /// Shows the mesh under a name and adds the file's lights as "NAME/LIGHT".

@@ -32,7 +32,7 @@ std::vector<double> parse_numbers(std::string_view text, const fs::path& path) {
 }  // namespace
 
 std::vector<double> load_pose(const std::filesystem::path& path, PoseAxes axes) {
-    const MappedFile file(path);
+    const FileBytes file(path);
     std::vector<double> pose = parse_numbers(file.text(), path);
     if (pose.size() != 16)
         throw FormatError(

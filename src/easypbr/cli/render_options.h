@@ -15,7 +15,7 @@ namespace easypbr::cli {
 
 struct RenderOptions {
     std::vector<std::string> files;
-    std::string output;
+    std::string output, format;
     bool batch = false, quiet = false, timing = false;
     bool smooth = false, flat = false;
     bool legend = false, colorbar = false;

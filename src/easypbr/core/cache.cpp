@@ -29,7 +29,7 @@ fs::path cache_folder() {
 
 std::optional<std::vector<std::byte>> cache_load(std::string_view key) {
     try {
-        const MappedFile file(path_of(key));
+        const FileBytes file(path_of(key));
         if (file.size() < hash_digits) return std::nullopt;
         const auto blob = file.bytes().subspan(hash_digits);
         if (content_hash(blob) != file.text().substr(0, hash_digits)) return std::nullopt;

@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -10,24 +11,46 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <mutex>
 #include <utility>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/parallel.h"
 
 namespace easypbr {
 namespace {
 
-/// Closes a file descriptor at the end of a scope.
-struct Descriptor {
-    int value;
-    ~Descriptor() {
-        if (value >= 0) ::close(value);
-    }
-};
+/// Bytes that one thread reads at a time, and the size of the pages that large files are read into.
+constexpr size_t read_block = 4 << 20, large_page = 2 << 20;
 
 fs::path temporary_beside(const fs::path& path) {
     static std::atomic<unsigned> counter{0};
     return path.parent_path() / fmt::format(".{}.{}.{}.tmp", path.filename().string(), ::getpid(), counter++);
+}
+
+[[noreturn]] void fail_read(std::string_view path, std::string_view why) {
+    throw FileError(fmt::format("cannot read {}: {}", path, why));
+}
+
+/// What a file is that is no regular one.
+const char* kind_of(mode_t mode) {
+    if (S_ISDIR(mode)) return "a folder";
+    if (S_ISFIFO(mode)) return "a pipe";
+    if (S_ISSOCK(mode)) return "a socket";
+    return S_ISCHR(mode) || S_ISBLK(mode) ? "a device" : "of an unknown kind";
+}
+
+std::byte* allocate_pages(size_t size, std::string_view path) {
+    void* pages = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    if (pages == MAP_FAILED) fail_read(path, fmt::format("no memory for its {} bytes", size));
+    if (size >= large_page) ::madvise(pages, size, MADV_HUGEPAGE);
+    return static_cast<std::byte*>(pages);
+}
+
+/// Waits until there is something to read where that does not block.
+void wait_for_input(int descriptor) {
+    pollfd input{descriptor, POLLIN, 0};
+    ::poll(&input, 1, -1);
 }
 
 [[noreturn]] void fail_write(const fs::path& path, int error) {
@@ -45,42 +68,114 @@ void write_all(int descriptor, std::span<const std::byte> bytes, const fs::path&
 
 }  // namespace
 
-MappedFile::MappedFile(const fs::path& path) {
-    const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
-    if (file.value < 0)
-        throw FileError(fmt::format("cannot read {}: {}", path.string(), std::strerror(errno)));
+Descriptor::~Descriptor() {
+    if (value_ >= 0) ::close(value_);
+}
+
+InputFile::InputFile(fs::path path)
+    : path_(std::move(path)), file_(::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
     struct stat info {};
-    if (::fstat(file.value, &info) != 0)
-        throw FileError(fmt::format("cannot read {}: {}", path.string(), std::strerror(errno)));
+    // A socket cannot be opened at all.
+    if (file_.get() < 0 && errno == ENXIO && ::stat(path_.c_str(), &info) == 0 && !S_ISREG(info.st_mode))
+        fail_read(path_.string(), fmt::format("it is {}, not a regular file", kind_of(info.st_mode)));
+    if (file_.get() < 0 || ::fstat(file_.get(), &info) != 0) fail_read(path_.string(), std::strerror(errno));
     if (!S_ISREG(info.st_mode))
-        throw FileError(fmt::format("cannot read {}: not a regular file", path.string()));
+        fail_read(path_.string(), fmt::format("it is {}, not a regular file", kind_of(info.st_mode)));
     size_ = size_t(info.st_size);
-    if (size_ == 0) return;
-    data_ = ::mmap(nullptr, size_, PROT_READ, MAP_PRIVATE, file.value, 0);
-    if (data_ == MAP_FAILED) {
-        data_ = nullptr;
-        throw FileError(fmt::format("cannot map {}: {}", path.string(), std::strerror(errno)));
+}
+
+void InputFile::read(size_t from, std::span<std::byte> out) const {
+    while (!out.empty()) {
+        const ssize_t count = ::pread(file_.get(), out.data(), out.size(), off_t(from));
+        if (count < 0 && errno == EINTR) continue;
+        if (count < 0) fail_read(path_.string(), std::strerror(errno));
+        if (count == 0)
+            fail_read(path_.string(),
+                      fmt::format("it was truncated while it was read: it had {} bytes, now it "
+                                  "ends at byte {}",
+                                  size_, from));
+        from += size_t(count);
+        out = out.subspan(size_t(count));
     }
-    ::madvise(data_, size_, MADV_WILLNEED);
 }
 
-MappedFile::~MappedFile() {
-    if (data_) ::munmap(data_, size_);
+void check_readable(const fs::path& path) {
+    const InputFile file(path);
 }
 
-MappedFile::MappedFile(MappedFile&& other) noexcept
-    : data_(std::exchange(other.data_, nullptr)), size_(std::exchange(other.size_, 0)) {}
+FileBytes::FileBytes(InputFile file) : file_(std::move(file)) {
+    if (file_->size() == 0) return;
+    size_ = capacity_ = file_->size();
+    data_ = allocate_pages(capacity_, file_->path().string());
+    try {
+        parallel_chunks(size_, read_block, [&](size_t begin, size_t end) {
+            file_->read(begin, {data_ + begin, end - begin});
+        });
+    } catch (...) {
+        ::munmap(data_, capacity_);
+        throw;
+    }
+}
 
-MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
+FileBytes::FileBytes(int descriptor, std::string_view name) {
+    FileBytes input;
+    for (;;) {
+        if (input.size_ == input.capacity_) input.grow(name);
+        const ssize_t count = ::read(descriptor, input.data_ + input.size_, input.capacity_ - input.size_);
+        if (count == 0) break;
+        if (count > 0)
+            input.size_ += size_t(count);
+        else if (errno == EAGAIN)
+            wait_for_input(descriptor);
+        else if (errno != EINTR)
+            fail_read(name, std::strerror(errno));
+    }
+    *this = std::move(input);
+}
+
+void FileBytes::grow(std::string_view name) {
+    const size_t capacity = std::max(2 * capacity_, read_block);
+    if (!data_) {
+        data_ = allocate_pages(capacity, name);
+    } else {
+        void* pages = ::mremap(data_, capacity_, capacity, MREMAP_MAYMOVE);
+        if (pages == MAP_FAILED) fail_read(name, fmt::format("no memory for more than {} bytes", capacity_));
+        data_ = static_cast<std::byte*>(pages);
+    }
+    capacity_ = capacity;
+}
+
+FileBytes::~FileBytes() {
+    if (data_) ::munmap(data_, capacity_);
+}
+
+FileBytes::FileBytes(FileBytes&& other) noexcept {
+    *this = std::move(other);
+}
+
+FileBytes& FileBytes::operator=(FileBytes&& other) noexcept {
+    std::swap(file_, other.file_);
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
+    std::swap(capacity_, other.capacity_);
+    std::swap(released_, other.released_);
     return *this;
 }
 
-void MappedFile::release_until(size_t end) const {
-    const size_t page = 1 << 16;
-    const size_t whole = std::min(end, size_) / page * page;
-    if (data_ && whole) ::madvise(data_, whole, MADV_DONTNEED);
+void FileBytes::release_until(size_t end) const {
+    const size_t whole = std::min(end, size_) / large_page * large_page;
+    if (!file_ || whole <= released_) return;
+    ::madvise(data_ + released_, whole - released_, MADV_DONTNEED);
+    released_ = whole;
+}
+
+void FileBytes::restore() const {
+    // One thread reads: those of a loop come here when they fail, and may not wait for each other.
+    static std::mutex mutex;
+    const std::lock_guard lock(mutex);
+    if (released_ == 0) return;
+    file_->read(0, {data_, released_});
+    released_ = 0;
 }
 
 namespace {
@@ -99,8 +194,8 @@ void write_file(const fs::path& given, std::span<const std::byte> bytes) {
     const fs::path beside = temporary_beside(path);
     try {
         const Descriptor file{::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
-        if (file.value < 0) fail_write(path, errno);
-        write_all(file.value, bytes, path);
+        if (file.get() < 0) fail_write(path, errno);
+        write_all(file.get(), bytes, path);
     } catch (...) {
         ::unlink(beside.c_str());
         throw;
@@ -122,7 +217,7 @@ void check_writable(const fs::path& given) {
     if (path.filename().empty() || fs::is_directory(path)) fail_write(path, EISDIR);
     const fs::path beside = temporary_beside(path);
     const Descriptor file{::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
-    if (file.value < 0) fail_write(path, errno);
+    if (file.get() < 0) fail_write(path, errno);
     ::unlink(beside.c_str());
 }
 

@@ -1,38 +1,92 @@
-// Files as bytes: memory-mapped reading and writing that never leaves half a file behind.
+// Files as bytes: reading that neither blocks nor changes afterwards, writing that never leaves half a file
+// behind.
 #pragma once
 
 #include <cstddef>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 
 namespace easypbr {
 
 namespace fs = std::filesystem;
 
-/// A file mapped read-only into memory. Move-only.
-class MappedFile {
+/// Closes a file descriptor at the end of its life. Move-only.
+class Descriptor {
   public:
-    MappedFile() = default;
-    /// Throws FileError when the file is missing, a folder or not readable.
-    explicit MappedFile(const fs::path& path);
-    ~MappedFile();
-    MappedFile(MappedFile&& other) noexcept;
-    MappedFile& operator=(MappedFile&& other) noexcept;
+    explicit Descriptor(int value = -1) : value_(value) {}
+    ~Descriptor();
+    Descriptor(Descriptor&& other) noexcept : value_(std::exchange(other.value_, -1)) {}
+    Descriptor& operator=(Descriptor&& other) noexcept {
+        std::swap(value_, other.value_);
+        return *this;
+    }
 
-    std::span<const std::byte> bytes() const { return {static_cast<const std::byte*>(data_), size_}; }
-    std::string_view text() const { return {static_cast<const char*>(data_), size_}; }
-    size_t size() const { return size_; }
-
-    /// Tells the system that bytes [0, end) are not needed again soon, so that they do not count as used
-    /// memory.
-    void release_until(size_t end) const;
+    int get() const { return value_; }
 
   private:
-    void* data_ = nullptr;
+    int value_;
+};
+
+/// A regular file opened for reading. Every file that the library reads is opened here. Move-only.
+class InputFile {
+  public:
+    /// Throws FileError when the file is missing, not readable, or no regular file: a folder, a pipe, a
+    /// socket or a device, which could block for ever. Never blocks.
+    explicit InputFile(fs::path path);
+
+    const fs::path& path() const { return path_; }
+    /// Bytes that the file had when it was opened.
+    size_t size() const { return size_; }
+    /// Reads the bytes [from, from + out.size()). Throws FileError when the file has become shorter or cannot
+    /// be read. Thread-safe.
+    void read(size_t from, std::span<std::byte> out) const;
+
+  private:
+    fs::path path_;
+    Descriptor file_;
     size_t size_ = 0;
 };
+
+/// A file's bytes, copied into memory: what happens to the file afterwards does not change them. Move-only.
+class FileBytes {
+  public:
+    FileBytes() = default;
+    /// Throws FileError as InputFile does.
+    explicit FileBytes(const fs::path& path) : FileBytes(InputFile(path)) {}
+    explicit FileBytes(InputFile file);
+    /// All that comes from a descriptor until its end, be it a pipe or a file; `name` stands in messages.
+    /// Throws FileError.
+    FileBytes(int descriptor, std::string_view name);
+    ~FileBytes();
+    FileBytes(FileBytes&& other) noexcept;
+    FileBytes& operator=(FileBytes&& other) noexcept;
+
+    std::span<const std::byte> bytes() const { return {data_, size_}; }
+    std::string_view text() const { return {reinterpret_cast<const char*>(data_), size_}; }
+    size_t size() const { return size_; }
+
+    /// Gives the memory of the bytes [0, end) back, which must not be used again before restore(). Does
+    /// nothing where they could not be read again.
+    void release_until(size_t end) const;
+    /// Reads what was given back again. Throws FileError as InputFile::read() does. Thread-safe, but not
+    /// beside release_until().
+    void restore() const;
+
+  private:
+    void grow(std::string_view name);
+
+    std::optional<InputFile> file_;
+    std::byte* data_ = nullptr;
+    size_t size_ = 0, capacity_ = 0;
+    mutable size_t released_ = 0;
+};
+
+/// Throws FileError unless the file can be opened for reading and is a regular one.
+void check_readable(const fs::path& path);
 
 /// Writes beside the target, then renames: a reader sees the old file or the whole new one. Throws FileError.
 void write_file(const fs::path& path, std::span<const std::byte> bytes);

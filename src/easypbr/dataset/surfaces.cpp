@@ -9,7 +9,7 @@ namespace {
 
 /// How far the ray's hit may lie from the drawn depth, as a part of it: beyond, the face is seen edge-on or
 /// the pixel only touches it.
-constexpr double depth_tolerance = 0.01;
+constexpr double relative_depth_tolerance = 0.01;
 
 struct Ray {
     Vec3d origin, direction;  ///< direction.z is 1: the parameter is the depth
@@ -55,7 +55,7 @@ void meet_face(Surfaces& s, size_t pixel, const Eigen::Affine3d& T_cv_mesh, doub
     const Vec3d normal = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
     const double slant = normal.dot(ray.direction);
     double depth = slant != 0 ? normal.dot(corner[0] - ray.origin) / slant : drawn_depth;
-    if (!(std::abs(depth - drawn_depth) <= depth_tolerance * drawn_depth)) depth = drawn_depth;
+    if (!(std::abs(depth - drawn_depth) <= relative_depth_tolerance * drawn_depth)) depth = drawn_depth;
     const Vec3d point = ray.origin + depth * ray.direction;
     const double area = normal.squaredNorm();
     Vec3d weights = Vec3d::Constant(1.0 / 3);

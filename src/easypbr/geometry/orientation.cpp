@@ -9,7 +9,7 @@
 namespace easypbr::geometry {
 namespace {
 
-constexpr size_t grain = 4096;
+constexpr size_t orientation_grain = 4096;
 
 /// A relation of two neighbours: how uncertain it is, in `levels` steps, and whether one is to be turned.
 struct Relation {
@@ -70,7 +70,7 @@ class SortedRelations {
   public:
     SortedRelations(const std::vector<Vec3>& normals, const Neighborhoods& neighborhoods)
         : relations_(neighborhoods.neighbors.size()), places_(relations_.size()) {
-        parallel_for(neighborhoods.count(), grain, [&](size_t i) {
+        parallel_for(neighborhoods.count(), orientation_grain, [&](size_t i) {
             const Vec3 origin = neighborhoods.points.row(Eigen::Index(i)).transpose();
             const auto of = neighborhoods.of(i);
             for (size_t j = 0; j < of.size(); ++j)
@@ -148,7 +148,7 @@ void orient_consistently(std::vector<Vec3>& normals, const Neighborhoods& neighb
 }
 
 void orient_towards(std::vector<Vec3>& normals, const Neighborhoods& neighborhoods, const Vec3d& viewpoint) {
-    parallel_for(normals.size(), grain, [&](size_t i) {
+    parallel_for(normals.size(), orientation_grain, [&](size_t i) {
         if (normals[i].cast<double>().dot(viewpoint - neighborhoods.point(i)) < 0) normals[i] = -normals[i];
     });
 }

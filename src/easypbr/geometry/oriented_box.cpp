@@ -12,7 +12,7 @@
 namespace easypbr {
 namespace {
 
-using Points = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
+using BoxPoints = Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>;
 
 double cross(const Vec2d& a, const Vec2d& b) {
     return a.x() * b.y() - a.y() * b.x();
@@ -96,8 +96,8 @@ Vec2d best_direction(const std::vector<Vec2d>& points) {
     return best;
 }
 
-Vec3d extent(const Points& points, const Mat3d& axes) {
-    const Points turned = points * axes;
+Vec3d extent(const BoxPoints& points, const Mat3d& axes) {
+    const BoxPoints turned = points * axes;
     return (turned.colwise().maxCoeff() - turned.colwise().minCoeff()).transpose();
 }
 
@@ -116,7 +116,7 @@ bool is_smaller(const Vec3d& a, const Vec3d& b) {
 }
 
 /// Axes (columns) after each was kept in turn while the other two were turned to the best rectangle.
-Mat3d refined(const Points& points, Mat3d axes) {
+Mat3d refined(const BoxPoints& points, Mat3d axes) {
     Vec3d size = extent(points, axes);
     for (int kept = 0, unchanged = 0; unchanged < 3; kept = (kept + 1) % 3, ++unchanged) {
         const Vec3d u = axes.col((kept + 1) % 3), v = axes.col((kept + 2) % 3);
@@ -136,14 +136,14 @@ Mat3d refined(const Points& points, Mat3d axes) {
     return axes;
 }
 
-OrientedBox box_along(const Points& points, const Mat3d& axes) {
+OrientedBox box_along(const BoxPoints& points, const Mat3d& axes) {
     const Vec3d size = extent(points, axes);
     std::array<int, 3> order{0, 1, 2};
     std::stable_sort(order.begin(), order.end(), [&](int a, int b) { return size[a] > size[b]; });
     Mat3d sorted;
     for (int i = 0; i < 3; ++i) sorted.col(i) = axes.col(order[size_t(i)]);
     sorted.col(2) = sorted.col(0).cross(sorted.col(1));
-    const Points turned = points * sorted;
+    const BoxPoints turned = points * sorted;
     OrientedBox box;
     box.size = (turned.colwise().maxCoeff() - turned.colwise().minCoeff()).transpose();
     box.T_world_box.linear() = sorted;
@@ -157,7 +157,7 @@ OrientedBox box_along(const Points& points, const Mat3d& axes) {
 OrientedBox oriented_bounding_box(const Mesh& mesh) {
     const MeshData flat = flatten(mesh);
     geometry::require_vertices("oriented bounding box", flat);
-    Points points = flat.V.cast<double>();
+    BoxPoints points = flat.V.cast<double>();
     const Eigen::RowVector3d mean = points.colwise().mean();
     points.rowwise() -= mean;
     const Mat3d covariance = points.transpose() * points;

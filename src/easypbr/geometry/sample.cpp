@@ -15,7 +15,7 @@
 namespace easypbr {
 namespace {
 
-constexpr size_t grain = 4096;
+constexpr size_t sample_grain = 4096;
 
 /// Places on faces.
 struct Samples {
@@ -26,7 +26,7 @@ struct Samples {
 /// Sums of the faces' areas up to and including each.
 std::vector<double> area_sums(const MeshData& mesh) {
     std::vector<double> sums(size_t(mesh.F.rows()));
-    parallel_for(sums.size(), grain, [&](size_t f) {
+    parallel_for(sums.size(), sample_grain, [&](size_t f) {
         const auto corner = [&](int k) -> Vec3d {
             return mesh.V.row(mesh.F(Eigen::Index(f), k)).transpose().cast<double>();
         };
@@ -41,7 +41,7 @@ Samples choose(const MeshData& mesh, size_t count, uint64_t seed) {
     if (!(sums.back() > 0)) throw ArgumentError("sample_surface: expected faces with an area, got none");
     const geometry::RandomNumbers random(seed);
     Samples samples{std::vector<int32_t>(count), std::vector<Vec3d>(count)};
-    parallel_for(count, grain, [&](size_t i) {
+    parallel_for(count, sample_grain, [&](size_t i) {
         const double at = (double(i) + random.uniform(3 * i)) / double(count) * sums.back();
         const auto found = std::upper_bound(sums.begin(), sums.end(), at);
         samples.face[i] = int32_t(std::min(found, sums.end() - 1) - sums.begin());
@@ -57,7 +57,7 @@ template <class A>
 A interpolated(const A& array, const MeshData& mesh, const Samples& samples) {
     if (array.empty()) return {};
     typename A::Dense result(Eigen::Index(samples.face.size()), array.cols());
-    parallel_for(samples.face.size(), grain, [&](size_t i) {
+    parallel_for(samples.face.size(), sample_grain, [&](size_t i) {
         const auto corner = [&](int k) {
             return array.row(mesh.F(samples.face[i], k)).template cast<double>();
         };

@@ -16,7 +16,7 @@
 namespace easypbr {
 namespace {
 
-constexpr size_t grain = 4096;
+constexpr size_t subdivide_grain = 4096;
 
 /// The edges of all faces, each once, by the vertices at its ends.
 struct Edges {
@@ -26,7 +26,7 @@ struct Edges {
 
 Edges find_edges(const Array3i& F) {
     std::vector<KeyedIndex> items(size_t(F.size()));
-    parallel_for(items.size(), grain, [&](size_t corner) {
+    parallel_for(items.size(), subdivide_grain, [&](size_t corner) {
         const auto f = Eigen::Index(corner / 3), k = Eigen::Index(corner % 3);
         const int32_t a = F(f, k), b = F(f, (k + 1) % 3);
         items[corner] = {uint64_t(std::min(a, b)) << 32 | uint64_t(std::max(a, b)), uint32_t(corner)};
@@ -48,7 +48,7 @@ A extended(const A& array, const Edges& edges, Middle&& middle) {
     if (array.empty()) return {};
     typename A::Dense result(array.rows() + Eigen::Index(edges.ends.size()), array.cols());
     result.topRows(array.rows()) = array;
-    parallel_for(edges.ends.size(), grain, [&](size_t e) {
+    parallel_for(edges.ends.size(), subdivide_grain, [&](size_t e) {
         result.row(array.rows() + Eigen::Index(e)) =
             middle(array.row(edges.ends[e][0]), array.row(edges.ends[e][1]));
     });
@@ -79,7 +79,7 @@ A handed_down(const A& array) {
 
 Array3i cut_faces(const Array3i& F, const Edges& edges, Eigen::Index vertices) {
     Array3i::Dense result(4 * F.rows(), 3);
-    parallel_for(size_t(F.rows()), grain, [&](size_t face) {
+    parallel_for(size_t(F.rows()), subdivide_grain, [&](size_t face) {
         const auto f = Eigen::Index(face);
         const auto middle = [&](int k) { return int32_t(vertices) + edges.of_corner[3 * face + size_t(k)]; };
         const int32_t a = F(f, 0), b = F(f, 1), c = F(f, 2), ab = middle(0), bc = middle(1), ca = middle(2);
@@ -154,14 +154,14 @@ class LoopRules {
 Array3f loop_positions(const MeshData& mesh, const Edges& edges) {
     const LoopRules rules(mesh);
     Array3f::Dense V(mesh.V.rows() + Eigen::Index(edges.ends.size()), 3);
-    parallel_for(size_t(mesh.V.rows()), grain, [&](size_t v) {
+    parallel_for(size_t(mesh.V.rows()), subdivide_grain, [&](size_t v) {
         V.row(Eigen::Index(v)) = rules.old_vertex(int32_t(v)).cast<float>().transpose();
     });
     // Corners of one edge write the same numbers, so one of them is enough.
     std::vector<size_t> corner_of(edges.ends.size());
     for (size_t corner = 0; corner < edges.of_corner.size(); ++corner)
         corner_of[size_t(edges.of_corner[corner])] = corner;
-    parallel_for(corner_of.size(), grain, [&](size_t e) {
+    parallel_for(corner_of.size(), subdivide_grain, [&](size_t e) {
         V.row(mesh.V.rows() + Eigen::Index(e)) = rules.new_vertex(corner_of[e]).cast<float>().transpose();
     });
     return V;

@@ -12,7 +12,7 @@
 namespace easypbr {
 namespace {
 
-constexpr size_t grain = 4096;
+constexpr size_t subsample_grain = 4096;
 constexpr int64_t most_cells = int64_t(1) << 21;
 
 /// The vertices of each cell of a grid, cells by their first vertex, vertices rising.
@@ -31,7 +31,7 @@ class CellGroups {
                             what, most_cells, cells, cell_size));
         low_ = low;
         items_.resize(size_t(V.rows()));
-        parallel_for(items_.size(), grain, [&](size_t i) {
+        parallel_for(items_.size(), subsample_grain, [&](size_t i) {
             const Eigen::Array3d cell =
                 (V.row(Eigen::Index(i)).transpose().cast<double>() / cell_size).array().floor() - low_;
             items_[i] = {uint64_t(cell.x()) << 42 | uint64_t(cell.y()) << 21 | uint64_t(cell.z()),
@@ -78,7 +78,7 @@ template <class A>
 A means(const A& array, const CellGroups& groups) {
     if (array.empty()) return {};
     typename A::Dense result(Eigen::Index(groups.count()), array.cols());
-    parallel_for(groups.count(), grain, [&](size_t group) {
+    parallel_for(groups.count(), subsample_grain, [&](size_t group) {
         Eigen::RowVectorXd sum = Eigen::RowVectorXd::Zero(array.cols());
         int count = 0;
         groups.visit(group, [&](Eigen::Index v) {
@@ -112,7 +112,7 @@ Array3f mean_directions(const Array3f& N, const CellGroups& groups) {
 
 Array1i most_frequent(const Array1i& L, const CellGroups& groups) {
     Array1i::Dense result(Eigen::Index(groups.count()));
-    parallel_chunks(groups.count(), grain, [&](size_t begin, size_t end) {
+    parallel_chunks(groups.count(), subsample_grain, [&](size_t begin, size_t end) {
         std::vector<int32_t> labels;
         for (size_t group = begin; group < end; ++group) {
             labels.clear();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr size_t leaf_size = 4;
 
-using Triangle = std::array<Vec3d, 3>;
+using TreeTriangle = std::array<Vec3d, 3>;
 
 /// Box of triangles, or of two boxes.
 struct Box {
@@ -50,7 +50,7 @@ Vec3d nearest_on_edges(const Vec3d& p, const Vec3d& a, const Vec3d& b, const Vec
 /// the children 2 i and 2 i + 1, the leaves are the last nodes (Karras 2012 keeps the curve's own hierarchy;
 /// halving it evenly needs no pointers).
 struct SurfaceTree::Tree {
-    std::vector<Triangle> triangles;
+    std::vector<TreeTriangle> triangles;
     std::vector<int32_t> original;
     std::vector<Box> nodes;
     size_t first_leaf = 1;

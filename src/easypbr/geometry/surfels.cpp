@@ -20,7 +20,7 @@ using geometry::Neighborhoods;
 
 namespace {
 
-constexpr size_t grain = 1024;
+constexpr size_t surfel_grain = 1024;
 
 /// Normal of the plane that fits a point and its neighbours best: the direction in which they spread least.
 /// Weights fall with the distance, to nearly nothing at the last neighbour, so that sharp features are kept.
@@ -45,7 +45,7 @@ Vec3 plane_normal(const Neighborhoods& neighborhoods, size_t i) {
 
 std::vector<Vec3> plane_normals(const Neighborhoods& neighborhoods, const NeighborhoodOptions& options) {
     std::vector<Vec3> normals(neighborhoods.count());
-    parallel_for(normals.size(), grain, [&](size_t i) { normals[i] = plane_normal(neighborhoods, i); });
+    parallel_for(normals.size(), surfel_grain, [&](size_t i) { normals[i] = plane_normal(neighborhoods, i); });
     if (options.viewpoint)
         geometry::orient_towards(normals, neighborhoods, *options.viewpoint);
     else
@@ -77,7 +77,7 @@ Neighborhoods neighborhoods_of(const char* what, const MeshData& mesh, const Nei
 /// result.row(i) = values[place[i]], in parallel.
 Array3f spread(const std::vector<Vec3>& values, const std::vector<int32_t>& place) {
     Array3f::Dense result(Eigen::Index(place.size()), 3);
-    parallel_for(place.size(), grain,
+    parallel_for(place.size(), surfel_grain,
                  [&](size_t i) { result.row(Eigen::Index(i)) = values[size_t(place[i])].transpose(); });
     return result;
 }
@@ -87,7 +87,7 @@ template <class Of>
 void set_axes(MeshData& mesh, Of&& of) {
     Array3f::Dense T(mesh.V.rows(), 3);
     Array1f::Dense B(mesh.V.rows());
-    parallel_for(size_t(mesh.V.rows()), grain, [&](size_t i) {
+    parallel_for(size_t(mesh.V.rows()), surfel_grain, [&](size_t i) {
         const geometry::SurfelAxes axes = of(i);
         T.row(Eigen::Index(i)) = axes.first.cast<float>().transpose();
         B[Eigen::Index(i)] = float(axes.second);
@@ -119,7 +119,7 @@ Mesh estimate_surfels(const Mesh& mesh, const NeighborhoodOptions& options, bool
     const std::vector<Vec3> normals =
         has_normals ? given_normals(data->N, neighborhoods) : plane_normals(neighborhoods, options);
     std::vector<geometry::SurfelAxes> axes(neighborhoods.count());
-    parallel_chunks(axes.size(), grain, [&](size_t begin, size_t end) {
+    parallel_chunks(axes.size(), surfel_grain, [&](size_t begin, size_t end) {
         std::vector<Vec3d> steps;
         for (size_t i = begin; i < end; ++i) {
             steps.clear();

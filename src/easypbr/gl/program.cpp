@@ -3,13 +3,16 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <charconv>
 #include <cstdlib>
-#include <regex>
+#include <optional>
 #include <set>
 #include <sstream>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/suggest.h"
 
 namespace easypbr::gl {
 namespace {
@@ -30,7 +33,30 @@ bool is_path(std::string_view name) {
 std::string resolve_include(std::string_view includer, const std::string& name) {
     if (!is_path(includer)) return name;
     const fs::path beside = fs::path(includer).parent_path() / name;
-    return fs::exists(beside) ? beside.string() : name;
+    std::error_code unusable;  // A name may be too long for the system.
+    return fs::exists(beside, unusable) ? beside.string() : name;
+}
+
+constexpr std::string_view blanks = " \t\r\v\f";
+
+std::string_view without_blanks(std::string_view text) {
+    text.remove_prefix(std::min(text.find_first_not_of(blanks), text.size()));
+    text.remove_suffix(text.size() - 1 - text.find_last_not_of(blanks));
+    return text;
+}
+
+/// The file that a line `#include "FILE"` names; nothing for another line. A scan, because std::regex
+/// recurses once per character and a long line overflows the stack.
+std::optional<std::string_view> included_file(std::string_view line) {
+    constexpr std::string_view directive = "#include";
+    line = without_blanks(line);
+    if (!line.starts_with(directive)) return std::nullopt;
+    line.remove_prefix(directive.size());
+    const std::string_view quoted = without_blanks(line);
+    const bool is_quoted =
+        quoted.size() > 2 && quoted.front() == '"' && quoted.find('"', 1) == quoted.size() - 1;
+    if (!is_quoted || quoted.size() == line.size()) return std::nullopt;
+    return quoted.substr(1, quoted.size() - 2);
 }
 
 /// Files are told apart by their lines' numbers: Mesa forgets the source's own number in many messages.
@@ -40,51 +66,88 @@ std::string line_directive(size_t file, int line) {
     return fmt::format("#line {}\n", int(file) * lines_of_a_file + line);
 }
 
+/// A line `#feature MACRO constant`; empty names: another line.
+struct Feature {
+    std::string macro, constant;
+};
+
+Feature feature_of(const std::string& line) {
+    Feature feature;
+    constexpr std::string_view directive = "#feature ";
+    if (line.starts_with(directive))
+        std::istringstream(line.substr(directive.size())) >> feature.macro >> feature.constant;
+    return feature;
+}
+
 /// A shader with all that it includes.
 struct Expanded {
     const ShaderTexts& texts;
+    const std::vector<std::string>& defines;
     std::string text = {};
-    std::vector<std::string> files = {}, shown = {};
-    bool is_own = false;  ///< something of it is not of the library
+    std::vector<std::string> files = {}, shown = {}, features = {};
+    std::set<std::string, std::less<>> in_conditions = {};  ///< of the files, those first included within #if
+    int conditions = 0;                                     ///< #if that are open
+    bool is_own = false;                                    ///< something of it is not of the library
 
+    /// A file that is included already is left out: each is part of a stage once.
     void add(std::string_view name) {
-        for (const std::string& seen : files)
-            if (seen == name) return;
+        if (std::ranges::find(files, name) != files.end()) return check_again(name);
+        if (conditions > 0) in_conditions.emplace(name);
         const size_t index = files.size();
         const auto given = texts.find(name);
         files.emplace_back(name);
         shown.emplace_back(given == texts.end() ? name : given->second.name);
         is_own |= given != texts.end() || is_path(name);
-        static const std::regex include(R"re(^\s*#include\s+"([^"]+)"\s*$)re");
         std::istringstream lines(given == texts.end() ? shader_source(name) : given->second.text);
         std::string line;
         text += line_directive(index, 1);
         for (int number = 1; std::getline(lines, line); ++number) {
-            std::smatch match;
-            if (std::regex_match(line, match, include)) {
-                add(resolve_include(name, match[1].str()));
+            if (const auto file = included_file(line)) {
+                add(resolve_include(name, std::string(*file)));
                 text += line_directive(index, number + 1);
+            } else if (const Feature feature = feature_of(line); !feature.macro.empty()) {
+                features.push_back(feature.macro);
+                const bool given = std::ranges::find(defines, feature.macro) != defines.end();
+                text += fmt::format("const bool {} = {};\n", feature.constant, given);
             } else {
+                if (line.starts_with("#if")) ++conditions;
+                if (line.starts_with("#endif")) --conditions;
                 text += line + "\n";
             }
         }
     }
+
+    /// Where the condition is false, a file that is left out the second time would be missing.
+    void check_again(std::string_view name) const {
+        if (is_own || !in_conditions.contains(name)) return;
+        throw ArgumentError(fmt::format(
+            "shader file '{}' is included within #if, and again: expected its include before the #if", name));
+    }
 };
 
-/// Puts file names in place of the numbers in a compiler log ("0:12(3): error" or "0(12) : error").
+/// Removes the whole number that the text begins with; nothing where there is none.
+std::optional<size_t> take_number(std::string_view& text) {
+    size_t number = 0;
+    const auto result = std::from_chars(text.data(), text.data() + text.size(), number);
+    if (result.ec != std::errc()) return std::nullopt;
+    text.remove_prefix(size_t(result.ptr - text.data()));
+    return number;
+}
+
+/// Puts file names in place of the numbers in a line of a compiler log ("0:12(3): error" or "0(12) : error").
+std::string readable_line(const std::string& line, const std::vector<std::string>& files) {
+    std::string_view rest = line;
+    if (!take_number(rest) || rest.empty() || (rest.front() != ':' && rest.front() != '(')) return line;
+    rest.remove_prefix(1);
+    const auto number = take_number(rest);
+    if (!number || *number / lines_of_a_file >= files.size()) return line;
+    return fmt::format("{}:{}{}", files[*number / lines_of_a_file], *number % lines_of_a_file, rest);
+}
+
 std::string readable_log(const std::string& log, const std::vector<std::string>& files) {
-    static const std::regex place(R"(^(\d+)[:(](\d+))");
     std::istringstream lines(log);
     std::string line, out;
-    while (std::getline(lines, line)) {
-        std::smatch match;
-        if (std::regex_search(line, match, place)) {
-            const size_t number = std::stoul(match[2]);
-            if (const size_t file = number / lines_of_a_file; file < files.size())
-                line = fmt::format("{}:{}{}", files[file], number % lines_of_a_file, match.suffix().str());
-        }
-        out += "\n  " + line;
-    }
+    while (std::getline(lines, line)) out += "\n  " + readable_line(line, files);
     return out;
 }
 
@@ -93,9 +156,36 @@ std::string readable_log(const std::string& log, const std::vector<std::string>&
     throw ContextError(message);
 }
 
-GLuint compile(GLenum stage, const Expanded& source, const std::vector<std::string>& defines) {
+/// The features of all embedded shaders.
+std::vector<std::string> embedded_features() {
+    std::vector<std::string> names;
+    for (const EmbeddedShader& shader : embedded_shaders) {
+        std::istringstream lines{std::string(shader.text)};
+        for (std::string line; std::getline(lines, line);)
+            if (Feature feature = feature_of(line); !feature.macro.empty())
+                names.push_back(std::move(feature.macro));
+    }
+    return names;
+}
+
+/// Passes give all their shaders the same macros, so a feature of another shader is none of this one's
+/// mistakes.
+void check_features(const Expanded (&sources)[2], const std::vector<std::string>& defines) {
+    if (sources[0].is_own || sources[1].is_own) return;
+    static const std::vector<std::string> embedded = embedded_features();
+    std::vector<std::string> known = embedded;
+    for (const Expanded& source : sources)
+        known.insert(known.end(), source.features.begin(), source.features.end());
+    for (const std::string& define : defines) {
+        if (define.find(' ') != define.npos || std::ranges::find(known, define) != known.end()) continue;
+        throw ArgumentError(
+            fmt::format("no shader has a line '#feature {}'{}", define, did_you_mean(define, known)));
+    }
+}
+
+GLuint compile(GLenum stage, const Expanded& source) {
     std::string text = "#version 450 core\n";
-    for (const std::string& define : defines) text += "#define " + define + "\n";
+    for (const std::string& define : source.defines) text += "#define " + define + "\n";
     text += source.text;
     const GLuint shader = glCreateShader(stage);
     const char* pointer = text.c_str();
@@ -112,8 +202,8 @@ GLuint compile(GLenum stage, const Expanded& source, const std::vector<std::stri
                                     readable_log(log.c_str(), source.shown)));
 }
 
-Expanded expanded(std::string_view name, const ShaderTexts& texts) {
-    Expanded source{texts};
+Expanded expanded(std::string_view name, const ShaderTexts& texts, const std::vector<std::string>& defines) {
+    Expanded source{texts, defines};
     source.add(name);
     return source;
 }
@@ -121,20 +211,22 @@ Expanded expanded(std::string_view name, const ShaderTexts& texts) {
 }  // namespace
 
 std::string shader_source(std::string_view name) {
-    if (is_path(name)) return std::string(MappedFile(fs::path(name)).text());
+    if (is_path(name)) return std::string(FileBytes(fs::path(name)).text());
     if (const char* folder = std::getenv("EASYPBR_SHADER_DIR"); folder && *folder) {
         const fs::path path = fs::path(folder) / name;
-        if (fs::exists(path)) return std::string(MappedFile(path).text());
+        std::error_code unusable;
+        if (fs::exists(path, unusable)) return std::string(FileBytes(path).text());
     }
     for (const EmbeddedShader& shader : embedded_shaders)
         if (shader.name == name) return std::string(shader.text);
-    throw ArgumentError(fmt::format("there is no shader file '{}'", name));
+    throw ArgumentError(fmt::format("there is no shader file '{}'", name.substr(0, 200)));
 }
 
 std::vector<fs::path> shader_files(std::string_view name) {
     const ShaderTexts none;
+    const std::vector<std::string> plain;
     std::vector<fs::path> paths;
-    for (const std::string& file : expanded(name, none).files)
+    for (const std::string& file : expanded(name, none, plain).files)
         if (is_path(file)) paths.emplace_back(file);
     return paths;
 }
@@ -143,11 +235,12 @@ Program::Program(std::string_view vertex, std::string_view fragment, const std::
                  const ShaderTexts& texts)
     : object_(ObjectKind::program) {
     const GLuint program = object_.id();
-    const Expanded sources[] = {expanded(vertex, texts), expanded(fragment, texts)};
-    const GLuint vertex_stage = compile(GL_VERTEX_SHADER, sources[0], defines);
+    const Expanded sources[] = {expanded(vertex, texts, defines), expanded(fragment, texts, defines)};
+    check_features(sources, defines);
+    const GLuint vertex_stage = compile(GL_VERTEX_SHADER, sources[0]);
     GLuint fragment_stage = 0;
     try {
-        fragment_stage = compile(GL_FRAGMENT_SHADER, sources[1], defines);
+        fragment_stage = compile(GL_FRAGMENT_SHADER, sources[1]);
     } catch (...) {
         glDeleteShader(vertex_stage);
         throw;

@@ -8,7 +8,7 @@
 namespace easypbr::gpu {
 namespace {
 
-constexpr size_t grain = 1 << 14;
+constexpr size_t segment_grain = 1 << 14;
 constexpr Rgba8 white{255, 255, 255, 255};
 
 void put(float (&to)[3], const Array3f& V, Eigen::Index row) {
@@ -23,7 +23,7 @@ struct Edge {
 
 std::vector<Edge> face_edges(const Array3i& F) {
     std::vector<Edge> edges(size_t(F.size()));
-    parallel_for(edges.size(), grain, [&](size_t i) {
+    parallel_for(edges.size(), segment_grain, [&](size_t i) {
         const size_t face = i / 3, corner = i % 3;
         const uint64_t a = uint64_t(F.data()[i]), b = uint64_t(F.data()[3 * face + (corner + 1) % 3]);
         edges[i] = {std::min(a, b) << 32 | std::max(a, b), int32_t(face)};
@@ -36,7 +36,7 @@ std::vector<Edge> face_edges(const Array3i& F) {
 
 std::vector<Segment> edge_segments(const MeshData& mesh) {
     std::vector<Segment> segments(size_t(mesh.E.rows()));
-    parallel_for(segments.size(), grain, [&](size_t i) {
+    parallel_for(segments.size(), segment_grain, [&](size_t i) {
         const int a = mesh.E(Eigen::Index(i), 0), b = mesh.E(Eigen::Index(i), 1);
         Segment& segment = segments[i];
         put(segment.a, mesh.V, a);
@@ -71,7 +71,7 @@ std::vector<Segment> normal_segments(const MeshData& mesh, float length) {
     if (mesh.N.empty() && mesh.F.empty()) return {};
     const Array3f N = mesh.N.empty() ? smooth_normals(mesh) : mesh.N;
     std::vector<Segment> segments(size_t(mesh.V.rows()));
-    parallel_for(segments.size(), grain, [&](size_t i) {
+    parallel_for(segments.size(), segment_grain, [&](size_t i) {
         const auto row = Eigen::Index(i);
         Segment& segment = segments[i];
         put(segment.a, mesh.V, row);

@@ -14,7 +14,7 @@
 namespace easypbr::gpu {
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t corner_grain = 1 << 15;
 
 struct Tangent16 {
     int16_t x, y, z, w;
@@ -64,7 +64,7 @@ SplitMesh split_by_tangent(const Array3f& V, const Array3f& N, const Array2f& UV
 template <class To, class ArrayType, class Convert>
 gl::Buffer gather(const ArrayType& array, const std::vector<int32_t>& vertex, Convert&& convert) {
     std::vector<To> values(vertex.empty() ? size_t(array.rows()) : vertex.size());
-    parallel_for(values.size(), grain,
+    parallel_for(values.size(), corner_grain,
                  [&](size_t i) { values[i] = convert(vertex.empty() ? Eigen::Index(i) : vertex[i]); });
     return upload(values);
 }

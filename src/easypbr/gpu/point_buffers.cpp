@@ -7,12 +7,12 @@
 namespace easypbr::gpu {
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t point_grain = 1 << 15;
 
 template <class To, class Convert>
 gl::Buffer converted(Eigen::Index count, Convert&& convert) {
     std::vector<To> values(static_cast<size_t>(count));
-    parallel_for(values.size(), grain, [&](size_t i) { values[i] = convert(Eigen::Index(i)); });
+    parallel_for(values.size(), point_grain, [&](size_t i) { values[i] = convert(Eigen::Index(i)); });
     return upload(values);
 }
 

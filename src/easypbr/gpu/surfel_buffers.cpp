@@ -8,14 +8,14 @@
 namespace easypbr::gpu {
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t surfel_grain = 1 << 15;
 /// As in shaders/geometry_surfels.vert.
 enum Location { position_at, normal_at, color_at, axes_at };
 
 template <class To, class Convert>
 gl::Buffer converted(Eigen::Index count, Convert&& convert) {
     std::vector<To> values(static_cast<size_t>(count));
-    parallel_for(values.size(), grain, [&](size_t i) { values[i] = convert(Eigen::Index(i)); });
+    parallel_for(values.size(), surfel_grain, [&](size_t i) { values[i] = convert(Eigen::Index(i)); });
     return upload(values);
 }
 

@@ -31,7 +31,7 @@ struct Xcb {
 #undef EASYPBR_DECLARE
 };
 
-Xcb load() {
+Xcb load_xcb() {
     void* library = dlopen("libxcb.so.1", RTLD_NOW | RTLD_LOCAL);
     if (!library)
         throw ContextError(fmt::format("no clipboard: libxcb.so.1 cannot be loaded ({})", dlerror()));
@@ -117,7 +117,7 @@ class Reader {
 }  // namespace
 
 std::string read_clipboard(const char* display, double seconds, const std::function<void()>& serve) {
-    static const Xcb xcb = load();
+    static const Xcb xcb = load_xcb();
     Reader reader(xcb, display);
     reader.ask();
     const auto end = std::chrono::steady_clock::now() + std::chrono::duration<double>(seconds);

@@ -14,7 +14,7 @@
 namespace easypbr::gui {
 namespace {
 
-constexpr float panel_width = 240, gap = 12, largest_zoom = 64;
+constexpr float image_panel_width = 240, gap = 12, largest_zoom = 64;
 /// From this zoom on pixels are seen as squares.
 constexpr float square_zoom = 2;
 
@@ -128,12 +128,12 @@ const Image& ImagePanels::image(const std::string& name) const {
 
 void ImagePanels::draw(GuiState& state) {
     const bool rescaled = std::exchange(scale_, state.scale) != state.scale;
-    const float step = (panel_width + gap) * state.scale, left = (left_width + gap) * state.scale;
+    const float step = (image_panel_width + gap) * state.scale, left = (left_width + gap) * state.scale;
     const float right = float(state.size.x()) - right_width * state.scale;
     float x = left, bottom = float(state.size.y()) - gap * state.scale;
     for (auto& [name, panel] : panels_) {
         if (!panel.open) continue;
-        const float width = panel_width * state.scale;
+        const float width = image_panel_width * state.scale;
         const float shape = float(panel.image.height()) / float(panel.image.width());
         const float rows = 2.2f * ImGui::GetFrameHeightWithSpacing() + ImGui::GetFrameHeight();
         const float height = std::clamp(width * shape, 0.3f * width, 1.5f * width) + rows;

@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/core/error.h"
@@ -10,6 +9,7 @@
 #include "easypbr/io/settings/label_map_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/handles.h"
+#include "easypbr/python/text.h"
 #include "easypbr/scene/colormap.h"
 #include "easypbr/scene/label_colors.h"
 
@@ -23,6 +23,16 @@ class ColorsLike : public nb::object {
 class NamesLike : public nb::object {
     NB_OBJECT_DEFAULT(NamesLike, nb::object, "Sequence[str] | Mapping[int, str]", is_anything)
 };
+
+/// Throws ArgumentError that says what was expected.
+template <class T>
+T taken(nb::handle object, std::string_view what, std::string_view expected) {
+    T value;
+    if (!nb::try_cast(object, value))
+        throw ArgumentError(fmt::format("LabelMap {}: expected {}, got {}", what, expected,
+                                        nb::cast<std::string>(nb::repr(object))));
+    return value;
+}
 
 Rgb8 rgb8(nb::handle red, nb::handle green, nb::handle blue, bool whole) {
     const Vec3d c(nb::cast<double>(red), nb::cast<double>(green), nb::cast<double>(blue));
@@ -50,7 +60,8 @@ std::vector<Rgb8> colors_from(nb::handle object) {
     const bool texts = nb::isinstance<nb::sequence>(object) && nb::len(object) > 0 &&
                        nb::isinstance<nb::str>(nb::object(object[0]));
     if (!texts) return colors_of_array(object);
-    for (nb::handle text : object) colors.push_back(to_rgb8(parse_color(nb::cast<std::string>(text))));
+    for (nb::handle text : object)
+        colors.push_back(to_rgb8(parse_color(taken<std::string>(text, "colors", "texts"))));
     return colors;
 }
 
@@ -59,9 +70,11 @@ std::vector<LabelClass> classes_from(nb::handle names, const std::optional<std::
     if (nb::isinstance<nb::dict>(names)) {
         if (labels) throw ArgumentError("LabelMap: expected names as a list beside labels, got a dict");
         for (auto [label, name] : nb::cast<nb::dict>(names))
-            classes.push_back({nb::cast<int32_t>(label), nb::cast<std::string>(name), {}});
+            classes.push_back({taken<int32_t>(label, "names", "labels of 32 bits as keys"),
+                               taken<std::string>(name, "names", "texts"),
+                               {}});
     } else {
-        for (const std::string& name : nb::cast<std::vector<std::string>>(names)) {
+        for (const std::string& name : taken<std::vector<std::string>>(names, "names", "a list of texts")) {
             const size_t i = classes.size();
             classes.push_back({labels && i < labels->size() ? (*labels)[i] : int32_t(i), name, {}});
         }
@@ -78,7 +91,7 @@ UnknownLabels unknown_from(const std::string& text) {
     throw ArgumentError(fmt::format("LabelMap unknown: expected 'refused' or 'unlabelled', got '{}'", text));
 }
 
-void construct(LabelMapHandle* self, const NamesLike& names, const ColorsLike& colors,
+void construct_label_map(LabelMapHandle* self, const NamesLike& names, const ColorsLike& colors,
                const std::optional<std::vector<int32_t>>& labels, std::optional<int32_t> unlabelled,
                const std::string& unknown, const std::string& name) {
     std::vector<LabelClass> classes = classes_from(names, labels);
@@ -122,15 +135,13 @@ std::vector<T> column(const LabelMapHandle& handle, T LabelClass::*member) {
 }
 
 void bind_constructors(nb::class_<LabelMapHandle>& map) {
-    map.def(
-        "__init__", construct, nb::arg("names"), nb::arg("colors").none() = nb::none(),
-        nb::arg("labels").none() = nb::none(), nb::arg("unlabelled").none() = nb::none(),
-        nb::arg("unknown") = "refused", nb::arg("name") = "",
-        "`names`: a list for labels 0, 1, 2, ... or for `labels`, or a dict of label to name. `colors`: "
-        "texts, or "
-        "n x 3 numbers, 0 to 255 if whole, else 0 to 1; None: generated. `unlabelled`: the label of what has "
-        "none. `unknown`: whether meshes take labels of at least 0 that are not in the map: 'refused', or "
-        "'unlabelled': shown as that class.");
+    map.def("__init__", construct_label_map, nb::arg("names"), nb::arg("colors").none() = nb::none(),
+            nb::arg("labels").none() = nb::none(), nb::arg("unlabelled").none() = nb::none(),
+            nb::arg("unknown") = "refused", nb::arg("name") = "",
+            "`names`: a list for labels 0, 1, 2, ... or for `labels`, or a dict of label to name. `colors`: "
+            "texts, or n x 3 numbers, integers 0 to 255 or floats 0 to 1; None: generated. `unlabelled`: the "
+            "label of unlabelled elements. `unknown`: whether non-negative labels that are not in the map "
+            "are 'refused', or shown as 'unlabelled'.");
     for (const std::string& name : built_in_label_map_names())
         map.def_static(
             name.c_str(), [name] { return LabelMapHandle{built_in_label_map(name)}; },
@@ -170,21 +181,21 @@ std::shared_ptr<const LabelMap> to_label_map(nb::handle object) {
 }
 
 void bind_label_map(nb::module_& module) {
-    nb::class_<LabelMapHandle> map(
-        module, "LabelMap", "What integer labels mean: a name and a colour for each class. Immutable.");
+    nb::class_<LabelMapHandle> map(module, "LabelMap",
+                                   "Names and colours of integer labels, one per class. Immutable.");
     bind_constructors(map);
     map.def_prop_ro("name", [](const LabelMapHandle& m) { return m.map->name(); })
         .def_prop_ro(
             "labels", [](const LabelMapHandle& m) { return column(m, &LabelClass::label); },
-            "All labels, rising.")
+            "All labels in ascending order.")
         .def_prop_ro(
             "names", [](const LabelMapHandle& m) { return column(m, &LabelClass::name); },
-            "The classes' names in the order of `labels`.")
+            "The names of the classes in the order of `labels`.")
         .def_prop_ro("colors", colors_of, nb::sig("def colors(self) -> numpy.ndarray"),
                      "n x 3 uint8 sRGB in the order of `labels`.")
         .def_prop_ro(
             "unlabelled", [](const LabelMapHandle& m) { return m.map->unlabelled(); },
-            "The label of what has none, or None.")
+            "The label of unlabelled elements, or None.")
         .def_prop_ro("unknown",
                      [](const LabelMapHandle& m) {
                          return m.map->unknown() == UnknownLabels::refused ? "refused" : "unlabelled";
@@ -208,7 +219,7 @@ void bind_label_map(nb::module_& module) {
         .def("__repr__", map_text);
     module.def("colormap", colormap_to_numpy, nb::arg("name"),
                nb::sig("def colormap(name: str) -> numpy.ndarray"),
-               "The 256 x 3 uint8 sRGB colours of a colormap: viridis, plasma, ...");
+               "The 256 x 3 uint8 sRGB colours of a colour map: viridis, plasma, ...");
 }
 
 }  // namespace easypbr::python

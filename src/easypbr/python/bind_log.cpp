@@ -6,6 +6,7 @@
 
 #include "easypbr/core/log.h"
 #include "easypbr/python/bindings.h"
+#include "easypbr/python/text.h"
 
 namespace easypbr::python {
 namespace {
@@ -35,7 +36,7 @@ void deliver_log() {
     try {
         const nb::object logger = nb::module_::import_("logging").attr("getLogger")("easypbr");
         for (const Message& message : messages)
-            logger.attr("log")(python_level(message.level), "%s", message.text.c_str());
+            logger.attr("log")(python_level(message.level), "%s", message.text);
     } catch (nb::python_error& error) {
         error.discard_as_unraisable("easypbr: delivering log messages");
     }

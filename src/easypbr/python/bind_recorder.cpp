@@ -1,12 +1,12 @@
 // The recorder and the clock of a viewer.
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/app/recorder.h"
 #include "easypbr/io/video/video.h"
 #include "easypbr/python/shared_viewer.h"
+#include "easypbr/python/text.h"
 
 namespace easypbr::python {
 namespace {

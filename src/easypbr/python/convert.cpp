@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <nanobind/stl/filesystem.h>
-#include <nanobind/stl/string.h>
 
 #include <atomic>
 #include <cmath>
@@ -12,6 +11,7 @@
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/python/text.h"
 
 namespace easypbr::python {
 namespace {

@@ -1,11 +1,11 @@
 // The Python module easypbr._easypbr. Importing it touches no GL library.
 #include "easypbr/python/bindings.h"
 
-#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
 #ifdef EASYPBR_HAS_CLI
 #include "easypbr/cli/cli.h"
+#include "easypbr/python/text.h"
 #endif
 
 namespace easypbr::python {
@@ -29,6 +29,7 @@ NB_MODULE(_easypbr, module) {
     using namespace easypbr::python;
     bind_errors();
     bind_log();
+    bind_jobs();
     bind_laz();
     bind_settings(module);
     bind_image(module);

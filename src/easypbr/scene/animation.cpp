@@ -10,11 +10,12 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/scene/directions.h"
 
 namespace easypbr {
 namespace {
 
-constexpr size_t vertex_grain = 4096;
+constexpr size_t morph_grain = 4096;
 
 Eigen::VectorXd row(const AnimationChannel& channel, Eigen::Index i) {
     return channel.values.row(i).transpose().cast<double>();
@@ -81,7 +82,7 @@ struct Deformed {
 void add_targets(const Deformation& from, const std::vector<float>& weights, Deformed& out) {
     for (size_t k = 0; k < from.targets_V.size() && k < weights.size(); ++k) {
         if (weights[k] == 0) continue;
-        parallel_for(size_t(out.V.rows()), vertex_grain, [&](size_t i) {
+        parallel_for(size_t(out.V.rows()), morph_grain, [&](size_t i) {
             const auto r = Eigen::Index(i);
             out.V.row(r) += weights[k] * from.targets_V[k].row(r);
             if (out.N.rows() && !from.targets_N[k].empty())
@@ -90,15 +91,9 @@ void add_targets(const Deformation& from, const std::vector<float>& weights, Def
     }
 }
 
-Mat3d cofactors(const Mat3d& M) {
-    Mat3d result;
-    result << M.col(1).cross(M.col(2)), M.col(2).cross(M.col(0)), M.col(0).cross(M.col(1));
-    return result;
-}
-
 void follow_joints(const Deformation& from, const std::vector<Eigen::Affine3d>& T_mesh_joints,
                    Deformed& out) {
-    parallel_for(size_t(out.V.rows()), vertex_grain, [&](size_t i) {
+    parallel_for(size_t(out.V.rows()), morph_grain, [&](size_t i) {
         const auto r = Eigen::Index(i);
         Eigen::Matrix<double, 3, 4> T = Eigen::Matrix<double, 3, 4>::Zero();
         double sum = 0;
@@ -114,12 +109,12 @@ void follow_joints(const Deformation& from, const std::vector<Eigen::Affine3d>& 
         out.V.row(r) = (T.leftCols<3>() * v + T.col(3)).cast<float>().transpose();
         if (!out.N.rows()) return;
         const Vec3d n = out.N.row(r).transpose().cast<double>();
-        out.N.row(r) = (cofactors(T.leftCols<3>()) * n).cast<float>().transpose();
+        out.N.row(r) = (detail::cofactors(T.leftCols<3>()) * n).cast<float>().transpose();
     });
 }
 
 void normalize(Array3f::Dense& N) {
-    parallel_for(size_t(N.rows()), vertex_grain, [&](size_t i) {
+    parallel_for(size_t(N.rows()), morph_grain, [&](size_t i) {
         auto n = N.row(Eigen::Index(i));
         if (const float length = n.norm(); length > 0) n /= length;
     });

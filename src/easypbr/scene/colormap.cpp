@@ -82,7 +82,7 @@ ColorTable coolwarm() {
     return table;
 }
 
-constexpr size_t grain = 1 << 16;
+constexpr size_t palette_grain = 1 << 16;
 constexpr Eigen::Index most_samples = 1 << 18;
 /// Differences of values up to here are finite.
 constexpr float largest = 1e38f;
@@ -98,9 +98,9 @@ struct Extent {
 
 Extent finite_extent(const Array1f& values) {
     const size_t count = size_t(values.rows());
-    std::vector<Extent> parts((count + grain - 1) / grain);
-    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
-        Extent& part = parts[begin / grain];
+    std::vector<Extent> parts((count + palette_grain - 1) / palette_grain);
+    parallel_chunks(count, palette_grain, [&](size_t begin, size_t end) {
+        Extent& part = parts[begin / palette_grain];
         for (size_t i = begin; i < end; ++i)
             if (const float value = values(Eigen::Index(i)); std::isfinite(value)) part.add({value, value});
     });

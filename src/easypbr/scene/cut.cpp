@@ -9,7 +9,7 @@
 namespace easypbr {
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t cut_grain = 1 << 15;
 
 /// A vertex of the result: one of the mesh's own, or a mixture of up to three.
 struct Mixture {
@@ -19,7 +19,7 @@ struct Mixture {
 
 std::vector<uint8_t> which_are_kept(const Array3f& V, const std::vector<Eigen::Vector4d>& planes) {
     std::vector<uint8_t> kept(size_t(V.rows()));
-    parallel_for(kept.size(), grain, [&](size_t i) {
+    parallel_for(kept.size(), cut_grain, [&](size_t i) {
         const Vec3d p = V.row(Eigen::Index(i)).transpose().cast<double>();
         kept[i] = std::ranges::all_of(
             planes, [&](const Eigen::Vector4d& plane) { return plane.head<3>().dot(p) + plane[3] >= 0; });
@@ -31,7 +31,7 @@ template <class ArrayType>
 ArrayType mixed(const ArrayType& array, const std::vector<Mixture>& vertices) {
     if (array.empty()) return {};
     typename ArrayType::Dense rows(Eigen::Index(vertices.size()), array.cols());
-    parallel_for(vertices.size(), grain, [&](size_t i) {
+    parallel_for(vertices.size(), cut_grain, [&](size_t i) {
         const Mixture& m = vertices[i];
         rows.row(Eigen::Index(i)) = array.row(m.vertex[0]) * m.weight[0];
         for (int k = 1; k < 3; ++k)

@@ -12,7 +12,7 @@
 namespace easypbr {
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t color_grain = 1 << 15;
 
 Rgba8 color_of_direction(const Vec3d& direction) {
     const Vec3d n = direction.squaredNorm() > 0 ? direction.normalized() : Vec3d::Zero();
@@ -27,7 +27,7 @@ float wrapped(float u) {
 template <class ColorOf>
 std::vector<Rgba8> colors_of(Eigen::Index count, ColorOf&& color_of) {
     std::vector<Rgba8> colors(static_cast<size_t>(count));
-    parallel_for(colors.size(), grain, [&](size_t i) { colors[i] = color_of(Eigen::Index(i)); });
+    parallel_for(colors.size(), color_grain, [&](size_t i) { colors[i] = color_of(Eigen::Index(i)); });
     return colors;
 }
 
@@ -38,7 +38,7 @@ int32_t majority(int32_t a, int32_t b, int32_t c) {
 
 Array1i labels_of_faces(const MeshData& mesh) {
     Array1i::Dense labels(mesh.F.rows());
-    parallel_for(size_t(mesh.F.rows()), grain, [&](size_t i) {
+    parallel_for(size_t(mesh.F.rows()), color_grain, [&](size_t i) {
         const auto f = mesh.F.row(Eigen::Index(i));
         labels(Eigen::Index(i)) = majority(mesh.L(f[0]), mesh.L(f[1]), mesh.L(f[2]));
     });
@@ -93,7 +93,7 @@ std::vector<Rgba8> uv_colors(const MeshData& mesh) {
 
 Array1f heights(const Array3f& V, const Eigen::Vector4d& height) {
     Array1f::Dense values(V.rows());
-    parallel_for(size_t(V.rows()), grain, [&](size_t i) {
+    parallel_for(size_t(V.rows()), color_grain, [&](size_t i) {
         const Eigen::Index row = Eigen::Index(i);
         values(row) = float(height.head<3>().dot(V.row(row).transpose().cast<double>()) + height[3]);
     });

@@ -158,6 +158,10 @@ const Field& field(std::string_view name) {
     return *found->second;
 }
 
+bool is_valid(const Field& field, const Value& value) {
+    return is_allowed(field, value.data);
+}
+
 Value checked(const Field& field, const Value& value) {
     const bool has_data = value.state == Value::State::given || value.latched;
     if (value.state != Value::State::given && !field.can_be_automatic) reject(field, value);

@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <map>
+#include <string_view>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
@@ -56,15 +58,15 @@ void require_rows_of_either(const std::string& name, const Array& array, const M
 }
 
 void require_scalars(const MeshData& data) {
+    std::map<std::string_view, size_t> places;
     for (size_t i = 0; i < data.scalars.size(); ++i) {
         const ScalarArray& scalar = data.scalars[i];
         if (scalar.name.empty())
             throw ArgumentError(fmt::format("mesh scalars: expected a name for array {}, got none", i));
-        for (size_t k = 0; k < i; ++k)
-            if (data.scalars[k].name == scalar.name)
-                throw ArgumentError(
-                    fmt::format("mesh scalars: expected different names, got '{}' for arrays {} and {}",
-                                scalar.name, k, i));
+        if (const auto [same, is_new] = places.emplace(scalar.name, i); !is_new)
+            throw ArgumentError(
+                fmt::format("mesh scalars: expected different names, got '{}' for arrays {} and {}",
+                            scalar.name, same->second, i));
         require_rows_of_either("scalars['" + scalar.name + "']", scalar.values, data);
     }
 }

@@ -9,6 +9,7 @@
 
 #include "easypbr/core/math.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/scene/directions.h"
 
 namespace easypbr {
 
@@ -180,11 +181,6 @@ class Accumulator {
 };
 
 /// The direction of a vector, in double precision so that no area is too small for it.
-Vec3 direction_or_z(const Vec3d& vector) {
-    const double length = vector.norm();
-    return length > 0 ? Vec3((vector / length).cast<float>()) : Vec3(0, 0, 1);
-}
-
 }  // namespace
 
 Array3f vertex_normals(const Array3f& V, const Array3i& F) {
@@ -194,8 +190,9 @@ Array3f vertex_normals(const Array3f& V, const Array3i& F) {
                     [&](size_t begin, size_t end) { std::fill(N.data() + begin, N.data() + end, 0.0f); });
     Accumulator(V, F, N.data()).add_all();
     parallel_for(size_t(N.rows()), grain, [&](size_t v) {
-        N.row(Eigen::Index(v)) =
-            direction_or_z(N.row(Eigen::Index(v)).transpose().cast<double>()).transpose();
+        N.row(Eigen::Index(v)) = detail::direction_or_z(N.row(Eigen::Index(v)).transpose().cast<double>())
+                                     .cast<float>()
+                                     .transpose();
     });
     return N;
 }
@@ -207,7 +204,8 @@ Array3f face_normals(const Array3f& V, const Array3i& F) {
             return V.row(F(Eigen::Index(f), k)).transpose().cast<double>();
         };
         const Vec3d origin = corner(0);
-        N.row(Eigen::Index(f)) = direction_or_z((corner(1) - origin).cross(corner(2) - origin)).transpose();
+        N.row(Eigen::Index(f)) =
+            detail::direction_or_z((corner(1) - origin).cross(corner(2) - origin)).cast<float>().transpose();
     });
     return N;
 }

@@ -126,6 +126,46 @@ void resolve_effects(const detail::Content& content, Vec2i size, ResolvedSetting
     resolve_lens(content, size, resolved);
 }
 
+/// Whether the pictures' single precision holds where the camera and the lights are.
+bool is_representable(const ResolvedSettings& resolved) {
+    const auto holds = [](const Light& light) {
+        const bool has_place = light.type == LightType::directional ||
+                               (light.position.allFinite() && std::isfinite(light.radius.value_or(0)));
+        return has_place && std::isfinite(light.intensity);
+    };
+    return resolved.camera.T_world_cam.matrix().cast<float>().allFinite() &&
+           std::isfinite(float(resolved.camera.near)) && std::ranges::all_of(resolved.lights, holds);
+}
+
+/// Coordinates of at least this size make squares of lengths, as a light's intensity is one, leave single
+/// precision.
+constexpr double large_coordinate = 1e15;
+
+/// The object that reaches farthest from the origin, and how far.
+std::pair<std::string, double> farthest_object(const SceneSnapshot& scene) {
+    std::pair<std::string, double> farthest{{}, 0};
+    for (const SceneSnapshot::Object& object : scene.objects) {
+        SceneSnapshot alone;
+        alone.objects = {object};
+        const Box3d box = alone.bounds();
+        if (box.isEmpty()) continue;
+        const double reach = box.min().cwiseAbs().cwiseMax(box.max().cwiseAbs()).maxCoeff();
+        if (reach > farthest.second) farthest = {object.name, reach};
+    }
+    return farthest;
+}
+
+/// Says so at once where a mesh is too large, before anything that follows from it is kept.
+void require_representable(const SceneSnapshot& scene, const ResolvedSettings& resolved) {
+    if (is_representable(resolved)) return;
+    const auto [name, reach] = farthest_object(scene);
+    if (reach < large_coordinate) return;
+    throw ArgumentError(
+        fmt::format("mesh '{}' has coordinates up to {:.3g}: too large for the camera and the lights to be "
+                    "placed in single precision; scale it down",
+                    name, reach));
+}
+
 }  // namespace
 
 ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, Vec2i size) {
@@ -145,6 +185,7 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, V
     detail::fill(resolved.settings.annotation.colorbar, false);
     resolve_effects(content, size, resolved);
     resolve_ground(content, resolved);
+    require_representable(scene, resolved);
     return resolved;
 }
 
@@ -153,7 +194,7 @@ void latch(Settings& settings, const Settings& resolved) {
         if (!field.can_be_automatic || field.get(settings).state != Value::State::automatic) continue;
         Value inferred = field.get(resolved);
         if (inferred.state == Value::State::follow ||
-            (inferred.state == Value::State::automatic && !inferred.latched))
+            (inferred.state == Value::State::automatic && !inferred.latched) || !is_valid(field, inferred))
             continue;
         inferred.state = Value::State::automatic;
         inferred.latched = true;

@@ -29,10 +29,12 @@ struct ResolvedSettings {
 };
 
 /// Pure: the same scene, settings and size give the same result. Throws ArgumentError when settings
-/// contradict each other or when there is nothing to place a camera for.
+/// contradict each other, when there is nothing to place a camera for, and, with its name, when a mesh is so
+/// large that the camera or a light leaves single precision.
 ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, Vec2i size);
 
-/// Copies inferred values into the automatic (not pinned, not following) fields of `settings`.
+/// Copies inferred values into the automatic (not pinned, not following) fields of `settings`, but those that
+/// are not finite or out of the field's range.
 void latch(Settings& settings, const Settings& resolved);
 /// Forgets all latched values, so that the next picture infers them anew.
 void release(Settings& settings);
@@ -51,8 +53,8 @@ Mat3d view_rotation(const CameraSettings& settings);
 
 /// The camera with these axes that shows all vertices, the limiting dimension filling 1 - margin of the
 /// picture exactly (but no vertex is nearer than a hundredth of the content's radius). Projection, angle or
-/// intrinsics and margin are those of the settings. Closed form per axis: see "Auto lights, camera" in
-/// docs/architecture.md. Throws ArgumentError when there are no vertices.
+/// intrinsics and margin are those of the settings. Closed form per axis: see "Camera fit" in
+/// docs/design/automatic_parameters.md. Throws ArgumentError when there are no vertices.
 Camera fit_camera(const SceneSnapshot& scene, const Mat3d& R_world_cam, const CameraSettings& settings,
                   double aspect);
 

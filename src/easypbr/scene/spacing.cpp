@@ -12,7 +12,7 @@ namespace easypbr {
 namespace {
 
 constexpr Eigen::Index sample_count = 1 << 16;
-constexpr size_t grain = 1 << 16;
+constexpr size_t spacing_grain = 1 << 16;
 /// A percentile range is widened by this much on both sides before a point counts as an outlier.
 constexpr double widening = 3;
 /// Cells per side of the finest grid.
@@ -33,7 +33,7 @@ size_t count_occupied(const Array3f& V, const Box3d& box, int cells) {
     const Vec3 low = box.min().cast<float>();
     const float scale = float(1 / size);
     std::vector<std::atomic<uint32_t>> bits((size_t(cells) * size_t(cells) * size_t(cells) + 31) / 32);
-    parallel_chunks(size_t(V.rows()), grain, [&](size_t begin, size_t end) {
+    parallel_chunks(size_t(V.rows()), spacing_grain, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i) {
             const float* p = V.data() + 3 * i;
             size_t index = 0;
@@ -50,7 +50,7 @@ size_t count_occupied(const Array3f& V, const Box3d& box, int cells) {
         }
     });
     std::atomic<size_t> total{0};
-    parallel_chunks(bits.size(), grain, [&](size_t begin, size_t end) {
+    parallel_chunks(bits.size(), spacing_grain, [&](size_t begin, size_t end) {
         size_t count = 0;
         for (size_t i = begin; i < end; ++i) count += size_t(std::popcount(bits[i].load()));
         total += count;

@@ -2,12 +2,13 @@
 #include <cmath>
 
 #include "easypbr/core/parallel.h"
+#include "easypbr/scene/directions.h"
 #include "easypbr/scene/merge.h"
 
 namespace easypbr {
 namespace {
 
-constexpr size_t grain = 1 << 14;
+constexpr size_t transform_grain = 1 << 14;
 
 Vec3d row(const Array3f& array, size_t i) {
     return array.row(Eigen::Index(i)).transpose().cast<double>();
@@ -17,31 +18,18 @@ Vec3d row(const Array3f& array, size_t i) {
 template <class Of>
 Array3f::Dense rows(Eigen::Index count, Of&& of) {
     Array3f::Dense result(count, 3);
-    parallel_for(size_t(count), grain,
+    parallel_for(size_t(count), transform_grain,
                  [&](size_t i) { result.row(Eigen::Index(i)) = of(i).template cast<float>().transpose(); });
     return result;
 }
 
 /// det(M) times the inverse transpose: it turns normals, and exists for every M.
-Mat3d cofactors(const Mat3d& M) {
-    Mat3d result;
-    result.col(0) = M.col(1).cross(M.col(2));
-    result.col(1) = M.col(2).cross(M.col(0));
-    result.col(2) = M.col(0).cross(M.col(1));
-    return result;
-}
-
-Vec3d direction_or_z(const Vec3d& vector) {
-    const double length = vector.norm();
-    return length > 0 ? Vec3d(vector / length) : Vec3d(Vec3d::UnitZ());
-}
-
 Array3f turned_normals(const Array3f& N, const Mat3d& M) {
-    const Mat3d turn = (M.determinant() < 0 ? -1.0 : 1.0) * cofactors(M);
+    const Mat3d turn = (M.determinant() < 0 ? -1.0 : 1.0) * detail::cofactors(M);
     // A zero vector says that there is no normal, and goes on saying so.
     return rows(N.rows(), [&](size_t i) -> Vec3d {
         const Vec3d normal = row(N, i);
-        return normal.isZero(0) ? normal : direction_or_z(turn * normal);
+        return normal.isZero(0) ? normal : detail::direction_or_z(turn * normal);
     });
 }
 

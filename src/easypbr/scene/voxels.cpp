@@ -15,7 +15,7 @@
 namespace easypbr {
 namespace {
 
-constexpr size_t grain = 1 << 14;
+constexpr size_t voxel_grain = 1 << 14;
 /// Bits of a cell's place along each axis; three fit a 64-bit key.
 constexpr int axis_bits = 21;
 constexpr int64_t cell_limit = int64_t(1) << (axis_bits - 1);
@@ -49,7 +49,7 @@ std::vector<Cell> cells_of(const Array3f& V, double size) {
         throw ArgumentError(
             fmt::format("voxel size {}: the vertices span {:.3g} cells, more than {} can be counted", size,
                         reach, cell_limit));
-    parallel_for(cells.size(), grain, [&](size_t i) {
+    parallel_for(cells.size(), voxel_grain, [&](size_t i) {
         int64_t key = 0;
         for (int axis = 0; axis < 3; ++axis) {
             const double place = (double(V(Eigen::Index(i), axis)) - origin[axis]) / size;
@@ -99,7 +99,7 @@ MeshData voxel_mesh(const MeshData& mesh, double size) {
         return found != cells.end() && found->key == key;
     };
     std::vector<uint8_t> open(cells.size());
-    parallel_for(cells.size(), grain, [&](size_t i) {
+    parallel_for(cells.size(), voxel_grain, [&](size_t i) {
         for (int s = 0; s < 6; ++s)
             if (!is_there(cells[i].key + sides[s].step * key_step(sides[s].axis))) open[i] |= uint8_t(1 << s);
     });
@@ -115,7 +115,7 @@ MeshData voxel_mesh(const MeshData& mesh, double size) {
     ArrayXf::Dense C(mesh.C.empty() ? 0 : 4 * side_count, mesh.C.empty() ? 0 : 4);
     Array1i::Dense source(2 * side_count);
     const Vec3d origin = mesh.V.row(0).transpose().cast<double>();
-    parallel_for(cells.size(), grain, [&](size_t i) {
+    parallel_for(cells.size(), voxel_grain, [&](size_t i) {
         Vec3d low;
         for (int axis = 0; axis < 3; ++axis) {
             const int64_t place = (cells[i].key / key_step(axis)) % (int64_t(1) << axis_bits) - cell_limit;

@@ -11,6 +11,10 @@
 #include "easypbr/scene/light.h"
 #include "easypbr/scene/mesh.h"
 
+namespace easypbr {
+class FileBytes;
+}
+
 namespace easypbr::io {
 
 /// All that a file holds. Formats with a hierarchy fill children; a file without one gives a single mesh.
@@ -24,6 +28,7 @@ struct LoadedScene {
 struct LoadOptions {
     float crease_angle_deg =
         30;  ///< STL: welded corners whose faces meet at a larger angle keep separate normals
+    std::string format = {};  ///< extension of the format that a file is in; empty: its own extension
 };
 
 /// Reads PLY, OBJ (+ MTL), STL, OFF, glTF, GLB, the point clouds PCD, XYZ, PTS, CSV (also txt, asc), NPY,
@@ -33,6 +38,11 @@ struct LoadOptions {
 /// cannot be read; FormatError, with line or byte, when it is empty, damaged, lies about its counts, has
 /// indices out of range or positions that are not finite, or when its extension is unknown.
 LoadedScene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
+
+/// The same from bytes without a file, as from a pipe. The format is that of the options, else it is told
+/// from the content. `name` stands in messages; what the content names is looked for beside it. Throws
+/// FormatError, also when the format cannot be told or is one that assimp reads.
+LoadedScene load_scene(const FileBytes& bytes, const std::filesystem::path& name, const LoadOptions& options);
 
 /// The mesh of load_scene().
 Mesh load_mesh(const std::filesystem::path& path, const LoadOptions& options = {});

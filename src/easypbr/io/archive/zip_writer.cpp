@@ -7,7 +7,7 @@
 namespace easypbr::io {
 namespace {
 
-constexpr uint16_t version = 45;  ///< the first with ZIP64
+constexpr uint16_t zip_version = 45;  ///< the first with ZIP64
 constexpr uint32_t elsewhere = 0xffffffff;
 
 template <class... Numbers>
@@ -30,7 +30,7 @@ void ZipWriter::add(const std::string& name, std::string_view bytes) {
     const Record record{name, bytes.size(), bytes_.size(),
                         uint32_t(crc32_z(0, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size()))};
     // The sizes stand in the extra field, whatever they are.
-    append(bytes_, uint32_t(0x04034b50), version, none16, none16, no_time, first_date, record.checksum,
+    append(bytes_, uint32_t(0x04034b50), zip_version, none16, none16, no_time, first_date, record.checksum,
            elsewhere, elsewhere, uint16_t(name.size()), uint16_t(20));
     bytes_ += name;
     append(bytes_, uint16_t(1), uint16_t(16), record.size, record.size);
@@ -41,14 +41,14 @@ void ZipWriter::add(const std::string& name, std::string_view bytes) {
 std::string ZipWriter::finish() {
     const uint64_t begin = bytes_.size();
     for (const Record& record : records_) {
-        append(bytes_, uint32_t(0x02014b50), version, version, none16, none16, no_time, first_date,
+        append(bytes_, uint32_t(0x02014b50), zip_version, zip_version, none16, none16, no_time, first_date,
                record.checksum, elsewhere, elsewhere, uint16_t(record.name.size()), uint16_t(28), none16,
                none16, none16, none32, elsewhere);
         bytes_ += record.name;
         append(bytes_, uint16_t(1), uint16_t(24), record.size, record.size, record.place);
     }
     const uint64_t end = bytes_.size(), count = records_.size();
-    append(bytes_, uint32_t(0x06064b50), uint64_t(44), version, version, none32, none32, count, count,
+    append(bytes_, uint32_t(0x06064b50), uint64_t(44), zip_version, zip_version, none32, none32, count, count,
            end - begin, begin);
     append(bytes_, uint32_t(0x07064b50), none32, end, uint32_t(1));
     append(bytes_, uint32_t(0x06054b50), none16, none16, uint16_t(0xffff), uint16_t(0xffff), elsewhere,

@@ -15,7 +15,7 @@ namespace easypbr::io {
 namespace {
 
 /// ZIP makes at most 1032 bytes of one, then halves become floats.
-constexpr size_t most_bytes_per_byte = 1032 * 2;
+constexpr size_t most_exr_bytes_per_byte = 1032 * 2;
 
 enum Sample : uint32_t { sample_uint, sample_half, sample_float };
 
@@ -24,7 +24,7 @@ struct Channel {
     uint32_t type = sample_half;
 };
 
-struct Header {
+struct ExrHeader {
     std::vector<Channel> channels;
     ExrCompression compression = ExrCompression::none;
     int32_t window[4] = {0, 0, -1, -1};
@@ -69,7 +69,7 @@ class Cursor {
     size_t at_ = 0;
 };
 
-void read_channels(Bytes bytes, const std::string& name, Header& header) {
+void read_channels(Bytes bytes, const std::string& name, ExrHeader& header) {
     Cursor cursor(bytes, name);
     for (std::string channel = cursor.text(); !channel.empty(); channel = cursor.text()) {
         const auto type = cursor.read<uint32_t>();
@@ -84,7 +84,7 @@ void read_channels(Bytes bytes, const std::string& name, Header& header) {
     }
 }
 
-void read_attribute(const std::string& key, Bytes bytes, const std::string& name, Header& header) {
+void read_attribute(const std::string& key, Bytes bytes, const std::string& name, ExrHeader& header) {
     Cursor cursor(bytes, name);
     if (key == "channels") {
         read_channels(bytes, name, header);
@@ -101,7 +101,7 @@ void read_attribute(const std::string& key, Bytes bytes, const std::string& name
     }
 }
 
-void check_header(const Header& header, bool tiled, size_t file_bytes, const std::string& name) {
+void check_header(const ExrHeader& header, bool tiled, size_t file_bytes, const std::string& name) {
     if (header.channels.empty()) fail_image(name, "damaged EXR: no channels");
     if (tiled &&
         (header.tile_width < 1 || header.tile_height < 1 || header.tile_width > uint32_t(max_image_side) ||
@@ -109,10 +109,10 @@ void check_header(const Header& header, bool tiled, size_t file_bytes, const std
         fail_image(name,
                    fmt::format("damaged EXR: tiles of {}x{} pixels", header.tile_width, header.tile_height));
     check_plausible(size_t(header.width) * size_t(header.height) * header.channels.size() * 4, file_bytes,
-                    most_bytes_per_byte, name);
+                    most_exr_bytes_per_byte, name);
 }
 
-Header read_header(Bytes bytes, const std::string& name) {
+ExrHeader read_header(Bytes bytes, const std::string& name) {
     constexpr uint32_t flag_tiled = 0x200, flag_deep = 0x800, flag_parts = 0x1000;
     Cursor cursor(bytes, name);
     cursor.take(4);
@@ -120,7 +120,7 @@ Header read_header(Bytes bytes, const std::string& name) {
     if ((version & 0xff) != 2) fail_image(name, fmt::format("EXR of version {}: expected 2", version & 0xff));
     if (version & (flag_deep | flag_parts))
         fail_image(name, "EXR with several parts or deep pixels: only single-part flat pictures are read");
-    Header header;
+    ExrHeader header;
     for (std::string key = cursor.text(); !key.empty(); key = cursor.text()) {
         cursor.text();
         const auto size = cursor.read<uint32_t>();
@@ -139,7 +139,7 @@ Header read_header(Bytes bytes, const std::string& name) {
 }
 
 /// Indices of the channels that make the picture: RGB or Y, and A where there is one; else the only channel.
-std::vector<int> picture_channels(const Header& header, const std::string& name) {
+std::vector<int> picture_channels(const ExrHeader& header, const std::string& name) {
     const auto named = [&](const char* wanted) {
         for (size_t c = 0; c < header.channels.size(); ++c)
             if (header.channels[c].name == wanted) return int(c);
@@ -167,13 +167,13 @@ float float_of_half(uint16_t half) {
 }
 
 /// A rectangle of the picture that is compressed on its own.
-struct Block {
+struct ExrBlock {
     int x = 0, y = 0, width = 0, height = 0;
 };
 
 class BlockReader {
   public:
-    BlockReader(Bytes bytes, const Header& header, std::vector<int> chosen, Image& image,
+    BlockReader(Bytes bytes, const ExrHeader& header, std::vector<int> chosen, Image& image,
                 const std::string& name)
         : bytes_(bytes), header_(header), chosen_(std::move(chosen)), image_(image), name_(name) {
         for (const Channel& channel : header.channels)
@@ -199,7 +199,7 @@ class BlockReader {
     }
 
   private:
-    void read_block(uint64_t offset, Block block, bool tiled) const {
+    void read_block(uint64_t offset, ExrBlock block, bool tiled) const {
         if (offset > bytes_.size()) fail_image(name_, "damaged EXR: a block outside of the file");
         Cursor cursor(bytes_.subspan(size_t(offset)), name_);
         if (tiled) {
@@ -220,7 +220,7 @@ class BlockReader {
         }
     }
 
-    void copy(const std::vector<std::byte>& samples, const Block& block) const {
+    void copy(const std::vector<std::byte>& samples, const ExrBlock& block) const {
         size_t line_bytes = 0;
         std::vector<size_t> starts;
         for (const ExrPlane& plane : planes_) {
@@ -247,7 +247,7 @@ class BlockReader {
     }
 
     Bytes bytes_;
-    const Header& header_;
+    const ExrHeader& header_;
     std::vector<int> chosen_;
     Image& image_;
     const std::string& name_;
@@ -257,7 +257,7 @@ class BlockReader {
 }  // namespace
 
 Image decode_exr(Bytes bytes, const std::string& name) {
-    const Header header = read_header(bytes, name);
+    const ExrHeader header = read_header(bytes, name);
     const std::vector<int> chosen = picture_channels(header, name);
     Image image(header.width, header.height, int(chosen.size()), PixelType::f32);
     BlockReader(bytes, header, chosen, image, name).read_all();

@@ -16,7 +16,7 @@ namespace {
 
 using Rgbe = std::array<uint8_t, 4>;
 
-struct Header {
+struct HdrHeader {
     int width = 0, height = 0;
     bool bottom_up = false, right_to_left = false;
     std::array<double, 3> divisor{1, 1, 1};  ///< radiance = pixel / divisor
@@ -28,7 +28,7 @@ class HeaderReader {
     HeaderReader(Bytes bytes, const std::string& name)
         : text_(reinterpret_cast<const char*>(bytes.data()), bytes.size()), name_(name) {}
 
-    Header read() {
+    HdrHeader read() {
         next_line();
         for (std::string_view line = next_line(); !line.empty(); line = next_line())
             variable(std::string(line));
@@ -88,7 +88,7 @@ class HeaderReader {
     std::string_view text_;
     const std::string& name_;
     size_t at_ = 0;
-    Header header_;
+    HdrHeader header_;
 };
 
 const uint8_t* data_of(Bytes bytes) {
@@ -157,7 +157,7 @@ size_t walk_pixels(Bytes bytes, size_t at, int width, const std::string& name, R
     return at;
 }
 
-std::vector<size_t> find_scanlines(Bytes bytes, const Header& header, const std::string& name) {
+std::vector<size_t> find_scanlines(Bytes bytes, const HdrHeader& header, const std::string& name) {
     std::vector<size_t> starts;
     size_t at = header.data;
     for (int y = 0; y < header.height; ++y) {
@@ -190,7 +190,7 @@ std::array<float, 256> exponent_table() {
     return table;
 }
 
-void write_row(Image& image, const Header& header, size_t row_in_file, const std::vector<Rgbe>& row) {
+void write_row(Image& image, const HdrHeader& header, size_t row_in_file, const std::vector<Rgbe>& row) {
     static const std::array<float, 256> scale = exponent_table();
     const bool exposed = header.divisor != std::array<double, 3>{1, 1, 1};
     const int y = header.bottom_up ? header.height - 1 - int(row_in_file) : int(row_in_file);
@@ -256,7 +256,7 @@ void encode_scanline(const std::vector<Rgbe>& row, std::vector<uint8_t>& out) {
 }  // namespace
 
 Image decode_hdr(Bytes bytes, const std::string& name) {
-    const Header header = HeaderReader(bytes, name).read();
+    const HdrHeader header = HeaderReader(bytes, name).read();
     const std::vector<size_t> starts = find_scanlines(bytes, header, name);
     Image image(header.width, header.height, 3, PixelType::f32);
     parallel_chunks(starts.size(), 16, [&](size_t begin, size_t end) {

@@ -47,7 +47,7 @@ Image decode_image(std::span<const std::byte> bytes, const std::string& name) {
 }
 
 Image load_image(const std::filesystem::path& path) {
-    const MappedFile file(path);
+    const FileBytes file(path);
     return decode_image(file.bytes(), path.string());
 }
 

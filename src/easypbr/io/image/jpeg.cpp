@@ -13,7 +13,7 @@ namespace {
 
 /// At least one bit for a block of 64 samples (512 per byte), doubled to be safe, times the 4 channels of
 /// CMYK.
-constexpr size_t most_bytes_per_byte = 1024 * 4;
+constexpr size_t most_jpeg_bytes_per_byte = 1024 * 4;
 /// The format's own limit.
 constexpr int max_jpeg_side = 65500;
 
@@ -22,13 +22,13 @@ struct Destroy {
 };
 using Handle = std::unique_ptr<void, Destroy>;
 
-const unsigned char* data_of(Bytes bytes) {
+const unsigned char* jpeg_data_of(Bytes bytes) {
     return reinterpret_cast<const unsigned char*>(bytes.data());
 }
 
 /// Whether an Adobe segment (APP14) stands before the first scan: it means that CMYK is stored inverted.
 bool has_adobe_marker(Bytes bytes) {
-    const unsigned char* data = data_of(bytes);
+    const unsigned char* data = jpeg_data_of(bytes);
     for (size_t at = 2; at + 9 <= bytes.size() && data[at] == 0xff;) {
         const unsigned char marker = data[at + 1];
         if (marker == 0xda) return false;
@@ -65,7 +65,7 @@ void check_decoded(int result, const Handle& handle, const std::string& name) {
 Image decode_jpeg(Bytes bytes, const std::string& name) {
     const Handle handle(tjInitDecompress());
     int width = 0, height = 0, subsampling = 0, colorspace = 0;
-    if (tjDecompressHeader3(handle.get(), data_of(bytes), bytes.size(), &width, &height, &subsampling,
+    if (tjDecompressHeader3(handle.get(), jpeg_data_of(bytes), bytes.size(), &width, &height, &subsampling,
                             &colorspace))
         fail_image(name, fmt::format("damaged JPEG: {}", tjGetErrorStr2(handle.get())));
     check_image_size(width, height, name);
@@ -73,10 +73,10 @@ Image decode_jpeg(Bytes bytes, const std::string& name) {
     const bool grey = colorspace == TJCS_GRAY;
     const int channels = cmyk ? 4 : grey ? 1 : 3;
     const int format = cmyk ? TJPF_CMYK : grey ? TJPF_GRAY : TJPF_RGB;
-    check_plausible(size_t(width) * height * channels, bytes.size(), most_bytes_per_byte, name);
+    check_plausible(size_t(width) * height * channels, bytes.size(), most_jpeg_bytes_per_byte, name);
     Image image(width, height, channels, PixelType::u8);
     // A progressive file may hold thousands of empty scans, each of which costs time for the whole picture.
-    check_decoded(tjDecompress2(handle.get(), data_of(bytes), bytes.size(), image.pixels<uint8_t>().data(),
+    check_decoded(tjDecompress2(handle.get(), jpeg_data_of(bytes), bytes.size(), image.pixels<uint8_t>().data(),
                                 width, 0, height, format, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS),
                   handle, name);
     return cmyk ? rgb_from_cmyk(image, has_adobe_marker(bytes)) : image;

@@ -11,7 +11,7 @@ namespace easypbr::io {
 namespace {
 
 /// Deflate makes at most 1032 bytes of one; the rest is room for 1-bit pixels becoming bytes.
-constexpr size_t most_bytes_per_byte = 1032 * 32;
+constexpr size_t most_png_bytes_per_byte = 1032 * 32;
 
 using Context = std::unique_ptr<spng_ctx, decltype(&spng_ctx_free)>;
 
@@ -63,7 +63,7 @@ Image decode_png(Bytes bytes, const std::string& name) {
     const bool transparent_color = spng_get_trns(context.get(), &transparency) == 0;
     const Layout layout = layout_of(header, transparent_color);
     check_plausible(size_t(header.width) * header.height * layout.channels * size_of(layout.type),
-                    bytes.size(), most_bytes_per_byte, name);
+                    bytes.size(), most_png_bytes_per_byte, name);
     Image image(int(header.width), int(header.height), layout.channels, layout.type);
     size_t expected = 0;
     check(spng_decoded_image_size(context.get(), layout.format, &expected), name);

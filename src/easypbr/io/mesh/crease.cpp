@@ -12,7 +12,7 @@
 namespace easypbr::io {
 namespace {
 
-constexpr size_t grain = 1 << 13;
+constexpr size_t crease_grain = 1 << 13;
 
 /// The corners at each vertex: those of vertex v are corners[first[v]] to corners[first[v + 1] - 1],
 /// ascending.
@@ -76,7 +76,7 @@ class CornerGroups {
 
 std::vector<char> faces_with_area(const Array3f& V, const Array3i& F) {
     std::vector<char> has_area(size_t(F.rows()));
-    parallel_for(has_area.size(), grain, [&](size_t i) {
+    parallel_for(has_area.size(), crease_grain, [&](size_t i) {
         const auto at = [&](int k) { return Vec3d(V.row(F(Eigen::Index(i), k)).transpose().cast<double>()); };
         has_area[i] = (at(1) - at(0)).cross(at(2) - at(0)).squaredNorm() > 0;
     });
@@ -93,7 +93,7 @@ std::vector<uint64_t> group_corners(const MeshData& mesh, float crease_angle_deg
     const size_t vertices = size_t(mesh.V.rows());
     const VertexCorners ring(mesh.F, vertices);
     std::vector<uint64_t> keys(size_t(mesh.F.size()));
-    parallel_chunks(vertices, grain, [&](size_t begin, size_t end) {
+    parallel_chunks(vertices, crease_grain, [&](size_t begin, size_t end) {
         CornerGroups groups(mesh.F, normals, has_area, least_cosine);
         for (size_t v = begin; v < end; ++v)
             groups.group(std::span(ring.corners).subspan(ring.first[v], ring.first[v + 1] - ring.first[v]),

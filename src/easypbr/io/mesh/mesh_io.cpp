@@ -10,6 +10,7 @@
 #include "easypbr/core/suggest.h"
 #include "easypbr/io/mesh/assimp/assimp_loader.h"
 #include "easypbr/io/mesh/cloud_writers.h"
+#include "easypbr/io/mesh/content_format.h"
 #include "easypbr/io/mesh/gltf/glb_writer.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "easypbr/io/mesh/mesh_readers.h"
@@ -25,9 +26,8 @@ bool contains(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-[[noreturn]] void fail_extension(const fs::path& path, const std::string& verb,
+[[noreturn]] void fail_extension(const fs::path& path, const std::string& extension, const std::string& verb,
                                  const std::vector<std::string>& known) {
-    const std::string extension = extension_of(path);
     throw FormatError(fmt::format("{}: files with extension '{}' cannot be {}{}; expected one of {}",
                                   path.string(), extension, verb, did_you_mean(extension, known),
                                   fmt::join(known, ", ")));
@@ -39,6 +39,14 @@ Reader without_options(MeshData (*read)(const Source&)) {
     return [read](const Source& source, const LoadOptions&) { return read(source); };
 }
 
+MeshData read_columns(const Source& source, const LoadOptions&) {
+    return read_xyz(source);
+}
+
+MeshData read_pts(const Source& source, const LoadOptions&) {
+    return read_xyz(source, true);
+}
+
 /// The readers of formats that hold a single mesh.
 const std::map<std::string, Reader>& readers() {
     static const std::map<std::string, Reader> all{{"ply", without_options(read_ply)},
@@ -46,11 +54,11 @@ const std::map<std::string, Reader>& readers() {
                                                    {"stl", read_stl},
                                                    {"off", without_options(read_off)},
                                                    {"pcd", without_options(read_pcd)},
-                                                   {"xyz", without_options(read_xyz)},
-                                                   {"pts", without_options(read_xyz)},
-                                                   {"csv", without_options(read_xyz)},
-                                                   {"txt", without_options(read_xyz)},
-                                                   {"asc", without_options(read_xyz)},
+                                                   {"xyz", read_columns},
+                                                   {"pts", read_pts},
+                                                   {"csv", read_columns},
+                                                   {"txt", read_columns},
+                                                   {"asc", read_columns},
                                                    {"npy", without_options(read_npy)},
                                                    {"npz", without_options(read_npz)},
                                                    {"bin", without_options(read_kitti)},
@@ -59,12 +67,29 @@ const std::map<std::string, Reader>& readers() {
     return all;
 }
 
-LoadedScene load_by_reader(const fs::path& path, const std::string& extension, const LoadOptions& options) {
-    const MappedFile file(path);
-    MeshData data = readers().at(extension)(Source(file, path), options);
+bool is_gltf(const std::string& format) {
+    return format == "gltf" || format == "glb";
+}
+
+/// `format` is glTF's or that of one of the readers.
+LoadedScene decode(const FileBytes& bytes, const fs::path& path, const std::string& format,
+                   const LoadOptions& options) {
+    if (is_gltf(format)) return decode_gltf(bytes.bytes(), path);
+    MeshData data = readers().at(format)(Source(bytes, path), options);
     data.name = path.stem().string();
     data.source = path;
     return {Mesh(std::move(data)), {}, {}};
+}
+
+[[noreturn]] void fail_format(const fs::path& path, const std::string& format) {
+    std::vector<std::string> known{"gltf", "glb"};
+    for (const auto& [name, reader] : readers()) known.push_back(name);
+    if (format.empty())
+        throw FormatError(fmt::format("{}: its format cannot be told from its content; name it, one of {}",
+                                      path.string(), fmt::join(known, ", ")));
+    throw FormatError(fmt::format("{}: '{}' cannot be read without a file{}; expected one of {}",
+                                  path.string(), format, did_you_mean(format, known),
+                                  fmt::join(known, ", ")));
 }
 
 /// Formats that have points only leave out faces, and say so.
@@ -94,11 +119,18 @@ void save_obj(const Mesh& mesh, const fs::path& path) {
 }  // namespace
 
 LoadedScene load_scene(const fs::path& path, const LoadOptions& options) {
-    const std::string extension = extension_of(path);
-    if (extension == "gltf" || extension == "glb") return load_gltf(path);
-    if (readers().contains(extension)) return load_by_reader(path, extension, options);
-    if (contains(assimp_extensions(), extension)) return load_assimp(path);
-    fail_extension(path, "read", readable_extensions());
+    const std::string format = options.format.empty() ? extension_of(path) : options.format;
+    if (is_gltf(format)) return load_gltf(path);
+    if (readers().contains(format)) return decode(FileBytes(path), path, format, options);
+    if (contains(assimp_extensions(), format)) return load_assimp(path);
+    fail_extension(path, format, "read", readable_extensions());
+}
+
+LoadedScene load_scene(const FileBytes& bytes, const fs::path& name, const LoadOptions& options) {
+    if (bytes.size() == 0) throw FormatError(fmt::format("{}: there is nothing to read", name.string()));
+    const std::string format = options.format.empty() ? format_of_content(bytes.text()) : options.format;
+    if (!is_gltf(format) && !readers().contains(format)) fail_format(name, format);
+    return decode(bytes, name, format, options);
 }
 
 Mesh load_mesh(const fs::path& path, const LoadOptions& options) {
@@ -107,7 +139,8 @@ Mesh load_mesh(const fs::path& path, const LoadOptions& options) {
 
 void save_mesh(const Mesh& mesh, const fs::path& path) {
     const std::string extension = extension_of(path);
-    if (!contains(writable_extensions, extension)) fail_extension(path, "written", writable_extensions);
+    if (!contains(writable_extensions, extension))
+        fail_extension(path, extension, "written", writable_extensions);
     check_writable(path);
     if (extension == "glb") return save_glb(mesh, path);
     if (extension == "obj") return save_obj(mesh, path);

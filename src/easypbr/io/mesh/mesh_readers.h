@@ -16,8 +16,8 @@ MeshData read_off(const Source& source);
 
 /// The same for point clouds. Points whose positions are not finite are left out with a warning.
 MeshData read_pcd(const Source& source);
-/// XYZ, PTS, CSV: the extension of the source's path tells PTS.
-MeshData read_xyz(const Source& source);
+/// XYZ, CSV, and PTS, which has the intensity before the colour.
+MeshData read_xyz(const Source& source, bool is_pts = false);
 /// One array; an archive of named arrays, which may have faces.
 MeshData read_npy(const Source& source);
 MeshData read_npz(const Source& source);

@@ -183,7 +183,7 @@ CameraPath parse_camera_path(const std::string& json, const std::string& name) {
 }
 
 CameraPath load_camera_path(const std::filesystem::path& path) {
-    const MappedFile file(path);
+    const FileBytes file(path);
     return parse_camera_path(std::string(file.text()), path.string());
 }
 

@@ -11,14 +11,13 @@
 
 namespace easypbr::io {
 
-/// Bytes to decode and the path they came from. `file` is null when the bytes do not come from a mapped file.
+/// Bytes to decode and the path they came from. `file` is null when the bytes do not come from a file.
 struct Source {
     std::string_view bytes;
     fs::path path;
-    const MappedFile* file = nullptr;
+    const FileBytes* file = nullptr;
 
-    Source(const MappedFile& mapped, fs::path from)
-        : bytes(mapped.text()), path(std::move(from)), file(&mapped) {}
+    Source(const FileBytes& read, fs::path from) : bytes(read.text()), path(std::move(from)), file(&read) {}
     Source(std::string_view text, fs::path from) : bytes(text), path(std::move(from)) {}
 
     /// The bytes from a place on.
@@ -27,9 +26,13 @@ struct Source {
     const char* begin() const { return bytes.data(); }
     const char* end() const { return bytes.data() + bytes.size(); }
 
-    /// Bytes before `place` are not needed again soon.
+    /// Gives the memory of the bytes before `place` back, which must not be used again before restore().
     void release_until(const char* place) const {
         if (file) file->release_until(size_t(place - begin()));
+    }
+    /// Reads what was given back again. Throws FileError.
+    void restore() const {
+        if (file) file->restore();
     }
 };
 

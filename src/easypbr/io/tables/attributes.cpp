@@ -8,12 +8,12 @@
 namespace easypbr::io {
 namespace {
 
-constexpr size_t grain = 1 << 16;
+constexpr size_t attribute_grain = 1 << 16;
 
 }  // namespace
 
 void tidy_normals(Array3f::Dense& N) {
-    parallel_for(size_t(N.rows()), grain, [&](size_t i) {
+    parallel_for(size_t(N.rows()), attribute_grain, [&](size_t i) {
         auto normal = N.row(Eigen::Index(i));
         const float squared = normal.squaredNorm();
         if (std::abs(squared - 1) < 2e-3f) return;
@@ -28,14 +28,14 @@ void tidy_normals(Array3f::Dense& N) {
 }
 
 void tidy_colors(ArrayXf::Dense& C) {
-    parallel_for(size_t(C.size()), grain, [&](size_t i) {
+    parallel_for(size_t(C.size()), attribute_grain, [&](size_t i) {
         float& value = C.data()[i];
         value = value > 0 ? std::min(value, 1.0f) : 0.0f;
     });
 }
 
 void tidy_uv(Array2f::Dense& UV) {
-    parallel_for(size_t(UV.size()), grain, [&](size_t i) {
+    parallel_for(size_t(UV.size()), attribute_grain, [&](size_t i) {
         if (!std::isfinite(UV.data()[i])) UV.data()[i] = 0;
     });
 }

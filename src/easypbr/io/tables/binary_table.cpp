@@ -10,8 +10,8 @@
 namespace easypbr::io {
 namespace {
 
-constexpr size_t grain = 1 << 15;
-constexpr size_t slab = grain * 64;  ///< rows after which the memory of the rows before is given back
+constexpr size_t record_grain = 1 << 15;
+constexpr size_t record_slab = record_grain * 64;  ///< rows after which the memory of the rows before is given back
 
 /// Reads one element; keeps what the functions below share.
 class ElementReader {
@@ -79,8 +79,8 @@ class ElementReader {
         const size_t stride = widths.back();
         if (element_.count > size_t(source_.end() - body) / stride) return nullptr;
         for (size_t i = 0; i < plan_.columns.size(); ++i) allocate_uniform(plan_.columns[i], widths[i]);
-        for (size_t row = 0; row < element_.count; row += slab) {
-            if (!read_uniform_slab(body, widths, row, std::min(slab, element_.count - row))) return nullptr;
+        for (size_t row = 0; row < element_.count; row += record_slab) {
+            if (!read_uniform_slab(body, widths, row, std::min(record_slab, element_.count - row))) return nullptr;
             source_.release_until(body + row * stride);
         }
         return body + element_.count * stride;
@@ -88,7 +88,7 @@ class ElementReader {
 
     bool read_uniform_slab(const char* body, const std::vector<size_t>& widths, size_t first, size_t count) {
         std::atomic<bool> uniform{true};
-        parallel_chunks(count, grain, [&](size_t begin, size_t end) {
+        parallel_chunks(count, record_grain, [&](size_t begin, size_t end) {
             if (!read_uniform_rows(body, widths, first + begin, first + end)) uniform = false;
             progress_.advance((end - begin) * widths.back());
         });
@@ -155,6 +155,7 @@ class ElementReader {
     /// Reads rows whose lists differ in length: one walk finds where each run of rows begins, then the runs
     /// are read in parallel.
     const char* read_varied(const char* body) {
+        source_.restore();
         std::vector<const char*> starts;
         const char* p = body;
         for (Column& column : plan_.columns) {
@@ -162,17 +163,17 @@ class ElementReader {
             if (column.values) start_lists(*column.values);
         }
         for (size_t row = 0; row < element_.count; ++row) {
-            if (row % grain == 0) starts.push_back(p);
+            if (row % record_grain == 0) starts.push_back(p);
             p = measure_row(p, row);
         }
         for (Column& column : plan_.columns) {
             if (column.indices) column.indices->values.resize(Eigen::Index(column.indices->first.back()));
             if (column.values) column.values->values.resize(Eigen::Index(column.values->first.back()));
         }
-        parallel_chunks(element_.count, grain, [&](size_t begin, size_t end) {
-            const char* in = starts[begin / grain];
+        parallel_chunks(element_.count, record_grain, [&](size_t begin, size_t end) {
+            const char* in = starts[begin / record_grain];
             for (size_t row = begin; row < end; ++row) in = read_row(in, row);
-            progress_.advance(size_t(in - starts[begin / grain]));
+            progress_.advance(size_t(in - starts[begin / record_grain]));
         });
         return p;
     }
@@ -266,7 +267,7 @@ void read_binary_rows(const ElementPlan& plan, const char* data, std::endian end
                       size_t count) {
     const bool swap = endian != std::endian::native;
     const size_t stride = smallest_row(*plan.element);
-    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
+    parallel_chunks(count, record_grain, [&](size_t begin, size_t end) {
         const char* in = data + begin * stride;
         for (size_t i = 0; i < plan.columns.size(); ++i) {
             const ScalarType type = plan.element->properties[i].type;

@@ -80,6 +80,8 @@ class NpyParser {
         const char* digits = text.data() + (has_order ? 2 : 1);
         if (std::from_chars(digits, text.data() + text.size(), code.size).ec != std::errc())
             refuse(fmt::format("its type '{}' is not understood", text.substr(0, 40)));
+        // Products of sizes stay within 64 bits below.
+        if (code.size > most_fields) refuse(fmt::format("its type '{}' is too long", text.substr(0, 40)));
         code.type = scalar_type(kind, code.size);
         if (kind == 'U') code.size *= 4;
         return code;
@@ -151,6 +153,8 @@ class NpyParser {
         for (const size_t side : array_.shape) empty = empty || side == 0;
         for (const size_t side : array_.shape)
             if (!empty) room /= side;
+        if (empty && array_.columns() > most_fields)
+            refuse(fmt::format("it has more than {} values in a row", most_fields));
         if (!empty && room == 0)
             refuse(
                 fmt::format("it is truncated: items of {} bytes and shape ({}) expected, {} bytes are left",

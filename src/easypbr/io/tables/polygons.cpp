@@ -13,7 +13,7 @@
 namespace easypbr::io {
 namespace {
 
-constexpr size_t grain = 1 << 16;
+constexpr size_t polygon_grain = 1 << 16;
 
 /// Whether cutting the quad a b c d along a-c gives two triangles of opposite orientation: a-c lies outside.
 bool diagonal_is_outside(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d) {
@@ -65,7 +65,7 @@ Array3i view_as_triangles(Polygons&& polygons) {
 void check_indices(const Source& source, std::span<const int32_t> indices, size_t count,
                    std::string_view what, int base) {
     std::atomic<uint32_t> largest{0};
-    parallel_chunks(indices.size(), grain * 4, [&](size_t begin, size_t end) {
+    parallel_chunks(indices.size(), polygon_grain * 4, [&](size_t begin, size_t end) {
         uint32_t maximum = 0;
         for (size_t i = begin; i < end; ++i) maximum = std::max(maximum, uint32_t(indices[i]));
         uint32_t seen = largest;
@@ -81,7 +81,7 @@ void check_indices(const Source& source, std::span<const int32_t> indices, size_
 
 void check_positions(const Source& source, const Array3f::Dense& V) {
     std::atomic<bool> finite{true};
-    parallel_chunks(size_t(V.rows()), grain, [&](size_t begin, size_t end) {
+    parallel_chunks(size_t(V.rows()), polygon_grain, [&](size_t begin, size_t end) {
         // A sum of zero times each value is zero exactly when all of them are finite, and needs no branches.
         const auto rows = V.middleRows(Eigen::Index(begin), Eigen::Index(end - begin));
         if (!((rows * 0.0f).sum() == 0)) finite = false;
@@ -101,7 +101,7 @@ void triangulate(Polygons&& polygons, MeshData& mesh) {
     const std::vector<uint32_t> first = first_triangles(polygons);
     Array3i::Dense F(first.back(), 3);
     Array1i::Dense source_face(first.back());
-    parallel_for(polygons.rows, grain / 8, [&](size_t i) {
+    parallel_for(polygons.rows, polygon_grain / 8, [&](size_t i) {
         const size_t size = polygons.size_of(i);
         if (size < 3) return;
         const int32_t* polygon = polygons.values.data() + polygons.begin_of(i);
@@ -140,7 +140,7 @@ CornerSplit split_corners(std::span<int32_t> corner_vertices, std::span<const ui
     for (size_t c = 0; c < corner_vertices.size(); ++c) sorted[next[size_t(corner_vertices[c])]++] = keys[c];
 
     std::vector<uint32_t> different(vertex_count + 1, 0);
-    parallel_for(vertex_count, grain / 4, [&](size_t v) {
+    parallel_for(vertex_count, polygon_grain / 4, [&](size_t v) {
         const auto begin = sorted.begin() + first[v], end = sorted.begin() + first[v + 1];
         std::sort(begin, end);
         different[v + 1] = std::max<uint32_t>(1, uint32_t(std::unique(begin, end) - begin));
@@ -149,13 +149,13 @@ CornerSplit split_corners(std::span<int32_t> corner_vertices, std::span<const ui
 
     CornerSplit split{std::vector<int32_t>(different.back()),
                       std::vector<uint64_t>(different.back(), no_key)};
-    parallel_for(vertex_count, grain / 4, [&](size_t v) {
+    parallel_for(vertex_count, polygon_grain / 4, [&](size_t v) {
         const size_t base = different[v], count = different[v + 1] - base;
         std::fill_n(split.source_vertex.begin() + ptrdiff_t(base), count, int32_t(v));
         if (first[v] != first[v + 1])
             std::copy_n(sorted.begin() + first[v], count, split.key.begin() + ptrdiff_t(base));
     });
-    parallel_for(corner_vertices.size(), grain, [&](size_t c) {
+    parallel_for(corner_vertices.size(), polygon_grain, [&](size_t c) {
         const size_t v = size_t(corner_vertices[c]);
         const auto begin = split.key.begin() + different[v], end = split.key.begin() + different[v + 1];
         corner_vertices[c] = int32_t(different[v] + (std::lower_bound(begin, end, keys[c]) - begin));
@@ -169,7 +169,7 @@ template <class A>
 void gather_rows(A& array, const std::vector<int32_t>& source) {
     if (array.empty()) return;
     typename A::Dense gathered(Eigen::Index(source.size()), array.cols());
-    parallel_for(source.size(), grain,
+    parallel_for(source.size(), polygon_grain,
                  [&](size_t i) { gathered.row(Eigen::Index(i)) = array.row(source[i]); });
     array = std::move(gathered);
 }
@@ -177,7 +177,7 @@ void gather_rows(A& array, const std::vector<int32_t>& source) {
 template <class A>
 void permute_rows(A& array, const std::vector<uint32_t>& order) {
     typename A::Dense permuted(Eigen::Index(order.size()), array.cols());
-    parallel_for(order.size(), grain, [&](size_t i) { permuted.row(Eigen::Index(i)) = array.row(order[i]); });
+    parallel_for(order.size(), polygon_grain, [&](size_t i) { permuted.row(Eigen::Index(i)) = array.row(order[i]); });
     array = std::move(permuted);
 }
 

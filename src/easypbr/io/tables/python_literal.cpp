@@ -8,9 +8,9 @@ namespace {
 
 constexpr int deepest = 20;
 
-class Parser {
+class LiteralParser {
   public:
-    explicit Parser(std::string_view text) : p_(text.data()), end_(p_ + text.size()) {}
+    explicit LiteralParser(std::string_view text) : p_(text.data()), end_(p_ + text.size()) {}
 
     PythonLiteral parse(int depth = 0) {
         PythonLiteral value;
@@ -101,7 +101,7 @@ const PythonLiteral* PythonLiteral::find(std::string_view key) const {
 }
 
 PythonLiteral parse_python_literal(std::string_view text) {
-    return Parser(text).parse();
+    return LiteralParser(text).parse();
 }
 
 }  // namespace easypbr::io

@@ -13,7 +13,7 @@ namespace easypbr::io {
 namespace {
 
 constexpr size_t chunk_bytes = 1 << 20;
-constexpr size_t slab = 64;  ///< chunks after which the memory of the text before is given back
+constexpr size_t chunk_slab = 64;  ///< chunks after which the memory of the text before is given back
 
 /// The lists of a chunk's rows, one after the other.
 struct ListPart {
@@ -241,8 +241,8 @@ void read_text_elements(const Source& source, const TextRows& rows, std::vector<
 
     std::vector<ChunkLists> lists(chunks.size());
     Progress progress(source, size_t(source.end() - rows.body));
-    for (size_t first = 0; first < chunks.size(); first += slab) {
-        parallel_for(std::min(slab, chunks.size() - first), 1, [&](size_t i) {
+    for (size_t first = 0; first < chunks.size(); first += chunk_slab) {
+        parallel_for(std::min(chunk_slab, chunks.size() - first), 1, [&](size_t i) {
             const TextChunk& chunk = chunks[first + i];
             lists[first + i] = ChunkReader(source, chunk, rows.style, plans).read();
             progress.advance(size_t(chunk.end - chunk.begin));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
 #include <set>
 
@@ -15,7 +16,7 @@
 namespace easypbr::io {
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t array_grain = 1 << 15;
 
 using Names = std::vector<std::string_view>;
 using Spellings = std::vector<Names>;
@@ -104,7 +105,7 @@ template <class A>
 void keep_rows(A& array, const Array1i::Dense& kept) {
     if (array.empty()) return;
     typename A::Dense rows(kept.size(), array.cols());
-    parallel_for(size_t(kept.size()), grain,
+    parallel_for(size_t(kept.size()), array_grain,
                  [&](size_t i) { rows.row(Eigen::Index(i)) = array.row(kept(Eigen::Index(i))); });
     array = std::move(rows);
 }
@@ -148,12 +149,14 @@ void VertexArrays::plan_colors(const std::vector<VertexField>& fields, size_t co
 void VertexArrays::plan_scalars(const std::vector<VertexField>& fields, size_t count) {
     std::vector<Column*> columns;
     std::set<std::string> taken;
+    std::map<std::string, int> numbers;  // Goes on where it ended, for there may be many of one name.
     for (const VertexField& field : fields) {
         if (!field.column->is_skipped() || field.property.name.empty() || field.property.name == "_")
             continue;
         const std::string plain = plain_name(field.property.name);
         std::string name = plain;
-        for (int number = 2; !taken.insert(name).second; ++number) name = fmt::format("{}_{}", plain, number);
+        int& number = numbers.try_emplace(plain, 1).first->second;
+        while (!taken.insert(name).second) name = fmt::format("{}_{}", plain, ++number);
         scalars_.push_back({name, Array1f::Dense(Eigen::Index(count))});
         columns.push_back(field.column);
     }
@@ -170,7 +173,7 @@ void VertexArrays::recentre_positions() {
         return Vec3d(V_.row(Eigen::Index(i)).transpose().cast<double>());
     });
     if (offset_.isZero(0)) return;
-    parallel_for(size_t(V_.rows()), grain, [&](size_t i) {
+    parallel_for(size_t(V_.rows()), array_grain, [&](size_t i) {
         auto position = V_.row(Eigen::Index(i));
         position = (position.cast<double>() - offset_.transpose()).cast<float>();
     });
@@ -178,15 +181,15 @@ void VertexArrays::recentre_positions() {
 
 void VertexArrays::normalize_real_colors() {
     if (!real_colors_ || C_.size() == 0) return;
-    std::vector<float> largest((size_t(C_.size()) + grain - 1) / grain, 0.0f);
-    parallel_chunks(size_t(C_.size()), grain, [&](size_t begin, size_t end) {
+    std::vector<float> largest((size_t(C_.size()) + array_grain - 1) / array_grain, 0.0f);
+    parallel_chunks(size_t(C_.size()), array_grain, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i)
-            largest[begin / grain] = std::max(largest[begin / grain], C_.data()[i]);
+            largest[begin / array_grain] = std::max(largest[begin / array_grain], C_.data()[i]);
     });
     const float most = *std::ranges::max_element(largest);
     if (most <= 1) return;
     const float full = most <= 255 ? 255.0f : 65535.0f;
-    parallel_for(size_t(C_.size()), grain, [&](size_t i) { C_.data()[i] /= full; });
+    parallel_for(size_t(C_.size()), array_grain, [&](size_t i) { C_.data()[i] /= full; });
 }
 
 void VertexArrays::move_into(MeshData& mesh) {
@@ -234,10 +237,10 @@ void FaceArrays::move_into(MeshData& mesh) {
         return result;
     };
     if (mesh.L.empty() && L_.size()) mesh.L = of_triangles(L_);
-    for (auto& [name, values] : scalars_) {
-        const auto is_same = [&](const ScalarArray& scalar) { return scalar.name == name; };
-        if (std::ranges::none_of(mesh.scalars, is_same)) mesh.scalars.push_back({name, of_triangles(values)});
-    }
+    std::set<std::string> taken;
+    for (const ScalarArray& scalar : mesh.scalars) taken.insert(scalar.name);
+    for (auto& [name, values] : scalars_)
+        if (taken.insert(name).second) mesh.scalars.push_back({name, of_triangles(values)});
 }
 
 bool is_known_field(std::string_view name) {
@@ -273,18 +276,18 @@ std::vector<std::string> names_of_parts(const std::string& name, size_t count) {
 
 void drop_points_without_position(const Source& source, MeshData& mesh) {
     const size_t count = size_t(mesh.V.rows());
-    std::vector<size_t> first((count + grain - 1) / grain + 1, 0);
+    std::vector<size_t> first((count + array_grain - 1) / array_grain + 1, 0);
     const auto is_good = [&](size_t i) { return mesh.V.row(Eigen::Index(i)).allFinite(); };
-    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) first[begin / grain + 1] += is_good(i);
+    parallel_chunks(count, array_grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) first[begin / array_grain + 1] += is_good(i);
     });
     std::partial_sum(first.begin(), first.end(), first.begin());
     const size_t kept_count = first.back();
     if (kept_count == count && count > 0) return;
     if (kept_count == 0) fail(source, fmt::format("no point of {} has a finite position", count));
     Array1i::Dense kept{Eigen::Index(kept_count)};
-    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
-        size_t next = first[begin / grain];
+    parallel_chunks(count, array_grain, [&](size_t begin, size_t end) {
+        size_t next = first[begin / array_grain];
         for (size_t i = begin; i < end; ++i)
             if (is_good(i)) kept(Eigen::Index(next++)) = int32_t(i);
     });

@@ -14,7 +14,7 @@ namespace {
 
 static_assert(std::endian::native == std::endian::little, "the writers copy values as they are in memory");
 
-constexpr size_t grain = 1 << 14;
+constexpr size_t row_grain = 1 << 14;
 
 /// The arrays are held: they are shared, not copied.
 template <class A>
@@ -125,7 +125,7 @@ void append_rows(const std::vector<RowPart>& parts, size_t count, std::string& o
     for (const RowPart& part : parts) stride += part.size;
     const size_t begin = out.size();
     out.resize(begin + count * stride);
-    parallel_for(count, grain, [&](size_t row) {
+    parallel_for(count, row_grain, [&](size_t row) {
         char* target = out.data() + begin + row * stride;
         for (const RowPart& part : parts) {
             part.write(Eigen::Index(row), target);
@@ -135,9 +135,9 @@ void append_rows(const std::vector<RowPart>& parts, size_t count, std::string& o
 }
 
 void append_text_rows(const std::vector<RowPart>& parts, size_t count, char delimiter, std::string& out) {
-    std::vector<std::string> chunks((count + grain - 1) / grain);
-    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
-        std::string& text = chunks[begin / grain];
+    std::vector<std::string> chunks((count + row_grain - 1) / row_grain);
+    parallel_chunks(count, row_grain, [&](size_t begin, size_t end) {
+        std::string& text = chunks[begin / row_grain];
         std::array<char, 64> values;
         for (size_t row = begin; row < end; ++row) {
             for (const RowPart& part : parts) {

@@ -11,10 +11,10 @@
 namespace easypbr::io {
 namespace {
 
-constexpr const char* module_name = "libeasypbr_ffmpeg.so";
+constexpr const char* video_file = "libeasypbr_ffmpeg.so";
 
-struct Module : RuntimeModule {
-    Module() : RuntimeModule(module_name) {
+struct VideoModule : RuntimeModule {
+    VideoModule() : RuntimeModule(video_file) {
         find(open, "easypbr_ffmpeg_open");
         find(check, "easypbr_ffmpeg_check");
         find(encoders, "easypbr_ffmpeg_encoders");
@@ -25,20 +25,20 @@ struct Module : RuntimeModule {
     decltype(&easypbr_ffmpeg_encoders) encoders = nullptr;
 };
 
-const Module& ffmpeg_module() {
-    static const Module loaded;
+const VideoModule& ffmpeg_module() {
+    static const VideoModule loaded;
     return loaded;
 }
 
-const Module& require_module(const fs::path& path) {
-    const Module& ffmpeg = ffmpeg_module();
+const VideoModule& require_module(const fs::path& path) {
+    const VideoModule& ffmpeg = ffmpeg_module();
     if (!ffmpeg.reason().empty())
         throw FormatError(fmt::format(
             "cannot write {}: videos are written by the FFmpeg module, which cannot be loaded ({}); install "
             "the packages libavcodec59, libavformat59 and libswscale6 and keep {} beside libeasypbr.so, or "
             "write "
             "pictures: out/frame_%04d.png",
-            path.string(), ffmpeg.reason(), module_name));
+            path.string(), ffmpeg.reason(), video_file));
     return ffmpeg;
 }
 

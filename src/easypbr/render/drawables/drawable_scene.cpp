@@ -15,14 +15,14 @@
 namespace easypbr::render {
 namespace {
 
-constexpr size_t grain = 1 << 15;
+constexpr size_t drawable_grain = 1 << 15;
 /// Beyond this many faces triangles are about as small as pixels, where it does not matter whether a value or
 /// its colour is interpolated.
 constexpr Eigen::Index many_faces = 500000;
 
 ArrayXf colors_of(const std::vector<Rgba8>& colors) {
     ArrayXf::Dense C(Eigen::Index(colors.size()), 4);
-    parallel_for(colors.size(), grain, [&](size_t i) {
+    parallel_for(colors.size(), drawable_grain, [&](size_t i) {
         for (int c = 0; c < 4; ++c) C(Eigen::Index(i), c) = float(colors[i][size_t(c)]) / 255.0f;
     });
     return ArrayXf(std::move(C));
@@ -33,7 +33,7 @@ template <class ArrayType>
 ArrayType per_corner(const ArrayType& array, const Array3i& F) {
     if (array.empty()) return {};
     typename ArrayType::Dense rows(F.size(), array.cols());
-    parallel_for(size_t(F.size()), grain,
+    parallel_for(size_t(F.size()), drawable_grain,
                  [&](size_t i) { rows.row(Eigen::Index(i)) = array.row(F.data()[i]); });
     return ArrayType(std::move(rows));
 }
@@ -95,7 +95,7 @@ MeshData with_values(const MeshData& mesh, const ElementColors& values) {
     MeshData out = has_nan ? with_own_corners(mesh) : mesh;
     Array2f::Dense UV(out.V.rows(), 2);
     const float scale = 1 / (values.range.max - values.range.min);
-    parallel_for(size_t(UV.rows()), grain, [&](size_t i) {
+    parallel_for(size_t(UV.rows()), drawable_grain, [&](size_t i) {
         const auto row = Eigen::Index(i);
         bool is_nan = false;
         if (has_nan)

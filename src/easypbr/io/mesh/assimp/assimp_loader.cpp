@@ -10,10 +10,10 @@
 namespace easypbr::io {
 namespace {
 
-constexpr const char* module_name = "libeasypbr_assimp.so";
+constexpr const char* assimp_file = "libeasypbr_assimp.so";
 
-struct Module : RuntimeModule {
-    Module() : RuntimeModule(module_name) {
+struct AssimpModule : RuntimeModule {
+    AssimpModule() : RuntimeModule(assimp_file) {
         find(load, "easypbr_assimp_load");
         find(extensions, "easypbr_assimp_extensions");
     }
@@ -22,20 +22,20 @@ struct Module : RuntimeModule {
     decltype(&easypbr_assimp_extensions) extensions = nullptr;
 };
 
-const Module& assimp_module() {
-    static const Module loaded;
+const AssimpModule& assimp_module() {
+    static const AssimpModule loaded;
     return loaded;
 }
 
 }  // namespace
 
 LoadedScene load_assimp(const std::filesystem::path& path) {
-    const Module& assimp = assimp_module();
+    const AssimpModule& assimp = assimp_module();
     if (!assimp.reason().empty())
         throw FormatError(
             fmt::format("cannot read {}: '.{}' files are read by the assimp module, which cannot be "
                         "loaded ({}); install the package libassimp5 and keep {} beside libeasypbr.so",
-                        path.string(), extension_of(path), assimp.reason(), module_name));
+                        path.string(), extension_of(path), assimp.reason(), assimp_file));
     LoadedScene out;
     assimp.load(path, out);
     return out;

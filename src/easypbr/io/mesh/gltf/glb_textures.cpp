@@ -92,7 +92,7 @@ OrderedJson transform_json(const Mat3& ours) {
     return {{"offset", {T(0, 2), T(1, 2)}}, {"rotation", angle}, {"scale", {scale_x, scale_y}}};
 }
 
-OrderedJson json_of(const Vec3& v) {
+OrderedJson color_json(const Vec3& v) {
     return {v[0], v[1], v[2]};
 }
 
@@ -164,7 +164,7 @@ void GlbMaterials::add_emission(const Material& material, OrderedJson& json) {
     if (const Texture& texture = material.emissive_texture) json["emissiveTexture"] = texture_info(texture);
     // The factor ends at 1; what is brighter goes into the strength.
     const float strength = std::max(1.0f, material.emissive.maxCoeff());
-    json["emissiveFactor"] = json_of(material.emissive / strength);
+    json["emissiveFactor"] = color_json(material.emissive / strength);
     if (strength > 1) extend(json, khr_emissive_strength)["emissiveStrength"] = strength;
 }
 
@@ -188,7 +188,7 @@ void GlbMaterials::add_layers(const Material& material, OrderedJson& json) {
         extend(json, khr_clearcoat) = std::move(e);
     }
     if (!material.sheen_color.isZero()) {
-        OrderedJson e = {{"sheenColorFactor", json_of(material.sheen_color)},
+        OrderedJson e = {{"sheenColorFactor", color_json(material.sheen_color)},
                          {"sheenRoughnessFactor", material.sheen_roughness}};
         add_texture(e, "sheenColorTexture", material.sheen_color_texture);
         add_channel(e, "sheenRoughnessTexture", material.sheen_roughness_texture, 3);
@@ -216,7 +216,7 @@ void GlbMaterials::add_dielectric(const Material& material, OrderedJson& json) {
     if (material.specular != 1 || material.specular_color != Vec3::Ones() || material.specular_texture ||
         material.specular_color_texture) {
         OrderedJson e = {{"specularFactor", material.specular},
-                         {"specularColorFactor", json_of(material.specular_color)}};
+                         {"specularColorFactor", color_json(material.specular_color)}};
         add_channel(e, "specularTexture", material.specular_texture, 3);
         add_texture(e, "specularColorTexture", material.specular_color_texture);
         extend(json, khr_specular) = std::move(e);
@@ -228,7 +228,7 @@ void GlbMaterials::add_dielectric(const Material& material, OrderedJson& json) {
     }
     if (material.thickness > 0) {
         OrderedJson e = {{"thicknessFactor", material.thickness},
-                         {"attenuationColor", json_of(material.attenuation_color)}};
+                         {"attenuationColor", color_json(material.attenuation_color)}};
         if (std::isfinite(material.attenuation_distance))
             e["attenuationDistance"] = material.attenuation_distance;
         add_channel(e, "thicknessTexture", material.thickness_texture, 1);

@@ -15,7 +15,7 @@ constexpr double largest_integer = 1099511627776.0;  // 2^40
 
 constexpr uint32_t magic_glb = 0x46546c67, chunk_json = 0x4e4f534a, chunk_binary = 0x004e4942;
 
-uint32_t u32_at(std::span<const std::byte> bytes, size_t at) {
+uint32_t word_at(std::span<const std::byte> bytes, size_t at) {
     uint32_t value;
     std::memcpy(&value, bytes.data() + at, 4);
     return value;
@@ -104,16 +104,16 @@ std::string_view GltfDocument::json_chunk(std::span<const std::byte> bytes) {
     const auto text_of = [](std::span<const std::byte> part) {
         return std::string_view(reinterpret_cast<const char*>(part.data()), part.size());
     };
-    if (bytes.size() < 4 || u32_at(bytes, 0) != magic_glb) return text_of(bytes);
+    if (bytes.size() < 4 || word_at(bytes, 0) != magic_glb) return text_of(bytes);
     if (bytes.size() < 20) fail("truncated GLB header");
-    if (u32_at(bytes, 4) != 2) fail(fmt::format("expected GLB version 2, got {}", u32_at(bytes, 4)));
-    const size_t length = u32_at(bytes, 8);
+    if (word_at(bytes, 4) != 2) fail(fmt::format("expected GLB version 2, got {}", word_at(bytes, 4)));
+    const size_t length = word_at(bytes, 8);
     if (length > bytes.size() || length < 20)
         fail(fmt::format("truncated GLB: its header says {} bytes, the file has {}", length, bytes.size()));
     std::string_view json;
     for (size_t at = 12; at + 8 <= length;) {
-        const size_t size = u32_at(bytes, at);
-        const uint32_t kind = u32_at(bytes, at + 4);
+        const size_t size = word_at(bytes, at);
+        const uint32_t kind = word_at(bytes, at + 4);
         if (size > length - at - 8) fail(fmt::format("GLB chunk at byte {} is longer than the file", at));
         const auto chunk = bytes.subspan(at + 8, size);
         if (kind == chunk_json && json.empty()) json = text_of(chunk);
@@ -151,7 +151,7 @@ std::span<const std::byte> GltfDocument::buffer(size_t index) {
             buffer.decoded = std::move(*decoded);
             buffer.bytes = buffer.decoded;
         } else {
-            buffer.file = MappedFile(path_of_uri(text(json, "uri")));
+            buffer.file = FileBytes(path_of_uri(text(json, "uri")));
             buffer.bytes = buffer.file.bytes();
         }
         if (buffer.bytes.size() < length)
@@ -188,7 +188,14 @@ std::optional<std::vector<std::byte>> GltfDocument::data_of_uri(std::string_view
 std::filesystem::path GltfDocument::path_of_uri(std::string_view uri) const {
     if (has_scheme(uri))
         fail(fmt::format("URI '{}': only relative paths and data URIs are read", uri.substr(0, 100)));
-    return path_.parent_path() / percent_decoded(uri);
+    const std::filesystem::path path = percent_decoded(uri);
+    const std::filesystem::path normal = path.lexically_normal();
+    if (path.is_absolute() || *normal.begin() == ".." || path.native().find('\0') != std::string::npos)
+        fail(fmt::format(
+            "URI '{}' leads out of the file's folder, which is not allowed: a glTF file names files "
+            "beside or below itself",
+            uri.substr(0, 100)));
+    return path_.parent_path() / path;
 }
 
 void GltfDocument::fail(std::string_view what) const {

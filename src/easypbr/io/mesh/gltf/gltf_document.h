@@ -38,7 +38,8 @@ class GltfDocument {
 
     /// What a URI stands for: the bytes of a data URI, else nothing. Throws FormatError for a damaged one.
     std::optional<std::vector<std::byte>> data_of_uri(std::string_view uri) const;
-    /// Path of the file that a relative URI names. Throws FormatError for a URI with a scheme.
+    /// Path of the file that a relative URI names. Throws FormatError for a URI with a scheme, and for one
+    /// that leads out of the document's folder.
     std::filesystem::path path_of_uri(std::string_view uri) const;
 
     /// Throws FormatError: "cannot read PATH: WHAT".
@@ -62,7 +63,7 @@ class GltfDocument {
 
     struct Buffer {
         bool loaded = false;
-        MappedFile file;
+        FileBytes file;
         std::vector<std::byte> decoded;
         std::span<const std::byte> bytes;
     };

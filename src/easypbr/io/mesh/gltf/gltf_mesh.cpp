@@ -17,12 +17,12 @@
 namespace easypbr::io {
 namespace {
 
-constexpr size_t row_grain = 1 << 15;
+constexpr size_t vertex_grain = 1 << 15;
 
 enum class Mode : size_t { points, lines, line_loop, line_strip, triangles, triangle_strip, triangle_fan };
 
 /// Vertices that primitives with the same accessors share. Absent attributes have no rows.
-struct Block {
+struct VertexBlock {
     Eigen::Index first = 0;
     ArrayXf::Dense V, N, UV, C, joints, weights;
     std::vector<ArrayXf::Dense> targets_V, targets_N;  ///< of morph targets; without rows where one has none
@@ -30,7 +30,7 @@ struct Block {
 };
 
 void encode_colors(ArrayXf::Dense& C) {
-    parallel_for(size_t(C.rows()), row_grain, [&](size_t i) {
+    parallel_for(size_t(C.rows()), vertex_grain, [&](size_t i) {
         for (int c = 0; c < 3; ++c) {
             float& value = C(Eigen::Index(i), c);
             value = value > 0 ? srgb_from_linear(std::min(value, 1.0f)) : 0.0f;
@@ -40,7 +40,7 @@ void encode_colors(ArrayXf::Dense& C) {
 
 /// Normals that are unit vectors keep their bits; quantised ones are brought to unit length.
 void normalize_rows(ArrayXf::Dense& N) {
-    parallel_for(size_t(N.rows()), row_grain, [&](size_t i) {
+    parallel_for(size_t(N.rows()), vertex_grain, [&](size_t i) {
         auto row = N.row(Eigen::Index(i));
         const float length = row.norm();
         if (!(length > 1e-20f && length < 1e20f))
@@ -51,7 +51,7 @@ void normalize_rows(ArrayXf::Dense& N) {
 }
 
 void flip_v(ArrayXf::Dense& UV) {
-    parallel_for(size_t(UV.rows()), row_grain, [&](size_t i) {
+    parallel_for(size_t(UV.rows()), vertex_grain, [&](size_t i) {
         auto row = UV.row(Eigen::Index(i));
         if (!row.allFinite()) row.setZero();
         row[1] = 1 - row[1];
@@ -64,7 +64,7 @@ std::vector<int32_t> triangle_corners(Mode mode, size_t count, Index&& index) {
     std::vector<int32_t> out;
     if (mode == Mode::triangles) {
         out.resize(count / 3 * 3);
-        parallel_for(out.size(), row_grain, [&](size_t i) { out[i] = index(i); });
+        parallel_for(out.size(), vertex_grain, [&](size_t i) { out[i] = index(i); });
         return out;
     }
     for (size_t i = 0; i + 2 < count; ++i) {
@@ -110,7 +110,7 @@ class MeshBuilder {
         const size_t mode = document_.optional_integer(json, "mode").value_or(size_t(Mode::triangles));
         if (mode > size_t(Mode::triangle_fan)) fail(fmt::format("has a primitive of unknown mode {}", mode));
         const auto material = document_.optional_integer(json, "material");
-        Block& block = block_of(json, *attributes, materials_.uv_set(material));
+        VertexBlock& block = block_of(json, *attributes, materials_.uv_set(material));
         add_elements(json, Mode(mode), material, block);
     }
 
@@ -123,7 +123,7 @@ class MeshBuilder {
                 "compression");
     }
 
-    Block& block_of(const Json& primitive, const Json& attributes, int uv_set) {
+    VertexBlock& block_of(const Json& primitive, const Json& attributes, int uv_set) {
         const std::string wanted_uv = fmt::format("TEXCOORD_{}", uv_set);
         const char* uv = member(attributes, wanted_uv.c_str()) ? wanted_uv.c_str() : "TEXCOORD_0";
         BlockKey key;
@@ -139,8 +139,8 @@ class MeshBuilder {
         return blocks_[found->second];
     }
 
-    Block read_block(const BlockKey& key) {
-        Block block;
+    VertexBlock read_block(const BlockKey& key) {
+        VertexBlock block;
         block.first = vertex_count_;
         block.V = read_floats(document_, *key[0], 3, 3);
         const auto read = [&](std::optional<size_t> accessor, int least, int most, ArrayXf::Dense& to) {
@@ -173,7 +173,7 @@ class MeshBuilder {
         return block;
     }
 
-    void add_elements(const Json& json, Mode mode, std::optional<size_t> material, Block& block) {
+    void add_elements(const Json& json, Mode mode, std::optional<size_t> material, VertexBlock& block) {
         const auto accessor = document_.optional_integer(json, "indices");
         std::vector<uint32_t> indices;
         if (accessor) indices = read_indices(document_, *accessor);
@@ -189,7 +189,7 @@ class MeshBuilder {
             add_lines(mode, count, index, int32_t(block.first));
     }
 
-    void add_part(const std::vector<int32_t>& corners, std::optional<size_t> material, Block& block) {
+    void add_part(const std::vector<int32_t>& corners, std::optional<size_t> material, VertexBlock& block) {
         block.triangles.insert(block.triangles.end(), corners.begin(), corners.end());
         if ((faces_.size() + corners.size()) / 3 > size_t(std::numeric_limits<int32_t>::max()))
             fail("has more than 2^31 faces");
@@ -227,34 +227,34 @@ class MeshBuilder {
     template <class Of>
     ArrayXf::Dense merged_of(float fallback, Of&& of) {
         Eigen::Index columns = 0;
-        for (Block& block : blocks_)
+        for (VertexBlock& block : blocks_)
             if (of(block).rows()) columns = std::max(columns, of(block).cols());
         if (columns == 0) return ArrayXf::Dense(0, 0);
         if (blocks_.size() == 1) return std::move(of(blocks_[0]));
         ArrayXf::Dense out = ArrayXf::Dense::Constant(vertex_count_, columns, fallback);
-        for (Block& block : blocks_) {
+        for (VertexBlock& block : blocks_) {
             const ArrayXf::Dense& from = of(block);
             if (from.rows()) out.block(block.first, 0, from.rows(), from.cols()) = from;
         }
         return out;
     }
-    ArrayXf::Dense merged(ArrayXf::Dense Block::*attribute, float fallback) {
-        return merged_of(fallback, [&](Block& block) -> ArrayXf::Dense& { return block.*attribute; });
+    ArrayXf::Dense merged(ArrayXf::Dense VertexBlock::*attribute, float fallback) {
+        return merged_of(fallback, [&](VertexBlock& block) -> ArrayXf::Dense& { return block.*attribute; });
     }
 
     void read_deformation(const Json& json, GltfMesh& mesh) {
         Deformation& out = mesh.deformation;
-        out.joints = ArrayXf(merged(&Block::joints, 0));
-        out.weights = ArrayXf(merged(&Block::weights, 0));
+        out.joints = ArrayXf(merged(&VertexBlock::joints, 0));
+        out.weights = ArrayXf(merged(&VertexBlock::weights, 0));
         size_t targets = 0;
-        for (const Block& block : blocks_) targets = std::max(targets, block.targets_V.size());
+        for (const VertexBlock& block : blocks_) targets = std::max(targets, block.targets_V.size());
         for (size_t k = 0; k < targets; ++k) {
-            const auto target = [&](std::vector<ArrayXf::Dense> Block::*list) {
-                return merged_of(0, [&](Block& block) -> ArrayXf::Dense& {
+            const auto target = [&](std::vector<ArrayXf::Dense> VertexBlock::*list) {
+                return merged_of(0, [&](VertexBlock& block) -> ArrayXf::Dense& {
                     return k < (block.*list).size() ? (block.*list)[k] : none_;
                 });
             };
-            const ArrayXf::Dense V = target(&Block::targets_V), N = target(&Block::targets_N);
+            const ArrayXf::Dense V = target(&VertexBlock::targets_V), N = target(&VertexBlock::targets_N);
             out.targets_V.push_back(V.rows() ? Array3f(V) : Array3f(Array3f::Dense::Zero(vertex_count_, 3)));
             out.targets_N.push_back(N.rows() ? Array3f(N) : Array3f());
         }
@@ -270,13 +270,13 @@ class MeshBuilder {
     }
 
     void compute_missing_normals() {
-        const auto has_normals = [](const Block& block) { return block.N.rows() > 0; };
+        const auto has_normals = [](const VertexBlock& block) { return block.N.rows() > 0; };
         if (std::none_of(blocks_.begin(), blocks_.end(), has_normals)) {
             // Section 3.7.2.1 of the specification: without normals, flat ones.
             out_.style.flat = true;
             return;
         }
-        for (Block& block : blocks_)
+        for (VertexBlock& block : blocks_)
             if (!has_normals(block))
                 block.N =
                     vertex_normals(Array3f(block.V),
@@ -285,20 +285,20 @@ class MeshBuilder {
     }
 
     void merge_vertices() {
-        for (const Block& block : blocks_)
+        for (const VertexBlock& block : blocks_)
             if (!block.V.allFinite()) fail("has positions that are not finite");
         compute_missing_normals();
-        if (ArrayXf::Dense V = merged(&Block::V, 0); V.rows()) out_.V = Array3f(V);
-        if (ArrayXf::Dense N = merged(&Block::N, 0); N.rows()) out_.N = Array3f(N);
-        if (ArrayXf::Dense UV = merged(&Block::UV, 0); UV.rows()) out_.UV = Array2f(UV);
-        if (ArrayXf::Dense C = merged(&Block::C, 1); C.rows()) out_.C = ArrayXf(std::move(C));
+        if (ArrayXf::Dense V = merged(&VertexBlock::V, 0); V.rows()) out_.V = Array3f(V);
+        if (ArrayXf::Dense N = merged(&VertexBlock::N, 0); N.rows()) out_.N = Array3f(N);
+        if (ArrayXf::Dense UV = merged(&VertexBlock::UV, 0); UV.rows()) out_.UV = Array2f(UV);
+        if (ArrayXf::Dense C = merged(&VertexBlock::C, 1); C.rows()) out_.C = ArrayXf(std::move(C));
     }
 
     GltfDocument& document_;
     const GltfMaterials& materials_;
     std::string name_;
     MeshData out_;
-    std::vector<Block> blocks_;
+    std::vector<VertexBlock> blocks_;
     ArrayXf::Dense none_;  ///< what a block has of a morph target that it lacks
     std::map<BlockKey, size_t> block_index_;
     std::map<std::optional<size_t>, int> material_index_;

@@ -1,6 +1,7 @@
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,19 +18,19 @@
 namespace easypbr::io {
 namespace {
 
-constexpr const char* known_extensions[] = {khr_unlit,
-                                            khr_emissive_strength,
-                                            khr_clearcoat,
-                                            khr_sheen,
-                                            khr_specular,
-                                            khr_ior,
-                                            khr_transmission,
-                                            khr_volume,
-                                            khr_iridescence,
-                                            khr_anisotropy,
-                                            "KHR_texture_transform",
-                                            "KHR_lights_punctual",
-                                            "KHR_mesh_quantization"};
+constexpr std::string_view known_extensions[] = {khr_unlit,
+                                                 khr_emissive_strength,
+                                                 khr_clearcoat,
+                                                 khr_sheen,
+                                                 khr_specular,
+                                                 khr_ior,
+                                                 khr_transmission,
+                                                 khr_volume,
+                                                 khr_iridescence,
+                                                 khr_anisotropy,
+                                                 "KHR_texture_transform",
+                                                 "KHR_lights_punctual",
+                                                 "KHR_mesh_quantization"};
 
 /// A name that the map does not have yet.
 template <class Value>
@@ -48,6 +49,7 @@ class SceneReader {
           visited_(document.count("nodes")) {}
 
     LoadedScene read() {
+        require_extensions();
         warn_of_extensions();
         rig_ = read_gltf_rig(document_);
         MeshData root;
@@ -62,16 +64,33 @@ class SceneReader {
     }
 
   private:
-    void warn_of_extensions() const {
-        const Json* used = member(document_.root(), "extensionsUsed");
-        if (!used || !used->is_array()) return;
-        for (const Json& entry : *used) {
+    /// The extensions of a list of the root that are not known.
+    std::vector<std::string> unknown_extensions(const char* list) const {
+        std::vector<std::string> unknown;
+        const Json* names = member(document_.root(), list);
+        if (!names || !names->is_array()) return unknown;
+        for (const Json& entry : *names) {
             const std::string name = entry.is_string() ? entry.get<std::string>() : std::string();
-            if (std::find(std::begin(known_extensions), std::end(known_extensions), name) ==
-                std::end(known_extensions))
-                log_warning(fmt::format("{}: the extension {} is not known; it is drawn without",
-                                        document_.path().string(), name));
+            if (std::ranges::find(known_extensions, name) == std::end(known_extensions))
+                unknown.push_back(name);
         }
+        return unknown;
+    }
+
+    /// The glTF 2.0 specification, 3.12: what is required and not supported must fail.
+    void require_extensions() const {
+        const std::vector<std::string> unknown = unknown_extensions("extensionsRequired");
+        if (unknown.empty()) return;
+        document_.fail(
+            fmt::format("it requires the extension {}, which is not supported: save it without; "
+                        "supported are {}",
+                        fmt::join(unknown, ", "), fmt::join(known_extensions, ", ")));
+    }
+
+    void warn_of_extensions() const {
+        for (const std::string& name : unknown_extensions("extensionsUsed"))
+            log_warning(fmt::format("{}: the extension {} is not known; it is drawn without",
+                                    document_.path().string(), name));
     }
 
     std::vector<size_t> root_nodes() const {
@@ -212,7 +231,7 @@ class SceneReader {
 }  // namespace
 
 LoadedScene load_gltf(const std::filesystem::path& path) {
-    const MappedFile file(path);
+    const FileBytes file(path);
     return decode_gltf(file.bytes(), path);
 }
 

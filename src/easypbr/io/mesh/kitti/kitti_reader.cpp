@@ -36,7 +36,7 @@ void set_label_map(const fs::path& path, MeshData& mesh) {
 }
 
 void read_labels(const fs::path& path, MeshData& mesh) {
-    const MappedFile file(path);
+    const FileBytes file(path);
     const Source source(file, path);
     const size_t count = size_t(mesh.V.rows());
     if (file.size() != count * label_size)

@@ -10,9 +10,9 @@ namespace {
 constexpr std::array<size_t, 11> standard_sizes{20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
 constexpr uint8_t compressed_bits = 0xc0;
 
-class HeaderParser {
+class LasHeaderParser {
   public:
-    explicit HeaderParser(const Source& source) : source_(source), bytes_(source.bytes) {}
+    explicit LasHeaderParser(const Source& source) : source_(source), bytes_(source.bytes) {}
 
     LasHeader parse() {
         constexpr size_t smallest = 227;
@@ -141,7 +141,7 @@ class HeaderParser {
 
 LasHeader parse_las_header(const Source& source) {
     if (source.bytes.empty()) fail(source, "the file is empty");
-    return HeaderParser(source).parse();
+    return LasHeaderParser(source).parse();
 }
 
 size_t las_standard_size(int format) {

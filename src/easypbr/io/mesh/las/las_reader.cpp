@@ -15,7 +15,7 @@
 namespace easypbr::io {
 namespace {
 
-constexpr size_t grain = 1 << 16;
+constexpr size_t las_grain = 1 << 16;
 
 /// Seconds since some year are too many for float32: those of the first point's whole second are left out.
 void shorten_times(const char* first_record, std::vector<Property>& fields) {
@@ -38,7 +38,7 @@ void split_returns(bool new_layout, MeshData& mesh) {
     const int bits = new_layout ? 4 : 3, mask = (1 << bits) - 1;
     const Array1f both = found->values;
     Array1f::Dense number(both.rows()), total(both.rows());
-    parallel_for(size_t(both.rows()), grain, [&](size_t i) {
+    parallel_for(size_t(both.rows()), las_grain, [&](size_t i) {
         const int byte = int(both[Eigen::Index(i)]);
         number[Eigen::Index(i)] = float(byte & mask);
         total[Eigen::Index(i)] = float(byte >> bits & mask);
@@ -50,14 +50,14 @@ void split_returns(bool new_layout, MeshData& mesh) {
 void clear_class_flags(MeshData& mesh) {
     Array1i::Dense L(mesh.L.rows());
     constexpr int32_t class_bits = 31;
-    parallel_for(size_t(L.rows()), grain,
+    parallel_for(size_t(L.rows()), las_grain,
                  [&](size_t i) { L[Eigen::Index(i)] = mesh.L[Eigen::Index(i)] & class_bits; });
     mesh.L = std::move(L);
 }
 
 bool is_zero(const float* values, size_t count) {
     std::atomic<bool> zero{true};
-    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
+    parallel_chunks(count, las_grain, [&](size_t begin, size_t end) {
         if (zero && std::any_of(values + begin, values + end, [](float v) { return v != 0; })) zero = false;
     });
     return zero;

@@ -7,11 +7,11 @@
 namespace easypbr::io {
 namespace {
 
-constexpr size_t most_columns = 1000;
+constexpr size_t most_npy_columns = 1000;
 
 /// Names for the columns of a plain array of positions and what stands behind them.
 std::vector<std::string> point_columns(const Source& source, const NpyArray& array) {
-    if (array.shape.size() < 2 || array.columns() < 3 || array.columns() > most_columns)
+    if (array.shape.size() < 2 || array.columns() < 3 || array.columns() > most_npy_columns)
         fail(source, fmt::format("an array of shape n x 3 or with more columns, or a structured one, "
                                  "expected; got {}",
                                  array.shape_text()));

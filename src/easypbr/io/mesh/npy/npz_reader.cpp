@@ -19,11 +19,11 @@ using Integers = Eigen::Matrix<int32_t, Eigen::Dynamic, 1>;
 /// Columns of an array without a meaning that become scalars each.
 constexpr size_t most_scalars = 16;
 
-const Names position_names{"v",      "vertices", "points", "xyz", "pos",        "position",   "positions",
+const Names npz_positions{"v",      "vertices", "points", "xyz", "pos",        "position",   "positions",
                            "coords", "coord",    "pc",     "pcd", "pointcloud", "point_cloud"};
 const Names face_names{"f", "faces", "triangles"};
 const Names edge_names{"e", "edges"};
-const Names label_names{"l", "labels", "label"};
+const Names npz_labels{"l", "labels", "label"};
 
 /// What an array for the points may be called, and what its columns are then.
 struct Role {
@@ -37,7 +37,7 @@ const std::vector<Role> roles{
     {{"uv", "uvs", "texcoords"}, {"u", "v"}, 2},
     {{"t", "tangents"}, {"tx", "ty", "tz"}, 3},
     {{"b", "bitangent_lengths"}, {"bitangent_length"}, 1},
-    {label_names, {"label"}, 1},
+    {npz_labels, {"label"}, 1},
     {{"i", "intensity", "intensities"}, {"intensity"}, 1}};
 
 bool contains(const Names& names, std::string_view name) {
@@ -81,11 +81,11 @@ class NpzReader {
     }
 
     MeshData read() {
-        const NamedArray* positions = find(position_names);
+        const NamedArray* positions = find(npz_positions);
         if (!positions && arrays_.size() == 1) positions = &arrays_[0];
         if (!positions)
             fail(source_, fmt::format("no array of positions; it would be called {}",
-                                      fmt::join(position_names, ", ")));
+                                      fmt::join(npz_positions, ", ")));
         if (const NamedArray* faces = find(face_names)) read_faces(*faces);
         std::vector<BinaryTable> tables{point_table(positions->source, positions->array)};
         points_ = positions->array.rows();
@@ -109,7 +109,7 @@ class NpzReader {
             array.array = parse_npy(array.source, entry.bytes);
             arrays_.push_back(std::move(array));
         } catch (const FormatError& error) {
-            if (contains(position_names, array.lower_name)) throw;
+            if (contains(npz_positions, array.lower_name)) throw;
             log_warning(fmt::format("array '{}' is left out: {}", name, error.what()));
         }
     }
@@ -207,7 +207,7 @@ class NpzReader {
     void add_face_values() {
         if (mesh_.F.rows() == mesh_.V.rows()) return;
         for (const NamedArray* named : face_values_) {
-            if (contains(label_names, named->lower_name) && mesh_.L.empty())
+            if (contains(npz_labels, named->lower_name) && mesh_.L.empty())
                 mesh_.L = of_triangles(values_of<Integers>(*named));
             else if (std::ranges::none_of(mesh_.scalars,
                                           [&](const ScalarArray& s) { return s.name == named->name; }))

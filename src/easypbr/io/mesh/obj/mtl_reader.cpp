@@ -13,7 +13,7 @@
 namespace easypbr::io {
 namespace {
 
-std::string lower(std::string_view word) {
+std::string lower_case(std::string_view word) {
     std::string text(word);
     std::transform(text.begin(), text.end(), text.begin(),
                    [](unsigned char c) { return char(std::tolower(c)); });
@@ -40,7 +40,7 @@ class MtlParser {
 
     std::map<std::string, Material> parse() {
         for (p_ = source_.begin(); p_ != end_; p_ = next_line(p_, end_)) {
-            const std::string keyword = lower(read_word(p_, end_));
+            const std::string keyword = lower_case(read_word(p_, end_));
             if (keyword == "newmtl") {
                 finish();
                 entry_.emplace();
@@ -140,7 +140,7 @@ class MtlParser {
         bool clamp = false;
         int channel = 0;
         for (p_ = skip_blanks(p_, end_); p_ != end_ && *p_ == '-'; p_ = skip_blanks(p_, end_)) {
-            const std::string option = lower(read_word(p_, end_));
+            const std::string option = lower_case(read_word(p_, end_));
             if (option == "-s")
                 scale = pair(scale);
             else if (option == "-o")

@@ -18,9 +18,9 @@
 namespace easypbr::io {
 namespace {
 
-constexpr size_t chunk_bytes = 1 << 20;
-constexpr size_t slab = 64;  ///< chunks after which the memory of the text before is given back
-constexpr size_t grain = 1 << 15;
+constexpr size_t obj_chunk_bytes = 1 << 20;
+constexpr size_t obj_slab = 64;  ///< chunks after which the memory of the text before is given back
+constexpr size_t obj_grain = 1 << 15;
 
 /// Whether the line feed before `place` is continued by a backslash.
 bool is_continued(std::string_view text, size_t place) {
@@ -31,7 +31,7 @@ bool is_continued(std::string_view text, size_t place) {
 
 std::vector<size_t> obj_chunk_starts(std::string_view text) {
     const char* end = text.data() + text.size();
-    std::vector<size_t> starts = line_chunks(text, chunk_bytes);
+    std::vector<size_t> starts = line_chunks(text, obj_chunk_bytes);
     for (size_t i = 1; i + 1 < starts.size(); ++i) {
         starts[i] = std::max(starts[i], starts[i - 1]);
         while (starts[i] < text.size() && is_continued(text, starts[i]))
@@ -44,8 +44,8 @@ std::vector<ObjChunk> parse_chunks(const Source& source, const Vec3d& offset) {
     const std::vector<size_t> starts = obj_chunk_starts(source.bytes);
     std::vector<ObjChunk> chunks(starts.size() - 1);
     Progress progress(source, source.bytes.size());
-    for (size_t first = 0; first < chunks.size(); first += slab) {
-        parallel_for(std::min(slab, chunks.size() - first), 1, [&](size_t k) {
+    for (size_t first = 0; first < chunks.size(); first += obj_slab) {
+        parallel_for(std::min(obj_slab, chunks.size() - first), 1, [&](size_t k) {
             const size_t i = first + k;
             chunks[i] =
                 parse_obj_chunk(source, source.bytes.substr(starts[i], starts[i + 1] - starts[i]), offset);
@@ -214,7 +214,7 @@ class ObjReader {
                 if (!read.insert(name).second) continue;
                 try {
                     const fs::path path = source_.path.parent_path() / name;
-                    const MappedFile file(path);
+                    const FileBytes file(path);
                     library.merge(read_mtl(Source(file, path), textures));
                 } catch (const Error& error) {
                     log_warning(
@@ -239,7 +239,7 @@ class ObjReader {
 
     void check_attribute(ObjIndex kind, size_t count, std::string_view what) const {
         std::atomic<bool> good{true};
-        parallel_for(attribute_[kind].size(), grain, [&](size_t i) {
+        parallel_for(attribute_[kind].size(), obj_grain, [&](size_t i) {
             if (attribute_[kind][i] >= int64_t(count)) good = false;
         });
         if (good) return;
@@ -277,7 +277,7 @@ class ObjReader {
     bool indices_agree() const {
         std::atomic<bool> agree{true};
         for (const auto& attribute : attribute_)
-            parallel_chunks(attribute.size(), grain, [&](size_t begin, size_t end) {
+            parallel_chunks(attribute.size(), obj_grain, [&](size_t begin, size_t end) {
                 if (agree && !std::equal(attribute.begin() + ptrdiff_t(begin),
                                          attribute.begin() + ptrdiff_t(end), faces_.values.data() + begin))
                     agree = false;
@@ -290,7 +290,7 @@ class ObjReader {
         const auto index = [&](ObjIndex kind, size_t corner) {
             return uint64_t(uint32_t(attribute_[kind].empty() ? no_index : attribute_[kind][corner]));
         };
-        parallel_for(keys.size(), grain,
+        parallel_for(keys.size(), obj_grain,
                      [&](size_t c) { keys[c] = index(obj_uv, c) << 32 | index(obj_normal, c); });
         return keys;
     }
@@ -300,7 +300,7 @@ class ObjReader {
     void take_rows(size_t count, UvIndex uv_index, NormalIndex normal_index) {
         if (!attribute_[obj_uv].empty()) {
             Array2f::Dense UV = Array2f::Dense::Zero(Eigen::Index(count), 2);
-            parallel_for(count, grain, [&](size_t i) {
+            parallel_for(count, obj_grain, [&](size_t i) {
                 const int64_t row = uv_index(i);
                 if (row >= 0 && row < uv_.rows()) UV.row(Eigen::Index(i)) = uv_.row(row);
             });
@@ -308,7 +308,7 @@ class ObjReader {
         }
         if (attribute_[obj_normal].empty()) return;
         N_.setZero(Eigen::Index(count), 3);
-        parallel_for(count, grain, [&](size_t i) {
+        parallel_for(count, obj_grain, [&](size_t i) {
             const int64_t row = normal_index(i);
             if (row >= 0 && row < normals_.rows()) N_.row(Eigen::Index(i)) = normals_.row(row);
         });

@@ -10,14 +10,14 @@
 namespace easypbr::io {
 namespace {
 
-constexpr size_t grain = 1 << 14;
+constexpr size_t line_grain = 1 << 14;
 
 /// Lines made in parallel: write(row, out) appends those of one row.
 template <class Write>
 void append_lines(size_t count, std::string& out, Write&& write) {
-    std::vector<std::string> parts((count + grain - 1) / grain);
-    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
-        for (size_t row = begin; row < end; ++row) write(Eigen::Index(row), parts[begin / grain]);
+    std::vector<std::string> parts((count + line_grain - 1) / line_grain);
+    parallel_chunks(count, line_grain, [&](size_t begin, size_t end) {
+        for (size_t row = begin; row < end; ++row) write(Eigen::Index(row), parts[begin / line_grain]);
     });
     for (const std::string& part : parts) out += part;
 }

@@ -17,9 +17,9 @@ struct OffHeader {
     const char* body = nullptr;
 };
 
-class HeaderParser {
+class OffHeaderParser {
   public:
-    explicit HeaderParser(const Source& source) : source_(source), p_(source.begin()), end_(source.end()) {}
+    explicit OffHeaderParser(const Source& source) : source_(source), p_(source.begin()), end_(source.end()) {}
 
     OffHeader parse() {
         std::string_view word = next_word();
@@ -89,7 +89,7 @@ size_t words_in_row(const char* p, const char* end) {
 
 class OffReader {
   public:
-    explicit OffReader(const Source& source) : source_(source), header_(HeaderParser(source).parse()) {}
+    explicit OffReader(const Source& source) : source_(source), header_(OffHeaderParser(source).parse()) {}
 
     MeshData read() {
         if (header_.vertices == 0) fail(source_, "no vertices");

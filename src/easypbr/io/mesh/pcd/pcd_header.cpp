@@ -13,9 +13,9 @@ namespace {
 /// Values of one point: more than any file has, few enough for rows of less than a megabyte.
 constexpr size_t most_values = 100'000;
 
-class HeaderParser {
+class PcdHeaderParser {
   public:
-    explicit HeaderParser(const Source& source) : source_(source), p_(source.begin()), end_(source.end()) {}
+    explicit PcdHeaderParser(const Source& source) : source_(source), p_(source.begin()), end_(source.end()) {}
 
     PcdHeader parse() {
         while (!header_.body) {
@@ -148,7 +148,7 @@ class HeaderParser {
 }  // namespace
 
 PcdHeader parse_pcd_header(const Source& source) {
-    return HeaderParser(source).parse();
+    return PcdHeaderParser(source).parse();
 }
 
 }  // namespace easypbr::io

@@ -30,9 +30,9 @@ constexpr std::array<std::pair<std::string_view, ScalarType>, 16> type_names{{
     {"float64", ScalarType::float64},
 }};
 
-class HeaderParser {
+class PlyHeaderParser {
   public:
-    explicit HeaderParser(const Source& source) : source_(source), p_(source.begin()), end_(source.end()) {}
+    explicit PlyHeaderParser(const Source& source) : source_(source), p_(source.begin()), end_(source.end()) {}
 
     PlyHeader parse() {
         if (word() != "ply") fail_here("'ply' expected at the file's begin");
@@ -140,7 +140,7 @@ class HeaderParser {
 }  // namespace
 
 PlyHeader parse_ply_header(const Source& source) {
-    return HeaderParser(source).parse();
+    return PlyHeaderParser(source).parse();
 }
 
 }  // namespace easypbr::io

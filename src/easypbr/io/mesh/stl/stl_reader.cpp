@@ -19,8 +19,8 @@ namespace {
 
 constexpr size_t header_bytes = 84;
 constexpr size_t facet_bytes = 50;
-constexpr size_t grain = 1 << 15;
-constexpr size_t chunk_bytes = 1 << 20;
+constexpr size_t stl_grain = 1 << 15;
+constexpr size_t stl_chunk_bytes = 1 << 20;
 
 /// Positions of triangle corners, three floats each.
 using Corners = Eigen::VectorXf;
@@ -53,7 +53,7 @@ Corners read_binary(const Source& source) {
     if (count > INT32_MAX / 3) fail(source, "more facets than a mesh can hold");
     Corners corners(Eigen::Index(count * 9));
     Progress progress(source, source.bytes.size());
-    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
+    parallel_chunks(count, stl_grain, [&](size_t begin, size_t end) {
         for (size_t i = begin; i < end; ++i)
             std::memcpy(corners.data() + i * 9, source.begin() + header_bytes + i * facet_bytes + 12, 36);
         progress.advance((end - begin) * facet_bytes);
@@ -61,9 +61,9 @@ Corners read_binary(const Source& source) {
     return corners;
 }
 
-/// Pieces of about `chunk_bytes` that begin with a line "facet ...".
+/// Pieces of about `stl_chunk_bytes` that begin with a line "facet ...".
 std::vector<size_t> facet_chunks(const Source& source) {
-    std::vector<size_t> starts = line_chunks(source.bytes, chunk_bytes);
+    std::vector<size_t> starts = line_chunks(source.bytes, stl_chunk_bytes);
     for (size_t i = 1; i + 1 < starts.size(); ++i) {
         const char* p = source.begin() + std::max(starts[i], starts[i - 1]);
         while (p != source.end() && !starts_with_word(p, source.end(), "facet"))
@@ -118,7 +118,7 @@ Corners read_text(const Source& source) {
 void weld(Corners&& corners, MeshData& mesh) {
     const size_t count = size_t(corners.size()) / 3;
     // Adding zero makes -0 and 0 the same.
-    parallel_for(size_t(corners.size()), grain, [&](size_t i) { corners[Eigen::Index(i)] += 0.0f; });
+    parallel_for(size_t(corners.size()), stl_grain, [&](size_t i) { corners[Eigen::Index(i)] += 0.0f; });
     Array3i::Dense F(Eigen::Index(count / 3), 3);
     auto* remap = reinterpret_cast<unsigned*>(F.data());
     const size_t vertices =

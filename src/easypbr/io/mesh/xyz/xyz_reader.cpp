@@ -43,9 +43,10 @@ Samples sample(const Source& source, const TextRows& rows) {
 }
 
 /// A column for each cell of the rows; those of words are skipped.
-Element describe(const Source& source, const TextLayout& layout, const Samples& samples, size_t count) {
-    const bool pts = extension_of(source.path) == "pts";
-    std::vector<std::string> names = layout.names.empty() ? guess_columns(samples.rows, pts) : layout.names;
+Element describe(const Source& source, const TextLayout& layout, const Samples& samples, size_t count,
+                 bool is_pts) {
+    std::vector<std::string> names =
+        layout.names.empty() ? guess_columns(samples.rows, is_pts) : layout.names;
     if (!layout.names.empty() && names.size() > samples.is_text.size() && !samples.rows.empty())
         fail_at_line(source, layout.body,
                      fmt::format("{} columns expected, as in the header, found {}", names.size(),
@@ -67,7 +68,7 @@ Element describe(const Source& source, const TextLayout& layout, const Samples& 
 
 }  // namespace
 
-MeshData read_xyz(const Source& source) {
+MeshData read_xyz(const Source& source, bool is_pts) {
     if (source.bytes.empty()) fail(source, "the file is empty");
     const TextLayout layout = find_text_layout(source);
     const TextRows rows(source, layout.body, layout.style);
@@ -75,7 +76,8 @@ MeshData read_xyz(const Source& source) {
     if (count < rows.count())
         log_warning(fmt::format("{}: {} rows behind the {} points that the file says it has are left out",
                                 source.path.string(), rows.count() - count, count));
-    MeshData mesh = read_text_cloud(source, rows, describe(source, layout, sample(source, rows), count));
+    MeshData mesh =
+        read_text_cloud(source, rows, describe(source, layout, sample(source, rows), count, is_pts));
     drop_points_without_position(source, mesh);
     return mesh;
 }

@@ -13,7 +13,7 @@ namespace {
 
 constexpr int tile_size = 64;
 constexpr size_t tile_pixels = size_t(tile_size) * tile_size;
-constexpr size_t grain = 1 << 13;
+constexpr size_t surfel_grain = 1 << 13;
 /// Sums are whole multiples of this. A pixel holds 2^31 surfels of full weight before one overflows.
 constexpr float quantum = 1.0f / (1 << 20);
 
@@ -81,7 +81,7 @@ void SoftwareSurfels::bin(const std::vector<Source>& sources, Vec2i tiles) {
     };
     const auto for_each_surfel = [&](auto&& body) {
         for (size_t k = 0; k < sources.size(); ++k)
-            parallel_for(size_t(sources[k].item->mesh().V.rows()), grain, [&](size_t i) {
+            parallel_for(size_t(sources[k].item->mesh().V.rows()), surfel_grain, [&](size_t i) {
                 if (!is_there(*sources[k].item, Eigen::Index(i))) return;
                 if (const auto s = sources[k].projector.project(Eigen::Index(i)))
                     for_each_tile(*s, [&](size_t tile) { body(tile, uint64_t(k) << 32 | i); });
@@ -181,9 +181,9 @@ void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<Source>& s
 }
 
 void SoftwareSurfels::draw(const Frame& frame, const std::vector<Source>& sources,
-                           const std::vector<float>& opaque, NativePixels& pixels) {
+                           const std::vector<float>& opaque, bool with_ids, NativePixels& pixels) {
     const Vec2i tiles = (frame.size.array() + tile_size - 1) / tile_size;
-    pixels.resize({0, 0, frame.size.x(), frame.size.y()}, frame.with_ids);
+    pixels.resize({0, 0, frame.size.x(), frame.size.y()}, with_ids);
     bin(sources, tiles);
     parallel_for(size_t(tiles.x()) * size_t(tiles.y()), 1, [&](size_t tile) {
         const std::span<const uint64_t> surfels(entries_.data() + first_[tile],

@@ -117,7 +117,7 @@ class SceneConverter {
 using namespace easypbr;
 
 void easypbr_assimp_load(const std::filesystem::path& path, io::LoadedScene& out) {
-    const MappedFile readable(path);
+    check_readable(path);
     Assimp::Importer importer;
     const aiScene* scene = importer.ReadFile(path.string(), io::steps);
     if (!scene || !scene->mRootNode)

@@ -1,0 +1,82 @@
+"""Standard input as a mesh, standard output that is full, and what is no regular file."""
+import json
+import os
+import subprocess
+
+import numpy as np
+import pytest
+
+import png
+import shapes
+from binary import BINARY
+
+
+@pytest.fixture
+def piped(environment, tmp_path):
+    """Runs the command line with bytes as its standard input; returns the finished process."""
+
+    def run(*arguments, data, code=0):
+        command = [str(BINARY), *map(str, arguments)]
+        done = subprocess.run(command, input=data, capture_output=True, env=environment, cwd=tmp_path, timeout=300)
+        assert done.returncode == code, f"{command}\n{done.stderr!r}"
+        return done
+
+    return run
+
+
+@pytest.mark.parametrize("extension", ["ply", "obj", "glb"])
+def test_a_mesh_from_standard_input_gives_the_same_picture(easypbr, render, piped, box, tmp_path, extension):
+    easypbr("convert", box, f"box.{extension}")
+    render(f"box.{extension}", "-o", "file.png")
+    data = (tmp_path / f"box.{extension}").read_bytes()
+    piped("render", "-", "-o", "piped.png", "--size", "64x48", "--samples", "1", data=data)
+    assert np.array_equal(png.read(tmp_path / "piped.png"), png.read(tmp_path / "file.png"))
+
+
+def test_other_commands_read_standard_input(piped, box, tmp_path):
+    data = box.read_bytes()
+    assert json.loads(piped("info", "-", "--json", data=data).stdout)["faces"] == 12
+    piped("convert", "-", "out.ply", data=data)
+    assert (tmp_path / "out.ply").read_bytes().startswith(b"ply")
+
+
+def test_a_format_that_cannot_be_told_is_named(piped):
+    points = np.arange(8, dtype="<f4").tobytes()
+    error = piped("info", "-", data=points, code=1).stderr.decode()
+    assert "standard input: its format cannot be told" in error and "--format" in error
+    assert json.loads(piped("info", "-", "--json", "--format", "bin", data=points).stdout)["vertices"] == 2
+    assert "did you mean 'ply'" in piped("info", "-", "--format", "plyy", data=points, code=1).stderr.decode()
+    assert "standard input: there is nothing to read" in piped("info", "-", data=b"", code=1).stderr.decode()
+
+
+def test_standard_input_is_read_once(piped, box):
+    assert b"once" in piped("render", "-", "-", "-o", "a.png", data=box.read_bytes(), code=2).stderr
+
+
+def test_a_file_may_have_another_format_than_its_extension(easypbr, box, tmp_path):
+    (tmp_path / "box.dat").write_bytes(box.read_bytes())
+    assert "box.dat" in easypbr("info", "box.dat", code=1).stderr
+    assert "faces       12\n" in easypbr("info", "box.dat", "--format", "obj").stdout
+
+
+@pytest.mark.parametrize("arguments", [("info", "{box}"), ("info", "--json", "{box}"), ("doctor",), ("--help",),
+                                       ("--version",), ("render", "--help"), ("compare", "a.png", "a.png")])
+def test_full_standard_output_is_an_error(easypbr, environment, box, tmp_path, arguments):
+    if "compare" in arguments:
+        easypbr("render", box, "-o", "a.png", "--size", "16x16", "--samples", "1")
+    command = [str(BINARY), *(a.format(box=box) for a in arguments)]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, env=environment, cwd=tmp_path)
+    assert done.returncode == 1
+    assert "easypbr: error: cannot write" in done.stderr and "No space left" in done.stderr
+
+
+@pytest.mark.parametrize("option", ["--env", "--settings", "--camera-path", "--label-map", "--shader", "--pass",
+                                    "--camera-pose", "--background"])
+def test_a_pipe_is_no_file(render, box, tmp_path, option):
+    # Extensions that the options take; a pipe without a writer would block whoever opens it as a file.
+    pipe = tmp_path / ("pipe.png" if option == "--background" else "pipe.exr" if option == "--env" else "pipe.json")
+    os.mkfifo(pipe)
+    error = render(box, "-o", "out.png", option, pipe, code=1).stderr
+    assert f"cannot read {pipe}: it is a pipe, not a regular file" in error
+    assert "it is a pipe" in render(pipe, "-o", "out.png", code=1).stderr
