@@ -36,7 +36,7 @@ docs: setup-tests build
 	scripts/docs.sh
 
 format:
-	clang-format -i $$(git ls-files 'src/**.h' 'src/**.cpp' 'tests/**.h' 'tests/**.cpp' 'examples/**.cpp')
+	clang-format -i $$(git ls-files 'include/**.h' 'src/**.h' 'src/**.cpp' 'tests/**.h' 'tests/**.cpp' 'examples/**.cpp')
 
 # Without precompiled headers, which clang-tidy cannot read; also shows includes that are missing.
 lint: setup

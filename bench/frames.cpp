@@ -12,7 +12,8 @@
 #include <string>
 #include <vector>
 
-#include "easypbr/core/compare.h"
+#include "easypbr/app/session.h"
+#include "easypbr/core/image.h"
 #include "easypbr/easypbr.h"
 
 namespace {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "easypbr/app/session.h"
 #include "easypbr/easypbr.h"
 
 namespace {

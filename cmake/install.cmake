@@ -1,4 +1,4 @@
-# Headers stand beside their sources and are installed as they are: #include <easypbr/scene/mesh.h> inside and outside.
+# The public headers are installed as they are: #include <easypbr/scene/mesh.h> inside and outside.
 include(CMakePackageConfigHelpers)
 install(TARGETS easypbr EXPORT easypbrTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
 if(TARGET easypbr_assimp)
@@ -8,9 +8,7 @@ if(TARGET easypbr_ffmpeg)
   install(TARGETS easypbr_ffmpeg LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
 endif()
 install(TARGETS easypbr_program RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR} COMPONENT library)
-install(DIRECTORY src/easypbr DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library
-        FILES_MATCHING PATTERN "*.h" PATTERN cli EXCLUDE PATTERN python EXCLUDE PATTERN tools EXCLUDE PATTERN module EXCLUDE
-        PATTERN ffmpeg EXCLUDE)
+install(DIRECTORY include/easypbr DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} COMPONENT library)
 install(EXPORT easypbrTargets NAMESPACE easypbr:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/easypbr COMPONENT library)
 configure_package_config_file(cmake/easypbrConfig.cmake.in ${PROJECT_BINARY_DIR}/easypbrConfig.cmake
                               INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/easypbr)

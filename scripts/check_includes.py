@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Checks who includes whom: rooms use only what they may, sub-rooms only those below them, the Python package no circle.
+"""Checks who includes whom: rooms use only what they may, sub-rooms only those below them, public headers only public
+ones, Eigen and the standard library, the Python package no circle.
 
 usage: check_includes.py [ROOT]      exit code 1 and one line per violation
 """
@@ -34,8 +35,13 @@ SUBROOMS = {
     "io": ["source", "archive", "tables", "image", "video", "settings", "mesh"],
 }
 # The face of a sub-room lists what stands in its folders: the one direction from a sub-room down into them.
-FACES = {"io/mesh/mesh_io.cpp", "io/video/video_loader.cpp", "render/primitives/surfaces.h"}
-INCLUDE = re.compile(r'#include\s+["<]easypbr/([\w/]+)\.h')
+FACES = {"io/mesh/mesh_io.cpp", "io/video/video_loader.cpp", "render/primitives/surfaces.h", "render/effects/effects.cpp"}
+INCLUDE = re.compile(r'#\s*include\s+["<]easypbr/([\w/]+)\.h')
+ANY_INCLUDE = re.compile(r'#\s*include\s+["<]([^">]+)[">]')
+# What programs see is small; see docs/cpp.md.
+PUBLIC = "include/easypbr"
+MOST_PUBLIC = 45
+FOREIGN = re.compile(r"Eigen/(Core|Geometry)|[a-z_]+")  # Eigen, and headers of the standard library, which have no ending
 
 
 def place_of(path: str) -> tuple[str, str, str]:
@@ -45,7 +51,7 @@ def place_of(path: str) -> tuple[str, str, str]:
 
 
 def fault(source: str, target: str) -> str | None:
-    """What is wrong with a file of src/easypbr including another; None: nothing."""
+    """What is wrong with a file including another; None: nothing."""
     room, subroom, folder = place_of(source)
     other, other_subroom, other_folder = place_of(target)
     if not other:
@@ -64,10 +70,15 @@ def fault(source: str, target: str) -> str | None:
     return None
 
 
+def sources_of(root: pathlib.Path) -> Iterator[tuple[pathlib.Path, str]]:
+    """All headers and sources, each with its path as it is included."""
+    for folder in (root / PUBLIC, root / "src/easypbr"):
+        for path in sorted([*folder.rglob("*.h"), *folder.rglob("*.cpp")]):
+            yield path, str(path.relative_to(folder))
+
+
 def include_faults(root: pathlib.Path) -> Iterator[str]:
-    sources = root / "src/easypbr"
-    for path in sorted([*sources.rglob("*.h"), *sources.rglob("*.cpp")]):
-        source = str(path.relative_to(sources))
+    for path, source in sources_of(root):
         room, subroom, _ = place_of(source)
         if room and room not in ROOMS or room in SUBROOMS and subroom not in SUBROOMS[room]:
             yield f"{path.relative_to(root)}: no room of this name is known"
@@ -76,6 +87,24 @@ def include_faults(root: pathlib.Path) -> Iterator[str]:
             if match := INCLUDE.match(line):
                 if what := fault(source, match[1]):
                     yield f"{path.relative_to(root)}:{number}: {what}"
+
+
+def public_faults(root: pathlib.Path) -> Iterator[str]:
+    """Public headers stand on their own, are few, and have no private twin."""
+    folder = root / PUBLIC
+    public = {str(path.relative_to(folder.parent)): path for path in sorted(folder.rglob("*.h"))}
+    if len(public) > MOST_PUBLIC:
+        yield f"{PUBLIC}: expected at most {MOST_PUBLIC} headers, got {len(public)}"
+    for path in sorted(folder.rglob("*")):
+        if path.is_file() and path.suffix != ".h":
+            yield f"{path.relative_to(root)}: expected headers alone, which are installed"
+    for name, path in public.items():
+        if (root / "src" / name).exists():
+            yield f"src/{name}: stands for {path.relative_to(root)} too"
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            match = ANY_INCLUDE.match(line)
+            if match and match[1] not in public and not FOREIGN.fullmatch(match[1]):
+                yield f"{path.relative_to(root)}:{number}: a public header may not include {match[1]}"
 
 
 def module_imports(package: pathlib.Path, path: pathlib.Path, modules: set[str]) -> Iterator[str]:
@@ -116,6 +145,6 @@ def import_faults(root: pathlib.Path) -> Iterator[str]:
 
 if __name__ == "__main__":
     base = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
-    found = [*include_faults(base), *import_faults(base)]
-    print("\n".join(found) or "includes: every room uses only what it may")
+    found = [*include_faults(base), *public_faults(base), *import_faults(base)]
+    print("\n".join(found) or "includes: every room uses only what it may, public headers are public")
     sys.exit(1 if found else 0)

@@ -9,33 +9,31 @@ namespace {
 using namespace easypbr;
 
 /// Draws outline.frag over each frame, so that its lines are smoothed with everything else.
-class OutlinePass : public render::Pass {
+class OutlinePass : public app::Pass {
   public:
-    explicit OutlinePass(const std::string& file) : program_("screen_triangle.vert", file) {}
+    explicit OutlinePass(const std::string& file) : shader_(std::filesystem::path(file)) {}
 
     Vec3 color{0.02f, 0.02f, 0.03f};  ///< linear
     float width = 2;                  ///< pixels
 
-    void draw(const render::PassInput& input) override {
+    void draw(const app::PassInput& input) override {
+        shader_.set("u_color", color);
+        shader_.set("u_width", width);
         // Compiled anew when the file has changed; a mistake in it is a ShaderError that names its line.
-        const gl::Program& program = program_.get(input.defines());
-        program.set("u_color", color);
-        program.set("u_width", width);
         // G-buffer and camera are bound where the shader has uniforms for them.
-        input.draw(program);
+        input.draw(shader_);
     }
 
-    uint64_t revision() const override { return program_.revision(); }
+    uint64_t revision() const override { return shader_.revision(); }
 
   private:
-    gl::WatchedProgram program_;
+    app::FragmentShader shader_;
 };
 
 }  // namespace
 
 int main(int count, char** arguments) {
-    // A path needs a folder in it to be told from the library's own shaders.
-    const std::string file = count > 1 ? arguments[1] : "./outline.frag";
+    const std::string file = count > 1 ? arguments[1] : "outline.frag";
     try {
         Scene scene;
         Mesh teapot = make_teapot();
@@ -45,7 +43,7 @@ int main(int count, char** arguments) {
         scene.show(teapot, "teapot");
         Viewer view(scene);
         view.settings().image.size = Vec2i(800, 600);
-        view.add_pass("outline", render::Stage::overlay, std::make_shared<OutlinePass>(file));
+        view.add_pass("outline", app::Stage::overlay, std::make_shared<OutlinePass>(file));
         view.recorder.record("outline.png");
     } catch (const Error& error) {
         std::fprintf(stderr, "%s\n", error.what());

@@ -276,13 +276,13 @@ TEST(OwnShader, MayHaveLongLines) {
     }
 }
 
-std::shared_ptr<render::Pass> pass_of(const std::string& body, render::Blend blend = render::Blend::over) {
+std::shared_ptr<Pass> pass_of(const std::string& body, Blend blend = Blend::over) {
     const std::string head =
         "#include \"common_camera.glsl\"\n#include \"common_encoding.glsl\"\n"
         "uniform sampler2D u_albedo, u_normal, u_material, u_depth_target, u_image;\n"
         "layout(location = 0) out vec4 o_color;\n"
         "vec4 at(sampler2D target) { return textureLod(target, gl_FragCoord.xy / u_size, 0.0); }\n";
-    return std::make_shared<render::ShaderPass>("body", head + "void main() { " + body + " }", blend);
+    return std::make_shared<ShaderPass>("body", head + "void main() { " + body + " }", blend);
 }
 
 // Each target of the G-buffer is bound under its name.
@@ -293,7 +293,7 @@ TEST(OwnPass, ReadsTheGBuffer) {
     material.shader = {};
     Session session = square_session({}, material);
     const auto show = [&](const std::string& body) {
-        session.add_pass("own", render::Stage::light, pass_of(body, render::Blend::replace));
+        session.add_pass("own", Stage::light, pass_of(body, Blend::replace));
         return middle_of(render_linear(session));
     };
     EXPECT_NEAR(show("o_color = at(u_albedo);").x(), 0.25, 0.5 / 65535);
@@ -307,17 +307,17 @@ TEST(OwnPass, ReadsTheGBuffer) {
 TEST(OwnPass, DrawsBeforeOrPastTheToneCurve) {
     Session session = square_session({"void surface(inout Surface s) { s.emission = vec3(0.125); }"});
     session.settings().tonemap.exposure = 2.0f;
-    session.add_pass("own", render::Stage::light, pass_of("o_color = vec4(0.25, 0.0, 0.0, 0.5);"));
+    session.add_pass("own", Stage::light, pass_of("o_color = vec4(0.25, 0.0, 0.0, 0.5);"));
     // 0.25 + (1 - 0.5) 0.125 = 0.3125, times the exposure.
     const auto encoded = [](double linear) {
         return 255 * (linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1 / 2.4) - 0.055);
     };
     const auto red = [&] { return double(session.render().at<uint8_t>(side / 2, side / 2)[0]); };
     EXPECT_NEAR(red(), encoded(0.625), 0.51);  // half a step of 8 bits
-    session.add_pass("own", render::Stage::overlay, pass_of("o_color = vec4(0.25, 0.0, 0.0, 0.5);"));
+    session.add_pass("own", Stage::overlay, pass_of("o_color = vec4(0.25, 0.0, 0.0, 0.5);"));
     EXPECT_NEAR(red(), encoded(0.25 + 0.5 * 0.25), 0.51);
-    session.add_pass("own", render::Stage::picture,
-                     pass_of("o_color = vec4(1.0 - at(u_image).rgb, 1.0);", render::Blend::replace));
+    session.add_pass("own", Stage::picture,
+                     pass_of("o_color = vec4(1.0 - at(u_image).rgb, 1.0);", Blend::replace));
     EXPECT_NEAR(red(), 255 - encoded(0.25), 1.01);  // two roundings to 8 bits
     session.remove_pass("own");
     EXPECT_NEAR(red(), encoded(0.25), 0.51);
@@ -331,7 +331,7 @@ TEST(OwnPass, DrawsWhereNothingIs) {
     Session session = plain_session(scene, side);
     look_from(session, Vec3d(0, 0, 5));
     for (const int samples : {1, 4})
-        for (const render::Stage stage : {render::Stage::light, render::Stage::overlay}) {
+        for (const Stage stage : {Stage::light, Stage::overlay}) {
             session.add_pass("own", stage, pass_of("o_color = vec4(0.0, 1.0, 0.0, 1.0);"));
             const Image picture = session.render({std::nullopt, samples});
             EXPECT_EQ(picture.at<uint8_t>(0, 0)[1], 255) << samples;
@@ -342,16 +342,16 @@ TEST(OwnPass, DrawsWhereNothingIs) {
 TEST(OwnPass, IsNotForLayers) {
     Session session = square_session({});
     const Vec4 before = middle_of(session.render_layers({"albedo"}).at("albedo"));
-    session.add_pass("own", render::Stage::light, pass_of("o_color = vec4(1.0);"));
+    session.add_pass("own", Stage::light, pass_of("o_color = vec4(1.0);"));
     session.render();
     EXPECT_EQ(middle_of(session.render_layers({"albedo"}).at("albedo")), before);
 }
 
 /// Leaves OpenGL in a state that would spoil whatever comes after.
-class RudePass : public render::Pass {
+class RudePass : public Pass {
   public:
-    void draw(const render::PassInput& input) override {
-        input.target.bind();
+    void draw(const PassInput& input) override {
+        input.bind();
         glEnable(GL_SCISSOR_TEST);
         glScissor(0, 0, 1, 1);
         glEnable(GL_CULL_FACE);
@@ -371,7 +371,7 @@ TEST(OwnPass, FailsUnderItsNameAndLeavesTheSessionUsable) {
     Session session = square_session({"void surface(inout Surface s) { s.emission = vec3(0.5); }"});
     const Image before = session.render();
     const auto pass = std::make_shared<RudePass>();
-    session.add_pass("rude", render::Stage::overlay, pass);
+    session.add_pass("rude", Stage::overlay, pass);
     pass->fails = true;
     try {
         session.render();
@@ -383,7 +383,7 @@ TEST(OwnPass, FailsUnderItsNameAndLeavesTheSessionUsable) {
     for (int times = 0; times < 2; ++times)
         EXPECT_EQ(session.render().at<uint8_t>(3, 3)[0], before.at<uint8_t>(3, 3)[0]);
     EXPECT_THROW(session.remove_pass("ruse"), NameError);
-    EXPECT_THROW(session.add_pass("none", render::Stage::light, nullptr), ArgumentError);
+    EXPECT_THROW(session.add_pass("none", Stage::light, nullptr), ArgumentError);
 }
 
 TEST(OwnPass, OfAFileIsReadAgainWhenItChanges) {
@@ -391,7 +391,7 @@ TEST(OwnPass, OfAFileIsReadAgainWhenItChanges) {
     const std::string head = "layout(location = 0) out vec4 o_color;\nvoid main() {\n";
     file.write(head + "o_color = vec4(1.0, 0.0, 0.0, 1.0); }");
     Session session = square_session({});
-    session.add_pass("own", render::Stage::overlay, std::make_shared<render::ShaderPass>(file.path()));
+    session.add_pass("own", Stage::overlay, std::make_shared<ShaderPass>(file.path()));
     const auto first = [&] { return int(session.render().at<uint8_t>(3, 3)[0]); };
     EXPECT_EQ(first(), 255);
     const uint64_t version = session.picture_version();
@@ -402,7 +402,7 @@ TEST(OwnPass, OfAFileIsReadAgainWhenItChanges) {
     EXPECT_NE(message.find("own.glsl:3"), message.npos) << message;
     file.write(head + "o_color = vec4(0.0, 0.0, 0.0, 1.0); }");
     EXPECT_EQ(first(), 0);
-    EXPECT_THROW(render::ShaderPass(fs::path("/tmp/easypbr/no/such.frag")), FileError);
+    EXPECT_THROW(ShaderPass(fs::path("/tmp/easypbr/no/such.frag")), FileError);
 }
 
 }  // namespace

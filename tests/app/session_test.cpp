@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "easypbr/app/output.h"
+#include "easypbr/core/image.h"
 #include "easypbr/core/compare.h"
 #include "easypbr/core/file.h"
 #include "easypbr/geometry/primitives.h"

@@ -1,9 +1,9 @@
 // Passes of a program's own in pictures that are drawn in tiles: the picture is that which is drawn at once.
 #include <gtest/gtest.h>
 
+#include "easypbr/app/custom_pass.h"
 #include "easypbr/app/session.h"
 #include "easypbr/geometry/primitives.h"
-#include "easypbr/render/pipeline/custom_pass.h"
 
 namespace easypbr::app {
 namespace {
@@ -32,17 +32,16 @@ void main() {
 }
 )";
 
-class TiledPasses : public testing::TestWithParam<render::Stage> {
+class TiledPasses : public testing::TestWithParam<Stage> {
   protected:
-    static Session session_with_pass(render::Stage stage) {
+    static Session session_with_pass(Stage stage) {
         Scene scene;
         scene.show(make_sphere(1, 32), "ball");
         Session session(scene);
         session.settings().image.size = Vec2i(700, 500);
         session.settings().image.samples = 1;
         session.settings().ssao.enabled = false;
-        session.add_pass("own", stage,
-                         std::make_shared<render::ShaderPass>("own.frag", shader, render::Blend::replace));
+        session.add_pass("own", stage, std::make_shared<ShaderPass>("own.frag", shader, Blend::replace));
         return session;
     }
 };
@@ -70,10 +69,8 @@ TEST_P(TiledPasses, DrawWhatTheyDrawAtOnce) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(Stages, TiledPasses,
-                         testing::Values(render::Stage::light, render::Stage::overlay,
-                                         render::Stage::picture),
-                         [](const auto& info) { return render::stage_names()[size_t(info.param)]; });
+INSTANTIATE_TEST_SUITE_P(Stages, TiledPasses, testing::Values(Stage::light, Stage::overlay, Stage::picture),
+                         [](const auto& info) { return stage_names()[size_t(info.param)]; });
 
 }  // namespace
 }  // namespace easypbr::app

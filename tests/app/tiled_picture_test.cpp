@@ -10,8 +10,8 @@
 #include <random>
 
 #include "easypbr/app/session.h"
-#include "easypbr/core/compare.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/image.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/geometry/surfels.h"
 #include "easypbr/io/image/image_io.h"

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 
-#include "easypbr/core/compare.h"
-
 using namespace easypbr;
 
 namespace {

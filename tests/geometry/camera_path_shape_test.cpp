@@ -1,4 +1,4 @@
-#include "easypbr/geometry/camera_path_shape.h"
+#include "easypbr/geometry/camera_shapes.h"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "easypbr/geometry/distance.h"
+#include "easypbr/geometry/nearest.h"
 
 #include <gtest/gtest.h>
 

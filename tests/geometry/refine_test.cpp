@@ -1,4 +1,4 @@
-#include "easypbr/geometry/refine.h"
+#include "easypbr/geometry/remesh.h"
 
 #include <gtest/gtest.h>
 

@@ -1,11 +1,11 @@
-#include "easypbr/geometry/simplify.h"
+#include "easypbr/geometry/remesh.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
 #include "easypbr/core/log.h"
-#include "easypbr/geometry/distance.h"
+#include "easypbr/geometry/nearest.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/geometry/repair.h"
 #include "easypbr/io/mesh/mesh_io.h"

@@ -1,4 +1,4 @@
-#include "easypbr/geometry/subsample.h"
+#include "easypbr/geometry/sample.h"
 
 #include <gtest/gtest.h>
 

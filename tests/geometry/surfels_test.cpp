@@ -5,7 +5,7 @@
 #include <limits>
 #include <random>
 
-#include "easypbr/geometry/kd_tree.h"
+#include "easypbr/geometry/nearest.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/scene/merge.h"

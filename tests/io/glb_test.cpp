@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
-#include "easypbr/core/compare.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/image.h"
 #include "easypbr/io/mesh/gltf/glb_writer.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "io/temporary_folder.h"

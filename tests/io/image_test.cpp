@@ -10,8 +10,8 @@
 #include <limits>
 #include <random>
 
-#include "easypbr/core/compare.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/image.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/scene/environment.h"
 #include "io/temporary_folder.h"

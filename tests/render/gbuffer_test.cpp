@@ -1,6 +1,6 @@
 #include <cmath>
 
-#include "easypbr/core/compare.h"
+#include "easypbr/core/image.h"
 #include "easypbr/render/frame/frame.h"
 #include "render_test.h"
 

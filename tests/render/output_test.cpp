@@ -1,7 +1,7 @@
 #include <cmath>
 
 #include "easypbr/core/color.h"
-#include "easypbr/core/compare.h"
+#include "easypbr/core/image.h"
 #include "render_test.h"
 
 namespace easypbr {

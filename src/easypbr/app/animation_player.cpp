@@ -24,6 +24,9 @@ void AnimationPlayer::rebuild_names() {
     }
 }
 
+AnimationPlayer::AnimationPlayer(const Clock& clock) : clock_(clock) {}
+AnimationPlayer::~AnimationPlayer() = default;
+
 void AnimationPlayer::add(const std::string& file, const Animations& animations) {
     const auto known = std::ranges::find(files_, file, &File::name);
     if (known != files_.end())

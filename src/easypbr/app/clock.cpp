@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
 #include <cmath>
 
 #include "easypbr/core/error.h"
@@ -22,7 +23,7 @@ void Clock::set_time(double time_s) {
     passed_ = 0;
     steps_ = 0;
     delta_ = 0;
-    last_.reset();
+    last_ns_.reset();
 }
 
 void Clock::tick() {
@@ -37,10 +38,11 @@ void Clock::advance() {
         delta_ = *step_;
         return;
     }
-    const Moment now = std::chrono::steady_clock::now();
-    delta_ = last_ ? std::chrono::duration<double>(now - *last_).count() : 0;
+    const auto passed = std::chrono::steady_clock::now().time_since_epoch();
+    const int64_t now_ns = std::chrono::nanoseconds(passed).count();
+    delta_ = last_ns_ ? double(now_ns - *last_ns_) * 1e-9 : 0;
     passed_ += delta_;
-    last_ = now;
+    last_ns_ = now_ns;
 }
 
 }  // namespace easypbr::app

@@ -3,23 +3,12 @@
 
 #include <memory>
 #include <optional>
-#include <string>
 
 #include "easypbr/app/lens.h"
+#include "easypbr/app/picture.h"
 #include "easypbr/render/pipeline/surface_frame.h"
 
 namespace easypbr::app {
-
-/// What lies under a pixel.
-struct Pick {
-    std::string object;  ///< name in the scene, "car/wheel" for a child
-    std::string part;    ///< name of the part of the mesh, empty where it has none and for points
-    int part_index = -1;
-    bool is_face = true;      ///< else a vertex: of a point, a surfel or a voxel
-    int element = -1;         ///< index of the face or vertex in the object's own data; the first in a voxel
-    Vec3d position{0, 0, 0};  ///< world, in the scene's frame
-    double depth = 0;         ///< along the optical axis
-};
 
 /// The surfaces of one view, kept so that a pointer that moves over them asks for no drawing.
 class PickBuffer {

@@ -5,6 +5,9 @@
 #include <chrono>
 #include <cmath>
 
+#include "easypbr/app/output.h"
+#include "easypbr/app/picture_ring.h"
+#include "easypbr/app/recording_target.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
@@ -52,12 +55,36 @@ class FrameProgress {
 
 }  // namespace
 
+struct Recorder::Recording {
+    std::filesystem::path path;
+    PictureOptions picture;
+    std::unique_ptr<FrameQueue> queue;
+    std::unique_ptr<PictureRing> ring;  ///< what is drawn, and not in the queue yet
+    Watcher watcher;
+    std::optional<double> step_before;  ///< the clock's, before the recording
+
+    void take(Image picture, int times);
+    /// All that is drawn is written, and the file finished. Throws the first failure.
+    void finish();
+};
+
+Recorder::Recorder(Session& session, Clock& clock) : session_(session), clock_(clock) {}
+Recorder::Recorder(Recorder&&) noexcept = default;
+
 Recorder::~Recorder() {
     try {
         stop();
     } catch (const std::exception& error) {
         log_warning(error.what());
     }
+}
+
+fs::path Recorder::record(const fs::path& path, const PictureOptions& options, bool deep) {
+    return render_to_file(session_, path, options, deep);
+}
+
+void Recorder::watch(Watcher watcher) {
+    require_recording().watcher = std::move(watcher);
 }
 
 void Recorder::start(const fs::path& path, const RecordingOptions& options) {

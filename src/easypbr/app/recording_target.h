@@ -7,16 +7,9 @@
 
 #include "easypbr/app/frame_queue.h"
 #include "easypbr/app/output.h"
+#include "easypbr/app/recorder.h"
 
 namespace easypbr::app {
-
-struct RecordingOptions {
-    double fps = 30;
-    std::optional<Vec2i> size = std::nullopt;   ///< none: the settings'
-    std::optional<int> samples = std::nullopt;  ///< none: the settings'
-    std::string codec = {};  ///< FFmpeg's name of an encoder; empty: the usual one of the file's kind
-    bool deep = false;       ///< PNG with 16 bits
-};
 
 /// The path of frame `index` for "out/frame_%04d.png" or for a folder ("out/": out/frame_00000.png).
 std::filesystem::path frame_path(const std::filesystem::path& path, int index);

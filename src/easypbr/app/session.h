@@ -12,6 +12,7 @@
 #include "easypbr/app/lens.h"
 #include "easypbr/app/motion_memory.h"
 #include "easypbr/app/picking.h"
+#include "easypbr/app/picture.h"
 #include "easypbr/app/pinned_camera.h"
 #include "easypbr/app/prepared.h"
 #include "easypbr/app/scene_warnings.h"
@@ -27,20 +28,7 @@
 
 namespace easypbr::app {
 
-using render::Encoding;
-
-/// What to draw; a value that is not given comes from the settings.
-struct PictureOptions {
-    std::optional<Vec2i> size;
-    std::optional<int> samples;
-    Encoding encoding = Encoding::srgb8;
-};
-
-/// A moment that surfaces are drawn of instead of the session's own.
-struct Moment {
-    SceneSnapshot scene;
-    Camera camera;
-};
+class Pass;
 
 /// Seconds that the steps of the last picture took.
 struct Timing {
@@ -134,8 +122,8 @@ class Session {
     void set_view_point(const ViewPoint& view) { pin_view_point(settings_.camera, view); }
 
     /// Draws a pass of the program's own in every picture from now on; one of the same name is replaced. See
-    /// render/custom_pass.h.
-    void add_pass(const std::string& name, render::Stage stage, std::shared_ptr<render::Pass> pass);
+    /// app/custom_pass.h.
+    void add_pass(const std::string& name, Stage stage, std::shared_ptr<Pass> pass);
     /// Throws NameError when there is none of this name.
     void remove_pass(const std::string& name);
 

@@ -4,19 +4,21 @@
 #include <algorithm>
 #include <utility>
 
+#include "easypbr/app/pass_adapter.h"
 #include "easypbr/app/session.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/suggest.h"
 
 namespace easypbr::app {
 
-void Session::add_pass(const std::string& name, render::Stage stage, std::shared_ptr<render::Pass> pass) {
+void Session::add_pass(const std::string& name, Stage stage, std::shared_ptr<Pass> pass) {
     if (!pass) throw ArgumentError(fmt::format("pass '{}': expected a pass, got none", name));
-    const auto same = [&](const render::CustomPass& custom) { return custom.name == name; };
+    const render::CustomPass custom{name, stage, renderer_pass(std::move(pass))};
+    const auto same = [&](const render::CustomPass& other) { return other.name == name; };
     if (const auto old = std::ranges::find_if(passes_, same); old != passes_.end())
-        *old = {name, stage, std::move(pass)};
+        *old = custom;
     else
-        passes_.push_back({name, stage, std::move(pass)});
+        passes_.push_back(custom);
     if (device_->renderer) device_->renderer->set_passes(passes_);
 }
 

@@ -1,6 +1,7 @@
 #include <cmath>
 
 #include "easypbr/app/recorder.h"
+#include "easypbr/app/session.h"
 #include "easypbr/scene/offset.h"
 
 namespace easypbr::app {

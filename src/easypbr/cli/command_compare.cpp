@@ -4,7 +4,7 @@
 
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/console.h"
-#include "easypbr/core/compare.h"
+#include "easypbr/core/image.h"
 #include "easypbr/io/image/image_io.h"
 
 namespace easypbr::cli {

@@ -3,6 +3,7 @@
 #include <optional>
 
 #include "easypbr/app/output.h"
+#include "easypbr/app/session.h"
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/drawable.h"
 #include "easypbr/cli/render_options.h"

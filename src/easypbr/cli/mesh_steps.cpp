@@ -3,11 +3,9 @@
 #include <utility>
 
 #include "easypbr/geometry/place.h"
-#include "easypbr/geometry/refine.h"
+#include "easypbr/geometry/remesh.h"
 #include "easypbr/geometry/repair.h"
 #include "easypbr/geometry/sample.h"
-#include "easypbr/geometry/simplify.h"
-#include "easypbr/geometry/subsample.h"
 #include "easypbr/geometry/surfels.h"
 
 namespace easypbr::cli {

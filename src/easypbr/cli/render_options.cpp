@@ -251,13 +251,13 @@ void add_passes(const std::vector<std::string>& passes, app::Session& session) {
     for (const std::string& text : passes) {
         const size_t at = text.find('=');
         const std::string file = at == text.npos ? text : text.substr(at + 1);
-        render::Stage stage = render::Stage::overlay;
+        Stage stage = Stage::overlay;
         try {
-            if (at != text.npos) stage = render::stage_named(text.substr(0, at));
+            if (at != text.npos) stage = stage_named(text.substr(0, at));
         } catch (const NameError& error) {
             throw UsageError(fmt::format("--pass: {}", error.what()));
         }
-        session.add_pass(file, stage, std::make_shared<render::ShaderPass>(std::filesystem::path(file)));
+        session.add_pass(file, stage, std::make_shared<app::ShaderPass>(std::filesystem::path(file)));
     }
 }
 

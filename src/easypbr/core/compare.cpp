@@ -1,4 +1,4 @@
-#include "easypbr/core/compare.h"
+#include "easypbr/core/image.h"
 
 #include <fmt/format.h>
 

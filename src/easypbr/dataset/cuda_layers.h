@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "easypbr/dataset/ground_truth.h"
+#include "easypbr/dataset/instances.h"
 #include "easypbr/gl/cuda.h"
 
 namespace easypbr::dataset {

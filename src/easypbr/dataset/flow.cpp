@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "easypbr/core/parallel.h"
-#include "easypbr/dataset/ground_truth.h"
+#include "easypbr/dataset/flow.h"
 #include "easypbr/dataset/layers.h"
 
 namespace easypbr::dataset {

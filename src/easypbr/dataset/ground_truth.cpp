@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "easypbr/core/suggest.h"
+#include "easypbr/dataset/flow.h"
 #include "easypbr/dataset/layers.h"
 
 namespace easypbr::dataset {

@@ -1,4 +1,4 @@
-// Annotations of what is in a picture, one for each instance: masks, boxes, pose, visibility.
+// Which instance each pixel belongs to, and annotations of each.
 #pragma once
 
 #include <algorithm>
@@ -6,49 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "easypbr/dataset/ground_truth.h"
 #include "easypbr/dataset/surfaces.h"
 
 namespace easypbr::dataset {
-
-/// What counts as an instance: an object shown with all its children, each node of its hierarchy, or each
-/// part (range of faces with a material) of each node.
-enum class InstancesBy { object, node, part };
-
-/// "object", "node", "part". Throws NameError with the nearest name.
-InstancesBy instances_by_named(const std::string& name);
-
-/// A rectangle of pixels that may lie outside of the picture; width 0: nothing. `width` counts pixels: from x
-/// to x + width - 1.
-using PixelBox = render::PixelRect;
-
-/// Pixels of a rectangle, 1 or 0, row by row.
-struct Bitmap {
-    PixelBox area;
-    std::vector<uint8_t> pixels;
-};
-
-struct Instance {
-    int id = 0;        ///< from 1 on, what the layer instance_id holds
-    std::string name;  ///< of the object, node, or node:part
-    int semantic_id = 0;
-
-    int pixels_visible = 0;
-    /// Of the instance alone: inside the picture, and on a canvas three times as wide and high around it.
-    int pixels_amodal_inside = 0, pixels_amodal = 0;
-    double visible_fraction = 0;  ///< visible / amodal, as BOP has it; 0 without amodal pixels
-    double truncation = 0;        ///< part of the amodal pixels that is outside of the picture
-    PixelBox box_visible, box_amodal;
-    Vec2i picture{0, 0};  ///< size of the picture
-    Bitmap visible;
-    Bitmap amodal;  ///< of the part inside the picture
-
-    Eigen::Affine3d T_world_obj = Eigen::Affine3d::Identity();
-    Eigen::Affine3d T_cam_obj = Eigen::Affine3d::Identity();  ///< OpenCV's camera axes
-    Box3d box;                                                ///< of all vertices, in the object's frame
-    /// Corners of the box: bit 0 of the row is x, bit 1 y, bit 2 z (0: least).
-    Eigen::Matrix<double, 8, 3> corners_world, corners_cam;
-    Eigen::Matrix<double, 8, 2> corners_px;  ///< NaN behind the camera
-};
 
 /// Which instance an object's part belongs to.
 class InstanceTable {

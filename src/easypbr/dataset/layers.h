@@ -2,6 +2,7 @@
 #pragma once
 
 #include "easypbr/dataset/ground_truth.h"
+#include "easypbr/dataset/instances.h"
 
 namespace easypbr::dataset {
 

@@ -1,4 +1,4 @@
-#include "easypbr/geometry/camera_frustum.h"
+#include "easypbr/geometry/camera_shapes.h"
 
 #include <array>
 

@@ -1,6 +1,5 @@
-#include "easypbr/geometry/camera_path_shape.h"
+#include "easypbr/geometry/camera_shapes.h"
 
-#include "easypbr/geometry/camera_frustum.h"
 #include "easypbr/geometry/require.h"
 
 namespace easypbr {

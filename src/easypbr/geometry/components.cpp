@@ -1,4 +1,4 @@
-#include "easypbr/geometry/components.h"
+#include "easypbr/geometry/place.h"
 
 #include <algorithm>
 

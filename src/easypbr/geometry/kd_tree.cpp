@@ -1,4 +1,4 @@
-#include "easypbr/geometry/kd_tree.h"
+#include "easypbr/geometry/nearest.h"
 
 #include <algorithm>
 #include <cmath>

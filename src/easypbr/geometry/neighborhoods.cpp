@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "easypbr/core/parallel.h"
-#include "easypbr/geometry/kd_tree.h"
+#include "easypbr/geometry/nearest.h"
 #include "easypbr/geometry/require.h"
 #include "easypbr/geometry/spatial_order.h"
 #include "easypbr/geometry/weld.h"

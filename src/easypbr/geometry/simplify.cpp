@@ -1,4 +1,4 @@
-#include "easypbr/geometry/simplify.h"
+#include "easypbr/geometry/remesh.h"
 
 #include <meshoptimizer.h>
 

@@ -8,7 +8,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/geometry/adjacency.h"
 #include "easypbr/geometry/gather.h"
-#include "easypbr/geometry/refine.h"
+#include "easypbr/geometry/remesh.h"
 #include "easypbr/geometry/require.h"
 #include "easypbr/geometry/weld.h"
 #include "easypbr/scene/normals.h"

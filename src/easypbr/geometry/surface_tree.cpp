@@ -3,8 +3,8 @@
 #include <limits>
 
 #include "easypbr/core/parallel.h"
-#include "easypbr/geometry/distance.h"
 #include "easypbr/geometry/gather.h"
+#include "easypbr/geometry/nearest.h"
 #include "easypbr/geometry/spatial_order.h"
 
 namespace easypbr {

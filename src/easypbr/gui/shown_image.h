@@ -1,19 +1,13 @@
 // How values become colours in the images beside the scene.
 #pragma once
 
-#include <optional>
-
+#include "easypbr/app/picture.h"
 #include "easypbr/core/image.h"
 #include "easypbr/scene/colormap.h"
 
 namespace easypbr::gui {
 
-/// How an image is shown. Its values are shown as they are: no curve is applied.
-struct ImageLook {
-    std::optional<float> min, max;  ///< black and white; none: 0 to 255 of u8, 0 to 65535 of u16, 0 to 1 of
-                                    ///< f32 in colour, all finite values of f32 with one channel
-    std::optional<Colormap> colormap;  ///< of one channel; none: grey, of f32 viridis
-};
+using app::ImageLook;
 
 /// The values that the first and the last colour stand for; min < max. Of f32 with one channel data_min and
 /// data_max are those of all finite values.

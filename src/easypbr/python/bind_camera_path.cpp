@@ -5,7 +5,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/core/error.h"
-#include "easypbr/geometry/camera_path_shape.h"
+#include "easypbr/geometry/camera_shapes.h"
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/text.h"

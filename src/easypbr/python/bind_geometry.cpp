@@ -7,12 +7,10 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/suggest.h"
-#include "easypbr/geometry/components.h"
 #include "easypbr/geometry/place.h"
-#include "easypbr/geometry/refine.h"
+#include "easypbr/geometry/remesh.h"
 #include "easypbr/geometry/repair.h"
-#include "easypbr/geometry/simplify.h"
-#include "easypbr/geometry/subsample.h"
+#include "easypbr/geometry/sample.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/text.h"
 

@@ -4,9 +4,9 @@
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/app/output.h"
-#include "easypbr/core/compare.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/image.h"
 #include "easypbr/io/image/image_codecs.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/python/convert.h"

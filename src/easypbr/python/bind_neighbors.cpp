@@ -1,7 +1,7 @@
 // Neighbours, normals and surfels of points.
 #include <nanobind/stl/optional.h>
 
-#include "easypbr/geometry/kd_tree.h"
+#include "easypbr/geometry/nearest.h"
 #include "easypbr/geometry/surfels.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/text.h"

@@ -6,7 +6,7 @@
 #include <span>
 
 #include "easypbr/core/error.h"
-#include "easypbr/geometry/camera_frustum.h"
+#include "easypbr/geometry/camera_shapes.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/geometry/voxels.h"
 #include "easypbr/python/convert.h"

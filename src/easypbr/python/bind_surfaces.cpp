@@ -1,6 +1,6 @@
 // Methods of Mesh that measure: normals, points on the surface, distances.
 
-#include "easypbr/geometry/distance.h"
+#include "easypbr/geometry/nearest.h"
 #include "easypbr/geometry/sample.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/python/text.h"

@@ -199,14 +199,14 @@ void set_gui(SharedViewer& self, const std::string& name, nb::handle value) {
 }
 
 void add_pass(SharedViewer& self, const std::string& name, nb::handle shader, const std::string& stage) {
-    const render::Stage at = render::stage_named(stage);
+    const Stage at = stage_named(stage);
     const bool is_text = nb::isinstance<nb::str>(shader);
     const std::string text = is_text ? nb::cast<std::string>(shader) : "";
     const fs::path path = is_text ? fs::path() : nb::cast<fs::path>(shader);
     self.run([&](Viewer& viewer) {
         viewer.add_pass(name, at,
-                        is_text ? std::make_shared<render::ShaderPass>(name, text)
-                                : std::make_shared<render::ShaderPass>(path));
+                        is_text ? std::make_shared<app::ShaderPass>(name, text)
+                                : std::make_shared<app::ShaderPass>(path));
     });
 }
 

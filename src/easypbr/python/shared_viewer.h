@@ -11,6 +11,7 @@
 #include <set>
 #include <thread>
 
+#include "easypbr/app/session.h"
 #include "easypbr/core/error.h"
 #include "easypbr/python/bindings.h"
 #include "easypbr/python/convert.h"

@@ -60,6 +60,14 @@ Mat4d orthographic_matrix(double width, double height, double near, double far) 
 
 }  // namespace
 
+Vec3d Camera::position() const {
+    return T_world_cam.translation();
+}
+
+Mat4d Camera::view() const {
+    return T_world_cam.inverse().matrix();
+}
+
 Mat4d Camera::projection_matrix(double aspect) const {
     if (projection == Projection::orthographic)
         return orthographic_matrix(ortho_height * aspect, ortho_height, near, far);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "easypbr/core/error.h"
+#include "easypbr/scene/cubic_spline.h"
 
 namespace easypbr {
 namespace {
@@ -130,6 +131,10 @@ void require_no_tumbling(const CubicSpline& rotations, const std::vector<double>
 
 }  // namespace
 
+struct CameraPath::Splines {
+    CubicSpline positions, rotations, zooms;
+};
+
 CameraPath::CameraPath(std::vector<CameraKey> keys, const CameraPathOptions& options)
     : keys_(std::move(keys)), options_(options), times_{0} {
     if (keys_.size() < 2)
@@ -158,12 +163,12 @@ void CameraPath::build_splines() {
         positions.row(i) = key.T_world_cam.translation();
         zooms(i, 0) = std::log(std::tan(radians(key.fov_y_deg.value_or(30)) / 2));
     }
-    zooms_ = CubicSpline(times_, zooms, ends);
     if (options_.mode == PathMode::linear) return;
-    positions_ = CubicSpline(times_, positions, ends);
     RotationKnots knots = rotation_knots(keys_, times_, options_.closed);
-    rotations_ = CubicSpline(knots.times, rows_of(knots.rotations), knots.ends);
-    require_no_tumbling(rotations_, knots.times);
+    splines_ = std::make_shared<const Splines>(Splines{
+        CubicSpline(times_, positions, ends), CubicSpline(knots.times, rows_of(knots.rotations), knots.ends),
+        CubicSpline(times_, zooms, ends)});
+    require_no_tumbling(splines_->rotations, knots.times);
 }
 
 CameraPath CameraPath::orbit(const Camera& start, const Vec3d& center, const Vec3d& axis, double angle_deg,
@@ -224,15 +229,17 @@ Eigen::Isometry3d CameraPath::pose(double time_s) const {
         return pose;
     }
     if (options_.mode == PathMode::linear) return linear_pose(time);
-    pose.linear() = Eigen::Quaterniond(Eigen::Vector4d(rotations_.at(time)).normalized()).toRotationMatrix();
-    pose.translation() = positions_.at(time);
+    pose.linear() =
+        Eigen::Quaterniond(Eigen::Vector4d(splines_->rotations.at(time)).normalized()).toRotationMatrix();
+    pose.translation() = splines_->positions.at(time);
     return pose;
 }
 
 std::optional<double> CameraPath::fov_y_deg(double time_s) const {
     if (keys_.empty() || !keys_.front().fov_y_deg) return {};
     const double time = eased(time_s);
-    if (options_.mode == PathMode::smooth) return degrees(2 * std::atan(std::exp(zooms_.at(time)[0])));
+    if (options_.mode == PathMode::smooth)
+        return degrees(2 * std::atan(std::exp(splines_->zooms.at(time)[0])));
     const auto after = std::upper_bound(times_.begin() + 1, times_.end() - 1, time);
     const size_t i = size_t(after - times_.begin() - 1);
     const double part = (time - times_[i]) / (times_[i + 1] - times_[i]);

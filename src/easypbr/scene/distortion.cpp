@@ -1,4 +1,4 @@
-#include "easypbr/scene/distortion.h"
+#include "easypbr/scene/camera.h"
 
 #include <fmt/format.h>
 

@@ -4,6 +4,7 @@
 #include <tbb/task_arena.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <mutex>
@@ -14,6 +15,7 @@
 #include "easypbr/core/hash.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/scene/sun.h"
 
 namespace easypbr {
 
@@ -145,6 +147,13 @@ Vec2 equirect_uv(const Vec3& direction) {
     return {0.5f + phi * float(0.5 / pi), theta * float(1 / pi)};
 }
 
+struct Environment::Data {
+    Image image;
+    std::string name, hash;
+    std::array<Vec3, 9> sh;
+    std::shared_ptr<Split> split;
+};
+
 /// Sun and rest, found when they are first asked for.
 struct Environment::Split {
     std::once_flag once;
@@ -166,6 +175,18 @@ Environment::Environment(Image equirect, std::string name) {
     data->sh = project(data->image);
     data->split = std::make_shared<Split>();
     data_ = std::move(data);
+}
+
+const Image& Environment::image() const {
+    return data_->image;
+}
+
+const std::string& Environment::name() const {
+    return data_->name;
+}
+
+const std::string& Environment::hash() const {
+    return data_->hash;
 }
 
 const Environment::Split& Environment::split() const {

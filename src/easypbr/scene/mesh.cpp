@@ -13,6 +13,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/scene/material_table.h"
+#include "easypbr/scene/mesh_shared.h"
 #include "easypbr/scene/offset.h"
 
 namespace easypbr {
@@ -210,6 +211,16 @@ Mesh::Mesh(Array3f V, Array3i F)
 std::shared_ptr<const MeshData> Mesh::snapshot() const {
     std::lock_guard lock(shared_->mutex);
     return shared_->data;
+}
+
+void Mesh::edit(const std::function<void(MeshData&)>& change) {
+    for (;;) {
+        const std::shared_ptr<const MeshData> before = snapshot();
+        MeshData next = *before;
+        change(next);
+        validate(next, *before);
+        if (replace(before, std::make_shared<const MeshData>(std::move(next)))) return;
+    }
 }
 
 void Mesh::set_positions(

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "easypbr/core/error.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_shared.h"
 
 namespace easypbr {
 namespace {

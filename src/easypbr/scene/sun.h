@@ -4,15 +4,9 @@
 #include <optional>
 
 #include "easypbr/core/image.h"
-#include "easypbr/core/math.h"
+#include "easypbr/scene/environment.h"
 
 namespace easypbr {
-
-struct Sun {
-    Vec3 towards{0, 1, 0};     ///< unit vector in environment space (see scene/environment.h)
-    Vec3 irradiance{0, 0, 0};  ///< of a surface that faces the sun
-    float angular_radius_deg = 0;
-};
 
 struct SunSplit {
     Sun sun;

@@ -2,6 +2,8 @@
 
 #include <chrono>
 
+#include "easypbr/app/output.h"
+#include "easypbr/app/session.h"
 #include "easypbr/core/error.h"
 #include "easypbr/gui/display.h"
 #include "easypbr/gui/live_view.h"
@@ -76,10 +78,20 @@ struct Viewer::Window {
     }
 };
 
+struct Viewer::Parts {
+    app::Session session;
+    app::Clock clock;
+    app::AnimationPlayer player{clock};
+
+    explicit Parts(const Scene& scene) : session(scene) {
+        clock.on_tick = [this] { player.update(); };
+    }
+};
+
 Viewer::~Viewer() = default;
 
 Viewer::Window& Viewer::window() {
-    if (!window_) window_ = std::make_unique<Window>(*session_, recorder, *player_);
+    if (!window_) window_ = std::make_unique<Window>(parts_->session, recorder, parts_->player);
     return *window_;
 }
 
@@ -111,7 +123,7 @@ bool Viewer::update_window() {
     if (recorder.is_recording() && !w.live.is_recording())
         recorder.add_frame();
     else if (!w.live.is_recording())
-        clock_->tick();
+        parts_->clock.tick();
     w.call(w.before);
     const bool changed = w.live.update(events, w.window->size(), w.window->scale(), seconds);
     w.call(w.after);
@@ -188,22 +200,121 @@ Scene& default_scene() {
     return scene;
 }
 
+void show(const Mesh& mesh, const std::string& name) {
+    default_scene().show(mesh, name);
+}
+
+void clear() {
+    default_scene().clear();
+}
+
+Viewer::Viewer() : Viewer(default_scene()) {}
+
 Viewer::Viewer(const Scene& scene)
-    : session_(std::make_unique<app::Session>(scene)),
-      clock_(std::make_unique<app::Clock>()),
-      player_(std::make_unique<app::AnimationPlayer>(*clock_)),
-      recorder(*session_, *clock_) {
-    clock_->on_tick = [player = player_.get()] { player->update(); };
+    : parts_(std::make_unique<Parts>(scene)), recorder(parts_->session, parts_->clock) {}
+
+Scene& Viewer::scene() {
+    return parts_->session.scene();
+}
+
+Settings& Viewer::settings() {
+    return parts_->session.settings();
+}
+
+app::Session& Viewer::session() {
+    return parts_->session;
+}
+
+app::Clock& Viewer::clock() {
+    return parts_->clock;
+}
+
+double Viewer::time() const {
+    return parts_->clock.time();
+}
+
+double Viewer::delta_time() const {
+    return parts_->clock.delta_time();
+}
+
+app::AnimationPlayer& Viewer::player() {
+    return parts_->player;
+}
+
+void Viewer::pause() {
+    parts_->player.pause();
+}
+
+Image Viewer::render(const app::PictureOptions& options) {
+    return parts_->session.render(options);
+}
+
+std::map<std::string, Image> Viewer::render_layers(const std::vector<std::string>& names,
+                                                   std::optional<Vec2i> size) {
+    return parts_->session.render_layers(names, size);
+}
+
+app::Moment Viewer::moment(std::optional<Vec2i> size) {
+    return parts_->session.moment(size);
+}
+
+Camera Viewer::camera() {
+    return parts_->session.camera();
+}
+
+void Viewer::set_camera(const Camera& camera) {
+    parts_->session.set_camera(camera);
+}
+
+void Viewer::forget_motion() {
+    parts_->session.forget_motion();
+}
+
+double Viewer::focus_at(int x, int y, std::optional<Vec2i> size) {
+    return parts_->session.focus_at(x, y, size);
+}
+
+void Viewer::refit() {
+    parts_->session.refit();
+}
+
+void Viewer::save_settings(const std::filesystem::path& path,
+                           const std::vector<std::filesystem::path>& files) {
+    app::save_settings(parts_->session, files, path);
+}
+
+void Viewer::load_settings(const std::filesystem::path& path) {
+    app::load_settings(parts_->session, path);
+}
+
+std::optional<app::Pick> Viewer::pick(Vec2d pixel, std::optional<Vec2i> size) {
+    return parts_->session.pick(pixel, size);
+}
+
+void Viewer::add_pass(const std::string& name, app::Stage stage, std::shared_ptr<app::Pass> pass) {
+    parts_->session.add_pass(name, stage, std::move(pass));
+}
+
+void Viewer::remove_pass(const std::string& name) {
+    parts_->session.remove_pass(name);
+}
+
+void Viewer::add_light(const std::string& name, const Light& light) {
+    scene().set_light(name, light);
+}
+
+void Viewer::remove_light(const std::string& name) {
+    scene().remove_light(name);
 }
 
 void Viewer::play(const Animations& animations, const std::string& animation, double speed, bool loop) {
-    player_->set_speed(speed);
-    player_->set_loop(loop);
-    player_->add("", animations);
-    player_->play("", animation);
+    parts_->player.set_speed(speed);
+    parts_->player.set_loop(loop);
+    parts_->player.add("", animations);
+    parts_->player.play("", animation);
 }
 
-void Viewer::show_image(const std::string& name, Image image, const gui::ImageLook& look) {
+void Viewer::show_image(const std::string& name, Image image, const app::ImageLook& look) {
     live().show_image(name, std::move(image), look);
 }
 
@@ -212,12 +323,12 @@ void Viewer::remove_image(const std::string& name) {
 }
 
 Viewer::Viewer(Vec2i size, const std::filesystem::path& settings) : Viewer(default_scene()) {
-    if (!settings.empty()) app::load_settings(*session_, settings);
-    session_->settings().image.size = size;
+    if (!settings.empty()) app::load_settings(parts_->session, settings);
+    parts_->session.settings().image.size = size;
 }
 
 void Viewer::load_environment_map(const std::filesystem::path& path) {
-    session_->load_environment(path);
+    parts_->session.load_environment(path);
 }
 
 }  // namespace easypbr

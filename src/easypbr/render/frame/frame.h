@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "easypbr/core/picture.h"
 #include "easypbr/gl/draw.h"
 #include "easypbr/gl/program.h"
 #include "easypbr/gl/texture.h"
@@ -12,10 +13,7 @@
 
 namespace easypbr::render {
 
-/// A rectangle of pixels, row 0 on top.
-struct PixelRect {
-    int x = 0, y = 0, width = 0, height = 0;
-};
+using easypbr::PixelRect;
 
 /// One layer of depth peeling: of what is nearer than the limit the farthest, or else the nearest.
 struct Peel {

@@ -11,12 +11,7 @@
 
 namespace easypbr::render {
 
-/// What the picture's values are.
-enum class Encoding {
-    srgb8,        ///< RGBA8, tone mapped, sRGB-encoded, straight alpha
-    srgb16,       ///< RGBA16, the same
-    scene_linear  ///< RGBA32F, radiance before exposure and tone curve, premultiplied alpha
-};
+using easypbr::Encoding;
 
 class OutputPass {
   public:

@@ -3,12 +3,10 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <array>
 #include <utility>
 
 #include "easypbr/core/error.h"
-#include "easypbr/core/suggest.h"
 
 namespace easypbr::render {
 namespace {
@@ -20,19 +18,6 @@ gl::Blending blending_of(Blend blend) {
 }
 
 }  // namespace
-
-const std::vector<std::string>& stage_names() {
-    static const std::vector<std::string> names = {"light", "overlay", "picture"};
-    return names;
-}
-
-Stage stage_named(const std::string& name) {
-    const auto found = std::ranges::find(stage_names(), name);
-    if (found == stage_names().end())
-        throw NameError(fmt::format("there is no stage '{}' of passes{}; expected light, overlay or picture",
-                                    name, did_you_mean(name, stage_names())));
-    return Stage(found - stage_names().begin());
-}
 
 const gl::Texture& PassInput::before() const {
     if (!copy_ || copy_.width() != image.width() || copy_.height() != image.height() ||
@@ -65,17 +50,6 @@ void PassInput::draw(const gl::Program& program, Blend blend) const {
         program.set("u_image", int(image_unit));
     }
     gl::draw_screen({.blending = blending_of(blend)});
-}
-
-ShaderPass::ShaderPass(const std::filesystem::path& fragment, Blend blend)
-    // Absolute, so that it is a path and not an embedded file's name.
-    : program_("screen_triangle.vert", std::filesystem::absolute(fragment).string()), blend_(blend) {}
-
-ShaderPass::ShaderPass(const std::string& name, const std::string& text, Blend blend)
-    : program_("screen_triangle.vert", "pass.frag", {{"pass.frag", {name, text}}}), blend_(blend) {}
-
-void ShaderPass::draw(const PassInput& input) {
-    input.draw(program_.get(input.defines()), blend_);
 }
 
 void draw_custom(const CustomPass& custom, const PassInput& input) {

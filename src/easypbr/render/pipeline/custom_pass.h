@@ -1,4 +1,5 @@
-// Passes of a program's own between those of the renderer: they read the G-buffer and draw into the picture.
+// Passes of a program's own between those of the renderer, as the renderer calls them; app/custom_pass.h is
+// what programs see of them.
 #pragma once
 
 #include <cstdint>
@@ -6,29 +7,15 @@
 #include <string>
 #include <vector>
 
-#include "easypbr/gl/watched_program.h"
+#include "easypbr/core/picture.h"
+#include "easypbr/gl/program.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
 
 namespace easypbr::render {
 
-/// When a pass draws, and what into.
-enum class Stage {
-    light,    ///< in each frame before lens, bloom and tone curve: linear radiance, premultiplied by coverage
-    overlay,  ///< in each frame past the tone curve: linear display light, premultiplied, over the picture
-    picture  ///< once, into the finished picture as it is encoded: sRGB with straight alpha, 8 or 16 bits, or
-             ///< linear radiance
-};
-
-/// "light", "overlay", "picture". Throws NameError with the nearest name.
-Stage stage_named(const std::string& name);
-const std::vector<std::string>& stage_names();
-
-enum class Blend {
-    over,    ///< premultiplied colours over what is there
-    add,     ///< to what is there
-    replace  ///< what is there
-};
+using easypbr::Blend;
+using easypbr::Stage;
 
 /// What a pass draws with. Row 0 of every texture is the top of the picture.
 class PassInput {
@@ -66,21 +53,6 @@ class Pass {
     virtual void draw(const PassInput& input) = 0;
     /// Changes whenever the pass would draw something else: windows draw again then.
     virtual uint64_t revision() const { return 0; }
-};
-
-/// A pass of one fragment shader.
-class ShaderPass : public Pass {
-  public:
-    /// The path of a file, read again whenever it changes.
-    explicit ShaderPass(const std::filesystem::path& fragment, Blend blend = Blend::over);
-    /// A text; `name` is what messages call it.
-    ShaderPass(const std::string& name, const std::string& text, Blend blend = Blend::over);
-    void draw(const PassInput& input) override;
-    uint64_t revision() const override { return program_.revision(); }
-
-  private:
-    gl::WatchedProgram program_;
-    Blend blend_;
 };
 
 struct CustomPass {

@@ -1,0 +1,82 @@
+// Plays the animations of files by a clock.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "easypbr/app/clock.h"
+#include "easypbr/scene/animation.h"
+
+namespace easypbr::app {
+
+/// One animation plays at a time. Its time follows the clock's: that of a recording, of a fixed step, or real
+/// time; setting the clock's time back sets the animation back.
+class AnimationPlayer {
+  public:
+    /// The clock must outlive the player.
+    explicit AnimationPlayer(const Clock& clock);
+    ~AnimationPlayer();
+
+    /// Makes a file's animations known under its name; those of a file of this name are replaced. Nothing
+    /// plays yet.
+    void add(const std::string& file, const Animations& animations);
+    /// "robot: Walk" for each that is known; "Walk" of a file without a name.
+    const std::vector<std::string>& names() const { return names_; }
+    bool empty() const { return names_.empty(); }
+    /// Whether animations of a file of this name are known.
+    bool has(const std::string& file) const;
+
+    /// Which of names() is played, and the file's own name for it.
+    size_t current() const { return current_; }
+    double duration_s() const;
+
+    /// Plays animation `number` of names() from its start. Throws NameError for a number there is not.
+    void play(size_t number);
+    /// By the file's name and the animation's name or number. Throws NameError with the nearest name.
+    void play(const std::string& file, const std::string& animation);
+    /// Goes on from where it was. Throws ArgumentError when no animation is known.
+    void resume();
+    void pause();
+    bool is_playing() const { return playing_; }
+
+    /// Seconds of the animation, not yet wound around.
+    double time() const;
+    /// Puts the meshes where they are at a time; it then goes on from there. Throws ArgumentError when the
+    /// time is not finite or no animation is known.
+    void seek(double time_s);
+    /// How fast it plays, 1 as it was made; below 0 backwards. Throws ArgumentError when it is not finite.
+    void set_speed(double speed);
+    double speed() const { return speed_; }
+    /// Whether it goes around; else it rests at its end.
+    void set_loop(bool loop) { loop_ = loop; }
+    bool loops() const { return loop_; }
+
+    /// How the animation's meshes moved in the `seconds` of the clock before now, playing or not; see
+    /// Animations::motion(). At its beginning the animation has not moved.
+    std::vector<std::pair<Mesh, Eigen::Affine3d>> motion(double seconds) const;
+
+    /// After the clock's tick: puts the meshes where they are now, while it plays.
+    void update();
+
+  private:
+    struct File {
+        std::string name;
+        Animations animations;
+    };
+    struct Place {
+        size_t file, index;
+    };
+    void apply();
+    void rebuild_names();
+
+    const Clock& clock_;
+    std::vector<File> files_;
+    std::vector<Place> places_;
+    std::vector<std::string> names_;
+    size_t current_ = 0;
+    double speed_ = 1, base_ = 0, clock_base_ = 0;
+    bool playing_ = false, loop_ = true;
+};
+
+}  // namespace easypbr::app

@@ -1,0 +1,106 @@
+// Image: a value of width x height pixels with 1 to 4 interleaved channels; row 0 is the top.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "easypbr/core/error.h"
+
+namespace easypbr {
+
+/// Type of one channel. u8 and u16 colour is sRGB-encoded, f32 colour is linear.
+enum class PixelType { u8, u16, f32 };
+
+constexpr size_t size_of(PixelType type) {
+    return type == PixelType::u8 ? 1 : type == PixelType::u16 ? 2 : 4;
+}
+
+/// Largest width or height that any function of the library accepts.
+inline constexpr int max_image_side = 65536;
+
+class Image {
+  public:
+    Image() = default;
+
+    /// A zero-filled image. Throws ArgumentError unless 1 <= width, height <= max_image_side and 1 <=
+    /// channels <= 4.
+    Image(int width, int height, int channels, PixelType type);
+
+    int width() const { return width_; }
+    int height() const { return height_; }
+    int channels() const { return channels_; }
+    PixelType type() const { return type_; }
+    bool empty() const { return data_.empty(); }
+    size_t pixel_count() const { return size_t(width_) * size_t(height_); }
+    size_t row_bytes() const { return size_t(width_) * channels_ * size_of(type_); }
+
+    std::span<const std::byte> bytes() const { return data_; }
+    std::span<std::byte> bytes() { return data_; }
+
+    /// All channels of all pixels, row by row. Throws ArgumentError when T is not the image's pixel type.
+    template <class T>
+    std::span<const T> pixels() const {
+        require<T>();
+        return {reinterpret_cast<const T*>(data_.data()), data_.size() / sizeof(T)};
+    }
+    template <class T>
+    std::span<T> pixels() {
+        require<T>();
+        return {reinterpret_cast<T*>(data_.data()), data_.size() / sizeof(T)};
+    }
+
+    /// First channel of pixel (x, y), unchecked.
+    template <class T>
+    const T* at(int x, int y) const {
+        return reinterpret_cast<const T*>(data_.data()) + (size_t(y) * width_ + x) * channels_;
+    }
+    template <class T>
+    T* at(int x, int y) {
+        return reinterpret_cast<T*>(data_.data()) + (size_t(y) * width_ + x) * channels_;
+    }
+
+  private:
+    template <class T>
+    void require() const {
+        constexpr PixelType wanted = sizeof(T) == 1   ? PixelType::u8
+                                     : sizeof(T) == 2 ? PixelType::u16
+                                                      : PixelType::f32;
+        if (wanted != type_) throw ArgumentError("image: pixels read as a type that it does not hold");
+    }
+
+    int width_ = 0, height_ = 0, channels_ = 0;
+    PixelType type_ = PixelType::u8;
+    std::vector<std::byte> data_;
+};
+
+/// The same picture with another number of channels: grey is repeated, missing alpha is opaque, extra
+/// channels dropped.
+Image with_channels(const Image& image, int channels);
+
+/// The same picture as u8 (sRGB) when it is f32 (linear, clamped to [0, 1]) or u16; u8 is returned as it is.
+Image to_u8(const Image& image);
+
+/// The same picture as linear f32; u8 and u16 colour is decoded from sRGB, alpha (2nd or 4th channel) is
+/// scaled only.
+Image to_linear_f32(const Image& image);
+
+/// Puts 0 where a value of an f32 image is NaN or infinite; returns how many there were.
+size_t replace_non_finite(Image& image);
+
+/// Every second row and column averaged in 2x2 boxes, as for mip levels (at least 1x1). f32 only.
+Image half_size(const Image& image);
+
+struct ImageDifference {
+    double max = 0;        ///< largest absolute difference of a channel, in units of the type (0..255 for u8)
+    double mean = 0;       ///< mean absolute difference over all channels
+    double rmse = 0;       ///< root of the mean squared difference
+    double psnr = 0;       ///< in dB with peak 255, 65535 or 1 (infinity for equal images)
+    size_t different = 0;  ///< pixels with any difference
+};
+
+/// Throws ArgumentError when size, channels or type differ. Alpha counts as any channel.
+ImageDifference compare(const Image& a, const Image& b);
+
+}  // namespace easypbr

@@ -1,0 +1,114 @@
+// Animations of a file's nodes: poses, skins and morph targets over time (glTF 2.0, sections 3.7.2.2, 3.7.3
+// and 3.11).
+#pragma once
+
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "easypbr/scene/mesh.h"
+
+namespace easypbr {
+
+/// How values between two keys come about.
+enum class Interpolation {
+    linear,       ///< rotations: spherical, the shorter way
+    step,         ///< the last key's
+    cubic_spline  ///< Hermite; each key has an in-tangent, a value and an out-tangent
+};
+
+enum class AnimatedProperty { translation, rotation, scale, weights };
+
+/// One property of one node over time.
+struct AnimationChannel {
+    int node = 0;  ///< index into AnimationRig::nodes
+    AnimatedProperty property = AnimatedProperty::translation;
+    Interpolation interpolation = Interpolation::linear;
+    std::vector<float> times;  ///< seconds, rising
+    /// One row for each time, three for cubic splines; rotations are x, y, z, w.
+    ArrayXf::Dense values;
+};
+
+struct Animation {
+    std::string name;
+    double duration_s = 0;  ///< the last key's time
+    std::vector<AnimationChannel> channels;
+};
+
+/// The value of a channel at a time; before the first key that of the first, after the last that of the last.
+/// Rotations have unit length.
+Eigen::VectorXd sample(const AnimationChannel& channel, double time_s);
+
+/// How a mesh's vertices follow joints and morph targets.
+struct Deformation {
+    Array3f V, N;  ///< at rest; N may be empty
+    /// n x 4 k, or empty: places in Skin::joints, and how much each joint counts.
+    ArrayXf joints, weights;
+    /// For each target what is added to V and N at weight 1; N may be empty.
+    std::vector<Array3f> targets_V, targets_N;
+
+    bool empty() const { return joints.empty() && targets_V.empty(); }
+};
+
+struct Skin {
+    std::vector<int> joints;                       ///< nodes
+    std::vector<Eigen::Affine3d> T_joint_at_rest;  ///< inverse bind matrices, one for each joint
+};
+
+struct AnimationNode {
+    int parent = -1;
+    Vec3d translation{0, 0, 0}, scale{1, 1, 1};
+    Eigen::Quaterniond rotation{1, 0, 0, 0};
+    std::optional<Eigen::Affine3d> matrix;  ///< in place of the three; such a node is not animated
+    std::vector<float> weights;             ///< of the morph targets at rest
+    std::optional<Mesh> mesh;               ///< whose pose follows; none for nodes that only move others
+    int skin = -1;
+    Deformation deformation;
+};
+
+/// All nodes of a file with what moves them.
+struct AnimationRig {
+    std::vector<AnimationNode> nodes;
+    std::vector<Skin> skins;
+    std::vector<Animation> animations;
+};
+
+/// The animations of a file that was loaded, which move its meshes. Copies share the meshes.
+class Animations {
+  public:
+    Animations() = default;
+    /// Throws ArgumentError for indices out of range.
+    explicit Animations(AnimationRig rig);
+
+    bool empty() const { return rig_.animations.empty(); }
+    std::vector<std::string> names() const;
+    /// The index of an animation by its name, or its number from 0. Throws NameError with the nearest name.
+    size_t find(const std::string& name) const;
+    double duration_s(size_t index) const;
+
+    /// Puts the meshes where they are at a time of an animation: poses of nodes, vertices and normals of what
+    /// has skins or morph targets. With `loop` the time goes around, else the animation rests at its ends.
+    /// What the animation leaves alone is at rest. Throws NameError for an unknown index, ArgumentError for a
+    /// time that is not finite.
+    void apply(size_t index, double time_s, bool loop = true);
+
+    /// How each node's mesh moved between two times of an animation, as poses in the mesh's own frame: where
+    /// it is at `to_s`, T_parent_mesh, it was T_parent_mesh * pose at `from_s`. Vertices apart. Throws as
+    /// apply().
+    std::vector<std::pair<Mesh, Eigen::Affine3d>> motion(size_t index, double from_s, double to_s,
+                                                         bool loop = true) const;
+
+  private:
+    struct Pose;
+    std::vector<Pose> pose(const Animation& animation, double time_s) const;
+    /// The poses at a time, brought into the animation's duration with `loop`.
+    std::vector<Pose> pose_at(size_t index, double time_s, bool loop) const;
+    void deform(AnimationNode& node, const Eigen::Affine3d& T_world_node, const std::vector<float>& weights,
+                const std::vector<Eigen::Affine3d>& T_world_nodes);
+
+    AnimationRig rig_;
+    std::vector<size_t> order_;  ///< parents before children
+};
+
+}  // namespace easypbr

@@ -1,0 +1,73 @@
+// Array: an immutable, reference-counted matrix that Eigen, libigl and numpy see without a copy.
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+namespace easypbr {
+
+uint64_t next_revision();  // see core/hash.h
+
+/// Row-major matrix with a fixed or dynamic number of columns. Copies share the data; the data never change.
+/// It is an Eigen::Map, so it goes wherever an Eigen::MatrixBase goes. Every new array has a new revision.
+template <class Scalar, int Cols>
+class Array
+    : public Eigen::Map<
+          const Eigen::Matrix<Scalar, Eigen::Dynamic, Cols, Cols == 1 ? Eigen::ColMajor : Eigen::RowMajor>> {
+  public:
+    using Dense = Eigen::Matrix<Scalar, Eigen::Dynamic, Cols, Cols == 1 ? Eigen::ColMajor : Eigen::RowMajor>;
+    using Map = Eigen::Map<const Dense>;
+
+    /// No rows; revision 0.
+    Array() : Map(nullptr, 0, Cols == Eigen::Dynamic ? 0 : Cols) {}
+
+    /// Takes the matrix over without a copy when it is moved in.
+    Array(Dense values) : Array(std::make_shared<const Dense>(std::move(values))) {}
+
+    /// A copy of any Eigen expression of fitting shape.
+    template <class Derived>
+    requires(!std::is_base_of_v<Map, Derived> && !std::is_same_v<Dense, Derived>)
+        Array(const Eigen::MatrixBase<Derived>& values)
+        : Array(Dense(values.template cast<Scalar>())) {}
+
+    /// A view of memory that `owner` keeps alive and unchanged.
+    Array(std::shared_ptr<const void> owner, const Scalar* data, Eigen::Index rows, Eigen::Index cols)
+        : Map(data, rows, cols), owner_(std::move(owner)), revision_(next_revision()) {}
+
+    Array(const Array& other)
+        : Map(other.data(), other.rows(), other.cols()), owner_(other.owner_), revision_(other.revision_) {}
+
+    Array& operator=(const Array& other) {
+        if (this == &other) return *this;
+        owner_ = other.owner_;
+        revision_ = other.revision_;
+        // Eigen's documented way to let a Map point elsewhere.
+        new (static_cast<Map*>(this)) Map(other.data(), other.rows(), other.cols());
+        return *this;
+    }
+
+    bool empty() const { return this->rows() == 0; }
+    const std::shared_ptr<const void>& owner() const { return owner_; }
+    uint64_t revision() const { return revision_; }
+
+  private:
+    explicit Array(std::shared_ptr<const Dense> dense)
+        : Map(dense->data(), dense->rows(), dense->cols()), revision_(next_revision()) {
+        owner_ = std::move(dense);
+    }
+
+    std::shared_ptr<const void> owner_;
+    uint64_t revision_ = 0;
+};
+
+using Array1f = Array<float, 1>;
+using Array2f = Array<float, 2>;
+using Array3f = Array<float, 3>;
+using ArrayXf = Array<float, Eigen::Dynamic>;
+using Array1i = Array<int32_t, 1>;
+using Array2i = Array<int32_t, 2>;
+using Array3i = Array<int32_t, 3>;
+
+}  // namespace easypbr

@@ -1,0 +1,83 @@
+// The one table of settings: name, documentation, unit, range and access for every field of every settings
+// struct. It feeds --set, Python's properties, the JSON file and the reference documentation.
+#pragma once
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "easypbr/scene/settings.h"
+
+namespace easypbr {
+
+/// A setting's value in transit. Enumerations are strings, colours and vectors lists of numbers.
+struct Value {
+    enum class State { given, automatic, follow };
+    using Data = std::variant<bool, double, std::string, std::vector<double>>;
+
+    Data data;
+    State state = State::given;  ///< automatic with `latched`: data hold the inferred value
+    bool latched = false;
+
+    bool operator==(const Value&) const = default;
+};
+
+enum class FieldType { boolean, integer, number, color, vector, text, choice };
+
+/// What a field of a struct is: of the settings, or of a light (scene/light_table.h).
+struct FieldInfo {
+    std::string name;  ///< "group.name" of a setting
+    std::string doc;   ///< one sentence
+    std::string unit;
+    FieldType type = FieldType::number;
+    bool can_be_automatic = false;
+    double min = -std::numeric_limits<double>::infinity();
+    double max = std::numeric_limits<double>::infinity();
+    std::vector<std::string> choices;
+    std::vector<size_t> sizes;  ///< allowed lengths of a vector
+    bool whole = false;         ///< the number, or each of a vector's, is a whole one
+};
+
+template <class Owner>
+struct FieldOf : FieldInfo {
+    std::function<Value(const Owner&)> get;
+    /// Sets an already checked value.
+    std::function<void(Owner&, const Value&)> put;
+};
+
+using Field = FieldOf<Settings>;
+
+/// All fields in the order of the reference.
+const std::vector<Field>& fields();
+
+/// Throws NameError with the nearest name for an unknown one.
+const Field& field(std::string_view name);
+
+/// Throws NameError or ArgumentError that says what was expected.
+void set(Settings& settings, std::string_view name, const Value& value);
+Value get(const Settings& settings, std::string_view name);
+
+/// Whether the data of a value are in the field's range, and finite.
+bool is_valid(const Field& field, const Value& value);
+
+/// The value in the form in which `put` takes it. Throws ArgumentError that says what was expected of the
+/// setting, or, of another struct's field, of `owner` followed by its name ("light.", "light 'sun': ").
+Value checked(const FieldInfo& field, const Value& value, std::string_view owner = {});
+
+/// The value written as on the command line: numbers separated by commas, '#rrggbb', true/false, 'auto',
+/// 'follow'.
+Value parse_value(const FieldInfo& field, std::string_view text);
+std::string to_text(const FieldInfo& field, const Value& value);
+
+/// A field of an object's own style, by its name without "style.". Throws NameError or ArgumentError.
+void set(Style& style, std::string_view name, const Value& value);
+Value get(const Style& style, std::string_view name);
+void set_from_text(Style& style, std::string_view name, std::string_view text);
+
+/// Sets "group.name" from text as --set does.
+void set_from_text(Settings& settings, std::string_view name, std::string_view text);
+
+}  // namespace easypbr

@@ -1,0 +1,232 @@
+// Mesh: a handle to matrices (vertices, faces, attributes), materials, a style, a pose and children.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/math.h"
+#include "easypbr/scene/array.h"
+#include "easypbr/scene/label_map.h"
+#include "easypbr/scene/material.h"
+#include "easypbr/scene/style.h"
+
+namespace easypbr {
+
+class Mesh;
+
+/// A range of faces with one material.
+struct MeshPart {
+    std::string name;
+    int first_face = 0;
+    int face_count = 0;
+    int material = 0;  ///< index into MeshData::materials
+};
+
+/// Named values, one for each vertex or one for each face: curvature, temperature, error. NaN: no value.
+struct ScalarArray {
+    std::string name;        ///< not empty, unique within a mesh
+    Array1f values;          ///< n x 1 or m x 1; with as many faces as vertices they belong to the vertices
+    bool from_file = false;  ///< one of many that came with a file: colours the mesh only when asked for
+};
+
+/// The plain data of a mesh: n vertices, m faces, k edges. Copying is cheap (arrays are shared).
+struct MeshData {
+    std::string name;
+    std::filesystem::path source;  ///< the file it was read from; empty for a mesh made in memory
+
+    Array3f V;   ///< n x 3 positions, local: offset + V are the coordinates that the mesh was given
+    Array3f N;   ///< n x 3 unit normals, or empty: computed when it is drawn
+    ArrayXf C;   ///< n x 3 or n x 4 colours, sRGB-encoded, 0 .. 1 (alpha last), or empty
+    Array2f UV;  ///< n x 2 texture coordinates, v upwards, or empty
+    Array3f T;   ///< n x 3 tangent vectors (surfels), or empty
+    Array1f B;   ///< n x 1 bitangent lengths (surfels), or empty
+    Array3i F;   ///< m x 3 vertex indices of triangles, counter-clockwise seen from outside
+    Array2i E;   ///< k x 2 vertex indices of line segments
+    Array1i L;   ///< n x 1 or m x 1 labels; with as many faces as vertices those of the vertices
+    Array1f I;   ///< n x 1 intensities
+    std::vector<ScalarArray> scalars;           ///< any number of named values
+    std::shared_ptr<const LabelMap> label_map;  ///< what the labels mean; none: generated colours
+    /// What was subtracted from positions far from zero, so that float32 holds them (scene/offset.h). Meshes
+    /// of one scene are placed by it: the scene's own frame has an origin (Scene::origin), and a vertex
+    /// stands at T_world_mesh * (V + offset - origin).
+    Vec3d offset{0, 0, 0};
+    float voxel_size = 0;  ///< edge of the cubes that V are the centres of; 0: V are no voxels
+
+    Array1i source_vertex;  ///< n x 1 index of the file's vertex that each vertex came from; empty: the same
+    Array1i source_face;  ///< m x 1 index of the file's polygon that each triangle came from; empty: the same
+
+    std::vector<Material> materials;  ///< at least one as soon as the mesh is drawn; a default one is added
+    std::vector<MeshPart> parts;      ///< cover F without overlap; empty: all faces have material 0
+
+    Style style;
+    Eigen::Affine3d T_parent_mesh = Eigen::Affine3d::Identity();
+    std::vector<Mesh> children;
+};
+
+/// What the rows of labels or scalars belong to.
+enum class PerElement { vertex, face };
+/// Vertices when there are as many rows as vertices, else faces.
+inline PerElement element_of(const MeshData& data, Eigen::Index rows) {
+    return rows == data.V.rows() ? PerElement::vertex : PerElement::face;
+}
+
+/// The scalars of that name. Throws NameError with the nearest name.
+const ScalarArray& scalar_named(const MeshData& data, const std::string& name);
+
+/// Throws ArgumentError that names the array, the expected and the given shape, when arrays do not fit
+/// together, when a face or edge index is out of range, when a position or the offset is not finite, or when
+/// a label is not in the label map (see LabelMap::accepts).
+void validate(const MeshData& data);
+/// The same, without reading arrays again that `data` shares with data known to be valid.
+void validate(const MeshData& data, const MeshData& valid);
+
+/// Deepest hierarchy of children that is followed.
+inline constexpr int max_mesh_depth = 250;
+/// Throws ArgumentError beyond max_mesh_depth: a mesh is its own descendant.
+void require_mesh_depth(int depth);
+
+/// A shared object: copying a handle shares it, clone() copies it. All members may be called from any thread.
+class Mesh {
+  public:
+    /// An empty mesh.
+    Mesh();
+
+    /// Reads a file (see io/mesh_io.h for formats and errors).
+    explicit Mesh(const std::filesystem::path& path);
+    explicit Mesh(const char* path);
+
+    /// Vertices (n x 3) and triangles (m x 3). Throws ArgumentError as validate() does.
+    Mesh(Array3f V, Array3i F);
+
+    explicit Mesh(MeshData data);
+
+    /// The data as they are now; never changes afterwards.
+    std::shared_ptr<const MeshData> snapshot() const;
+
+    /// Changes a copy of the data and puts it in place, whole or (when `change` throws or the result is not
+    /// valid) not at all. Readers that hold a snapshot keep theirs. No lock is held meanwhile: `change` may
+    /// use this mesh, and is called again with newer data when another thread's edit came first.
+    void edit(const std::function<void(MeshData&)>& change);
+
+    Array3f V() const;
+    Array3f N() const;
+    ArrayXf C() const;
+    Array2f UV() const;
+    Array3f T() const;
+    Array1f B() const;
+    Array3i F() const;
+    Array2i E() const;
+    Array1i L() const;
+    Array1f I() const;
+
+    /// Local positions; the offset stays.
+    void set_V(Array3f V);
+    /// Local positions in double precision. Where float32 would lose what matters (scene/offset.h) they are
+    /// recentred: what is subtracted from them is added to the offset, so that offset + V does not move.
+    void set_positions(
+        const Eigen::Ref<const Eigen::Matrix<double, Eigen::Dynamic, 3, Eigen::RowMajor>>& positions);
+    Vec3d offset() const;
+    void set_offset(const Vec3d& offset);
+    void set_N(Array3f N);
+    void set_C(ArrayXf C);
+    void set_UV(Array2f UV);
+    void set_F(Array3i F);
+
+    void set_L(Array1i L);
+    /// Both at once, when the labels are of another map than before.
+    void set_labels(Array1i L, std::shared_ptr<const LabelMap> label_map);
+    std::shared_ptr<const LabelMap> label_map() const;
+    void set_label_map(std::shared_ptr<const LabelMap> label_map);
+    void set_label_map(LabelMap label_map);
+
+    /// The scalars of that name. Throws NameError with the nearest name.
+    Array1f scalar(const std::string& name) const;
+    /// Adds scalars, or replaces those of the same name.
+    void add_scalar(const std::string& name, Array1f values);
+    /// Throws NameError with the nearest name.
+    void remove_scalar(const std::string& name);
+
+    std::string name() const;
+
+    /// Material `index`; the default material when the mesh has none. Throws NameError when out of range.
+    Material material(int index = 0) const;
+    /// Replaces material `index`, or adds it when it is the next free one. Throws NameError beyond that.
+    void set_material(const Material& material, int index = 0);
+
+    Style style() const;
+    void set_style(const Style& style);
+
+    Eigen::Affine3d T_parent_mesh() const;
+    void set_T_parent_mesh(const Eigen::Affine3d& T);
+
+    /// Pose in the world: those of all parents, applied to T_parent_mesh.
+    Eigen::Affine3d T_world_mesh() const;
+    /// Chooses T_parent_mesh so that the pose in the world is T. Throws ArgumentError when T is not finite or
+    /// a parent's pose cannot be inverted.
+    void set_T_world_mesh(const Eigen::Affine3d& T);
+
+    // Steps of motion, in the parent's frame, which is the world for a mesh without a parent; children move
+    // along. They throw ArgumentError for what is not finite and for an axis without length. Computed in
+    // double; a rotation stays one to the last bits, however many steps are made.
+
+    /// Moves by `step`.
+    void translate(const Vec3d& step);
+    /// Turns about the mesh's own origin, counter-clockwise seen against the axis.
+    void rotate_axis_angle(const Vec3d& axis, double angle_deg);
+    /// Turns about the line through `center` along the axis: the mesh goes around it and turns with it.
+    void orbit(const Vec3d& axis, const Vec3d& center, double angle_deg);
+    /// Scales along the mesh's own axes about its own origin. Throws ArgumentError for a factor that is 0.
+    void scale(const Vec3d& factors);
+    void scale(double factor);
+
+    /// Adds a child, whose pose becomes relative to this mesh. With `keep_world_pose` its T_parent_mesh
+    /// changes so that its world pose is kept. Does nothing if it is a child already.
+    /// Throws ArgumentError when it is this mesh or contains it, or is the child of another mesh.
+    void add_child(const Mesh& child, bool keep_world_pose = false);
+    /// Removes a child; with `keep_world_pose` its world pose is kept. Throws ArgumentError if it is no child
+    /// of this mesh.
+    void remove_child(const Mesh& child, bool keep_world_pose = false);
+    std::vector<Mesh> children() const;
+    /// The parent mesh. Of several, which only copies of MeshData give, the first.
+    std::optional<Mesh> parent() const;
+
+    /// A deep copy, children included; arrays are shared until one of the two is assigned others.
+    Mesh clone() const;
+
+    /// Writes the format of the extension, one of io::writable_extensions() (io/mesh/mesh_io.h). Throws
+    /// FileError, FormatError.
+    void save(const std::filesystem::path& path) const;
+
+    /// The same object (not: equal data).
+    bool operator==(const Mesh& other) const { return shared_ == other.shared_; }
+    /// Equal for handles to the same object, and different from those of others that live.
+    const void* identity() const { return shared_.get(); }
+
+  private:
+    struct Shared;
+    explicit Mesh(std::shared_ptr<Shared> shared) : shared_(std::move(shared)) {}
+
+    /// Puts `next` in place if the data are still the `expected` ones. Throws ArgumentError when a child of
+    /// it contains this mesh.
+    bool replace(const std::shared_ptr<const MeshData>& expected, std::shared_ptr<const MeshData> next);
+    bool exchange(const std::shared_ptr<const MeshData>& expected, std::shared_ptr<const MeshData> next);
+    /// Makes this mesh known to its children as their parent. The hierarchies' mutex must be held.
+    void adopt(const std::vector<Mesh>& children) const;
+    void disown(const std::vector<Mesh>& children) const;
+    /// Whether this mesh is among its own descendants, or would be as a parent of `children`.
+    bool is_below(const std::vector<Mesh>& children, int depth = 0) const;
+
+    std::shared_ptr<Shared> shared_;
+};
+
+/// Calls visit(data, T_world_mesh) for the mesh and all its descendants, parents first. The poses are those
+/// of V + offset.
+void for_each_node(
+    const Mesh& root,
+    const std::function<void(const std::shared_ptr<const MeshData>&, const Eigen::Affine3d&)>& visit);
+
+}  // namespace easypbr

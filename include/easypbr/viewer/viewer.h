@@ -1,0 +1,176 @@
+// Viewer: what a program holds. One line shows data, one line records a picture.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "easypbr/app/animation_player.h"
+#include "easypbr/app/clock.h"
+#include "easypbr/app/custom_pass.h"
+#include "easypbr/app/input.h"
+#include "easypbr/app/picture.h"
+#include "easypbr/app/recorder.h"
+#include "easypbr/core/image.h"
+#include "easypbr/scene/scene.h"
+#include "easypbr/scene/settings.h"
+
+namespace easypbr {
+
+namespace app {
+class Session;
+class Widgets;
+}  // namespace app
+namespace gui {
+class LiveView;
+}
+
+/// The one scene there is without being made: what show() fills and a Viewer without a scene draws.
+Scene& default_scene();
+
+/// Shows a mesh in the default scene.
+void show(const Mesh& mesh, const std::string& name);
+
+/// Removes everything from the default scene.
+void clear();
+
+/// Draws a scene. No window is opened and no GL context made until they are needed.
+class Viewer {
+    struct Parts;
+    std::unique_ptr<Parts> parts_;  // First, because the recorder keeps references to them.
+
+  public:
+    /// Of the default scene.
+    Viewer();
+    explicit Viewer(const Scene& scene);
+    ~Viewer();
+    Viewer(const Viewer&) = delete;
+    Viewer& operator=(const Viewer&) = delete;
+    /// Settings from a file that --save-settings wrote, and a picture size.
+    explicit Viewer(Vec2i size, const std::filesystem::path& settings = {});
+
+    app::Recorder recorder;
+
+    Scene& scene();
+    Settings& settings();
+    /// What draws; its header is the library's own.
+    app::Session& session();
+
+    /// The time of animations; see Clock. Frames that the recorder adds let it go on.
+    app::Clock& clock();
+    double time() const;
+    double delta_time() const;
+
+    /// Plays an animation of a file (by its name or number) from its start, by the time of the clock: that of
+    /// the window, or of the frames that are recorded. Throws NameError, ArgumentError for a speed that is
+    /// not finite.
+    void play(const Animations& animations, const std::string& animation = "0", double speed = 1,
+              bool loop = true);
+    void pause();
+    /// What plays, and where it is.
+    app::AnimationPlayer& player();
+
+    /// Lights the scene with an equirectangular picture (HDR, EXR, PNG, JPEG). Throws FileError, FormatError.
+    void load_environment_map(const std::filesystem::path& path);
+
+    /// Draws the scene and returns RGBA, row 0 on top. What was automatic is latched in settings(). Throws
+    /// ArgumentError (among others when the picture has more than 2^30 pixels), FileError (images that the
+    /// settings name), ContextError.
+    Image render(const app::PictureOptions& options = {});
+    /// The same scene, camera and size in exact values through the pixels' centres (no anti-aliasing), one
+    /// image for each name: "depth", "normal", "albedo" and so on. Throws NameError with the nearest name,
+    /// and as render() does.
+    std::map<std::string, Image> render_layers(const std::vector<std::string>& names,
+                                               std::optional<Vec2i> size = std::nullopt);
+    /// The scene as it is now and the camera of the next picture.
+    app::Moment moment(std::optional<Vec2i> size = std::nullopt);
+
+    /// The camera of the next picture.
+    Camera camera();
+    /// Pins the camera to a pose: settings().camera follows. A near plane that was inferred is inferred anew.
+    void set_camera(const Camera& camera);
+    /// With motion_blur.enabled a picture of several samples shows how things moved since the picture before.
+    /// After this the next one shows none: nothing is known of before.
+    void forget_motion();
+    /// Focuses on what a pixel shows, (0, 0) the upper left one of a picture of this size (image.size when
+    /// not given): settings().depth_of_field.focus_distance is pinned to its depth, which is returned; the
+    /// rest stays as it is. Throws ArgumentError when the pixel is outside of the picture or shows nothing.
+    double focus_at(int x, int y, std::optional<Vec2i> size = std::nullopt);
+    /// Forgets what was inferred, so that the next picture infers it anew.
+    void refit();
+
+    /// Every value, chosen and inferred, of the last picture, with the hashes of the files it was made from.
+    void save_settings(const std::filesystem::path& path,
+                       const std::vector<std::filesystem::path>& files = {});
+    /// Takes over settings and lights from a file that save_settings() wrote. Files with another content than
+    /// then are reported as warnings.
+    void load_settings(const std::filesystem::path& path);
+
+    /// Opens the window at the first call; then shows what has changed and does what mouse and keys ask for.
+    /// Waits up to 16 ms for something to happen and draws nothing while nothing changes. False when the
+    /// window has been closed: while (view.update()) ... Every call is a frame of the clock, and one of the
+    /// recording while the recorder records. Throws ContextError when there is no display, or when it has
+    /// gone away (a recording is finished before), and as Recorder::add_frame().
+    bool update();
+    /// Shows the window, again when it has been closed, until it is closed.
+    void show();
+    /// Lets update() open the window again after it has been closed.
+    void reopen();
+    /// Closes the window; update() returns false from now on, until show().
+    void close();
+    bool is_open() const;
+
+    /// What lies under a pixel of a picture of `size` (image.size when not given), counted from its top left
+    /// corner; nothing where there is no surface.
+    std::optional<app::Pick> pick(Vec2d pixel, std::optional<Vec2i> size = std::nullopt);
+
+    /// What the window would show: picture and panels, refined; needs no display.
+    Image screenshot(std::optional<Vec2i> size = std::nullopt, float scale = 1);
+
+    /// A panel of the user's own in the window, drawn by `function` in each of its frames:
+    /// view.add_panel("Training", [&](app::Widgets& ui) { ui.slider("rate", rate, 0, 1); }). What it throws
+    /// is shown in the panel. It may use this viewer, but for update(), show() and screenshot().
+    void add_panel(const std::string& name, std::function<void(app::Widgets&)> function);
+    void remove_panel(const std::string& name);
+
+    /// Shows an image in the window, beside the scene; headless it is kept for screenshots. Of 1, 3 or 4
+    /// channels; values are shown as they are. Under the name of one that is there it takes its place.
+    void show_image(const std::string& name, Image image, const app::ImageLook& look = {});
+    void remove_image(const std::string& name);
+
+    /// Functions that update() calls before and after it draws; what they throw is shown in the window and
+    /// the loop goes on. Numbers for remove_callback().
+    int before_draw(std::function<void()> function);
+    int after_draw(std::function<void()> function);
+    /// See gui::LiveView::on_event(): mouse, keys, dropped files, another size.
+    int on_event(std::function<bool(const app::InputEvent&)> handler);
+    void remove_callback(int number);
+
+    /// The GUI behind window and screenshots.
+    gui::LiveView& live();
+
+    /// Draws a pass of one's own in every picture from now on; one of the same name is replaced. See
+    /// app/custom_pass.h. Throws ArgumentError for none.
+    void add_pass(const std::string& name, app::Stage stage, std::shared_ptr<app::Pass> pass);
+    /// Throws NameError when there is none of this name.
+    void remove_pass(const std::string& name);
+
+    /// Adds or replaces a light of the scene.
+    void add_light(const std::string& name, const Light& light);
+    /// Throws NameError when there is none of this name.
+    void remove_light(const std::string& name);
+
+  private:
+    bool update_window();
+
+    struct Window;
+    Window& window();
+    static void shut(Window& window);
+    std::unique_ptr<Window> window_;
+};
+
+}  // namespace easypbr

@@ -1,0 +1,25 @@
+#include "easypbr/core/picture.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/suggest.h"
+
+namespace easypbr {
+
+const std::vector<std::string>& stage_names() {
+    static const std::vector<std::string> names = {"light", "overlay", "picture"};
+    return names;
+}
+
+Stage stage_named(const std::string& name) {
+    const auto found = std::ranges::find(stage_names(), name);
+    if (found == stage_names().end())
+        throw NameError(fmt::format("there is no stage '{}' of passes{}; expected light, overlay or picture",
+                                    name, did_you_mean(name, stage_names())));
+    return Stage(found - stage_names().begin());
+}
+
+}  // namespace easypbr

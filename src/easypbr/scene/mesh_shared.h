@@ -1,0 +1,18 @@
+// What the handles of one mesh share.
+#pragma once
+
+#include <memory>
+#include <mutex>
+#include <vector>
+
+#include "easypbr/scene/mesh.h"
+
+namespace easypbr {
+
+struct Mesh::Shared {
+    mutable std::mutex mutex;
+    std::shared_ptr<const MeshData> data;
+    std::vector<std::weak_ptr<Shared>> parents;  ///< guarded by the one mutex of all hierarchies
+};
+
+}  // namespace easypbr

@@ -1,0 +1,68 @@
+"""The installed headers: few, without what the library is made of, and each can be included alone."""
+import re
+import shutil
+import subprocess
+
+import pytest
+
+from test_package import ROOT, run
+
+FLAGS = ["-std=c++20", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only"]
+COMPILER = shutil.which("g++") or shutil.which("c++")
+
+
+@pytest.fixture(scope="module")
+def include(tmp_path_factory):
+    prefix = tmp_path_factory.mktemp("prefix")
+    run("cmake", "--install", ROOT / "build", "--prefix", prefix, "--component", "library", cwd=prefix)
+    return prefix / "include"
+
+
+def eigen():
+    """Eigen's folder, as the build found it."""
+    cache = (ROOT / "build/CMakeCache.txt").read_text()
+    cmake = re.search(r"^Eigen3_DIR:PATH=(.*)$", cache, re.M)[1]
+    return re.search(r"^(.*)/(?:share|lib)", cmake)[1] + "/include/eigen3"
+
+
+def compile_text(include, folder, *more):
+    return run(COMPILER, *FLAGS, "-isystem", eigen(), "-I", include, *more, cwd=folder).stdout
+
+
+def headers(include):
+    return sorted(str(path.relative_to(include)) for path in include.rglob("*.*"))
+
+
+def test_installed_headers_are_few_and_those_of_the_tree(include):
+    assert headers(include) == headers(ROOT / "include")
+    assert len(headers(include)) <= 45
+
+
+def test_the_face_reads_nothing_but_public_headers_eigen_and_the_standard_library(include, tmp_path):
+    (tmp_path / "face.cpp").write_text("".join(f"#include <{name}>\n" for name in headers(include)))
+    read = run(COMPILER, "-std=c++20", "-M", "-isystem", eigen(), "-I", include, "face.cpp", cwd=tmp_path).stdout
+    found = set(re.findall(r"\S+/(epoxy|fmt|nlohmann|tbb|oneapi|imgui|CLI|GL|GLFW)/\S+", read))
+    assert not found
+    assert len(re.findall(re.escape(str(include)) + r"\S+\.h", read)) == len(headers(include))
+
+
+@pytest.mark.parametrize("backwards", [False, True])
+def test_headers_need_no_other_before_them(include, tmp_path, backwards):
+    """Each header in one file, in both orders: one of them lacks what a header takes for granted."""
+    names = sorted(headers(include), reverse=backwards)
+    (tmp_path / "all.cpp").write_text("".join(f"#include <{name}>\n" for name in names))
+    compile_text(include, tmp_path, "all.cpp")
+
+
+def test_a_private_header_is_refused(tmp_path):
+    """check_includes.py says so when a public header includes one of the library's own, or of others."""
+    tree = tmp_path / "tree"
+    for folder in ("include", "src", "python"):
+        shutil.copytree(ROOT / folder, tree / folder, ignore=shutil.ignore_patterns("__pycache__"))
+    log = tree / "include/easypbr/core/log.h"
+    plain = log.read_text()
+    for line in ('#include "easypbr/core/file.h"', "#include <epoxy/gl.h>", "#include <fmt/format.h>"):
+        log.write_text(plain.replace("#pragma once", "#pragma once\n" + line))
+        done = subprocess.run(["python3", ROOT / "scripts/check_includes.py", tree], capture_output=True, text=True)
+        assert done.returncode == 1
+        assert "include/easypbr/core/log.h:" in done.stdout and "public header" in done.stdout
