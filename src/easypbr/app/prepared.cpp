@@ -2,8 +2,8 @@
 
 #include <algorithm>
 
-#include "easypbr/app/replaceable_textures().h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/material_table.h"
 
 namespace easypbr::app {
 namespace {

@@ -2,11 +2,11 @@
 
 #include <set>
 
-#include "easypbr/app/replaceable_textures().h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/scene/material_table.h"
 
 namespace easypbr::app {
 

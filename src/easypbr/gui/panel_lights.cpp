@@ -63,8 +63,9 @@ bool light_row(GuiState& state, const std::string& name, const LightField& field
         value.data = std::vector<double>{srgb[0], srgb[1], srgb[2]};
     }
     std::optional<Value> inferred;
-    if (field.can_be_automatic && state.resolved && state.resolved->light_radii.contains(name))
-        inferred = Value{double(state.resolved->light_radii.at(name))};
+    const std::optional<ResolvedSettings>& resolved = state.live.picture().resolved();
+    if (field.can_be_automatic && resolved && resolved->light_radii.contains(name))
+        inferred = Value{double(resolved->light_radii.at(name))};
     const Light before = light;
     field_row(info, value, inferred, [&](Value chosen) {
         if (field.is_color) {
