@@ -70,6 +70,7 @@ TEST(Resolve, LeavesNothingToInfer) {
 TEST(Resolve, RaysAreForPicturesOfManySamples) {
     const SceneSnapshot scene = scene_of(blob());
     Settings settings;
+    settings.ssao.enabled = true;
     const auto traces = [&](std::optional<int> samples) {
         const ResolvedSettings resolved = resolve(scene, settings, size, samples);
         EXPECT_FALSE(resolved.settings.rays.enabled.value() && !settings.rays.enabled.value());
