@@ -64,7 +64,7 @@ def test_the_first_picture_with_rays_and_effects(scene):
 
 def test_geometry_and_files(tmp_path):
     ball = shapes.icosphere(1, 7)
-    assert seconds_until_interrupted(lambda: ball.sample_surface(1_000_000_000)) < LIMIT_S
+    assert seconds_until_interrupted(lambda: [ball.sample_surface(3_000_000) for _ in range(1000)]) < LIMIT_S
     ball.save(tmp_path / "ball.ply")
     assert seconds_until_interrupted(lambda: [Mesh(tmp_path / "ball.ply") for _ in range(10_000)]) < LIMIT_S
     np.testing.assert_allclose(Mesh(tmp_path / "ball.ply").V, ball.V, atol=1e-6)

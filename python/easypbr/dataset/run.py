@@ -5,6 +5,7 @@ import contextlib
 import ctypes
 import json
 import multiprocessing
+import multiprocessing.resource_tracker
 import os
 import shutil
 import signal
@@ -140,6 +141,7 @@ def _starting_workers() -> Iterator[None]:
     sys.path (from Python 3.11 on), and leave Ctrl-C, which a terminal sends to all, to this one."""
     before = os.environ.get("PYTHONSAFEPATH")
     os.environ["PYTHONSAFEPATH"] = "1"
+    multiprocessing.resource_tracker.ensure_running()  # Its start would let the signal in again.
     mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
     try:
         yield

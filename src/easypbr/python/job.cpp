@@ -65,6 +65,9 @@ void stop_watching() {
 void end_jobs() {
     if (getpid() != process) return;  // Threads do not survive a fork.
     ending = true;
+    // What the frames of daemon threads hold is never freed.
+    if (nb::cast<int>(nb::module_::import_("threading").attr("active_count")()) > 1)
+        nb::set_leak_warnings(false);
     const nb::gil_scoped_release release;
     constexpr std::chrono::seconds patience(5);
     const auto start = std::chrono::steady_clock::now();
