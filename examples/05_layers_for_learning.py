@@ -23,7 +23,7 @@ for number in range(4):
     view.refit()  # what was fitted to the last view is inferred anew
     view.recorder.record(f"learning_{number}.png", samples=8)
 
-    layers = view.layers(["depth", "normal", "albedo"])
+    layers = view.layers(["depth", "normal_world", "albedo"])
     K, T_world_cam = view.camera.opencv_K(size), view.camera.opencv_T_world_cam
     np.savez_compressed(f"learning_{number}.npz", K=K, T_world_cam=T_world_cam, **layers)
 

@@ -34,7 +34,7 @@ SUBROOMS = {
     "io": ["source", "archive", "tables", "image", "video", "settings", "mesh"],
 }
 # The face of a sub-room lists what stands in its folders: the one direction from a sub-room down into them.
-FACES = {"io/mesh/mesh_io.cpp", "io/video/video_loader.cpp"}
+FACES = {"io/mesh/mesh_io.cpp", "io/video/video_loader.cpp", "render/primitives/surfaces.h"}
 INCLUDE = re.compile(r'#include\s+["<]easypbr/([\w/]+)\.h')
 
 

@@ -259,11 +259,11 @@ def antialiasing() -> np.ndarray:
 def layers() -> np.ndarray:
     """Picture, albedo, normal, depth, roughness."""
     view = Viewer((200, 150), scene=on_floor(teapot()))
-    found = view.layers(["albedo", "normal", "depth", "roughness"])
+    found = view.layers(["albedo", "normal_world", "depth", "roughness"])
     seen = found["depth"] > 0
     depth = np.zeros_like(found["depth"])
     depth[seen] = 1 - (found["depth"][seen] - found["depth"][seen].min()) / np.ptp(found["depth"][seen])
-    shown = [found["albedo"][:, :, :3] ** (1 / 2.2), (found["normal"] * 0.5 + 0.5) * seen[:, :, None]]
+    shown = [found["albedo"][:, :, :3] ** (1 / 2.2), (found["normal_world"] * 0.5 + 0.5) * seen[:, :, None]]
     shown += [np.repeat(plane[:, :, None], 3, axis=2) for plane in (depth, found["roughness"])]
     return row([view.render(), *((np.clip(plane, 0, 1) * 255).astype(np.uint8) for plane in shown)])
 

@@ -1,27 +1,23 @@
 // Adds one jittered frame to the sum, tone mapped, so that each sample of an edge weighs what the eye makes of it.
-#include "common_tone.glsl"
-#ifdef BLOOM
 #include "common_bloom.glsl"
-#endif
+#include "common_tone.glsl"
+
+#feature BLOOM has_bloom
+#feature OVERLAY has_overlay
 
 uniform sampler2D u_radiance;
 uniform vec2 u_size;
 uniform float u_exposure;
+uniform sampler2D u_overlay;  // linear display light, premultiplied
 
 layout(location = 0) out vec4 o_sum;
 
-#ifdef OVERLAY
-uniform sampler2D u_overlay;  // linear display light, premultiplied
-#endif
-
 void main() {
     vec4 radiance = textureLod(u_radiance, gl_FragCoord.xy / u_size, 0.0);
-#ifdef BLOOM
-    radiance = with_bloom(radiance, gl_FragCoord.xy);
-#endif
+    if (has_bloom) radiance = with_bloom(radiance, gl_FragCoord.xy);
     o_sum = displayed(radiance, u_exposure);
-#ifdef OVERLAY
-    vec4 over = textureLod(u_overlay, gl_FragCoord.xy / u_size, 0.0);
-    o_sum = o_sum * (1.0 - over.a) + over;
-#endif
+    if (has_overlay) {
+        vec4 over = textureLod(u_overlay, gl_FragCoord.xy / u_size, 0.0);
+        o_sum = o_sum * (1.0 - over.a) + over;
+    }
 }

@@ -1,10 +1,11 @@
 // Fast approximate anti-aliasing of a single frame (Lottes 2009, the four-tap form): blurs along edges of luma.
+#include "common_surface_kind.glsl"
+
+#feature EXACT has_exact_colors
+
 uniform sampler2D u_color;  // sRGB-encoded, linear filtering
 uniform vec2 u_size;
-#ifdef EXACT
-#include "common_surface_kind.glsl"
 uniform sampler2D u_material;
-#endif
 
 layout(location = 0) out vec4 o_color;
 
@@ -18,18 +19,14 @@ float luma_of(vec4 c) { return dot(c.rgb, luma_weights) * c.a; }
 
 vec4 premultiplied(vec4 c) { return vec4(c.rgb * c.a, c.a); }
 
-#ifdef EXACT
 bool touches_exact(vec2 uv) {
     vec4 kinds = textureGather(u_material, uv, 3);
     return is_exact(kinds.x) || is_exact(kinds.y) || is_exact(kinds.z) || is_exact(kinds.w);
 }
-#endif
 
 /// What is blurred: the pixel itself in place of a table's colours, which nothing may mix with.
 vec4 sample_at(vec2 uv, vec4 centre) {
-#ifdef EXACT
-    if (touches_exact(uv)) return premultiplied(centre);
-#endif
+    if (has_exact_colors && touches_exact(uv)) return premultiplied(centre);
     return premultiplied(textureLod(u_color, uv, 0.0));
 }
 

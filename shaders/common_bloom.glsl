@@ -20,7 +20,6 @@ vec3 spread_part(vec3 exposed) {
     return u_bloom.z > 0.0 ? exposed * (max(part, 0.0) / max(peak, 1e-6)) : exposed;
 }
 
-#ifdef BLOOM
 uniform sampler2D u_glow;  // exposed light, first texel over the pixels 0 to 4
 uniform vec2 u_glow_size;  // of the texture in pixels: 4 times its own
 
@@ -29,4 +28,3 @@ vec4 with_bloom(vec4 radiance, vec2 pixel) {
     vec3 glow = textureLod(u_glow, pixel / u_glow_size, 0.0).rgb;
     return vec4((exposed + u_bloom.x * (glow - spread_part(exposed))) / u_bloom.y, radiance.a);
 }
-#endif

@@ -1,4 +1,7 @@
 // Cook-Torrance with the GGX distribution (Walter et al. 2007), alpha = roughness^2.
+#feature BRDF_UE4 has_ue4_masking
+#feature BRDF_SEPARABLE has_separable_masking
+#feature MULTIPLE_SCATTERING has_multiple_scattering
 
 const float pi = 3.14159265358979323846;
 
@@ -12,22 +15,21 @@ float D_ggx(float n_dot_h, float alpha) {
 // V = G / (4 NoV NoL).
 float V_smith(float n_dot_v, float n_dot_l, float roughness) {
     float alpha = roughness * roughness;
-#if defined(BRDF_UE4)
-    // Schlick's approximation with Karis's remapping for analytic lights (Karis 2013): the paper's form.
-    float k = (roughness + 1.0) * (roughness + 1.0) / 8.0;
-    return 0.25 / ((n_dot_v * (1.0 - k) + k) * (n_dot_l * (1.0 - k) + k));
-#elif defined(BRDF_SEPARABLE)
+    if (has_ue4_masking) {
+        // Schlick's approximation with Karis's remapping for analytic lights (Karis 2013): the paper's form.
+        float k = (roughness + 1.0) * (roughness + 1.0) / 8.0;
+        return 0.25 / ((n_dot_v * (1.0 - k) + k) * (n_dot_l * (1.0 - k) + k));
+    }
     float a2 = alpha * alpha;
-    float v = n_dot_v + sqrt(n_dot_v * n_dot_v * (1.0 - a2) + a2);
-    float l = n_dot_l + sqrt(n_dot_l * n_dot_l * (1.0 - a2) + a2);
-    return 1.0 / (v * l);
-#else
+    if (has_separable_masking) {
+        float v = n_dot_v + sqrt(n_dot_v * n_dot_v * (1.0 - a2) + a2);
+        float l = n_dot_l + sqrt(n_dot_l * n_dot_l * (1.0 - a2) + a2);
+        return 1.0 / (v * l);
+    }
     // Height-correlated Smith (Heitz 2014).
-    float a2 = alpha * alpha;
     float v = n_dot_l * sqrt(n_dot_v * n_dot_v * (1.0 - a2) + a2);
     float l = n_dot_v * sqrt(n_dot_l * n_dot_l * (1.0 - a2) + a2);
     return 0.5 / (v + l);
-#endif
 }
 
 // Schlick 1994.
@@ -49,12 +51,10 @@ Energy surface_energy(vec3 f0, vec2 dfg) {
     Energy energy;
     energy.e = dfg.x + dfg.y;
     energy.single = f0 * dfg.x + dfg.y;
-#ifdef MULTIPLE_SCATTERING
     float missing = 1.0 - energy.e;
     vec3 f_average = f0 + (1.0 - f0) / 21.0;
-    energy.multiple = missing * energy.single * f_average / (1.0 - f_average * missing);
-#else
     energy.multiple = vec3(0.0);
-#endif
+    if (has_multiple_scattering)
+        energy.multiple = missing * energy.single * f_average / (1.0 - f_average * missing);
     return energy;
 }

@@ -34,13 +34,13 @@ vec3 unpack_reflectance(uint bits) {
     return root * root;
 }
 
-const float turn = 6.28318530717958648;
+const float full_turn = 6.28318530717958648;
 
 // `normal` is the one that a reader of the G-buffer decodes.
 void pack_extension(Extension e, vec3 normal, out uvec4 first, out uvec4 second) {
     vec3 b1, b2;
     frame_around(normal, b1, b2);
-    float angle = atan(dot(e.tangent, b2), dot(e.tangent, b1)) / turn + 0.5;
+    float angle = atan(dot(e.tangent, b2), dot(e.tangent, b1)) / full_turn + 0.5;
     first.x = packUnorm2x16(oct_encode(e.coat_normal) * 0.5 + 0.5);
     first.y = packUnorm4x8(vec4(e.clearcoat, e.coat_roughness, e.sheen_roughness, e.iridescence));
     first.z = packUnorm4x8(vec4(sqrt(e.sheen_color), e.anisotropy));
@@ -63,7 +63,7 @@ Extension unpack_extension(uvec4 first, uvec4 second, vec3 normal) {
     v = unpackUnorm4x8(first.z);
     e.sheen_color = v.rgb * v.rgb;
     e.anisotropy = v.a;
-    float angle = (unpackUnorm2x16(first.w).x - 0.5) * turn;
+    float angle = (unpackUnorm2x16(first.w).x - 0.5) * full_turn;
     vec3 b1, b2;
     frame_around(normal, b1, b2);
     e.tangent = b1 * cos(angle) + b2 * sin(angle);

@@ -1,17 +1,15 @@
 // Eye-dome lighting (Boucheny 2009), one-sided: a pixel is darkened by what lies before it, never by what lies behind.
 // Whoever includes this says what reversed depth there is: float depth_at(vec2 uv).
+#include "common_projection.glsl"
+
 uniform vec2 u_eye_dome;     // strength, radius in pixels
-uniform vec2 u_depth_scale;  // ORTHOGRAPHIC: log2 units per unit of depth
+uniform vec2 u_depth_scale;  // orthographic: log2 units per unit of depth
 
 // How far, in doublings of the distance, `near` lies before `here`; both reversed depths. A ratio of depths is the same
 // at any scale of the scene.
 float before(float here, float near) {
     if (near <= here) return 0.0;
-#ifdef ORTHOGRAPHIC
-    return (near - here) * u_depth_scale.x;
-#else
-    return log2(near / here);
-#endif
+    return is_orthographic ? (near - here) * u_depth_scale.x : log2(near / here);
 }
 
 float eye_dome(vec2 uv, float here) {

@@ -1,17 +1,20 @@
 // The analytic lights of one block, their falloff and their shadows.
-struct Light {
-    vec4 position;   // relative to the camera; w: 0 directional, 1 point, 2 spot
-    vec4 color;      // intensity times colour; w: 1 / range^2, or 0
-    vec4 direction;  // unit, where the light goes; w: unused
-    vec4 cone;       // scale and offset of the cosine
-};
+#include "common_encoding.glsl"
+#include "light_blocks.glsl"
+
+#feature SHADOWS has_shadows
+#feature SHADOW_CUBES has_shadow_cubes
+
+#ifdef SHADOWS  // A declared block counts as used. And compiling filters that no one calls takes as long as all else.
+#include "common_shadow.glsl"
+#else
+#include "common_unshadowed.glsl"
+#endif
+
 layout(std140, binding = 0) uniform Lights { Light u_lights[LIGHTS_PER_BLOCK]; };
 uniform int u_plain_lights;   // lights without shadows, the first ones
-#ifdef SHADOWS
 uniform int u_single_lights;  // end of those with one shadow map
 uniform int u_cube_lights;    // end of those with a cube
-#include "common_shadow.glsl"
-#endif
 
 // What arrives on a surface that faces the light, and the direction to it.
 vec3 arriving(Light light, vec3 position, out vec3 l) {

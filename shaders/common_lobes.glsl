@@ -1,4 +1,5 @@
 // Lobes of glTF's material extensions.
+#include "common_brdf.glsl"
 
 float max_channel(vec3 v) { return max(v.r, max(v.g, v.b)); }
 
@@ -13,17 +14,14 @@ Energy surface_energy(vec3 f0, vec3 f90, vec2 dfg) {
     Energy energy;
     energy.e = dfg.x + dfg.y;
     energy.single = f0 * dfg.x + f90 * dfg.y;
-#ifdef MULTIPLE_SCATTERING
     float missing = 1.0 - energy.e;
     vec3 f_average = f0 + (f90 - f0) / 21.0;
-    energy.multiple = missing * energy.single * f_average / (1.0 - f_average * missing);
-#else
     energy.multiple = vec3(0.0);
-#endif
+    if (has_multiple_scattering)
+        energy.multiple = missing * energy.single * f_average / (1.0 - f_average * missing);
     return energy;
 }
 
-#ifdef ANISOTROPY
 // KHR_materials_anisotropy: GGX with two roughnesses, along the tangent and along the bitangent (Burley 2012), with
 // height-correlated Smith masking. x, y, z of a direction are its cosines with tangent, bitangent and normal.
 float D_ggx_anisotropic(vec3 h, vec2 alpha) {
@@ -36,9 +34,7 @@ float D_ggx_anisotropic(vec3 h, vec2 alpha) {
 float V_smith_anisotropic(vec3 v, vec3 l, vec2 alpha) {
     return 0.5 / (l.z * length(vec3(alpha * v.xy, v.z)) + v.z * length(vec3(alpha * l.xy, l.z)));
 }
-#endif
 
-#ifdef SHEEN
 // KHR_materials_sheen: Estevez and Kulla 2017, "Production Friendly Microfacet Sheen BRDF". Below this roughness the fit
 // of its shadowing gives back more than it gets by far.
 const float least_sheen_roughness = 0.07;
@@ -64,9 +60,7 @@ float charlie_lambda(float cosine, float roughness) {
 float V_charlie(float n_dot_v, float n_dot_l, float roughness) {
     return 1.0 / ((1.0 + charlie_lambda(n_dot_v, roughness) + charlie_lambda(n_dot_l, roughness)) * 4.0 * n_dot_v * n_dot_l);
 }
-#endif
 
-#ifdef IRIDESCENCE
 // KHR_materials_iridescence: Belcour and Barla 2017, "A Practical Extension to Microfacet Theory for the Modeling of
 // Varying Iridescence", with Schlick's Fresnel and real indices, as the extension has it.
 
@@ -114,4 +108,3 @@ vec3 F_film(float cosine, float film_ior, float thickness, vec3 f0) {
     // Saturated colours lie outside of Rec.709.
     return clamp(sum, 0.0, 1.0);
 }
-#endif

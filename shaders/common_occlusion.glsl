@@ -1,16 +1,11 @@
-// What the passes of ambient occlusion share: surfaces of the G-buffer in view space, of full or of half resolution.
+// What the passes of ambient occlusion share: surfaces of the G-buffer in view space.
 #include "common_encoding.glsl"
 #include "common_camera.glsl"
 
 uniform sampler2D u_depth_target;  // full resolution, see render/gbuffer.h
 uniform float u_radius;            // world units
 uniform float u_inverse_falloff;   // occlusion fades from full to none over this part of the radius, inverted
-#ifdef HALF
-uniform sampler2D u_surface;       // of occlusion_select.frag
-uniform vec2 u_surface_size;
-#else
 uniform sampler2D u_normal;
-#endif
 
 struct Surface {
     vec2 pixel;     // centre, full resolution
@@ -20,31 +15,8 @@ struct Surface {
 
 vec3 view_normal(vec2 encoded) { return oct_decode(encoded * 2.0 - 1.0) * u_world_from_view; }
 
-#ifdef HALF
-// Depth, x and y of the normal, and which of the four pixels it is (plus 4 for a normal with negative z).
-vec4 pack_surface(float depth, vec3 normal, float index) {
-    return vec4(depth, normal.xy, index + (normal.z < 0.0 ? 4.0 : 0.0));
-}
-
-Surface unpack_surface(vec2 texel, vec4 packed_surface) {
-    float below = step(3.5, packed_surface.w), index = packed_surface.w - 4.0 * below;
-    float row = step(1.5, index);
-    vec2 xy = packed_surface.yz;
-    Surface s;
-    s.pixel = min(floor(texel) * 2.0 + vec2(index - 2.0 * row, row) + 0.5, u_size - 0.5);
-    s.position = view_position(s.pixel, packed_surface.x);
-    s.normal = vec3(xy, (1.0 - 2.0 * below) * sqrt(max(1.0 - dot(xy, xy), 0.0)));
-    return s;
-}
-
-// Depth at a texel; 0 where there is nothing.
-Surface surface_at(vec2 texel, out float depth) {
-    vec4 packed_surface = textureLod(u_surface, texel / u_surface_size, 0.0);
-    depth = packed_surface.x;
-    return unpack_surface(texel, packed_surface);
-}
-#else
-Surface surface_at(vec2 pixel, out float depth) {
+// The surface of a pixel, and its depth; 0 where there is nothing.
+Surface full_surface(vec2 pixel, out float depth) {
     depth = textureLod(u_depth_target, pixel / u_size, 0.0).r;
     Surface s;
     s.pixel = pixel;
@@ -52,34 +24,22 @@ Surface surface_at(vec2 pixel, out float depth) {
     s.normal = view_normal(textureLod(u_normal, pixel / u_size, 0.0).rg);
     return s;
 }
-#endif
 
 // Unit vector from a point to the viewer.
 vec3 to_viewer(vec3 position) {
-#ifdef ORTHOGRAPHIC
-    return vec3(0.0, 0.0, 1.0);
-#else
-    return -normalize(position);
-#endif
+    return is_orthographic ? vec3(0.0, 0.0, 1.0) : -normalize(position);
 }
 
 // Pixels per world length at a point, for a displacement that is perpendicular to the view direction.
 vec2 pixels_along(vec3 position, vec3 direction) {
-#ifdef ORTHOGRAPHIC
-    vec2 ndc = direction.xy;
-#else
-    vec2 ndc = (direction.xy - position.xy * (direction.z / position.z)) / -position.z;
-#endif
+    vec2 ndc = is_orthographic ? direction.xy
+                               : (direction.xy - position.xy * (direction.z / position.z)) / -position.z;
     return vec2(0.5, -0.5) * u_size * ndc / u_unproject.xy;
 }
 
 // World size of a pixel at a point.
 float pixel_size(vec3 position) {
-#ifdef ORTHOGRAPHIC
-    return 2.0 * u_unproject.y / u_size.y;
-#else
-    return -2.0 * position.z * u_unproject.y / u_size.y;
-#endif
+    return (is_orthographic ? 2.0 : -2.0 * position.z) * u_unproject.y / u_size.y;
 }
 
 // Occluders count less towards the radius and not at all beyond it.

@@ -1,4 +1,4 @@
-// What transparent casters take from the light on its way to a receiver, from the sums that common_tint.glsl leaves. Exact
+// What transparent casters take from the light on its way to a receiver, from the sums that shadow_target.glsl leaves. Exact
 // before the first caster of a texel, behind the last one, and between two; between more than two it is what two at the
 // same ends with the same mean depth would take.
 uniform sampler2DArray u_tint_absorption;
@@ -22,16 +22,13 @@ float plane_at(Receiver r, ivec2 texel) {
     return r.depth + dot(r.slope, (vec2(texel) + 0.5) / u_shadow_resolution - r.at.xy);
 }
 
-#ifdef SHADOWS_HARD
-vec3 tint_part(Receiver r, bool needed) {
+vec3 tint_hard(Receiver r, bool needed) {
     ivec2 texel = ivec2(floor(r.at.xy * u_shadow_resolution));
     return needed ? tint_texel(texel, r, plane_at(r, texel), 0.0) : vec3(1.0);
 }
-#endif
 
-#ifdef SHADOWS_PCF
-// The mean of 3x3 texels, interpolated between texels, as lit_part().
-vec3 tint_part(Receiver r, bool needed) {
+// The mean of 3x3 texels, interpolated between texels, as lit_filtered().
+vec3 tint_filtered(Receiver r) {
     vec2 at = r.at.xy * u_shadow_resolution - 0.5, base = floor(at), f = at - base;
     vec3 lost = vec3(0.0);  // nothing lost is exactly all light, whatever the weights round to
     for (int y = -1; y <= 2; ++y)
@@ -43,12 +40,10 @@ vec3 tint_part(Receiver r, bool needed) {
         }
     return 1.0 - lost / 9.0;
 }
-#endif
 
-#ifdef SHADOWS_SOFT
 const int tint_taps = 12;
 
-vec3 tint_part(Receiver r, bool needed) {
+vec3 tint_soft(Receiver r, bool needed) {
     float texel = 1.0 / u_shadow_resolution;
     float turn = 6.28318531 * frame_noise(gl_FragCoord.xy, u_sample_index);
     float reach = min(r.reach, widest / max(r.light.x, r.light.y));
@@ -81,4 +76,8 @@ vec3 tint_part(Receiver r, bool needed) {
     }
     return 1.0 - lost / float(tint_taps);
 }
-#endif
+
+vec3 tint_part(Receiver r, bool needed) {
+    if (has_hard_shadows) return tint_hard(r, needed);
+    return has_filtered_shadows ? tint_filtered(r) : tint_soft(r, needed);
+}

@@ -1,52 +1,43 @@
 // The last step: background behind what was drawn, sRGB encoding.
+#include "common_bloom.glsl"
 #include "common_encoding.glsl"
 #include "common_tone.glsl"
-#ifdef BLOOM
-#include "common_bloom.glsl"
-#endif
 
-uniform sampler2D u_source;  // SUM: accumulated display light; else one frame's radiance
+#feature SUM is_sum  // of frames, tone mapped
+#feature BLOOM has_bloom
+#feature OVERLAY has_overlay
+#feature BACKGROUND_IMAGE has_background_image
+#feature LINEAR_OUTPUT is_linear_output
+
+uniform sampler2D u_source;     // accumulated display light; or one frame's radiance
 uniform vec2 u_size;
 uniform float u_exposure;
-uniform float u_sample_scale;   // SUM: 1 / samples
+uniform float u_sample_scale;   // of a sum: 1 / samples
 uniform vec4 u_background;      // linear display light, premultiplied by alpha
-#ifdef BACKGROUND_IMAGE
 uniform sampler2D u_background_image;
 uniform vec4 u_background_uv;   // scale and offset that cover the picture without distortion
-#endif
-
-#ifdef OVERLAY
 uniform sampler2D u_overlay;    // linear display light, premultiplied
-#endif
 
 layout(location = 0) out vec4 o_color;
+
+// Display light of one frame.
+vec4 shown(vec4 radiance, vec2 uv) {
+    if (has_bloom) radiance = with_bloom(radiance, gl_FragCoord.xy);
+    vec4 color = displayed(radiance, u_exposure);
+    if (!has_overlay) return color;
+    vec4 over = textureLod(u_overlay, uv, 0.0);
+    return color * (1.0 - over.a) + over;
+}
 
 void main() {
     vec2 uv = gl_FragCoord.xy / u_size;
     vec4 source = textureLod(u_source, uv, 0.0);
-#ifdef SUM
-    vec4 color = source * u_sample_scale;
-#else
-#ifdef BLOOM
-    source = with_bloom(source, gl_FragCoord.xy);
-#endif
-    vec4 color = displayed(source, u_exposure);
-#ifdef OVERLAY
-    vec4 over = textureLod(u_overlay, uv, 0.0);
-    color = color * (1.0 - over.a) + over;
-#endif
-#endif
-#ifdef BACKGROUND_IMAGE
-    vec4 behind = vec4(textureLod(u_background_image, uv * u_background_uv.xy + u_background_uv.zw, 0.0).rgb, 1.0);
-#else
+    vec4 color = is_sum ? source * u_sample_scale : shown(source, uv);
     vec4 behind = u_background;
-#endif
+    if (has_background_image)
+        behind = vec4(textureLod(u_background_image, uv * u_background_uv.xy + u_background_uv.zw, 0.0).rgb, 1.0);
     color += (1.0 - color.a) * behind;
-#ifdef LINEAR_OUTPUT
-    o_color = color;
-#else
     // Files hold straight alpha.
     vec3 straight = color.a > 0.0 ? color.rgb / color.a : vec3(0.0);
-    o_color = vec4(srgb_encode(clamp(straight, 0.0, 1.0)), color.a);
-#endif
+    o_color = is_linear_output ? color : vec4(srgb_encode(clamp(straight, 0.0, 1.0)), color.a);
 }

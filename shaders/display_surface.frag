@@ -1,13 +1,13 @@
 // Surfaces whose colour is shown as it is, into the overlay; those of points without normals shaded by eye-dome lighting.
 #include "common_surface_kind.glsl"
 
+#feature AMBIENT_OCCLUSION has_ambient_occlusion
+
 uniform sampler2D u_albedo;
 uniform sampler2D u_material;
 uniform sampler2D u_depth_target;
 uniform vec2 u_size;
-#ifdef AMBIENT_OCCLUSION
 uniform sampler2D u_ambient_occlusion;
-#endif
 
 layout(location = 0) out vec4 o_color;
 
@@ -21,9 +21,7 @@ void main() {
     vec3 color = textureLod(u_albedo, uv, 0.0).rgb;
     if (is_eye_dome(code)) {
         color *= eye_dome(uv, textureLod(u_depth_target, uv, 0.0).r);
-#ifdef AMBIENT_OCCLUSION
-        color *= textureLod(u_ambient_occlusion, uv, 0.0).r;
-#endif
+        if (has_ambient_occlusion) color *= textureLod(u_ambient_occlusion, uv, 0.0).r;
     }
     o_color = vec4(color, 1.0);
 }

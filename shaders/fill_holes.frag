@@ -1,30 +1,25 @@
 // Closes gaps between points: a pixel most of whose neighbours lie on one surface before it takes after the nearest.
+#include "common_projection.glsl"
+
+#feature OBJECT_ID has_ids
+
 uniform sampler2D u_albedo;
 uniform sampler2D u_normal;
 uniform sampler2D u_material;
 uniform sampler2D u_depth_target;
 uniform vec2 u_size;
-uniform vec3 u_depth;  // as in common_camera.glsl
+uniform usampler2D u_id;
+uniform usampler2D u_element;
 
 layout(location = 0) out vec4 o_albedo;
 layout(location = 1) out vec2 o_normal;
 layout(location = 2) out vec4 o_material;
 layout(location = 3) out float o_depth;
-#ifdef OBJECT_ID
-uniform usampler2D u_id;
-uniform usampler2D u_element;
 layout(location = 5) out uint o_id;
 layout(location = 6) out uint o_element;
-#endif
 
-// Distance along the optical axis of a reversed depth.
-float axial(float depth) {
-#ifdef ORTHOGRAPHIC
-    return mix(u_depth.y, u_depth.x, depth);
-#else
-    return depth > 0.0 ? u_depth.x / depth : 3e38;
-#endif
-}
+// Distance along the optical axis, where there is nothing too.
+float axial(float depth) { return is_orthographic || depth > 0.0 ? axial_distance(depth) : 3e38; }
 
 void main() {
     ivec2 p = ivec2(gl_FragCoord.xy);
@@ -53,8 +48,8 @@ void main() {
     o_material = texelFetch(u_material, best, 0);
     o_depth = nearest;
     gl_FragDepth = nearest;
-#ifdef OBJECT_ID
-    o_id = texelFetch(u_id, best, 0).r;
-    o_element = texelFetch(u_element, best, 0).r;
-#endif
+    if (has_ids) {
+        o_id = texelFetch(u_id, best, 0).r;
+        o_element = texelFetch(u_element, best, 0).r;
+    }
 }

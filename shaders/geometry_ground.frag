@@ -16,17 +16,12 @@ layout(location = 4) out vec4 o_radiance;
 void main() {
     vec3 direction = ray_direction(gl_FragCoord.xy), forward = u_world_from_view * vec3(0.0, 0.0, -1.0);
     vec3 origin = vec3(0.0);
-#ifdef ORTHOGRAPHIC
-    origin = u_world_from_view * vec3((ndc_of_pixel(gl_FragCoord.xy) + u_unproject.zw) * u_unproject.xy, 0.0);
-#endif
+    if (is_orthographic)
+        origin = u_world_from_view * vec3((ndc_of_pixel(gl_FragCoord.xy) + u_unproject.zw) * u_unproject.xy, 0.0);
     float falls = dot(u_plane.xyz, direction);
     if (falls > -1e-6) discard;
     float z = (u_plane.w - dot(u_plane.xyz, origin)) / falls * dot(direction, forward);
-#ifdef ORTHOGRAPHIC
-    float depth = (u_depth.y - z) / (u_depth.y - u_depth.x);
-#else
-    float depth = u_depth.x / z;
-#endif
+    float depth = reversed_depth(z);
     if (!(depth > 0.0 && depth <= 1.0)) discard;
     o_albedo = vec4(u_color, 1.0);
     o_normal = oct_encode(u_plane.xyz) * 0.5 + 0.5;

@@ -27,11 +27,7 @@ void shade_own(inout vec4 color, inout Normals n, inout float metallic, inout fl
     s.own_position = v_own_position;
     s.face_normal = n.geometric;
     s.view = u_backwards.w > 0.5 ? u_backwards.xyz : normalize(-v_position);
-#ifdef UV
-    s.uv = v_uv;
-#else
-    s.uv = vec2(0.0);
-#endif
+    s.uv = has_uv ? v_uv : vec2(0.0);
     s.base_color = color.rgb;
     s.opacity = color.a;
     s.metallic = metallic;

@@ -1,12 +1,16 @@
 // Surfels as quads around their ellipses, one instance each: the first of three steps of surface splatting. The inverse
 // that takes a pixel to a place in the ellipse is explained in render/surfel_projection.h.
 #include "common_encoding.glsl"
+#include "common_projection.glsl"
+
+#feature VERTEX_COLOR has_vertex_colors
+#feature ALPHA_MASK has_alpha_mask
+#feature PEEL is_peeling
+#feature OBJECT_ID has_ids
 
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
-#ifdef VERTEX_COLOR
 layout(location = 2) in vec4 a_color;
-#endif
 layout(location = 3) in vec4 a_axes;  // tangent, its length being the first semi-axis; length of the second
 
 uniform mat4 u_clip_from_mesh;
@@ -14,11 +18,11 @@ uniform mat4 u_view_from_mesh;
 uniform mat3 u_normal_from_mesh;
 uniform vec2 u_size;
 uniform vec4 u_base_color;  // linear, opacity in w
-uniform vec3 u_eye;         // in the mesh's frame; ORTHOGRAPHIC: direction towards the viewer
+uniform vec3 u_eye;         // in the mesh's frame; orthographic: direction towards the viewer
 uniform vec4 u_surfel;      // factor on the size, radius without a tangent, near, scale of the pose
 uniform float u_least_radius;
 uniform float u_alpha_cutoff;
-uniform float u_pixel;      // its height, at distance 1 or anywhere (ORTHOGRAPHIC)
+uniform float u_pixel;      // its height, at distance 1 or anywhere (orthographic)
 
 flat out vec2 v_centre;     // pixels
 flat out vec4 v_axes;       // tx, ty, bx, by
@@ -27,9 +31,7 @@ flat out vec4 v_distance;   // axial distance along t and b and of the centre; b
 flat out float v_least;     // half the side of the smallest square it covers, pixels
 flat out vec3 v_normal;
 flat out vec4 v_color;
-#ifdef OBJECT_ID
 flat out uint v_element;
-#endif
 
 vec3 any_perpendicular(vec3 n) {
     return normalize(abs(n.x) > abs(n.z) ? vec3(-n.y, n.x, 0.0) : vec3(0.0, -n.z, n.y));
@@ -45,26 +47,12 @@ void leave_out() { gl_Position = vec4(2.0, 2.0, 0.0, 1.0); }
 
 void main() {
     v_color = u_base_color;
-#ifdef VERTEX_COLOR
-    v_color *= vec4(srgb_decode(a_color.rgb), a_color.a);
-#endif
-#ifdef ALPHA_MASK
-    if (v_color.a < u_alpha_cutoff) {
+    if (has_vertex_colors) v_color *= vec4(srgb_decode(a_color.rgb), a_color.a);
+    if ((has_alpha_mask && v_color.a < u_alpha_cutoff) || (is_peeling && v_color.a <= 0.0)) {
         leave_out();
         return;
     }
-#endif
-#ifdef PEEL
-    if (v_color.a <= 0.0) {
-        leave_out();
-        return;
-    }
-#endif
-#ifdef ORTHOGRAPHIC
-    vec3 to_viewer = u_eye;
-#else
-    vec3 to_viewer = u_eye - a_position;
-#endif
+    vec3 to_viewer = is_orthographic ? u_eye : u_eye - a_position;
     vec3 n = dot(a_normal, a_normal) > 0.0 ? normalize(a_normal) : normalize(to_viewer);
     float radius = length(a_axes.xyz);
     vec3 direction = a_axes.xyz - n * dot(n, a_axes.xyz);
@@ -91,16 +79,12 @@ void main() {
     v_distance = vec4(z, max(length(t), length(b)) * u_surfel.w);
     // As least_radius() in render/surfel_projection.h.
     float facing = dot(a_normal, a_normal) > 0.0 ? dot(n, normalize(to_viewer)) : 1.0;
-#ifdef PEEL
-    // Surfels smaller than a pixel lie as far behind each other as the surface falls away within it.
-    float slope = sqrt(max(0.0, 1.0 - facing * facing)) / max(abs(facing), 0.1);
-#ifdef ORTHOGRAPHIC
-    float footprint = u_pixel;
-#else
-    float footprint = u_pixel * z.z;
-#endif
-    v_distance.w = max(v_distance.w, footprint * (1.0 + slope));
-#endif
+    if (is_peeling) {
+        // Surfels smaller than a pixel lie as far behind each other as the surface falls away within it.
+        float slope = sqrt(max(0.0, 1.0 - facing * facing)) / max(abs(facing), 0.1);
+        float footprint = is_orthographic ? u_pixel : u_pixel * z.z;
+        v_distance.w = max(v_distance.w, footprint * (1.0 + slope));
+    }
     v_least = facing < 0.0 ? max(1e-3, -facing * u_least_radius) : u_least_radius;
     vec2 x = extent(t2.x, b2.x, w, q_ww, v_least), y = extent(t2.y, b2.y, w, q_ww, v_least);
     // Half a pixel more: the centres of all pixels that count are inside whatever the driver rounds.
@@ -110,7 +94,5 @@ void main() {
     gl_Position = vec4(ndc.x, -ndc.y, 0.5, 1.0);
 
     v_normal = normalize(u_normal_from_mesh * (dot(n, to_viewer) < 0.0 ? -n : n));
-#ifdef OBJECT_ID
-    v_element = uint(gl_InstanceID + 1) | 0x80000000u;  // a point: render/gbuffer.h
-#endif
+    if (has_ids) v_element = uint(gl_InstanceID + 1) | 0x80000000u;  // a point: render/frame/gbuffer.h
 }

@@ -3,28 +3,33 @@
 #include "common_camera.glsl"
 #include "common_surface_kind.glsl"
 
+#feature CATCHER is_catcher
+
 uniform sampler2D u_material;
-#ifdef CATCHER
-uniform sampler2D u_light;  // of lighting_catcher.frag
-uniform float u_strength;
-#else
 uniform sampler2D u_depth_target;
 uniform vec4 u_middle;      // under the content, relative to the camera; w: radius at which nothing is left
-#endif
+// Of the catcher:
+uniform sampler2D u_light;  // of lighting_catcher.frag
+uniform float u_strength;
 
-layout(location = 0) out vec4 o_color;  // CATCHER: radiance; else a factor on it
+layout(location = 0) out vec4 o_color;  // the catcher's radiance; else a factor on radiance
+
+// The part of a catcher's light that is missing, as black.
+vec4 missing_light(vec2 uv) {
+    vec2 light = textureLod(u_light, uv, 0.0).rg;
+    float lit = light.g > 0.0 ? clamp(light.r / light.g, 0.0, 1.0) : 1.0;
+    return vec4(0.0, 0.0, 0.0, u_strength * (1.0 - lit));
+}
+
+// What is left of a plane, far from the content.
+vec4 faded(vec2 uv) {
+    vec3 p = u_world_from_view * view_position(gl_FragCoord.xy, textureLod(u_depth_target, uv, 0.0).r);
+    return vec4(1.0 - smoothstep(0.4, 1.0, distance(p, u_middle.xyz) / u_middle.w));
+}
 
 void main() {
     vec2 uv = gl_FragCoord.xy / u_size;
     float kind = textureLod(u_material, uv, 0.0).w;
-#ifdef CATCHER
-    if (!is_ground_catcher(kind)) discard;
-    vec2 light = textureLod(u_light, uv, 0.0).rg;
-    float lit = light.g > 0.0 ? clamp(light.r / light.g, 0.0, 1.0) : 1.0;
-    o_color = vec4(0.0, 0.0, 0.0, u_strength * (1.0 - lit));
-#else
-    if (!is_ground_plane(kind)) discard;
-    vec3 p = u_world_from_view * view_position(gl_FragCoord.xy, textureLod(u_depth_target, uv, 0.0).r);
-    o_color = vec4(1.0 - smoothstep(0.4, 1.0, distance(p, u_middle.xyz) / u_middle.w));
-#endif
+    if (is_catcher ? !is_ground_catcher(kind) : !is_ground_plane(kind)) discard;
+    o_color = is_catcher ? missing_light(uv) : faded(uv);
 }

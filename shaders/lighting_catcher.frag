@@ -6,19 +6,17 @@
 #include "common_surface_kind.glsl"
 #include "common_lights.glsl"
 
+#feature ENVIRONMENT has_environment
+#feature AMBIENT_OCCLUSION has_ambient_occlusion
+#feature TRACED has_traced_light
+
 uniform sampler2D u_normal;
 uniform sampler2D u_material;
 uniform sampler2D u_depth_target;
-#ifdef ENVIRONMENT
 uniform samplerCube u_irradiance;
 uniform float u_env_intensity;
-#ifdef AMBIENT_OCCLUSION
 uniform sampler2D u_ambient_occlusion;
-#endif
-#ifdef TRACED
-uniform sampler2D u_sky_visibility;  // see render/ray_pass.h
-#endif
-#endif
+uniform sampler2D u_sky_visibility;  // see render/raytrace/ray_pass.h
 
 layout(location = 0) out vec4 o_light;  // r: with shadows, g: without
 
@@ -30,34 +28,35 @@ float arriving_at(Light light, vec3 position, vec3 normal) {
     return luminance(arrives) * max(dot(normal, l), 0.0) * inverse_pi;
 }
 
+// The environment's, with and without what hides it.
+vec2 sky_light(vec2 uv, vec3 normal) {
+    vec3 sky = u_env_intensity * textureLod(u_irradiance, u_env_from_world * normal, 0.0).rgb;
+    vec2 light = vec2(luminance(sky));
+    if (has_traced_light) light.r = luminance(sky * texelFetch(u_sky_visibility, ivec2(gl_FragCoord.xy), 0).rgb);
+    if (has_ambient_occlusion) light.r *= textureLod(u_ambient_occlusion, uv, 0.0).r;
+    return light;
+}
+
+// The light of those with shadow maps, with and without shadows, is added.
+void add_shadowed(inout vec2 light, vec3 position, vec3 normal) {
+    for (int i = u_plain_lights; i < u_single_lights; ++i) {
+        float arrives = arriving_at(u_lights[i], position, normal);
+        light += arrives * vec2(brightness(shadow_single(i - u_plain_lights, position, normal, arrives > 0.0)), 1.0);
+    }
+    if (!has_shadow_cubes) return;
+    for (int i = u_single_lights; i < u_cube_lights; ++i) {
+        float arrives = arriving_at(u_lights[i], position, normal);
+        light += arrives * vec2(brightness(shadow_cube(i - u_plain_lights, position, normal, arrives > 0.0)), 1.0);
+    }
+}
+
 void main() {
     vec2 uv = gl_FragCoord.xy / u_size;
     if (!is_ground_catcher(textureLod(u_material, uv, 0.0).w)) discard;
     vec3 position = u_world_from_view * view_position(gl_FragCoord.xy, textureLod(u_depth_target, uv, 0.0).r);
     vec3 normal = oct_decode(textureLod(u_normal, uv, 0.0).rg * 2.0 - 1.0);
-    vec2 light = vec2(0.0);
-#ifdef ENVIRONMENT
-    vec3 sky = u_env_intensity * textureLod(u_irradiance, u_env_from_world * normal, 0.0).rgb;
-    light = vec2(luminance(sky));
-#ifdef TRACED
-    light.r = luminance(sky * texelFetch(u_sky_visibility, ivec2(gl_FragCoord.xy), 0).rgb);
-#endif
-#ifdef AMBIENT_OCCLUSION
-    light.r *= textureLod(u_ambient_occlusion, uv, 0.0).r;
-#endif
-#endif
+    vec2 light = has_environment ? sky_light(uv, normal) : vec2(0.0);
     for (int i = 0; i < u_plain_lights; ++i) light += arriving_at(u_lights[i], position, normal);
-#ifdef SHADOWS
-    for (int i = u_plain_lights; i < u_single_lights; ++i) {
-        float arrives = arriving_at(u_lights[i], position, normal);
-        light += arrives * vec2(brightness(shadow_single(i - u_plain_lights, position, normal, arrives > 0.0)), 1.0);
-    }
-#ifdef SHADOW_CUBES
-    for (int i = u_single_lights; i < u_cube_lights; ++i) {
-        float arrives = arriving_at(u_lights[i], position, normal);
-        light += arrives * vec2(brightness(shadow_cube(i - u_plain_lights, position, normal, arrives > 0.0)), 1.0);
-    }
-#endif
-#endif
+    if (has_shadows) add_shadowed(light, position, normal);
     o_light = vec4(light, 0.0, 0.0);
 }

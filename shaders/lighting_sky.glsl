@@ -1,12 +1,47 @@
-// How much of the environment's light reaches a surface, and what other surfaces send it instead.
+// The environment's light: what of it lies in a lobe, how much of it reaches a surface, and what other surfaces send it
+// instead.
+#include "common_environment.glsl"
+
+#feature ENVIRONMENT has_environment
+#feature LOBE_SAMPLES samples_lobes
+#feature MULTI_BOUNCE has_multi_bounce
+#feature TRACED has_traced_light
+
+uniform samplerCube u_prefiltered;
+uniform samplerCube u_irradiance;
+uniform float u_last_level;
+uniform float u_env_intensity;
+uniform float u_lobe_slope;  // of the facet that this frame reflects in, in units of alpha
+// See render/raytrace/ray_pass.h.
+uniform sampler2D u_sky_visibility;
+uniform sampler2D u_indirect_diffuse;
+uniform sampler2D u_indirect_specular;
+
+vec3 prefiltered(vec3 direction, float roughness) {
+    return textureLod(u_prefiltered, u_env_from_world * direction, prefiltered_level(roughness, u_last_level)).rgb;
+}
+
+// Average radiance in the specular lobe.
+vec3 lobe_radiance(vec3 normal, vec3 view, float n_dot_v, float roughness, float alpha) {
+    // The lobe leans towards the normal the more the rougher the surface is.
+    vec3 dominant = normalize(mix(reflect(-view, normal), normal, alpha * alpha));
+    if (!samples_lobes) return prefiltered(dominant, roughness);
+    // Seen from the side a lobe is NoV times as wide across the plane of incidence as within it, whereas the
+    // environment is prefiltered for NoV = 1. The frames of an accumulated picture take it narrower, side by side
+    // within the plane.
+    float narrowed = mix(min(n_dot_v, 1.0), 1.0, alpha);
+    float slope = u_lobe_slope * alpha * sqrt(1.0 - narrowed * narrowed);
+    vec3 facet = normalize(view + dominant);
+    vec3 within = view - facet * dot(facet, view);
+    vec3 h = normalize(facet + within * (slope * inversesqrt(max(dot(within, within), 1e-12))));
+    return prefiltered(reflect(-view, h), roughness * sqrt(narrowed));
+}
+
 // Visibility with what surfaces of this albedo reflect into each other's recesses (Jimenez et al. 2016, a fit).
 vec3 diffuse_visibility(float visibility, vec3 albedo) {
-#ifdef MULTI_BOUNCE
+    if (!has_multi_bounce) return vec3(visibility);
     vec3 a = 2.0404 * albedo - 0.3324, b = -4.7951 * albedo + 0.6417, c = 2.7552 * albedo + 0.6903;
     return max(vec3(visibility), ((visibility * a + b) * visibility + c) * visibility);
-#else
-    return vec3(visibility);
-#endif
 }
 
 // Part of the specular lobe that a surface sees (Lagarde and de Rousiers 2014).
@@ -15,39 +50,28 @@ vec3 specular_visibility(float n_dot_v, float alpha, float visibility, vec3 f0) 
     return diffuse_visibility(part, f0);
 }
 
-#ifdef TRACED
-// See render/ray_pass.h.
-uniform sampler2D u_sky_visibility;
-uniform sampler2D u_indirect_diffuse;
-uniform sampler2D u_indirect_specular;
-
 vec3 traced(sampler2D target) { return texelFetch(target, ivec2(gl_FragCoord.xy), 0).rgb; }
-#endif
 
 // Irradiance divided by pi.
 vec3 diffuse_light(vec3 normal, float visibility, vec3 albedo) {
     vec3 sky = u_env_intensity * textureLod(u_irradiance, u_env_from_world * normal, 0.0).rgb;
-#ifdef TRACED
-    sky = sky * traced(u_sky_visibility) + traced(u_indirect_diffuse);
-#endif
+    if (has_traced_light) sky = sky * traced(u_sky_visibility) + traced(u_indirect_diffuse);
     return sky * diffuse_visibility(visibility, albedo);
 }
 
 // Average radiance in the specular lobe, of which `lobe` is the environment's.
 vec3 mirrored_light(vec3 lobe, float n_dot_v, float alpha, float visibility, vec3 f0) {
     lobe *= u_env_intensity;
-#ifdef TRACED
-    vec4 scene = texelFetch(u_indirect_specular, ivec2(gl_FragCoord.xy), 0);
-    lobe = lobe * (1.0 - scene.a) + scene.rgb;
-#endif
+    if (has_traced_light) {
+        vec4 scene = texelFetch(u_indirect_specular, ivec2(gl_FragCoord.xy), 0);
+        lobe = lobe * (1.0 - scene.a) + scene.rgb;
+    }
     return lobe * specular_visibility(n_dot_v, alpha, visibility, f0);
 }
 
 // Average radiance in the lobe of the sheen, which is as wide as the sky.
 vec3 sheen_light(vec3 lobe, float visibility) {
     lobe *= u_env_intensity;
-#ifdef TRACED
-    lobe = lobe * traced(u_sky_visibility) + traced(u_indirect_diffuse);
-#endif
+    if (has_traced_light) lobe = lobe * traced(u_sky_visibility) + traced(u_indirect_diffuse);
     return lobe * visibility;
 }

@@ -15,11 +15,8 @@ uniform float u_lobe_share;        // part of the lobe's width that one frame bl
 // Pixel and distance along the optical axis of a point relative to the camera.
 vec3 projected(vec3 p) {
     vec3 v = p * u_world_from_view;  // the inverse of a rotation
-#ifdef ORTHOGRAPHIC
-    vec2 ndc = v.xy / u_unproject.xy - u_unproject.zw;
-#else
-    vec2 ndc = v.xy / (max(-v.z, 1e-20) * u_unproject.xy) - u_unproject.zw;
-#endif
+    vec2 scale = is_orthographic ? u_unproject.xy : max(-v.z, 1e-20) * u_unproject.xy;
+    vec2 ndc = v.xy / scale - u_unproject.zw;
     return vec3((ndc + vec2(1.0, -1.0)) * vec2(0.5, -0.5) * u_size, -v.z);
 }
 
@@ -34,11 +31,7 @@ float distance_of(float d) { return -view_position(vec2(0.0), d).z; }
 
 // Pixels that a length of 1 has at a distance.
 float pixels_per_unit(float distance) {
-#ifdef ORTHOGRAPHIC
-    return 0.5 * u_size.y / u_unproject.y;
-#else
-    return 0.5 * u_size.y / (u_unproject.y * distance);
-#endif
+    return 0.5 * u_size.y / (is_orthographic ? u_unproject.y : u_unproject.y * distance);
 }
 
 struct Exit {
@@ -150,12 +143,9 @@ vec4 seen(vec3 origin, vec3 direction, bool straight, float alpha) {
         float width = min(2.0 * alpha * max(hit.z - own, 0.0) * pixels_per_unit(hit.z), min(u_picture.w, 0.25 * u_reach));
         picture = picture_at(hit.xy + turned * width, width * u_lobe_share);
     }
-#ifdef ENVIRONMENT
+    if (!has_environment) return picture;
     vec3 environment = u_env_intensity * prefiltered(direction, sqrt(alpha * u_lobe_share));
     return vec4(picture.rgb + (1.0 - picture.a) * environment, 1.0);
-#else
-    return picture;
-#endif
 }
 
 // What comes through the surface, and how much of what is behind it covers: light to be added, coverage.

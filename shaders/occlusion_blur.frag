@@ -1,6 +1,6 @@
 // One axis of a blur within a surface. The weights 1/2 1 1 1 1/2 hold every place of the 4x4 pattern of directions
 // equally often, so that on an even surface the pattern disappears exactly.
-#include "common_occlusion.glsl"
+#include "occlusion_surface.glsl"
 
 uniform sampler2D u_visibility;
 uniform vec2 u_axis;
@@ -8,11 +8,7 @@ uniform vec2 u_axis;
 layout(location = 0) out float o_visibility;
 
 void main() {
-#ifdef HALF
-    vec2 size = u_surface_size;
-#else
-    vec2 size = u_size;
-#endif
+    vec2 size = has_half_resolution ? u_surface_size : u_size;
     float depth;
     Surface s = surface_at(gl_FragCoord.xy, depth);
     float tolerance = plane_tolerance(s.position);

@@ -1,18 +1,15 @@
 // Normal-oriented hemisphere (Bavoil and Sainz 2008, the paper's method): points in the hemisphere above a surface, and
 // the part of them that lies behind what the depth buffer holds.
-#include "common_occlusion.glsl"
 #include "occlusion_sample.glsl"
+#include "occlusion_surface.glsl"
 
 uniform float u_power;
 
 layout(location = 0) out float o_visibility;
 
 vec2 pixel_of(vec3 position) {
-#ifdef ORTHOGRAPHIC
-    vec2 ndc = position.xy / u_unproject.xy - u_unproject.zw;
-#else
-    vec2 ndc = position.xy / (u_unproject.xy * max(-position.z, 1e-20)) - u_unproject.zw;
-#endif
+    vec2 scale = is_orthographic ? u_unproject.xy : u_unproject.xy * max(-position.z, 1e-20);
+    vec2 ndc = position.xy / scale - u_unproject.zw;
     return (ndc * vec2(0.5, -0.5) + 0.5) * u_size;
 }
 

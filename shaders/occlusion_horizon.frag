@@ -2,8 +2,8 @@
 // open. The hemisphere is cut into slices through the view direction, whose integrals are closed (Jimenez et al. 2016);
 // within a slice a bit mask remembers which sectors are covered (Therrien et al. 2023), so that what is seen between
 // and behind objects stays open, and each sector counts by the distance of what covers it first.
-#include "common_occlusion.glsl"
 #include "occlusion_sample.glsl"
+#include "occlusion_surface.glsl"
 
 uniform float u_power;
 

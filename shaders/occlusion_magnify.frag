@@ -1,8 +1,6 @@
 // From half to full resolution: each pixel takes from the four texels around it what lies on its own surface.
-#define HALF
-#include "common_occlusion.glsl"
+#include "occlusion_half.glsl"
 
-uniform sampler2D u_normal;
 uniform sampler2D u_visibility;
 
 layout(location = 0) out float o_visibility;
@@ -21,7 +19,7 @@ void main() {
         vec2 at = vec2(float(i & 1), float(i >> 1));
         vec2 texel = clamp(corner + at + 0.5, vec2(0.5), u_surface_size - 0.5);
         float found;
-        Surface other = surface_at(texel, found);
+        Surface other = half_surface(texel, found);
         vec2 near = mix(1.0 - part, part, at);
         float weight = near.x * near.y * likeness(s, other, tolerance);
         weight = found > 0.0 ? weight : 0.0;

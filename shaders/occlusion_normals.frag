@@ -20,7 +20,7 @@ vec4 neighbor(Surface s, vec2 offset) {
 void main() {
     if (!is_eye_dome(textureLod(u_material, gl_FragCoord.xy / u_size, 0.0).w)) discard;
     float depth;
-    Surface s = surface_at(gl_FragCoord.xy, depth);
+    Surface s = full_surface(gl_FragCoord.xy, depth);
     float reach = min(u_radius / pixel_size(s.position), u_reach);
     vec3 sum = vec3(0.0);
     // Of all triangles with two neighbours side by side: on a plane each has its normal.

@@ -1,9 +1,6 @@
 // Half resolution: the nearest of four pixels stands for all, never their mean, which would lie on neither surface. With
 // nearest and farthest in turn, both sides of an edge would have every other texel, and the edge a comb.
-#define HALF
-#include "common_occlusion.glsl"
-
-uniform sampler2D u_normal;
+#include "occlusion_half.glsl"
 
 layout(location = 0) out vec4 o_surface;
 

@@ -1,18 +1,18 @@
-// Lines over the tone-mapped picture, hidden by the surfaces in the G-buffer. AFTER, BEFORE: those only that lie before one
-// layer of surfaces that light passes, and behind the next.
+// Lines over the tone-mapped picture, hidden by the surfaces in the G-buffer. After a layer, before a layer: those only
+// that lie before one layer of surfaces that light passes, and behind the next.
 #include "common_encoding.glsl"
 #include "common_camera.glsl"
 
+#feature DEPTH_ONLY is_depth_only
+#feature AFTER is_after_layer
+#feature BEFORE is_before_layer
+
 uniform sampler2D u_depth_target;
 uniform sampler2D u_normal;
-#ifdef AFTER
-uniform sampler2D u_last_depth;  // 0: all lines have been drawn
+uniform sampler2D u_last_depth;  // of the layer behind; 0: all lines have been drawn
 uniform sampler2D u_last_normal;
-#endif
-#ifdef BEFORE
-uniform sampler2D u_next_depth;  // 0: there is nothing more before this pixel's lines
+uniform sampler2D u_next_depth;  // of the layer before; 0: there is nothing more before this pixel's lines
 uniform sampler2D u_next_normal;
-#endif
 uniform sampler2D u_nearest_line;  // depth that the first pass found
 uniform float u_half_width;   // pixels
 uniform float u_dash;         // pixels, 0: solid
@@ -25,34 +25,21 @@ flat in vec4 v_start_color, v_end_color;
 
 layout(location = 0) out vec4 o_color;
 
-// Distance along the optical axis of a reversed depth.
-float axial(float depth) {
-#ifdef ORTHOGRAPHIC
-    return mix(u_depth.y, u_depth.x, depth);
-#else
-    return u_depth.x / depth;
-#endif
-}
-
 // How much the surface's distance changes over a pixel, by its plane: a line on it must not be cut by its slope.
 float change_per_pixel(vec2 pixel, float z, vec2 normal) {
     vec3 n = transpose(u_world_from_view) * oct_decode(normal * 2.0 - 1.0);
     vec2 scale = u_unproject.xy * 2.0 / u_size;
-#ifdef ORTHOGRAPHIC
-    float facing = max(abs(n.z), 0.05);
-    return (abs(n.x) * scale.x + abs(n.y) * scale.y) / facing;
-#else
+    float change = abs(n.x) * scale.x + abs(n.y) * scale.y;
+    if (is_orthographic) return change / max(abs(n.z), 0.05);
     vec3 ray = vec3((ndc_of_pixel(pixel) + u_unproject.zw) * u_unproject.xy, -1.0);
-    float facing = max(abs(dot(n, ray)), 0.05);
-    return z * (abs(n.x) * scale.x + abs(n.y) * scale.y) / facing;
-#endif
+    return z * change / max(abs(dot(n, ray)), 0.05);
 }
 
 bool is_behind(float surface, vec2 normal, vec2 pixel, float depth) {
     if (surface <= 0.0) return false;
-    float z = axial(surface);
+    float z = axial_distance(surface);
     float tolerance = change_per_pixel(pixel, z, normal) * (u_half_width + 1.0) + 1e-5 * z;
-    return axial(depth) > z + tolerance;
+    return axial_distance(depth) > z + tolerance;
 }
 
 bool is_hidden(vec2 pixel, float depth) {
@@ -64,30 +51,26 @@ bool is_hidden(vec2 pixel, float depth) {
 // Drawn with another layer, before or after.
 bool is_elsewhere(vec2 pixel, float depth) {
     vec2 uv = pixel / u_size;
-#ifdef AFTER
-    float last = textureLod(u_last_depth, uv, 0.0).r;
-    if (last <= 0.0 || is_behind(last, textureLod(u_last_normal, uv, 0.0).rg, pixel, depth)) return true;
-#endif
-#ifdef BEFORE
-    float next = textureLod(u_next_depth, uv, 0.0).r;
-    if (next > 0.0 && !is_behind(next, textureLod(u_next_normal, uv, 0.0).rg, pixel, depth)) return true;
-#endif
+    if (is_after_layer) {
+        float last = textureLod(u_last_depth, uv, 0.0).r;
+        if (last <= 0.0 || is_behind(last, textureLod(u_last_normal, uv, 0.0).rg, pixel, depth)) return true;
+    }
+    if (is_before_layer) {
+        float next = textureLod(u_next_depth, uv, 0.0).r;
+        if (next > 0.0 && !is_behind(next, textureLod(u_next_normal, uv, 0.0).rg, pixel, depth)) return true;
+    }
     return false;
 }
 
-#ifndef DEPTH_ONLY
 // A line is as deep as half its width: what lies no further behind the nearest one is not hidden, so that the
 // segments of a curve do not cut notches into each other.
 bool is_behind_line(vec2 pixel, float depth) {
     float nearest = textureLod(u_nearest_line, pixel / u_size, 0.0).r;
     if (nearest <= 0.0) return false;
-    float z = axial(nearest), thickness = (u_half_width + 1.0) * 2.0 * u_unproject.y / u_size.y;
-#ifndef ORTHOGRAPHIC
-    thickness *= z;
-#endif
-    return axial(depth) > z + thickness;
+    float z = axial_distance(nearest), thickness = (u_half_width + 1.0) * 2.0 * u_unproject.y / u_size.y;
+    if (!is_orthographic) thickness *= z;
+    return axial_distance(depth) > z + thickness;
 }
-#endif
 
 void main() {
     // Beyond its ends a segment goes on at their depth: where segments meet they agree.
@@ -101,15 +84,16 @@ void main() {
         float phase = mod(v_place.x, 2.0 * u_dash);
         coverage *= clamp(min(phase, u_dash - phase) + 0.5, 0.0, 1.0) + clamp(phase - 2.0 * u_dash + 0.5, 0.0, 1.0);
     }
-#ifdef DEPTH_ONLY
+#ifdef DEPTH_ONLY  // A shader that assigns gl_FragDepth anywhere has no early depth test.
     gl_FragDepth = depth;
-    if (coverage < 0.5 || is_hidden(gl_FragCoord.xy, depth)) discard;
-    o_color = vec4(0.0);
-#else
-    if (coverage <= 0.0 || is_hidden(gl_FragCoord.xy, depth) || is_behind_line(gl_FragCoord.xy, depth)) discard;
-    if (is_elsewhere(gl_FragCoord.xy, depth)) discard;
+#endif
+    if ((is_depth_only ? coverage < 0.5 : coverage <= 0.0) || is_hidden(gl_FragCoord.xy, depth)) discard;
+    if (is_depth_only) {
+        o_color = vec4(0.0);
+        return;
+    }
+    if (is_behind_line(gl_FragCoord.xy, depth) || is_elsewhere(gl_FragCoord.xy, depth)) discard;
     vec4 color = mix(v_start_color, v_end_color, place);
     float alpha = coverage * color.a;
     o_color = vec4(color.rgb * alpha, alpha);
-#endif
 }

@@ -1,9 +1,9 @@
 // Surfels into a shadow map: quads around their ellipses, one instance each.
+#feature VERTEX_COLOR has_vertex_colors
+
 layout(location = 0) in vec3 a_position;
 layout(location = 1) in vec3 a_normal;
-#ifdef VERTEX_COLOR
 layout(location = 2) in vec4 a_color;
-#endif
 layout(location = 3) in vec4 a_axes;  // tangent, its length being the first semi-axis; length of the second
 
 uniform mat4 u_clip_from_mesh;
@@ -33,7 +33,5 @@ void main() {
     vec3 p = a_position - to_light * (0.25 * max(length(t), length(b)));
     gl_Position = u_clip_from_mesh * vec4(p + v_place.x * t + v_place.y * b, 1.0);
     v_alpha = u_opacity;
-#ifdef VERTEX_COLOR
-    v_alpha *= a_color.a;
-#endif
+    if (has_vertex_colors) v_alpha *= a_color.a;
 }

@@ -30,12 +30,12 @@ def draw(data: pathlib.Path | None, scale: float) -> np.ndarray:
     size = sized(720, 540, scale)
     view = Viewer(size, {"camera": {"azimuth_deg": -10, "elevation_deg": 8}, "ssao": {"radius": 0.25}}, scene)
     final = view.render(samples=32)[:, :, :3]
-    found = view.layers(["albedo", "normal", "metallic", "roughness", "ambient_occlusion", "depth"])
+    found = view.layers(["albedo", "normal_world", "metallic", "roughness", "ambient_occlusion", "depth"])
     seen = found["depth"] > 0
     metal = np.dstack([found["metallic"], found["roughness"], np.zeros_like(found["metallic"])])
     occlusion = np.repeat(found["ambient_occlusion"][:, :, None], 3, axis=2)
     planes = [encoded(metal), encoded(found["albedo"][:, :, :3]), encoded(occlusion),
-              ((found["normal"] * 0.5 + 0.5) * 255).astype(np.uint8)]
+              ((found["normal_world"] * 0.5 + 0.5) * 255).astype(np.uint8)]
     slices = [np.where(seen[:, :, None], plane, final) for plane in planes] + [final]
     # Slanted cuts, the last slice twice as wide as the others.
     columns = np.flatnonzero(seen.any(axis=0))

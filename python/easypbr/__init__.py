@@ -1,4 +1,4 @@
-"""EasyPBR: give it a mesh, it makes a physically based picture.
+"""EasyPBR: a physically based renderer for meshes, point clouds and labelled data.
 
     from easypbr import *
     view = Viewer()
@@ -6,7 +6,7 @@
     view.recorder.record("img.png")
 """
 
-from . import errors, shapes
+from . import _easypbr, errors, shapes
 from ._easypbr import (
     Automatic,
     Camera,
@@ -23,7 +23,6 @@ from ._easypbr import (
     Moment,
     Pick,
     Style,
-    __version__,
     auto,
     colormap,
     compare_images,
@@ -42,6 +41,7 @@ from .settings import Settings
 from .tensors import eigen2tensor, tensor2eigen
 from .viewer import Viewer, show
 
+__version__: str = getattr(_easypbr, "__version__")
 __all__ = [
     "ArgumentError",
     "Automatic",

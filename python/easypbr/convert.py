@@ -1,6 +1,7 @@
-"""Meshes out of what other libraries hold. They are recognised by their attributes; none is imported."""
+"""Meshes from objects of other libraries, which are recognised by their attributes; none is imported."""
 
 import os
+from typing import Any
 
 import numpy as np
 
@@ -8,7 +9,7 @@ from ._easypbr import Mesh
 from .errors import ArgumentError
 
 
-def as_mesh(what) -> Mesh:
+def as_mesh(what: Any) -> Mesh:
     """A Mesh of a path, a Mesh, (V, F), a dict of arrays, or a trimesh, Open3D or PyVista object.
 
     A Mesh is returned as it is; arrays are copied once.
@@ -30,7 +31,7 @@ def as_mesh(what) -> Mesh:
     )
 
 
-def _from_arrays(name: str = "", **arrays) -> Mesh:
+def _from_arrays(name: str = "", **arrays: Any) -> Mesh:
     mesh = Mesh()
     mesh.assign(**arrays)
     mesh.name = name
@@ -38,7 +39,7 @@ def _from_arrays(name: str = "", **arrays) -> Mesh:
 
 
 def _rows(array, count: int):
-    """The array when it has one row for each of `count` things, else None."""
+    """The array if it has `count` rows, else None."""
     array = None if array is None else np.asarray(array)
     return array if array is not None and count and len(array) == count else None
 
@@ -46,11 +47,11 @@ def _rows(array, count: int):
 # trimesh: https://trimesh.org/trimesh.base.html
 
 
-def _is_trimesh(what) -> bool:
+def _is_trimesh(what: Any) -> bool:
     return all(hasattr(what, name) for name in ("vertices", "faces", "visual"))
 
 
-def _from_trimesh(what) -> Mesh:
+def _from_trimesh(what: Any) -> Mesh:
     V, F, count = what.vertices, what.faces, len(what.vertices)
     kind = getattr(what.visual, "kind", None)
     if kind == "face":
@@ -67,14 +68,14 @@ def _from_trimesh(what) -> Mesh:
 
 
 def _with_face_colors(V, F, colors) -> Mesh:
-    """Every corner becomes a vertex, so that a face can have a colour of its own."""
+    """Splits the mesh into separate corners, so that each face has its own colour."""
     F = np.asarray(F)
     return _from_arrays(
         V=np.asarray(V)[F.ravel()], F=np.arange(F.size).reshape(-1, 3), C=np.repeat(np.asarray(colors), 3, axis=0)
     )
 
 
-def _take_trimesh_material(material, given) -> None:
+def _take_trimesh_material(material: Any, given: Any) -> None:
     """https://trimesh.org/trimesh.visual.material.html: PBRMaterial has glTF's fields, SimpleMaterial diffuse and image."""
     image = getattr(given, "baseColorTexture", None) or getattr(given, "image", None)
     if image is not None:
@@ -89,11 +90,11 @@ def _take_trimesh_material(material, given) -> None:
         material.base_color = f"#{red:02x}{green:02x}{blue:02x}"
 
 
-def _is_trimesh_scene(what) -> bool:
+def _is_trimesh_scene(what: Any) -> bool:
     return hasattr(what, "geometry") and hasattr(what, "graph") and hasattr(what.graph, "nodes_geometry")
 
 
-def _from_trimesh_scene(what) -> Mesh:
+def _from_trimesh_scene(what: Any) -> Mesh:
     root = Mesh()
     for node in what.graph.nodes_geometry:
         T_world_mesh, geometry = what.graph[node]
@@ -104,22 +105,22 @@ def _from_trimesh_scene(what) -> Mesh:
     return root
 
 
-def _is_trimesh_cloud(what) -> bool:
+def _is_trimesh_cloud(what: Any) -> bool:
     return hasattr(what, "vertices") and hasattr(what, "colors") and not hasattr(what, "faces")
 
 
-def _from_trimesh_cloud(what) -> Mesh:
+def _from_trimesh_cloud(what: Any) -> Mesh:
     return _from_arrays(V=what.vertices, C=_rows(what.colors, len(what.vertices)))
 
 
 # Open3D: http://www.open3d.org/docs/release/python_api/open3d.geometry.TriangleMesh.html
 
 
-def _is_open3d_mesh(what) -> bool:
+def _is_open3d_mesh(what: Any) -> bool:
     return all(hasattr(what, name) for name in ("vertices", "triangles", "vertex_normals"))
 
 
-def _from_open3d_mesh(what) -> Mesh:
+def _from_open3d_mesh(what: Any) -> Mesh:
     V, F = np.asarray(what.vertices), np.asarray(what.triangles)
     N, C = np.asarray(what.vertex_normals), np.asarray(what.vertex_colors)
     corner_uv = np.asarray(getattr(what, "triangle_uvs", ()))
@@ -132,11 +133,11 @@ def _from_open3d_mesh(what) -> Mesh:
     return _from_arrays(V=V, F=F, N=_rows(N, count), C=_rows(C, count), UV=_rows(corner_uv, count))
 
 
-def _is_open3d_cloud(what) -> bool:
+def _is_open3d_cloud(what: Any) -> bool:
     return all(hasattr(what, name) for name in ("points", "colors", "normals", "has_colors"))
 
 
-def _from_open3d_cloud(what) -> Mesh:
+def _from_open3d_cloud(what: Any) -> Mesh:
     count = len(what.points)
     return _from_arrays(V=np.asarray(what.points), N=_rows(what.normals, count), C=_rows(what.colors, count))
 
@@ -144,11 +145,11 @@ def _from_open3d_cloud(what) -> Mesh:
 # PyVista: https://docs.pyvista.org/api/core/_autosummary/pyvista.PolyData.html
 
 
-def _is_pyvista(what) -> bool:
+def _is_pyvista(what: Any) -> bool:
     return hasattr(what, "points") and hasattr(what, "point_data") and hasattr(what, "n_points")
 
 
-def _from_pyvista(what) -> Mesh:
+def _from_pyvista(what: Any) -> Mesh:
     # Only surfaces can tell whether they are made of triangles.
     if not hasattr(what, "is_all_triangles"):
         what = _surface(what)
@@ -165,7 +166,7 @@ def _from_pyvista(what) -> Mesh:
     )
 
 
-def _surface(grid):
+def _surface(grid: Any) -> Any:
     try:
         return grid.extract_surface(algorithm=None)
     except TypeError:
@@ -173,7 +174,7 @@ def _surface(grid):
         return grid.extract_surface()
 
 
-def _called(flag):
+def _called(flag: Any) -> Any:
     # A property in newer versions, a method in older ones.
     return flag() if callable(flag) else flag
 

@@ -1,4 +1,4 @@
-"""The exceptions that EasyPBR raises; each is also the built-in that fits it."""
+"""The exceptions that EasyPBR raises; each also derives from a fitting built-in exception."""
 
 __all__ = ["Error", "FileError", "FormatError", "ArgumentError", "UnknownNameError", "ShaderError", "ContextError"]
 
@@ -12,7 +12,7 @@ class FileError(Error, OSError):
 
 
 class FormatError(Error, ValueError):
-    """A file's content is damaged, or is of a kind that is not understood."""
+    """A file is damaged, or of an unsupported kind."""
 
 
 class ArgumentError(Error, ValueError):
@@ -27,8 +27,8 @@ class UnknownNameError(Error, KeyError):
 
 
 class ShaderError(Error, ValueError):
-    """A shader text of one's own does not compile; the message names the line."""
+    """A custom shader does not compile; the message names the line."""
 
 
 class ContextError(Error, RuntimeError):
-    """No OpenGL context could be made, or a limit of the driver was met."""
+    """No OpenGL context could be created, or a limit of the driver was exceeded."""

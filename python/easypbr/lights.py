@@ -1,4 +1,7 @@
-"""view.lights: the three-point lights, which are settings, and the scene's own lights, by name."""
+"""view.lights: the three-point lights, which are settings, and the lights of the scene, by name."""
+
+from collections.abc import Iterator
+from typing import Any
 
 from . import _easypbr
 from .errors import ArgumentError
@@ -8,23 +11,23 @@ _STUDIO_FIELDS = ("enabled", "position", "color", "intensity", "casts_shadows", 
 
 
 class SceneLight:
-    """A light of the scene; assignments to its attributes go through."""
+    """A light of the scene; assignments to its attributes change the scene."""
 
-    def __init__(self, scene, name: str):
+    def __init__(self, scene: "_easypbr.SceneHandle", name: str) -> None:
         object.__setattr__(self, "_scene", scene)
         object.__setattr__(self, "_name", name)
 
-    def __getattr__(self, name: str):
+    def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
             raise AttributeError(name)
         return getattr(self._scene.light(self._name), name)
 
-    def __setattr__(self, name: str, value):
+    def __setattr__(self, name: str, value: Any) -> None:
         light = self._scene.light(self._name)
         setattr(light, name, value)
         self._scene.set_light(self._name, light)
 
-    def __dir__(self):
+    def __dir__(self) -> list[str]:
         return dir(_easypbr.Light)
 
     def __repr__(self) -> str:
@@ -32,10 +35,10 @@ class SceneLight:
 
 
 class StudioLight:
-    """The key, fill or rim light: the settings lights.<name>.*, with a linear colour as all lights have it. Reading an
-    automatic value gives what is inferred; assigning pins it."""
+    """The key, fill or rim light: the settings lights.<name>.*, with a linear colour as for all lights. Reading an
+    automatic value returns the inferred one; assigning pins it."""
 
-    def __init__(self, handle, name: str):
+    def __init__(self, handle: "_easypbr.ViewerHandle", name: str) -> None:
         object.__setattr__(self, "_handle", handle)
         object.__setattr__(self, "_prefix", f"lights.{name}.")
 
@@ -46,7 +49,7 @@ class StudioLight:
             raise AttributeError(f"a studio light has {', '.join(_STUDIO_FIELDS)}, but no '{name}'")
         return self._prefix + name
 
-    def __getattr__(self, name: str):
+    def __getattr__(self, name: str) -> Any:
         value = self._handle.get_setting(self._full(name))
         if isinstance(value, (_easypbr.Automatic, _easypbr.Follow)):
             # What was inferred, so that `intensity *= 2` means what it says.
@@ -55,28 +58,28 @@ class StudioLight:
         return tuple(map(_linear, value)) if name == "color" else value
 
     def _inferred(self, name: str, automatic):
-        """What the next picture would have; the setting itself while there is nothing to infer it from."""
+        """The value for the next image; the setting itself if there is no content to infer it from."""
         try:
             return self._handle.resolved_setting(self._full(name))
         except ArgumentError:
             return automatic
 
-    def __setattr__(self, name: str, value):
+    def __setattr__(self, name: str, value: Any) -> None:
         if name == "color" and not isinstance(value, str):
             value = tuple(map(_encoded, value))
         self._handle.set_setting(self._full(name), value)
 
-    def __dir__(self):
+    def __dir__(self) -> list[str]:
         return [*_STUDIO_FIELDS, "type"]
 
 
 class Lights:
     """The lights of a viewer by name: "key", "fill", "rim", and those that were added."""
 
-    def __init__(self, handle, scene):
+    def __init__(self, handle: "_easypbr.ViewerHandle", scene: "_easypbr.SceneHandle") -> None:
         self._handle, self._scene = handle, scene
 
-    def __getitem__(self, name: str):
+    def __getitem__(self, name: str) -> "SceneLight | StudioLight":
         if name in _STUDIO:
             return StudioLight(self._handle, name)
         self._scene.light(name)
@@ -88,7 +91,7 @@ class Lights:
     def __contains__(self, name: str) -> bool:
         return name in self._names()
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[str]:
         return iter(self._names())
 
     def __len__(self) -> int:

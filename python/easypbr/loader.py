@@ -1,8 +1,9 @@
-"""MeshLoader: meshes and clouds read ahead of training."""
+"""MeshLoader: prefetches meshes and clouds for training."""
 
 import os
 import sys
 from collections.abc import Callable, Iterable, Iterator
+from typing import Any
 
 from . import _easypbr
 from .errors import ArgumentError, Error
@@ -13,13 +14,13 @@ _ARRAYS = ("V", "N", "C", "F", "L", "I", "UV")
 
 
 class MeshLoader:
-    """An iterable over files: meshes and clouds are read by native threads of its own, without Python's lock, in order,
-    at most `prefetch` of them ahead. Also a torch IterableDataset where torch is there: DataLoader(loader,
-    batch_size=None).
+    """An iterable over files: meshes and clouds are read on native threads, without the GIL, in order, at most
+    `prefetch` of them ahead. Also a torch IterableDataset if torch is imported: DataLoader(loader, batch_size=None).
 
-    `transform(mesh)` makes a sample of a Mesh; without it a sample is a dict of torch tensors of the mesh's arrays (V, N,
-    C, F, L, I, UV). Tensors in what it gives are moved to `device`. A file that cannot be read raises at its place, with
-    its name; `on_error="skip"` leaves it out. SemanticKITTI's scans (.bin) come with their .label files."""
+    `transform(mesh)` makes a sample of a Mesh; without it a sample is a dict of torch tensors of the mesh's arrays
+    (V, N, C, F, L, I, UV). Tensors in the result are moved to `device`. A file that cannot be read raises in place of
+    its sample, with its name; `on_error="skip"` skips it. SemanticKITTI's scans (.bin) come with their .label
+    files."""
 
     def __init__(
         self,
@@ -29,7 +30,7 @@ class MeshLoader:
         prefetch: int = 4,
         device: str = "cpu",
         on_error: str = "raise",
-    ):
+    ) -> None:
         if on_error not in ("raise", "skip"):
             raise ArgumentError(f"on_error: expected 'raise' or 'skip', got '{on_error}'")
         if device != "cpu":
@@ -40,7 +41,7 @@ class MeshLoader:
         self.device = device
         self.on_error = on_error
 
-    def __new__(cls, *arguments, **options):
+    def __new__(cls, *arguments: Any, **options: Any) -> "MeshLoader":
         return super().__new__(_with_torch(cls))
 
     def __len__(self) -> int:
@@ -58,7 +59,7 @@ class MeshLoader:
             yield _moved(_tensors(mesh) if self.transform is None else self.transform(mesh), self.device)
 
 
-def _with_torch(cls):
+def _with_torch(cls: type) -> type:
     """The class, derived from torch's IterableDataset too if torch has been imported: only then can it matter."""
     data = getattr(sys.modules.get("torch"), "utils", None)
     if data is None or not hasattr(data, "data") or issubclass(cls, data.data.IterableDataset):
@@ -67,20 +68,20 @@ def _with_torch(cls):
 
 
 def _own_share(paths: list) -> list:
-    """In a worker process of a DataLoader, the files that are its own."""
+    """The files of this worker process of a DataLoader."""
     data = getattr(getattr(sys.modules.get("torch"), "utils", None), "data", None)
     worker = data.get_worker_info() if data is not None else None
     return paths if worker is None else paths[worker.id :: worker.num_workers]
 
 
-def _tensors(mesh) -> dict:
+def _tensors(mesh: "_easypbr.Mesh") -> dict:
     if mesh.children:
         mesh = mesh.merge()  # all nodes of a hierarchy
     arrays = {name: getattr(mesh, name) for name in _ARRAYS}
     return {name: eigen2tensor(array) for name, array in arrays.items() if len(array)}
 
 
-def _moved(sample, device: str):
+def _moved(sample: Any, device: str) -> Any:
     if device == "cpu":
         return sample
     if isinstance(sample, dict):

@@ -1,27 +1,30 @@
-"""Panels of one's own in the window of a viewer, and functions that it calls."""
+"""Custom panels in the window of a viewer, and callbacks."""
 
 import sys
 import traceback
 import weakref
 from collections.abc import Callable, Iterable, Sequence
+from typing import Any, TypeVar
 
 import numpy as np
 
 from . import _easypbr
 from .errors import ArgumentError
 
+Value = TypeVar("Value")
+
 _KINDS = ("move", "press", "release", "scroll", "key_down", "key_up", "text", "drop", "resize", "focus_lost")
 
 
 class Panel:
-    """What a panel's function draws with, from top to bottom: every method shows a widget and returns its value.
+    """Widgets of a panel, from top to bottom: every method shows a widget and returns its value.
 
-    The value that is given is where the widget begins. From then on a widget keeps what the person chose, by its name, so
-    that `rate = ui.slider("rate", 0.1, 0, 1)` is all there is to it; give another value and the widget shows that."""
+    The argument is the initial value. A widget keeps the user's value, by its name, as in
+    `rate = ui.slider("rate", 0.1, 0, 1)`; another initial value replaces it."""
 
-    def __init__(self):
-        self._handle = None
-        self._memory = {}
+    def __init__(self) -> None:
+        self._handle: _easypbr._Widgets | None = None
+        self._memory: dict[str, tuple[Any, Any]] = {}
 
     def _widgets(self) -> "_easypbr._Widgets":
         if self._handle is None:
@@ -29,7 +32,7 @@ class Panel:
         return self._handle
 
     def _remembered(self, name, given, draw):
-        """Draws a widget that keeps its value while the value that is given stays the same."""
+        """Draws a widget that keeps its value while the initial value stays the same."""
         last_given, value = self._memory.get(name, (given, given))
         if given != last_given:
             value = given
@@ -37,20 +40,20 @@ class Panel:
         self._memory[name] = (given, value)
         return value
 
-    def text(self, text) -> None:
+    def text(self, text: object) -> None:
         """A paragraph."""
         self._widgets().text(str(text))
 
     def separator(self) -> None:
-        """A line across."""
+        """A horizontal line."""
         self._widgets().separator()
 
     def same_line(self) -> None:
-        """The next button or text stands beside the last one."""
+        """Places the next button or text beside the last one."""
         self._widgets().same_line()
 
     def section(self, title: str, open: bool = True) -> bool:
-        """A heading that folds what follows: `if ui.section("More"): ...`"""
+        """A collapsible section: `if ui.section("More"): ...`"""
         return self._widgets().section(title, open)
 
     def button(self, name: str) -> bool:
@@ -62,7 +65,7 @@ class Panel:
         return self._remembered(name, bool(value), lambda v: widgets.checkbox(name, v))
 
     def slider(self, name: str, value: float, low: float, high: float) -> float:
-        """A number between low and high; a whole one when all three are whole."""
+        """A number between low and high; an integer if all three are integers."""
         widgets = self._widgets()
         if all(isinstance(v, (int, np.integer)) and not isinstance(v, bool) for v in (value, low, high)):
             return self._remembered(name, int(value), lambda v: widgets.slider_int(name, v, int(low), int(high)))
@@ -79,17 +82,19 @@ class Panel:
         return self._remembered(name, value, lambda v: widgets.combo(name, v, list(choices)))
 
     def text_field(self, name: str, value: str = "") -> str:
-        """A line that is typed."""
+        """A line of text input."""
         widgets = self._widgets()
         return self._remembered(name, value, lambda v: widgets.text_field(name, v))
 
-    def color(self, name: str, value=(1.0, 1.0, 1.0)) -> tuple[float, float, float]:
+    def color(self, name: str, value: Iterable[float] = (1.0, 1.0, 1.0)) -> tuple[float, float, float]:
         """sRGB, 0 to 1."""
         widgets = self._widgets()
-        return self._remembered(name, tuple(map(float, value)), lambda v: widgets.color(name, v))
+        red, green, blue = value
+        return self._remembered(name, (float(red), float(green), float(blue)), lambda v: widgets.color(name, v))
 
     def plot(self, name: str, values: Iterable[float], range: tuple[float, float] | None = None) -> None:
-        """A curve, with its last value beside the name. `range`: what its height shows, by default all values."""
+        """A curve, with its last value beside the name. `range`: of the vertical axis, by default that of the
+        values."""
         self._widgets().plot(name, np.asarray(values, np.float32).ravel().tolist(), range)
 
     def progress(self, fraction: float, text: str = "") -> None:
@@ -98,23 +103,26 @@ class Panel:
 
 
 class WindowCallbacks:
-    """The part of a Viewer that calls its user's functions. They may use the viewer, but for update(), show() and
-    screenshot(), which draw what they are called from."""
+    """The callbacks of a Viewer. They may use the viewer, except update(), show() and screenshot(), which draw the
+    window."""
 
-    def _init_callbacks(self) -> None:
-        self._before_draw, self._after_draw, self._told = [], [], {}
-        self._panels, self._handlers, self._handler_number = {}, [], None
+    _handle: "_easypbr.ViewerHandle"
 
     def add_panel(self, name: str, function: Callable[[Panel], None] | None = None):
-        """A panel in the window, drawn by function(ui) in each of its frames; see Panel. What it raises is shown in the
-        panel with its traceback, and the loop goes on. Also as a decorator: @view.add_panel("Training")."""
+        """Adds a panel to the window, drawn by function(ui) in each frame; see Panel. Exceptions are shown in the panel
+        with their traceback, and the loop continues. Also as a decorator: @view.add_panel("Training")."""
         if function is None:
             return lambda decorated: self.add_panel(name, decorated)
         if not callable(function):
             raise ArgumentError(f"add_panel: expected a function, got a {type(function).__name__}")
         self._panels[name] = (function, Panel())
         viewer = weakref.ref(self)  # The library must not keep alive who owns it.
-        self._handle.add_panel(name, lambda widgets: viewer()._draw_panel(name, widgets))
+
+        def draw(widgets: "_easypbr._Widgets") -> str | None:
+            owner = viewer()
+            return None if owner is None else owner._draw_panel(name, widgets)
+
+        self._handle.add_panel(name, draw)
         return function
 
     def remove_panel(self, name: str) -> None:
@@ -122,7 +130,7 @@ class WindowCallbacks:
         self._handle.remove_panel(name)
         del self._panels[name]
 
-    def _draw_panel(self, name: str, widgets) -> str | None:
+    def _draw_panel(self, name: str, widgets: "_easypbr._Widgets") -> str | None:
         function, panel = self._panels[name]
         panel._handle = widgets
         try:
@@ -131,20 +139,20 @@ class WindowCallbacks:
             panel._handle = None
 
     def before_draw(self, function: Callable[[], None]) -> Callable[[], None]:
-        """Calls `function` in every update() before it draws. What it raises is shown in the window with its traceback,
-        and the loop goes on. Also as a decorator."""
+        """Calls `function` in every update() before it draws. Exceptions are shown in the window with their traceback,
+        and the loop continues. Also as a decorator."""
         self._before_draw.append(function)
         return function
 
-    def after_draw(self, function: Callable[[], None]) -> Callable[[], None]:
+    def after_draw(self, function: Callable[[], object]) -> Callable[[], object]:
         """Calls `function` in every update() after it has drawn. Also as a decorator."""
         self._after_draw.append(function)
         return function
 
     def on_event(self, function: Callable | None = None, kind: str | None = None):
-        """Calls function(event) for what is done with mouse and keyboard, files that are dropped and another size of the
-        window, but not for what panels take for themselves; see Event. When it returns True the viewer does nothing else about
-        it. `kind`: only events of this kind. Also as a decorator: @view.on_event(kind="key_down")."""
+        """Calls function(event) for events of mouse and keyboard, dropped files and resizing, except those consumed
+        by panels; see Event. If it returns True the viewer ignores the event. `kind`: only events of this kind. Also
+        as a decorator: @view.on_event(kind="key_down")."""
         if kind is not None and kind not in _KINDS:
             raise ArgumentError(f"on_event: expected a kind out of {', '.join(_KINDS)}, got {kind!r}")
         if function is None:
@@ -154,11 +162,16 @@ class WindowCallbacks:
         self._handlers.append((function, kind))
         if self._handler_number is None:
             viewer = weakref.ref(self)
-            self._handler_number = self._handle.on_event(lambda event: viewer()._dispatch(event))
+
+            def dispatch(event: "_easypbr.Event") -> bool:
+                owner = viewer()
+                return owner is not None and owner._dispatch(event)
+
+            self._handler_number = self._handle.on_event(dispatch)
         return function
 
     def remove_callback(self, function: Callable) -> None:
-        """Calls a function of before_draw(), after_draw() and on_event() no more."""
+        """Removes a callback of before_draw(), after_draw() and on_event()."""
         self._before_draw = [known for known in self._before_draw if known is not function]
         self._after_draw = [known for known in self._after_draw if known is not function]
         self._handlers = [(known, kind) for known, kind in self._handlers if known is not function]
@@ -167,7 +180,7 @@ class WindowCallbacks:
         """Shows a message in the window for a few seconds."""
         self._handle.notify(text, error)
 
-    def _dispatch(self, event) -> bool:
+    def _dispatch(self, event: "_easypbr.Event") -> bool:
         handled = False
         for function, kind in list(self._handlers):
             if kind is None or kind == event.kind:
@@ -179,13 +192,14 @@ class WindowCallbacks:
             self._call(function)
 
     def _call(self, function, *arguments, in_panel: bool = False):
-        """Calls a user's function: what it returned, and the traceback of an exception. That is written to stderr and
+        """Calls a user's function: its result, and the traceback of an exception, which is written to stderr and
         shown in the window, once, unless its panel shows it."""
         try:
             return function(*arguments), None
         except Exception as error:
             # From the user's own function on; how it was called says nothing.
-            failure = traceback.format_exception(type(error), error, error.__traceback__.tb_next)
+            at = error.__traceback__ and error.__traceback__.tb_next
+            failure = traceback.format_exception(type(error), error, at)
             text = "".join(failure).rstrip()
             if self._told.get(id(function)) != text:
                 self._told[id(function)] = text

@@ -1,12 +1,16 @@
-"""Recorder: pictures of a viewer as files, one by one or as recordings of many frames."""
+"""Recorder: images and recordings of a viewer as files."""
 
 import atexit
+import os
 import weakref
 from collections.abc import Callable
 from pathlib import Path
 
+from numpy.typing import ArrayLike
+
 from . import _easypbr
 from .errors import ArgumentError
+from .panels import WindowCallbacks
 
 #: Recorders that may be recording when the program ends.
 _started: "weakref.WeakSet[Recorder]" = weakref.WeakSet()
@@ -19,39 +23,44 @@ def _finish_recordings() -> None:
 
 
 def watch_recorder(recorder: "Recorder") -> None:
-    """Finishes what this recorder records when the program ends."""
+    """Finishes the recording when the program ends."""
     _started.add(recorder)
 
 
 class Recorder:
-    """Pictures of a viewer as files, and recordings: frames are encoded beside the drawing, all of them, in order."""
+    """Writes images and recordings of a viewer. Frames are encoded on other threads, all of them, in order."""
 
-    def __init__(self, viewer):
-        self._viewer = weakref.ref(viewer)
+    def __init__(self, viewer: WindowCallbacks) -> None:
         self._handle = viewer._handle
 
     def record(self, path, size=None, samples: int | None = None, deep: bool = False) -> Path:
-        """Writes one picture, complete when the call returns: PNG (16 bits with `deep`), JPEG, HDR or EXR, by the
+        """Writes one image, complete when the call returns: PNG (16 bits with `deep`), JPEG, HDR or EXR, by the
         extension."""
         return self._handle.record(path, size, samples, deep)
 
     def start(
-        self, path, fps: float = 30.0, size=None, samples: int | None = None, codec: str = "", deep: bool = False
+        self,
+        path: str | os.PathLike,
+        fps: float = 30.0,
+        size: ArrayLike | None = None,
+        samples: int | None = None,
+        codec: str = "",
+        deep: bool = False,
     ) -> "Recorder":
-        """Begins a recording: a video (MP4, MOV, MKV, WebM, GIF) or numbered pictures ("out/frame_%04d.png", or a
+        """Starts a recording: a video (MP4, MOV, MKV, WebM, GIF) or numbered images ("out/frame_%04d.png", or a
         folder), by the name. `with view.recorder.start("out.mp4"):` stops it at the end of the block. `codec` is
-        FFmpeg's name of an encoder. While recording, view.time makes steps of 1 / fps."""
+        FFmpeg's name of an encoder. While recording, view.time advances by 1 / fps per frame."""
         self._handle.start_recording(path, fps, size, samples, codec, deep)
         _started.add(self)
         return self
 
     def add_frame(self, picture=None) -> None:
-        """Draws the scene as it is as the next frame, and lets view.time make its step. A `picture` of the
-        recording's size is taken as it is."""
+        """Renders the scene as the next frame and advances view.time. A `picture` of the recording's size is
+        added unchanged."""
         self._handle.add_frame(picture)
 
     def stop(self) -> int:
-        """Waits until all frames are written and finishes the file; returns how many there are."""
+        """Waits until all frames are written and finishes the file; returns their number."""
         _started.discard(self)
         return self._handle.stop_recording()
 
@@ -67,22 +76,21 @@ class Recorder:
     def record_path(
         self,
         path: "_easypbr.CameraPath",
-        out,
+        out: str | os.PathLike,
         fps: float = 30.0,
         frames: int | None = None,
-        size=None,
+        size: ArrayLike | None = None,
         samples: int | None = None,
         codec: str = "",
         on_frame: Callable[[int, float], None] | None = None,
     ) -> int:
-        """Records the camera on its way along a path: path.frame_times(fps), or `frames` evenly over it. on_frame(number,
-        seconds) is called before each frame is drawn, for example to move something. The camera is afterwards what it
-        was. Returns the number of frames."""
+        """Records along a camera path: path.frame_times(fps), or `frames` evenly spaced times. on_frame(number,
+        seconds) is called before each frame, for example to move objects. The camera is restored afterwards. Returns
+        the number of frames."""
         if not isinstance(path, _easypbr.CameraPath):
             raise ArgumentError(f"record_path: expected a CameraPath, got a {type(path).__name__}")
-        viewer = self._viewer()
         before = self._handle.camera_state
-        camera = viewer.camera
+        camera = self._handle.camera
         try:
             times = path.frame_times(fps) if frames is None else path.times(frames)
             with self.start(out, fps, size, samples, codec):
@@ -92,7 +100,7 @@ class Recorder:
                 for number, seconds in enumerate(times):
                     if on_frame is not None:
                         on_frame(number, seconds)
-                    viewer.camera = path.camera(seconds, camera)
+                    self._handle.camera = path.camera(seconds, camera)
                     self.add_frame()
                 return self.frame_count
         finally:
@@ -101,5 +109,5 @@ class Recorder:
     def __enter__(self) -> "Recorder":
         return self
 
-    def __exit__(self, *_) -> None:
+    def __exit__(self, *_: object) -> None:
         self.stop()

@@ -1,11 +1,13 @@
-"""render(): one call from data to a picture."""
+"""render(): one call from data to an image."""
 
 import os
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import _easypbr
-from .convert import as_mesh
 from .errors import ArgumentError, UnknownNameError
 from .scene import Scene
 from .viewer import Viewer
@@ -21,25 +23,24 @@ _SHORT_NAMES = {
 
 
 def render(
-    what,
-    out=None,
-    size=None,
+    what: Any,
+    out: str | os.PathLike | None = None,
+    size: ArrayLike | None = None,
     samples: int | None = None,
-    environment=None,
+    environment: Any = None,
     hdr: bool = False,
     camera: "_easypbr.Camera | None" = None,
-    background=None,
-    settings=None,
-    **values,
+    background: Any = None,
+    settings: Mapping | str | os.PathLike | None = None,
+    **values: Any,
 ) -> np.ndarray:
-    """A picture of `what`: a path, a Mesh, a Scene, (V, F), a dict of arrays, or a trimesh, Open3D or PyVista object.
+    """Renders `what`: a path, a Mesh, a Scene, (V, F), a dict of arrays, or a trimesh, Open3D or PyVista object.
 
-    Returns height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`. `size` is (800, 600) and `samples`
-    16 unless they or `settings` say otherwise. `out` writes the picture to a
-    file too. `environment`: a path, an array or an Environment. `background`: a colour, an image file, "environment",
-    "blur" or "transparent". Other values are settings by the last part of their name (roughness=0.3, exposure=2) or,
-    through `settings`, a dict or file of them.
-    """
+    Returns height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`. `size` is (800, 600) and
+    `samples` 16 by default. `out` writes the image to a file too. `environment`: environment map, a path, an array or
+    an Environment. `background`: a colour, an image file, "environment", "blur" or "transparent". Other keywords are
+    settings by the last part of their name (roughness=0.3, exposure=2); `settings` is a dict or a file of
+    settings."""
     linear_file = out is not None and _easypbr.check_picture_path(out)
     view = Viewer(size, settings, scene=_scene_of(what))
     if environment is not None:
@@ -57,11 +58,11 @@ def render(
 
 
 def render_png(what) -> bytes:
-    """The picture as a PNG file's bytes: what notebooks show of a mesh."""
+    """The bytes of a PNG file, for display in notebooks."""
     return _easypbr.encode_png(render(what))
 
 
-def _scene_of(what) -> Scene:
+def _scene_of(what: Any) -> Scene:
     if isinstance(what, Scene):
         return what
     scene = Scene()
@@ -69,13 +70,13 @@ def _scene_of(what) -> Scene:
     return scene
 
 
-def _set_environment(view: Viewer, environment) -> None:
+def _set_environment(view: Viewer, environment: Any) -> None:
     if not isinstance(environment, (str, os.PathLike)) and not isinstance(environment, _easypbr.Environment):
         environment = _easypbr.Environment(environment)
     view.load_environment_map(environment)
 
 
-def _set_background(view: Viewer, background) -> None:
+def _set_background(view: Viewer, background: Any) -> None:
     mode = {"env": "environment"}.get(background, background) if isinstance(background, str) else None
     if mode in _easypbr.field("background.mode").choices and mode not in ("color", "image"):
         view.settings["background.mode"] = mode

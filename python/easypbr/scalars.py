@@ -1,19 +1,22 @@
-"""A mesh's named values as a dict that writes through to the mesh."""
+"""The scalar fields of a mesh as a dict that writes through to the mesh."""
 from collections.abc import Iterator, MutableMapping
 
 import numpy as np
+from numpy.typing import ArrayLike
+
+from ._easypbr import Mesh
 
 
 class Scalars(MutableMapping[str, np.ndarray]):
-    """What `mesh.scalars` is: read-only arrays by name; assigning to a name or deleting it changes the mesh."""
+    """The type of `mesh.scalars`: read-only arrays by name; assigning to a name or deleting it changes the mesh."""
 
-    def __init__(self, mesh) -> None:
+    def __init__(self, mesh: "Mesh") -> None:
         self._mesh = mesh
 
     def __getitem__(self, name: str) -> np.ndarray:
         return self._mesh._scalars()[name]
 
-    def __setitem__(self, name: str, values) -> None:
+    def __setitem__(self, name: str, values: ArrayLike) -> None:
         self._mesh.add_scalar(name, values)
 
     def __delitem__(self, name: str) -> None:

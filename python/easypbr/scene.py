@@ -1,10 +1,12 @@
-"""Scene: named meshes and lights and an environment."""
+"""Scene: named meshes, lights and an environment map."""
 
-import functools
 import os
 import types
 from collections.abc import Callable
 from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
 
 from . import _easypbr
 from .convert import as_mesh
@@ -16,29 +18,30 @@ Result = TypeVar("Result")
 class _OnDefaultScene(Generic[Arguments, Result]):
     """A method that acts on the default scene when it is called on the class."""
 
-    def __init__(self, function: Callable[Concatenate[Any, Arguments], Result]):
+    def __init__(self, function: Callable[Concatenate[Any, Arguments], Result]) -> None:
         self.function = function
-        functools.update_wrapper(self, function)
+        self.__doc__, self.__name__ = function.__doc__, function.__name__
+        self.__wrapped__ = function
 
-    def __get__(self, instance, owner) -> Callable[Arguments, Result]:
+    def __get__(self, instance: "Scene | None", owner: "type[Scene]") -> Callable[Arguments, Result]:
         return types.MethodType(self.function, owner.default() if instance is None else instance)
 
 
 class Scene:
-    """A scene of its own. On the class, `Scene.show(...)` and the other methods act on the default scene."""
+    """A scene. On the class, `Scene.show(...)` and the other methods act on the default scene."""
 
-    def __init__(self):
+    def __init__(self) -> None:
         self._handle = _easypbr.SceneHandle()
 
     @classmethod
-    def _of(cls, handle) -> "Scene":
+    def _of(cls, handle: "_easypbr.SceneHandle") -> "Scene":
         scene = cls.__new__(cls)
         scene._handle = handle
         return scene
 
     @classmethod
     def default(cls) -> "Scene":
-        """The scene that a Viewer draws unless it is given another one."""
+        """The default scene of a Viewer."""
         return cls._of(_easypbr.default_scene())
 
     @classmethod
@@ -48,8 +51,8 @@ class Scene:
 
     @_OnDefaultScene
     def show(self, what, name: str | None = None) -> "_easypbr.Mesh":
-        """Shows a mesh (or whatever as_mesh() takes) under a name; the same name again replaces it. Of a path, the
-        file's lights are added as "name/light" too."""
+        """Shows a mesh (or whatever as_mesh() takes) under a name; the same name again replaces it. For a path, the
+        lights of the file are added too, as "name/light"."""
         lights = {}
         if isinstance(what, (str, os.PathLike)):
             loaded = _easypbr.load_scene(what)
@@ -83,7 +86,7 @@ class Scene:
 
     @_OnDefaultScene
     def names(self) -> list[str]:
-        """Names of the meshes shown, in their order."""
+        """Names of the meshes, in order."""
         return self._handle.names()
 
     @_OnDefaultScene
@@ -108,27 +111,27 @@ class Scene:
 
     @_OnDefaultScene
     def light_names(self) -> list[str]:
-        """Names of the scene's own lights."""
+        """Names of the lights of the scene."""
         return self._handle.light_names()
 
     @property
-    def origin(self):
+    def origin(self) -> np.ndarray:
         """Where the scene's frame has its origin, in the coordinates that meshes were given (mesh.offset + mesh.V):
         cameras, lights and poses are relative to it. It is the offset of the mesh that was shown first, taken when
         something is drawn for the first time; so it is zero unless that mesh lies far from zero."""
         return self._handle.origin
 
     @origin.setter
-    def origin(self, origin):
+    def origin(self, origin: ArrayLike) -> None:
         self._handle.origin = origin
 
     @property
     def environment(self) -> "_easypbr.Environment":
-        """What lights the scene from infinitely far; empty: none was given."""
+        """The environment map; empty: none was given."""
         return self._handle.environment
 
     @environment.setter
-    def environment(self, environment):
+    def environment(self, environment: Any) -> None:
         if not isinstance(environment, _easypbr.Environment):
             environment = _easypbr.Environment(environment)
         self._handle.environment = environment

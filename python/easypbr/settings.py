@@ -1,16 +1,17 @@
 """Settings as attributes: view.settings.camera.fov_y_deg = 45."""
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from typing import Any
 
 from . import _easypbr
 from .errors import UnknownNameError
 
 
 class SettingsGroup:
-    """The settings whose names begin alike; attributes are the next parts of the names."""
+    """A group of settings; attributes are the next parts of their names."""
 
-    def __init__(self, handle, prefix: str):
+    def __init__(self, handle: "_easypbr.ViewerHandle", prefix: str) -> None:
         object.__setattr__(self, "_handle", handle)
         object.__setattr__(self, "_prefix", prefix)
 
@@ -18,10 +19,10 @@ class SettingsGroup:
         parts = (f.name[len(self._prefix) :].split(".")[0] for f in _FIELDS.values() if f.name.startswith(self._prefix))
         return list(dict.fromkeys(parts))
 
-    def __dir__(self):
+    def __dir__(self) -> list[str]:
         return [*super().__dir__(), *self._next_parts()]
 
-    def __getattr__(self, name: str):
+    def __getattr__(self, name: str) -> Any:
         if name.startswith("_"):
             raise AttributeError(name)
         full = self._prefix + name
@@ -31,7 +32,7 @@ class SettingsGroup:
             return SettingsGroup(self._handle, full + ".")
         raise _attribute_error(full)
 
-    def __setattr__(self, name: str, value):
+    def __setattr__(self, name: str, value: Any) -> None:
         full = self._prefix + name
         if full in _FIELDS:
             self._handle.set_setting(full, value)
@@ -42,7 +43,7 @@ class SettingsGroup:
         else:
             raise _attribute_error(full)
 
-    def __iter__(self):
+    def __iter__(self) -> Iterator[tuple[str, Any]]:
         """Pairs of the full name and the value, in the order of the reference."""
         for name in _FIELDS:
             if name.startswith(self._prefix):
@@ -55,22 +56,22 @@ class SettingsGroup:
 class Settings(SettingsGroup):
     """All settings of a viewer, as groups: image, camera, environment, background, lights, shading, tonemap, ..."""
 
-    def __init__(self, handle):
+    def __init__(self, handle: "_easypbr.ViewerHandle") -> None:
         super().__init__(handle, "")
 
-    def __getitem__(self, name: str):
+    def __getitem__(self, name: str) -> Any:
         """The setting with this full name: settings["camera.fov_y_deg"]."""
         return self._handle.get_setting(name)
 
-    def __setitem__(self, name: str, value):
+    def __setitem__(self, name: str, value: Any) -> None:
         self._handle.set_setting(name, value)
 
     def resolve(self, name: str):
-        """The value that the next picture would be drawn with (auto: each mesh has its own); nothing is kept."""
+        """The value for the next image (auto: each mesh has its own), without latching it."""
         return self._handle.resolved_setting(name)
 
     def describe(self, name: str) -> str:
-        """What a setting means, its unit, range and default."""
+        """Description, unit, range and default of a setting."""
         field = _easypbr.field(name)
         lines = [field.name + (f" [{field.unit}]" if field.unit else ""), field.doc]
         if field.choices:
@@ -79,18 +80,18 @@ class Settings(SettingsGroup):
         return "\n".join(lines)
 
     def update(self, values: Mapping) -> None:
-        """Takes values over from a dict: nested ({"camera": {"fov_y_deg": 45}}), by full names, or as to_dict() gives it."""
+        """Sets values from a dict: nested ({"camera": {"fov_y_deg": 45}}), by full names, or as to_dict() gives it."""
         if "easypbr" in values:
             self._handle.settings_from_json(json.dumps(values))
         else:
             _assign(self._handle, values, "")
 
     def to_dict(self) -> dict:
-        """Every setting, chosen and inferred, and the scene's lights, as they stand in a settings file."""
+        """All settings, given and inferred, and the lights of the scene, as in a settings file."""
         return json.loads(self._handle.settings_to_json())
 
 
-def _assign(handle, values: Mapping, prefix: str) -> None:
+def _assign(handle: "_easypbr.ViewerHandle", values: Mapping, prefix: str) -> None:
     for name, value in values.items():
         full = prefix + name
         is_group = isinstance(value, Mapping) and full not in _FIELDS

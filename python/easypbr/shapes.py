@@ -1,6 +1,9 @@
-"""Shapes made in code, centred at the origin unless said otherwise, with normals and uv; y is up."""
+"""Procedural shapes, centred at the origin unless stated otherwise, with normals and uv; y is up."""
+
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import _easypbr
 from ._easypbr import arrow, axes, box, capsule, cone, cylinder, grid, icosphere, plane, sphere, teapot, torus
@@ -27,10 +30,10 @@ __all__ = [
 
 
 def camera_frustum(camera, image=None, size=None, depth: float = 1.0) -> "_easypbr.Mesh":
-    """What a camera sees, as lines, with its image in it.
+    """A camera frustum as lines, with its image.
 
-    `camera` is a Camera, or (K, T_world_cam) with OpenCV's axes. The outline of its picture is laid at `depth` along
-    the optical axis, with a roof on the upper border; `image` fills it. `size` is (width, height), by default the
+    `camera` is a Camera, or (K, T_world_cam) with OpenCV axes. The image plane is at `depth` along the optical axis,
+    with a triangle on the upper border; `image` fills it. `size` is (width, height), by default the
     image's, or what the camera's intrinsics belong to.
     """
     if isinstance(camera, _easypbr.Camera):
@@ -38,23 +41,25 @@ def camera_frustum(camera, image=None, size=None, depth: float = 1.0) -> "_easyp
     if not isinstance(camera, (tuple, list)) or len(camera) != 2:
         raise ArgumentError(f"camera_frustum: expected a Camera or (K, T_world_cam), got a {type(camera).__name__}")
     if size is None and image is not None:
-        size = np.shape(image)[1::-1]
+        rows, columns = np.shape(image)[:2]
+        size = columns, rows
     if size is None:
         raise ArgumentError("camera_frustum: expected a size, (width, height), or an image, beside (K, T_world_cam)")
-    return _easypbr._camera_frustum(_easypbr.Camera.from_opencv(*camera, size), image, size, depth)
+    K, T_world_cam = camera
+    return _easypbr._camera_frustum(_easypbr.Camera.from_opencv(K, T_world_cam, size), image, size, depth)
 
 
 def camera_path(
-    path: "_easypbr.CameraPath", size=(4, 3), fov_y_deg: float = 30.0, depth: float | None = None
+    path: "_easypbr.CameraPath", size: ArrayLike = (4, 3), fov_y_deg: float = 30.0, depth: float | None = None
 ) -> "_easypbr.Mesh":
-    """The curve of a camera path as lines, with the outlines of its cameras as children: one at each key, twelve on an
-    orbit. Their pictures have the size's shape, and the angle of view where the path has none; `depth` is how far the
-    outlines reach, by default a tenth of the curve's extent."""
+    """The curve of a camera path as lines, with camera frustums as children: one at each key, twelve on an orbit.
+    `size` gives their aspect ratio, and the field of view applies where the path has none; `depth` is the length of
+    the frustums, by default a tenth of the curve's extent."""
     return _easypbr._camera_path(path, size, fov_y_deg, depth)
 
 
 def image_plane(image, width: float | None = None, height: float | None = None) -> "_easypbr.Mesh":
-    """A picture standing in the xy plane around the origin, seen from +z, shown as it is: unlit, in its own colours.
+    """An image in the xy plane around the origin, facing +z, unlit.
 
     `image` is an array of height x width (x 1, 3 or 4), uint8, uint16 or linear floats. One of width and height is enough; by
     default the plane is 1 high.
@@ -77,7 +82,7 @@ def image_plane(image, width: float | None = None, height: float | None = None) 
     return mesh
 
 
-def voxel_grid(array, origin=(0, 0, 0), cell_size: float = 1.0, empty: int = 0) -> "_easypbr.Mesh":
+def voxel_grid(array: ArrayLike, origin: ArrayLike = (0, 0, 0), cell_size: float = 1.0, empty: int = 0) -> "_easypbr.Mesh":
     """The occupied cells of a grid, drawn as cubes. Cell [i, j, k] spans origin + cell_size * (i..i+1, j..j+1, k..k+1).
 
     `array` is nx x ny x nz of bool (occupancy) or of integers (labels; those that are not `empty`), or

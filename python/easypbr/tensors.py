@@ -1,6 +1,7 @@
-"""Arrays of other libraries: torch, JAX, CuPy, anything with DLPack. None is imported before it is asked for."""
+"""Arrays of other libraries: torch, JAX, CuPy, any with DLPack. They are imported on demand."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
 
@@ -8,7 +9,7 @@ from .errors import ArgumentError, ContextError
 
 
 def converter(name: str, device: str = "cpu") -> Callable:
-    """What turns a numpy array into one of the library of this name, without a copy: "numpy" or "torch"."""
+    """A function from numpy arrays to those of "numpy" or "torch", without a copy."""
     if name == "numpy":
         if device != "cpu":
             raise ArgumentError(f"device: numpy's arrays are the CPU's: expected as_='torch' with device '{device}'")
@@ -19,7 +20,7 @@ def converter(name: str, device: str = "cpu") -> Callable:
 
 
 def check_device(device: str):
-    """The torch device of this name. Raises ArgumentError for a name that is none, ContextError where PyTorch sees no such
+    """The torch device of this name. Raises ArgumentError for an invalid name, ContextError if PyTorch does not see the
     device."""
     torch = _torch()
     try:
@@ -35,12 +36,12 @@ def check_device(device: str):
 
 
 def from_dlpack(capsule):
-    """A torch tensor of a capsule of DLPack, without a copy."""
+    """A torch tensor from a DLPack capsule, without a copy."""
     return _torch().utils.dlpack.from_dlpack(capsule)
 
 
 def layers_of_targets(raw: dict, names, from_dlpack: Callable) -> dict:
-    """The layers of these names, tensors on the GPU, of what Viewer.render_layers() finds there: `raw` is cuda_layers()'s."""
+    """Layers by name as GPU tensors, computed from the targets; `raw` is the result of cuda_layers()."""
     torch = _torch()
     targets = {name: from_dlpack(target) for name, target in raw["targets"].items()}
     result = {name: targets[name] if name == "color" else targets[name].float() for name in names if name in ("color", "hdr")}
@@ -51,19 +52,20 @@ def layers_of_targets(raw: dict, names, from_dlpack: Callable) -> dict:
     near, far = raw["near"], raw["far"]
     depth = far + (near - far) * inverse if raw["orthographic"] else near / inverse
 
-    def shown(values):
+    def shown(values: Any) -> Any:
         return torch.where(seen if values.dim() == 2 else seen[..., None], values, torch.zeros_like(values))
 
-    def fractions(name):  # 16 bits without a sign
+    def fractions(name: str) -> Any:  # 16 bits without a sign
         return (targets[name].int() & 0xFFFF).float()
 
-    if "normal" in targets:
-        normal = _octahedral(torch, fractions("normal") / 32767.5 - 1)
-        turn = torch.as_tensor(raw["R_cam_world"], dtype=torch.float32, device=normal.device)
+    def normal() -> Any:
+        return _octahedral(torch, fractions("normal") / 32767.5 - 1)
+
+    turn = torch.as_tensor(raw["R_cam_world"], dtype=torch.float32, device=inverse.device)
     make = {
         "depth": lambda: depth,
-        "normal_world": lambda: normal,
-        "normal_camera": lambda: normal @ turn.T,
+        "normal_world": normal,
+        "normal_camera": lambda: normal() @ turn.T,
         "albedo": lambda: fractions("albedo")[..., :3] / 65535,
         "metallic": lambda: targets["material"][..., 0].float() / 255,
         "roughness": lambda: targets["material"][..., 1].float() / 255,
@@ -75,13 +77,13 @@ def layers_of_targets(raw: dict, names, from_dlpack: Callable) -> dict:
 
 
 def _octahedral(torch, p):
-    """Unit vectors of points of the octahedron's map (Cigolle et al. 2014)."""
+    """Unit vectors from octahedral coordinates (Cigolle et al. 2014)."""
     z = 1 - p.abs().sum(-1, keepdim=True)
     fold = (-z).clamp(min=0)
     return torch.nn.functional.normalize(torch.cat([p - torch.where(p >= 0, fold, -fold), z], -1), dim=-1)
 
 
-def _torch():
+def _torch() -> Any:
     try:
         import torch
     except ImportError as error:
@@ -89,13 +91,13 @@ def _torch():
     return torch
 
 
-def _is_torch(what) -> bool:
+def _is_torch(what: Any) -> bool:
     return type(what).__module__.split(".")[0] == "torch"
 
 
 def as_numpy(what):
-    """A numpy array of what other libraries hold, without a copy where it lies in this machine's memory: a torch tensor
-    of any device, with or without gradients, or anything with DLPack. Other things are returned as they are."""
+    """A numpy array of an array of another library, without a copy if it is in host memory: a torch tensor of any
+    device, with or without gradients, or any object with DLPack. Other objects are returned unchanged."""
     if _is_torch(what) and hasattr(what, "detach"):
         return what.detach().cpu().numpy()
     if isinstance(what, np.ndarray) or not hasattr(what, "__dlpack__"):
@@ -109,11 +111,11 @@ def as_numpy(what):
 
 
 def eigen2tensor(array, device=None):
-    """A torch tensor of a mesh's array (or any other): a copy, so that training may write to it."""
+    """A torch tensor of an array of a mesh (or any other): a copy, so that training may write to it."""
     torch = _torch()
     return torch.from_numpy(np.array(as_numpy(array))).to(check_device(device or "cpu"))
 
 
 def tensor2eigen(tensor) -> np.ndarray:
-    """A numpy array of a tensor, wherever it lies and whether or not it has a gradient: for mesh.V = tensor2eigen(t)."""
+    """A numpy array of a tensor of any device, with or without gradients: mesh.V = tensor2eigen(t)."""
     return np.ascontiguousarray(as_numpy(tensor))

@@ -4,12 +4,14 @@ import atexit
 import os
 import threading
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import _easypbr
 from .errors import ArgumentError
-from .lights import _STUDIO, Lights
+from .lights import _STUDIO, Lights, SceneLight, StudioLight
 from .panels import WindowCallbacks
 from .recorder import Recorder, watch_recorder
 from .scene import Scene
@@ -19,16 +21,21 @@ from .tensors import as_numpy, check_device, converter, from_dlpack, layers_of_t
 
 
 class Viewer(WindowCallbacks):
-    """Draws a scene, the default one unless another is given. Nothing is drawn, and no GL needed, before a picture is
-    asked for. Threads may share a viewer; they take turns."""
+    """Renders a scene, by default the default scene. Nothing is rendered, and OpenGL is not loaded, before the first
+    image. Threads may share a viewer; they take turns."""
 
-    def __init__(self, size=None, settings=None, scene: Scene | None = None):
+    def __init__(
+        self,
+        size: ArrayLike | None = None,
+        settings: Mapping | str | os.PathLike | None = None,
+        scene: Scene | None = None,
+    ) -> None:
         """`settings`: a file that save_settings() wrote, or a dict of values; `size`: (width, height)."""
         self.scene = Scene.default() if scene is None else scene
         self._handle = _easypbr.ViewerHandle(self.scene._handle)
         self.recorder = Recorder(self)
         self._settings = Settings(self._handle)
-        self._thread = None
+        self._thread: threading.Thread | None = None
         self._init_callbacks()
         if isinstance(settings, Mapping):
             self._settings.update(settings)
@@ -43,19 +50,19 @@ class Viewer(WindowCallbacks):
         return self._settings
 
     @settings.setter
-    def settings(self, values):
+    def settings(self, values: Mapping) -> None:
         self._settings.update(values)
 
     def object_names(self) -> list[str]:
-        """Names of what is visible; the layer "id" holds 1 + the place in this list."""
+        """Names of what is visible; the layer "object_id" holds 1 + the place in this list."""
         return self._handle.object_names()
 
     @property
     def lights(self) -> Lights:
-        """view.lights["key" | "fill" | "rim"] and the lights that were added, by name."""
+        """view.lights["key" | "fill" | "rim"] and the lights of the scene, by name."""
         return Lights(self._handle, self.scene._handle)
 
-    def add_light(self, name: str, type: str = "point", **values):
+    def add_light(self, name: str, type: str = "point", **values: Any) -> "SceneLight | StudioLight":
         """Adds or replaces a light: position, direction, color, intensity, ... as _easypbr.Light has them."""
         if name in _STUDIO:
             raise ArgumentError(f"'{name}' is one of the three-point lights: use view.lights['{name}']")
@@ -69,7 +76,7 @@ class Viewer(WindowCallbacks):
         self.scene.remove_light(name)
 
     def load_environment_map(self, source) -> None:
-        """Lights the scene with an equirectangular picture: a path, an array or an Environment."""
+        """Sets the environment map: a path, an array or an Environment."""
         if isinstance(source, (str, os.PathLike)):
             self._handle.load_environment_map(source)
         else:
@@ -78,20 +85,20 @@ class Viewer(WindowCallbacks):
 
     @property
     def camera(self) -> "_easypbr.Camera":
-        """A copy of the next picture's camera; assign a Camera to pin it."""
+        """A copy of the camera of the next image; assign a Camera to pin it."""
         return self._handle.camera
 
     @camera.setter
-    def camera(self, camera):
+    def camera(self, camera: "_easypbr.Camera") -> None:
         self._handle.camera = camera
 
     @property
     def time(self) -> float:
-        """Seconds of the animation: of the last frame of a window or a recording; assign to set it."""
+        """Animation time in seconds, of the last frame of a window or a recording; assign to set it."""
         return self._handle.time
 
     @time.setter
-    def time(self, seconds: float):
+    def time(self, seconds: float) -> None:
         self._handle.time = seconds
 
     @property
@@ -106,10 +113,10 @@ class Viewer(WindowCallbacks):
         return self._handle.fixed_step
 
     @fixed_step.setter
-    def fixed_step(self, seconds: float | None):
+    def fixed_step(self, seconds: float | None) -> None:
         self._handle.fixed_step = seconds
 
-    def play(self, animations=None, animation: str | int = 0, speed: float = 1.0, loop: bool = True) -> None:
+    def play(self, animations: "_easypbr.Animations | None" = None, animation: str | int = 0, speed: float = 1.0, loop: bool = True) -> None:
         """Plays an animation of a file, by its name or number, from its start: view.play(load_scene(path).animations). It
         follows view.time: that of the window, or of the frames that are recorded. Without arguments it goes on after
         pause(). `speed`: below 0 backwards."""
@@ -119,7 +126,7 @@ class Viewer(WindowCallbacks):
             self._handle.play(animations, str(animation), speed, loop)
 
     def pause(self) -> None:
-        """The animation stays as it is, until play()."""
+        """Pauses the animation until play()."""
         self._handle.pause()
 
     @property
@@ -129,28 +136,30 @@ class Viewer(WindowCallbacks):
 
     @property
     def animation_time(self) -> float:
-        """Seconds of the animation that plays; assign to put the meshes where they are then."""
+        """Time in the animation that plays, in seconds; assign to seek."""
         return self._handle.animation_time
 
     @animation_time.setter
-    def animation_time(self, seconds: float):
+    def animation_time(self, seconds: float) -> None:
         self._handle.animation_time = seconds
 
     def turntable(self, duration_s: float = 4.0) -> "_easypbr.CameraPath":
-        """One turn of the camera around the content, from where it is; while it is automatic from far enough away for
-        the content to stay in the picture."""
+        """A path of one turn around the content from the current camera; an automatic camera is far enough away to keep
+        the content in the image."""
         return self._handle.turntable(duration_s)
 
     def refit(self) -> None:
-        """Forgets what was inferred, so that the next picture infers it anew."""
+        """Releases latched values, so that the next image infers them again."""
         self._handle.refit()
 
     def render(self, size=None, samples: int | None = None, hdr: bool = False) -> np.ndarray:
-        """The picture, height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`."""
+        """Renders an image, height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`."""
         return self._handle.render(size, samples, "linear" if hdr else "srgb8")
 
-    def layers(self, names: Sequence[str] | None = None, size=None) -> dict[str, np.ndarray]:
-        """Exact values through the pixels' centres, by name: albedo, normal, depth, roughness, metallic, ..."""
+    def layers(self, names: Sequence[str] | None = None, size: ArrayLike | None = None) -> dict[str, np.ndarray]:
+        """Exact values through the pixels' centres, float32, by name: albedo, normal_world, depth, roughness, metallic,
+        occlusion, ambient_occlusion, object_id and element_id; all of them unless named. A name that render_layers() has too
+        means the same."""
         if isinstance(names, str):
             names = [names]
         return self._handle.layers(list(_easypbr.layer_names() if names is None else names), size)
@@ -158,7 +167,7 @@ class Viewer(WindowCallbacks):
     def render_layers(
         self,
         names: Sequence[str],
-        size=None,
+        size: ArrayLike | None = None,
         samples: int | None = None,
         instances_by: str = "object",
         classes: Mapping[str, int] | None = None,
@@ -168,7 +177,7 @@ class Viewer(WindowCallbacks):
         as_: str = "numpy",
         device: str = "cpu",
     ) -> dict:
-        """The picture and exact ground truth of the same frame by name, all of the same height and width: color, hdr,
+        """The image and exact ground truth of the same frame by name, all of the same height and width: color, hdr,
         depth, distance, position, normal_world, normal_camera, albedo, roughness, metallic, instance_id, semantic_id,
         object_coordinates, face_id, barycentrics, uv, flow_forward, flow_backward and their occlusion_forward and
         occlusion_backward, and "instances", a list of Instance.
@@ -197,7 +206,9 @@ class Viewer(WindowCallbacks):
         )
         return {name: value if name == "instances" else convert(value) for name, value in data.items()}
 
-    def _layers_on(self, device, names, size, samples, instances_by, classes, *options) -> dict:
+    def _layers_on(self, device: str, names: Sequence[str], size: ArrayLike | None, samples: int | None, instances_by: str,
+                   classes: Mapping[str, int] | None, previous: "_easypbr.Moment | None", next: "_easypbr.Moment | None",
+                   amodal: bool) -> dict:
         """render_layers() with tensors of another device."""
         stays = [name for name in names if name in _easypbr.cuda_layer_names()]
         data = {}
@@ -209,32 +220,32 @@ class Viewer(WindowCallbacks):
             stays = []
         rest = [name for name in names if name not in stays]
         if rest:
-            data |= self.render_layers(rest, size, samples, instances_by, classes, *options, as_="torch")
+            data |= self.render_layers(rest, size, samples, instances_by, classes, previous, next, amodal, "torch")
         return {name: data[name] if name == "instances" else data[name].to(device) for name in names}
 
-    def annotations(self, size=None, **options) -> "list[_easypbr.Instance]":
+    def annotations(self, size: ArrayLike | None = None, **options: Any) -> "list[_easypbr.Instance]":
         """Masks, boxes, poses and visibility of all instances; options as render_layers() has them."""
         return self.render_layers(["instances"], size, **options)["instances"]
 
     def moment(self, size=None) -> "_easypbr.Moment":
-        """The scene and camera as they are now, for flow between frames: render_layers(..., previous=moment)."""
+        """The current scene and camera, for flow between frames: render_layers(..., previous=moment)."""
         return _easypbr.moment(self._handle, size)
 
     def focus_at(self, x: int, y: int, size=None) -> float:
-        """Focuses the lens (settings.depth_of_field) on what pixel (x, y) shows and returns its depth."""
+        """Focuses the lens (settings.depth_of_field) on the surface at pixel (x, y) and returns its depth."""
         return self._handle.focus_at(x, y, size)
 
     def forget_motion(self) -> None:
-        """The next picture shows no motion since this one (settings.motion_blur)."""
+        """Disables motion blur in the next image, as after a cut (settings.motion_blur)."""
         self._handle.forget_motion()
 
     def save_settings(self, path) -> None:
-        """Writes every value, chosen and inferred, with hashes of the files shown."""
+        """Writes all settings, given and inferred, with hashes of the files in use."""
         sources = (self.scene.get(name).source for name in self.scene.names())
         self._handle.save_settings(path, [source for source in sources if source])
 
     def load_settings(self, path) -> None:
-        """Takes over settings and lights from a file that save_settings() wrote."""
+        """Loads settings and lights from a file of save_settings()."""
         self._handle.load_settings(path)
 
     @property
@@ -243,8 +254,8 @@ class Viewer(WindowCallbacks):
         return self._handle.timing()
 
     def update(self) -> bool:
-        """Opens the window at the first call; shows what has changed and does what mouse and keys ask for. Waits up to
-        16 ms for something to happen. False when the window has been closed: while view.update(): ..."""
+        """Opens the window at the first call; processes events and redraws changes. Waits up to 16 ms for events. False
+        when the window has been closed: while view.update(): ..."""
         watch_recorder(self.recorder)  # The panel may begin a recording.
         self._run(self._before_draw)
         is_open = self._handle.update()
@@ -252,7 +263,7 @@ class Viewer(WindowCallbacks):
         return is_open
 
     def show(self, block: bool = True) -> None:
-        """Shows the window until it is closed; with block=False it lives on a thread of its own meanwhile."""
+        """Shows the window until it is closed; with block=False it runs on its own thread."""
         self._handle.reopen()
         if block:
             while self.update():
@@ -265,7 +276,9 @@ class Viewer(WindowCallbacks):
         self._thread.start()
         atexit.register(self.close)  # A thread within the library must not outlive the interpreter.
 
-    def show_image(self, name: str, image, range: tuple[float, float] | None = None, colormap: str | None = None) -> None:
+    def show_image(
+        self, name: str, image: Any, range: tuple[float, float] | None = None, colormap: str | None = None
+    ) -> None:
         """Shows an image in the window, beside the scene: an array or tensor of height x width (x 1, 3 or 4), of uint8,
         uint16, floats, bool or integers. Under the name of one that is there it takes its place, as in every iteration of a
         training loop. Values are shown as they are: 0 to 255, of floats 0 to 1, or `range`; of a single channel all of
@@ -291,22 +304,22 @@ class Viewer(WindowCallbacks):
         return self._handle.get_path()
 
     @camera_path.setter
-    def camera_path(self, path: "_easypbr.CameraPath"):
+    def camera_path(self, path: "_easypbr.CameraPath") -> None:
         if not isinstance(path, _easypbr.CameraPath):
             raise ArgumentError(f"camera_path: expected a CameraPath, got a {type(path).__name__}")
         self._handle.set_path(path)
 
     @property
     def panel_scale(self) -> float:
-        """How large panels, text and handles are, 0.5 to 4; 1 is as the screen asks for."""
+        """Scale of panels, text and manipulators relative to the screen's own, 0.5 to 4."""
         return self._handle.panel_scale
 
     @panel_scale.setter
-    def panel_scale(self, scale: float):
+    def panel_scale(self, scale: float) -> None:
         self._handle.panel_scale = scale
 
     def show_panels(self, *names: str) -> None:
-        """Shows these of the window's own panels alone, unfolded: "Scene", "Object", "Effects", "Lights", "Environment",
+        """Shows only these built-in panels, expanded: "Scene", "Object", "Effects", "Lights", "Environment",
         "Camera", "Channels", "Statistics", "Animations", "Camera path", "Recorder"."""
         known = self._handle.panel_names()
         for name in names:
@@ -325,7 +338,15 @@ class Viewer(WindowCallbacks):
         """Names of the images that are shown."""
         return self._handle.image_names()
 
-    def add_camera_frustum(self, name: str, K, T_world_cam, image=None, size=None, depth: float = 1.0) -> "_easypbr.Mesh":
+    def add_camera_frustum(
+        self,
+        name: str,
+        K: ArrayLike,
+        T_world_cam: ArrayLike,
+        image: Any = None,
+        size: ArrayLike | None = None,
+        depth: float = 1.0,
+    ) -> "_easypbr.Mesh":
         """Shows a camera in the scene: what it sees, `depth` far, as lines, with its image in it. K and T_world_cam are
         OpenCV's; `size` is (width, height), by default the image's. See shapes.camera_frustum()."""
         if image is not None:
@@ -345,30 +366,31 @@ class Viewer(WindowCallbacks):
 
     @property
     def is_open(self) -> bool:
-        """Whether the window is there."""
+        """Whether the window is open."""
         return self._handle.is_open()
 
     def add_pass(self, name: str, shader: str | os.PathLike, stage: str = "overlay") -> None:
-        """Draws a fragment shader over every picture: GLSL text, or the path of a file (pathlib.Path), which is read
-        again whenever it changes. `stage`: "light" (linear radiance before lens and tone curve), "overlay" (linear
-        display light past it) or "picture" (the finished picture). A pass of the same name is replaced."""
+        """Adds a custom full-screen pass: a fragment shader as GLSL text, or the path of a file (pathlib.Path), which is
+        reloaded when it changes. `stage`: "light" (linear radiance, before depth of field and tone mapping), "overlay"
+        (linear display colours, after tone mapping) or "picture" (the final image). A pass of the same name is
+        replaced."""
         self._handle.add_pass(name, shader, stage)
 
     def remove_pass(self, name: str) -> None:
-        """Takes a pass away that was added."""
+        """Removes a custom pass."""
         self._handle.remove_pass(name)
 
     def open(self, path) -> None:
-        """Adds what a file holds, as a file dropped on the window; HDR and EXR become the environment."""
+        """Adds the contents of a file, like a file dropped on the window; HDR and EXR become the environment map."""
         self._handle.open(path)
 
-    def pick(self, x: float, y: float, size=None) -> "_easypbr.Pick | None":
+    def pick(self, x: float, y: float, size: ArrayLike | None = None) -> "_easypbr.Pick | None":
         """What lies under a pixel of a picture of `size`, counted from the top left corner: object, part, face or vertex,
         position. None where there is no surface; lines are none."""
         return self._handle.pick(x, y, size)
 
     def screenshot(self, size=None, scale: float = 1) -> np.ndarray:
-        """What the window would show, panels included; needs no display. `scale`: pixels of a plain one (HiDPI)."""
+        """The contents of the window as an image, panels included; needs no display. `scale`: HiDPI scale."""
         return self._handle.screenshot(size, scale)
 
     def _repr_png_(self) -> bytes | None:
@@ -377,9 +399,15 @@ class Viewer(WindowCallbacks):
         return _easypbr.encode_png(self.render())
 
 
-def show(what, name: str | None = None, block: bool = True, size=(1280, 720), settings=None) -> Viewer:
+def show(
+    what: Any,
+    name: str | None = None,
+    block: bool = True,
+    size: ArrayLike = (1280, 720),
+    settings: Mapping | str | os.PathLike | None = None,
+) -> Viewer:
     """Shows anything as_mesh() takes, a path or a Scene in a window, until it is closed; with block=False the window
-    lives on its own. Returns its Viewer; `settings` as Viewer takes them."""
+    runs on its own thread. Returns its Viewer; `settings` as for Viewer."""
     if isinstance(what, Scene):
         scene = what
     else:

@@ -109,7 +109,7 @@ TEST(OwnShader, MovesWithTheMeshAndTurnsItsNormal) {
     session.scene().get("square").set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(-2, 0, 0)));
     const float off = 5 * std::tan(radians(15.0f)) / side;
     EXPECT_NEAR(middle_of(render_linear(session)).x(), 2 + off, 3e-6);
-    const Vec4 normal = middle_of(session.render_layers({"normal"}).at("normal"));
+    const Vec4 normal = middle_of(session.render_layers({"normal_world"}).at("normal_world"));
     EXPECT_NEAR(normal.x(), 1, 1e-4);  // 16 bits of an octahedron: 0.004 degrees
 }
 

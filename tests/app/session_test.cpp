@@ -153,10 +153,10 @@ TEST_F(SessionFiles, ImageBackgroundCoversThePicture) {
 
 TEST_F(SessionFiles, LayersAreWrittenBesideThePicture) {
     Session session = small_session();
-    const auto files = layers_to_files(session, folder_ / "out.png", {"depth", "normal"});
+    const auto files = layers_to_files(session, folder_ / "out.png", {"depth", "normal_world"});
     ASSERT_EQ(files.size(), 2u);
     EXPECT_TRUE(fs::exists(folder_ / "out_depth.exr"));
-    EXPECT_EQ(io::load_image(folder_ / "out_normal.exr").channels(), 3);
+    EXPECT_EQ(io::load_image(folder_ / "out_normal_world.exr").channels(), 3);
 }
 
 TEST_F(SessionFiles, SixteenBitPng) {

@@ -323,14 +323,14 @@ TEST(TiledLayers, AreThoseOfTheWholePicture) {
     Session whole = session_of(c), parts = session_of(c);
     const int guard = render::guard_of(parts.scene().snapshot(), parts.resolve(), c.size).pixels;
     parts.limit_tiles(smallest_limits(guard));
-    const std::vector<std::string> names = {"id", "element", "depth", "normal"};
+    const std::vector<std::string> names = {"object_id", "element_id", "depth", "normal_world"};
     const auto a = whole.render_layers(names), b = parts.render_layers(names);
-    for (const char* exact : {"id", "element"})
+    for (const char* exact : {"object_id", "element_id"})
         EXPECT_EQ(compare(a.at(exact), b.at(exact)).different, 0u) << exact;
     // 23 bits of the reversed depth.
     EXPECT_LE(compare(a.at("depth"), b.at("depth")).max, 2e-5);
     // 16 bits of each octahedral coordinate.
-    EXPECT_LE(compare(a.at("normal"), b.at("normal")).max, 1e-4);
+    EXPECT_LE(compare(a.at("normal_world"), b.at("normal_world")).max, 1e-4);
 }
 
 TEST(TiledPicture, HoldsRadianceToo) {

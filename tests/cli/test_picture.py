@@ -117,7 +117,7 @@ def test_lens_covers_the_pixels_it_must(layers, box, lens):
 
 
 def test_depth_and_normal_are_those_of_the_front_face(layers, box):
-    depth, normal = layers("depth,normal", box, "--flat", *FRONT)
+    depth, normal = layers("depth,normal_world", box, "--flat", *FRONT)
     # float32 depth: relative error 1e-5.
     assert next(iter(depth.values()))[24, 32] == pytest.approx(4, rel=1e-5)
     assert [normal[c][24, 32] for c in "RGB"] == pytest.approx([0, 0, 1], abs=2e-4)
@@ -140,7 +140,7 @@ def test_camera_of_the_command_line_replaces_the_pose_of_a_settings_file(layers,
 
 @pytest.mark.parametrize("up, channel, sign", [("+y", "G", 1), ("-y", "G", -1), ("+z", "B", 1)])
 def test_up_axis_points_up(layers, sphere, up, channel, sign):
-    (normal,) = layers("normal", sphere, "--camera-position", "5,0,0", "--camera-target", "0,0,0", "--up", up)
+    (normal,) = layers("normal_world", sphere, "--camera-position", "5,0,0", "--camera-target", "0,0,0", "--up", up)
     top = normal[channel][8, 32]  # the sphere covers rows 1 to 46 or fewer
     assert sign * top > 0.4
 
@@ -159,7 +159,7 @@ def test_flat_shading_has_one_normal_per_face(layers, meshes):
     coarse = shapes.write_sphere(meshes / "coarse.obj", 12)
     normals = {}
     for style in ("--flat", "--smooth"):
-        (planes,) = layers("normal", coarse, style)
+        (planes,) = layers("normal_world", coarse, style)
         stacked = np.stack([planes[c] for c in "RGB"], axis=2).reshape(-1, 3)
         normals[style] = len(np.unique(stacked, axis=0))
     # 12 x 6 quads are at most 144 triangles; the smooth sphere has another normal in every one of 1600 pixels.
@@ -174,7 +174,7 @@ def test_crease_angle_decides_on_stl_edges(layers, tmp_path):
         text += "endloop\nendfacet\n"
     (tmp_path / "edge.stl").write_text(text + "endsolid s\n")
     view = ("--camera-position", "0.3,0.3,5", "--camera-target", "0.3,0.3,0", "--ortho", "1")
-    (sharp,), (soft,) = (layers("normal", "edge.stl", "--crease", angle, *view) for angle in ("30", "180"))
+    (sharp,), (soft,) = (layers("normal_world", "edge.stl", "--crease", angle, *view) for angle in ("30", "180"))
     # The picture's middle is on the first triangle, whose own normal is +z.
     assert sharp["B"][24, 32] == pytest.approx(1, abs=1e-4) and soft["B"][24, 32] < 0.99
 

@@ -57,6 +57,7 @@ def test_instances_behind_the_camera_have_no_pixels(render, sphere, tmp_path):
     ("instance", "no layer 'instance'.*did you mean 'instances'"),
     ("flow_forward", "flow_forward needs another frame.*render_layers"),
     ("colour", "no layer 'colour'"),
+    ("normal", "no layer 'normal': it is called 'normal_world'"),
 ])
 def test_layers_that_cannot_be_written(render, sphere, tmp_path, name, message):
     assert re.search(message, render(sphere, "-o", "out.png", "--layers", name, code=2).stderr)

@@ -86,7 +86,10 @@ def links(page):
     return LINK.findall(re.sub(r"`[^`\n]*`", "", FENCE.sub("", page.read_text())))
 
 
-@pytest.mark.parametrize("page", [*PAGES, ROOT / "CONTRIBUTING.md"], ids=lambda page: page.name)
+DESIGN = sorted((ROOT / "docs/design").glob("*.md"))
+
+
+@pytest.mark.parametrize("page", [*PAGES, *DESIGN, ROOT / "CONTRIBUTING.md"], ids=lambda page: page.name)
 def test_links_lead_somewhere(page):
     for target in links(page):
         is_generated = target.startswith("reference/")
@@ -130,6 +133,13 @@ def test_architecture_names_every_room():
     rooms = [room.strip("`") for row in table_of(ROOT / "docs/architecture.md", "Rooms") for room in row.split(", ")]
     folders = {path.name for path in (ROOT / "src/easypbr").iterdir() if path.is_dir()}
     assert set(rooms) == folders
+
+
+def test_architecture_is_one_look_with_every_design_page():
+    page = ROOT / "docs/architecture.md"
+    assert len(page.read_text().splitlines()) <= 250
+    shown = {pathlib.Path(target).name for target in links(page) if target.startswith("design/")}
+    assert {path.name for path in DESIGN} <= shown
 
 
 def test_architecture_gives_a_reason_for_every_dependency():

@@ -9,7 +9,6 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/gl/buffer.h"
-#include "easypbr/gl/program.h"
 #include "easypbr/gl/texture.h"
 
 namespace easypbr::gl {
@@ -95,28 +94,6 @@ TEST(Context, RefusesToWorkAfterFork) {
     int status = 0;
     waitpid(child, &status, 0);
     EXPECT_EQ(WEXITSTATUS(status), 0);
-}
-
-TEST(Program, ReportsFileAndLine) {
-    char folder[] = "/tmp/easypbr_shadersXXXXXX";
-    ASSERT_NE(mkdtemp(folder), nullptr);
-    const std::string path = std::string(folder) + "/broken.frag";
-    FILE* file = fopen(path.c_str(), "w");
-    fputs("#include \"common_encoding.glsl\"\n\nout vec4 o;\nvoid main() { o = nonsense; }\n", file);
-    fclose(file);
-    setenv("EASYPBR_SHADER_DIR", folder, 1);
-    const auto context = Context::create();
-    const ContextScope scope(*context);
-    try {
-        const Program program("screen_triangle.vert", "broken.frag");
-        ADD_FAILURE() << "compiled";
-    } catch (const ContextError& error) {
-        EXPECT_NE(std::string(error.what()).find("broken.frag:4"), std::string::npos) << error.what();
-    }
-    unsetenv("EASYPBR_SHADER_DIR");
-    unlink(path.c_str());
-    rmdir(folder);
-    EXPECT_THROW(shader_source("missing.frag"), ArgumentError);
 }
 
 TEST(Texture, RefusesSizesBeyondTheDriver) {

@@ -236,7 +236,7 @@ TEST_F(Live, UndoTakesPosesAndMaterialsBackAndLeavesTheProgramsOwn) {
 
 TEST_F(Live, EveryChannelIsShown) {
     std::vector<Image> seen;
-    for (const char* channel : {"picture", "slices", "normal", "depth", "albedo", "id"}) {
+    for (const char* channel : {"picture", "slices", "normal_world", "depth", "albedo", "object_id"}) {
         view_.state().channel = channel;
         settle();
         const Image screen = view_.screen();
@@ -245,7 +245,7 @@ TEST_F(Live, EveryChannelIsShown) {
         seen.push_back(screen);
     }
     // The ball's middle faces the camera: its world normal is towards it.
-    view_.state().channel = "normal";
+    view_.state().channel = "normal_world";
     settle();
     const Vec3d towards = camera_position().normalized();
     const Image screen = view_.screen();

@@ -72,7 +72,7 @@ def drawn_share(mesh: Mesh, samples: int = 1) -> float:
     scene.show(mesh, "mesh")
     view = Viewer((200, 150), scene=scene)
     picture = view.render(samples=samples)
-    for name, layer in view.layers(["normal", "depth", "albedo"]).items():
+    for name, layer in view.layers(["normal_world", "depth", "albedo"]).items():
         assert np.isfinite(layer).all(), name
     return (picture[:, :, :3] != 64).any(axis=2).mean()
 

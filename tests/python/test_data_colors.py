@@ -30,7 +30,7 @@ def table_of(label_map: LabelMap) -> np.ndarray:
 
 def colors_by_element(view: Viewer, labels: np.ndarray, table: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Where an element is seen, and the colour that it must have there."""
-    element = view.layers(["element"])["element"].astype(int)
+    element = view.layers(["element_id"])["element_id"].astype(int)
     return element > 0, table[labels[np.maximum(element - 1, 0)]]
 
 
@@ -72,7 +72,7 @@ def test_lines_are_drawn_over_exact_colours(samples):
     mesh.style.line_color = "#ffffff"
     mesh.style.line_width = 3
     wired = view.render(samples=samples)
-    element = view.layers(["element"])["element"] > 0
+    element = view.layers(["element_id"])["element_id"] > 0
     white = (wired[:, :, :3] == 255).all(axis=2)
     # The three front faces of a box have nine edges and three diagonals: their pixels, three wide.
     assert (white & element).sum() > 500
@@ -139,7 +139,7 @@ def test_nan_and_ranges_have_their_colours():
     cloud.style.point_size = 15
     cloud.style.lit = False
     view = viewer(cloud)
-    element = view.layers(["element"])["element"].astype(int)
+    element = view.layers(["element_id"])["element_id"].astype(int)
     picture = view.render(samples=1)
     table = easypbr.colormap("turbo")
     for point, color in enumerate([(255, 0, 255), table[0], table[128], table[255]], 1):

@@ -12,9 +12,9 @@ from test_ground_truth import brown, fisheye
 import easypbr
 from easypbr import ArgumentError, Mesh, shapes
 from easypbr.dataset import CameraSpec, DatasetSpec, LightSpec, MotionSpec, ObjectSpec, OcclusionSpec, SensorSpec, generate
+from easypbr.dataset.extents import diameter_of
 from easypbr.dataset.frames import FrameMaker
 from easypbr.dataset.models import model_ply
-from easypbr.dataset.poses import diameter_of
 from easypbr.dataset.writers import encode_flow
 
 LENSES = {

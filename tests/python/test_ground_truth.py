@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import easypbr
 from easypbr import ArgumentError, Camera, ContextError, Scene, UnknownNameError, Viewer, shapes
 
 K = np.array([[210, 0, 70.3], [0, 190, 41.9], [0, 0, 1.0]])
@@ -211,3 +212,20 @@ def test_layers_are_as_large_as_the_driver_draws():
     assert data["instances"][0].pixels_visible == (data["depth"] > 0).sum() > 0
     with pytest.raises(ContextError, match="40000x16 is beyond this driver's limit of [0-9]+x[0-9]+"):
         view.render_layers(["depth"], size=(40000, 16))
+
+
+def test_layers_of_the_same_name_hold_the_same(size):
+    """What layers() and render_layers() both know has one name; other things have other names."""
+    scene = Scene()
+    scene.show(shapes.sphere(1, 16), "ball")
+    view = Viewer(size, scene=scene)
+    drawn = view.layers()
+    common = [name for name in drawn if name in easypbr._easypbr.truth_layer_names()]
+    assert set(common) == {"albedo", "depth", "normal_world", "roughness", "metallic"}
+    exact = view.render_layers([*common, "face_id", "instance_id"])
+    seen = exact["depth"] > 0
+    for name in common:
+        # Targets have 8 bits for roughness and metallic, 16 for colour and normals.
+        np.testing.assert_allclose(drawn[name][..., :3] if name == "albedo" else drawn[name], exact[name], atol=0.003)
+    np.testing.assert_array_equal(drawn["element_id"][seen] - 1, exact["face_id"][seen])
+    np.testing.assert_array_equal(drawn["object_id"], exact["instance_id"])

@@ -132,18 +132,21 @@ def test_layers(sphere, size):
     Scene.show(sphere, "sphere")
     view = Viewer(size)
     layers = view.layers()
-    shapes_of = {"albedo": (48, 64, 4), "normal": (48, 64, 3)}
+    shapes_of = {"albedo": (48, 64, 4), "normal_world": (48, 64, 3)}
     for name, image in layers.items():
         assert image.dtype == np.float32
         assert image.shape == shapes_of.get(name, (48, 64)), name
-    assert {"albedo", "normal", "depth", "roughness", "metallic"} <= set(layers)
+    assert {"albedo", "normal_world", "depth", "roughness", "metallic"} <= set(layers)
     covered = layers["depth"] > 0
     assert 0.2 < covered.mean() < 0.9
     # Normals are stored in 2 x 16 bits: their length is 1 within 1e-4.
-    np.testing.assert_allclose(np.linalg.norm(layers["normal"][covered], axis=1), 1, atol=1e-4)
-    assert (layers["normal"][~covered] == 0).all()
+    np.testing.assert_allclose(np.linalg.norm(layers["normal_world"][covered], axis=1), 1, atol=1e-4)
+    assert (layers["normal_world"][~covered] == 0).all()
     with pytest.raises(KeyError, match="did you mean 'depth'"):
         view.layers(["deph"])
+    for name, now in (("normal", "normal_world"), ("id", "object_id"), ("element", "element_id")):
+        with pytest.raises(KeyError, match=f"'{name}': it is called '{now}'"):
+            view.layers(name)
     assert view.layers("depth", size=(10, 20))["depth"].shape == (20, 10)
 
 

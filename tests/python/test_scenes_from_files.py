@@ -101,7 +101,7 @@ def test_ids_name_objects():
     scene.show(easypbr.shapes.sphere(0.5), "b").T_parent_mesh = np.array(
         [[1, 0, 0, 2], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]])
     view = easypbr.Viewer(size=(60, 40), scene=scene)
-    ids = view.layers(["id"])["id"]
+    ids = view.layers(["object_id"])["object_id"]
     assert set(np.unique(ids)) == {0.0, 1.0, 2.0}
     assert view.object_names() == ["a", "b"]
 
@@ -115,6 +115,6 @@ def test_seams_of_texture_coordinates_are_smooth(tmp_path):
     view.scene.show(easypbr.Mesh(tmp_path / "seam.obj"), "seam")
     view.settings.camera.azimuth_deg = 0
     view.settings.camera.elevation_deg = 0
-    normals = view.layers(["normal"])["normal"]
+    normals = view.layers(["normal_world"])["normal_world"]
     # By symmetry the common edge's normal is +z; flat halves would have x = -0.707 and +0.707 beside each other.
     assert np.abs(normals[32, 30:34, 0]).max() < 0.1

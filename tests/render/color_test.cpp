@@ -45,7 +45,7 @@ TEST(Colors, OfLabelsAreExact) {
             session.settings().image.size = Vec2i(160, 120);
             session.settings().tonemap.exposure_compensation = 1.5f;
             const Image picture = session.render({std::nullopt, samples, app::Encoding::srgb8});
-            const Image element = session.render_layers({"element"}).at("element");
+            const Image element = session.render_layers({"element_id"}).at("element_id");
             int covered = 0;
             for (int y = 0; y < 120; ++y)
                 for (int x = 0; x < 160; ++x) {
@@ -68,7 +68,7 @@ TEST(Colors, OfLabelsLeaveTheBackgroundAlone) {
     app::Session session(scene);
     session.settings().image.size = Vec2i(160, 120);
     session.settings().background.color = Vec3(0, 0, 0);
-    const Image element = session.render_layers({"element"}).at("element");
+    const Image element = session.render_layers({"element_id"}).at("element_id");
     for (const int samples : {1, 8}) {
         const Image picture = session.render({std::nullopt, samples, app::Encoding::srgb8});
         for (int y = 0; y < 120; ++y)
@@ -178,7 +178,7 @@ TEST(Colors, OfVoxelsNameTheirOwnElements) {
     scene.show(Mesh(data), "voxels");
     app::Session session = plain_session(scene, 64);
     look_from(session, Vec3d(0, 0, 10));
-    const Image element = session.render_layers({"element"}).at("element");
+    const Image element = session.render_layers({"element_id"}).at("element_id");
     EXPECT_EQ(*element.at<float>(20, 32), 1.0f);
     EXPECT_EQ(*element.at<float>(44, 32), 2.0f);
 }
@@ -250,7 +250,7 @@ TEST(Overlay, IsInFrontOfEverything) {
         scene.show(behind, "behind");
         app::Session session = plain_session(scene, 64);
         look_from(session, Vec3d(0, 0, 5));
-        const Image id = session.render_layers({"id"}).at("id");
+        const Image id = session.render_layers({"object_id"}).at("object_id");
         EXPECT_EQ(*id.at<float>(32, 32), 1.0f) << with_points;
         EXPECT_EQ(*id.at<float>(10, 32), 2.0f) << with_points;
     }

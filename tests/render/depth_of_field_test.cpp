@@ -134,7 +134,7 @@ TEST(DepthOfField, WhatIsNearIsSeenThroughAtItsEdge) {
 
 TEST(DepthOfField, LayersAreThoseOfThePinhole) {
     app::Session session = lens_session(lamp_at(4, 1));
-    const std::vector<std::string> names = {"depth", "id", "normal", "albedo"};
+    const std::vector<std::string> names = {"depth", "object_id", "normal_world", "albedo"};
     session.settings().depth_of_field.enabled = false;
     const auto without = session.render_layers(names);
     session.settings().depth_of_field.enabled = true;

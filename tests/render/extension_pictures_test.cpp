@@ -195,8 +195,8 @@ TEST(Extensions, StayWhatTheyAreInAnOverlay) {
 TEST(Extensions, GroundTruthKnowsThem) {
     Scene scene;
     app::Session session = session_of(extended(), scene);
-    const auto layers = session.render_layers({"id", "roughness", "albedo"});
-    EXPECT_EQ(layers.at("id").at<float>(size / 2, size / 2)[0], 1.0f);
+    const auto layers = session.render_layers({"object_id", "roughness", "albedo"});
+    EXPECT_EQ(layers.at("object_id").at<float>(size / 2, size / 2)[0], 1.0f);
     EXPECT_NEAR(layers.at("roughness").at<float>(size / 2, size / 2)[0], 0.4f, 0.5f / 255);
     EXPECT_NEAR(layers.at("albedo").at<float>(size / 2, size / 2)[1], 0.4f, 1e-4);
 }

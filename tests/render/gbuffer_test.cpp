@@ -21,7 +21,7 @@ TEST(GBuffer, DepthAndNormalsOfASphere) {
     scene.show(make_sphere(1, 1024), "sphere");
     app::Session session = plain_session(scene, 128);
     session.settings().camera.azimuth_deg = 40;
-    const auto layers = session.render_layers({"depth", "normal"});
+    const auto layers = session.render_layers({"depth", "normal_world"});
     const Camera camera = session.camera();
     int tested = 0;
     for (int y = 0; y < 128; ++y)
@@ -33,7 +33,7 @@ TEST(GBuffer, DepthAndNormalsOfASphere) {
             ++tested;
             // 1e-5 relative to the distance to the camera, which is about 4.
             ASSERT_NEAR(p.norm(), 1, 4e-5);
-            const Vec3 n(layers.at("normal").at<float>(x, y));
+            const Vec3 n(layers.at("normal_world").at<float>(x, y));
             const double angle = degrees(std::atan2(double(n.cross(p).norm()), double(n.dot(p))));
             // 0.01 degrees: two octahedral encodings of 0.004 each.
             ASSERT_LT(angle, 0.01);
@@ -133,8 +133,8 @@ TEST(GBuffer, GivenNormalsSurviveWrongWinding) {
     Scene scene;
     scene.show(mesh, "sphere");
     app::Session session = plain_session(scene);
-    const auto layers = session.render_layers({"normal"});
-    const Vec3 n(layers.at("normal").at<float>(32, 32));
+    const auto layers = session.render_layers({"normal_world"});
+    const Vec3 n(layers.at("normal_world").at<float>(32, 32));
     const Vec3d to_camera = session.camera().position().normalized();
     EXPECT_GT(n.cast<double>().dot(to_camera), 0.99);
 }
@@ -145,7 +145,7 @@ TEST(GBuffer, FlatShadingGivesOneNormalPerFace) {
     app::Session session = plain_session(scene, 128);
     session.settings().style.flat = true;
     look_from(session, Vec3d(0.3, 1.3, 4));
-    const Image normals = session.render_layers({"normal"}).at("normal");
+    const Image normals = session.render_layers({"normal_world"}).at("normal_world");
     std::set<std::array<int, 3>> different;
     for (size_t i = 0; i < normals.pixel_count(); ++i) {
         const Vec3 n(normals.pixels<float>().data() + 3 * i);

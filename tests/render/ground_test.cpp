@@ -274,7 +274,7 @@ TEST(Ground, IsSeenFromAboveOnlyAndInNoLayer) {
     look_from(session, Vec3d(0, -3, 2), 40);
     EXPECT_GT(render_linear(session).at<float>(4, size - 4)[3], 0.5f);
     EXPECT_EQ(session.render_layers({"depth"}).at("depth").at<float>(4, size - 4)[0], 0);
-    EXPECT_EQ(session.render_layers({"id"}).at("id").at<float>(4, size - 4)[0], 0);
+    EXPECT_EQ(session.render_layers({"object_id"}).at("object_id").at<float>(4, size - 4)[0], 0);
     look_from(session, Vec3d(0, -3, -2), 40);
     const Image below = render_linear(session);
     EXPECT_EQ(below.at<float>(4, size - 4)[3], 0);

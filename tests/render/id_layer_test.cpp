@@ -23,7 +23,7 @@ TEST(IdLayer, NamesEveryPixel) {
     session.settings().camera.projection = Projection::orthographic;
     session.settings().camera.ortho_height = 4.0;
     look_from(session, Vec3d(0, 0, 5));
-    const Image ids = session.render_layers({"id"}).at("id");
+    const Image ids = session.render_layers({"object_id"}).at("object_id");
     const std::vector<std::string> names = session.object_names();
     ASSERT_EQ(names.size(), 3u);
     std::map<std::string, int> pixels;

@@ -26,7 +26,7 @@ Comparison compare_both(const Scene& scene, const Settings& settings, Vec2i size
     for (const bool native : {false, true}) {
         renderer.allow_native_geometry(native);
         renderer.draw(snapshot, resolved, {size, 1, Encoding::srgb8});
-        for (const Layer layer : {Layer::depth, Layer::normal, Layer::albedo})
+        for (const Layer layer : {Layer::depth, Layer::normal_world, Layer::albedo})
             layers[native][layer] = renderer.read_layer(layer);
     }
     Comparison result;
@@ -41,8 +41,8 @@ Comparison compare_both(const Scene& scene, const Settings& settings, Vec2i size
                 ++result.one_sided;
                 continue;
             }
-            const Vec3 n(layers[0][Layer::normal].at<float>(x, y)),
-                m(layers[1][Layer::normal].at<float>(x, y));
+            const Vec3 n(layers[0][Layer::normal_world].at<float>(x, y)),
+                m(layers[1][Layer::normal_world].at<float>(x, y));
             const Vec3 c(layers[0][Layer::albedo].at<float>(x, y)),
                 d(layers[1][Layer::albedo].at<float>(x, y));
             // The driver interpolates between vertices snapped to 1/256 of a pixel, the native way between

@@ -18,10 +18,10 @@ struct Occlusion {
     Mat4d view_from_clip;
 
     explicit Occlusion(app::Session& session) {
-        auto layers = session.render_layers({"ambient_occlusion", "depth", "normal"});
+        auto layers = session.render_layers({"ambient_occlusion", "depth", "normal_world"});
         visibility = std::move(layers["ambient_occlusion"]);
         depth = std::move(layers["depth"]);
-        normal = std::move(layers["normal"]);
+        normal = std::move(layers["normal_world"]);
         camera = session.camera();
         view_from_clip = camera.projection_matrix(double(depth.width()) / depth.height()).inverse();
     }

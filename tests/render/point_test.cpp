@@ -200,7 +200,7 @@ TEST(Points, AndMeshesHideEachOther) {
             session.allow_native_geometry(native);
             session.settings().style.point_size = 6.0f;
             look_from(session, Vec3d(0, 0, 4));
-            const Image id = session.render_layers({"id"}).at("id");
+            const Image id = session.render_layers({"object_id"}).at("object_id");
             // "points" comes before "square" in the order of names. x of 0.5 at depth 3.8 and 4.2.
             EXPECT_EQ(*id.at<float>(32 - 16, 32), 1.0f) << with_texture << native;
             EXPECT_EQ(*id.at<float>(32 + 14, 32), 2.0f) << with_texture << native;
@@ -288,7 +288,7 @@ TEST(Points, ZeroNormalsFaceTheViewer) {
         app::Session session = plain_session(scene, 64);
         session.allow_native_geometry(native);
         look_from(session, Vec3d(0, 0, 3));
-        const Image normal = session.render_layers({"normal"}).at("normal");
+        const Image normal = session.render_layers({"normal_world"}).at("normal_world");
         EXPECT_GT(normal.at<float>(32, 32)[2], 0.99f) << native;
     }
 }

@@ -58,7 +58,7 @@ double mean_error(const Scene& scene, const Light& light, ShadowMode mode, int s
     session.settings().material.roughness = 1.0f;
     session.settings().material.metallic = 0.0f;
     const LitParts lit = lit_parts(session, samples);
-    const Image normals = session.render_layers({"normal"}).at("normal");
+    const Image normals = session.render_layers({"normal_world"}).at("normal_world");
     const RayCaster caster(scene.snapshot());
     std::vector<double> errors(size_t(size) * size, -1);
     parallel_for(errors.size(), 64, [&](size_t i) {

@@ -55,7 +55,7 @@ TEST(Surfels, OfAPlaneReproduceIt) {
             const Vec3d eye = 3 * Vec3d(std::sin(a), 0, std::cos(a));
             look_from(session, eye, 20);
             auto layers = session.render_layers(
-                {"albedo", "normal", "depth", "metallic", "roughness", "id", "element"});
+                {"albedo", "normal_world", "depth", "metallic", "roughness", "object_id", "element_id"});
             const Vec3d forward = -eye.normalized();
             const Mat4d unproject =
                 (session.camera().projection_matrix(1) * session.camera().view()).inverse();
@@ -75,14 +75,14 @@ TEST(Surfels, OfAPlaneReproduceIt) {
                     for (int c = 0; c < 3; ++c)
                         ASSERT_NEAR(layers.at("albedo").at<float>(x, y)[c], material.base_color[c],
                                     1.0f / 255);
-                    const Vec3 n(layers.at("normal").at<float>(x, y));
+                    const Vec3 n(layers.at("normal_world").at<float>(x, y));
                     ASSERT_LT(degrees(std::acos(std::min(1.0f, n.z()))), 0.2);
                     ASSERT_NEAR(depth, length * direction.dot(forward), 2e-5 * depth);
                     ASSERT_NEAR(*layers.at("metallic").at<float>(x, y), 0.25f, 1.0f / 255);
                     ASSERT_NEAR(*layers.at("roughness").at<float>(x, y), 0.75f, 1.0f / 255);
-                    ASSERT_EQ(*layers.at("id").at<float>(x, y), 1.0f);
+                    ASSERT_EQ(*layers.at("object_id").at<float>(x, y), 1.0f);
                     // The named surfel is one that reaches the pixel.
-                    const int element = int(*layers.at("element").at<float>(x, y)) - 1;
+                    const int element = int(*layers.at("element_id").at<float>(x, y)) - 1;
                     ASSERT_LT((data.V.row(element).transpose().cast<double>() - hit).norm(), 0.1);
                 }
             EXPECT_GT(covered, 1500) << native << tilt;
@@ -239,7 +239,7 @@ TEST(Surfels, OddOnesGiveAPicture) {
         app::Session session = plain_session(scene_of(data), 64);
         session.allow_native_geometry(native);
         look_from(session, Vec3d(0, 0, 4));
-        const Image normal = session.render_layers({"normal"}).at("normal");
+        const Image normal = session.render_layers({"normal_world"}).at("normal_world");
         for (const float v : normal.pixels<float>()) ASSERT_TRUE(std::isfinite(v));
         EXPECT_GT(normal.at<float>(32, 32)[2], 0.9f);
     }

@@ -357,7 +357,7 @@ TEST(Transmission, GlassHasAnId) {
     Scene scene;
     scene.show(ball(glass()), "ball");
     app::Session session = session_of(scene);
-    EXPECT_EQ(session.render_layers({"id"}).at("id").at<float>(48, 48)[0], 1.0f);
+    EXPECT_EQ(session.render_layers({"object_id"}).at("object_id").at<float>(48, 48)[0], 1.0f);
 }
 
 }  // namespace

@@ -384,11 +384,11 @@ TEST(Transparency, LayersOfGroundTruth) {
         scene.show(glass, "glass");
         app::Session session = plain_session(scene, 16);
         look_from(session, Vec3d(0, 0, 6), 10);
-        const auto layers = session.render_layers({"depth", "albedo", "id"});
+        const auto layers = session.render_layers({"depth", "albedo", "object_id"});
         const bool seen = opacity > 0.5f;
         EXPECT_NEAR(layers.at("depth").at<float>(8, 8)[0], seen ? 5 : 6, 1e-4);
         EXPECT_EQ(layers.at("albedo").at<float>(8, 8)[2], seen ? 1.0f : 0.0f);
-        const float id = layers.at("id").at<float>(8, 8)[0];
+        const float id = layers.at("object_id").at<float>(8, 8)[0];
         EXPECT_EQ(session.object_names().at(size_t(id) - 1), seen ? "glass" : "back");
     }
 }

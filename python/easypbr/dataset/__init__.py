@@ -5,10 +5,10 @@
 """
 
 from .run import generate
-from .spec import (
+from .spec import DatasetSpec
+from .tables import (
     BackgroundSpec,
     CameraSpec,
-    DatasetSpec,
     ImageSpec,
     LightSpec,
     MotionSpec,

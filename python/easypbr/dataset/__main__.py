@@ -10,7 +10,7 @@ from .spec import DatasetSpec
 
 
 def main(arguments=None) -> int:
-    """Runs the command; returns the exit code: 0, 1 when the job failed, 2 for a wrong command."""
+    """Runs the command; returns the exit code: 0, 1 when the job failed, 2 for a wrong command, 130 for Ctrl-C."""
     parser = argparse.ArgumentParser(prog="easypbr dataset", description="Generate pictures with annotations for training.")
     parser.add_argument("spec", nargs="?", help="what to generate, a TOML file")
     parser.add_argument("--demo", action="store_true", help="generate the built-in drones")
@@ -41,6 +41,9 @@ def main(arguments=None) -> int:
     except (Error, OSError, ImportError) as error:
         print(f"easypbr: error: {error}", file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        print("easypbr: interrupted: started again it goes on", file=sys.stderr)
+        return 130
     for path in statistics["skipped"]:
         print(f"easypbr: warning: left out: {path}", file=sys.stderr)
     counts = ", ".join(f"{number} {name}" for name, number in statistics["classes"].items())

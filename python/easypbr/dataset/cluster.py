@@ -1,8 +1,10 @@
 """Frames of a data set as tasks of Ray, on this machine or on many. What runs where and when, and what becomes of the
 tasks of a worker that dies, is Ray's."""
 
+import contextlib
 import os
 import socket
+from collections.abc import Iterator
 from pathlib import Path
 
 from ..errors import ArgumentError, ContextError
@@ -31,10 +33,12 @@ def find_ray():
 _worker: tuple | None = None
 
 
-def make_range(spec: DatasetSpec, folder: Path, indices: list[int], threads: int) -> list[str]:
+def make_range(spec: DatasetSpec, folder: Path, indices: list[int], threads: int, start: Path) -> list[str]:
     """A task: makes those of these frames that are missing; the files that were left out. A worker process keeps its
-    renderer for the tasks that follow."""
+    renderer for the tasks that follow. `start`: the folder that relative paths of the spec begin in."""
     global _worker
+    if start.is_dir():
+        os.chdir(start)
     if _worker is None or _worker[0] != (spec, folder):
         keep_memory()
         os.environ["LP_NUM_THREADS"] = os.environ["EASYPBR_THREADS"] = str(threads)
@@ -61,8 +65,9 @@ def make(spec: DatasetSpec, folder: Path, missing: list[int], workers: int | Non
             raise ArgumentError(f"dataset: threads: expected at most the {cores} cores that Ray has, got {threads}")
         task = ray.remote(num_cpus=threads, max_retries=_RETRIES)(make_range)
         step = min(max(1, len(missing) * threads // (4 * cores)), _LONGEST_RANGE)
+        start = Path.cwd()
         parts = [missing[first : first + step] for first in range(0, len(missing), step)]
-        pending = {task.remote(spec, folder, part, threads): len(part) for part in parts}
+        pending = {task.remote(spec, folder, part, threads, start): len(part) for part in parts}
         try:
             return _collect(ray, pending, progress)
         finally:
@@ -75,15 +80,28 @@ def make(spec: DatasetSpec, folder: Path, missing: list[int], workers: int | Non
             ray.shutdown()
 
 
+@contextlib.contextmanager
+def _in_root() -> Iterator[None]:
+    """Ray lets workers search the folder that it is started in for modules, before all others: there is none in this one."""
+    before = Path.cwd()
+    os.chdir("/")
+    try:
+        yield
+    finally:
+        os.chdir(before)
+
+
 def _start(ray, cores: int, address: str | None) -> None:
     quiet = {"log_to_driver": False, "logging_level": "ERROR"}
     if address is None:
         # The address of its own machine needs no network.
-        ray.init(num_cpus=cores, include_dashboard=False, object_store_memory=_STORE, _node_ip_address="127.0.0.1", **quiet)
+        with _in_root():
+            ray.init(num_cpus=cores, include_dashboard=False, object_store_memory=_STORE, _node_ip_address="127.0.0.1", **quiet)
         return
     try:
         _reach(address)
-        ray.init(address=address, **quiet)
+        with _in_root():
+            ray.init(address=address, **quiet)
     except (OSError, ValueError, RuntimeError, SystemExit) as error:  # Ray ends the process when nobody answers.
         raise ContextError(f"dataset: no cluster of Ray answers at '{address}': start one (ray start --head), or leave the "
                            f"address out: {error}") from None

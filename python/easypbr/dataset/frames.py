@@ -1,86 +1,20 @@
 """One frame of a data set: placed, drawn, annotated. Follows from the spec and the frame's number alone."""
 
-import dataclasses
-import glob
-import os
-from pathlib import Path
-
 import numpy as np
 
 from .. import shapes
-from .._easypbr import (
-    Camera,
-    Environment,
-    Light,
-    Mesh,
-    decode_image,
-    encode_jpeg,
-    load_image,
-    readable_mesh_extensions,
-)
+from .._easypbr import Camera, Environment, Light, Mesh, decode_image, encode_jpeg, load_image
 from ..errors import ArgumentError, Error
 from ..scene import Scene
 from ..viewer import Viewer
 from . import content
-from .poses import bounds, diameter_of, direction, draw, rotation, turn_about, vertices_of
-from .spec import DatasetSpec, ObjectSpec
+from .extents import bounds, diameter_of, vertices_of
+from .frame import Frame, NextFrame
+from .poses import direction, draw, rotation, turn_about
+from .spec import DatasetSpec
+from .tables import ObjectSpec
 
 _LAYERS = ("color", "depth", "normal_camera", "instance_id", "instances")
-
-
-@dataclasses.dataclass
-class Frame:
-    """What writers write."""
-
-    index: int
-    picture: np.ndarray  #: height x width x 3, uint8
-    depth: np.ndarray
-    normal: np.ndarray
-    instance_id: np.ndarray  #: int32: place in `objects` + 1, 0 for all else
-    K: np.ndarray
-    T_world_cam: np.ndarray  #: OpenCV's axes
-    distortion: list
-    distortion_model: str
-    objects: list[dict]
-    next: "NextFrame | None" = None  #: where things are a moment later, when the spec has motion
-
-    def record(self) -> dict:
-        """All but the pixels, as JSON takes it."""
-        height, width = self.depth.shape
-        return {"index": self.index, "width": width, "height": height, "K": self.K.tolist(),
-                "T_world_cam": self.T_world_cam.tolist(), "distortion": self.distortion,
-                "distortion_model": self.distortion_model, "objects": self.objects}
-
-
-@dataclasses.dataclass
-class NextFrame:
-    """The picture a moment later, and how this one's pixels move until then."""
-
-    picture: np.ndarray
-    flow: np.ndarray  #: height x width x 2, pixels
-    occluded: np.ndarray  #: the point is not seen in the next picture
-
-
-def class_of(entry: ObjectSpec) -> str:
-    """Its name, or that of its source."""
-    return entry.class_name or Path(entry.source.removeprefix("builtin:")).stem
-
-
-def files_of(entry: ObjectSpec) -> list[str]:
-    """The meshes that a source names; none for what is built in."""
-    if entry.source.startswith("builtin:"):
-        name = entry.source.removeprefix("builtin:")
-        if name not in content.BUILTIN:
-            raise ArgumentError(f"dataset: there is no builtin '{name}': expected {', '.join(content.BUILTIN)}")
-        return []
-    if os.path.isdir(entry.source):
-        known = {"." + extension.lstrip(".") for extension in readable_mesh_extensions()}
-        files = [str(p) for p in sorted(Path(entry.source).rglob("*")) if p.suffix.lower() in known]
-    else:
-        files = sorted(glob.glob(entry.source, recursive=True)) or [entry.source]
-    if not files:
-        raise ArgumentError(f"dataset: {entry.source}: the folder holds no mesh")
-    return files
 
 
 class FrameMaker:
@@ -89,12 +23,9 @@ class FrameMaker:
     def __init__(self, spec: DatasetSpec):
         spec.check()
         self.spec = spec
-        self.classes = []
-        for entry in spec.objects:
-            if not entry.distractor and class_of(entry) not in self.classes:
-                self.classes.append(class_of(entry))
+        self.classes = spec.class_names()
         self.skipped: list[str] = []
-        self._files = [files_of(entry) for entry in spec.objects]
+        self._files = [entry.files() for entry in spec.objects]
         self._meshes: dict[str, Mesh | None] = {}
         self._skies: dict[int, Environment] = {}
         self._scene = Scene()
@@ -172,7 +103,7 @@ class FrameMaker:
             self._scene.show(ground, "ground")
         self._view.refit()
         self._view.camera = camera
-        classes = {name: self.classes.index(class_of(e)) + 1 for name, e in entries.items() if not e.distractor}
+        classes = {name: self.classes.index(e.name()) + 1 for name, e in entries.items() if not e.distractor}
         self._view.settings["tonemap.exposure_compensation"] = draw(random, spec.sensor.exposure)
         data = self._view.render_layers(_LAYERS, samples=spec.image.samples, classes=classes)
         return data, camera, entries
@@ -250,7 +181,7 @@ class FrameMaker:
                 mesh.T_parent_mesh = T
                 return
         raise ArgumentError(
-            f"dataset: placement.collisions = false: no room for another '{class_of(entry)}' of {size:.3g} m in "
+            f"dataset: placement.collisions = false: no room for another '{entry.name()}' of {size:.3g} m in "
             f"{given.tries} tries: enlarge placement.{'distance' if given.mode == 'frustum' else 'radius'}, or show fewer or "
             "smaller objects"
         )
@@ -296,7 +227,7 @@ class FrameMaker:
         objects = []
         for place, instance in enumerate(wanted):
             numbers[instance.id] = place + 1
-            entry = _annotation(instance, class_of(counted[instance.name]))
+            entry = _annotation(instance, counted[instance.name].name())
             if "bop" in self.spec.writers:
                 scale = np.linalg.norm(instance.T_cam_obj[:3, 0])
                 entry["diameter"] = float(diameter_of(vertices_of(self._scene.get(instance.name))) * scale)

@@ -5,18 +5,17 @@ import io
 import numpy as np
 
 from .. import _easypbr
-from .frames import class_of, files_of
-from .poses import bounds
+from .extents import bounds
 
 
 def single_model(spec, class_name: str) -> tuple[str, float] | None:
     """The file and size of a class whose objects are all of one model; None for the others."""
     found = set()
     for entry in spec.objects:
-        if entry.distractor or class_of(entry) != class_name:
+        if entry.distractor or entry.name() != class_name:
             continue
         low, high = entry.size if isinstance(entry.size, tuple) else (entry.size, entry.size)
-        files = files_of(entry)
+        files = entry.files()
         found.add((files[0], low) if low == high and len(files) == 1 else None)
     return found.pop() if len(found) == 1 else None
 

@@ -1,19 +1,23 @@
 """Making a data set: frames by worker processes, resumable, the same bytes however often it is killed."""
 
 import concurrent.futures
+import contextlib
 import ctypes
 import json
 import multiprocessing
 import os
+import shutil
 import signal
 import sys
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 from .. import _easypbr
 from ..errors import ArgumentError
-from .folder import FolderWriter, claim, keep_memory
-from .frames import FrameMaker, class_of
+from . import cluster
+from .folder import FolderWriter, claim, keep_memory, locked
+from .frames import FrameMaker
 from .report import contact_sheet, statistics_page
 from .spec import DatasetSpec
 
@@ -33,18 +37,21 @@ def generate(
     """Makes the data set in a folder, or what is missing of it, and returns its statistics. Worker processes are started
     for more than one worker, so scripts need the usual `if __name__ == "__main__":`. `engine`: "local", or "ray": frames
     are tasks of Ray (pip install 'easypbr[ray]'), on this machine or on the cluster at `address`, whose machines share
-    the folder. `threads`: cores of each worker. Raises ArgumentError when the folder holds another set, ContextError when
-    no cluster answers, and what drawing and writing raise."""
+    the folder. `threads`: cores of each worker. Raises ArgumentError when the folder holds another set or another process
+    generates into it, ContextError when no cluster answers, and what drawing and writing raise."""
     spec.check()
     folder = Path(folder).absolute()
     _check_engine(engine, address, workers, threads)
     if engine == "ray":
-        from . import cluster  # Ray is looked for only when it is asked for, and before anything is written.
+        cluster.find_ray()  # Before anything is written.
+    with locked(folder):
+        return _generate(spec, folder, workers, quiet, engine, address, threads)
 
-        cluster.find_ray()
+
+def _generate(spec: DatasetSpec, folder: Path, workers: int | None, quiet: bool, engine: str, address: str | None,
+              threads: int | None) -> dict:
     claim(spec, folder)
-    for left in (folder / "unfinished").glob("*") if (folder / "unfinished").exists() else ():
-        left.unlink()
+    shutil.rmtree(folder / "unfinished", ignore_errors=True)
     missing = [i for i in range(spec.count) if not (folder / "records" / f"{i:06d}.json").exists()]
     progress = _Progress(spec.count, spec.count - len(missing), quiet)
     if not missing:
@@ -126,18 +133,37 @@ def _make_one(index: int) -> list[str]:
     return maker.skipped
 
 
+@contextlib.contextmanager
+def _starting_workers() -> Iterator[None]:
+    """Processes that start meanwhile search no current folder for modules before they have taken over this process's
+    sys.path (from Python 3.11 on), and leave Ctrl-C, which a terminal sends to all, to this one."""
+    before = os.environ.get("PYTHONSAFEPATH")
+    os.environ["PYTHONSAFEPATH"] = "1"
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        if before is None:
+            del os.environ["PYTHONSAFEPATH"]
+        else:
+            os.environ["PYTHONSAFEPATH"] = before
+
+
 def _make_apart(spec, folder, missing, workers, threads, progress) -> set[str]:
     skipped: set[str] = set()
     rest = set(missing)
     cores = sorted(os.sched_getaffinity(0))
     share = min(threads or max(1, len(cores) // workers), len(cores))
     for attempt in range(_RETRIES + 1):
-        pool = concurrent.futures.ProcessPoolExecutor(
-            workers, multiprocessing.get_context("spawn"), _begin_worker, (spec, folder, cores, share)
-        )
         try:
-            with pool:
-                futures = {pool.submit(_make_one, index): index for index in sorted(rest)}
+            with contextlib.ExitStack() as stack:
+                with _starting_workers():
+                    context = multiprocessing.get_context("spawn")
+                    pool = stack.enter_context(
+                        concurrent.futures.ProcessPoolExecutor(workers, context, _begin_worker, (spec, folder, cores, share)))
+                    futures = {pool.submit(_make_one, index): index for index in sorted(rest)}
+                processes = list((pool._processes or {}).values())
                 try:
                     for future in concurrent.futures.as_completed(futures):
                         skipped |= set(future.result())
@@ -145,6 +171,8 @@ def _make_apart(spec, folder, missing, workers, threads, progress) -> set[str]:
                         progress.add()
                 except BaseException:
                     pool.shutdown(wait=False, cancel_futures=True)
+                    for process in processes:
+                        process.terminate()  # Sets survive it, and a frame may take long.
                     raise
             return skipped
         except concurrent.futures.process.BrokenProcessPool:
@@ -158,10 +186,7 @@ def _make_apart(spec, folder, missing, workers, threads, progress) -> set[str]:
 def _finish(spec: DatasetSpec, folder: Path) -> dict:
     """Files of the whole set, made of the records in their order."""
     records = [json.loads((folder / "records" / f"{i:06d}.json").read_text()) for i in range(spec.count)]
-    classes: list[str] = []
-    for entry in spec.objects:
-        if not entry.distractor and class_of(entry) not in classes:
-            classes.append(class_of(entry))
+    classes = spec.class_names()
     writer = FolderWriter(spec, folder, classes)
     for format_writer in writer.writers:
         for name, data in format_writer.finish(records, folder).items():
@@ -169,8 +194,7 @@ def _finish(spec: DatasetSpec, folder: Path) -> dict:
     page, statistics = statistics_page(records, classes)
     writer.put("statistics.html", page.encode())
     writer.put("contact_sheet.png", _easypbr.encode_png(contact_sheet(records, folder, writer.base)))
-    if (folder / "unfinished").exists():
-        (folder / "unfinished").rmdir()
+    shutil.rmtree(folder / "unfinished", ignore_errors=True)  # A worker that died may have left a file in it.
     return statistics
 
 

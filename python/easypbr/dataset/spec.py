@@ -1,4 +1,4 @@
-"""What a data set is made of: plain classes, the same as a TOML file."""
+"""Specs of data sets: read from TOML files, checked before anything is drawn."""
 
 import dataclasses
 import difflib
@@ -7,133 +7,14 @@ import typing
 from pathlib import Path
 
 from ..errors import ArgumentError, FileError
-
-#: A number, or the least and the largest of a uniform distribution.
-Range = float | tuple[float, float]
-
-
-@dataclasses.dataclass
-class ImageSpec:
-    """The pictures."""
-
-    size: tuple[int, int] = (640, 480)
-    samples: int = 4
-    format: str = "png"
+from .limits import check_camera, check_names, check_numbers
+from .tables import DatasetTables, ObjectSpec, Range, SensorSpec
+from .writers import WRITERS
 
 
 @dataclasses.dataclass
-class CameraSpec:
-    """Where the camera stands, looking at the origin, and its lens."""
-
-    fov_y_deg: Range = (35.0, 60.0)
-    K: tuple = ()
-    distortion: tuple[float, ...] = ()
-    distortion_model: str = "brown_conrady"
-    distance: Range = 4.0
-    azimuth_deg: Range = (-180.0, 180.0)
-    elevation_deg: Range = (-25.0, 35.0)
-
-
-@dataclasses.dataclass
-class ObjectSpec:
-    """A class of objects. `source`: a file, a folder, a pattern of files, or "builtin:drone", "builtin:shapes"."""
-
-    source: str = "builtin:drone"
-    class_name: str = ""
-    count: tuple[int, int] = (1, 1)
-    size: Range = (0.6, 1.2)
-    rotation: str = "upright"
-    tilt_deg: float = 0.0
-    distractor: bool = False
-    random_material: bool = False
-
-
-@dataclasses.dataclass
-class PlacementSpec:
-    """Where objects are: in the camera's frustum, or on a ground of this radius around the origin."""
-
-    mode: str = "frustum"
-    distance: Range = (3.0, 9.0)
-    margin: float = 0.1
-    radius: float = 3.0
-    collisions: bool = False
-    tries: int = 200
-
-
-@dataclasses.dataclass
-class OcclusionSpec:
-    """Frames in which an object is hidden or cut off more than this are placed anew."""
-
-    min_visible: float = 0.1
-    max_truncation: float = 0.7
-    tries: int = 20
-
-
-@dataclasses.dataclass
-class BackgroundSpec:
-    """What lights and stands behind: sky (procedural), environment or image files, or color."""
-
-    mode: str = "sky"
-    files: tuple[str, ...] = ()
-    color: str = "#808080"
-    skies: int = 6
-    intensity: Range = (0.7, 1.3)
-
-
-@dataclasses.dataclass
-class LightSpec:
-    """Lights beside the background: a number of suns, or of lamps `distance` from the origin. `illuminance` (lux) is what
-    each gives there; the hue is random, `saturation` says how far it is from white."""
-
-    type: str = "directional"
-    count: tuple[int, int] = (1, 1)
-    illuminance: Range = (1.0, 4.0)
-    azimuth_deg: Range = (-180.0, 180.0)
-    elevation_deg: Range = (15.0, 75.0)
-    distance: Range = 6.0
-    saturation: Range = (0.0, 0.3)
-
-
-@dataclasses.dataclass
-class MotionSpec:
-    """What moves until the next frame, for optical flow: objects along and about random axes, the camera along one."""
-
-    translation: Range = 0.0
-    rotation_deg: Range = 0.0
-    camera: Range = 0.0
-
-    def __bool__(self) -> bool:
-        return any(value != 0 for value in dataclasses.astuple(self))
-
-
-@dataclasses.dataclass
-class SensorSpec:
-    """What the sensor does: exposure in stops, blur and noise as standard deviations (pixels; parts of full scale), and the
-    losses of a JPEG of this quality (100: none is made)."""
-
-    exposure: Range = 0.0
-    blur: Range = 0.0
-    noise: Range = 0.0
-    jpeg_quality: Range = 100.0
-
-
-@dataclasses.dataclass
-class DatasetSpec:
+class DatasetSpec(DatasetTables):
     """A data set. Frame `i` follows from the spec, the seed and `i` alone."""
-
-    count: int = 100
-    seed: int = 0
-    writers: tuple[str, ...] = ("coco", "yolo")
-    on_error: str = "stop"
-    image: ImageSpec = dataclasses.field(default_factory=ImageSpec)
-    camera: CameraSpec = dataclasses.field(default_factory=CameraSpec)
-    objects: list[ObjectSpec] = dataclasses.field(default_factory=list)
-    placement: PlacementSpec = dataclasses.field(default_factory=PlacementSpec)
-    occlusion: OcclusionSpec = dataclasses.field(default_factory=OcclusionSpec)
-    background: BackgroundSpec = dataclasses.field(default_factory=BackgroundSpec)
-    lights: list[LightSpec] = dataclasses.field(default_factory=list)
-    motion: MotionSpec = dataclasses.field(default_factory=MotionSpec)
-    sensor: SensorSpec = dataclasses.field(default_factory=SensorSpec)
 
     @classmethod
     def demo(cls) -> "DatasetSpec":
@@ -166,9 +47,6 @@ class DatasetSpec:
 
     def check(self) -> None:
         """Raises ArgumentError naming the first value that cannot be."""
-        from .limits import check_camera, check_numbers
-        from .writers import WRITERS
-
         choices = {
             "image.format": (self.image.format, ("png", "jpg")),
             "placement.mode": (self.placement.mode, ("frustum", "surface")),
@@ -185,6 +63,7 @@ class DatasetSpec:
             if value not in allowed:
                 raise ArgumentError(f"dataset: {key}: expected {', '.join(allowed)}, got '{value}'{_nearest(value, allowed)}")
         check_numbers(self)
+        check_names(self)
         check_camera(self)
         if not self.objects:
             raise ArgumentError("dataset: objects: expected at least one [[objects]]")
@@ -200,7 +79,7 @@ def _nearest(name: str, names) -> str:
 
 
 def _from_dict(cls, values: dict, where: str):
-    """An object of a class of this module; keys are its fields, "class" stands for class_name."""
+    """An object of a class of tables; keys are its fields, "class" stands for class_name."""
     hints = typing.get_type_hints(cls)
     result = cls()
     for key, value in values.items():

@@ -113,7 +113,8 @@ class Yolo(Writer):
         return {f"labels/{frame.index:06d}.txt": "".join(line + "\n" for line in lines).encode()}
 
     def finish(self, records, folder):
-        names = "".join(f"  {i}: {name}\n" for i, name in enumerate(self.classes))
+        # JSON's texts are YAML's too: a name may look like a number or hold a colon.
+        names = "".join(f"  {i}: {json.dumps(name, ensure_ascii=False)}\n" for i, name in enumerate(self.classes))
         return {"data.yaml": f"path: .\ntrain: images\nval: images\nnames:\n{names}".encode()}
 
 

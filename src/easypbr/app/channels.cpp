@@ -68,13 +68,13 @@ Image layer_picture(const std::string& name, const Image& layer) {
             const Vec3 srgb = srgb_from_linear(Vec3(c[0], c[1], c[2]));
             return Pixel{code(srgb.x()), code(srgb.y()), code(srgb.z()), 255};
         });
-    if (name == "normal")
+    if (name == "normal_world")
         return painted(layer, [](const float* n) {
             if (n[0] == 0 && n[1] == 0 && n[2] == 0) return background;
             return Pixel{code(n[0] / 2 + 0.5f), code(n[1] / 2 + 0.5f), code(n[2] / 2 + 0.5f), 255};
         });
     if (name == "depth") return depth_picture(layer);
-    if (name == "id" || name == "element") {
+    if (name == "object_id" || name == "element_id") {
         const GeneratedColors colors(int32_t(range_of(layer).max));
         return painted(layer, [&](const float* id) {
             return *id == 0 ? background : of(colors.color_of(int32_t(*id)));

@@ -325,7 +325,7 @@ std::map<std::string, Image> Session::render_layers(const std::vector<std::strin
     Prepared prepared = prepare({size, 1, Encoding::scene_linear});
     prepared.options.layers = true;
     prepared.options.ids = std::ranges::any_of(layers, [](render::Layer layer) {
-        return layer == render::Layer::id || layer == render::Layer::element;
+        return layer == render::Layer::object_id || layer == render::Layer::element_id;
     });
     apply_lens(prepared);
     render::Renderer& renderer = this->renderer();

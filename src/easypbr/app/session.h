@@ -120,7 +120,7 @@ class Session {
         motion_begin_.emplace(scene_.snapshot(), from);
     }
 
-    /// Names of what is visible; the layer "id" holds 1 + the place in this list.
+    /// Names of what is visible; the layer "object_id" holds 1 + the place in this list.
     std::vector<std::string> object_names() const;
 
     /// Draws one frame without reading the picture back, but for its first pixel, which makes the driver

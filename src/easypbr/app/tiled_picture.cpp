@@ -5,7 +5,7 @@
 namespace easypbr::app {
 namespace {
 
-using render::PixelRect;
+
 using render::Tile;
 
 /// Puts a rectangle of an image where the tile's inner part lies in the picture, which is made with the

@@ -84,7 +84,7 @@ int with_output_written(int code) {
 }
 
 int parse_and_run(int argc, const char* const* argv) {
-    CLI::App app("EasyPBR: give it a mesh, it makes a physically based picture.");
+    CLI::App app("EasyPBR: a physically based renderer for meshes, point clouds and labelled data.");
     Job job;
     add_commands(app, job);
     try {

@@ -20,7 +20,7 @@ void declare(CLI::App& command, CompareOptions& options) {
     command.add_option("B", options.b, "Image file of the same size and type");
     command
         .add_option("--max-difference", options.max_difference,
-                    "Largest difference of a channel that passes, in units of the type (0 to 255 for 8 bits)")
+                    "Largest difference per channel that passes, in units of the type (0 to 255 for 8 bits)")
         ->option_text("N")
         ->check(CLI::NonNegativeNumber);
 }
@@ -44,8 +44,7 @@ int run(const CompareOptions& options) {
 }  // namespace
 
 void add_compare(CLI::App& app, Job& job) {
-    set_job<CompareOptions>(*app.add_subcommand("compare", "Say how much two images differ"), job, declare,
-                            run);
+    set_job<CompareOptions>(*app.add_subcommand("compare", "Compare two images"), job, declare, run);
 }
 
 }  // namespace easypbr::cli

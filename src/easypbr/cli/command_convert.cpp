@@ -18,7 +18,9 @@ void declare(CLI::App& command, ConvertOptions& options) {
     command.add_option("IN", options.in, "Mesh or image file; - is a mesh from standard input");
     declare_format(command, options.format);
     command.add_option("OUT", options.out, "Mesh (PLY, OBJ, GLB) or image file (PNG, JPEG, HDR, EXR)");
-    command.add_option("--crease", options.crease_deg, "STL: edges sharper than this angle stay sharp")
+    command
+        .add_option("--crease", options.crease_deg,
+                    "Crease angle of STL files: edges between faces at a larger angle stay sharp")
         ->option_text("DEG");
     declare_mesh_steps(command, options.steps);
 }
@@ -46,7 +48,8 @@ int run(const ConvertOptions& options) {
 void add_convert(CLI::App& app, Job& job) {
     set_job<ConvertOptions>(
         *app.add_subcommand(
-            "convert", "Write a mesh or an image in another format, a mesh after changes in the order given"),
+            "convert",
+            "Convert a mesh or an image to another format; mesh operations run in the order given"),
         job, declare, run);
 }
 

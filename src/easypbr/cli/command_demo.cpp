@@ -20,9 +20,11 @@ struct DemoOptions {
 };
 
 void declare(CLI::App& command, DemoOptions& options) {
-    command.add_option("-o,--output", options.output, "Picture to write")->option_text("FILE");
+    command.add_option("-o,--output", options.output, "Image file to write")->option_text("FILE");
     command.add_option("--size,--resolution", options.size, "Width and height in pixels")->option_text("WxH");
-    command.add_option("--samples", options.samples, "Jittered frames averaged; rays are sent from 32 on")
+    command
+        .add_option("--samples", options.samples,
+                    "Number of jittered samples averaged per pixel; ray tracing is used from 32 on")
         ->option_text("N")
         ->capture_default_str();
 }
@@ -53,7 +55,7 @@ int run(const DemoOptions& options) {
 }  // namespace
 
 void add_demo(CLI::App& app, Job& job) {
-    set_job<DemoOptions>(*app.add_subcommand("demo", "Draw the embedded demo scene"), job, declare, run);
+    set_job<DemoOptions>(*app.add_subcommand("demo", "Render the embedded demo scene"), job, declare, run);
 }
 
 }  // namespace easypbr::cli

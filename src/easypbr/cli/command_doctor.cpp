@@ -71,8 +71,8 @@ int run(const DoctorOptions&) {
 }  // namespace
 
 void add_doctor(CLI::App& app, Job& job) {
-    set_job<DoctorOptions>(*app.add_subcommand("doctor", "Say what this machine can draw with"), job, declare,
-                           run);
+    set_job<DoctorOptions>(*app.add_subcommand("doctor", "Report the rendering capabilities of this machine"),
+                           job, declare, run);
 }
 
 }  // namespace easypbr::cli

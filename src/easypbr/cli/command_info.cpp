@@ -185,8 +185,8 @@ int run(const InfoOptions& options) {
 }  // namespace
 
 void add_info(CLI::App& app, Job& job) {
-    set_job<InfoOptions>(*app.add_subcommand("info", "Say what a mesh or image file holds"), job, declare,
-                         run);
+    set_job<InfoOptions>(*app.add_subcommand("info", "Print the contents of a mesh or image file"), job,
+                         declare, run);
 }
 
 }  // namespace easypbr::cli

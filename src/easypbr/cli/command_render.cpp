@@ -286,7 +286,7 @@ int run_render(const RenderOptions& options) {
 }  // namespace
 
 void add_render(CLI::App& app, Job& job) {
-    set_job<RenderOptions>(*app.add_subcommand("render", "Draw mesh files into a picture"), job,
+    set_job<RenderOptions>(*app.add_subcommand("render", "Render mesh files to an image"), job,
                            declare_render_options, run_render);
 }
 

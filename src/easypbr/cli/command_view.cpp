@@ -38,22 +38,23 @@ void declare(CLI::App& command, ViewOptions& options) {
         ->allow_extra_args(false)
         ->option_text("KEY=VALUE");
     command
-        .add_option("--animation", options.animation, "Play this animation of the file, by name or number")
+        .add_option("--animation", options.animation,
+                    "Play this animation of the file, by name, or by number from 0")
         ->option_text("NAME");
-    command
-        .add_option("--camera-path", options.path, "A camera path for the panel, as easypbr render takes it")
+    command.add_option("--camera-path", options.path, "Camera path from a JSON file, as in easypbr render")
         ->option_text("FILE");
     command.add_option("--shader", options.shader, field("material.shader").doc)->option_text("FILE");
     declare_passes(command, options.passes);
-    command.add_flag("--watch", options.watch, "Show files again when they change");
+    command.add_flag("--watch", options.watch, "Reload files when they change");
     command
         .add_option("--ui-scale", options.panel_scale,
-                    "How large panels and text are, 0.5 to 4; 1 is as the screen asks for")
+                    "Scale of panels and text relative to the screen's own, 0.5 to 4")
         ->option_text("X");
-    command.add_flag("--light", options.light, "Light panels instead of dark ones");
+    command.add_flag("--light", options.light, "Use light panels instead of dark ones");
     command
-        .add_option("--screenshot", options.screenshot,
-                    "Write what the window would show to an image file instead; needs no display")
+        .add_option(
+            "--screenshot", options.screenshot,
+            "Write the contents of the window to an image file instead of opening it; needs no display")
         ->option_text("FILE");
 }
 
@@ -106,7 +107,8 @@ int run(const ViewOptions& options) {
 }  // namespace
 
 void add_view(CLI::App& app, Job& job) {
-    set_job<ViewOptions>(*app.add_subcommand("view", "Show mesh files in a window"), job, declare, run);
+    set_job<ViewOptions>(*app.add_subcommand("view", "Show mesh files in an interactive window"), job,
+                         declare, run);
 }
 
 }  // namespace easypbr::cli

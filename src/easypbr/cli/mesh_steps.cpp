@@ -58,8 +58,8 @@ Mesh clean(const Mesh& mesh) {
 }
 
 void declare_places(StepOptions& steps) {
-    steps.flag("--merge", "Make one mesh of all parts of the file (the other steps do so anyway)", merge);
-    steps.flag("--center", "Move the middle of the bounding box to the origin", centered);
+    steps.flag("--merge", "Merge all parts of the file into one mesh (implied by the other steps)", merge);
+    steps.flag("--center", "Move the centre of the bounding box to the origin", centered);
     steps.number<double>("--scale", "X", "Scale about the origin", [](const Mesh& mesh, double factor) {
         return transformed(mesh, Eigen::Affine3d(Eigen::Scaling(factor)));
     });
@@ -68,48 +68,51 @@ void declare_places(StepOptions& steps) {
 }
 
 void declare_repairs(StepOptions& steps) {
-    steps.number<double>("--weld", "DISTANCE",
-                         "Make one of vertices this near (0: at one place) with the same attributes",
-                         [](const Mesh& mesh, double tolerance) {
-                             return remove_duplicate_vertices(mesh, {tolerance, true});
-                         });
-    steps.flag("--clean", "Leave out faces without area and vertices that nothing uses", clean);
-    steps.flag("--flip-winding", "Turn the faces around", flip_winding);
-    steps.flag("--flip-normals", "Turn the normals around", flip_normals);
+    steps.number<double>(
+        "--weld", "DISTANCE",
+        "Merge vertices within this distance that have the same attributes; 0: equal positions",
+        [](const Mesh& mesh, double tolerance) {
+            return remove_duplicate_vertices(mesh, {tolerance, true});
+        });
+    steps.flag("--clean", "Remove degenerate faces and unreferenced vertices", clean);
+    steps.flag("--flip-winding", "Reverse the winding order of the faces", flip_winding);
+    steps.flag("--flip-normals", "Negate the normals", flip_normals);
 }
 
 void declare_resolutions(StepOptions& steps) {
-    steps.number<int64_t>("--subsample", "N", "Keep N vertices, chosen at random",
+    steps.number<int64_t>("--subsample", "N", "Keep N random vertices",
                           [](const Mesh& mesh, int64_t count) { return subsample_random(mesh, count); });
-    steps.number<double>("--subsample-cells", "EDGE", "Keep the mean vertex of each cube of this edge",
-                         subsample_voxels);
-    steps.number<double>("--voxelize", "EDGE", "Keep the centre of each cube of this edge that has vertices",
-                         voxelize);
+    steps.number<double>("--subsample-cells", "EDGE",
+                         "Keep the mean vertex of each cell of a grid of this edge length", subsample_voxels);
+    steps.number<double>("--voxelize", "EDGE",
+                         "Keep the centre of each occupied cell of a grid of this edge length", voxelize);
     steps.number<int>("--decimate", "N", "Simplify to at most N faces", [](const Mesh& mesh, int faces) {
         return decimate(mesh, {faces, {}});
     });
-    steps.number<double>("--decimate-error", "X", "Simplify as far as moves the surface by at most X",
+    steps.number<double>("--decimate-error", "X", "Simplify up to a surface error of at most X",
                          [](const Mesh& mesh, double error) {
                              return decimate(mesh, {{}, error});
                          });
-    steps.number<int>("--upsample", "N", "Cut every face in four, N times",
+    steps.number<int>("--upsample", "N", "Subdivide every face into four, N times",
                       [](const Mesh& mesh, int iterations) { return upsample(mesh, iterations); });
-    steps.number<int>("--smooth", "N", "Smooth N times (Taubin)",
+    steps.number<int>("--smooth", "N", "Apply N iterations of Taubin smoothing",
                       [](const Mesh& mesh, int iterations) { return smooth(mesh, iterations); });
 }
 
 void declare_points(StepOptions& steps) {
-    steps.number<int64_t>("--sample-surface", "N", "N points on the surface, uniform by area",
+    steps.number<int64_t>("--sample-surface", "N", "Sample N points on the surface, uniform by area",
                           [](const Mesh& mesh, int64_t count) { return sample_surface(mesh, count); });
-    steps.number<int>("--estimate-normals", "K", "Normals from the K nearest neighbours of each vertex",
+    steps.number<int>("--estimate-normals", "K",
+                      "Estimate normals from the K nearest neighbours of each vertex",
                       [](const Mesh& mesh, int k) {
                           return estimate_normals(mesh, {k, {}});
                       });
-    steps.number<int>("--estimate-surfels", "K", "Surfels from the K nearest neighbours of each vertex",
+    steps.number<int>("--estimate-surfels", "K",
+                      "Estimate surfels from the K nearest neighbours of each vertex",
                       [](const Mesh& mesh, int k) {
                           return estimate_surfels(mesh, {k, {}});
                       });
-    steps.flag("--to-surfels", "One surfel for each vertex of a mesh", surfels_from_mesh);
+    steps.flag("--to-surfels", "Make one surfel per vertex of a mesh", surfels_from_mesh);
 }
 
 }  // namespace

@@ -61,10 +61,9 @@ void declare_shorthands(CLI::App& command, RenderOptions& options) {
 
 void declare_output(CLI::App& command, RenderOptions& options) {
     command
-        .add_option(
-            "-o,--output", options.output,
-            "Picture to write: PNG, JPEG, HDR or EXR; '-': PNG to standard output. Of many frames: MP4, "
-            "WebM, GIF, or pictures: frame_%04d.png")
+        .add_option("-o,--output", options.output,
+                    "Image file to write: PNG, JPEG, HDR or EXR; '-': PNG to standard output. For several "
+                    "frames: MP4, WebM, GIF, or numbered images: frame_%04d.png")
         ->option_text("FILE");
     command.add_option("--size,--resolution", options.size, "Width and height in pixels")->option_text("WxH");
     command.add_option("--bit-depth", options.bit_depth, "Bits per channel of a PNG: 8 or 16")
@@ -77,72 +76,75 @@ void declare_output(CLI::App& command, RenderOptions& options) {
         ->allow_extra_args(false)
         ->option_text("A,B");
     command.add_flag("--batch", options.batch,
-                     "Each file its own picture; '{name}' in the output is the file's stem");
-    command.add_flag("--quiet", options.quiet, "No warnings, no progress");
-    command.add_flag("--timing", options.timing, "Print the time of each stage on stderr");
+                     "Draw one image per file; '{name}' in the output is replaced by the file's stem");
+    command.add_flag("--quiet", options.quiet, "Suppress warnings and progress");
+    command.add_flag("--timing", options.timing, "Print the time of each stage to stderr");
 }
 
 void declare_look(CLI::App& command, RenderOptions& options) {
     command
-        .add_option("--background", options.background, "A colour, env, blur, transparent or an image file")
+        .add_option("--background", options.background,
+                    "Background: a colour, env, blur, transparent or an image file")
         ->option_text("COLOR|env|blur|transparent|FILE");
     command
         .add_option("--texture", options.textures, "Texture of every material, for example base_color=FILE")
         ->allow_extra_args(false)
         ->option_text("NAME=FILE");
     declare_passes(command, options.passes);
-    command.add_flag("--smooth", options.smooth, "One normal per vertex");
-    command.add_flag("--flat", options.flat, "One normal per face");
+    command.add_flag("--smooth", options.smooth, "Smooth shading, one normal per vertex");
+    command.add_flag("--flat", options.flat, "Flat shading, one normal per face");
     command
         .add_option("--style", options.styles,
-                    "How objects are drawn, for example color_by=height; NAME.KEY=VALUE for one object")
+                    "Style of all objects, for example color_by=height; NAME.KEY=VALUE for one object")
         ->allow_extra_args(false)
         ->option_text("[NAME.]KEY=VALUE");
     command
         .add_option("--label-map", options.label_map,
                     "Names and colours of labels: semantic_kitti, cityscapes, scannet or a file")
         ->option_text("NAME|FILE");
-    command.add_flag("--legend", options.legend, "Write the labels' names and colours into the picture");
-    command.add_flag("--colorbar", options.colorbar, "Write the values' colours into the picture");
+    command.add_flag("--legend", options.legend, "Draw a legend of the labels into the image");
+    command.add_flag("--colorbar", options.colorbar, "Draw a colour bar of the values into the image");
     command.add_option("--set", options.values, "Any setting, for example tonemap.exposure=2")
         ->allow_extra_args(false)
         ->option_text("KEY=VALUE");
     command.add_option("--settings", options.settings, "Start from a file that --save-settings wrote")
         ->option_text("FILE");
-    command.add_option("--save-settings", options.save_settings, "Write every value, chosen and inferred")
+    command
+        .add_option("--save-settings", options.save_settings,
+                    "Write all settings to a JSON file, given and inferred")
         ->option_text("FILE");
 }
 
 void declare_camera(CLI::App& command, RenderOptions& options) {
     command
         .add_option("--camera-pose", options.camera_pose,
-                    "Text file with the 16 numbers of T_world_cam, row by row")
+                    "Text file with the camera-to-world matrix, 16 numbers in row-major order")
         ->option_text("FILE");
-    command
-        .add_option("--camera", options.camera, "Camera of the file (glTF) by its name, or its number from 0")
+    command.add_option("--camera", options.camera, "Camera of the file (glTF) by name, or by number from 0")
         ->option_text("NAME|NUMBER");
-    command.add_option("--camera-axes", options.camera_axes, "Axes of the pose's camera: opengl or opencv")
+    command
+        .add_option("--camera-axes", options.camera_axes, "Camera axes of --camera-pose: opengl or opencv")
         ->check(CLI::IsMember({"opengl", "opencv"}));
-    command.add_option("--turntable", options.turntable, "Record one turn around the content in N frames")
-        ->option_text("N");
-    command.add_option("--camera-path", options.camera_path, "Record the camera on a path from a JSON file")
+    command.add_option("--turntable", options.turntable, "Record a turntable of N frames")->option_text("N");
+    command.add_option("--camera-path", options.camera_path, "Record along a camera path from a JSON file")
         ->option_text("FILE");
     command.add_option("--fps", options.fps, "Frames per second of a recording (30)")->option_text("X");
-    command.add_option("--codec", options.codec, "FFmpeg's name of the encoder of a video")
-        ->option_text("NAME");
+    command.add_option("--codec", options.codec, "Video encoder by its FFmpeg name")->option_text("NAME");
     command
         .add_option("--animation", options.animation,
-                    "Animation of the file (glTF) by its name, or its number from 0; a recording plays it")
+                    "Animation of the file (glTF) by name, or by number from 0; a recording plays it")
         ->option_text("NAME|NUMBER");
     command
         .add_option("--animation-time", options.animation_time,
-                    "Where the animation is, or a recording of it begins")
+                    "Time in the animation, or at the start of a recording")
         ->option_text("SECONDS");
     command
         .add_option("--focus", options.focus,
-                    "Depth of field, focused on what this pixel shows, from the upper left")
+                    "Enable depth of field, focused on the surface at this pixel; 0,0 is the upper left one")
         ->option_text("X,Y");
-    command.add_option("--ortho", options.ortho, "Orthographic picture of this world height")
+    command
+        .add_option("--ortho", options.ortho,
+                    "Orthographic camera with a view volume of this height, in world units")
         ->option_text("HEIGHT|auto");
 }
 
@@ -239,8 +241,8 @@ std::optional<Vec2i> parse_focus(const std::string& text) {
 void declare_passes(CLI::App& command, std::vector<std::string>& passes) {
     command
         .add_option("--pass", passes,
-                    "Fragment shader to draw over each picture; stages: light (before the tone curve), "
-                    "overlay (the default), picture (finished)")
+                    "Fragment shader of a custom full-screen pass; stages: light (linear HDR, before tone "
+                    "mapping), overlay (default, after tone mapping), picture (the final image)")
         ->allow_extra_args(false)
         ->option_text("[STAGE=]FILE");
 }

@@ -106,6 +106,8 @@ void check_layer(const std::string& name) {
     if (name.ends_with("ward") && contains(dataset::truth_layer_names(), name))
         throw UsageError(
             fmt::format("--layers: {} needs another frame: use render_layers() of the Python package", name));
+    if (const std::string now = render::layer_formerly(name); !now.empty())
+        throw UsageError(fmt::format("--layers: there is no layer '{}': it is called '{}'", name, now));
     std::vector<std::string> known = known_layers();
     if (contains(known, name)) return;
     for (const std::string& own : render::layer_names())

@@ -10,6 +10,8 @@
 #include <cstdlib>
 #include <memory>
 
+#include "easypbr/core/interrupt.h"
+
 namespace easypbr {
 namespace {
 
@@ -39,14 +41,16 @@ void parallel_chunks(size_t count, size_t grain, const std::function<void(size_t
         if (count) body(0, count);
         return;
     }
+    const auto run = [&](size_t chunk) {
+        check_interrupt();
+        body(chunk * grain, std::min(count, (chunk + 1) * grain));
+    };
     if (!has_threads()) {
-        for (size_t chunk = 0; chunk < chunks; ++chunk)
-            body(chunk * grain, std::min(count, (chunk + 1) * grain));
+        for (size_t chunk = 0; chunk < chunks; ++chunk) run(chunk);
         return;
     }
     limit_threads();
-    tbb::parallel_for(size_t(0), chunks,
-                      [&](size_t chunk) { body(chunk * grain, std::min(count, (chunk + 1) * grain)); });
+    tbb::parallel_for(size_t(0), chunks, run);
 }
 
 void parallel_sort(std::vector<KeyedIndex>& items) {

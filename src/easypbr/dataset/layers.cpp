@@ -126,10 +126,10 @@ std::optional<LayerArray> surface_layer(const std::string& name, const Surfaces&
 }
 
 std::optional<LayerArray> drawn_layer(const std::string& name, app::Session& session, const Surfaces& s) {
-    if (name == "normal_world") return picked<3>(session, render::Layer::normal, s);
+    if (name == "normal_world") return picked<3>(session, render::Layer::normal_world, s);
     if (name == "normal_camera") {
         const Mat4d T = s.camera.opencv_T_world_cam();
-        return picked<3>(session, render::Layer::normal, s,
+        return picked<3>(session, render::Layer::normal_world, s,
                          Mat3(T.topLeftCorner<3, 3>().transpose().cast<float>()));
     }
     if (name == "albedo") return picked<3>(session, render::Layer::albedo, s);

@@ -11,6 +11,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
+#include "easypbr/gl/draw.h"
 #include "easypbr/gl/object.h"
 
 namespace easypbr::gl {
@@ -177,12 +178,18 @@ void Context::initialize() {
     info_.max_viewport = std::min(viewport[0], viewport[1]);
     glDebugMessageCallback(debug_message, nullptr);
     glEnable(GL_DEBUG_OUTPUT);
+    reset_state();
 }
 
 Context::~Context() {
     deletions_->close();
     // A forked child shares the driver's state with its parent and must leave it alone.
     if (context_ && process_ == getpid()) eglDestroyContext(display_, context_);
+}
+
+const VertexArray& Context::no_attributes() {
+    if (!no_attributes_) no_attributes_ = VertexArray::make();
+    return no_attributes_;
 }
 
 Context* Context::current_or_null() {

@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "easypbr/gl/buffer.h"
+
 namespace easypbr::gl {
 
 /// What was tried on the way to a context, in order; `error` is empty for the one that worked.
@@ -45,6 +47,9 @@ class Context {
     /// GL objects that died while the context was not current wait here.
     const std::shared_ptr<DeletionQueue>& deletions() const { return deletions_; }
 
+    /// For draws without vertex attributes. This context is current.
+    const VertexArray& no_attributes();
+
   private:
     friend class ContextScope;
     Context() = default;
@@ -56,6 +61,7 @@ class Context {
     ContextInfo info_;
     std::recursive_mutex mutex_;
     std::shared_ptr<DeletionQueue> deletions_;
+    VertexArray no_attributes_;
 };
 
 /// Makes a context current for a scope and gives back what was current before. Nested scopes are fine; a

@@ -17,7 +17,7 @@ namespace {
 // with _v2 are those of CUDA 3.2 and later, whose sizes have 64 bits.
 using Result = int;
 using Device = int;
-using Context = struct CudaContext*;
+using CudaContext = struct CudaContextState*;
 using Array = struct CudaArray*;
 using Resource = struct CudaResource*;
 using Stream = struct CudaStream*;
@@ -48,9 +48,9 @@ struct Driver {
     Result (*init)(unsigned) = nullptr;
     Result (*get_error_string)(Result, const char**) = nullptr;
     Result (*gl_get_devices)(unsigned*, Device*, unsigned, unsigned) = nullptr;
-    Result (*retain_context)(Context*, Device) = nullptr;
-    Result (*push_context)(Context) = nullptr;
-    Result (*pop_context)(Context*) = nullptr;
+    Result (*retain_context)(CudaContext*, Device) = nullptr;
+    Result (*push_context)(CudaContext) = nullptr;
+    Result (*pop_context)(CudaContext*) = nullptr;
     Result (*allocate)(Address*, size_t) = nullptr;
     Result (*free)(Address) = nullptr;
     Result (*copy_2d)(const Copy2d*) = nullptr;
@@ -108,11 +108,11 @@ void check(const Driver& cuda, Result result, const char* call) {
 }
 
 /// The device's primary context, which PyTorch, CuPy and JAX use too. Kept until the program ends.
-Context primary_context(const Driver& cuda, Device device) {
+CudaContext primary_context(const Driver& cuda, Device device) {
     static std::mutex mutex;
-    static std::array<Context, 64> contexts{};
+    static std::array<CudaContext, 64> contexts{};
     const std::lock_guard lock(mutex);
-    Context& context = contexts.at(size_t(device));
+    CudaContext& context = contexts.at(size_t(device));
     if (!context) check(cuda, cuda.retain_context(&context, device), "cuDevicePrimaryCtxRetain");
     return context;
 }
@@ -125,7 +125,7 @@ class ContextOnTop {
     ContextOnTop(const ContextOnTop&) = delete;
     ContextOnTop& operator=(const ContextOnTop&) = delete;
     ~ContextOnTop() {
-        Context popped = nullptr;
+        CudaContext popped = nullptr;
         cuda_.pop_context(&popped);
     }
 

@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <optional>
@@ -11,6 +12,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/suggest.h"
 
 namespace easypbr::gl {
 namespace {
@@ -64,16 +66,33 @@ std::string line_directive(size_t file, int line) {
     return fmt::format("#line {}\n", int(file) * lines_of_a_file + line);
 }
 
+/// A line `#feature MACRO constant`; empty names: another line.
+struct Feature {
+    std::string macro, constant;
+};
+
+Feature feature_of(const std::string& line) {
+    Feature feature;
+    constexpr std::string_view directive = "#feature ";
+    if (line.starts_with(directive))
+        std::istringstream(line.substr(directive.size())) >> feature.macro >> feature.constant;
+    return feature;
+}
+
 /// A shader with all that it includes.
 struct Expanded {
     const ShaderTexts& texts;
+    const std::vector<std::string>& defines;
     std::string text = {};
-    std::vector<std::string> files = {}, shown = {};
-    bool is_own = false;  ///< something of it is not of the library
+    std::vector<std::string> files = {}, shown = {}, features = {};
+    std::set<std::string, std::less<>> in_conditions = {};  ///< of the files, those first included within #if
+    int conditions = 0;                                     ///< #if that are open
+    bool is_own = false;                                    ///< something of it is not of the library
 
+    /// A file that is included already is left out: each is part of a stage once.
     void add(std::string_view name) {
-        for (const std::string& seen : files)
-            if (seen == name) return;
+        if (std::ranges::find(files, name) != files.end()) return check_again(name);
+        if (conditions > 0) in_conditions.emplace(name);
         const size_t index = files.size();
         const auto given = texts.find(name);
         files.emplace_back(name);
@@ -86,10 +105,23 @@ struct Expanded {
             if (const auto file = included_file(line)) {
                 add(resolve_include(name, std::string(*file)));
                 text += line_directive(index, number + 1);
+            } else if (const Feature feature = feature_of(line); !feature.macro.empty()) {
+                features.push_back(feature.macro);
+                const bool given = std::ranges::find(defines, feature.macro) != defines.end();
+                text += fmt::format("const bool {} = {};\n", feature.constant, given);
             } else {
+                if (line.starts_with("#if")) ++conditions;
+                if (line.starts_with("#endif")) --conditions;
                 text += line + "\n";
             }
         }
+    }
+
+    /// Where the condition is false, a file that is left out the second time would be missing.
+    void check_again(std::string_view name) const {
+        if (is_own || !in_conditions.contains(name)) return;
+        throw ArgumentError(fmt::format(
+            "shader file '{}' is included within #if, and again: expected its include before the #if", name));
     }
 };
 
@@ -124,9 +156,36 @@ std::string readable_log(const std::string& log, const std::vector<std::string>&
     throw ContextError(message);
 }
 
-GLuint compile(GLenum stage, const Expanded& source, const std::vector<std::string>& defines) {
+/// The features of all embedded shaders.
+std::vector<std::string> embedded_features() {
+    std::vector<std::string> names;
+    for (const EmbeddedShader& shader : embedded_shaders) {
+        std::istringstream lines{std::string(shader.text)};
+        for (std::string line; std::getline(lines, line);)
+            if (Feature feature = feature_of(line); !feature.macro.empty())
+                names.push_back(std::move(feature.macro));
+    }
+    return names;
+}
+
+/// Passes give all their shaders the same macros, so a feature of another shader is none of this one's
+/// mistakes.
+void check_features(const Expanded (&sources)[2], const std::vector<std::string>& defines) {
+    if (sources[0].is_own || sources[1].is_own) return;
+    static const std::vector<std::string> embedded = embedded_features();
+    std::vector<std::string> known = embedded;
+    for (const Expanded& source : sources)
+        known.insert(known.end(), source.features.begin(), source.features.end());
+    for (const std::string& define : defines) {
+        if (define.find(' ') != define.npos || std::ranges::find(known, define) != known.end()) continue;
+        throw ArgumentError(
+            fmt::format("no shader has a line '#feature {}'{}", define, did_you_mean(define, known)));
+    }
+}
+
+GLuint compile(GLenum stage, const Expanded& source) {
     std::string text = "#version 450 core\n";
-    for (const std::string& define : defines) text += "#define " + define + "\n";
+    for (const std::string& define : source.defines) text += "#define " + define + "\n";
     text += source.text;
     const GLuint shader = glCreateShader(stage);
     const char* pointer = text.c_str();
@@ -143,8 +202,8 @@ GLuint compile(GLenum stage, const Expanded& source, const std::vector<std::stri
                                     readable_log(log.c_str(), source.shown)));
 }
 
-Expanded expanded(std::string_view name, const ShaderTexts& texts) {
-    Expanded source{texts};
+Expanded expanded(std::string_view name, const ShaderTexts& texts, const std::vector<std::string>& defines) {
+    Expanded source{texts, defines};
     source.add(name);
     return source;
 }
@@ -165,8 +224,9 @@ std::string shader_source(std::string_view name) {
 
 std::vector<fs::path> shader_files(std::string_view name) {
     const ShaderTexts none;
+    const std::vector<std::string> plain;
     std::vector<fs::path> paths;
-    for (const std::string& file : expanded(name, none).files)
+    for (const std::string& file : expanded(name, none, plain).files)
         if (is_path(file)) paths.emplace_back(file);
     return paths;
 }
@@ -175,11 +235,12 @@ Program::Program(std::string_view vertex, std::string_view fragment, const std::
                  const ShaderTexts& texts)
     : object_(ObjectKind::program) {
     const GLuint program = object_.id();
-    const Expanded sources[] = {expanded(vertex, texts), expanded(fragment, texts)};
-    const GLuint vertex_stage = compile(GL_VERTEX_SHADER, sources[0], defines);
+    const Expanded sources[] = {expanded(vertex, texts, defines), expanded(fragment, texts, defines)};
+    check_features(sources, defines);
+    const GLuint vertex_stage = compile(GL_VERTEX_SHADER, sources[0]);
     GLuint fragment_stage = 0;
     try {
-        fragment_stage = compile(GL_FRAGMENT_SHADER, sources[1], defines);
+        fragment_stage = compile(GL_FRAGMENT_SHADER, sources[1]);
     } catch (...) {
         glDeleteShader(vertex_stage);
         throw;

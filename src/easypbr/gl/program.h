@@ -32,9 +32,15 @@ using ShaderTexts = std::map<std::string, ShaderText, std::less<>>;
 class Program {
   public:
     Program() = default;
-    /// Names of shader files and `NAME` or `NAME VALUE` macros. `#include "file"` works, once per file.
-    /// Throws ContextError with file:line for every compiler message; ShaderError when texts or files of a
-    /// program's own are among what does not compile.
+    /// Names of shader files and `NAME` or `NAME VALUE` macros.
+    /// - `#include "file"` puts a file's text in place of the line where a stage includes it first, and
+    /// nothing
+    ///   later: a file needs no guard. One that is included within #if must not be included again.
+    /// - `#feature NAME constant` declares `const bool constant`, true where the macro NAME is given: the
+    ///   compiler removes what stands in an `if (constant)` that is false.
+    /// Throws ArgumentError for a macro without a value that no shader of the library declares as a feature,
+    /// unless the program has texts or files of its own; ContextError with file:line for every compiler
+    /// message; ShaderError when texts or files of a program's own are among what does not compile.
     Program(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines = {},
             const ShaderTexts& texts = {});
 

@@ -9,6 +9,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/gl/context.h"
+#include "easypbr/gl/pace.h"
 
 namespace easypbr::gl {
 namespace {
@@ -206,21 +207,31 @@ void Framebuffer::bind() const {
     glViewport(0, 0, width_, height_);
 }
 
+namespace {
+
+/// Clears obey what the draw before set.
+void write_everything() {
+    glDisable(GL_SCISSOR_TEST);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    glDepthMask(GL_TRUE);
+}
+
+}  // namespace
+
 void Framebuffer::clear_color(unsigned index, const float (&rgba)[4]) const {
+    write_everything();
     glClearNamedFramebufferfv(object_.id(), GL_COLOR, GLint(index), rgba);
 }
 
 void Framebuffer::clear_integer(unsigned index, unsigned value) const {
+    write_everything();
     const GLuint values[4] = {value, value, value, value};
     glClearNamedFramebufferuiv(object_.id(), GL_COLOR, GLint(index), values);
 }
 
 void Framebuffer::clear_depth(float depth) const {
+    write_everything();
     glClearNamedFramebufferfv(object_.id(), GL_DEPTH, 0, &depth);
-}
-
-void Framebuffer::allow_depth_writes() {
-    glDepthMask(GL_TRUE);
 }
 
 void Framebuffer::read_to(unsigned index, Format format, int x, int y, int width, int height,
@@ -236,6 +247,7 @@ void Framebuffer::read(unsigned index, Format format, int x, int y, int width, i
                        std::span<std::byte> pixels) const {
     if (pixels.size() < size_t(width) * height * pixel_bytes(format))
         throw ArgumentError("framebuffer read: the buffer is too small");
+    wait_for_driver();
     read_to(index, format, x, y, width, height, pixels.data());
 }
 

@@ -85,12 +85,11 @@ class Framebuffer {
 
     /// Binds it for drawing with the viewport on all of it.
     void bind() const;
+    /// Clears are of the whole framebuffer, whatever the draw before limited itself to.
     void clear_color(unsigned index, const float (&rgba)[4]) const;
     /// For an integer attachment.
     void clear_integer(unsigned index, unsigned value) const;
     void clear_depth(float depth) const;
-    /// Lets clear_depth() and draws write the depth: clears obey the mask that passes set.
-    static void allow_depth_writes();
 
     /// Reads a rectangle of color attachment `index`, rows as they lie in the texture. `pixels` holds
     /// width * height * pixel_bytes(format).

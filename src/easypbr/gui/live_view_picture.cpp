@@ -131,7 +131,7 @@ void LiveView::show_picture() {
     const AnnotationSettings& annotation = session_.settings().annotation;
     if (state_.channel == "slices") {
         std::vector<Image> pictures = {session_.last_picture()};
-        const std::vector<std::string> names = {"metallic", "albedo", "ambient_occlusion", "normal"};
+        const std::vector<std::string> names = {"metallic", "albedo", "ambient_occlusion", "normal_world"};
         const auto layers = session_.render_layers(names, quick_size_);
         for (const std::string& name : names) pictures.push_back(app::layer_picture(name, layers.at(name)));
         show_pixels(app::slices(pictures));

@@ -21,7 +21,7 @@ std::string title_of(const std::string& group) {
     static const std::map<std::string, std::string> titles = {
         {"ssao", "Ambient occlusion"}, {"edl", "Eye-dome lighting"}, {"tonemap", "Tone and exposure"},
         {"image", "Picture"},          {"clip", "Clipping"},         {"material", "All materials"},
-        {"style", "All styles"},       {"dof", "Depth of field"}};
+        {"style", "All styles"}};
     if (const auto known = titles.find(group); known != titles.end()) return known->second;
     std::string title = readable(group);
     title[0] = char(std::toupper(static_cast<unsigned char>(title[0])));

@@ -17,7 +17,8 @@ size_t index_of(const Animations& animations, const nb::object& animation) {
 }  // namespace
 
 void bind_animation(nb::module_& module) {
-    nb::class_<Animations>(module, "Animations", "What moves the meshes of a file; empty when nothing does.")
+    nb::class_<Animations>(module, "Animations",
+                           "Animations of the nodes, skins and morph targets of a file; may be empty.")
         .def_prop_ro("names", &Animations::names)
         .def("__len__", [](const Animations& a) { return a.names().size(); })
         .def(
@@ -26,7 +27,7 @@ void bind_animation(nb::module_& module) {
                 return a.duration_s(index_of(a, animation));
             },
             nb::arg("animation") = 0, nb::sig("def duration_s(self, animation: str | int = 0) -> float"),
-            "Seconds of an animation, by its name or number.")
+            "Duration of an animation in seconds, by name or number.")
         .def(
             "apply",
             [](Animations& a, double time, const nb::object& animation, bool loop) {
@@ -35,9 +36,8 @@ void bind_animation(nb::module_& module) {
             },
             nb::arg("time_s"), nb::arg("animation") = 0, nb::arg("loop") = true,
             nb::sig("def apply(self, time_s: float, animation: str | int = 0, loop: bool = True) -> None"),
-            "Puts the file's meshes where they are at a time: poses, skins, morph targets. With loop the "
-            "time goes "
-            "around, else the animation rests at its ends.");
+            "Poses the meshes of the file at a time: nodes, skins, morph targets. With loop the animation "
+            "repeats, else the time is clamped to its ends.");
 }
 
 }  // namespace easypbr::python

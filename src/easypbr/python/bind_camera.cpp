@@ -53,27 +53,26 @@ void set_projection(Camera& camera, const std::string& name) {
     camera.projection = name == "perspective" ? Projection::perspective : Projection::orthographic;
 }
 
-void bind_makers(nb::class_<Camera>& camera) {
+void bind_camera_makers(nb::class_<Camera>& camera) {
     camera
         .def_static("look_at", look_at, nb::arg("position"), nb::arg("target"),
                     nb::arg("up").none() = nb::none(), nb::arg("fov_y_deg") = 30.0,
                     nb::sig("def look_at(position: numpy.typing.ArrayLike, target: numpy.typing.ArrayLike, "
                             "up: numpy.typing.ArrayLike | None = None, fov_y_deg: float = 30.0) -> Camera"),
-                    "Looks from a position to a target; up is (0, 1, 0) unless given.")
-        .def_static(
-            "from_opencv", from_opencv, nb::arg("K"), nb::arg("T_world_cam"), nb::arg("size"),
-            nb::arg("distortion").none() = nb::none(), nb::arg("model") = "brown_conrady",
-            nb::arg("axes") = "opencv",
-            "From OpenCV's K (pixel centres at integers), a camera-to-world pose with OpenCV's axes, and the "
-            "(width, height) that K belongs to. The pose's axes may be 'opengl' too. `distortion`: 4, 5 or 8 "
-            "coefficients in OpenCV's order; of the model 'fisheye' 4.")
+                    "Camera at a position that looks at a target; up defaults to (0, 1, 0).")
+        .def_static("from_opencv", from_opencv, nb::arg("K"), nb::arg("T_world_cam"), nb::arg("size"),
+                    nb::arg("distortion").none() = nb::none(), nb::arg("model") = "brown_conrady",
+                    nb::arg("axes") = "opencv",
+                    "From OpenCV's K (pixel centres at integers), a camera-to-world pose with OpenCV axes "
+                    "(or axes='opengl'), and the (width, height) of K. `distortion`: 4, 5 or 8 coefficients "
+                    "in OpenCV's order; 4 for the model 'fisheye'.")
         .def_static(
             "from_opengl",
             [](const ArrayLike& T, double fov_y_deg) {
                 return Camera::from_opengl(to_matrix4(T, "T_world_cam"), fov_y_deg);
             },
             nb::arg("T_world_cam"), nb::arg("fov_y_deg") = 30.0,
-            "From a camera-to-world pose with OpenGL's axes (x right, y up, z backwards).");
+            "From a camera-to-world pose with OpenGL axes (x right, y up, z backwards).");
 }
 
 }  // namespace
@@ -81,12 +80,12 @@ void bind_makers(nb::class_<Camera>& camera) {
 void bind_camera(nb::module_& module) {
     nb::class_<Camera> camera(module, "Camera", "A pinhole or orthographic camera with a pose.");
     camera.def(nb::init<>());
-    bind_makers(camera);
+    bind_camera_makers(camera);
     camera
         .def_prop_rw(
             "T_world_cam", [](const Camera& c) { return matrix_to_numpy(c.T_world_cam.matrix()); }, set_pose,
             nb::for_getter(nb::sig("def T_world_cam(self) -> numpy.ndarray")),
-            "4 x 4 camera-to-world pose, OpenGL's axes.")
+            "4 x 4 camera-to-world matrix, OpenGL axes.")
         .def_prop_ro(
             "position", [](const Camera& c) { return matrix_to_numpy(c.position().transpose()); },
             nb::sig("def position(self) -> numpy.ndarray"))
@@ -96,8 +95,10 @@ void bind_camera(nb::module_& module) {
                 return c.projection == Projection::perspective ? "perspective" : "orthographic";
             },
             set_projection, "'perspective' or 'orthographic'.")
-        .def_rw("fov_y_deg", &Camera::fov_y_deg, "Full vertical angle; perspective without intrinsics.")
-        .def_rw("ortho_height", &Camera::ortho_height, "World height of an orthographic picture.")
+        .def_rw("fov_y_deg", &Camera::fov_y_deg,
+                "Vertical field of view in degrees; perspective cameras without intrinsics.")
+        .def_rw("ortho_height", &Camera::ortho_height,
+                "Height of the view volume of an orthographic camera, world units.")
         .def_rw("near", &Camera::near)
         .def(
             "opencv_K",
@@ -106,16 +107,17 @@ void bind_camera(nb::module_& module) {
                 return matrix_to_numpy(c.opencv_K(pixels.x(), pixels.y()));
             },
             nb::arg("size"), nb::sig("def opencv_K(self, size: numpy.typing.ArrayLike) -> numpy.ndarray"),
-            "OpenCV's K for a picture of (width, height).")
+            "OpenCV's K for an image of (width, height).")
         .def_prop_ro(
             "distortion",
             [](const Camera& c) {
                 return c.distortion ? c.distortion->coefficients() : std::vector<double>();
             },
-            "Coefficients of the lens's distortion in OpenCV's order; empty: none.")
+            "Lens distortion coefficients in OpenCV's order; empty: none.")
         .def_prop_ro(
             "opencv_T_world_cam", [](const Camera& c) { return matrix_to_numpy(c.opencv_T_world_cam()); },
-            nb::sig("def opencv_T_world_cam(self) -> numpy.ndarray"), "Pose with OpenCV's axes.");
+            nb::sig("def opencv_T_world_cam(self) -> numpy.ndarray"),
+            "4 x 4 camera-to-world matrix, OpenCV axes.");
 }
 
 }  // namespace easypbr::python

@@ -53,7 +53,7 @@ std::vector<double> numbers_for(const nb::object& object, size_t count, const ch
     return values;
 }
 
-void construct(CameraPath* self, const nb::object& keys, const nb::object& segment_s,
+void construct_camera_path(CameraPath* self, const nb::object& keys, const nb::object& segment_s,
                const nb::object& fov_y_deg, const std::string& mode, const std::string& ease, bool closed,
                const std::string& axes) {
     const auto kind = choice_named<Axes>("axes", axes, axes_names);
@@ -78,8 +78,8 @@ CameraPath orbit(const Camera& camera, const ArrayLike& center, const nb::object
                              choice_named<PathEase>("ease", ease, ease_names));
 }
 
-void bind_makers(nb::class_<CameraPath>& path) {
-    path.def("__init__", construct, nb::arg("keys"), nb::arg("segment_s") = 1.0,
+void bind_camera_path_makers(nb::class_<CameraPath>& path) {
+    path.def("__init__", construct_camera_path, nb::arg("keys"), nb::arg("segment_s") = 1.0,
              nb::arg("fov_y_deg").none() = nb::none(), nb::arg("mode") = "smooth", nb::arg("ease") = "none",
              nb::arg("closed") = false, nb::arg("axes") = "opengl",
              nb::sig(
@@ -87,12 +87,10 @@ void bind_makers(nb::class_<CameraPath>& path) {
                  "segment_s: float | collections.abc.Iterable[float] = 1.0, fov_y_deg: float | "
                  "collections.abc.Iterable[float] | None = None, mode: str = 'smooth', ease: str = 'none', "
                  "closed: bool = False, axes: str = 'opengl') -> None"),
-             "Through cameras or 4 x 4 poses T_world_cam with OpenGL's or OpenCV's axes. segment_s: seconds "
-             "between keys, one number or one for each stretch. mode: 'smooth' (through all keys without a "
-             "jump "
-             "in velocity or acceleration) or 'linear'. ease: 'none', 'in', 'out' or 'in_out'. closed: back "
-             "to "
-             "the first key and around.")
+             "Path through cameras or 4 x 4 poses T_world_cam with OpenGL or OpenCV axes. segment_s: seconds "
+             "between keys, one number or one per segment. mode: 'smooth' (continuous velocity and "
+             "acceleration) or 'linear'. ease: 'none', 'in', 'out' or 'in_out'. closed: returns to the first "
+             "key and repeats.")
         .def_static(
             "orbit", orbit, nb::arg("camera"), nb::arg("center") = nb::make_tuple(0, 0, 0),
             nb::arg("axis").none() = nb::none(), nb::arg("angle_deg") = 360.0, nb::arg("duration_s") = 4.0,
@@ -100,27 +98,27 @@ void bind_makers(nb::class_<CameraPath>& path) {
             nb::sig("def orbit(camera: Camera, center: numpy.typing.ArrayLike = (0, 0, 0), axis: "
                     "numpy.typing.ArrayLike | None = None, angle_deg: float = 360.0, duration_s: float = "
                     "4.0, ease: str = 'none') -> CameraPath"),
-            "A circle from the camera's pose on around the line through `center` along `axis`, (0, 1, 0) "
-            "unless given.")
+            "Circle that starts at the camera's pose, around the line through `center` along `axis`, default "
+            "(0, 1, 0).")
         .def_static(
             "load",
             [](const std::filesystem::path& file) {
                 return released([&] { return io::load_camera_path(file); });
             },
-            nb::arg("path"), "From a JSON file.")
+            nb::arg("path"), "Reads a JSON file.")
         .def(
             "save",
             [](const CameraPath& p, const std::filesystem::path& file) {
                 released([&] { io::save_camera_path(p, file); });
             },
-            nb::arg("path"), "To a JSON file, whole or not at all; numbers come back to the bit.");
+            nb::arg("path"), "Writes a JSON file atomically; numbers are restored bit for bit.");
 }
 
 void bind_times(nb::class_<CameraPath>& path) {
     path.def_prop_ro("duration_s", &CameraPath::duration_s)
         .def_prop_ro("closed", &CameraPath::is_closed)
         .def_prop_ro("key_times_s", &CameraPath::key_times_s,
-                     "When the keys are passed, easing included; of an orbit its start and end.")
+                     "Times of the keys, easing included; of an orbit its start and end.")
         .def_prop_ro(
             "keys",
             [](const CameraPath& p) {
@@ -128,30 +126,32 @@ void bind_times(nb::class_<CameraPath>& path) {
                 for (const CameraKey& key : p.keys()) keys.append(matrix_to_numpy(key.T_world_cam.matrix()));
                 return keys;
             },
-            nb::sig("def keys(self) -> list[numpy.ndarray]"), "4 x 4 poses, OpenGL's axes; none of an orbit.")
+            nb::sig("def keys(self) -> list[numpy.ndarray]"),
+            "4 x 4 poses of the keys, OpenGL axes; none for an orbit.")
         .def("frame_times", &CameraPath::frame_times, nb::arg("fps"),
-             "Times of a video's frames: round(duration * fps) of a closed path, one more of an open one.")
+             "Times of the frames of a video: round(duration * fps) for a closed path, one more for an open "
+             "one.")
         .def("times", &CameraPath::times, nb::arg("count"),
-             "That many times evenly from start to end; of a closed path the end is left out.");
+             "That many evenly spaced times; of a closed path without the end.");
 }
 
 }  // namespace
 
 void bind_camera_path(nb::module_& module) {
-    nb::class_<CameraPath> path(module, "CameraPath", "Where the camera is at each moment.");
-    bind_makers(path);
+    nb::class_<CameraPath> path(module, "CameraPath", "Camera motion through key poses.");
+    bind_camera_path_makers(path);
     bind_times(path);
     path.def(
             "pose", [](const CameraPath& p, double time) { return matrix_to_numpy(p.pose(time).matrix()); },
             nb::arg("time_s"), nb::sig("def pose(self, time_s: float) -> numpy.ndarray"),
-            "4 x 4 pose T_world_cam at a time, OpenGL's axes.")
+            "4 x 4 pose T_world_cam at a time, OpenGL axes.")
         .def(
             "camera",
             [](const CameraPath& p, double time, const std::optional<Camera>& like) {
                 return p.camera(time, like.value_or(Camera()));
             },
             nb::arg("time_s"), nb::arg("like").none() = nb::none(),
-            "A camera at the path's pose, with the path's angle of view when it has one, else like `like`.");
+            "Camera at a time, with the path's field of view if it has one, else like `like`.");
     module.def(
         "_camera_path",
         [](const CameraPath& p, const ArrayLike& size, double fov_y_deg, std::optional<double> depth) {

@@ -9,7 +9,7 @@
 namespace easypbr::python {
 namespace {
 
-void construct(Environment* self, const PathOrArray& source) {
+void construct_environment(Environment* self, const PathOrArray& source) {
     if (source.is_none()) {
         new (self) Environment();
     } else if (is_path(source)) {
@@ -24,20 +24,20 @@ void construct(Environment* self, const PathOrArray& source) {
 }  // namespace
 
 void bind_environment(nb::module_& module) {
-    nb::class_<Environment>(
-        module, "Environment",
-        "An equirectangular picture (HDR, EXR, PNG, JPEG, or an array; the first row is straight "
-        "up) that lights the scene from infinitely far.")
-        .def("__init__", construct, nb::arg("source").none() = nb::none())
+    nb::class_<Environment>(module, "Environment",
+                            "Equirectangular environment map for image-based lighting (HDR, EXR, PNG, JPEG, "
+                            "or an array; the first row is straight up).")
+        .def("__init__", construct_environment, nb::arg("source").none() = nb::none())
         .def_prop_ro("name", [](const Environment& e) { return e.empty() ? std::string() : e.name(); })
         .def_prop_ro("empty", &Environment::empty)
         .def(
             "to_numpy", [](const Environment& e) { return e.empty() ? nb::none() : to_numpy(e.image()); },
-            nb::sig("def to_numpy(self) -> numpy.ndarray | None"), "A copy of the picture, linear float32.")
+            nb::sig("def to_numpy(self) -> numpy.ndarray | None"),
+            "A copy of the environment map, linear float32.")
         .def("__bool__", [](const Environment& e) { return !e.empty(); });
     module.def(
         "studio_environment", [] { return released([] { return studio_environment(); }); },
-        "The embedded studio that lights scenes without an environment of their own.");
+        "The built-in studio, the default environment map.");
 }
 
 }  // namespace easypbr::python

@@ -76,21 +76,20 @@ void bind_placing(MeshClass& mesh) {
                 return released([&] { return transformed(m, affine); });
             },
             nb::arg("T"),
-            "A new mesh whose vertices are at T x (4 x 4); normals, winding, surfels and children follow. "
-            "T_parent_mesh stays.")
+            "A new mesh with vertices transformed by T (4 x 4), and normals, winding order, surfels and "
+            "children with them. T_parent_mesh is kept.")
         .def(
             "center", [](const Mesh& m) { return released([&] { return centered(m); }); },
-            "A new mesh with the middle of its bounding box at its origin.")
+            "A new mesh with the centre of its bounding box at its origin.")
         .def(
             "normalize_size",
             [](const Mesh& m, double size) { return released([&] { return with_size(m, size); }); },
             nb::arg("size") = 1.0,
-            "A new mesh, scaled about its origin, whose bounding box's longest side is `size`.")
+            "A new mesh scaled about its origin, so that the longest side of its bounding box is `size`.")
         .def("merge", merge, nb::sig("def merge(self, *others: Mesh) -> Mesh"),
              "One new mesh of this and the others, children included, with their poses applied. Materials "
-             "and parts are "
-             "kept; what only some have is filled in: normals computed, white, labels -1, scalars NaN, else "
-             "0.")
+             "and parts are kept; missing attributes are filled in: normals computed, white, labels -1, "
+             "scalars NaN, else 0.")
         .def("bounding_box", box_array, nb::arg("T_world_mesh").none() = nb::none(),
              nb::sig("def bounding_box(self, T_world_mesh: numpy.typing.ArrayLike | None = None) -> "
                      "numpy.ndarray"),
@@ -99,69 +98,65 @@ void bind_placing(MeshClass& mesh) {
              "T_parent_mesh).")
         .def("oriented_bounding_box", oriented_box,
              nb::sig("def oriented_bounding_box(self) -> tuple[numpy.ndarray, numpy.ndarray]"),
-             "A small box at any angle: its 4 x 4 pose (centre and axes) and its size along the axes, "
-             "falling.");
+             "A small oriented bounding box: its 4 x 4 pose (centre and axes) and its sizes along the axes, "
+             "in descending order.");
 }
 
 void bind_repair(MeshClass& mesh) {
     mesh.def(
             "remove_unreferenced_vertices",
             [](const Mesh& m) { return released([&] { return remove_unreferenced_vertices(m); }); },
-            "A new mesh without the vertices that no face and no edge uses. A cloud stays as it is.")
+            "A new mesh without vertices that no face or edge references. A cloud is not changed.")
         .def(
             "remove_duplicate_vertices",
             [](const Mesh& m, double tolerance, bool keep_seams) {
                 return released([&] { return remove_duplicate_vertices(m, {tolerance, keep_seams}); });
             },
             nb::arg("tolerance") = 0.0, nb::arg("keep_seams") = true,
-            "A new mesh in which vertices at one place (within the tolerance) with the same attributes are "
-            "one; with "
-            "keep_seams=False whatever their attributes.")
+            "A new mesh with vertices merged that have equal positions (within the tolerance) and "
+            "attributes; with keep_seams=False with any attributes.")
         .def(
             "remove_degenerate_faces",
             [](const Mesh& m) { return released([&] { return remove_degenerate_faces(m); }); },
-            "A new mesh without the faces that have no area.")
+            "A new mesh without degenerate faces.")
         .def(
             "flip_winding", [](const Mesh& m) { return released([&] { return flip_winding(m); }); },
-            "A new mesh with its faces turned around.")
+            "A new mesh with reversed winding order.")
         .def(
             "flip_normals", [](const Mesh& m) { return released([&] { return flip_normals(m); }); },
-            "A new mesh with its normals turned around.")
+            "A new mesh with negated normals.")
         .def(
             "split", [](const Mesh& m) { return released([&] { return split(m); }); },
-            "The connected pieces as new meshes.")
+            "The connected components as new meshes.")
         .def(
             "vertex_components",
             [](const Mesh& m) { return view_of(released([&] { return vertex_components(m); })); },
             nb::sig("def vertex_components(self) -> numpy.ndarray"),
-            "n int32: the number of the connected piece that each vertex belongs to.")
+            "n int32: index of the connected component of each vertex.")
         .def(
             "face_components",
             [](const Mesh& m) { return view_of(released([&] { return face_components(m); })); },
             nb::sig("def face_components(self) -> numpy.ndarray"),
-            "m int32: the number of the connected piece that each face belongs to.");
+            "m int32: index of the connected component of each face.");
 }
 
 void bind_resolution(MeshClass& mesh) {
     mesh.def("subsample", subsample, nb::arg("count") = nb::none(), nb::arg("fraction") = nb::none(),
              nb::arg("cell_size") = nb::none(), nb::arg("seed") = 0,
-             "Fewer vertices as a new cloud: `count` or a `fraction` of them at random, or the mean of those "
-             "in each cube "
-             "of edge `cell_size`.")
+             "A new cloud of fewer vertices: `count` or a `fraction` of them at random, or the mean of those "
+             "in each grid cell of edge `cell_size`.")
         .def(
             "voxelize",
             [](const Mesh& m, double cell_size) { return released([&] { return voxelize(m, cell_size); }); },
-            nb::arg("cell_size"),
-            "The cubes of a grid that have vertices in them, as a new mesh that is drawn as cubes.")
+            nb::arg("cell_size"), "The occupied cells of a grid as a new mesh of voxels.")
         .def(
             "decimate",
             [](const Mesh& m, std::optional<int> faces, std::optional<double> error) {
                 return released([&] { return decimate(m, {faces, error}); });
             },
             nb::arg("faces") = nb::none(), nb::arg("error") = nb::none(),
-            "A new mesh of at most so many `faces`, or of as few as move the surface by no more than "
-            "`error`. Vertices keep "
-            "what they have.")
+            "A new mesh simplified to at most `faces`, or up to a surface error of `error`. Vertices keep "
+            "their attributes.")
         .def(
             "upsample",
             [](const Mesh& m, int iterations, const std::string& method) {
@@ -171,7 +166,7 @@ void bind_resolution(MeshClass& mesh) {
                 return released([&] { return upsample(m, iterations, rule); });
             },
             nb::arg("iterations") = 1, nb::arg("method") = "midpoint",
-            "A new mesh with every face cut in four; with method 'loop' the surface becomes smooth.")
+            "A new mesh with every face subdivided into four; method 'loop' smooths the surface.")
         .def(
             "smooth",
             [](const Mesh& m, int iterations, const std::string& method) {
@@ -181,9 +176,8 @@ void bind_resolution(MeshClass& mesh) {
                 return released([&] { return smooth(m, iterations, rule); });
             },
             nb::arg("iterations") = 10, nb::arg("method") = "taubin",
-            "A new mesh with vertices moved towards their neighbours' mean; 'taubin' keeps the size, "
-            "'laplacian' shrinks. "
-            "Borders stay.");
+            "A new mesh smoothed by moving vertices towards the mean of their neighbours; 'taubin' keeps the "
+            "size, 'laplacian' shrinks. Borders are kept.");
 }
 
 }  // namespace

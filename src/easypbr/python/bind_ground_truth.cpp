@@ -137,38 +137,39 @@ nb::object cuda_layers(SharedViewer& self, const std::vector<std::string>& layer
 using InstanceClass = nb::class_<Instance>;
 
 void bind_counts(InstanceClass& instance) {
-    instance.def_ro("id", &Instance::id, "From 1 on; what the layer instance_id holds.")
+    instance.def_ro("id", &Instance::id, "Value of the layer instance_id, from 1.")
         .def_ro("name", &Instance::name)
         .def_ro("semantic_id", &Instance::semantic_id)
         .def_ro("pixels_visible", &Instance::pixels_visible)
         .def_ro("pixels_amodal", &Instance::pixels_amodal,
-                "Of the instance alone, on a canvas three times as wide and high as the picture.")
+                "Pixels of the instance alone, on a canvas three times as wide and high as the image.")
         .def_ro("pixels_amodal_inside", &Instance::pixels_amodal_inside,
-                "Of the instance alone, inside the picture.")
+                "Pixels of the instance alone, inside the image.")
         .def_ro("visible_fraction", &Instance::visible_fraction,
-                "pixels_visible / pixels_amodal, as BOP has it; 0 without amodal pixels.")
-        .def_ro("truncation", &Instance::truncation, "Part of pixels_amodal that is outside of the picture.")
+                "pixels_visible / pixels_amodal, visib_fract of BOP; 0 without amodal pixels.")
+        .def_ro("truncation", &Instance::truncation, "Fraction of pixels_amodal outside of the image.")
         .def_prop_ro(
             "box_visible", [](const Instance& i) { return box_tuple(i.box_visible); },
             nb::sig("def box_visible(self) -> tuple[int, int, int, int]"),
-            "x, y, width, height in pixels of what is seen; width 0: nothing.")
+            "x, y, width, height in pixels of the visible part; width 0: invisible.")
         .def_prop_ro(
             "box_amodal", [](const Instance& i) { return box_tuple(i.box_amodal); },
             nb::sig("def box_amodal(self) -> tuple[int, int, int, int]"),
-            "The same of the instance alone, beyond the picture's edge too.")
+            "The same of the instance alone, beyond the image border too.")
         .def_prop_ro(
             "mask", [](const Instance& i) { return mask_to_numpy(i.visible, i.picture); },
-            nb::sig("def mask(self) -> numpy.ndarray"), "height x width, bool: what is seen.")
+            nb::sig("def mask(self) -> numpy.ndarray"), "height x width, bool: the visible part.")
         .def_prop_ro(
             "amodal_mask", [](const Instance& i) { return mask_to_numpy(i.amodal, i.picture); },
             nb::sig("def amodal_mask(self) -> numpy.ndarray"),
-            "height x width, bool: what would be seen of the instance alone.")
+            "height x width, bool: the instance alone, without occluders.")
         .def_prop_ro(
             "rle", [](const Instance& i) { return rle_of(i.visible, i.picture); },
-            nb::sig("def rle(self) -> dict"), "mask as COCO's {'size': (height, width), 'counts': str}.")
+            nb::sig("def rle(self) -> dict"),
+            "mask as COCO run lengths {'size': (height, width), 'counts': str}.")
         .def_prop_ro(
             "amodal_rle", [](const Instance& i) { return rle_of(i.amodal, i.picture); },
-            nb::sig("def amodal_rle(self) -> dict"), "amodal_mask in the same way.")
+            nb::sig("def amodal_rle(self) -> dict"), "amodal_mask as COCO run lengths.")
         .def("__repr__", [](const Instance& i) {
             return fmt::format("<easypbr.Instance {} '{}': {} pixels, {:.0f} % visible>", i.id, i.name,
                                i.pixels_visible, 100 * i.visible_fraction);
@@ -179,11 +180,10 @@ void bind_space(InstanceClass& instance) {
     instance
         .def_prop_ro(
             "T_world_obj", [](const Instance& i) { return matrix_to_numpy(i.T_world_obj.matrix()); },
-            nb::sig("def T_world_obj(self) -> numpy.ndarray"), "4 x 4 pose in the world.")
+            nb::sig("def T_world_obj(self) -> numpy.ndarray"), "4 x 4 pose in world space.")
         .def_prop_ro(
             "T_cam_obj", [](const Instance& i) { return matrix_to_numpy(i.T_cam_obj.matrix()); },
-            nb::sig("def T_cam_obj(self) -> numpy.ndarray"),
-            "4 x 4 pose in the camera's frame, OpenCV's axes.")
+            nb::sig("def T_cam_obj(self) -> numpy.ndarray"), "4 x 4 pose in camera space, OpenCV axes.")
         .def_prop_ro(
             "box3d_center",
             [](const Instance& i) {
@@ -191,36 +191,34 @@ void bind_space(InstanceClass& instance) {
                     (i.box.isEmpty() ? Vec3d(Vec3d::Zero()) : Vec3d(i.box.center())).transpose());
             },
             nb::sig("def box3d_center(self) -> numpy.ndarray"),
-            "Of the box of all vertices, in the object's frame.")
+            "Centre of the box of all vertices, in object space.")
         .def_prop_ro(
             "box3d_size",
             [](const Instance& i) {
                 return matrix_to_numpy(
                     (i.box.isEmpty() ? Vec3d(Vec3d::Zero()) : Vec3d(i.box.sizes())).transpose());
             },
-            nb::sig("def box3d_size(self) -> numpy.ndarray"), "Edges of the same box.")
+            nb::sig("def box3d_size(self) -> numpy.ndarray"), "Edge lengths of the same box.")
         .def_prop_ro(
             "corners_world", [](const Instance& i) { return matrix_to_numpy(i.corners_world); },
             nb::sig("def corners_world(self) -> numpy.ndarray"),
             "8 x 3 corners of the box; bit 0 of the row is x, bit 1 y, bit 2 z.")
         .def_prop_ro(
             "corners_cam", [](const Instance& i) { return matrix_to_numpy(i.corners_cam); },
-            nb::sig("def corners_cam(self) -> numpy.ndarray"),
-            "The same in the camera's frame, OpenCV's axes.")
+            nb::sig("def corners_cam(self) -> numpy.ndarray"), "The same in camera space, OpenCV axes.")
         .def_prop_ro(
             "corners_px", [](const Instance& i) { return matrix_to_numpy(i.corners_px); },
             nb::sig("def corners_px(self) -> numpy.ndarray"),
-            "8 x 2 pixels of the corners (pixel centres at integers), through the lens; NaN behind the "
-            "camera.");
+            "8 x 2 pixels of the projected corners (pixel centres at integers), lens distortion included; "
+            "NaN behind the camera.");
 }
 
 }  // namespace
 
 void bind_ground_truth(nb::module_& module) {
-    nb::class_<app::Moment>(
-        module, "Moment",
-        "What a scene shows and its camera at one moment, for optical flow: Viewer.moment().");
-    InstanceClass instance(module, "Instance", "Annotation of one instance in a picture.");
+    nb::class_<app::Moment>(module, "Moment",
+                            "A scene and its camera at one moment, for optical flow: Viewer.moment().");
+    InstanceClass instance(module, "Instance", "Annotation of one instance in an image.");
     bind_counts(instance);
     bind_space(instance);
     module.def(
@@ -250,7 +248,7 @@ void bind_ground_truth(nb::module_& module) {
             bitmap.pixels.assign(pixels.begin(), pixels.end());
             return rle_of(bitmap, {image.width(), image.height()});
         },
-        nb::arg("mask"), "COCO's run lengths of a height x width mask of uint8.");
+        nb::arg("mask"), "COCO run lengths of a height x width mask of uint8.");
 }
 
 }  // namespace easypbr::python

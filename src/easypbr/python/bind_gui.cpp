@@ -87,14 +87,14 @@ std::pair<double, double> pair_of(const Vec2d& values) {
 }
 
 void bind_event(nb::module_& module) {
-    nb::class_<InputEvent>(module, "Event", "What a person did with mouse or keyboard, or with the window.")
+    nb::class_<InputEvent>(module, "Event", "An input event of mouse, keyboard or window.")
         .def_prop_ro(
             "kind", kind_name,
             "'move', 'press', 'release', 'scroll', 'key_down', 'key_up', 'text', 'drop', 'resize' or "
             "'focus_lost'.")
         .def_prop_ro(
             "position", [](const InputEvent& e) { return pair_of(e.position); },
-            "Of the pointer, pixels from the window's top left corner.")
+            "Pointer position in pixels from the top left corner of the window.")
         .def_prop_ro(
             "button",
             [](const InputEvent& e) {
@@ -102,21 +102,21 @@ void bind_event(nb::module_& module) {
                 const bool any = e.kind == InputEvent::Kind::press || e.kind == InputEvent::Kind::release;
                 return std::string(any ? names[size_t(e.button)] : "");
             },
-            "'left', 'right' or 'middle', of 'press' and 'release'.")
+            "'left', 'right' or 'middle', for 'press' and 'release'.")
         .def_prop_ro(
             "key", key_name,
-            "Of 'key_down' and 'key_up': a capital letter, a digit, 'F1', 'space', 'escape', 'left', ...")
+            "For 'key_down' and 'key_up': a capital letter, a digit, 'F1', 'space', 'escape', 'left', ...")
         .def_ro("shift", &InputEvent::shift)
         .def_ro("control", &InputEvent::control)
         .def_ro("alt", &InputEvent::alt)
         .def_prop_ro(
             "scroll", [](const InputEvent& e) { return pair_of(e.scroll); },
-            "Notches of the wheel, (x, y); y is positive away from the person.")
-        .def_prop_ro("text", text_of, "The letter that was typed, of 'text'.")
-        .def_ro("paths", &InputEvent::paths, "Of the files that were dropped.")
+            "Wheel steps (x, y); y is positive away from the user.")
+        .def_prop_ro("text", text_of, "The typed character, for 'text'.")
+        .def_ro("paths", &InputEvent::paths, "Paths of the dropped files, for 'drop'.")
         .def_prop_ro(
             "size", [](const InputEvent& e) { return std::pair(e.size.x(), e.size.y()); },
-            "The window's new (width, height), of 'resize'.")
+            "The new (width, height) of the window, for 'resize'.")
         .def("__repr__", [](const InputEvent& e) {
             return fmt::format("<Event: {} {} at ({:g}, {:g})>", kind_name(e), key_name(e), e.position.x(),
                                e.position.y());
@@ -229,7 +229,10 @@ void raise_kept(SharedViewer& self) {
 }
 
 bool update_window(SharedViewer& self) {
-    const bool open = self.run([](Viewer& viewer) { return viewer.update(); });
+    const bool open = self.run([](Viewer& viewer) {
+        const Uninterrupted whole;
+        return viewer.update();
+    });
     raise_kept(self);
     return open;
 }

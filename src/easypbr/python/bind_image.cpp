@@ -70,18 +70,18 @@ void bind_image(nb::module_& module) {
             released([&] { io::save_image(image, path); });
         },
         nb::arg("image"), nb::arg("path"),
-        "Writes PNG, JPEG, HDR or EXR by the extension. Floating-point pictures are linear, others sRGB.");
+        "Writes PNG, JPEG, HDR or EXR by the extension. Floating-point images are linear, others sRGB.");
     module.def("encode_png", png_bytes, nb::arg("image"), nb::arg("deep") = false,
-               "The bytes of a PNG file of 8 bits; with `deep`, of 16 if the picture is uint16.");
+               "The bytes of a PNG file of 8 bits; with `deep`, of 16 bits if the image is uint16.");
     module.def("encode_jpeg", jpeg_bytes, nb::arg("image"), nb::arg("quality") = io::jpeg_quality,
                "The bytes of a JPEG file.");
     module.def("encode_exr", exr_bytes, nb::arg("image"), "The bytes of an EXR file of float32.");
     module.def("decode_image", decoded, nb::arg("bytes"),
                nb::sig("def decode_image(bytes: bytes) -> numpy.ndarray"),
-               "What load_image() gives of a file of these bytes.");
+               "Like load_image(), from the bytes of a file.");
     module.def(
         "compare_images", compare_images, nb::arg("a"), nb::arg("b"),
-        "How much two pictures of the same size and type differ: max, mean, rmse, psnr, different (pixels).");
+        "Differences of two images of the same size and type: max, mean, rmse, psnr, different (pixels).");
     module.def(
         "check_picture_path",
         [](const fs::path& path) {
@@ -89,7 +89,8 @@ void bind_image(nb::module_& module) {
             check_writable(path);
             return linear;
         },
-        nb::arg("path"), "Raises unless a picture can be written there; whether it will hold linear values.");
+        nb::arg("path"),
+        "Raises if an image cannot be written there; returns whether it will hold linear values.");
 }
 
 }  // namespace easypbr::python

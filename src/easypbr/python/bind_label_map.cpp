@@ -91,7 +91,7 @@ UnknownLabels unknown_from(const std::string& text) {
     throw ArgumentError(fmt::format("LabelMap unknown: expected 'refused' or 'unlabelled', got '{}'", text));
 }
 
-void construct(LabelMapHandle* self, const NamesLike& names, const ColorsLike& colors,
+void construct_label_map(LabelMapHandle* self, const NamesLike& names, const ColorsLike& colors,
                const std::optional<std::vector<int32_t>>& labels, std::optional<int32_t> unlabelled,
                const std::string& unknown, const std::string& name) {
     std::vector<LabelClass> classes = classes_from(names, labels);
@@ -135,15 +135,13 @@ std::vector<T> column(const LabelMapHandle& handle, T LabelClass::*member) {
 }
 
 void bind_constructors(nb::class_<LabelMapHandle>& map) {
-    map.def(
-        "__init__", construct, nb::arg("names"), nb::arg("colors").none() = nb::none(),
-        nb::arg("labels").none() = nb::none(), nb::arg("unlabelled").none() = nb::none(),
-        nb::arg("unknown") = "refused", nb::arg("name") = "",
-        "`names`: a list for labels 0, 1, 2, ... or for `labels`, or a dict of label to name. `colors`: "
-        "texts, or "
-        "n x 3 numbers, 0 to 255 if whole, else 0 to 1; None: generated. `unlabelled`: the label of what has "
-        "none. `unknown`: whether meshes take labels of at least 0 that are not in the map: 'refused', or "
-        "'unlabelled': shown as that class.");
+    map.def("__init__", construct_label_map, nb::arg("names"), nb::arg("colors").none() = nb::none(),
+            nb::arg("labels").none() = nb::none(), nb::arg("unlabelled").none() = nb::none(),
+            nb::arg("unknown") = "refused", nb::arg("name") = "",
+            "`names`: a list for labels 0, 1, 2, ... or for `labels`, or a dict of label to name. `colors`: "
+            "texts, or n x 3 numbers, integers 0 to 255 or floats 0 to 1; None: generated. `unlabelled`: the "
+            "label of unlabelled elements. `unknown`: whether non-negative labels that are not in the map "
+            "are 'refused', or shown as 'unlabelled'.");
     for (const std::string& name : built_in_label_map_names())
         map.def_static(
             name.c_str(), [name] { return LabelMapHandle{built_in_label_map(name)}; },
@@ -183,21 +181,21 @@ std::shared_ptr<const LabelMap> to_label_map(nb::handle object) {
 }
 
 void bind_label_map(nb::module_& module) {
-    nb::class_<LabelMapHandle> map(
-        module, "LabelMap", "What integer labels mean: a name and a colour for each class. Immutable.");
+    nb::class_<LabelMapHandle> map(module, "LabelMap",
+                                   "Names and colours of integer labels, one per class. Immutable.");
     bind_constructors(map);
     map.def_prop_ro("name", [](const LabelMapHandle& m) { return m.map->name(); })
         .def_prop_ro(
             "labels", [](const LabelMapHandle& m) { return column(m, &LabelClass::label); },
-            "All labels, rising.")
+            "All labels in ascending order.")
         .def_prop_ro(
             "names", [](const LabelMapHandle& m) { return column(m, &LabelClass::name); },
-            "The classes' names in the order of `labels`.")
+            "The names of the classes in the order of `labels`.")
         .def_prop_ro("colors", colors_of, nb::sig("def colors(self) -> numpy.ndarray"),
                      "n x 3 uint8 sRGB in the order of `labels`.")
         .def_prop_ro(
             "unlabelled", [](const LabelMapHandle& m) { return m.map->unlabelled(); },
-            "The label of what has none, or None.")
+            "The label of unlabelled elements, or None.")
         .def_prop_ro("unknown",
                      [](const LabelMapHandle& m) {
                          return m.map->unknown() == UnknownLabels::refused ? "refused" : "unlabelled";
@@ -221,7 +219,7 @@ void bind_label_map(nb::module_& module) {
         .def("__repr__", map_text);
     module.def("colormap", colormap_to_numpy, nb::arg("name"),
                nb::sig("def colormap(name: str) -> numpy.ndarray"),
-               "The 256 x 3 uint8 sRGB colours of a colormap: viridis, plasma, ...");
+               "The 256 x 3 uint8 sRGB colours of a colour map: viridis, plasma, ...");
 }
 
 }  // namespace easypbr::python

@@ -35,7 +35,7 @@ void check_length(const char* name, float value) {
         throw ArgumentError(fmt::format("light.{}: expected a number of at least 0, got {}", name, value));
 }
 
-void number_property(nb::class_<Light>& light, const char* name, float Light::*member, const char* doc) {
+void light_number(nb::class_<Light>& light, const char* name, float Light::*member, const char* doc) {
     light.def_prop_rw(
         name, [member](const Light& l) { return l.*member; },
         [member, name](Light& l, float value) {
@@ -67,7 +67,7 @@ void set_radius(Light& light, nb::handle value) {
     }
 }
 
-void construct(Light* self, const std::string& type, const nb::kwargs& values) {
+void construct_light(Light* self, const std::string& type, const nb::kwargs& values) {
     Light light;
     set_type(light, type);
     // Python owns the object: an AttributeError holds on to it.
@@ -80,9 +80,10 @@ void construct(Light* self, const std::string& type, const nb::kwargs& values) {
 
 void bind_light(nb::module_& module) {
     nb::class_<Light> light(
-        module, "Light", "A light in world space. Its colour is linear numbers, or text ('#rrggbb', sRGB).");
+        module, "Light",
+        "A light in world space. Its colour is given as linear numbers, or as text ('#rrggbb', sRGB).");
     light
-        .def("__init__", construct, nb::arg("type") = "point", nb::arg("values"),
+        .def("__init__", construct_light, nb::arg("type") = "point", nb::arg("values"),
              nb::sig("def __init__(self, type: str = 'point', **values: object) -> None"))
         .def_prop_rw(
             "type", [](const Light& l) { return type_names[size_t(l.type)]; }, set_type,
@@ -91,24 +92,24 @@ void bind_light(nb::module_& module) {
         .def_prop_rw(
             "color", [](const Light& l) { return vector_to_tuple(l.color); },
             [](Light& l, const ColorLike& value) { l.color = to_linear_color(value, "light.color"); },
-            "Multiplies the intensity.");
-    vector_property(light, "position", &Light::position, "Point and spot.");
-    vector_property(light, "direction", &Light::direction, "Where the light goes; directional and spot.");
-    number_property(light, "intensity", &Light::intensity, "Candela (point, spot) or lux (directional).");
-    number_property(light, "inner_cone_deg", &Light::inner_cone_deg,
-                    "Half angle of a spot's full-intensity cone.");
-    number_property(light, "outer_cone_deg", &Light::outer_cone_deg, "Half angle at which a spot ends.");
-    light.def_rw("casts_shadows", &Light::casts_shadows, "Whether anything casts a shadow in this light.")
+            "Colour, multiplies the intensity.");
+    vector_property(light, "position", &Light::position, "Position in world space; point and spot.");
+    vector_property(light, "direction", &Light::direction, "Direction of propagation; directional and spot.");
+    light_number(light, "intensity", &Light::intensity, "Candela (point, spot) or lux (directional).");
+    light_number(light, "inner_cone_deg", &Light::inner_cone_deg,
+                    "Spot: half angle of full intensity, degrees.");
+    light_number(light, "outer_cone_deg", &Light::outer_cone_deg,
+                    "Spot: half angle of zero intensity, degrees.");
+    light.def_rw("casts_shadows", &Light::casts_shadows, "Enables the shadows of this light.")
         .def_prop_rw(
             "radius", get_radius, [](Light& l, const nb::object& value) { set_radius(l, value); },
             nb::for_getter(nb::sig("def radius(self) -> float | Automatic | Follow")),
             nb::for_setter(nb::sig("def radius(self, value: float | Automatic | Follow) -> None")),
-            "Of the glowing sphere of a point or spot light, world units: what softens its shadows. "
-            "Automatic: a "
-            "twentieth of the content's radius.");
-    number_property(light, "angular_radius_deg", &Light::angular_radius_deg,
-                    "Directional: half the angle under which the light is seen; by default the sun's.");
-    number_property(light, "range", &Light::range, "Distance at which the light ends; 0: unlimited.");
+            "Point and spot: radius of the spherical emitter in world units, which sets the size of "
+            "penumbrae. Automatic: 0.05 of the content's radius.");
+    light_number(light, "angular_radius_deg", &Light::angular_radius_deg,
+                    "Directional: angular radius of the emitter in degrees; default: that of the sun.");
+    light_number(light, "range", &Light::range, "Distance of zero intensity, world units; 0: unlimited.");
 }
 
 }  // namespace easypbr::python

@@ -113,7 +113,7 @@ void set_shader(MaterialHandle& m, nb::handle object) {
 
 /// Keyword arguments are assignments to attributes; a misspelt one is an AttributeError.
 template <class Handle>
-void construct(Handle* self, const nb::kwargs& values) {
+void construct_material(Handle* self, const nb::kwargs& values) {
     // Python owns the object: an AttributeError holds on to it.
     nb::object object = nb::cast(Handle());
     for (auto [name, value] : values) nb::setattr(object, name, value);
@@ -134,9 +134,8 @@ std::string style_text(nb::handle style) {
 }
 
 void bind_style(nb::module_& module) {
-    nb::class_<StyleHandle> style(module, "Style",
-                                  "How a mesh is drawn; `auto` where it follows from the data.");
-    style.def("__init__", construct<StyleHandle>, nb::sig("def __init__(self, **values: object) -> None"));
+    nb::class_<StyleHandle> style(module, "Style", "Style of a mesh; `auto` values follow from the data.");
+    style.def("__init__", construct_material<StyleHandle>, nb::sig("def __init__(self, **values: object) -> None"));
     style.def("__repr__", style_text);
     const std::string prefix = "style.";
     for (const Field& field : fields()) {
@@ -161,9 +160,9 @@ void bind_style(nb::module_& module) {
 
 void bind_material(nb::module_& module) {
     MaterialClass material(module, "Material",
-                           "glTF 2.0's metallic-roughness model and its extensions. Colours are linear "
-                           "numbers, or text ('#rrggbb', sRGB).");
-    material.def("__init__", construct<MaterialHandle>,
+                           "The metallic-roughness model of glTF 2.0 and its extensions. Colours are given "
+                           "as linear numbers, or as text ('#rrggbb', sRGB).");
+    material.def("__init__", construct_material<MaterialHandle>,
                  nb::sig("def __init__(self, **values: object) -> None"));
     material.def_prop_rw(
         "name", [](const MaterialHandle& m) { return m.get().name; },
@@ -173,18 +172,18 @@ void bind_material(nb::module_& module) {
     for (const MaterialColor& color : material_colors()) color_property(material, color);
     for (const MaterialNumber& number : material_numbers()) number_property(material, number);
     for (const MaterialTexture& use : material_textures()) texture_property(material, use);
-    flag_property(material, "double_sided", &Material::double_sided, "Back faces are drawn too.");
-    flag_property(material, "unlit", &Material::unlit, "The base colour is shown as it is.");
+    flag_property(material, "double_sided", &Material::double_sided,
+                  "Draws back faces, with the normal towards the viewer.");
+    flag_property(material, "unlit", &Material::unlit, "Shows the base colour without lighting.");
     material.def_prop_rw(
         "alpha_mode", alpha_mode, set_alpha_mode,
-        "'opaque', 'mask', 'blend', or 'auto': blend where the opacity or a vertex' alpha is below 1.");
-    material.def_prop_rw("shader", shader, set_shader,
-                         nb::for_getter(nb::sig("def shader(self) -> str | os.PathLike | None")),
-                         nb::for_setter(nb::sig("def shader(self, value: str | os.PathLike | None) -> None")),
-                         nb::for_setter(nb::arg("value").none()),
-                         "GLSL with a function `void surface(inout Surface s)` that changes the surface: "
-                         "text, or the path of a "
-                         "file (pathlib.Path), which is read again whenever it changes. None: no shader.");
+        "'opaque', 'mask', 'blend', or 'auto': blend if the opacity or the alpha of a vertex is below 1.");
+    material.def_prop_rw(
+        "shader", shader, set_shader, nb::for_getter(nb::sig("def shader(self) -> str | os.PathLike | None")),
+        nb::for_setter(nb::sig("def shader(self, value: str | os.PathLike | None) -> None")),
+        nb::for_setter(nb::arg("value").none()),
+        "Surface shader, GLSL with a function `void surface(inout Surface s)`: text, or the path of a file "
+        "(pathlib.Path), which is reloaded when it changes. None: no shader.");
     bind_style(module);
 }
 

@@ -94,7 +94,7 @@ const std::vector<MeshArray>& mesh_arrays() {
          [](nb::handle o) {
              return prepare<int32_t, 2, &MeshData::E>(o, {"E", 2, 2}, false);
          }},
-        {"L", "int32 labels, one for each vertex or each face (of the vertices when there are as many).",
+        {"L", "int32 labels, one per vertex or per face (per vertex if both numbers are equal).",
          view<int32_t, 1, &MeshData::L>, prepare_labels},
         {"I", "n float32 intensities.", view<float, 1, &MeshData::I>, [](nb::handle o) {
              return prepare<float, 1, &MeshData::I>(o, {"I", 1, 1}, false);
@@ -188,17 +188,15 @@ void bind_arrays(nb::class_<Mesh>& mesh) {
                 nb::sig(fmt::format("def {}(self, value: numpy.typing.ArrayLike | None) -> None", array.name)
                             .c_str())),
             array.doc);
-    mesh.def(
-        "assign", assign, nb::sig("def assign(self, **arrays: object) -> None"),
-        "Replaces several arrays at once, e.g. assign(V=v, F=f, N=None); also label_map and scalars. With "
-        "offset=(0, 0, 0), V is taken as world coordinates whatever the offset was.");
+    mesh.def("assign", assign, nb::sig("def assign(self, **arrays: object) -> None"),
+             "Replaces several arrays at once, e.g. assign(V=v, F=f, N=None); also label_map and scalars. "
+             "With offset=(0, 0, 0), V holds world coordinates, whatever the offset was.");
     mesh.def(
         "edit",
         [](const Mesh& m, const std::string& name) {
             return ArrayEdit{m, &mesh_array(name), nb::none()};
         },
-        nb::arg("array"),
-        "`with mesh.edit(\"V\") as v:` gives a writable copy and puts it in place at the end.");
+        nb::arg("array"), "`with mesh.edit(\"V\") as v:` gives a writable copy and assigns it at the end.");
 }
 
 void bind_look(nb::class_<Mesh>& mesh) {
@@ -208,7 +206,7 @@ void bind_look(nb::class_<Mesh>& mesh) {
                 return MaterialHandle{m, 0, {}};
             },
             [](Mesh& m, const MaterialHandle& material) { m.set_material(material.get()); },
-            "The first material; changes of its attributes go through.")
+            "The first material; assignments to its attributes change the mesh.")
         .def_prop_ro("materials", materials, "All materials, at least one.")
         .def(
             "add_material",
@@ -224,11 +222,11 @@ void bind_look(nb::class_<Mesh>& mesh) {
                 return StyleHandle{m, {}};
             },
             [](Mesh& m, const StyleHandle& style) { m.set_style(style.get()); },
-            "How the mesh is drawn; changes of its attributes go through.");
+            "The style of the mesh; assignments to its attributes change the mesh.");
 }
 
 void bind_array_edit(nb::module_& module) {
-    nb::class_<ArrayEdit>(module, "ArrayEdit", "A mesh's array while it is edited.")
+    nb::class_<ArrayEdit>(module, "ArrayEdit", "An array of a mesh while it is edited.")
         .def("__enter__", &ArrayEdit::enter, nb::sig("def __enter__(self) -> numpy.ndarray"))
         .def("__exit__", &ArrayEdit::exit, nb::arg("type").none(), nb::arg("value").none(),
              nb::arg("traceback").none());
@@ -250,7 +248,7 @@ void bind_mesh(nb::module_& module) {
             "what "
             "the assimp module reads.")
         .def("__init__", construct_from_arrays, nb::arg("V"), nb::arg("F").none() = nb::none(),
-             "n x 3 positions and m x 3 vertex indices, of any numeric type; without faces a cloud.");
+             "n x 3 positions and m x 3 vertex indices, of any numeric type; a cloud without faces.");
     bind_arrays(mesh);
     bind_mesh_fields(mesh);
     bind_look(mesh);

@@ -45,14 +45,13 @@ void bind_kd_tree(nb::module_& module) {
         .def("nearest", nearest, nb::arg("queries"), nb::arg("k") = 1,
              nb::sig("def nearest(self, queries: numpy.typing.ArrayLike, k: int = 1) -> tuple[numpy.ndarray, "
                      "numpy.ndarray]"),
-             "Distances and indices, both m x k, of the k points nearest to each query, the nearest first.")
+             "Distances and indices, both m x k, of the k nearest points of each query, nearest first.")
         .def("within", within, nb::arg("queries"), nb::arg("radius"),
              nb::sig(
                  "def within(self, queries: numpy.typing.ArrayLike, radius: float) -> tuple[numpy.ndarray, "
                  "numpy.ndarray, numpy.ndarray]"),
-             "Distances, indices and m + 1 offsets: the points at a distance of at most `radius` from query "
-             "i are "
-             "indices[offsets[i]:offsets[i + 1]], the nearest first.");
+             "Distances, indices and m + 1 offsets: the points within `radius` of query i are "
+             "indices[offsets[i]:offsets[i + 1]], nearest first.");
 }
 
 }  // namespace
@@ -70,9 +69,8 @@ void bind_neighbors(nb::module_& module) {
             nb::sig(
                 "def estimate_normals(self, k: int = 16, viewpoint: numpy.typing.ArrayLike | None = None) -> "
                 "Mesh"),
-            "A new mesh with normals from the k nearest neighbours of each vertex. They face the viewpoint, "
-            "or agree "
-            "with each other: closed shapes face outwards, ground up.")
+            "A new mesh with normals estimated from the k nearest neighbours of each vertex. They are "
+            "oriented towards the viewpoint, or consistently: closed shapes face outwards, ground up.")
         .def(
             "estimate_surfels",
             [](const Mesh& mesh, int k, const nb::object& viewpoint, bool keep_normals) {

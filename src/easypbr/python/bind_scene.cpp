@@ -41,17 +41,20 @@ void bind_scene(nb::module_& module) {
             nb::for_getter(nb::sig("def origin(self) -> numpy.ndarray")))
         .def_prop_rw("environment", &Scene::environment,
                      [](Scene& s, const Environment& environment) { s.set_environment(environment); });
-    nb::class_<io::LoadedScene>(module, "LoadedScene", "All that a file holds: mesh, cameras and lights.")
+    nb::class_<io::LoadedScene>(module, "LoadedScene",
+                                "The contents of a file: mesh, cameras, lights and animations.")
         .def_ro("mesh", &io::LoadedScene::mesh)
         .def_ro("cameras", &io::LoadedScene::cameras, "Cameras by name, in world space (glTF).")
         .def_ro("lights", &io::LoadedScene::lights, "Lights by name, in world space (glTF).")
-        .def_ro("animations", &io::LoadedScene::animations, "What moves the mesh and its children (glTF).");
+        .def_ro("animations", &io::LoadedScene::animations,
+                "Animations of the mesh and its children (glTF).");
     module.def(
         "load_scene",
         [](const std::filesystem::path& path) { return released([&] { return io::load_scene(path); }); },
-        nb::arg("path"), "Reads a file with its cameras and lights; Mesh(path) reads the mesh alone.");
+        nb::arg("path"),
+        "Reads a file with its cameras, lights and animations; Mesh(path) reads the mesh alone.");
     module.def(
-        "default_scene", [] { return default_scene(); }, "The scene that is there without being made.");
+        "default_scene", [] { return default_scene(); }, "The default scene.");
     module.def("demo_scene", [] { return released([] { return make_demo_scene(); }); });
 }
 

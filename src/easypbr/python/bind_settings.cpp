@@ -43,7 +43,7 @@ Value::Data data_from_python(const Field& field, nb::handle given) {
         if (field.type == FieldType::text) return std::string();
         if (field.type == FieldType::vector) return std::vector<double>();
         throw ArgumentError(fmt::format("setting '{}': None is no value{}", field.name,
-                                        field.can_be_automatic ? "; auto lets it be inferred" : ""));
+                                        field.can_be_automatic ? "; auto infers it" : ""));
     }
     const nb::object object = unboxed(given);
     if (nb::isinstance<nb::str>(object)) return nb::cast<std::string>(object);
@@ -66,18 +66,19 @@ const char* type_name(FieldType type) {
 }
 
 void bind_automatic(nb::module_& module) {
-    nb::class_<Automatic>(module, "Automatic", "Of a setting: inferred at the next picture, then kept.")
+    nb::class_<Automatic>(module, "Automatic",
+                          "Value of a setting: inferred at the next image, then latched.")
         .def_prop_ro(
             "value",
             [](const Automatic& a) { return a.value ? data_to_python(*a.value, false) : nb::none(); },
             nb::sig("def value(self) -> bool | float | str | tuple[float, ...] | None"),
-            "The value inferred for the last picture; None before there was one.")
+            "The value inferred for the last image; None before the first.")
         .def("__repr__", automatic_text)
         .def(
             "__eq__", [](const Automatic&, nb::handle other) { return nb::isinstance<Automatic>(other); },
             nb::arg("other").none())
         .def("__hash__", [](const Automatic&) { return 1; });
-    nb::class_<Follow>(module, "Follow", "Of a setting: inferred anew for every picture.")
+    nb::class_<Follow>(module, "Follow", "Value of a setting: inferred again for every image.")
         .def("__repr__", [](const Follow&) { return "follow"; })
         .def(
             "__eq__", [](const Follow&, nb::handle other) { return nb::isinstance<Follow>(other); },
@@ -128,7 +129,7 @@ void bind_settings(nb::module_& module) {
         "fields", [] { return fields(); }, "All settings in the order of the reference.");
     module.def(
         "field", [](const std::string& name) { return field(name); }, nb::arg("name"),
-        "Raises UnknownNameError with the nearest name.");
+        "One setting by name. Raises UnknownNameError with the nearest name.");
 }
 
 }  // namespace easypbr::python

@@ -92,14 +92,15 @@ void bind_round_shapes(nb::module_& module) {
             return released([&] { return make_torus(radius, tube_radius, segments, tube_segments); });
         },
         nb::arg("radius") = 1.0f, nb::arg("tube_radius") = 0.25f, nb::arg("segments") = 64,
-        nb::arg("tube_segments") = 32, "A ring around the y axis; the radius is that of the tube's middle.");
+        nb::arg("tube_segments") = 32,
+        "A torus around the y axis; the radius is that of the tube's centre line.");
     module.def(
         "capsule",
         [](float radius, float height, int segments) {
             return released([&] { return make_capsule(radius, height, segments); });
         },
         nb::arg("radius") = 0.5f, nb::arg("height") = 1.0f, nb::arg("segments") = 64,
-        "A cylinder with half spheres as ends, whose centres are `height` apart.");
+        "A capsule: a cylinder with hemispheres as caps, whose centres are `height` apart.");
 }
 
 void bind_flat_shapes(nb::module_& module) {
@@ -116,7 +117,7 @@ void bind_flat_shapes(nb::module_& module) {
         "grid",
         [](float size, int divisions) { return released([&] { return make_grid(size, divisions); }); },
         nb::arg("size") = 10.0f, nb::arg("divisions") = 10,
-        "The lines of a square in the xz plane with divisions x divisions fields: edges only.");
+        "Lines of a square grid in the xz plane with divisions x divisions cells; edges only.");
     module.def(
         "teapot",
         [](float height, int subdivisions) {
@@ -133,7 +134,7 @@ void bind_signs(nb::module_& module) {
                               to_vector3(end, "arrow: end").cast<float>(), radius, segments);
         },
         nb::arg("start"), nb::arg("end"), nb::arg("radius").none() = nb::none(), nb::arg("segments") = 32,
-        "An arrow between two points; `radius` is the shaft's, by default a fortieth of the length.");
+        "An arrow between two points; `radius` is that of the shaft, default 1/40 of the length.");
     module.def(
         "axes", [](float length, std::optional<float> radius) { return make_axes(length, radius); },
         nb::arg("length") = 1.0f, nb::arg("radius").none() = nb::none(),

@@ -59,25 +59,22 @@ void bind_surfaces(nb::module_&) {
                 return released([&] { return sample_surface(m, count, seed); });
             },
             nb::arg("count"), nb::arg("seed") = 0,
-            "A new cloud of points on the faces, uniform by area, with interpolated normals, colours and all "
-            "else.")
+            "A new cloud of points on the faces, uniform by area, with interpolated attributes.")
         .def("closest_points", closest_points, nb::arg("queries"),
              nb::sig("def closest_points(self, queries: numpy.typing.ArrayLike) -> tuple[numpy.ndarray, "
                      "numpy.ndarray, numpy.ndarray]"),
-             "Of each query the distance to the surface, the face, and the point on it that is nearest; of a "
-             "mesh "
-             "without faces the vertex.")
+             "For each query the distance to the surface, the nearest face, and the nearest point on it; the "
+             "nearest vertex for a mesh without faces.")
         .def("distance_to", distance_to, nb::arg("other"), nb::arg("samples") = 100000, nb::arg("seed") = 0,
-             "One-sided distances of this surface from the other: a dict of max (of vertices and samples), "
-             "mean and rms (of "
-             "the samples). Poses and children count.")
+             "One-sided distances of this surface to the other: a dict of max (of vertices and samples), "
+             "mean and rms (of the samples). Poses and children are included.")
         .def(
             "hausdorff_distance",
             [](const Mesh& m, const Mesh& other, int64_t samples, uint64_t seed) {
                 return released([&] { return hausdorff_distance(m, other, samples, seed); });
             },
             nb::arg("other"), nb::arg("samples") = 100000, nb::arg("seed") = 0,
-            "The larger maximum of the distances either way.");
+            "The Hausdorff distance: the larger of both one-sided maxima.");
 }
 
 }  // namespace easypbr::python

@@ -189,7 +189,10 @@ void bind_window(ViewerClass& viewer) {
             "screenshot",
             [](SharedViewer& self, const nb::object& size, float scale) {
                 const std::optional<Vec2i> pixels = optional_size(size);
-                Image screen = self.run([&](Viewer& v) { return v.screenshot(pixels, scale); });
+                Image screen = self.run([&](Viewer& v) {
+                    const Uninterrupted whole;
+                    return v.screenshot(pixels, scale);
+                });
                 raise_kept(self);
                 return to_numpy(std::move(screen));
             },
@@ -304,15 +307,16 @@ void bind_viewer(nb::module_& module) {
     bind_recorder(module, viewer);
     bind_window(viewer);
     bind_gui(module, viewer);
-    nb::class_<app::Pick>(module, "Pick", "What lies under a pixel.")
+    nb::class_<app::Pick>(module, "Pick", "The surface at a pixel.")
         .def_ro("object", &app::Pick::object, "Name in the scene; 'car/wheel' for a child.")
-        .def_ro("part", &app::Pick::part, "Name of the part of the mesh; empty where it has none.")
+        .def_ro("part", &app::Pick::part, "Name of the part of the mesh; empty without parts.")
         .def_ro("is_face", &app::Pick::is_face,
-                "Whether `element` is a face; else it is a vertex: of a point, surfel or voxel.")
+                "Whether `element` is a face; else it is a vertex of a point, surfel or voxel.")
         .def_ro("element", &app::Pick::element, "Index of the face or vertex in the mesh's own arrays.")
         .def_prop_ro(
             "position", [](const app::Pick& pick) { return matrix_to_numpy(pick.position.transpose()); },
-            "World position, in the scene's frame.", nb::sig("def position(self) -> numpy.ndarray"))
+            "Position in world space, relative to the scene's origin.",
+            nb::sig("def position(self) -> numpy.ndarray"))
         .def_ro("depth", &app::Pick::depth, "Distance along the optical axis.")
         .def("__repr__", [](const app::Pick& pick) {
             return fmt::format("<Pick: {} {} {} at ({:g}, {:g}, {:g})>", pick.object,

@@ -5,6 +5,8 @@
 
 #include <utility>
 
+#include "easypbr/python/job.h"
+
 namespace easypbr::python {
 
 namespace nb = nanobind;
@@ -33,14 +35,21 @@ void bind_ground_truth(nb::module_& module);
 /// Hands the messages logged so far to Python. Needs the GIL; no lock of ours may be held.
 void deliver_log();
 
-/// Runs work without the GIL. What it logs reaches Python afterwards, when no lock is held any more.
+/// Runs work without the GIL; see Job for how it is interrupted. What it logs reaches Python afterwards, when
+/// no lock is held any more.
 template <class Work>
 auto released(Work&& work) {
     struct Delivery {
         ~Delivery() { deliver_log(); }
     } delivery;
-    nb::gil_scoped_release release;
-    return std::forward<Work>(work)();
+    Job job;
+    try {
+        nb::gil_scoped_release release;
+        const Job::Running running;
+        return std::forward<Work>(work)();
+    } catch (const Interrupted&) {
+        Job::raise();
+    }
 }
 
 }  // namespace easypbr::python

@@ -102,8 +102,8 @@ void bind_mesh_fields(nb::class_<Mesh>& mesh) {
             },
             nb::for_getter(nb::sig("def label_map(self) -> LabelMap | None")),
             nb::for_setter(nb::arg("value").none()),
-            "What the labels mean; None: generated colours. Assign a LabelMap, a built-in one's name or a "
-            "path.")
+            "Names and colours of the labels; None: generated colours. Assign a LabelMap, the name of a "
+            "built-in one, or a path.")
         .def_prop_rw(
             "scalars",
             [](const Mesh& m) { return nb::module_::import_("easypbr.scalars").attr("Scalars")(m); },
@@ -114,8 +114,7 @@ void bind_mesh_fields(nb::class_<Mesh>& mesh) {
             nb::for_getter(
                 nb::sig("def scalars(self) -> collections.abc.MutableMapping[str, numpy.ndarray]")),
             nb::for_setter(nb::arg("value").none()),
-            "Named values, each for the vertices or the faces: mesh.scalars['heat'] = values adds or "
-            "replaces, del "
+            "Named scalar fields of vertices or faces: mesh.scalars['heat'] = values adds or replaces, del "
             "removes; assign a dict to replace all.")
         .def("_scalars", scalars_of)
         .def(
@@ -125,7 +124,7 @@ void bind_mesh_fields(nb::class_<Mesh>& mesh) {
                 released([&] { m.add_scalar(name, numbers); });
             },
             nb::arg("name"), nb::arg("values"),
-            "Adds named values, one for each vertex or each face (NaN: none), or replaces those of the name.")
+            "Adds or replaces a named scalar field, one value per vertex or per face (NaN: missing).")
         .def(
             "remove_scalar",
             [](Mesh& m, const std::string& name) { released([&] { m.remove_scalar(name); }); },

@@ -21,12 +21,12 @@ void bind_poses(nb::class_<Mesh>& mesh) {
             "T_parent_mesh", [](const Mesh& m) { return matrix_to_numpy(m.T_parent_mesh().matrix()); },
             [](Mesh& m, const ArrayLike& T) { m.set_T_parent_mesh(to_affine(T, "T_parent_mesh")); },
             nb::for_getter(nb::sig("def T_parent_mesh(self) -> numpy.ndarray")),
-            "4 x 4 pose in the parent, or in the world.")
+            "4 x 4 pose relative to the parent, or to the world.")
         .def_prop_rw(
             "T_world_mesh", [](const Mesh& m) { return matrix_to_numpy(m.T_world_mesh().matrix()); },
             [](Mesh& m, const ArrayLike& T) { m.set_T_world_mesh(to_affine(T, "T_world_mesh")); },
             nb::for_getter(nb::sig("def T_world_mesh(self) -> numpy.ndarray")),
-            "4 x 4 pose in the world: those of all parents, applied to T_parent_mesh.")
+            "4 x 4 pose in world space, the product of those of all parents and T_parent_mesh.")
         .def_prop_rw(
             "offset", [](const Mesh& m) { return matrix_to_numpy(m.offset().transpose()); },
             [](Mesh& m, const ArrayLike& offset) {
@@ -34,8 +34,8 @@ void bind_poses(nb::class_<Mesh>& mesh) {
                 released([&] { m.set_offset(value); });
             },
             nb::for_getter(nb::sig("def offset(self) -> numpy.ndarray")),
-            "3 float64: offset + V are the coordinates that the mesh was given. Not zero for data far from "
-            "zero, which float32 would not hold. Meshes of one scene are placed by it, see Scene.origin.");
+            "3 float64: offset + V are the original coordinates. Non-zero for data far from zero, beyond the "
+            "precision of float32. Meshes of a scene are placed by it, see Scene.origin.");
 }
 
 void bind_motion(nb::class_<Mesh>& mesh) {
@@ -43,9 +43,8 @@ void bind_motion(nb::class_<Mesh>& mesh) {
             "translate",
             [](Mesh& m, const ArrayLike& step) { m.translate(to_vector3(step, "translate: step")); },
             nb::arg("step"), nb::sig("def translate(self, step: numpy.typing.ArrayLike) -> None"),
-            "Moves by (x, y, z) in the parent's frame, which is the world for a mesh without a parent. "
-            "Children "
-            "move along, as with every step of motion.")
+            "Translates by (x, y, z) in the parent's frame, which is the world for a mesh without a parent. "
+            "Children move too, as with every transform.")
         .def(
             "rotate_axis_angle",
             [](Mesh& m, const ArrayLike& axis, double angle_deg) {
@@ -53,7 +52,7 @@ void bind_motion(nb::class_<Mesh>& mesh) {
             },
             nb::arg("axis"), nb::arg("angle_deg"),
             nb::sig("def rotate_axis_angle(self, axis: numpy.typing.ArrayLike, angle_deg: float) -> None"),
-            "Turns about the mesh's own origin, counter-clockwise seen against the axis.")
+            "Rotates about the mesh's own origin, counter-clockwise seen against the axis.")
         .def(
             "orbit",
             [](Mesh& m, const ArrayLike& axis, const ArrayLike& center, double angle_deg) {
@@ -63,7 +62,7 @@ void bind_motion(nb::class_<Mesh>& mesh) {
             nb::sig(
                 "def orbit(self, axis: numpy.typing.ArrayLike, center: numpy.typing.ArrayLike, angle_deg: "
                 "float) -> None"),
-            "Goes around the line through `center` along the axis, and turns with it.")
+            "Rotates about the line through `center` along the axis.")
         .def("scale", scale, nb::arg("factors"),
              nb::sig("def scale(self, factors: float | numpy.typing.ArrayLike) -> None"),
              "Scales by one factor or (x, y, z) along the mesh's own axes, about its own origin.");
@@ -76,25 +75,23 @@ void bind_hierarchy(nb::class_<Mesh>& mesh) {
                 released([&] { m.add_child(child, keep_world_pose); });
             },
             nb::arg("child"), nb::arg("keep_world_pose") = false,
-            "Hangs a mesh below this one: from now on its pose is relative to this one's, and it moves with "
-            "it. "
-            "With keep_world_pose it stays where it is. Shown under a name of its own, too, it is still "
-            "drawn "
-            "once.")
+            "Adds a mesh as a child: its pose becomes relative to this one's, and it moves with it. "
+            "keep_world_pose keeps its world pose. A child that is also shown under a name of its own is "
+            "drawn once.")
         .def(
             "remove_child",
             [](Mesh& m, const Mesh& child, bool keep_world_pose) {
                 released([&] { m.remove_child(child, keep_world_pose); });
             },
             nb::arg("child"), nb::arg("keep_world_pose") = false,
-            "Takes a child away; with keep_world_pose it stays where it is.")
+            "Removes a child; keep_world_pose keeps its world pose.")
         .def_prop_ro("children", [](const Mesh& m) { return m.children(); })
         .def_prop_ro(
             "parent", [](const Mesh& m) { return m.parent(); }, nb::sig("def parent(self) -> Mesh | None"),
-            "The mesh that this one is a child of.")
+            "The parent mesh.")
         .def(
             "clone", [](const Mesh& m) { return released([&] { return m.clone(); }); },
-            "A copy of its own, children included.");
+            "A deep copy, children included.");
 }
 
 }  // namespace

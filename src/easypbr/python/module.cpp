@@ -29,6 +29,7 @@ NB_MODULE(_easypbr, module) {
     using namespace easypbr::python;
     bind_errors();
     bind_log();
+    bind_jobs();
     bind_laz();
     bind_settings(module);
     bind_image(module);

@@ -93,127 +93,126 @@ constexpr size_t max_clip_planes = 16;
 
 void add_image(Table& table) {
     const auto image = [](auto member) { return at(&Settings::image, member); };
-    table.push_back(make("image.size", image(&ImageSettings::size), "Width and height of the picture.",
+    table.push_back(make("image.size", image(&ImageSettings::size), "Width and height of the image.",
                          "pixels", {1, max_image_side}));
-    table.push_back(make("image.samples", image(&ImageSettings::samples),
-                         "Jittered frames averaged for a still picture; 1 gives a single frame.", "",
-                         {1, 65536}));
-    table.push_back(make("image.antialias", image(&ImageSettings::antialias),
-                         "Smoothing of edges in a single frame; stills are smoothed by their samples."));
+    table.push_back(
+        make("image.samples", image(&ImageSettings::samples),
+             "Number of jittered samples averaged per pixel; 1 draws a single frame without accumulation.",
+             "", {1, 65536}));
+    table.push_back(
+        make("image.antialias", image(&ImageSettings::antialias),
+             "Anti-aliasing of a single frame; an accumulated image is anti-aliased by its samples."));
 }
 
 void add_camera(Table& table) {
     const auto camera = [](auto member) { return at(&Settings::camera, member); };
     table.push_back(make("camera.projection", camera(&CameraSettings::projection),
-                         "Perspective, or orthographic: without foreshortening."));
-    table.push_back(
-        make("camera.position", camera(&CameraSettings::position),
-             "Where the camera stands in the world; automatic: so that the content fills the picture.",
-             "world units"));
+                         "Camera projection, perspective or orthographic."));
+    table.push_back(make("camera.position", camera(&CameraSettings::position),
+                         "Camera position in world space; automatic: frames the content.", "world units"));
     table.push_back(make("camera.target", camera(&CameraSettings::target),
-                         "The point the camera looks at; automatic: so that the content is in the middle.",
+                         "Point in world space that the camera looks at; automatic: centres the content.",
                          "world units"));
     table.push_back(
         with_choices(make("camera.up", camera(&CameraSettings::up),
-                          "World axis that points up in the picture and to the sky of the environment."),
+                          "World axis that points up, for the camera, the environment and the ground."),
                      {"+x", "-x", "+y", "-y", "+z", "-z", "x", "y", "z"}));
     table.push_back(make("camera.fov_y_deg", camera(&CameraSettings::fov_y_deg),
-                         "Full vertical opening angle of a perspective camera.", "degrees", {1, 170}));
+                         "Vertical field of view of a perspective camera.", "degrees", {1, 170}));
     table.push_back(
         make("camera.ortho_height", camera(&CameraSettings::ortho_height),
-             "World height of an orthographic picture; automatic: so that the content fills the picture.",
+             "Height of the view volume of an orthographic camera; automatic: frames the content.",
              "world units", {positive, unlimited}));
     table.push_back(make("camera.near", camera(&CameraSettings::near),
-                         "Distance of the near plane; automatic: well before the content.", "world units",
-                         {positive, unlimited}));
-    table.push_back(
-        make("camera.azimuth_deg", camera(&CameraSettings::azimuth_deg),
-             "Direction an automatic camera looks from: 0 in front of the content, positive further right.",
-             "degrees", {-360, 360}));
-    table.push_back(
-        make("camera.elevation_deg", camera(&CameraSettings::elevation_deg),
-             "Height an automatic camera looks from: 0 level with the content, 90 straight above it.",
-             "degrees", {-90, 90}));
-    table.push_back(
-        make("camera.margin", camera(&CameraSettings::margin),
-             "Part of the picture that an automatic camera leaves free, both sides of an axis together.", "",
-             {0, 0.9}));
-    table.push_back(
-        with_sizes(make("camera.pose", camera(&CameraSettings::pose),
-                        "Camera-to-world matrix, 16 numbers row by row, axes x right, y up, z backwards; "
-                        "replaces position and target."),
-                   {0, 16}));
+                         "Distance to the near clipping plane; automatic: a tenth of the smallest depth of "
+                         "the content, but at least 0.001 of the distance to the target.",
+                         "world units", {positive, unlimited}));
+    table.push_back(make("camera.azimuth_deg", camera(&CameraSettings::azimuth_deg),
+                         "Azimuth of an automatic camera: 0 in front of the content, positive to its right.",
+                         "degrees", {-360, 360}));
+    table.push_back(make("camera.elevation_deg", camera(&CameraSettings::elevation_deg),
+                         "Elevation of an automatic camera: 0 level with the content, 90 directly above it.",
+                         "degrees", {-90, 90}));
+    table.push_back(make("camera.margin", camera(&CameraSettings::margin),
+                         "Fraction of the image left free around the content by an automatic camera, both "
+                         "sides of an axis together.",
+                         "", {0, 0.9}));
+    table.push_back(with_sizes(make("camera.pose", camera(&CameraSettings::pose),
+                                    "Camera-to-world matrix, 16 numbers in row-major order, OpenGL axes (x "
+                                    "right, y up, z backwards); overrides position and target."),
+                               {0, 16}));
     table.push_back(
         with_sizes(make("camera.intrinsics", camera(&CameraSettings::intrinsics),
-                        "fx, fy, cx, cy, width, height as OpenCV has them (pixel centres at integers), and "
-                        "skew if there is any; replaces fov_y_deg.",
+                        "Pinhole intrinsics fx, fy, cx, cy, width, height and optionally skew, in the OpenCV "
+                        "convention (pixel centres at integers); overrides fov_y_deg.",
                         "pixels"),
                    {0, 6, 7}));
-    table.push_back(make("camera.distortion_model", camera(&CameraSettings::distortion_model),
-                         "What the coefficients of the lens's distortion mean, as OpenCV has them."));
-    table.push_back(with_sizes(
-        make("camera.distortion", camera(&CameraSettings::distortion),
-             "Distortion of the lens: k1, k2, p1, p2, then k3, then k4, k5, k6; of a fisheye k1, k2, "
-             "k3, k4. Needs camera.intrinsics."),
-        {0, 4, 5, 8}));
+    table.push_back(
+        make("camera.distortion_model", camera(&CameraSettings::distortion_model),
+             "Lens distortion model of the coefficients in camera.distortion, as defined by OpenCV."));
+    table.push_back(
+        with_sizes(make("camera.distortion", camera(&CameraSettings::distortion),
+                        "Lens distortion coefficients in the order of OpenCV: k1, k2, p1, p2, optionally k3, "
+                        "optionally k4, k5, k6; fisheye: k1, k2, k3, k4. Requires camera.intrinsics."),
+                   {0, 4, 5, 8}));
 }
 
 void add_surroundings(Table& table) {
     const auto environment = [](auto member) { return at(&Settings::environment, member); };
-    table.push_back(
-        make("environment.file", environment(&EnvironmentSettings::file),
-             "Equirectangular picture (HDR, EXR, PNG, JPEG) that lights the scene; empty: a studio."));
+    table.push_back(make("environment.file", environment(&EnvironmentSettings::file),
+                         "Equirectangular environment map (HDR, EXR, PNG, JPEG) for image-based lighting; "
+                         "empty: a built-in studio."));
     table.push_back(make("environment.enabled", environment(&EnvironmentSettings::enabled),
-                         "Whether an environment lights the scene; automatic: yes."));
-    table.push_back(make("environment.rotation_deg", environment(&EnvironmentSettings::rotation_deg),
-                         "Turns the environment about the up axis, counter-clockwise seen from above.",
-                         "degrees", {-360, 360}));
-    table.push_back(make("environment.intensity", environment(&EnvironmentSettings::intensity),
-                         "Factor on the environment's light.", "", {0, 1e6}));
+                         "Enables image-based lighting; automatic: on."));
     table.push_back(
-        make("environment.sun", environment(&EnvironmentSettings::sun),
-             "Whether the environment's sun is a light of its own, which casts shadows; automatic: where "
-             "a given environment has a sun."));
+        make("environment.rotation_deg", environment(&EnvironmentSettings::rotation_deg),
+             "Rotation of the environment map about the up axis, counter-clockwise seen from above.",
+             "degrees", {-360, 360}));
+    table.push_back(make("environment.intensity", environment(&EnvironmentSettings::intensity),
+                         "Scale factor of the radiance of the environment map.", "", {0, 1e6}));
+    table.push_back(make("environment.sun", environment(&EnvironmentSettings::sun),
+                         "Extracts the sun of the environment map as a directional light that casts shadows; "
+                         "automatic: on if a given environment map contains a sun."));
 
     const auto background = [](auto member) { return at(&Settings::background, member); };
+    table.push_back(make("background.mode", background(&BackgroundSettings::mode),
+                         "Background: a constant colour, the environment map, the environment map blurred, "
+                         "an image file, or transparent (alpha 0)."));
     table.push_back(
-        make("background.mode", background(&BackgroundSettings::mode),
-             "What is seen behind the content: a colour, the environment, the environment blurred, an "
-             "image, or nothing (alpha 0)."));
-    table.push_back(color("background.color", background(&BackgroundSettings::color),
-                          "Background colour, shown exactly: exposure and tone curve do not touch it."));
+        color("background.color", background(&BackgroundSettings::color),
+              "Background colour in mode color; exposure and tone mapping are not applied to it."));
     table.push_back(make("background.image", background(&BackgroundSettings::image),
-                         "Image file shown behind the content in mode 'image'."));
+                         "Image file of the background in mode image."));
     table.push_back(make("background.blur", background(&BackgroundSettings::blur),
-                         "How blurred the environment is in mode 'blur': 0 sharp, 1 soft.", "", {0, 1}));
+                         "Blur of the environment map in mode blur: 0 none, 1 the most.", "", {0, 1}));
 }
 
 void add_studio_light(Table& table, const std::string& name, StudioLight LightsSettings::*light) {
     const auto field = [&](auto member) { return at(&Settings::lights, light, member); };
     const std::string prefix = "lights." + name + ".", the = "the " + name + " light";
     table.push_back(make(prefix + "enabled", field(&StudioLight::enabled),
-                         "Whether " + the + " is on; automatic: on when no environment was given."));
+                         "Enables " + the + "; automatic: on if no environment map is given."));
     table.push_back(
         make(prefix + "position", field(&StudioLight::position),
-             "Where " + the + " stands in the world; automatic: placed relative to the first camera.",
+             "Position of " + the + " in world space; automatic: placed relative to the first camera.",
              "world units"));
     table.push_back(color(prefix + "color", field(&StudioLight::color), "Colour of " + the + "."));
-    table.push_back(
-        make(prefix + "intensity", field(&StudioLight::intensity),
-             "Luminous intensity of " + the + "; automatic: the same light on the content at any scale.",
-             "candela", {0, unlimited}));
+    table.push_back(make(
+        prefix + "intensity", field(&StudioLight::intensity),
+        "Luminous intensity of " + the + "; automatic: gives the content the same irradiance at any scale.",
+        "candela", {0, unlimited}));
     table.push_back(make(prefix + "casts_shadows", field(&StudioLight::casts_shadows),
-                         "Whether " + the + " casts shadows."));
+                         "Enables the shadows of " + the + "."));
     table.push_back(make(prefix + "radius", field(&StudioLight::radius),
                          "Radius of " + the +
-                             ", which softens its shadows; automatic: three tenths of the "
-                             "content's radius.",
+                             " as a spherical emitter, which sets the size of its penumbrae; automatic: 0.3 "
+                             "of the radius of the content.",
                          "world units", {0, unlimited}));
 }
 
 void add_lights(Table& table) {
     table.push_back(make("lights.intensity", at(&Settings::lights, &LightsSettings::intensity),
-                         "Factor on the key, fill and rim light together.", "", {0, 1e6}));
+                         "Scale factor of the intensity of the key, fill and rim lights.", "", {0, 1e6}));
     add_studio_light(table, "key", &LightsSettings::key);
     add_studio_light(table, "fill", &LightsSettings::fill);
     add_studio_light(table, "rim", &LightsSettings::rim);
@@ -221,60 +220,55 @@ void add_lights(Table& table) {
 
 void add_shadows(Table& table) {
     const auto shadows = [](auto member) { return at(&Settings::shadows, member); };
-    table.push_back(make("shadows.enabled", shadows(&ShadowSettings::enabled),
-                         "Whether lights that cast shadows do so."));
+    table.push_back(make("shadows.enabled", shadows(&ShadowSettings::enabled), "Enables shadows."));
     table.push_back(
         make("shadows.mode", shadows(&ShadowSettings::mode),
-             "Soft: blurred by the light's radius the more the further the shadow falls; pcf: the "
-             "mean of 3x3 texels of the shadow map; hard: one texel."));
+             "Shadow filter: percentage-closer soft shadows with penumbrae from the size of the light "
+             "(soft), percentage-closer filtering of 3x3 texels (pcf), or no filter (hard)."));
     table.push_back(make("shadows.resolution", shadows(&ShadowSettings::resolution),
-                         "Side of a shadow map; more resolves finer shadows.", "texels", {16, 8192}));
+                         "Width and height of a shadow map.", "texels", {16, 8192}));
 }
 
 void add_shading(Table& table) {
     const auto shading = [](auto member) { return at(&Settings::shading, member); };
-    table.push_back(
-        make("shading.brdf", shading(&ShadingSettings::brdf),
-             "Geometry term of the GGX reflection: height-correlated Smith, separable Smith, or the "
-             "approximation of Unreal Engine 4."));
-    table.push_back(
-        make("shading.multiple_scattering", shading(&ShadingSettings::multiple_scattering),
-             "Adds the light that bounces several times within a rough surface, so that none is lost."));
+    table.push_back(make("shading.brdf", shading(&ShadingSettings::brdf),
+                         "Masking-shadowing function of the GGX specular BRDF: height-correlated Smith, "
+                         "separable Smith, or the Schlick approximation of Unreal Engine 4."));
+    table.push_back(make("shading.multiple_scattering", shading(&ShadingSettings::multiple_scattering),
+                         "Enables multiple-scattering energy compensation of the specular BRDF."));
     table.push_back(make("shading.dielectric_f0", shading(&ShadingSettings::dielectric_f0),
-                         "Reflectance of non-metals at normal incidence.", "", {0, 1}));
+                         "Reflectance F0 of dielectrics at normal incidence, for materials with the default "
+                         "index of refraction.",
+                         "", {0, 1}));
 
     const auto eye_dome = [](auto member) { return at(&Settings::edl, member); };
     table.push_back(
         make("edl.enabled", eye_dome(&EdlSettings::enabled),
-             "Eye-dome lighting of points without normals: what lies behind an edge is darkened."));
-    table.push_back(make("edl.strength", eye_dome(&EdlSettings::strength),
-                         "How much eye-dome lighting darkens.", "", {0, 100}));
-    table.push_back(
-        make("edl.radius", eye_dome(&EdlSettings::radius),
-             "Distance at which eye-dome lighting looks for edges, in pixels of a picture 1080 high.",
-             "pixels", {0.1, 100}));
+             "Enables eye-dome lighting of points without normals, which darkens depth discontinuities."));
+    table.push_back(make("edl.strength", eye_dome(&EdlSettings::strength), "Strength of eye-dome lighting.",
+                         "", {0, 100}));
+    table.push_back(make("edl.radius", eye_dome(&EdlSettings::radius),
+                         "Sampling radius of eye-dome lighting, in pixels of an image 1080 pixels high.",
+                         "pixels", {0.1, 100}));
 
     const auto transparency = [](auto member) { return at(&Settings::transparency, member); };
-    table.push_back(
-        make("transparency.mode", transparency(&TransparencySettings::mode),
-             "How blended surfaces are drawn: in layers, exact at any number of samples, or stochastically, "
-             "in a part of the samples, which is quicker where very many lie behind each other."));
-    table.push_back(make(
-        "transparency.max_layers", transparency(&TransparencySettings::max_layers),
-        "How many surfaces behind each other are drawn apart, from the farthest on; of those beyond only "
-        "the nearest is drawn.",
-        "", {1, 10000}));
+    table.push_back(make("transparency.mode", transparency(&TransparencySettings::mode),
+                         "Transparency algorithm: depth peeling (layers), exact at any number of samples, or "
+                         "stochastic transparency, faster for very many layers but noisy."));
+    table.push_back(make("transparency.max_layers", transparency(&TransparencySettings::max_layers),
+                         "Maximum number of transparent layers peeled per pixel, farthest first; of the "
+                         "layers in front of them only the nearest is drawn.",
+                         "", {1, 10000}));
 
     const auto tone = [](auto member) { return at(&Settings::tonemap, member); };
-    table.push_back(make("tonemap.operator", tone(&TonemapSettings::tone_operator),
-                         "Curve from scene light to the picture's range."));
     table.push_back(
-        make("tonemap.exposure", tone(&TonemapSettings::exposure),
-             "Factor on scene light before the tone curve; automatic: a white surface facing the camera "
-             "averages 1.",
-             "", {0, 1e30}));
+        make("tonemap.operator", tone(&TonemapSettings::tone_operator), "Tone mapping operator."));
+    table.push_back(make("tonemap.exposure", tone(&TonemapSettings::exposure),
+                         "Exposure: linear scale factor applied before tone mapping; automatic: metered so "
+                         "that a white diffuse surface facing the camera has a mean radiance of 1.",
+                         "", {0, 1e30}));
     table.push_back(make("tonemap.exposure_compensation", tone(&TonemapSettings::exposure_compensation),
-                         "Makes the picture brighter or darker by this many doublings.", "stops", {-30, 30}));
+                         "Exposure compensation in EV.", "EV", {-30, 30}));
 }
 
 void add_extended_overrides(Table& table) {
@@ -289,30 +283,31 @@ void add_extended_overrides(Table& table) {
     };
     using M = MaterialSettings;
     table.push_back(make("material.alpha_mode", material(&M::alpha_mode),
-                         "Whether opacity is ignored, cuts holes, or blends, for every material; automatic: "
-                         "the material's own."));
-    number("opacity", &M::opacity, "Opacity, 0 clear to 1 opaque,", {0, 1});
-    number("clearcoat", &M::clearcoat, "Layer of clear varnish, 0 to 1,", {0, 1});
-    number("clearcoat_roughness", &M::clearcoat_roughness, "Roughness of the varnish", {0, 1});
-    tint("sheen_color", &M::sheen_color, "Colour of the sheen of cloth");
-    number("sheen_roughness", &M::sheen_roughness, "Roughness of the sheen", {0, 1});
-    number("ior", &M::ior, "Index of refraction, at least 1,", {1, 100});
-    number("specular", &M::specular, "Strength of a non-metal's reflection, 0 to 1,", {0, 1});
-    tint("specular_color", &M::specular_color, "Tint of a non-metal's reflection");
-    number("transmission", &M::transmission, "Part of the light that goes through, 0 to 1,", {0, 1});
-    number("thickness", &M::thickness, "Thickness of the volume, 0 for thin-walled,", {0, unlimited},
-           "mesh units");
-    tint("attenuation_color", &M::attenuation_color, "Colour of white light after attenuation_distance");
+                         "Alpha mode of every material as in glTF: opaque, mask (alpha cutoff) or blend; "
+                         "automatic: the material's own."));
+    number("opacity", &M::opacity, "Opacity, 0 transparent to 1 opaque,", {0, 1});
+    number("clearcoat", &M::clearcoat, "Clearcoat strength", {0, 1});
+    number("clearcoat_roughness", &M::clearcoat_roughness, "Clearcoat roughness", {0, 1});
+    tint("sheen_color", &M::sheen_color, "Sheen colour");
+    number("sheen_roughness", &M::sheen_roughness, "Sheen roughness", {0, 1});
+    number("ior", &M::ior, "Index of refraction", {1, 100});
+    number("specular", &M::specular, "Strength of the specular reflection of dielectrics", {0, 1});
+    tint("specular_color", &M::specular_color, "Specular colour of dielectrics at normal incidence");
+    number("transmission", &M::transmission,
+           "Transmission, the fraction of light transmitted by dielectrics,", {0, 1});
+    number("thickness", &M::thickness, "Thickness of the volume below the surface, 0 for thin-walled,",
+           {0, unlimited}, "mesh units");
+    tint("attenuation_color", &M::attenuation_color, "Colour of white light after the attenuation distance");
     number("attenuation_distance", &M::attenuation_distance,
-           "Distance within the volume that gives light the attenuation colour", {positive, unlimited},
+           "Distance in the volume after which white light has the attenuation colour", {positive, unlimited},
            "world units");
-    number("iridescence", &M::iridescence, "Strength of a thin film's colours, 0 to 1,", {0, 1});
+    number("iridescence", &M::iridescence, "Iridescence strength", {0, 1});
     number("iridescence_ior", &M::iridescence_ior, "Index of refraction of the thin film", {1, 100});
     number("iridescence_thickness", &M::iridescence_thickness, "Thickness of the thin film", {0, 1e6},
            "nanometres");
-    number("anisotropy", &M::anisotropy, "How far reflections are drawn out, 0 to 1,", {0, 1});
+    number("anisotropy", &M::anisotropy, "Anisotropy strength", {0, 1});
     number("anisotropy_rotation_deg", &M::anisotropy_rotation_deg,
-           "Direction of the anisotropy, from the tangent,", {-360, 360}, "degrees");
+           "Rotation of the anisotropy, counter-clockwise from the tangent,", {-360, 360}, "degrees");
 }
 
 void add_overrides(Table& table) {
@@ -323,31 +318,32 @@ void add_overrides(Table& table) {
     };
     table.push_back(color("material.color", material(&MaterialSettings::color),
                           "Base colour of every material; automatic: the material's own."));
-    table.push_back(make(
-        "material.metallic", material(&MaterialSettings::metallic),
-        "Metalness of every material, 0 dielectric to 1 metal; automatic: the material's own.", "", {0, 1}));
-    table.push_back(make("material.roughness", material(&MaterialSettings::roughness),
-                         "Perceptual roughness of every material; automatic: the material's own.", "",
-                         {0, 1}));
+    table.push_back(
+        make("material.metallic", material(&MaterialSettings::metallic),
+             "Metallic factor of every material, 0 dielectric to 1 metal; automatic: the material's own.", "",
+             {0, 1}));
+    table.push_back(
+        make("material.roughness", material(&MaterialSettings::roughness),
+             "Perceptual roughness of every material, alpha = roughness^2; automatic: the material's own.",
+             "", {0, 1}));
     table.push_back(color("material.emissive", material(&MaterialSettings::emissive),
-                          "Colour that every material glows in; automatic: the material's own."));
+                          "Emitted radiance of every material; automatic: the material's own."));
     add_extended_overrides(table);
     texture("base_color_texture", &MaterialSettings::base_color_texture,
-            "Image file for the base colour (sRGB) of every material.");
+            "Base colour texture file (sRGB) of every material.");
     texture("metallic_texture", &MaterialSettings::metallic_texture,
-            "Image file for the metalness of every material.");
+            "Metallic texture file of every material.");
     texture("roughness_texture", &MaterialSettings::roughness_texture,
-            "Image file for the roughness of every material.");
+            "Roughness texture file of every material.");
     texture("normal_texture", &MaterialSettings::normal_texture,
-            "Image file for the tangent-space normals (+Y up) of every material.");
+            "Normal map file of every material, tangent space, +Y up (OpenGL).");
     texture("occlusion_texture", &MaterialSettings::occlusion_texture,
-            "Image file for the baked ambient occlusion of every material.");
+            "Baked ambient occlusion texture file of every material.");
     texture("emissive_texture", &MaterialSettings::emissive_texture,
-            "Image file for the glow (sRGB) of every material.");
-    texture("opacity_texture", &MaterialSettings::opacity_texture,
-            "Image file for the opacity of every material.");
+            "Emissive texture file (sRGB) of every material.");
+    texture("opacity_texture", &MaterialSettings::opacity_texture, "Opacity texture file of every material.");
     texture("shader", &MaterialSettings::shader,
-            "File with GLSL that changes the surface of every material, read again whenever it changes.");
+            "GLSL surface shader file of every material, reloaded when it changes.");
 }
 
 /// Each is a row of every object's style and, as a setting, overrides them all.
@@ -355,98 +351,100 @@ void add_style(Table& table) {
     const auto add = [&](const std::string& name, auto member, const std::string& doc,
                          const std::string& inferred, const std::string& unit = {}, Range range = {}) {
         table.push_back(make("style." + name, at(&Settings::style, member),
-                             doc + " Automatic: the object's own choice, else " + inferred + ".", unit,
+                             doc + " Automatic: the object's own value, else " + inferred + ".", unit,
                              range));
     };
-    add("mode", &Style::mode, "What objects are drawn as.",
-        "faces as a mesh, voxels as cubes, normals with tangents as surfels, edges as lines, and vertices "
-        "alone "
-        "as points");
-    add("visible", &Style::visible, "Whether objects are drawn.", "yes");
+    add("mode", &Style::mode, "Primitive that objects are drawn as.",
+        "voxels for data with a voxel size, a mesh for faces, surfels for normals with tangents, lines for "
+        "edges, and points for vertices alone");
+    add("visible", &Style::visible, "Visibility of objects.", "yes");
     add("point_size", &Style::point_size, "Diameter of points, in point_size_unit.",
-        "as large as the points' mean spacing", "", {positive, unlimited});
+        "the mean spacing of the points", "", {positive, unlimited});
     add("point_size_unit", &Style::point_size_unit,
-        "Whether point_size is in pixels, or in world units and so smaller far away.", "pixels");
-    add("point_shape", &Style::point_shape, "Round or square points.", "round");
-    add("surfel_scale", &Style::surfel_scale, "Factor on the size of surfels.", "1", "", {positive, 1e6});
-    add("voxel_size", &Style::voxel_size, "Edge of the cubes of voxels.",
-        "the data's, or the points' mean spacing", "world units", {positive, unlimited});
-    add("line_width", &Style::line_width, "Width of lines, edges and normals.", "1.5", "pixels", {0.1, 1000});
-    add("line_dash", &Style::line_dash, "Length of dashes and of the gaps between them; 0 for solid lines.",
+        "Unit of point_size: pixels, or world units, which shrink with distance.", "pixels");
+    add("point_shape", &Style::point_shape, "Shape of points.", "round");
+    add("surfel_scale", &Style::surfel_scale, "Scale factor of the size of surfels.", "1", "",
+        {positive, 1e6});
+    add("voxel_size", &Style::voxel_size, "Edge length of voxels.",
+        "the voxel size of the data, or the mean spacing of the points", "world units",
+        {positive, unlimited});
+    add("line_width", &Style::line_width, "Width of lines, wireframes and normals.", "1.5", "pixels",
+        {0.1, 1000});
+    add("line_dash", &Style::line_dash, "Length of dashes and of the gaps between them; 0 draws solid lines.",
         "0", "pixels", {0, 10000});
-    table.push_back(
-        color("style.line_color", at(&Settings::style, &Style::line_color),
-              "Colour of edges, wireframes and normals. Automatic: the object's own choice, else the "
-              "vertices' colours for edges, dark for wireframes and blue for normals."));
-    add("show_wireframe", &Style::show_wireframe, "The edges of faces are drawn on top of them.", "no");
-    add("show_normals", &Style::show_normals, "A line along each vertex normal is drawn.", "no");
-    add("normal_length", &Style::normal_length, "Length of the lines of show_normals.",
-        "2 % of the object's diagonal", "world units", {positive, unlimited});
-    add("show_points", &Style::show_points, "The vertices are drawn as points on top.", "no");
-    add("two_sided", &Style::two_sided, "Back faces are drawn, lit from their side.",
-        "the material's choice");
-    add("flat", &Style::flat, "One normal per face.", "no");
-    add("lit", &Style::lit, "Whether light shades the colours; otherwise they are shown as they are.",
-        "yes for faces, surfels, voxels and points with normals, no for labels of points and for points "
-        "without "
+    table.push_back(color("style.line_color", at(&Settings::style, &Style::line_color),
+                          "Colour of lines, wireframes and normals. Automatic: the object's own value, else "
+                          "the vertex colours for lines, dark for wireframes and blue for normals."));
+    add("show_wireframe", &Style::show_wireframe, "Draws the edges of the faces as a wireframe.", "no");
+    add("show_normals", &Style::show_normals, "Draws a line along each vertex normal.", "no");
+    add("normal_length", &Style::normal_length, "Length of the lines drawn by show_normals.",
+        "2 % of the diagonal of the object's bounding box", "world units", {positive, unlimited});
+    add("show_points", &Style::show_points, "Draws the vertices as points too.", "no");
+    add("two_sided", &Style::two_sided,
+        "Draws back faces, with the normal towards the viewer; disables back-face culling.",
+        "the material's double_sided");
+    add("flat", &Style::flat, "Enables flat shading, with one normal per face.", "no");
+    add("lit", &Style::lit, "Enables lighting; without it the colours are shown unchanged.",
+        "yes for faces, surfels, voxels and points with normals, no for points that are labelled or have no "
         "normals");
-    add("overlay", &Style::overlay, "Drawn over everything else, whatever is in front.", "no");
-    add("color_by", &Style::color_by, "What colours objects.",
+    add("overlay", &Style::overlay, "Draws objects over all others, without a depth test against them.",
+        "no");
+    add("color_by", &Style::color_by, "Source of the colours of objects.",
         "labels, else textures and vertex colours, else scalars, else intensities of points, else the "
         "material");
-    add("scalar", &Style::scalar, "Name of the scalars that colour objects; chooses color_by scalar.",
-        "the first that were added");
-    add("colormap", &Style::colormap, "Colours of scalars, heights and intensities.",
+    add("scalar", &Style::scalar, "Name of the scalar field that colours objects; implies color_by scalar.",
+        "the first that was added");
+    add("colormap", &Style::colormap, "Colour map of scalars, heights and intensities.",
         "grey for intensities, else viridis");
-    add("color_min", &Style::color_min, "Value that has the colormap's first colour; lower ones have it too.",
-        "the smallest, or the first percentile where outliers would take most of the colours", "",
-        {-1e38, 1e38});
-    add("color_max", &Style::color_max, "Value that has the colormap's last colour; higher ones have it too.",
-        "the largest, or the 99th percentile where outliers would take most of the colours", "",
-        {-1e38, 1e38});
+    add("color_min", &Style::color_min,
+        "Value mapped to the first colour of the colour map; lower values are clamped.",
+        "the minimum, or the 1st percentile if outliers would take up most of the range", "", {-1e38, 1e38});
+    add("color_max", &Style::color_max,
+        "Value mapped to the last colour of the colour map; higher values are clamped.",
+        "the maximum, or the 99th percentile if outliers would take up most of the range", "", {-1e38, 1e38});
     table.push_back(color("style.nan_color", at(&Settings::style, &Style::nan_color),
-                          "Colour of what has no value (NaN). Automatic: the object's own choice, else grey, "
-                          "with the colormap grey magenta."));
+                          "Colour of missing values (NaN). Automatic: the object's own value, else grey, or "
+                          "magenta with the colour map grey."));
 }
 
 void add_clipping(Table& table) {
-    table.push_back(make("points.hole_filling", at(&Settings::points, &PointsSettings::hole_filling),
-                         "Times that gaps of a pixel between points are closed with what surrounds them.", "",
-                         {0, 32}));
+    table.push_back(
+        make("points.hole_filling", at(&Settings::points, &PointsSettings::hole_filling),
+             "Number of passes that fill one-pixel holes between points from the neighbouring pixels.", "",
+             {0, 32}));
     std::vector<size_t> lengths;
     for (size_t planes = 0; planes <= max_clip_planes; ++planes) lengths.push_back(4 * planes);
     table.push_back(with_sizes(make("clip.planes", at(&Settings::clip, &ClipSettings::planes),
-                                    "Planes that cut every object, four numbers nx, ny, nz, d each, in world "
-                                    "space: what lies at n . p + d >= 0 is kept."),
+                                    "Clipping planes in world space, four numbers nx, ny, nz, d each; points "
+                                    "p with n . p + d >= 0 are kept."),
                                lengths));
     table.push_back(with_sizes(
         make("clip.box", at(&Settings::clip, &ClipSettings::box),
-             "Box that every object is cut to: least x, y, z, then largest x, y, z.", "world units"),
+             "Clipping box in world space, minimum x, y, z, then maximum x, y, z; its inside is kept.",
+             "world units"),
         {0, 6}));
 }
 
 void add_annotation(Table& table) {
     const auto annotation = [](auto member) { return at(&Settings::annotation, member); };
-    table.push_back(
-        make("annotation.legend", annotation(&AnnotationSettings::legend),
-             "Whether the picture has a legend of the labels that colour objects; automatic: no."));
-    table.push_back(
-        make("annotation.colorbar", annotation(&AnnotationSettings::colorbar),
-             "Whether the picture has a colour bar of the values that colour objects; automatic: no."));
+    table.push_back(make("annotation.legend", annotation(&AnnotationSettings::legend),
+                         "Draws a legend of the labels that colour objects; automatic: no."));
+    table.push_back(make("annotation.colorbar", annotation(&AnnotationSettings::colorbar),
+                         "Draws a colour bar of the values that colour objects; automatic: no."));
     table.push_back(make("annotation.title", annotation(&AnnotationSettings::title),
-                         "Title of legends and colour bars; empty: the values' name, none for legends."));
+                         "Title of legends and colour bars; empty: the name of the values for colour bars, "
+                         "none for legends."));
     table.push_back(make("annotation.corner", annotation(&AnnotationSettings::corner),
-                         "Corner of the picture that they stand in."));
+                         "Corner of the image that legends and colour bars are placed in."));
     table.push_back(make("annotation.text_size", annotation(&AnnotationSettings::text_size),
-                         "Size of the text, as a part of the picture's height.", "", {0.005, 0.2}));
+                         "Text size as a fraction of the image height.", "", {0.005, 0.2}));
 }
 
 void add_loading(Table& table) {
-    table.push_back(
-        make("load.crease_deg", at(&Settings::load, &LoadSettings::crease_deg),
-             "Angle between faces beyond which an STL file keeps an edge, when the command line reads "
-             "it.",
-             "degrees", {0, 180}));
+    table.push_back(make("load.crease_deg", at(&Settings::load, &LoadSettings::crease_deg),
+                         "Crease angle of STL files loaded by the command line and the window: edges between "
+                         "faces at a larger angle stay sharp.",
+                         "degrees", {0, 180}));
 }
 
 }  // namespace

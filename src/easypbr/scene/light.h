@@ -10,22 +10,22 @@ namespace easypbr {
 
 enum class LightType { point, directional, spot };
 
-/// A light in world space. `color` is linear Rec.709 and multiplies `intensity`.
+/// A light in world space, as in KHR_lights_punctual. `color` is linear Rec.709 and multiplies `intensity`.
 struct Light {
     LightType type = LightType::point;
     bool enabled = true;
     Vec3 position{0, 0, 0};    ///< point and spot
-    Vec3 direction{0, -1, 0};  ///< where the light goes; directional and spot; need not be of unit length
+    Vec3 direction{0, -1, 0};  ///< of propagation; directional and spot; need not be of unit length
     Vec3 color{1, 1, 1};
-    float intensity = 1;        ///< candela (point, spot), lux (directional)
-    float inner_cone_deg = 0;   ///< spot: half angle of the full-intensity cone
-    float outer_cone_deg = 45;  ///< spot: half angle at which the light ends
-    float range = 0;            ///< distance at which the light ends; 0: unlimited
+    float intensity = 1;        ///< candela (point, spot) or lux (directional)
+    float inner_cone_deg = 0;   ///< spot: half angle of full intensity, degrees
+    float outer_cone_deg = 45;  ///< spot: half angle of zero intensity, degrees
+    float range = 0;            ///< distance of zero intensity, world units; 0: unlimited
     bool casts_shadows = true;
-    /// Point and spot: radius of the glowing sphere, world units; what softens its shadows. 0: a point.
-    /// Automatic: a twentieth of the content's radius.
+    /// Point and spot: radius of the spherical emitter in world units, which sets the size of penumbrae. 0: a
+    /// point. Automatic: 0.05 of the content's radius.
     Auto<float> radius;
-    /// Directional: half the angle under which the light is seen; the default is the sun's.
+    /// Directional: angular radius of the emitter in degrees; the default is that of the sun.
     float angular_radius_deg = 0.265f;
 
     bool operator==(const Light&) const = default;
@@ -35,15 +35,15 @@ struct Light {
 /// a direction without length.
 void validate(const Light& light, const std::string& name);
 
-/// One of the three-point lights (key, fill, rim): what is automatic is inferred from the scene and the
+/// One of the three-point lights (key, fill, rim). Automatic values are inferred from the scene and the
 /// camera.
 struct StudioLight {
-    Auto<bool> enabled;     ///< automatic: on when no environment was given
-    Auto<Vec3> position;    ///< world; automatic: placed relative to the first camera, 3 scene radii away
+    Auto<bool> enabled;     ///< automatic: on if no environment map is given
+    Auto<Vec3> position;    ///< world units; automatic: relative to the first camera, 3 content radii away
     Vec3 color{1, 1, 1};    ///< sRGB-encoded
-    Auto<float> intensity;  ///< candela; automatic: the same irradiance at the object at any scale
+    Auto<float> intensity;  ///< candela; automatic: the same irradiance at the content at any scale
     bool casts_shadows = true;
-    Auto<float> radius;  ///< of the glowing sphere; automatic: three tenths of the content's radius
+    Auto<float> radius;  ///< of the spherical emitter, world units; automatic: 0.3 of the content's radius
 };
 
 }  // namespace easypbr

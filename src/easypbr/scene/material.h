@@ -16,7 +16,7 @@ enum class Wrap { repeat, mirror, clamp };
 enum class Filter { linear, nearest };
 enum class AlphaMode { opaque, mask, blend };
 
-/// An image with the way it is laid on a surface. uv (0, 0) is the lower left corner of the image (OBJ, PLY;
+/// An image with its sampler and UV transform. uv (0, 0) is the lower left corner of the image (OBJ, PLY;
 /// the glTF loader flips v). Empty when `image` is null.
 struct Texture {
     std::shared_ptr<const Image> image;
@@ -29,63 +29,63 @@ struct Texture {
     explicit operator bool() const { return image != nullptr; }
 };
 
-/// GLSL with a function `void surface(inout Surface s)` that changes what a surface is made of; see
-/// shaders/geometry_shader.glsl for what it finds in `s`. Empty when both are.
+/// GLSL with a function `void surface(inout Surface s)` that modifies the surface before lighting; see
+/// shaders/geometry_shader.glsl for the members of `s`. Empty when both are.
 struct SurfaceShader {
     std::string text;
-    std::string path = {};  ///< of a file that is read before each picture, in place of a text
+    std::string path = {};  ///< of a file that is read before each image, in place of `text`
 
     explicit operator bool() const { return !text.empty() || !path.empty(); }
     bool operator==(const SurfaceShader&) const = default;
 };
 
-/// Factors multiply their textures. Colours are linear Rec.709. Ranges, and what each number and texture
-/// means, stand in scene/material_table.h.
+/// Factors multiply their textures. Colours are linear Rec.709. scene/material_table.h has the ranges and one
+/// description each.
 struct Material {
     std::string name;
     Vec3 base_color{0.6f, 0.6f, 0.6f};
-    float opacity = 1;
-    float metallic = 0;      ///< 0 dielectric .. 1 metal
-    float roughness = 0.5f;  ///< perceptual, 0 .. 1; alpha = roughness^2
-    Vec3 emissive{0, 0, 0};  ///< radiance added to the picture, strength included
-    float normal_scale = 1;
-    float occlusion_strength = 1;
-    /// Automatic: blend where the opacity or a vertex' alpha is below 1, mask where there is an opacity
+    float opacity = 1;             ///< 0 transparent to 1 opaque
+    float metallic = 0;            ///< 0 dielectric to 1 metal
+    float roughness = 0.5f;        ///< perceptual, 0 to 1; alpha = roughness^2
+    Vec3 emissive{0, 0, 0};        ///< emitted radiance, strength included
+    float normal_scale = 1;        ///< of the normal texture
+    float occlusion_strength = 1;  ///< of the occlusion texture, 0 to 1
+    /// Automatic: blend where the opacity or the alpha of a vertex is below 1, mask where there is an opacity
     /// texture alone, else opaque.
     Auto<AlphaMode> alpha_mode;
-    float alpha_cutoff = 0.5f;
-    bool double_sided = true;
-    bool unlit = false;  ///< base colour is shown as it is
+    float alpha_cutoff = 0.5f;  ///< alpha mode mask: fragments below are discarded
+    bool double_sided = true;   ///< no back-face culling
+    bool unlit = false;         ///< the base colour is shown without lighting (KHR_materials_unlit)
 
-    // KHR_materials_clearcoat: a clear layer of varnish (index of refraction 1.5) on top.
-    float clearcoat = 0;
-    float clearcoat_roughness = 0;
-    float clearcoat_normal_scale = 1;
+    // KHR_materials_clearcoat: a dielectric layer (index of refraction 1.5) over the base.
+    float clearcoat = 0;               ///< strength, 0 to 1
+    float clearcoat_roughness = 0;     ///< perceptual, 0 to 1
+    float clearcoat_normal_scale = 1;  ///< of the clearcoat normal texture
 
-    // KHR_materials_sheen: fibres that stand off a cloth.
-    Vec3 sheen_color{0, 0, 0};
-    float sheen_roughness = 0;
+    // KHR_materials_sheen: back-scattering of cloth fibres.
+    Vec3 sheen_color{0, 0, 0};  ///< black: no sheen
+    float sheen_roughness = 0;  ///< 0 to 1
 
-    // KHR_materials_specular, KHR_materials_ior: the reflection of a dielectric.
-    float ior = 1.5f;  ///< index of refraction; 0: reflects all
-    float specular = 1;
-    Vec3 specular_color{1, 1, 1};
+    // KHR_materials_specular, KHR_materials_ior: the specular reflection of dielectrics.
+    float ior = 1.5f;              ///< index of refraction, 1 to 100; 0: reflectance 1
+    float specular = 1;            ///< strength, 0 to 1
+    Vec3 specular_color{1, 1, 1};  ///< at normal incidence
 
-    // KHR_materials_transmission, KHR_materials_volume: light goes through.
-    float transmission = 0;
-    float thickness = 0;  ///< of the volume below the surface, mesh units; 0: thin-walled
-    Vec3 attenuation_color{1, 1, 1};
-    float attenuation_distance = std::numeric_limits<float>::infinity();  ///< world units
+    // KHR_materials_transmission, KHR_materials_volume: refraction and absorption.
+    float transmission = 0;           ///< fraction of light transmitted, 0 to 1
+    float thickness = 0;              ///< of the volume below the surface, mesh units; 0: thin-walled
+    Vec3 attenuation_color{1, 1, 1};  ///< of white light after attenuation_distance
+    float attenuation_distance = std::numeric_limits<float>::infinity();  ///< world units, above 0
 
-    // KHR_materials_iridescence: a thin film.
-    float iridescence = 0;
-    float iridescence_ior = 1.3f;
+    // KHR_materials_iridescence: thin-film interference.
+    float iridescence = 0;                  ///< strength, 0 to 1
+    float iridescence_ior = 1.3f;           ///< index of refraction of the thin film, 1 to 100
     float iridescence_thickness_min = 100;  ///< nanometres, where its texture is 0
     float iridescence_thickness_max = 400;  ///< nanometres, where its texture is 1 or absent
 
-    // KHR_materials_anisotropy: reflections are drawn out along a direction.
-    float anisotropy = 0;
-    float anisotropy_rotation_deg = 0;  ///< counter-clockwise from the tangent
+    // KHR_materials_anisotropy: roughness that differs along and across a direction.
+    float anisotropy = 0;               ///< strength, 0 to 1
+    float anisotropy_rotation_deg = 0;  ///< degrees, counter-clockwise from the tangent
 
     Texture base_color_texture;  ///< sRGB; its alpha multiplies opacity
     Texture metallic_texture;
@@ -112,22 +112,22 @@ struct Material {
 
     bool has_textures() const;
 
-    /// Whether the shading needs more than glTF's core model.
+    /// Whether a material extension is in use, beyond the metallic-roughness core of glTF.
     bool is_extended() const;
-    /// Whether light goes through the surface itself (not: around it, as with opacity).
+    /// Whether the surface transmits light (KHR_materials_transmission), as opposed to alpha coverage.
     bool transmits() const { return transmission > 0; }
 
-    /// What alpha_mode stands for on a mesh some of whose vertices are, or are not, transparent.
+    /// The alpha mode on a mesh with or without transparent vertices: resolves an automatic one.
     AlphaMode alpha_mode_for(bool transparent_vertices) const;
 
-    /// Part of white light that goes straight through, factors alone: for shadows. 0 for opaque and masked
-    /// materials, 1 - opacity for blended ones, and what a surface transmits, tinted by its base colour and
-    /// its volume.
+    /// Straight-line transmittance for shadows, from the factors alone: 1 - opacity for alpha mode blend,
+    /// plus the transmission tinted by the base colour and the absorption of the volume. 0 for opaque and
+    /// masked materials without transmission.
     Vec3 transmittance(AlphaMode mode) const;
 };
 
-/// Whether colours (n x 3 or n x 4) have an alpha below 1. All 0 counts as none: some programs write it and
-/// mean nothing by it.
+/// Whether colours (n x 3 or n x 4) have an alpha below 1. An alpha of 0 everywhere counts as none, because
+/// some programs write it without meaning.
 bool has_transparent_colors(const ArrayXf& C);
 
 }  // namespace easypbr

@@ -53,8 +53,8 @@ Mat3d view_rotation(const CameraSettings& settings);
 
 /// The camera with these axes that shows all vertices, the limiting dimension filling 1 - margin of the
 /// picture exactly (but no vertex is nearer than a hundredth of the content's radius). Projection, angle or
-/// intrinsics and margin are those of the settings. Closed form per axis: see "Auto lights, camera" in
-/// docs/architecture.md. Throws ArgumentError when there are no vertices.
+/// intrinsics and margin are those of the settings. Closed form per axis: see "Camera fit" in
+/// docs/design/automatic_parameters.md. Throws ArgumentError when there are no vertices.
 Camera fit_camera(const SceneSnapshot& scene, const Mat3d& R_world_cam, const CameraSettings& settings,
                   double aspect);
 

@@ -1,4 +1,5 @@
-// Settings: one plain struct per effect. Defaults stand here; unit, range and documentation in fields.cpp.
+// Settings: one plain struct per group, with defaults, meanings, units and ranges. The table of fields
+// (scene/fields.h) gives each a name and a description, and checks its range.
 #pragma once
 
 #include <array>
@@ -25,186 +26,209 @@ enum class OcclusionMethod { horizon, hemisphere };
 enum class OcclusionResolution { adaptive, half, full };
 enum class ToneOperator { aces, reinhard, agx, neutral, none };
 
+/// Size and sampling of the image.
 struct ImageSettings {
-    Vec2i size{800, 600};
-    int samples = 16;
-    Antialias antialias = Antialias::fxaa;
+    Vec2i size{800, 600};                   ///< width and height in pixels, 1 to 65536
+    int samples = 16;                       ///< jittered samples averaged per pixel, 1 to 65536
+    Antialias antialias = Antialias::fxaa;  ///< of a single frame; accumulation anti-aliases by its samples
 };
 
+/// Pose, projection and lens of the camera. Automatic values frame the content.
 struct CameraSettings {
     Projection projection = Projection::perspective;
-    Auto<Vec3d> position;
-    Auto<Vec3d> target;
-    std::string up = "+y";
-    float fov_y_deg = 30;
-    Auto<double> ortho_height;
-    Auto<double> near;
-    float azimuth_deg = 30;
-    float elevation_deg = 15;
-    float margin = 0.05f;
+    Auto<Vec3d> position;            ///< world units; automatic: frames the content
+    Auto<Vec3d> target;              ///< point looked at, world units; automatic: centres the content
+    std::string up = "+y";           ///< world axis that points up: +x, -x, +y, -y, +z or -z
+    float fov_y_deg = 30;            ///< vertical field of view in degrees, 1 to 170; perspective
+    Auto<double> ortho_height;       ///< height of the view volume, world units, above 0; orthographic
+    Auto<double> near;               ///< distance to the near clipping plane, world units, above 0
+    float azimuth_deg = 30;          ///< of an automatic camera, degrees: 0 in front, positive to the right
+    float elevation_deg = 15;        ///< of an automatic camera, degrees: 0 level, 90 from above
+    float margin = 0.05f;            ///< fraction of the image left free by an automatic camera, 0 to 0.9
     std::vector<double> pose;        ///< empty, or 16 numbers: T_world_cam row by row, OpenGL axes
-    std::vector<double> intrinsics;  ///< empty, or fx, fy, cx, cy, width, height and skew (OpenCV)
-    DistortionModel distortion_model = DistortionModel::brown_conrady;
-    std::vector<double> distortion;  ///< empty, or coefficients in OpenCV's order
+    std::vector<double> intrinsics;  ///< empty, or fx, fy, cx, cy, width, height and skew (OpenCV), pixels
+    DistortionModel distortion_model = DistortionModel::brown_conrady;  ///< meaning of `distortion` (OpenCV)
+    std::vector<double> distortion;  ///< empty, or 4, 5 or 8 coefficients in OpenCV's order
 };
 
+/// Image-based lighting by an equirectangular environment map.
 struct EnvironmentSettings {
-    std::string file;
-    Auto<bool> enabled;
-    float rotation_deg = 0;
-    float intensity = 1;
-    Auto<bool> sun;
+    std::string file;        ///< HDR, EXR, PNG or JPEG; empty: a built-in studio
+    Auto<bool> enabled;      ///< enables image-based lighting; automatic: on
+    float rotation_deg = 0;  ///< about the up axis, degrees, counter-clockwise seen from above
+    float intensity = 1;     ///< scale factor of the radiance, 0 to 1e6
+    Auto<bool> sun;          ///< sun as a directional light with shadows; automatic: if a given map has one
 };
 
+/// What is visible where there is no content.
 struct BackgroundSettings {
-    BackgroundMode mode = BackgroundMode::color;
-    Vec3 color{0.25f, 0.25f, 0.25f};
-    std::string image;
-    float blur = 0.4f;
+    BackgroundMode mode = BackgroundMode::color;  ///< transparent: alpha 0
+    Vec3 color{0.25f, 0.25f, 0.25f};              ///< sRGB-encoded; neither exposed nor tone mapped
+    std::string image;                            ///< file, for mode image
+    float blur = 0.4f;                            ///< of the environment map in mode blur: 0 none, 1 the most
 };
 
+/// A three-point light of a colour given in 8 bits per channel, sRGB-encoded.
 inline StudioLight studio_light(int red, int green, int blue) {
     StudioLight light;
     light.color = Vec3(float(red), float(green), float(blue)) / 255.0f;
     return light;
 }
 
+/// Three-point lighting, placed relative to the camera.
 struct LightsSettings {
-    StudioLight key = studio_light(255, 241, 224);   ///< a little warm
-    StudioLight fill = studio_light(230, 239, 255);  ///< a little cool
-    StudioLight rim = studio_light(255, 255, 255);
-    float intensity = 1;
+    StudioLight key = studio_light(255, 241, 224);   ///< main light, slightly warm
+    StudioLight fill = studio_light(230, 239, 255);  ///< opposite to the key, weaker, slightly cool
+    StudioLight rim = studio_light(255, 255, 255);   ///< from behind
+    float intensity = 1;                             ///< scale factor of all three, 0 to 1e6
 };
 
+/// Shadow maps of all lights that cast shadows.
 struct ShadowSettings {
     bool enabled = true;
-    ShadowMode mode = ShadowMode::soft;
-    int resolution = 1024;
+    ShadowMode mode = ShadowMode::soft;  ///< soft: PCSS; pcf: 3x3 texels; hard: unfiltered
+    int resolution = 1024;               ///< width and height of a shadow map in texels, 16 to 8192
 };
 
-/// A plane that the content stands on.
+/// A ground plane under the content.
 struct GroundSettings {
-    GroundMode mode = GroundMode::none;
-    Auto<double> height;
-    float strength = 1;
-    Vec3 color{0.5f, 0.5f, 0.5f};
-    float roughness = 0.7f;
-    Auto<float> radius;
+    GroundMode mode = GroundMode::none;  ///< shadow: a shadow catcher; plane: a visible surface
+    Auto<double> height;                 ///< along the up axis, world units; automatic: the lowest point
+    float strength = 1;                  ///< opacity factor of the shadow catcher, 0 to 1
+    Vec3 color{0.5f, 0.5f, 0.5f};        ///< base colour of the plane, sRGB-encoded
+    float roughness = 0.7f;              ///< perceptual roughness of the plane, 0 to 1
+    Auto<float> radius;  ///< distance at which the plane has faded out, world units; automatic: 12 radii
 };
 
+/// The specular BRDF of all materials.
 struct ShadingSettings {
-    Brdf brdf = Brdf::height_correlated;
-    bool multiple_scattering = true;
-    float dielectric_f0 = 0.04f;
+    Brdf brdf = Brdf::height_correlated;  ///< masking-shadowing function of GGX
+    bool multiple_scattering = true;      ///< energy compensation
+    float dielectric_f0 = 0.04f;          ///< reflectance at normal incidence where ior is 1.5, 0 to 1
 };
 
-/// Of points without normals (Boucheny 2009).
+/// Eye-dome lighting of points without normals (Boucheny 2009).
 struct EdlSettings {
     bool enabled = true;
-    float strength = 0.4f;
-    float radius = 1.4f;
+    float strength = 0.4f;  ///< 0 to 100
+    float radius = 1.4f;    ///< sampling radius in pixels of an image 1080 pixels high, 0.1 to 100
 };
 
+/// Drawing order of transparent surfaces.
 struct TransparencySettings {
-    TransparencyMode mode = TransparencyMode::layers;
-    int max_layers = 64;
+    TransparencyMode mode = TransparencyMode::layers;  ///< layers: depth peeling
+    int max_layers = 64;                               ///< peeled per pixel, 1 to 10000
 };
 
-/// Screen-space ambient occlusion.
+/// Screen-space ambient occlusion of image-based lighting.
 struct SsaoSettings {
-    Auto<bool> enabled;
+    Auto<bool> enabled;  ///< automatic: on if the scene has faces or normals
     OcclusionMethod method = OcclusionMethod::horizon;
-    OcclusionResolution resolution = OcclusionResolution::adaptive;
-    Auto<float> radius;
-    float falloff = 0.6f;
-    float power = 1;
-    int directions = 1;
-    int steps = 6;
-    bool multi_bounce = true;
+    OcclusionResolution resolution = OcclusionResolution::adaptive;  ///< adaptive: full from 8 samples on
+    Auto<float> radius;        ///< maximum distance of occluders, world units; automatic: 5 % of the diagonal
+    float falloff = 0.6f;      ///< outer fraction of the radius over which occlusion fades, 0.01 to 1
+    float power = 1;           ///< exponent of the visibility, 0 to 16
+    int directions = 1;        ///< slices, or sets of points, per pixel and sample, 1 to 64
+    int steps = 6;             ///< depth-buffer samples per direction and side, 1 to 64
+    bool multi_bounce = true;  ///< approximates multiple bounces, which lighten occlusion by the albedo
 };
 
-/// Light of the sky past what stands in its way, and reflections of the scene, by rays on the CPU.
+/// Sky visibility and indirect light by ray tracing on the CPU, in place of ambient occlusion.
 struct RaySettings {
-    Auto<bool> enabled;
-    int count = 256;
+    Auto<bool> enabled;  ///< automatic: from 32 samples on, if ssao.enabled
+    int count = 256;     ///< diffuse rays per pixel of an image, over all samples, 1 to 65536
 };
 
-/// Light that spreads in lens and eye.
+/// Bloom, applied in linear HDR before tone mapping. Conserves energy.
 struct BloomSettings {
     bool enabled = false;
-    float intensity = 0.2f;
-    float threshold = 1;
-    float knee = 0.5f;
-    Auto<int> levels;
-    Auto<bool> suppress_fireflies;
+    float intensity = 0.2f;         ///< fraction of the light above the threshold that is scattered, 0 to 1
+    float threshold = 1;            ///< on the largest of red, green and blue after exposure; 0: all light
+    float knee = 0.5f;              ///< width of the soft knee as a fraction of the threshold, 0 to 1
+    Auto<int> levels;               ///< mip levels of the pyramid, 1 to 8; automatic: by the image size
+    Auto<bool> suppress_fireflies;  ///< weights bright pixels down; automatic: on if the threshold is above 0
 };
 
-/// A thin lens in the place of a pinhole.
+/// Depth of field of a thin lens; perspective cameras only.
 struct DepthOfFieldSettings {
     bool enabled = false;
-    float f_number = 2.8f;
-    Auto<double> focus_distance;
-    Auto<double> sensor_height;
+    float f_number = 2.8f;        ///< focal length / aperture diameter, 0.1 to 1000
+    Auto<double> focus_distance;  ///< along the optical axis, world units; automatic: the content's centre
+    Auto<double> sensor_height;   ///< world units; automatic: 5 % of the content's diagonal
 };
 
-/// Of stills, by their samples.
+/// Motion blur of accumulated images, by the time of each sample.
 struct MotionBlurSettings {
     bool enabled = false;
-    float shutter = 0.5f;
+    float shutter = 0.5f;  ///< fraction of the time since the previous image that the shutter is open, 0 to 1
 };
 
+/// Exposure and tone mapping.
 struct TonemapSettings {
+    /// Setting tonemap.operator. ACES (Hill's fit), Reinhard on luminance, AgX, Khronos PBR Neutral, or none:
+    /// clamped.
     ToneOperator tone_operator = ToneOperator::aces;
-    Auto<float> exposure;
-    float exposure_compensation = 0;
+    Auto<float> exposure;             ///< linear scale factor; automatic: metered by incident light
+    float exposure_compensation = 0;  ///< EV, -30 to 30
 };
 
-/// Overrides of every material from outside; automatic: the material's own value.
+/// Overrides of every material from outside; automatic: the material's own value. Colours are sRGB-encoded;
+/// units and ranges are those of Material.
 struct MaterialSettings {
-    Auto<Vec3> color;
-    Auto<float> metallic;
-    Auto<float> roughness;
-    Auto<Vec3> emissive;
-    Auto<AlphaMode> alpha_mode;
-    Auto<float> opacity;
-    Auto<float> clearcoat, clearcoat_roughness;
+    Auto<Vec3> color;                 ///< base colour
+    Auto<float> metallic;             ///< 0 dielectric to 1 metal
+    Auto<float> roughness;            ///< perceptual, 0 to 1
+    Auto<Vec3> emissive;              ///< emitted radiance
+    Auto<AlphaMode> alpha_mode;       ///< opaque, mask or blend
+    Auto<float> opacity;              ///< 0 transparent to 1 opaque
+    Auto<float> clearcoat;            ///< strength, 0 to 1
+    Auto<float> clearcoat_roughness;  ///< 0 to 1
     Auto<Vec3> sheen_color;
-    Auto<float> sheen_roughness;
-    Auto<float> ior, specular;
-    Auto<Vec3> specular_color;
-    Auto<float> transmission, thickness;
-    Auto<Vec3> attenuation_color;
-    Auto<float> attenuation_distance;
-    Auto<float> iridescence, iridescence_ior, iridescence_thickness;
-    Auto<float> anisotropy, anisotropy_rotation_deg;
+    Auto<float> sheen_roughness;          ///< 0 to 1
+    Auto<float> ior;                      ///< index of refraction, 1 to 100
+    Auto<float> specular;                 ///< strength of the specular reflection of dielectrics, 0 to 1
+    Auto<Vec3> specular_color;            ///< of dielectrics, at normal incidence
+    Auto<float> transmission;             ///< fraction of light transmitted by dielectrics, 0 to 1
+    Auto<float> thickness;                ///< of the volume, mesh units; 0: thin-walled
+    Auto<Vec3> attenuation_color;         ///< of white light after attenuation_distance
+    Auto<float> attenuation_distance;     ///< world units, above 0
+    Auto<float> iridescence;              ///< strength, 0 to 1
+    Auto<float> iridescence_ior;          ///< index of refraction of the thin film, 1 to 100
+    Auto<float> iridescence_thickness;    ///< of the thin film, nanometres
+    Auto<float> anisotropy;               ///< strength, 0 to 1
+    Auto<float> anisotropy_rotation_deg;  ///< degrees, counter-clockwise from the tangent
+    /// Files; empty: the material's own.
     std::string base_color_texture, metallic_texture, roughness_texture, normal_texture, occlusion_texture,
         emissive_texture, opacity_texture;
-    std::string shader;
+    std::string shader;  ///< file of a GLSL surface shader; empty: the material's own
 };
 
-/// What is cut away of every object, in world space.
+/// Clipping of every object, in world space.
 struct ClipSettings {
-    std::vector<double> planes;  ///< four numbers each: what lies at n . p + d >= 0 is kept
-    std::vector<double> box;     ///< empty, or the least and the largest x, y, z that are kept
+    std::vector<double> planes;  ///< four numbers n, d each, up to 16 planes; n . p + d >= 0 is kept
+    std::vector<double> box;     ///< empty, or minimum and maximum x, y, z; the inside is kept
 };
 
+/// Point clouds.
 struct PointsSettings {
-    int hole_filling = 0;
+    int hole_filling = 0;  ///< passes that fill one-pixel holes between points, 0 to 32
 };
 
-/// What is written into the picture. Never into layers.
+/// Legends and colour bars drawn into the image, never into layers.
 struct AnnotationSettings {
-    Auto<bool> legend;
-    Auto<bool> colorbar;
-    std::string title;
+    Auto<bool> legend;    ///< of the labels that colour objects; automatic: no
+    Auto<bool> colorbar;  ///< of the values that colour objects; automatic: no
+    std::string title;    ///< empty: the name of the values
     Corner corner = Corner::top_right;
-    float text_size = 0.03f;
+    float text_size = 0.03f;  ///< fraction of the image height, 0.005 to 0.2
 };
 
+/// Loading of files by the command line and the window.
 struct LoadSettings {
-    float crease_deg = 30;
+    float crease_deg = 30;  ///< STL: edges between faces at a larger angle stay sharp, degrees, 0 to 180
 };
 
+/// All settings. Paths of members are the names of settings, as in bloom.intensity.
 struct Settings {
     ImageSettings image;
     CameraSettings camera;
@@ -223,7 +247,7 @@ struct Settings {
     MotionBlurSettings motion_blur;
     TonemapSettings tonemap;
     MaterialSettings material;
-    Style style;  ///< overrides of every object's style; automatic: the object's own value
+    Style style;  ///< overrides of the style of every object; automatic: the object's own value
     PointsSettings points;
     ClipSettings clip;
     AnnotationSettings annotation;

@@ -15,7 +15,7 @@
 namespace easypbr::io {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 /// What a file says.
 struct ReadMap {
@@ -36,13 +36,13 @@ Rgb8 color_of_numbers(const std::vector<double>& numbers) {
     return {uint8_t(numbers[0]), uint8_t(numbers[1]), uint8_t(numbers[2])};
 }
 
-int32_t label_of(const Json& json) {
+int32_t label_of(const OrderedJson& json) {
     if (!json.is_number_integer() || !std::in_range<int32_t>(json.get<int64_t>()))
         throw ArgumentError(fmt::format("expected a label, a whole number, got {}", json.dump()));
     return json.get<int32_t>();
 }
 
-ReadClass class_of(const Json& json) {
+ReadClass class_of(const OrderedJson& json) {
     ReadClass result;
     for (const auto& [key, value] : json.items()) {
         if (key == "label")
@@ -67,7 +67,7 @@ UnknownLabels unknown_of(const std::string& text) {
 }
 
 ReadMap read_json(std::string_view text) {
-    const Json root = Json::parse(text);
+    const OrderedJson root = OrderedJson::parse(text);
     ReadMap map;
     for (const auto& [key, value] : root.items()) {
         if (key == "name")
@@ -77,7 +77,7 @@ ReadMap read_json(std::string_view text) {
         else if (key == "unknown")
             map.unknown = unknown_of(value.get<std::string>());
         else if (key == "classes")
-            for (const Json& own : value) map.classes.push_back(class_of(own));
+            for (const OrderedJson& own : value) map.classes.push_back(class_of(own));
         else
             throw ArgumentError(
                 fmt::format("unknown key '{}' (expected name, unlabelled, unknown, classes)", key));
@@ -129,11 +129,11 @@ ReadMap read(const fs::path& path, std::string_view text) {
 }
 
 std::string to_json(const LabelMap& map) {
-    Json root;
+    OrderedJson root;
     root["name"] = map.name();
     if (map.unlabelled()) root["unlabelled"] = *map.unlabelled();
     root["unknown"] = map.unknown() == UnknownLabels::refused ? "refused" : "unlabelled";
-    root["classes"] = Json::array();
+    root["classes"] = OrderedJson::array();
     for (const LabelClass& own : map.classes()) {
         const Vec3 color = Vec3(own.color[0], own.color[1], own.color[2]) / 255.0f;
         root["classes"].push_back({{"label", own.label}, {"name", own.name}, {"color", to_hex(color)}});

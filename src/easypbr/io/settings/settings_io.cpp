@@ -16,33 +16,33 @@ namespace easypbr::io {
 namespace {
 
 /// Keeps the order of the reference.
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
 constexpr int format_version = 1;
 const std::vector<std::string> light_types = {"point", "directional", "spot"};
 
-Json json_of(const Field& field, double number) {
-    return field.whole ? Json(int64_t(number)) : Json(number);
+OrderedJson json_of(const Field& field, double number) {
+    return field.whole ? OrderedJson(int64_t(number)) : OrderedJson(number);
 }
 
-Json json_of(const Field& field, const Value::Data& data) {
+OrderedJson json_of(const Field& field, const Value::Data& data) {
     if (const auto* flag = std::get_if<bool>(&data)) return *flag;
     if (const auto* number = std::get_if<double>(&data)) return json_of(field, *number);
     if (const auto* text = std::get_if<std::string>(&data)) return *text;
-    Json list = Json::array();
+    OrderedJson list = OrderedJson::array();
     for (const double number : std::get<std::vector<double>>(data)) list.push_back(json_of(field, number));
     return list;
 }
 
-Json json_of(const Field& field, const Value& value) {
+OrderedJson json_of(const Field& field, const Value& value) {
     if (value.state == Value::State::follow) return "follow";
     if (value.state == Value::State::given) return json_of(field, value.data);
-    return value.latched ? Json{{"auto", json_of(field, value.data)}} : Json("auto");
+    return value.latched ? OrderedJson{{"auto", json_of(field, value.data)}} : OrderedJson("auto");
 }
 
 /// The place of "group.name" in nested objects.
-Json& place_of(Json& settings, const std::string& name) {
-    Json* place = &settings;
+OrderedJson& place_of(OrderedJson& settings, const std::string& name) {
+    OrderedJson* place = &settings;
     size_t begin = 0;
     for (size_t dot = name.find('.'); dot != std::string::npos; begin = dot + 1, dot = name.find('.', begin))
         place = &(*place)[name.substr(begin, dot - begin)];
@@ -50,23 +50,23 @@ Json& place_of(Json& settings, const std::string& name) {
 }
 
 /// A number with the fewest digits that give the same float again.
-Json json_of(float number) {
+OrderedJson json_of(float number) {
     if (!std::isfinite(number))
         throw ArgumentError(fmt::format("cannot save a light: {} is not finite", number));
-    return Json::parse(fmt::format("{}", number));
+    return OrderedJson::parse(fmt::format("{}", number));
 }
 
-Json json_of(const Vec3& v) {
-    return Json::array({json_of(v[0]), json_of(v[1]), json_of(v[2])});
+OrderedJson json_of(const Vec3& v) {
+    return OrderedJson::array({json_of(v[0]), json_of(v[1]), json_of(v[2])});
 }
 
-Json json_of(const Auto<float>& setting) {
+OrderedJson json_of(const Auto<float>& setting) {
     if (setting.is_follow()) return "follow";
     if (setting.is_pinned()) return json_of(*setting);
-    return setting.value() ? Json{{"auto", json_of(*setting)}} : Json("auto");
+    return setting.value() ? OrderedJson{{"auto", json_of(*setting)}} : OrderedJson("auto");
 }
 
-Json json_of(const Light& light) {
+OrderedJson json_of(const Light& light) {
     return {{"type", light_types[size_t(light.type)]},
             {"enabled", light.enabled},
             {"position", json_of(light.position)},
@@ -86,10 +86,10 @@ class SettingsParser {
     explicit SettingsParser(const std::string& name) : name_(name) {}
 
     SettingsFile parse(const std::string& text) {
-        Json root;
+        OrderedJson root;
         try {
-            root = Json::parse(text);
-        } catch (const Json::exception& error) {
+            root = OrderedJson::parse(text);
+        } catch (const OrderedJson::exception& error) {
             fail(error.what());
         }
         if (!root.is_object() || !root.contains("easypbr")) fail("expected an object with \"easypbr\": 1");
@@ -105,12 +105,12 @@ class SettingsParser {
         throw FormatError(fmt::format("cannot read settings from {}: {}", name_, what));
     }
 
-    void require_object(const std::string& where, const Json& json) const {
+    void require_object(const std::string& where, const OrderedJson& json) const {
         if (!json.is_object())
             fail(fmt::format("'{}': expected an object, got {}", where, json.dump().substr(0, 80)));
     }
 
-    void section(const std::string& key, const Json& json, SettingsFile& file) const {
+    void section(const std::string& key, const OrderedJson& json, SettingsFile& file) const {
         if (key == "easypbr") return;
         if (key != "settings" && key != "lights" && key != "files")
             fail(fmt::format("unknown key '{}' (expected settings, lights, files)", key));
@@ -133,7 +133,7 @@ class SettingsParser {
         return std::any_of(all.begin(), all.end(), [&](const Field& field) { return field.name == name; });
     }
 
-    void group(const std::string& prefix, const Json& json, Settings& settings) const {
+    void group(const std::string& prefix, const OrderedJson& json, Settings& settings) const {
         for (const auto& [key, value] : json.items()) {
             const std::string full = prefix + key;
             if (!is_field(full) && value.is_object())
@@ -143,7 +143,7 @@ class SettingsParser {
         }
     }
 
-    void assign(const std::string& full, const Json& json, Settings& settings) const {
+    void assign(const std::string& full, const OrderedJson& json, Settings& settings) const {
         try {
             const Field& target = field(full);
             set(settings, full, value_of(target, json));
@@ -154,7 +154,7 @@ class SettingsParser {
         }
     }
 
-    Value value_of(const Field& target, const Json& json) const {
+    Value value_of(const Field& target, const OrderedJson& json) const {
         Value value;
         if (json.is_object() && json.size() == 1 && json.contains("auto")) {
             value.data = data_of(target, json["auto"]);
@@ -170,7 +170,7 @@ class SettingsParser {
         return value;
     }
 
-    Value::Data data_of(const Field& target, const Json& json) const {
+    Value::Data data_of(const Field& target, const OrderedJson& json) const {
         if (json.is_boolean()) return json.get<bool>();
         if (json.is_number()) return json.get<double>();
         if (json.is_string()) return json.get<std::string>();
@@ -179,9 +179,9 @@ class SettingsParser {
         return numbers_of("setting '" + target.name + "'", json);
     }
 
-    std::vector<double> numbers_of(const std::string& where, const Json& json) const {
+    std::vector<double> numbers_of(const std::string& where, const OrderedJson& json) const {
         std::vector<double> numbers;
-        for (const Json& entry : json) {
+        for (const OrderedJson& entry : json) {
             if (!entry.is_number())
                 fail(fmt::format("{}: expected numbers, got {}", where, entry.dump().substr(0, 80)));
             numbers.push_back(entry.get<double>());
@@ -189,7 +189,7 @@ class SettingsParser {
         return numbers;
     }
 
-    Light light_of(const std::string& name, const Json& json) const {
+    Light light_of(const std::string& name, const OrderedJson& json) const {
         const std::string where = fmt::format("lights '{}'", name);
         require_object(where, json);
         Light light;
@@ -230,7 +230,7 @@ class SettingsParser {
         return light;
     }
 
-    LightType light_type_of(const std::string& place, const Json& json) const {
+    LightType light_type_of(const std::string& place, const OrderedJson& json) const {
         const std::string text = json.is_string() ? json.get<std::string>() : json.dump();
         for (size_t i = 0; i < light_types.size(); ++i)
             if (light_types[i] == text) return LightType(i);
@@ -238,19 +238,19 @@ class SettingsParser {
                          did_you_mean(text, light_types)));
     }
 
-    bool flag_of(const std::string& place, const Json& json) const {
+    bool flag_of(const std::string& place, const OrderedJson& json) const {
         if (!json.is_boolean()) fail(fmt::format("{}: expected true or false", place));
         return json.get<bool>();
     }
 
-    float float_of(const std::string& place, const Json& json) const {
+    float float_of(const std::string& place, const OrderedJson& json) const {
         const double number = json.is_number() ? json.get<double>() : std::nan("");
         if (!(std::abs(number) <= std::numeric_limits<float>::max()))
             fail(fmt::format("{}: expected a number", place));
         return float(number);
     }
 
-    Auto<float> auto_float_of(const std::string& place, const Json& json) const {
+    Auto<float> auto_float_of(const std::string& place, const OrderedJson& json) const {
         if (json == "follow") return follow;
         if (json == "auto") return automatic;
         if (!json.is_object() || json.size() != 1 || !json.contains("auto")) return float_of(place, json);
@@ -259,7 +259,7 @@ class SettingsParser {
         return setting;
     }
 
-    Vec3 vec3_of(const std::string& place, const Json& json) const {
+    Vec3 vec3_of(const std::string& place, const OrderedJson& json) const {
         if (!json.is_array() || json.size() != 3) fail(fmt::format("{}: expected 3 numbers", place));
         return {float_of(place, json[0]), float_of(place, json[1]), float_of(place, json[2])};
     }
@@ -283,15 +283,15 @@ void save_settings(const SettingsFile& file, const std::filesystem::path& path) 
 }
 
 std::string to_json(const SettingsFile& file) {
-    Json root;
+    OrderedJson root;
     root["easypbr"] = format_version;
-    root["settings"] = Json::object();
+    root["settings"] = OrderedJson::object();
     for (const Field& field : fields())
         place_of(root["settings"], field.name) = json_of(field, field.get(file.settings));
-    root["lights"] = Json::object();
+    root["lights"] = OrderedJson::object();
     for (const auto& [name, light] : file.lights) root["lights"][name] = json_of(light);
     root["files"] = file.files;
-    return root.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+    return root.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 std::string hash_file(const std::filesystem::path& path) {

@@ -11,10 +11,10 @@
 namespace easypbr::io {
 namespace {
 
-constexpr const char* video_module = "libeasypbr_ffmpeg.so";
+constexpr const char* video_file = "libeasypbr_ffmpeg.so";
 
 struct VideoModule : RuntimeModule {
-    VideoModule() : RuntimeModule(video_module) {
+    VideoModule() : RuntimeModule(video_file) {
         find(open, "easypbr_ffmpeg_open");
         find(check, "easypbr_ffmpeg_check");
         find(encoders, "easypbr_ffmpeg_encoders");
@@ -38,7 +38,7 @@ const VideoModule& require_module(const fs::path& path) {
             "the packages libavcodec59, libavformat59 and libswscale6 and keep {} beside libeasypbr.so, or "
             "write "
             "pictures: out/frame_%04d.png",
-            path.string(), ffmpeg.reason(), video_module));
+            path.string(), ffmpeg.reason(), video_file));
     return ffmpeg;
 }
 

@@ -1,11 +1,7 @@
 #include "easypbr/render/frame/frame.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 #include <cmath>
-
-#include "easypbr/gl/context.h"
 
 namespace easypbr::render {
 namespace {
@@ -96,14 +92,27 @@ Mat4d part_of_picture(const Frame& frame) {
 
 }  // namespace
 
-void prepare_frame(Frame& frame, const Box3d& bounds, bool reaches_beyond) {
-    const Camera& camera = frame.camera;
+Camera camera_of(const Shot& shot, int sample_index) {
+    const Camera& camera = shot.resolved->camera;
+    if (!shot.motion) return camera;
+    const double time =
+        shutter_time(sample_index, shot.sample_count, shot.resolved->settings.motion_blur.shutter);
+    return between(shot.motion->camera, camera, time);
+}
+
+Frame make_frame(const Shot& shot, int sample_index, const Camera& camera, const Box3d& bounds,
+                 bool reaches_beyond) {
+    Frame frame{shot};
+    frame.camera = camera;
+    frame.sample_index = sample_index;
+    frame.time = shutter_time(sample_index, shot.sample_count, shot.resolved->settings.motion_blur.shutter);
     frame.clip_from_view = camera.projection_matrix(double(frame.picture_size.x()) / frame.picture_size.y());
     if (frame.through_lens) look_through_lens(frame);
     if (frame.size != frame.picture_size)
         frame.clip_from_view = part_of_picture(frame) * frame.clip_from_view;
-    frame.covered = reaches_beyond ? PixelRect{0, 0, frame.size.x(), frame.size.y()}
-                                   : covered_rect(bounds, frame.clip_from_view * camera.view(), frame.size);
+    frame.covered = reaches_beyond
+                        ? frame.whole()
+                        : covered_rect(bounds, frame.clip_from_view * frame.camera.view(), frame.size);
     // Moving the picture by (dx, dy) pixels moves ndc by (2 dx / w, -2 dy / h): row 0 is the top.
     const Vec2d offset = jitter_of(frame.sample_index, frame.sample_count);
     const Vec2d ndc(2 * offset.x() / frame.size.x(), -2 * offset.y() / frame.size.y());
@@ -111,6 +120,7 @@ void prepare_frame(Frame& frame, const Box3d& bounds, bool reaches_beyond) {
     shift(0, 3) = ndc.x();
     shift(1, 3) = ndc.y();
     frame.clip_from_view = shift * frame.clip_from_view;
+    return frame;
 }
 
 void set_noise_uniforms(const gl::Program& program, const Frame& frame) {
@@ -131,30 +141,23 @@ void set_camera_uniforms(const gl::Program& program, const Frame& frame) {
     program.set("u_world_from_view", Mat3(camera.T_world_cam.linear().cast<float>()));
 }
 
-void set_bloom_uniforms(const gl::Program& program, const Frame& frame) {
-    const BloomSettings& bloom = frame.resolved->settings.bloom;
-    program.set("u_bloom", Vec4(bloom.intensity, frame.resolved->exposure, bloom.threshold,
-                                bloom.knee * bloom.threshold));
-}
-
 std::vector<std::string> camera_defines(const Frame& frame) {
     return frame.orthographic() ? std::vector<std::string>{"ORTHOGRAPHIC"} : std::vector<std::string>{};
 }
 
-void test_geometry_depth(const Frame& frame) {
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_TRUE);
-    glDepthFunc(frame.peel && frame.peel->farthest ? GL_LESS : GL_GREATER);
+gl::DrawState geometry_state(const SurfaceOutputs& outputs) {
+    const bool farthest = outputs.peel && outputs.peel->farthest;
+    return {.depth_test = farthest ? gl::DepthTest::less : gl::DepthTest::greater, .write_depth = true};
+}
+
+gl::DrawState screen_state(const PixelRect& area, const gl::Blending& blending) {
+    return {.blending = blending, .scissor = gl::Scissor{area.x, area.y, area.width, area.height}};
 }
 
 void set_peel_uniforms(const gl::Program& program, const Peel& peel, unsigned unit) {
     program.set("u_peel_limit", int(unit));
     program.set("u_peel_mode", peel.backs ? -1.0f : peel.first ? 1.0f : 0.0f);
     peel.limit->bind(unit);
-}
-
-void draw_screen_triangle() {
-    glDrawArrays(GL_TRIANGLES, 0, 3);
 }
 
 }  // namespace easypbr::render

@@ -1,7 +1,5 @@
 #include "easypbr/render/frame/gbuffer.h"
 
-#include <epoxy/gl.h>
-
 namespace easypbr::render {
 
 GBuffer::GBuffer(Vec2i size) {
@@ -41,7 +39,6 @@ void GBuffer::add_overlay() {
 
 void GBuffer::clear(bool with_ids) const {
     const float zero[4] = {0, 0, 0, 0};
-    surface.allow_depth_writes();
     if (with_ids) surface_ids.clear_integer(5, 0);
     if (with_ids) surface_ids.clear_integer(6, 0);
     surface.clear_color(3, zero);
@@ -51,21 +48,16 @@ void GBuffer::clear(bool with_ids) const {
 
 void GBuffer::clear_layer() const {
     const float zero[4] = {0, 0, 0, 0};
-    surface.allow_depth_writes();
     surface.clear_color(3, zero);
     surface.clear_depth(from_behind ? 1 : 0);
     lit.clear_color(0, zero);
 }
 
-void GBuffer::test_covered() const {
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_FALSE);
-    if (from_behind) glDepthRange(1, 1);
-    glDepthFunc(from_behind ? GL_GREATER : GL_LESS);
-}
-
-void GBuffer::reset_depth_range() {
-    glDepthRange(0, 1);
+gl::DrawState GBuffer::covered_state(const gl::Blending& blending) const {
+    // The screen's triangle lies infinitely far: "less" draws it where there is geometry, and SIMD
+    // rasterisers skip the rest before shading.
+    if (!from_behind) return {.depth_test = gl::DepthTest::less, .blending = blending};
+    return {.depth_test = gl::DepthTest::greater, .least_depth = 1, .blending = blending};
 }
 
 void GBuffer::add_ambient_occlusion() {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "easypbr/core/math.h"
+#include "easypbr/gl/draw.h"
 #include "easypbr/gl/texture.h"
 
 namespace easypbr::render {
@@ -52,10 +53,8 @@ struct GBuffer {
     void clear(bool with_ids) const;
     /// The same for a layer; when it is peeled from behind, the depth test begins at the near plane.
     void clear_layer() const;
-    /// Sets the depth test so that the screen's triangle is drawn where there is geometry and nowhere else;
-    /// reset_depth_range() afterwards.
-    void test_covered() const;
-    static void reset_depth_range();
+    /// The state of a screen pass that touches the pixels that hold geometry, and no others.
+    gl::DrawState covered_state(const gl::Blending& blending = gl::replace) const;
     /// Makes the targets of material extensions, if they are not there.
     void add_extensions();
     /// Makes the overlay, if it is not there.

@@ -1,7 +1,5 @@
 #include "easypbr/render/lighting/background_pass.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -25,11 +23,6 @@ void BackgroundPass::draw(const Frame& frame, const GBuffer& targets, const gpu:
     if (blur) defines.emplace_back("BLUR");
     const gl::Program& program = programs_.get(defines);
     targets.lit.bind();
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_FALSE);
-    glDepthFunc(under ? GL_ALWAYS : GL_EQUAL);
-    if (under) glEnable(GL_BLEND);
-    if (under) glBlendFunc(GL_ONE_MINUS_DST_ALPHA, GL_ONE);
     program.use();
     set_camera_uniforms(program, frame);
     program.set("u_env_from_world", Mat3(frame.resolved->R_env_world.cast<float>()));
@@ -39,9 +32,12 @@ void BackgroundPass::draw(const Frame& frame, const GBuffer& targets, const gpu:
     (blur ? maps.prefiltered() : maps.equirect()).bind(0);
     program.set(blur ? "u_prefiltered" : "u_equirect", 0);
     program.set("u_level", level);
-    draw_screen_triangle();
-    glDisable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ZERO);
+    // The triangle lies infinitely far: "equal" draws it where there is no geometry.
+    gl::DrawState state{.depth_test = gl::DepthTest::equal};
+    if (under)
+        state = {.depth_test = gl::DepthTest::always,
+                 .blending = {.source = gl::Factor::one_minus_target_alpha, .target = gl::Factor::one}};
+    gl::draw_screen(state);
 }
 
 }  // namespace easypbr::render

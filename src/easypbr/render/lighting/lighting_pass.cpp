@@ -4,10 +4,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "easypbr/gpu/dfg.h"
-#include "easypbr/render/raytrace/traced_light.h"
 
 namespace easypbr::render {
 namespace {
@@ -17,20 +17,20 @@ constexpr int extension_unit = 12;
 constexpr int behind_unit = 20;
 constexpr int traced_unit = 24;
 
-/// As the blocks in shaders/lighting_surface.frag and common_shadow.glsl.
-struct LightUniforms {
-    struct {
-        Vec4 position, color, direction, cone;
-    } lights[lights_per_block];
-};
-struct ShadowUniforms {
-    struct {
-        Vec4 x, y, z, window, depth, size;
-    } maps[lights_per_block];
-};
+/// What the uniform blocks hold is stated once, in the text that the shaders include.
+namespace blocks {
+using vec4 = Vec4;
+#include "light_blocks.glsl"
+// std140 rounds the size of an element up to that of a vec4.
+static_assert(sizeof(Light) == 4 * sizeof(vec4) && sizeof(ShadowMap) == 6 * sizeof(vec4));
+static_assert(sizeof(vec4) == 16 && alignof(vec4) <= 16);
+}  // namespace blocks
+
+using LightUniforms = std::array<blocks::Light, lights_per_block>;
+using ShadowUniforms = std::array<blocks::ShadowMap, lights_per_block>;
 
 void write_light(const Light& light, const Vec3d& camera, LightUniforms& uniforms, size_t index) {
-    auto& to = uniforms.lights[index];
+    blocks::Light& to = uniforms[index];
     const float kind = light.type == LightType::directional ? 0.0f
                        : light.type == LightType::point     ? 1.0f
                                                             : 2.0f;
@@ -50,7 +50,7 @@ Vec4 vec4(double x, double y, double z, double w) {
 
 void write_shadow(const LightShadow& shadow, const Vec3d& camera, int resolution, ShadowUniforms& uniforms,
                   size_t index) {
-    auto& to = uniforms.maps[index];
+    blocks::ShadowMap& to = uniforms[index];
     const ShadowView& view = shadow.projection->views[0];
     // A cube's faces turn the axes themselves.
     const Mat3d R = shadow.projection->is_cube() ? Mat3d(Mat3d::Identity()) : view.R_light_world;
@@ -84,8 +84,10 @@ Vec2 lobe_point(int index, int count) {
 }
 
 /// Macros of all shaders that light.
-std::vector<std::string> light_defines(const Frame& frame, const GBuffer& targets, const LightBlock& block,
-                                       bool with_environment) {
+std::vector<std::string> light_defines(const Frame& frame, const GBuffer& targets,
+                                       const LightInputs& inputs) {
+    const LightBlock& block = inputs.block;
+    const bool with_environment = inputs.environment != nullptr;
     std::vector<std::string> defines = camera_defines(frame);
     defines.push_back(fmt::format("LIGHTS_PER_BLOCK {}", lights_per_block));
     if (!block.shadows.empty()) {
@@ -96,17 +98,17 @@ std::vector<std::string> light_defines(const Frame& frame, const GBuffer& target
     if (block.cubes > 0) defines.emplace_back("SHADOW_CUBES");
     if (!block.shadows.empty() && block.tints) defines.emplace_back("SHADOW_TINTS");
     if (with_environment) defines.emplace_back("ENVIRONMENT");
-    if (with_environment && frame.traced)
+    if (with_environment && inputs.traced)
         defines.emplace_back("TRACED");
     else if (with_environment && targets.ambient_occlusion)
         defines.emplace_back("AMBIENT_OCCLUSION");
     return defines;
 }
 
-std::vector<std::string> defines_of(const Frame& frame, const GBuffer& targets, const LightBlock& block,
-                                    bool with_environment) {
+std::vector<std::string> defines_of(const Frame& frame, const GBuffer& targets, const LightInputs& inputs) {
+    const bool with_environment = inputs.environment != nullptr;
     const ShadingSettings& shading = frame.resolved->settings.shading;
-    std::vector<std::string> defines = light_defines(frame, targets, block, with_environment);
+    std::vector<std::string> defines = light_defines(frame, targets, inputs);
     defines.push_back(fmt::format("DFG_SIZE {}", gpu::dfg_size));
     if (with_environment && frame.sample_count > 1) defines.emplace_back("LOBE_SAMPLES");
     if (with_environment && targets.ambient_occlusion && frame.resolved->settings.ssao.multi_bounce)
@@ -114,8 +116,8 @@ std::vector<std::string> defines_of(const Frame& frame, const GBuffer& targets, 
     if (shading.multiple_scattering) defines.emplace_back("MULTIPLE_SCATTERING");
     if (shading.brdf == Brdf::ue4) defines.emplace_back("BRDF_UE4");
     if (shading.brdf == Brdf::separable) defines.emplace_back("BRDF_SEPARABLE");
-    add_extension_defines(frame.extensions, defines);
-    if (frame.behind) defines.emplace_back("BEHIND");
+    add_extension_defines(inputs.extensions, defines);
+    if (inputs.transmission) defines.emplace_back("BEHIND");
     return defines;
 }
 
@@ -149,8 +151,8 @@ void LightingPass::set_extensions(const gl::Program& program, const Frame& frame
     program.set("u_tap_offset", (float(frame.sample_index) + 0.5f) / float(frame.sample_count));
 }
 
-void LightingPass::set_behind(const gl::Program& program, const Frame& frame) {
-    const TransmissionInputs& behind = *frame.behind;
+void LightingPass::set_transmission(const gl::Program& program, const Frame& frame,
+                                    const TransmissionInputs& behind) {
     const gl::Texture* sources[] = {behind.picture, behind.depth, behind.exit_depth, behind.exit_normal};
     const char* samplers[] = {"u_behind", "u_behind_depth", "u_exit_depth", "u_exit_normal"};
     for (int i = 0; i < 4; ++i) {
@@ -164,24 +166,13 @@ void LightingPass::set_behind(const gl::Program& program, const Frame& frame) {
     program.set("u_lobe_share", 1 / std::sqrt(float(frame.sample_count)));
 }
 
-void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightBlock& block,
-                        const gpu::EnvironmentMaps* maps) {
+void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightInputs& inputs) {
+    const LightBlock& block = inputs.block;
     targets.lit.bind();
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(frame.covered.x, frame.covered.y, frame.covered.width, frame.covered.height);
-    // The triangle lies infinitely far: "less" draws it where there is geometry, and skips the rest before
-    // shading.
-    targets.test_covered();
-    glEnable(GL_BLEND);
-    // Layers of extended surfaces leave only a part of the emission that stands in the target.
-    // The first block knows how much the surface covers.
-    glBlendFuncSeparate(GL_ONE, frame.extensions ? GL_SRC1_COLOR : GL_ONE, block.first ? GL_ONE : GL_ZERO,
-                        block.first ? GL_ZERO : GL_ONE);
-
     const gl::Texture* sources[] = {&targets.albedo, &targets.normal, &targets.material, &targets.depth};
     for (unsigned unit = 0; unit < 4; ++unit) sources[unit]->bind(unit);
     dfg(frame.resolved->settings.shading.brdf).bind(4);
-    const gl::Program& program = programs_.get(defines_of(frame, targets, block, maps != nullptr));
+    const gl::Program& program = programs_.get(defines_of(frame, targets, inputs));
     program.use();
     set_camera_uniforms(program, frame);
     const char* samplers[] = {"u_albedo",      "u_normal",     "u_material",    "u_depth_target",     "u_dfg",
@@ -189,25 +180,26 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightB
     if (targets.ambient_occlusion) targets.ambient_occlusion.bind(8);
     for (int unit = 0; unit < 9; ++unit) program.set(samplers[unit], unit);
     program.set("u_dielectric_f0", frame.resolved->settings.shading.dielectric_f0);
-    if (frame.extensions) set_extensions(program, frame, targets, block.first);
-    if (frame.behind) set_behind(program, frame);
-    if (maps) set_environment(program, frame, *maps);
+    if (inputs.extensions) set_extensions(program, frame, targets, block.first);
+    if (inputs.transmission) set_transmission(program, frame, *inputs.transmission);
+    if (inputs.environment) set_environment(program, frame, inputs);
     set_lights(program, frame, block);
-    draw_screen_triangle();
-    glDisable(GL_BLEND);
-    // A second source is an error where there are several targets, even with blending off.
-    glBlendFunc(GL_ONE, GL_ZERO);
-    glDisable(GL_SCISSOR_TEST);
-    targets.reset_depth_range();
+    // Layers of extended surfaces leave only a part of the emission that stands in the target.
+    // The first block knows how much the surface covers.
+    const auto kept = inputs.extensions ? gl::Factor::source1_color : gl::Factor::one;
+    gl::DrawState state =
+        targets.covered_state({.source = gl::Factor::one,
+                               .target = kept,
+                               .source_alpha = block.first ? gl::Factor::one : gl::Factor::zero,
+                               .target_alpha = block.first ? gl::Factor::zero : gl::Factor::one});
+    state.scissor = screen_state(frame.covered).scissor;
+    gl::draw_screen(state);
 }
 
-void LightingPass::draw_caught(const Frame& frame, const GBuffer& targets, const LightBlock& block,
-                               const gpu::EnvironmentMaps* maps, const gl::Framebuffer& light) {
+void LightingPass::draw_caught(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
+                               const gl::Framebuffer& light) {
     light.bind();
-    targets.test_covered();
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE);
-    const gl::Program& program = catcher_.get(light_defines(frame, targets, block, maps != nullptr));
+    const gl::Program& program = catcher_.get(light_defines(frame, targets, inputs));
     program.use();
     set_camera_uniforms(program, frame);
     const std::pair<const char*, const gl::Texture*> sources[] = {
@@ -220,16 +212,14 @@ void LightingPass::draw_caught(const Frame& frame, const GBuffer& targets, const
     program.set("u_shadow_maps", 7);
     program.set("u_ambient_occlusion", 8);
     if (targets.ambient_occlusion) targets.ambient_occlusion.bind(8);
-    if (maps) set_environment(program, frame, *maps);
-    set_lights(program, frame, block);
-    draw_screen_triangle();
-    glDisable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ZERO);
-    targets.reset_depth_range();
+    if (inputs.environment) set_environment(program, frame, inputs);
+    set_lights(program, frame, inputs.block);
+    gl::draw_screen(targets.covered_state(gl::add));
 }
 
 void LightingPass::set_environment(const gl::Program& program, const Frame& frame,
-                                   const gpu::EnvironmentMaps& maps) {
+                                   const LightInputs& inputs) {
+    const gpu::EnvironmentMaps& maps = *inputs.environment;
     maps.prefiltered().bind(5);
     maps.irradiance().bind(6);
     program.set("u_env_from_world", Mat3(frame.resolved->R_env_world.cast<float>()));
@@ -237,11 +227,11 @@ void LightingPass::set_environment(const gl::Program& program, const Frame& fram
     if (frame.sample_count > 1)
         program.set("u_lobe_slope", lobe_slope(frame.sample_index, frame.sample_count));
     program.set("u_env_intensity", frame.resolved->settings.environment.intensity);
-    if (!frame.traced) return;
+    if (!inputs.traced) return;
     const std::pair<const char*, const gl::Texture*> sources[] = {
-        {"u_sky_visibility", &frame.traced->sky_visibility},
-        {"u_indirect_diffuse", &frame.traced->indirect_diffuse},
-        {"u_indirect_specular", &frame.traced->indirect_specular}};
+        {"u_sky_visibility", &inputs.traced->sky_visibility},
+        {"u_indirect_diffuse", &inputs.traced->indirect_diffuse},
+        {"u_indirect_specular", &inputs.traced->indirect_specular}};
     for (int i = 0; i < 3; ++i) {
         program.set(sources[i].first, traced_unit + i);
         sources[i].second->bind(unsigned(traced_unit + i));

@@ -5,27 +5,45 @@
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/render/frame/programs.h"
+#include "easypbr/render/raytrace/traced_light.h"
 #include "easypbr/render/shadow/light_block.h"
 
 namespace easypbr::render {
 
+/// What is seen through a transmissive layer.
+struct TransmissionInputs {
+    const gl::Texture* picture = nullptr;  ///< radiance of all that is farther, with mip levels
+    int levels = 1;
+    const gl::Texture* depth = nullptr;        ///< of the opaque surfaces
+    const gl::Texture* exit_depth = nullptr;   ///< of volumes' back faces
+    const gl::Texture* exit_normal = nullptr;  ///< of volumes' back faces
+    double reach = 0;                          ///< there is no geometry farther from the camera
+};
+
+/// What lights a G-buffer.
+struct LightInputs {
+    LightBlock block = {};
+    const gpu::EnvironmentMaps* environment = nullptr;  ///< with the first block, where there is one
+    const TracedLight* traced = nullptr;                ///< what rays found of the environment's light
+    ExtensionSet extensions = 0;                        ///< of the surfaces
+    const TransmissionInputs* transmission = nullptr;   ///< where they are transmissive
+};
+
 class LightingPass {
   public:
-    /// Adds the light of a block to the radiance target where there is geometry, and that of an environment
-    /// unless `maps` is null.
-    void draw(const Frame& frame, const GBuffer& targets, const LightBlock& block,
-              const gpu::EnvironmentMaps* maps);
+    /// Adds the light of a block to the radiance target where there is geometry, and that of the environment.
+    void draw(const Frame& frame, const GBuffer& targets, const LightInputs& inputs);
 
-    /// Adds the light that a block and the environment send to the pixels of the ground's catcher, with and
+    /// Adds the light that a block and the environment send to the pixels of the shadow catcher, with and
     /// without shadows, to `light` (GroundPass::light()).
-    void draw_caught(const Frame& frame, const GBuffer& targets, const LightBlock& block,
-                     const gpu::EnvironmentMaps* maps, const gl::Framebuffer& light);
+    void draw_caught(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
+                     const gl::Framebuffer& light);
 
   private:
     const gl::Texture& dfg(Brdf brdf);
-    void set_environment(const gl::Program& program, const Frame& frame, const gpu::EnvironmentMaps& maps);
+    void set_environment(const gl::Program& program, const Frame& frame, const LightInputs& inputs);
     void set_lights(const gl::Program& program, const Frame& frame, const LightBlock& block);
-    void set_behind(const gl::Program& program, const Frame& frame);
+    void set_transmission(const gl::Program& program, const Frame& frame, const TransmissionInputs& inputs);
     void set_extensions(const gl::Program& program, const Frame& frame, const GBuffer& targets, bool first);
 
     ProgramVariants programs_{"screen_triangle.vert", "lighting_surface.frag"};

@@ -1,7 +1,5 @@
 #include "easypbr/render/output/display_pass.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -29,11 +27,6 @@ void DisplayPass::draw(const Frame& frame, const GBuffer& targets) {
     const float zero[4] = {0, 0, 0, 0};
     targets.display.clear_color(0, zero);
     targets.display.bind();
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_FALSE);
-    glDepthFunc(GL_LESS);
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(frame.covered.x, frame.covered.y, frame.covered.width, frame.covered.height);
     std::vector<std::string> defines = camera_defines(frame);
     if (targets.ambient_occlusion) defines.emplace_back("AMBIENT_OCCLUSION");
     const gl::Program& program = programs_.get(defines);
@@ -47,8 +40,9 @@ void DisplayPass::draw(const Frame& frame, const GBuffer& targets) {
     }
     if (targets.ambient_occlusion) targets.ambient_occlusion.bind(3);
     program.set("u_ambient_occlusion", 3);
-    draw_screen_triangle();
-    glDisable(GL_SCISSOR_TEST);
+    gl::DrawState state = screen_state(frame.covered);
+    state.depth_test = gl::DepthTest::less;
+    gl::draw_screen(state);
 }
 
 const gl::Texture& DisplayPass::shade(const Frame& frame, const gl::Texture& nearest,
@@ -58,7 +52,6 @@ const gl::Texture& DisplayPass::shade(const Frame& frame, const gl::Texture& nea
         shaded_ = gl::Framebuffer({&shade_});
     }
     shaded_.bind();
-    glDisable(GL_DEPTH_TEST);
     const gl::Program& program = shades_.get(camera_defines(frame));
     program.use();
     set_eye_dome_uniforms(program, frame);
@@ -66,7 +59,7 @@ const gl::Texture& DisplayPass::shade(const Frame& frame, const gl::Texture& nea
     opaque.bind(1);
     program.set("u_nearest", 0);
     program.set("u_opaque", 1);
-    draw_screen_triangle();
+    gl::draw_screen({});
     return shade_;
 }
 

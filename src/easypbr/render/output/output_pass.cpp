@@ -1,7 +1,5 @@
 #include "easypbr/render/output/output_pass.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 
 #include "easypbr/core/color.h"
@@ -25,9 +23,9 @@ std::vector<std::string> curve_defines(const Frame& frame, Encoding encoding) {
     }
 }
 
-std::vector<std::string> tone_defines(const Frame& frame, Encoding encoding) {
+std::vector<std::string> tone_defines(const Frame& frame, const LitPicture& lit, Encoding encoding) {
     std::vector<std::string> defines = curve_defines(frame, encoding);
-    if (frame.partly_covered) defines.emplace_back("PARTLY_COVERED");
+    if (lit.partly_covered) defines.emplace_back("PARTLY_COVERED");
     return defines;
 }
 
@@ -65,7 +63,7 @@ Vec4 cover(const gl::Texture& image, const Frame& frame) {
     return {part.x(), part.y(), first.x(), first.y()};
 }
 
-constexpr int overlay_unit = 2, glow_unit = 3;
+constexpr unsigned overlay_unit = 2, glow_unit = 3;
 
 void add_defines(const LitPicture& lit, std::vector<std::string>& defines) {
     if (lit.overlay) defines.emplace_back("OVERLAY");
@@ -73,19 +71,14 @@ void add_defines(const LitPicture& lit, std::vector<std::string>& defines) {
 }
 
 void bind_overlay(const gl::Program& program, const gl::Texture& overlay) {
-    program.set("u_overlay", overlay_unit);
+    program.set("u_overlay", int(overlay_unit));
     overlay.bind(overlay_unit);
 }
 
-void bind(const LitPicture& lit, const gl::Program& program, const Frame& frame) {
+void bind(const LitPicture& lit, const gl::Program& program) {
     lit.radiance->bind(0);
     if (lit.overlay) bind_overlay(program, *lit.overlay);
-    if (!lit.glow) return;
-    set_bloom_uniforms(program, frame);
-    program.set("u_glow", glow_unit);
-    program.set("u_glow_size",
-                Vec2(float(glow_texel * lit.glow->width()), float(glow_texel * lit.glow->height())));
-    lit.glow->bind(glow_unit);
+    if (lit.glow) set_glow_uniforms(program, *lit.glow, glow_unit);
 }
 
 PixelRect united(const PixelRect& a, const PixelRect& b) {
@@ -94,10 +87,10 @@ PixelRect united(const PixelRect& a, const PixelRect& b) {
 }
 
 /// Screen passes touch only where geometry may be, when nothing else was drawn.
-void limit_to(const PixelRect& area, const Frame& frame) {
-    if (sees_environment(frame) || frame.spreads) return;
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(area.x, area.y, area.width, area.height);
+gl::DrawState limited_to(const PixelRect& area, const Frame& frame, const LitPicture& lit,
+                         const gl::Blending& blending = gl::replace) {
+    if (sees_environment(frame) || lit.spreads) return {.blending = blending};
+    return screen_state(area, blending);
 }
 
 }  // namespace
@@ -119,31 +112,25 @@ void OutputPass::accumulate(const Frame& frame, const LitPicture& lit) {
         sum_ = gl::Texture(gl::Format::rgba32f, frame.size.x(), frame.size.y());
         sum_framebuffer_ = gl::Framebuffer({&sum_});
     }
-    drawn_ = frame.sample_index == 0 ? frame.covered : united(drawn_, frame.covered);
+    drawn_ = frame.sample_index == 0 ? lit.covered : united(drawn_, lit.covered);
     const float zero[4] = {0, 0, 0, 0};
     if (frame.sample_index == 0) sum_framebuffer_.clear_color(0, zero);
     sum_framebuffer_.bind();
-    std::vector<std::string> defines = tone_defines(frame, encoding_);
+    std::vector<std::string> defines = tone_defines(frame, lit, encoding_);
     add_defines(lit, defines);
     const gl::Program& program = accumulate_.get(defines);
     program.use();
     program.set("u_size", Vec2(frame.size.cast<float>()));
     program.set("u_exposure", exposure_of(frame, encoding_));
     program.set("u_radiance", 0);
-    bind(lit, program, frame);
-    glDisable(GL_DEPTH_TEST);
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE);
-    limit_to(frame.covered, frame);
-    draw_screen_triangle();
-    glDisable(GL_SCISSOR_TEST);
-    glDisable(GL_BLEND);
+    bind(lit, program);
+    gl::draw_screen(limited_to(lit.covered, frame, lit, gl::add));
 }
 
-void OutputPass::finish(const Frame& frame, const LitPicture& lit, const GBuffer& targets,
-                        const gl::Texture* background_image) {
+void OutputPass::finish(const Frame& frame, const LitPicture& lit, const gl::Texture* background_image,
+                        const GBuffer* exact) {
     const bool sum = frame.sample_count > 1;
-    std::vector<std::string> defines = tone_defines(frame, encoding_);
+    std::vector<std::string> defines = tone_defines(frame, lit, encoding_);
     if (sum)
         defines.emplace_back("SUM");
     else
@@ -151,7 +138,7 @@ void OutputPass::finish(const Frame& frame, const LitPicture& lit, const GBuffer
     if (background_image) defines.emplace_back("BACKGROUND_IMAGE");
     if (encoding_ == Encoding::scene_linear) defines.emplace_back("LINEAR_OUTPUT");
     const gl::Program& program = display_.get(defines);
-    glDisable(GL_DEPTH_TEST);
+    gl::DrawState state;
     picture_framebuffer_.bind();
     if (!background_image) {
         const Vec4 b = background_color(frame);
@@ -159,7 +146,7 @@ void OutputPass::finish(const Frame& frame, const LitPicture& lit, const GBuffer
         if (encoding_ != Encoding::scene_linear) code.head<3>() = srgb_from_linear(Vec3(b.head<3>()));
         const float rgba[4] = {code.x(), code.y(), code.z(), code.w()};
         picture_framebuffer_.clear_color(0, rgba);
-        limit_to(sum ? drawn_ : frame.covered, frame);
+        state = limited_to(sum ? drawn_ : lit.covered, frame, lit);
     }
     program.use();
     program.set("u_size", Vec2(frame.size.cast<float>()));
@@ -170,23 +157,23 @@ void OutputPass::finish(const Frame& frame, const LitPicture& lit, const GBuffer
     if (sum)
         sum_.bind(0);
     else
-        bind(lit, program, frame);
+        bind(lit, program);
     if (background_image) {
         program.set("u_background_image", 1);
         program.set("u_background_uv", cover(*background_image, frame));
         background_image->bind(1);
     }
-    draw_screen_triangle();
-    glDisable(GL_SCISSOR_TEST);
+    gl::draw_screen(state);
     const bool single = !sum && encoding_ != Encoding::scene_linear;
-    if (single && frame.resolved->settings.image.antialias == Antialias::fxaa) blur_edges(frame, targets);
+    if (single && frame.resolved->settings.image.antialias == Antialias::fxaa)
+        blur_edges(frame, lit.covered, exact);
 }
 
-void OutputPass::write_exact(const Frame& frame, const GBuffer& targets, bool layers) {
-    std::vector<std::string> defines = tone_defines(frame, encoding_);
+void OutputPass::write_exact(const Frame& frame, const LitPicture& lit, const GBuffer& targets, bool layers) {
+    std::vector<std::string> defines = tone_defines(frame, lit, encoding_);
     if (layers) defines.emplace_back("LAYERS");
     if (encoding_ == Encoding::scene_linear) defines.emplace_back("LINEAR_OUTPUT");
-    if (frame.with_overlay) defines.emplace_back("OVERLAY");
+    if (lit.overlay) defines.emplace_back("OVERLAY");
     const gl::Program& program = exact_.get(defines);
     picture_framebuffer_.bind();
     program.use();
@@ -195,18 +182,16 @@ void OutputPass::write_exact(const Frame& frame, const GBuffer& targets, bool la
     program.set("u_material", 1);
     targets.albedo.bind(0);
     targets.material.bind(1);
-    if (frame.with_overlay) bind_overlay(program, targets.overlay);
+    if (lit.overlay) bind_overlay(program, *lit.overlay);
     if (layers) {
         targets.radiance.bind(3);
         program.set("u_radiance", 3);
         program.set("u_exposure", exposure_of(frame, encoding_));
     }
-    glDisable(GL_DEPTH_TEST);
-    draw_screen_triangle();
+    gl::draw_screen({});
 }
 
-void OutputPass::blur_edges(const Frame& frame, const GBuffer& targets) {
-    const PixelRect& area = frame.covered;
+void OutputPass::blur_edges(const Frame& frame, const PixelRect& area, const GBuffer* exact) {
     if (area.width == 0 || area.height == 0) return;
     if (!aliased_) {
         aliased_ = gl::Texture(picture_.format(), frame.size.x(), frame.size.y());
@@ -215,20 +200,17 @@ void OutputPass::blur_edges(const Frame& frame, const GBuffer& targets) {
     gl::copy(picture_, aliased_);
     picture_framebuffer_.bind();
     const gl::Program& program =
-        fxaa_.get(frame.with_exact ? std::vector<std::string>{"EXACT"} : std::vector<std::string>{});
+        fxaa_.get(exact ? std::vector<std::string>{"EXACT"} : std::vector<std::string>{});
     program.use();
     program.set("u_size", Vec2(frame.size.cast<float>()));
     program.set("u_color", 0);
     aliased_.bind(0);
-    if (frame.with_exact) {
+    if (exact) {
         program.set("u_material", 1);
-        targets.material.bind(1);
+        exact->material.bind(1);
     }
     // Edges are where geometry is; the environment behind it is smooth.
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(area.x, area.y, area.width, area.height);
-    draw_screen_triangle();
-    glDisable(GL_SCISSOR_TEST);
+    gl::draw_screen(screen_state(area));
 }
 
 }  // namespace easypbr::render

@@ -15,29 +15,8 @@ namespace {
 
 constexpr unsigned image_unit = 4;
 
-void set_blending(Blend blend) {
-    if (blend == Blend::replace) return glDisable(GL_BLEND);
-    glEnable(GL_BLEND);
-    glBlendEquation(GL_FUNC_ADD);
-    glBlendFunc(GL_ONE, blend == Blend::add ? GL_ONE : GL_ONE_MINUS_SRC_ALPHA);
-}
-
-/// What the renderer's passes take for granted.
-void reset_state() {
-    for (const GLenum off : {GL_BLEND, GL_CULL_FACE, GL_SCISSOR_TEST, GL_STENCIL_TEST, GL_DEPTH_CLAMP,
-                             GL_FRAMEBUFFER_SRGB, GL_POLYGON_OFFSET_FILL, GL_RASTERIZER_DISCARD})
-        glDisable(off);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    glBlendEquation(GL_FUNC_ADD);
-    glBlendFunc(GL_ONE, GL_ZERO);
-    glDepthRange(0, 1);
-    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
-    glFrontFace(GL_CCW);
-    glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
-    glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
-    for (const GLenum target : {GL_PIXEL_PACK_BUFFER, GL_PIXEL_UNPACK_BUFFER}) glBindBuffer(target, 0);
-    for (const GLenum parameter : {GL_PACK_ALIGNMENT, GL_UNPACK_ALIGNMENT}) glPixelStorei(parameter, 1);
-    for (unsigned unit = 0; unit < 16; ++unit) glBindSampler(unit, 0);
+gl::Blending blending_of(Blend blend) {
+    return blend == Blend::replace ? gl::replace : blend == Blend::add ? gl::add : gl::over;
 }
 
 }  // namespace
@@ -85,10 +64,7 @@ void PassInput::draw(const gl::Program& program, Blend blend) const {
         old->bind(image_unit);
         program.set("u_image", int(image_unit));
     }
-    glDisable(GL_DEPTH_TEST);
-    set_blending(blend);
-    draw_screen_triangle();
-    glDisable(GL_BLEND);
+    gl::draw_screen({.blending = blending_of(blend)});
 }
 
 ShaderPass::ShaderPass(const std::filesystem::path& fragment, Blend blend)
@@ -104,12 +80,12 @@ void ShaderPass::draw(const PassInput& input) {
 
 void draw_custom(const CustomPass& custom, const PassInput& input) {
     const auto named = [&](const std::exception& error) {
-        reset_state();
+        gl::reset_state();
         return fmt::format("pass '{}': {}", custom.name, error.what());
     };
     try {
         custom.pass->draw(input);
-        reset_state();
+        gl::reset_state();
     } catch (const ShaderError& error) {
         throw ShaderError(named(error));
     } catch (const FileError& error) {

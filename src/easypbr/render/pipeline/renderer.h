@@ -9,46 +9,11 @@
 
 #include "easypbr/core/image.h"
 #include "easypbr/gl/readback.h"
-#include "easypbr/render/effects/ambient_occlusion/ambient_occlusion_pass.h"
-#include "easypbr/render/effects/bloom/bloom_pass.h"
-#include "easypbr/render/effects/depth_of_field/focus_pass.h"
-#include "easypbr/render/effects/ground/ground_pass.h"
-#include "easypbr/render/lighting/background_pass.h"
-#include "easypbr/render/lighting/lighting_pass.h"
-#include "easypbr/render/output/display_pass.h"
-#include "easypbr/render/output/output_pass.h"
-#include "easypbr/render/pipeline/custom_pass.h"
-#include "easypbr/render/pipeline/surface_frame.h"
-#include "easypbr/render/primitives/lines/line_pass.h"
-#include "easypbr/render/primitives/mesh/geometry_pass.h"
-#include "easypbr/render/primitives/points/point_pass.h"
-#include "easypbr/render/primitives/surfels/surfel_layers.h"
-#include "easypbr/render/primitives/surfels/surfel_pass.h"
-#include "easypbr/render/raster/software_geometry_pass.h"
-#include "easypbr/render/raytrace/ray_pass.h"
-#include "easypbr/render/shadow/shadow_maps.h"
-#include "easypbr/render/transparency/transparency_pass.h"
+#include "easypbr/render/pipeline/kept_surfaces.h"
+#include "easypbr/render/pipeline/layers.h"
+#include "easypbr/render/pipeline/pipeline.h"
 
 namespace easypbr::render {
-
-/// Pictures beside the final one, read from the frame drawn last: of a picture of one sample, through the
-/// pixels' centres.
-enum class Layer {
-    albedo,             ///< RGBA f32, linear base colour, alpha 1 where there is geometry
-    normal,             ///< RGB f32, unit world normal, 0 where there is nothing
-    depth,              ///< one channel f32, distance along the optical axis, 0 where there is nothing
-    roughness,          ///< one channel f32
-    metallic,           ///< one channel f32
-    occlusion,          ///< one channel f32, the material's
-    ambient_occlusion,  ///< one channel f32, part of the surroundings that is seen; needs ssao.enabled
-    id,      ///< one channel f32, 1 + place of the object in the snapshot, 0 where there is nothing; exact
-    element  ///< one channel f32, 1 + index of the face or point in its object, 0 where there is nothing;
-             ///< exact up to 2^24
-};
-
-/// "albedo", "normal", ... Throws NameError with the nearest name.
-Layer layer_named(const std::string& name);
-const std::vector<std::string>& layer_names();
 
 struct DrawOptions {
     Vec2i size{800, 600};
@@ -102,7 +67,7 @@ class Renderer {
     const gl::Texture& picture() const { return output_.texture(); }
 
     /// What read_layer() reads, until something else is drawn.
-    const GBuffer& targets() const { return targets_; }
+    const GBuffer& targets() const { return pipeline_.targets(); }
 
     /// RGBA, row 0 on top: u8, u16 or f32 by the encoding.
     Image read_picture() const;
@@ -125,121 +90,42 @@ class Renderer {
 
     /// Without a GPU, plain triangles are rasterised natively; false leaves them to the driver: for comparing
     /// the two.
-    void allow_native_geometry(bool allow) {
-        native_geometry_ = allow;
-        shadow_maps_.allow_native(allow);
-    }
+    void allow_native_geometry(bool allow) { pipeline_.allow_native_geometry(allow); }
 
     /// Passes of the program's own, each stage's in this order. They belong to pictures, not to layers.
-    void set_passes(std::vector<CustomPass> passes) { custom_ = std::move(passes); }
+    void set_passes(std::vector<CustomPass> passes) { custom_.set(std::move(passes)); }
 
     /// How often the shadow maps of a light have been drawn since the beginning: they are kept until the
     /// light or what casts changes.
-    uint64_t shadow_maps_drawn() const { return shadow_maps_.drawn(); }
+    uint64_t shadow_maps_drawn() const { return pipeline_.shadow_maps().drawn(); }
 
     /// From now on every pass is finished before the next begins, and timed.
-    void measure_passes(bool measure) { measure_ = measure; }
+    void measure_passes(bool measure) { pipeline_.timer().enable(measure); }
     /// Milliseconds of each pass of the last picture, in pipeline order, summed over its frames.
-    const std::vector<std::pair<std::string, double>>& pass_times() const { return pass_times_; }
+    const std::vector<std::pair<std::string, double>>& pass_times() const {
+        return pipeline_.timer().times();
+    }
 
   private:
     struct Picture;
-    void prepare_targets(Vec2i size, const ResolvedSettings& resolved);
-    void evict_unused();
-    void draw_frame(Frame& frame, const DrawList& list, const DrawList& casters);
-    /// Puts the objects where they are at the frame's time, 1 being the end.
-    static void move_objects(DrawableScene& drawable, const SceneSnapshot& scene, const Motion& motion,
-                             double time);
-    /// Fills the G-buffer by the faster way that can draw these items.
-    void draw_geometry(Frame& frame, const DrawList& list);
-    void draw_geometry(Frame& frame, const DrawList& list, const GBuffer& targets);
-    /// Draws the lines where there are no layers.
-    void draw_lines(const Frame& frame, const DrawList& list);
-    /// Draws the layered items over the picture, before and behind each other and the lines.
-    void draw_transparent(Frame& frame, const DrawList& list);
-    /// Draws layers, and the lines between them, before the surfaces of which `opaque` is the depth.
-    void draw_layers(Frame& frame, const DrawList& layers, const std::vector<LineItem>& lines,
-                     const gl::Texture& opaque);
-    /// Depth that hides lines and layers: of what is drawn over everything else too.
-    const gl::Texture& hiding_depth(const Frame& frame, const DrawList& list);
-    /// The eye-dome lighting of the layers' points; nothing where there are none.
-    const gl::Texture* shade_points(const Frame& frame, const DrawList& layers, const gl::Texture& opaque);
-    /// Draws what must not be averaged or smoothed into the finished picture.
-    void draw_exact(Frame& frame, const DrawList& list);
-    /// Keeps what surfaces are drawn of in `drawn_`, and draws it.
+    void prepare(Picture& picture);
     void keep_surfaces(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i size,
                        const SettingsImages& images);
-    void draw_kept_surfaces();
-    /// Lights a G-buffer, block by block of lights with their shadow maps.
-    void draw_lights(Frame& frame, const GBuffer& targets);
-    /// Whether rays are sent for this frame.
-    bool traces(const Frame& frame) const;
-    bool has_custom(Stage stage) const;
-    void run_custom(Stage stage, const Frame& frame);
-    /// What the lens and the eye make of the frame.
-    LitPicture post_process(Frame& frame);
-    const Box3d& bounds_of(const SceneSnapshot& scene);
-    template <class Pass>
-    void run(const char* name, Pass&& pass);
-    const gl::Texture* background_texture(const Frame& frame, const SettingsImages& images);
+    /// Draws the exact colours that nothing may mix with, once, through the pixels' centres.
+    void draw_exact();
+    const gl::Texture* background_texture(const ResolvedSettings& resolved, const SettingsImages& images);
+    void evict_unused();
 
-    GBuffer targets_;
-    gl::VertexArray no_attributes_;
-    gpu::EnvironmentMaps environment_;
-    gpu::MeshCache meshes_;
-    gpu::TextureCache textures_;
-    GeometryPass geometry_{meshes_, textures_};
-    SpacingCache spacings_;
-    DrawableCache drawables_{spacings_};
-    gpu::ClosedMeshes closed_meshes_;
-    SoftwareGeometryPass software_geometry_{spacings_, closed_meshes_};
-    gpu::PointCache point_buffers_;
-    gpu::SurfelCache surfel_buffers_;
-    PointPass points_{spacings_, point_buffers_};
-    SurfelSplats surfel_splats_{spacings_, surfel_buffers_};
-    SurfelPass surfels_{surfel_splats_};
-    SurfelLayers surfel_layers_{surfel_splats_};
-    ShadowMaps shadow_maps_{meshes_, textures_, closed_meshes_, spacings_, point_buffers_, surfel_buffers_};
-    AmbientOcclusionPass ambient_occlusion_;
-    RayScene ray_scene_;
-    RayPass rays_;
-    LightingPass lighting_;
-    GroundPass ground_;
-    DisplayPass display_;
-    LinePass lines_;
-    TransparencyPass transparency_;
-    BackgroundPass background_;
-    FocusPass focus_;
-    BloomPass bloom_;
+    Pipeline pipeline_;
+    DrawableCache drawables_{pipeline_.caches().spacings};
+    CustomPasses custom_;
     OutputPass output_;
+    std::unique_ptr<KeptSurfaces> kept_;   ///< of a picture that was drawn with `surfaces`
+    Camera camera_;                        ///< that the targets were seen by
+    std::vector<ElementSources> sources_;  ///< of what the targets hold
     std::shared_ptr<const Image> background_image_;
     gl::Texture background_texture_;
-    GBuffer over_;  ///< what is drawn over everything else
-    gl::Texture hiding_depth_;
-    gl::Framebuffer hiding_;
-    ProgramVariants hiding_programs_{"screen_triangle.vert", "opaque_limit.frag"};
-    SurfaceComposite composite_;
-    std::vector<CustomPass> custom_;
-    gl::Texture custom_copies_[3];  ///< by stage, see PassInput::before()
-    Camera camera_;
-    std::vector<ElementSources> element_sources_;  ///< DrawableScene::sources of the last picture
-    /// Of the last picture that was drawn with `surfaces`.
-    struct Drawn {
-        DrawableScene drawable;
-        ResolvedSettings resolved;
-        SceneSnapshot scene;
-        DrawList surfaces;  ///< its items point into `drawable`
-        Vec2i size{0, 0};
-    };
-    std::unique_ptr<Drawn> drawn_;
-    GBuffer coverage_targets_;
-    /// Bounds of the last scene, and what they were computed from.
-    std::vector<std::pair<uint64_t, Eigen::Affine3d>> bounded_;
-    Box3d bounds_;
     std::unique_ptr<Picture> picture_;  ///< that frames are added to
-    bool native_geometry_ = true;
-    bool measure_ = false, running_ = false;
-    std::vector<std::pair<std::string, double>> pass_times_;
 };
 
 }  // namespace easypbr::render

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "easypbr/core/error.h"
+#include "easypbr/render/effects/bloom/glow.h"
 #include "easypbr/render/effects/depth_of_field/focus_pass.h"
 #include "easypbr/render/effects/ground/ground_pass.h"
 #include "easypbr/scene/draw_style.h"
@@ -89,12 +90,9 @@ TileLimits TileLimits::of(const gl::ContextInfo& context) {
 
 Guard guard_of(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i picture) {
     const Settings& settings = resolved.settings;
-    Frame whole;
-    whole.resolved = &resolved;
-    whole.camera = resolved.camera;
-    whole.size = whole.picture_size = picture;
     const Box3d bounds = scene.bounds();
-    prepare_frame(whole, bounds, true);
+    const Shot shot{.resolved = &resolved, .size = picture, .picture_size = picture};
+    const Frame whole = make_frame(shot, 0, resolved.camera, bounds, true);
 
     Guard guard;
     guard.pixels = smallest_guard + settings.points.hole_filling + point_reach(scene, resolved);

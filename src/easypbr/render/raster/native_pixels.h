@@ -50,18 +50,20 @@ class NativePixels {
 class SurfaceComposite {
   public:
     /// Native pixels, where they are nearer.
-    void draw(const Frame& frame, const NativePixels& pixels, const GBuffer& targets);
+    void draw(const Frame& frame, const NativePixels& pixels, const GBuffer& targets,
+              const SurfaceOutputs& outputs);
 
     /// What another G-buffer holds, whatever is in front.
-    void draw_over(const Frame& frame, const GBuffer& source, const GBuffer& targets);
+    void draw_over(const Frame& frame, const GBuffer& source, const GBuffer& targets,
+                   const SurfaceOutputs& outputs);
 
     /// Closes gaps of a pixel between points, `times` over.
-    void fill_holes(const Frame& frame, const GBuffer& targets, int times);
+    void fill_holes(const Frame& frame, const GBuffer& targets, const SurfaceOutputs& outputs, int times);
 
   private:
     void copy(const Frame& frame, const GBuffer& source, const PixelRect& area, const GBuffer& targets,
-              bool always);
-    void make_staging(const Frame& frame);
+              const SurfaceOutputs& outputs, bool always);
+    void make_staging(const Frame& frame, const SurfaceOutputs& outputs);
 
     GBuffer staging_;
     ProgramVariants programs_{"screen_triangle.vert", "composite_surface.frag"};

@@ -118,28 +118,28 @@ void SoftwareGeometryPass::add_points(const Frame& frame, const DrawList& list,
     }
 }
 
-bool SoftwareGeometryPass::draw(Frame& frame, const DrawList& list, const GBuffer& targets) {
+std::optional<PixelRect> SoftwareGeometryPass::draw(const Frame& frame, const DrawList& list,
+                                                    const GBuffer& targets, const SurfaceOutputs& outputs) {
     visibility_.clear(frame.size, frame.covered);
     std::vector<Surface> surfaces;
-    if (!add_meshes(frame, list, surfaces)) return false;
+    if (!add_meshes(frame, list, surfaces)) return std::nullopt;
     add_points(frame, list, surfaces);
     visibility_.crop();
-    resolve(frame, surfaces);
-    targets.clear(frame.with_ids);
+    resolve(frame, surfaces, outputs.ids);
+    targets.clear(outputs.ids);
     pixels_.upload(targets);
-    if (list.lines.empty() && list.surfels.empty())
-        frame.covered = with_margin(visibility_.area(), frame.size);
-    return true;
+    const bool is_all = list.lines.empty() && list.surfels.empty();
+    return is_all ? with_margin(visibility_.area(), frame.size) : frame.covered;
 }
 
-void SoftwareGeometryPass::draw_points_over(const Frame& frame, const DrawList& list,
-                                            const GBuffer& targets) {
+void SoftwareGeometryPass::draw_points_over(const Frame& frame, const DrawList& list, const GBuffer& targets,
+                                            const SurfaceOutputs& outputs) {
     visibility_.clear(frame.size, frame.covered);
     std::vector<Surface> surfaces;
     add_points(frame, list, surfaces);
     visibility_.crop();
-    resolve(frame, surfaces);
-    composite_.draw(frame, pixels_, targets);
+    resolve(frame, surfaces, outputs.ids);
+    composite_.draw(frame, pixels_, targets, outputs);
 }
 
 bool SoftwareGeometryPass::cover(const Frame& frame, const DrawList& list, std::vector<uint8_t>& covered) {
@@ -147,7 +147,7 @@ bool SoftwareGeometryPass::cover(const Frame& frame, const DrawList& list, std::
         return item.alpha != AlphaMode::opaque || item.material.shader;
     };
     if (!list.surfels.empty() || list.has(has_holes)) return false;
-    const PixelRect area{0, 0, frame.size.x(), frame.size.y()};
+    const PixelRect area = frame.whole();
     TriangleRaster raster;
     raster.set_area(frame.size, area);
     for (const DrawItem& item : list.meshes)
@@ -164,9 +164,9 @@ bool SoftwareGeometryPass::cover(const Frame& frame, const DrawList& list, std::
     return true;
 }
 
-void SoftwareGeometryPass::resolve(const Frame& frame, const std::vector<Surface>& surfaces) {
+void SoftwareGeometryPass::resolve(const Frame& frame, const std::vector<Surface>& surfaces, bool ids) {
     const PixelRect& area = visibility_.area();
-    pixels_.resize(area, frame.with_ids);
+    pixels_.resize(area, ids);
     const double step_x = 2.0 / frame.size.x(), step_y = 2.0 / frame.size.y();
     const auto resolve_pixel = [&](size_t i, int x, int y) {
         const uint64_t found = visibility_.pixels()[i];

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <tuple>
 
 #include "easypbr/gpu/closed_meshes.h"
@@ -26,12 +27,14 @@ class SoftwareGeometryPass {
     /// The same of the points alone.
     static bool handles_points(const DrawList& list);
 
-    /// Fills the G-buffer with the list's meshes and points and narrows the frame's covered rectangle; false,
-    /// with both unchanged, when a mesh would have to be clipped.
-    bool draw(Frame& frame, const DrawList& list, const GBuffer& targets);
+    /// Fills the G-buffer with the list's meshes and points and returns the rectangle that everything of the
+    /// list is inside; nothing, with the G-buffer unchanged, when a mesh would have to be clipped.
+    std::optional<PixelRect> draw(const Frame& frame, const DrawList& list, const GBuffer& targets,
+                                  const SurfaceOutputs& outputs);
 
     /// Adds the list's points to what the G-buffer holds.
-    void draw_points_over(const Frame& frame, const DrawList& list, const GBuffer& targets);
+    void draw_points_over(const Frame& frame, const DrawList& list, const GBuffer& targets,
+                          const SurfaceOutputs& outputs);
 
     /// Sets to 1 what meshes and points cover of the frame, row by row; false, with nothing set, when only
     /// the driver can draw them.
@@ -44,7 +47,7 @@ class SoftwareGeometryPass {
     const MeshFacts& facts_of(const MeshData& mesh);
     bool add_meshes(const Frame& frame, const DrawList& list, std::vector<Surface>& surfaces);
     void add_points(const Frame& frame, const DrawList& list, std::vector<Surface>& surfaces);
-    void resolve(const Frame& frame, const std::vector<Surface>& surfaces);
+    void resolve(const Frame& frame, const std::vector<Surface>& surfaces, bool ids);
 
     std::map<std::tuple<uint64_t, uint64_t, uint64_t>, MeshFacts> facts_;
     SpacingCache& spacings_;

@@ -18,7 +18,7 @@ struct LightShadow {
 };
 
 /// What surfaces that let light through take from it, in arrays beside that of the maps, per channel of the
-/// light; see shaders/common_tint.glsl.
+/// light; see shaders/shadow_target.glsl.
 struct ShadowTints {
     gl::Texture absorption;  ///< rgb: sum of -ln(transmittance); a: depth of the first caster
     gl::Texture moment;      ///< rgb: sum of -ln(transmittance) times depth; a: minus the last caster's depth

@@ -1,7 +1,5 @@
 #include "easypbr/render/shadow/shadow_pass.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -32,9 +30,14 @@ bool suits_native(std::span<const DrawItem> items) {
     return items.front().mesh().F.rows() >= smallest_face_count && std::ranges::all_of(items, opaque);
 }
 
-void draw_faces(const DrawItem& item) {
-    glDrawElements(GL_TRIANGLES, item.part.face_count * 3, GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(size_t(item.part.first_face) * 12));
+/// The largest depth stays, whatever the order: no depth buffer is needed. Tints add up, and keep the first
+/// and the last caster's depths in alpha.
+gl::DrawState caster_state(bool tints) {
+    if (!tints) return {.blending = gl::maximum};
+    return {.blending = {.source = gl::Factor::one,
+                         .target = gl::Factor::one,
+                         .color_equation = gl::BlendEquation::add,
+                         .alpha_equation = gl::BlendEquation::maximum}};
 }
 
 /// The solid items of each object, or those that tint; they follow each other.
@@ -75,15 +78,8 @@ void ShadowPass::draw(const ShadowView& view, const DrawList& casters, gl::Textu
     }
     if (objects.empty() && casters.points.empty() && casters.surfels.empty()) return;
     framebuffer.bind();
-    // The largest depth stays, whatever the order: no depth buffer is needed.
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    glEnable(GL_BLEND);
-    glBlendEquation(GL_MAX);
     for (const Items& items : objects) draw_object(view, items);
     draw_splats(view, casters, false, native, maps.width());
-    glBlendEquation(GL_FUNC_ADD);
-    glDisable(GL_BLEND);
 }
 
 void ShadowPass::draw_tints(const ShadowView& view, const DrawList& casters,
@@ -92,16 +88,8 @@ void ShadowPass::draw_tints(const ShadowView& view, const DrawList& casters,
     framebuffer.clear_color(0, nothing);
     framebuffer.clear_color(1, nothing);
     framebuffer.bind();
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_CULL_FACE);
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE);
-    glBlendEquationSeparate(GL_FUNC_ADD, GL_MAX);
     for (const Items& items : objects_of(casters.meshes, true)) draw_object(view, items);
     draw_splats(view, casters, true, false, framebuffer.width());
-    glBlendEquation(GL_FUNC_ADD);
-    glBlendFunc(GL_ONE, GL_ZERO);
-    glDisable(GL_BLEND);
 }
 
 std::vector<ShadowPass::Items> ShadowPass::draw_native(const ShadowView& view,
@@ -136,20 +124,26 @@ void ShadowPass::draw_splats(const ShadowView& view, const DrawList& casters, bo
                              int resolution) {
     for (const DrawItem& item : casters.points)
         if (item.casts_tint() == tints && (!native || !SplatShadows::suits_native(item)))
-            splats_.draw_points(view, item, resolution);
+            splats_.draw_points(view, item, resolution, caster_state(tints));
     for (const DrawItem& item : casters.surfels)
-        if (item.casts_tint() == tints) splats_.draw_surfels(view, item);
+        if (item.casts_tint() == tints) splats_.draw_surfels(view, item, caster_state(tints));
 }
 
 void ShadowPass::draw_object(const ShadowView& view, Items items) {
     // The buffers that the geometry pass draws an object from serve here too.
     const bool tangents = std::ranges::any_of(items, &DrawItem::needs_tangents);
-    meshes_.get(items.front().mesh(), tangents).array.bind();
-    for (const DrawItem& item : items) draw_item(view, item);
+    const gl::VertexArray& array = meshes_.get(items.front().mesh(), tangents).array;
+    for (const DrawItem& item : items) {
+        if (item.material.shader)
+            use_own_shader(view, item);
+        else
+            use_shader(view, item);
+        gl::draw_triangles(caster_state(item.casts_tint()), array, int64_t(item.part.first_face) * 3,
+                           item.part.face_count * 3);
+    }
 }
 
-void ShadowPass::draw_item(const ShadowView& view, const DrawItem& item) {
-    if (item.material.shader) return draw_shaded(view, item);
+void ShadowPass::use_shader(const ShadowView& view, const DrawItem& item) {
     const Material& m = item.material;
     const bool with_uv = reads_uv(item), tints = item.casts_tint();
     std::vector<std::string> defines;
@@ -185,23 +179,22 @@ void ShadowPass::draw_item(const ShadowView& view, const DrawItem& item) {
         program.set("u_transmission_channel",
                     Vec4(Vec4::Unit(std::clamp(m.transmission_texture.channel, 0, 3))));
     }
-    draw_faces(item);
 }
 
-void ShadowPass::draw_shaded(const ShadowView& view, const DrawItem& item) {
+void ShadowPass::use_own_shader(const ShadowView& view, const DrawItem& item) {
     const Material& m = item.material;
     const bool tints = item.casts_tint();
     const bool varies = tints && item.textured() && m.transmission_texture;
-    const Frame frame;  // of the core model
+    const MaterialContext core_model;
     // The face's side by its derivatives: nothing is known of the winding here.
-    std::vector<std::string> defines = {"SHADOW", "SURFACE_SHADER", "FACE_NORMAL"};
+    std::vector<std::string> defines = {"SURFACE_SHADER", "FACE_NORMAL"};
     if (item.style.flat) defines.emplace_back("FLAT");
     if (item.with_colors) defines.emplace_back("VERTEX_COLOR");
     if (item.alpha == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
     if (item.alpha == AlphaMode::opaque) defines.emplace_back("COVERS");
     if (tints) defines.emplace_back("TINT");
-    if (varies) defines.emplace_back("SHADOW_TRANSMISSION");
-    add_material_defines(frame, item, defines);
+    if (varies) defines.emplace_back("TRANSMISSION_TEXTURE");
+    add_material_defines(core_model, item, defines);
     const gl::Program& program = with_shader(shaded_, m.shader, defines);
     program.use();
     const Eigen::Affine3d& T = item.object->T_world_mesh;
@@ -221,7 +214,7 @@ void ShadowPass::draw_shaded(const ShadowView& view, const DrawItem& item) {
                 Vec4(float(-along.x()), float(-along.y()), float(-along.z()), view.perspective ? 0 : 1));
     program.set("u_through", light_through(item));
     program.set("u_root", item.is_volume() ? 0.5f : 1.0f);
-    const unsigned unit = set_material(program, frame, item, textures_);
+    const unsigned unit = set_material(program, core_model, item, textures_);
     if (varies) {
         textures_.get(m.transmission_texture, false).bind(unit);
         program.set("u_transmission_texture", int(unit));
@@ -229,7 +222,6 @@ void ShadowPass::draw_shaded(const ShadowView& view, const DrawItem& item) {
         program.set("u_transmission_channel",
                     Vec4(Vec4::Unit(std::clamp(m.transmission_texture.channel, 0, 3))));
     }
-    draw_faces(item);
 }
 
 }  // namespace easypbr::render

@@ -32,8 +32,8 @@ class ShadowPass {
     void draw(const ShadowView& view, const DrawList& casters, gl::Texture& maps, int layer,
               const gl::Framebuffer& framebuffer);
 
-    /// Fills one layer of the tints with the others, see shaders/common_tint.glsl: what all of them take from
-    /// the light, and where. `framebuffer` has both as attachments.
+    /// Fills one layer of the tints with the others, see shaders/shadow_target.glsl: what all of them take
+    /// from the light, and where. `framebuffer` has both as attachments.
     void draw_tints(const ShadowView& view, const DrawList& casters, const gl::Framebuffer& framebuffer);
 
     /// Without a GPU, large opaque meshes and points are rasterised natively; false leaves them to the
@@ -49,16 +49,16 @@ class ShadowPass {
     void draw_splats(const ShadowView& view, const DrawList& casters, bool tints, bool native,
                      int resolution);
     void draw_object(const ShadowView& view, Items items);
-    void draw_item(const ShadowView& view, const DrawItem& item);
+    void use_shader(const ShadowView& view, const DrawItem& item);
     /// The same of an item with a shader of its own, whose holes are holes in its shadow.
-    void draw_shaded(const ShadowView& view, const DrawItem& item);
+    void use_own_shader(const ShadowView& view, const DrawItem& item);
 
     gpu::MeshCache& meshes_;
     gpu::TextureCache& textures_;
     const gpu::ClosedMeshes& closed_;
     SplatShadows& splats_;
     ProgramVariants programs_{"shadow_depth.vert", "shadow_depth.frag"};
-    ProgramVariants shaded_{"geometry_mesh.vert", "geometry_mesh.frag"};
+    ProgramVariants shaded_{"geometry_mesh.vert", "shadow_shaded.frag"};
     bool native_ = true;
     DepthBuffer depths_;
     VisibilityBuffer points_;

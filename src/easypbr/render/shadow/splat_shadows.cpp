@@ -1,7 +1,5 @@
 #include "easypbr/render/shadow/splat_shadows.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -83,7 +81,8 @@ void SplatShadows::evict_unused() {
     for (auto& [key, known] : reaches_) known.used = false;
 }
 
-void SplatShadows::draw_points(const ShadowView& view, const DrawItem& item, int resolution) {
+void SplatShadows::draw_points(const ShadowView& view, const DrawItem& item, int resolution,
+                               const gl::DrawState& state) {
     const gpu::PointBuffers& buffers = points_.get(item.mesh());
     std::vector<std::string> defines = alpha_defines(item);
     if (is_pushed(item) && buffers.normals) defines.emplace_back("PUSHED");
@@ -96,24 +95,18 @@ void SplatShadows::draw_points(const ShadowView& view, const DrawItem& item, int
     program.set("u_light", light_in_mesh(view, item));
     program.set("u_push", Vec3(float(radius / scale_of(item)), steepest, push));
     set_alpha(program, item);
-    buffers.array.bind();
-    glEnable(GL_PROGRAM_POINT_SIZE);
-    glDrawArrays(GL_POINTS, 0, int(item.mesh().V.rows()));
-    glDisable(GL_PROGRAM_POINT_SIZE);
+    gl::draw_points(state, buffers.array, int(item.mesh().V.rows()));
 }
 
-void SplatShadows::draw_surfels(const ShadowView& view, const DrawItem& item) {
+void SplatShadows::draw_surfels(const ShadowView& view, const DrawItem& item, const gl::DrawState& state) {
     const gpu::SurfelBuffers& buffers = surfels_.get(item.mesh());
-    std::vector<std::string> defines = alpha_defines(item);
-    defines.emplace_back("SURFEL");
-    const gl::Program& program = surfel_programs_.get(defines);
+    const gl::Program& program = surfel_programs_.get(alpha_defines(item));
     program.use();
     program.set("u_clip_from_mesh", clip_from_mesh(view, item));
     program.set("u_light", light_in_mesh(view, item));
     program.set("u_surfel", Vec2(item.style.surfel_scale, float(surfel_radius(item))));
     set_alpha(program, item);
-    buffers.array.bind();
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, int(item.mesh().V.rows()));
+    gl::draw_quads(state, buffers.array, int(item.mesh().V.rows()));
 }
 
 void SplatShadows::draw_points_natively(const ShadowView& view, const DrawItem& item,

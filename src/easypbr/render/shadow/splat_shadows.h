@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "easypbr/gl/draw.h"
 #include "easypbr/gpu/point_buffers.h"
 #include "easypbr/gpu/surfel_buffers.h"
 #include "easypbr/render/drawables/draw_list.h"
@@ -30,8 +31,9 @@ class SplatShadows {
     double reach(const DrawItem& item, bool surfels);
 
     /// Into the bound layer of a map of `resolution` texels.
-    void draw_points(const ShadowView& view, const DrawItem& item, int resolution);
-    void draw_surfels(const ShadowView& view, const DrawItem& item);
+    void draw_points(const ShadowView& view, const DrawItem& item, int resolution,
+                     const gl::DrawState& state);
+    void draw_surfels(const ShadowView& view, const DrawItem& item, const gl::DrawState& state);
 
     static bool suits_native(const DrawItem& item) {
         return item.alpha == AlphaMode::opaque && !item.casts_tint();
@@ -50,8 +52,8 @@ class SplatShadows {
     gpu::PointCache& points_;
     gpu::SurfelCache& surfels_;
     std::map<std::pair<uint64_t, uint64_t>, Reach> reaches_;  ///< of surfels, by the revisions of T and B
-    ProgramVariants point_programs_{"shadow_points.vert", "shadow_splats.frag"};
-    ProgramVariants surfel_programs_{"shadow_surfels.vert", "shadow_splats.frag"};
+    ProgramVariants point_programs_{"shadow_points.vert", "shadow_points.frag"};
+    ProgramVariants surfel_programs_{"shadow_surfels.vert", "shadow_surfels.frag"};
 };
 
 }  // namespace easypbr::render

@@ -1,10 +1,11 @@
 #include "easypbr/render/transparency/transparency_pass.h"
 
-#include <epoxy/gl.h>
-
 namespace easypbr::render {
 
-void TransparencyPass::begin(Frame& frame, const GBuffer& targets, const gl::Texture& opaque) {
+void TransparencyPass::begin(const Frame& frame, const GBuffer& targets, const gl::Texture& opaque,
+                             ExtensionSet extensions, bool with_overlay) {
+    extensions_ = extensions;
+    with_overlay_ = with_overlay;
     if (!query_) query_ = gl::OcclusionQuery::make();
     if (!layer_.albedo || layer_.size() != frame.size) {
         layer_ = GBuffer(frame.size);
@@ -12,14 +13,14 @@ void TransparencyPass::begin(Frame& frame, const GBuffer& targets, const gl::Tex
         limit_ = gl::Texture(gl::Format::r32f, frame.size.x(), frame.size.y());
         radiance_id_ = overlay_id_ = 0;
     }
-    if (frame.extensions) layer_.add_extensions();
+    if (extensions) layer_.add_extensions();
     // The identity of a texture may be given again once it is deleted, but then the targets' size has
     // changed, and the layer with it.
     if (radiance_id_ != targets.radiance.id()) {
         radiance_ = gl::Framebuffer({&targets.radiance}, &layer_.depth_test);
         radiance_id_ = targets.radiance.id();
     }
-    if (frame.with_overlay && overlay_id_ != targets.overlay.id()) {
+    if (with_overlay && overlay_id_ != targets.overlay.id()) {
         overlay_ = gl::Framebuffer({&targets.overlay}, &layer_.depth_test);
         overlay_id_ = targets.overlay.id();
     }
@@ -27,8 +28,8 @@ void TransparencyPass::begin(Frame& frame, const GBuffer& targets, const gl::Tex
     count_ = 0;
 }
 
-bool TransparencyPass::open_layer(Frame& frame) {
-    frame.behind = nullptr;
+bool TransparencyPass::open_layer(const Frame& frame) {
+    kept_ = false;
     if (count_ >= frame.resolved->settings.transparency.max_layers + 1) return false;
     if (count_ > 0) {
         gl::copy(layer_.depth, limit_);
@@ -37,21 +38,19 @@ bool TransparencyPass::open_layer(Frame& frame) {
     // Of what is left beyond the last allowed layer the nearest is worth the most.
     layer_.from_behind = count_ < frame.resolved->settings.transparency.max_layers;
     peel_.farthest = layer_.from_behind;
-    frame.peel = &peel_;
     layer_.clear_layer();
     query_.begin();
     return true;
 }
 
-bool TransparencyPass::close_layer(Frame& frame) {
+bool TransparencyPass::close_layer() {
     query_.end();
-    frame.peel = nullptr;
     const bool drawn = query_.any_drawn();
     if (drawn) ++count_;
     return drawn;
 }
 
-void TransparencyPass::look_behind(Frame& frame, const GBuffer& targets, bool rough, double reach) {
+void TransparencyPass::keep_picture(const Frame& frame, const GBuffer& targets, bool rough, double reach) {
     if (!picture_ || Vec2i(picture_.width(), picture_.height()) != frame.size) {
         const int levels = std::max(1, gl::full_levels(frame.size.x(), frame.size.y()) - 3);
         picture_ = gl::Texture(gl::Format::rgba32f, frame.size.x(), frame.size.y(), levels);
@@ -60,26 +59,25 @@ void TransparencyPass::look_behind(Frame& frame, const GBuffer& targets, bool ro
         for (int level = 0; level < levels; ++level)
             levels_.push_back(gl::Framebuffer::of_level(picture_, level));
     }
-    if (frame.with_overlay)
+    if (with_overlay_)
         merge_overlay(frame, targets);
     else
         gl::copy(targets.radiance, picture_);
-    behind_ = {&picture_, rough ? int(levels_.size()) : 1, &targets.depth, nullptr, nullptr, reach};
-    frame.behind = &behind_;
+    transmission_ = {&picture_, rough ? int(levels_.size()) : 1, &targets.depth, nullptr, nullptr, reach};
+    kept_ = true;
     if (!rough) return;
     const gl::Program& program = downsample_.get({});
     program.use();
     program.set("u_source", 0);
     picture_.bind(0);
-    glDisable(GL_DEPTH_TEST);
-    for (int level = 1; level < behind_.levels; ++level) {
+    for (int level = 1; level < transmission_.levels; ++level) {
         const gl::Framebuffer& target = levels_[size_t(level)];
         picture_.show_levels(level - 1, level - 1);
         target.bind();
         program.set("u_size", Vec2(float(target.width()), float(target.height())));
-        draw_screen_triangle();
+        gl::draw_screen({});
     }
-    picture_.show_levels(0, behind_.levels - 1);
+    picture_.show_levels(0, transmission_.levels - 1);
 }
 
 void TransparencyPass::merge_overlay(const Frame& frame, const GBuffer& targets) {
@@ -92,25 +90,22 @@ void TransparencyPass::merge_overlay(const Frame& frame, const GBuffer& targets)
     program.set("u_overlay", 1);
     targets.radiance.bind(0);
     targets.overlay.bind(1);
-    glDisable(GL_DEPTH_TEST);
-    draw_screen_triangle();
+    gl::draw_screen({});
 }
 
-void TransparencyPass::open_exits(Frame& frame) {
+void TransparencyPass::open_exits(const Frame& frame) {
     if (!exits_.albedo || exits_.size() != frame.size) exits_ = GBuffer(frame.size);
-    if (frame.extensions) exits_.add_extensions();
+    if (extensions_) exits_.add_extensions();
     exits_.clear_layer();
     peel_.limit = &layer_.depth;
     peel_.farthest = false;
     peel_.backs = true;
-    frame.peel = &peel_;
 }
 
-void TransparencyPass::close_exits(Frame& frame) {
+void TransparencyPass::close_exits() {
     peel_.backs = false;
-    frame.peel = nullptr;
-    behind_.exit_depth = &exits_.depth;
-    behind_.exit_normal = &exits_.normal;
+    transmission_.exit_depth = &exits_.depth;
+    transmission_.exit_normal = &exits_.normal;
 }
 
 void TransparencyPass::bind_layer(const gl::Program& program, const Frame& frame) const {
@@ -124,53 +119,45 @@ void TransparencyPass::bind_layer(const gl::Program& program, const Frame& frame
 }
 
 void TransparencyPass::blend(const Frame& frame, const GBuffer& targets, const gl::Texture* eye_dome) {
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(frame.covered.x, frame.covered.y, frame.covered.width, frame.covered.height);
-    glEnable(GL_BLEND);
-    layer_.test_covered();
     blend_radiance(frame, targets);
-    if (frame.with_overlay) blend_overlay(frame, eye_dome);
-    layer_.reset_depth_range();
-    glDisable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ZERO);  // a second source is an error where there are several targets, even unused
-    glDisable(GL_SCISSOR_TEST);
+    if (with_overlay_) blend_overlay(frame, eye_dome);
 }
 
 void TransparencyPass::blend_radiance(const Frame& frame, const GBuffer& targets) {
     std::vector<std::string> defines;
-    if (frame.with_overlay) defines.emplace_back("OVERLAY");
+    if (with_overlay_) defines.emplace_back("OVERLAY");
     const gl::Program& program = programs_.get(defines);
-    // The layer weakens what is behind by its opacity, and covers by what it does not let through.
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC1_ALPHA);
     radiance_.bind();
     program.use();
     bind_layer(program, frame);
-    if (frame.with_overlay) {
+    if (with_overlay_) {
         program.set("u_overlay", 3);
         targets.overlay.bind(3);
     }
-    draw_screen_triangle();
+    // The layer weakens what is behind by its opacity, and covers by what it does not let through.
+    gl::draw_screen(
+        layer_state(frame, {.source = gl::Factor::one, .target = gl::Factor::one_minus_source1_alpha}));
 }
 
 void TransparencyPass::blend_overlay(const Frame& frame, const gl::Texture* eye_dome) {
     overlay_.bind();
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
-    for (const char* define : {"INTO_OVERLAY", "WEAKEN_OVERLAY"}) {
-        const gl::Program& program = programs_.get(eye_dome ? std::vector<std::string>{define, "EYE_DOME"}
-                                                            : std::vector<std::string>{define});
+    const gl::Blending weaken{.source = gl::Factor::zero, .target = gl::Factor::one_minus_source_alpha};
+    for (const bool into : {true, false}) {
+        std::vector<std::string> defines = {into ? "INTO_OVERLAY" : "WEAKEN_OVERLAY"};
+        if (eye_dome) defines.emplace_back("EYE_DOME");
+        const gl::Program& program = programs_.get(defines);
         program.use();
         bind_layer(program, frame);
         if (eye_dome) eye_dome->bind(3);
         program.set("u_shade", 3);
-        draw_screen_triangle();
-        glBlendFunc(GL_ZERO, GL_ONE_MINUS_SRC_ALPHA);
+        gl::draw_screen(layer_state(frame, into ? gl::over : weaken));
     }
 }
 
-void TransparencyPass::end(Frame& frame) {
-    frame.peel = nullptr;
-    frame.behind = nullptr;
-    frame.partly_covered = frame.partly_covered || count_ > 0;
+gl::DrawState TransparencyPass::layer_state(const Frame& frame, const gl::Blending& blending) const {
+    gl::DrawState state = layer_.covered_state(blending);
+    state.scissor = screen_state(frame.covered).scissor;
+    return state;
 }
 
 }  // namespace easypbr::render

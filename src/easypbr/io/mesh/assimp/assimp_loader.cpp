@@ -10,10 +10,10 @@
 namespace easypbr::io {
 namespace {
 
-constexpr const char* assimp_module = "libeasypbr_assimp.so";
+constexpr const char* assimp_file = "libeasypbr_assimp.so";
 
 struct AssimpModule : RuntimeModule {
-    AssimpModule() : RuntimeModule(assimp_module) {
+    AssimpModule() : RuntimeModule(assimp_file) {
         find(load, "easypbr_assimp_load");
         find(extensions, "easypbr_assimp_extensions");
     }
@@ -35,7 +35,7 @@ LoadedScene load_assimp(const std::filesystem::path& path) {
         throw FormatError(
             fmt::format("cannot read {}: '.{}' files are read by the assimp module, which cannot be "
                         "loaded ({}); install the package libassimp5 and keep {} beside libeasypbr.so",
-                        path.string(), extension_of(path), assimp.reason(), assimp_module));
+                        path.string(), extension_of(path), assimp.reason(), assimp_file));
     LoadedScene out;
     assimp.load(path, out);
     return out;

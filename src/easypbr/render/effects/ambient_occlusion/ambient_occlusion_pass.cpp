@@ -1,7 +1,5 @@
 #include "easypbr/render/effects/ambient_occlusion/ambient_occlusion_pass.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 
 namespace easypbr::render {
@@ -17,10 +15,10 @@ bool at_half_resolution(const Frame& frame) {
            (resolution == OcclusionResolution::adaptive && frame.sample_count < frames_at_full_resolution);
 }
 
-void limit_to(const PixelRect& r, int scale) {
+/// The rectangle in texels of `scale` pixels a side.
+PixelRect in_texels(const PixelRect& r, int scale) {
     const int x1 = (r.x + r.width + scale - 1) / scale, y1 = (r.y + r.height + scale - 1) / scale;
-    glEnable(GL_SCISSOR_TEST);
-    glScissor(r.x / scale, r.y / scale, x1 - r.x / scale, y1 - r.y / scale);
+    return {r.x / scale, r.y / scale, x1 - r.x / scale, y1 - r.y / scale};
 }
 
 }  // namespace
@@ -30,8 +28,10 @@ struct AmbientOcclusionPass::Step {
     ProgramVariants& programs;
     std::vector<std::string> defines;
     const gl::Framebuffer& to;
+    PixelRect area;  ///< of `to`
     const gl::Texture* visibility = nullptr;
-    Vec2 axis{0, 0};  ///< of a blur
+    Vec2 axis{0, 0};       ///< of a blur
+    bool selects = false;  ///< writes the depth that the steps after it are tested by
 };
 
 void AmbientOcclusionPass::make_targets(Vec2i size, bool half) {
@@ -48,7 +48,7 @@ void AmbientOcclusionPass::make_targets(Vec2i size, bool half) {
     blur_ = gl::Framebuffer({&blurred_}, &depth_);
 }
 
-void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets) {
+void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets, bool with_points) {
     const bool half = at_half_resolution(frame), smooth = half || frame.sample_count < frames_without_blur;
     ProgramVariants& sampling =
         frame.resolved->settings.ssao.method == OcclusionMethod::horizon ? horizon_ : hemisphere_;
@@ -59,29 +59,22 @@ void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets) {
     targets.add_ambient_occlusion();
     const float open[4] = {1, 1, 1, 1};
     targets.occluded.clear_color(0, open);
-    glDisable(GL_BLEND);
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_FALSE);
-    glDepthFunc(GL_LESS);
-    // Points are shown past the light.
-    estimated_ = frame.with_overlay;
+    estimated_ = with_points;
     if (estimated_) estimate_normals(frame, targets);
-    limit_to(frame.covered, half ? 2 : 1);
-    if (smooth) {
-        make_targets(frame.size, half);
-        if (half)
-            select_surfaces(frame, targets, defines);
-        else
-            gl::copy(targets.depth_test, depth_);
-        run(frame, targets, {sampling, defines, sample_});
-        run(frame, targets, {blurring_, defines, blur_, &sampled_, {1, 0}});
-        run(frame, targets, {blurring_, defines, half ? sample_ : targets.occluded, &blurred_, {0, 1}});
-        limit_to(frame.covered, 1);
-        if (half) run(frame, targets, {magnifying_, defines, targets.occluded, &sampled_});
+    const PixelRect area = in_texels(frame.covered, half ? 2 : 1);
+    if (!smooth) return run(frame, targets, {sampling, defines, targets.occluded, area});
+    make_targets(frame.size, half);
+    if (half) {
+        select_.clear_depth(0);
+        run(frame, targets,
+            {.programs = selecting_, .defines = defines, .to = select_, .area = area, .selects = true});
     } else {
-        run(frame, targets, {sampling, defines, targets.occluded});
+        gl::copy(targets.depth_test, depth_);
     }
-    glDisable(GL_SCISSOR_TEST);
+    run(frame, targets, {sampling, defines, sample_, area});
+    run(frame, targets, {blurring_, defines, blur_, area, &sampled_, {1, 0}});
+    run(frame, targets, {blurring_, defines, half ? sample_ : targets.occluded, area, &blurred_, {0, 1}});
+    if (half) run(frame, targets, {magnifying_, defines, targets.occluded, frame.covered, &sampled_});
 }
 
 void AmbientOcclusionPass::estimate_normals(const Frame& frame, const GBuffer& targets) {
@@ -89,18 +82,7 @@ void AmbientOcclusionPass::estimate_normals(const Frame& frame, const GBuffer& t
         normal_ = gl::Texture(gl::Format::rg16, frame.size.x(), frame.size.y());
     gl::copy(targets.normal, normal_);
     estimate_ = gl::Framebuffer({&normal_}, &targets.depth_test);
-    limit_to(frame.covered, 1);
-    run(frame, targets, {estimating_, camera_defines(frame), estimate_});
-}
-
-void AmbientOcclusionPass::select_surfaces(const Frame& frame, const GBuffer& targets,
-                                           const std::vector<std::string>& defines) {
-    glDepthMask(GL_TRUE);
-    select_.clear_depth(0);
-    glDepthFunc(GL_ALWAYS);
-    run(frame, targets, {selecting_, defines, select_});
-    glDepthMask(GL_FALSE);
-    glDepthFunc(GL_LESS);
+    run(frame, targets, {estimating_, camera_defines(frame), estimate_, frame.covered});
 }
 
 void AmbientOcclusionPass::run(const Frame& frame, const GBuffer& targets, const Step& step) {
@@ -129,7 +111,10 @@ void AmbientOcclusionPass::run(const Frame& frame, const GBuffer& targets, const
     }
     program.set("u_visibility", 3);
     if (step.visibility) step.visibility->bind(3);
-    draw_screen_triangle();
+    gl::DrawState state = screen_state(step.area);
+    state.depth_test = step.selects ? gl::DepthTest::always : gl::DepthTest::less;
+    state.write_depth = step.selects;
+    gl::draw_screen(state);
 }
 
 }  // namespace easypbr::render

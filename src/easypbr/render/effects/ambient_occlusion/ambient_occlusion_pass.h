@@ -12,15 +12,15 @@ namespace easypbr::render {
 /// a longer still each take other directions at full resolution, and their mean needs no blur.
 class AmbientOcclusionPass {
   public:
-    /// Adds and fills the G-buffer's visibility from its depth and normals. Points without normals have those
-    /// of the surface that they sample, estimated from the depth.
-    void draw(const Frame& frame, GBuffer& targets);
+    /// Adds and fills the G-buffer's visibility from its depth and normals. Points without normals
+    /// (`with_points`: there may be some) have those of the surface that they sample, estimated from the
+    /// depth.
+    void draw(const Frame& frame, GBuffer& targets, bool with_points);
 
   private:
     struct Step;
     void make_targets(Vec2i size, bool half);
     void estimate_normals(const Frame& frame, const GBuffer& targets);
-    void select_surfaces(const Frame& frame, const GBuffer& targets, const std::vector<std::string>& defines);
     void run(const Frame& frame, const GBuffer& targets, const Step& step);
 
     Vec2i size_{0, 0};

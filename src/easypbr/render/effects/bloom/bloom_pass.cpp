@@ -1,7 +1,5 @@
 #include "easypbr/render/effects/bloom/bloom_pass.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 
 namespace easypbr::render {
@@ -23,6 +21,14 @@ PixelRect lit_texels(const Frame& frame, const gl::Texture& level) {
 }
 
 }  // namespace
+
+void set_glow_uniforms(const gl::Program& program, const Glow& glow, unsigned unit) {
+    program.set("u_bloom", glow.parameters);
+    program.set("u_glow", int(unit));
+    program.set("u_glow_size",
+                Vec2(float(glow_texel * glow.light->width()), float(glow_texel * glow.light->height())));
+    glow.light->bind(unit);
+}
 
 void BloomPass::make_levels(Vec2i size, int count) {
     if (size_ == size && levels_.size() == size_t(count)) return;
@@ -47,26 +53,26 @@ void BloomPass::make_levels(Vec2i size, int count) {
     summed_ = gl::Framebuffer({&sums_[0], &sums_[1], &sums_[2], &sums_[3]});
 }
 
-void BloomPass::draw(const Frame& frame, const gl::Texture& radiance) {
+const Glow& BloomPass::draw(const Frame& frame, const gl::Texture& radiance) {
     make_levels(frame.size, frame.resolved->bloom_levels);
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_BLEND);
+    const BloomSettings& bloom = frame.resolved->settings.bloom;
+    glow_.light = &levels_.front().glow;
+    glow_.parameters = {bloom.intensity, frame.resolved->exposure, bloom.threshold,
+                        bloom.knee * bloom.threshold};
     gather(frame, radiance);
     const size_t count = levels_.size();
     for (size_t i = 1; i < count; ++i)
-        resample(levels_[i - 1].light, levels_[i - 1].extent, levels_[i].lit, "DOWN");
+        resample(levels_[i - 1].light, levels_[i - 1].extent, levels_[i].lit, {"DOWN"}, gl::replace);
     // Upwards each level becomes the mean of itself and the levels below, all counting alike.
     for (size_t i = count; i-- > 0;) {
-        resample(levels_[i].light, levels_[i].extent, levels_[i].glowing, "SAME");
+        resample(levels_[i].light, levels_[i].extent, levels_[i].glowing, {}, gl::replace);
         if (i + 1 == count) continue;
-        const float own = 1 / float(count - i);
-        glEnable(GL_BLEND);
-        glBlendColor(own, own, own, own);
-        glBlendFunc(GL_ONE_MINUS_CONSTANT_COLOR, GL_CONSTANT_COLOR);
-        resample(levels_[i + 1].glow, levels_[i + 1].extent, levels_[i].glowing, "UP");
-        glDisable(GL_BLEND);
+        const gl::Blending mean{.source = gl::Factor::one_minus_constant,
+                                .target = gl::Factor::constant,
+                                .constant = 1 / float(count - i)};
+        resample(levels_[i + 1].glow, levels_[i + 1].extent, levels_[i].glowing, {"UP"}, mean);
     }
-    glBlendFunc(GL_ONE, GL_ZERO);
+    return glow_;
 }
 
 void BloomPass::gather(const Frame& frame, const gl::Texture& radiance) {
@@ -74,20 +80,17 @@ void BloomPass::gather(const Frame& frame, const gl::Texture& radiance) {
     const float black[4] = {0, 0, 0, 0};
     first.lit.clear_color(0, black);
     const PixelRect area = lit_texels(frame, first.light);
-    glEnable(GL_SCISSOR_TEST);
-    // A texel lies between the block of its own index and the next.
-    glScissor(area.x, area.y, area.width + 1, area.height + 1);
-    std::vector<std::string> defines = {"BLOCKS"};
+    std::vector<std::string> defines;
     if (frame.resolved->suppress_fireflies) defines.emplace_back("SUPPRESS_FIREFLIES");
-    const gl::Program& blocks = gather_.get(defines);
+    const gl::Program& blocks = blocks_.get(defines);
     summed_.bind();
     blocks.use();
-    set_bloom_uniforms(blocks, frame);
+    blocks.set("u_bloom", glow_.parameters);
     blocks.set("u_size", Vec2(frame.size.cast<float>()));
     blocks.set("u_radiance", 0);
     radiance.bind(0);
-    draw_screen_triangle();
-    glScissor(area.x, area.y, area.width, area.height);
+    // A texel lies between the block of its own index and the next.
+    gl::draw_screen(screen_state({area.x, area.y, area.width + 1, area.height + 1}));
     const gl::Program& texels = gather_.get({});
     first.lit.bind();
     texels.use();
@@ -96,20 +99,19 @@ void BloomPass::gather(const Frame& frame, const gl::Texture& radiance) {
         sums_[i].bind(i);
         texels.set(samplers[i], int(i));
     }
-    draw_screen_triangle();
-    glDisable(GL_SCISSOR_TEST);
+    gl::draw_screen(screen_state(area));
 }
 
 void BloomPass::resample(const gl::Texture& from, const Vec2& extent, const gl::Framebuffer& to,
-                         const char* step) {
-    const gl::Program& program = resample_.get({step});
+                         const std::vector<std::string>& step, const gl::Blending& blending) {
+    const gl::Program& program = resample_.get(step);
     to.bind();
     program.use();
     program.set("u_source", 0);
     program.set("u_source_size", Vec2(float(from.width()), float(from.height())));
     program.set("u_extent", extent);
     from.bind(0);
-    draw_screen_triangle();
+    gl::draw_screen({.blending = blending});
 }
 
 }  // namespace easypbr::render

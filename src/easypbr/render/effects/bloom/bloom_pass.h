@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "easypbr/render/effects/bloom/glow.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/programs.h"
 
@@ -13,11 +14,8 @@ namespace easypbr::render {
 /// taken from where it was, so that the sum of all light stays, and an even picture stays as it is.
 class BloomPass {
   public:
-    /// Computes the glow of a picture of frame.size pixels, RGBA32F.
-    void draw(const Frame& frame, const gl::Texture& radiance);
-
-    /// RGBA16F, exposed light, a texel for 4 x 4 pixels.
-    const gl::Texture& glow() const { return levels_.front().glow; }
+    /// The glow of a picture of frame.size pixels, RGBA32F. Until the next call.
+    const Glow& draw(const Frame& frame, const gl::Texture& radiance);
 
   private:
     struct Level {
@@ -27,13 +25,17 @@ class BloomPass {
     };
     void make_levels(Vec2i size, int count);
     void gather(const Frame& frame, const gl::Texture& radiance);
-    /// Draws what a texture of this extent holds to another level, by "DOWN", "UP", or "SAME".
-    void resample(const gl::Texture& from, const Vec2& extent, const gl::Framebuffer& to, const char* step);
+    /// Draws what a texture of this extent holds to another level, by {"DOWN"}, {"UP"}, or {}: of the same
+    /// size.
+    void resample(const gl::Texture& from, const Vec2& extent, const gl::Framebuffer& to,
+                  const std::vector<std::string>& step, const gl::Blending& blending);
 
+    Glow glow_;
     Vec2i size_{0, 0};
     std::vector<Level> levels_;
     gl::Texture sums_[4];  ///< of the blocks of pixels around the first level's texels
     gl::Framebuffer summed_;
+    ProgramVariants blocks_{"screen_triangle.vert", "bloom_blocks.frag"};
     ProgramVariants gather_{"screen_triangle.vert", "bloom_gather.frag"};
     ProgramVariants resample_{"screen_triangle.vert", "bloom_resample.frag"};
 };

@@ -1,7 +1,5 @@
 #include "easypbr/render/effects/depth_of_field/focus_pass.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -51,10 +49,8 @@ void FocusPass::make_targets(Vec2i size) {
     composed_ = gl::Framebuffer({&radiance_});
 }
 
-void FocusPass::draw(const Frame& frame, const GBuffer& targets, const Box3d& bounds) {
+const gl::Texture& FocusPass::draw(const Frame& frame, const GBuffer& targets, const Box3d& bounds) {
     make_targets(frame.size);
-    glDisable(GL_DEPTH_TEST);
-    glDisable(GL_BLEND);
     const Vec2 size = frame.size.cast<float>(), focus = confusion_of(frame).cast<float>();
     const Vec2 half(float(light_.width()), float(light_.height()));
 
@@ -65,7 +61,7 @@ void FocusPass::draw(const Frame& frame, const GBuffer& targets, const Box3d& bo
     halve.set("u_focus", focus);
     bind(halve, "u_radiance", 0, targets.radiance);
     bind(halve, "u_depth_target", 1, targets.depth);
-    draw_screen_triangle();
+    gl::draw_screen({});
 
     const gl::Program& gather = gather_.get({});
     gathered_.bind();
@@ -74,7 +70,7 @@ void FocusPass::draw(const Frame& frame, const GBuffer& targets, const Box3d& bo
     gather.set("u_reach", float(largest_confusion(frame, bounds) / 2));
     bind(gather, "u_light", 0, light_);
     bind(gather, "u_confusion", 1, confusion_);
-    draw_screen_triangle();
+    gl::draw_screen({});
 
     const gl::Program& compose = compose_.get({});
     composed_.bind();
@@ -87,7 +83,8 @@ void FocusPass::draw(const Frame& frame, const GBuffer& targets, const Box3d& bo
     bind(compose, "u_behind", 2, behind_);
     bind(compose, "u_before", 3, before_);
     bind(compose, "u_hidden", 4, hidden_);
-    draw_screen_triangle();
+    gl::draw_screen({});
+    return radiance_;
 }
 
 }  // namespace easypbr::render

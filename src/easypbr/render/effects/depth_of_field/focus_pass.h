@@ -13,11 +13,9 @@ namespace easypbr::render {
 /// sixteenth of the picture's height in radius.
 class FocusPass {
   public:
-    /// Computes radiance() from the G-buffer's radiance and depth. `bounds` are those of all content.
-    void draw(const Frame& frame, const GBuffer& targets, const Box3d& bounds);
-
-    /// RGBA32F, as GBuffer::radiance.
-    const gl::Texture& radiance() const { return radiance_; }
+    /// The blurred radiance, RGBA32F, of the G-buffer's radiance and depth. `bounds` are those of all
+    /// content. Until the next call.
+    const gl::Texture& draw(const Frame& frame, const GBuffer& targets, const Box3d& bounds);
 
   private:
     void make_targets(Vec2i size);

@@ -1,7 +1,5 @@
 #include "easypbr/render/effects/ground/ground_pass.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 
 #include "easypbr/core/color.h"
@@ -56,10 +54,6 @@ void GroundPass::draw(const Frame& frame, const GBuffer& targets) {
     const Plane plane = plane_of(frame.camera, *frame.resolved);
     const gl::Program& program = surface_.get(camera_defines(frame));
     targets.surface_emission.bind();
-    glDisable(GL_BLEND);
-    glEnable(GL_DEPTH_TEST);
-    glDepthMask(GL_TRUE);
-    glDepthFunc(GL_GREATER);
     program.use();
     set_camera_uniforms(program, frame);
     const Vec3 up = plane.up.cast<float>();
@@ -67,7 +61,7 @@ void GroundPass::draw(const Frame& frame, const GBuffer& targets) {
     program.set("u_color", linear_from_srgb(ground.color));
     program.set("u_roughness", ground.roughness);
     program.set("u_kind", code_of(shadow_catcher ? SurfaceKind::ground_catcher : SurfaceKind::ground_plane));
-    draw_screen_triangle();
+    gl::draw_screen({.depth_test = gl::DepthTest::greater, .write_depth = true});
 }
 
 void GroundPass::begin_light(const Frame& frame, const GBuffer& targets) {
@@ -90,7 +84,6 @@ void GroundPass::finish(const Frame& frame, const GBuffer& targets, const Box3d&
     if (shadow_catcher) defines.emplace_back("CATCHER");
     const gl::Program& program = finish_.get(defines);
     targets.lit.bind();
-    targets.test_covered();
     program.use();
     set_camera_uniforms(program, frame);
     program.set("u_material", 0);
@@ -107,13 +100,9 @@ void GroundPass::finish(const Frame& frame, const GBuffer& targets, const Box3d&
         middle += plane.up * (plane.offset - plane.up.dot(middle));
         const Vec3 m = middle.cast<float>();
         program.set("u_middle", Vec4(m.x(), m.y(), m.z(), *ground.radius));
-        glEnable(GL_BLEND);
-        glBlendFunc(GL_ZERO, GL_SRC_COLOR);
     }
-    draw_screen_triangle();
-    glDisable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ZERO);
-    targets.reset_depth_range();
+    const gl::Blending multiply{.source = gl::Factor::zero, .target = gl::Factor::source_color};
+    gl::draw_screen(targets.covered_state(shadow_catcher ? gl::replace : multiply));
 }
 
 }  // namespace easypbr::render

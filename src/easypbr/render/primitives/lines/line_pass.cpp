@@ -1,7 +1,5 @@
 #include "easypbr/render/primitives/lines/line_pass.h"
 
-#include <epoxy/gl.h>
-
 #include "easypbr/core/color.h"
 
 namespace easypbr::render {
@@ -19,13 +17,8 @@ void LinePass::begin(const Frame& frame, const std::vector<LineItem>& items, con
     normal_ = &targets.normal;
     has_last_ = false;
     framebuffer_.bind();
-    framebuffer_.allow_depth_writes();
     framebuffer_.clear_depth(0);
-    glEnable(GL_DEPTH_TEST);
-    glDepthFunc(GL_GEQUAL);
-    glColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     draw_items(frame, items, Kind::nearest);
-    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
 void LinePass::draw_behind(const Frame& frame, const std::vector<LineItem>& items, const GBuffer& targets,
@@ -53,11 +46,7 @@ void LinePass::add(const Frame& frame, const std::vector<LineItem>& items, const
                    const GBuffer* next) {
     if (items.empty()) return;
     targets.display.bind();
-    glDisable(GL_DEPTH_TEST);
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     draw_items(frame, items, kind, next);
-    glDisable(GL_BLEND);
 }
 
 void LinePass::bind_surfaces(const gl::Program& program, const GBuffer* next) const {
@@ -89,6 +78,9 @@ void LinePass::draw_items(const Frame& frame, const std::vector<LineItem>& items
     if (kind != Kind::nearest) depth_.bind(2);
     program.set("u_nearest_line", 2);
     program.set("u_least_w", frame.orthographic() ? 0.5f : float(frame.camera.near));
+    const gl::DrawState nearest{
+        .depth_test = gl::DepthTest::greater_equal, .write_depth = true, .write_color = false};
+    const gl::DrawState state = kind == Kind::nearest ? nearest : gl::DrawState{.blending = gl::over};
     for (const LineItem& item : items) {
         if (kind != Kind::nearest && item.style.overlay != (kind == Kind::over)) continue;
         const gpu::LineBuffers& buffers = cache_.get(*item.object->mesh, item.kind, item.length);
@@ -100,8 +92,7 @@ void LinePass::draw_items(const Frame& frame, const std::vector<LineItem>& items
         program.set("u_dash", item.style.line_dash);
         program.set("u_always", item.style.overlay ? 1.0f : 0.0f);
         program.set("u_color", item.color);
-        buffers.array.bind();
-        glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, buffers.count);
+        gl::draw_quads(state, buffers.array, buffers.count);
     }
 }
 

@@ -1,7 +1,5 @@
 #include "easypbr/render/primitives/mesh/geometry_pass.h"
 
-#include <epoxy/gl.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -11,16 +9,6 @@
 
 namespace easypbr::render {
 namespace {
-
-void set_culling(bool cull, bool fronts, bool mirrored) {
-    if (cull) {
-        glEnable(GL_CULL_FACE);
-        glCullFace(fronts ? GL_FRONT : GL_BACK);
-    } else {
-        glDisable(GL_CULL_FACE);
-    }
-    glFrontFace(mirrored ? GL_CW : GL_CCW);
-}
 
 /// Whether back faces are left out.
 bool is_one_sided(const Frame& frame, const DrawItem& item, const gpu::MeshBuffers& buffers) {
@@ -47,16 +35,16 @@ const gl::Program& GeometryPass::program_of(const DrawItem& item, const std::vec
     return with_shader(programs_, shader, defines);
 }
 
-void GeometryPass::draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets) {
+void GeometryPass::draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets,
+                        const SurfaceOutputs& outputs) {
     const bool emission =
-        frame.with_ids || frame.peel || frame.extensions || std::ranges::any_of(items, &DrawItem::emits);
-    const gl::Framebuffer& framebuffer = frame.with_ids     ? targets.surface_ids
-                                         : frame.extensions ? targets.surface_extended
-                                         : emission         ? targets.surface_emission
-                                                            : targets.surface;
+        outputs.ids || outputs.peel || outputs.extensions || std::ranges::any_of(items, &DrawItem::emits);
+    const gl::Framebuffer& framebuffer = outputs.ids          ? targets.surface_ids
+                                         : outputs.extensions ? targets.surface_extended
+                                         : emission           ? targets.surface_emission
+                                                              : targets.surface;
     framebuffer.bind();
-    if (!frame.peel) targets.clear(frame.with_ids);
-    test_geometry_depth(frame);
+    if (!outputs.peel) targets.clear(outputs.ids);
     for (size_t first = 0, last; first < items.size(); first = last) {
         // All parts of an object share its buffers.
         const auto same_object = [&](const DrawItem& item) { return item.object == items[first].object; };
@@ -64,13 +52,12 @@ void GeometryPass::draw(const Frame& frame, const std::vector<DrawItem>& items, 
         const bool tangents = std::any_of(items.begin() + long(first), items.begin() + long(last),
                                           [](const DrawItem& item) { return item.needs_tangents(); });
         const gpu::MeshBuffers& buffers = meshes_.get(items[first].mesh(), tangents);
-        for (size_t i = first; i < last; ++i) draw_item(frame, items[i], buffers, emission);
+        for (size_t i = first; i < last; ++i) draw_item(frame, items[i], buffers, outputs, emission);
     }
-    glDisable(GL_CULL_FACE);
 }
 
 void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu::MeshBuffers& buffers,
-                             bool emission) {
+                             const SurfaceOutputs& outputs, bool emission) {
     const bool face_normal = item.style.flat || (item.two_sided && !buffers.normals_agree);
     const Mat4d mesh_matrix = item.object->T_world_mesh.matrix();
     const Mat3d linear = mesh_matrix.topLeftCorner<3, 3>();
@@ -83,11 +70,13 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     if (item.material.shader) defines.emplace_back("SURFACE_SHADER");
     if (item.two_sided) defines.emplace_back("TWO_SIDED");
     if (emission) defines.emplace_back("EMISSION");
-    if (frame.with_ids) defines.emplace_back("OBJECT_ID");
+    if (outputs.ids) defines.emplace_back("OBJECT_ID");
     if (item.alpha == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
-    if (item.alpha == AlphaMode::blend) defines.emplace_back(frame.peel ? "ALPHA_BLEND" : "ALPHA_STOCHASTIC");
-    if (frame.peel) defines.emplace_back("PEEL");
-    add_material_defines(frame, item, defines);
+    if (item.alpha == AlphaMode::blend)
+        defines.emplace_back(outputs.peel ? "ALPHA_BLEND" : "ALPHA_STOCHASTIC");
+    if (outputs.peel) defines.emplace_back("PEEL");
+    const MaterialContext context{outputs.extensions, frame.sample_count, frame.resolved};
+    add_material_defines(context, item, defines);
 
     const gl::Program& program = program_of(item, defines);
     program.use();
@@ -102,13 +91,14 @@ void GeometryPass::draw_item(const Frame& frame, const DrawItem& item, const gpu
     program.set("u_object_id", int(item.object - frame.scene->objects.data()) + 1);
     program.set("u_sample_index", float(frame.sample_index));
     set_noise_uniforms(program, frame);
-    const unsigned free_unit = set_material(program, frame, item, textures_);
-    if (frame.peel) set_peel_uniforms(program, *frame.peel, free_unit);
+    const unsigned free_unit = set_material(program, context, item, textures_);
+    if (outputs.peel) set_peel_uniforms(program, *outputs.peel, free_unit);
 
-    set_culling(is_one_sided(frame, item, buffers), frame.peel && frame.peel->backs, mirrored);
-    buffers.array.bind();
-    glDrawElements(GL_TRIANGLES, item.part.face_count * 3, GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(size_t(item.part.first_face) * 12));
+    gl::DrawState state = geometry_state(outputs);
+    if (is_one_sided(frame, item, buffers))
+        state.culling = outputs.peel && outputs.peel->backs ? gl::Culling::front : gl::Culling::back;
+    state.clockwise_fronts = mirrored;
+    gl::draw_triangles(state, buffers.array, int64_t(item.part.first_face) * 3, item.part.face_count * 3);
 }
 
 }  // namespace easypbr::render

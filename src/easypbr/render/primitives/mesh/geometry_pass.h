@@ -16,11 +16,13 @@ class GeometryPass {
     GeometryPass(gpu::MeshCache& meshes, gpu::TextureCache& textures)
         : meshes_(meshes), textures_(textures) {}
 
-    /// Clears the G-buffer and draws all items.
-    void draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets);
+    /// Clears the G-buffer, unless a layer is drawn, and draws all items.
+    void draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets,
+              const SurfaceOutputs& outputs);
 
   private:
-    void draw_item(const Frame& frame, const DrawItem& item, const gpu::MeshBuffers& buffers, bool emission);
+    void draw_item(const Frame& frame, const DrawItem& item, const gpu::MeshBuffers& buffers,
+                   const SurfaceOutputs& outputs, bool emission);
 
     const gl::Program& program_of(const DrawItem& item, const std::vector<std::string>& defines);
 

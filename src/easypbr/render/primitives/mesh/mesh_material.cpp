@@ -58,15 +58,15 @@ Vec4 channel_mask(int channel) {
     return mask;
 }
 
-bool is_extended(const Frame& frame, const DrawItem& item) {
-    return frame.extensions && item.extensions();
+bool is_extended(const MaterialContext& context, const DrawItem& item) {
+    return context.extensions && item.extensions();
 }
 
 /// Calls visit(use, index) for each texture that the item is drawn with.
 template <class Visit>
-void for_each_texture(const Frame& frame, const DrawItem& item, Visit&& visit) {
+void for_each_texture(const MaterialContext& context, const DrawItem& item, Visit&& visit) {
     if (!item.textured()) return;
-    const size_t count = is_extended(frame, item) ? std::size(texture_uses) : core_texture_count;
+    const size_t count = is_extended(context, item) ? std::size(texture_uses) : core_texture_count;
     for (size_t i = 0; i < count; ++i) {
         const TextureUse& use = texture_uses[i];
         const bool of_normals =
@@ -87,12 +87,13 @@ Vec3 log_transmittance(const Material& m, float thickness) {
     return (per_distance * (thickness / m.attenuation_distance)).cwiseMax(-80.0f);
 }
 
-void set_extension_uniforms(const gl::Program& program, const Frame& frame, const DrawItem& item) {
+void set_extension_uniforms(const gl::Program& program, const ResolvedSettings& resolved,
+                            const DrawItem& item) {
     const Material& m = item.material;
     program.set("u_coat", Vec3(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale));
     program.set("u_sheen", with_w(m.sheen_color, m.sheen_roughness));
     // A material that says nothing of its index has the settings' reflectance.
-    const float f0 = m.ior == 1.5f ? frame.resolved->settings.shading.dielectric_f0
+    const float f0 = m.ior == 1.5f ? resolved.settings.shading.dielectric_f0
                      : m.ior > 0   ? std::pow((m.ior - 1) / (m.ior + 1), 2.0f)
                                    : 1.0f;
     program.set("u_specular", with_w(m.specular_color * f0, m.specular));
@@ -105,40 +106,41 @@ void set_extension_uniforms(const gl::Program& program, const Frame& frame, cons
     // What reflects all does not refract.
     program.set("u_volume", Vec3(m.transmission, thickness, m.ior > 0 ? m.ior : 1.0f));
     program.set("u_attenuation", log_transmittance(m, thickness));
-    program.set("u_up", Vec3(parse_up(frame.resolved->settings.camera.up).cast<float>()));
+    program.set("u_up", Vec3(parse_up(resolved.settings.camera.up).cast<float>()));
 }
 
 }  // namespace
 
-void add_material_defines(const Frame& frame, const DrawItem& item, std::vector<std::string>& defines) {
+void add_material_defines(const MaterialContext& context, const DrawItem& item,
+                          std::vector<std::string>& defines) {
     if (item.textured() || (item.material.shader && !item.mesh().UV.empty())) defines.emplace_back("UV");
     if (item.needs_tangents()) defines.emplace_back("TANGENT");
-    const bool extended = is_extended(frame, item);
+    const bool extended = is_extended(context, item);
     if (extended) defines.emplace_back("EXTENDED");
     defines.push_back(
         fmt::format("UV_TRANSFORMS {}", extended ? std::size(texture_uses) : core_texture_count));
-    for_each_texture(frame, item, [&](const TextureUse& use, size_t) { defines.emplace_back(use.define); });
+    for_each_texture(context, item, [&](const TextureUse& use, size_t) { defines.emplace_back(use.define); });
     const Material& m = item.material;
     if (item.textured() && m.metallic_texture && m.roughness_texture &&
         same_texels(m.metallic_texture, m.roughness_texture))
         defines.emplace_back("ROUGHNESS_IN_METALLIC");
 }
 
-unsigned set_material(const gl::Program& program, const Frame& frame, const DrawItem& item,
+unsigned set_material(const gl::Program& program, const MaterialContext& context, const DrawItem& item,
                       gpu::TextureCache& textures) {
     const Material& m = item.material;
-    const SurfaceKind kind = m.unlit                    ? SurfaceKind::unlit
-                             : is_extended(frame, item) ? SurfaceKind::extended
-                                                        : item.kind;
+    const SurfaceKind kind = m.unlit                      ? SurfaceKind::unlit
+                             : is_extended(context, item) ? SurfaceKind::extended
+                                                          : item.kind;
     program.set("u_base_color", with_w(m.base_color, m.opacity));
     program.set("u_surface", Vec4(m.metallic, m.roughness, m.occlusion_strength, m.alpha_cutoff));
     program.set("u_emissive", with_w(m.emissive, code_of(kind)));
     program.set("u_normal_scale", m.normal_scale);
     // Jittered frames see finer detail together than one alone: a level less of blur from four samples on.
-    program.set("u_lod_bias", frame.sample_count >= 4 ? -1.0f : 0.0f);
-    if (is_extended(frame, item)) set_extension_uniforms(program, frame, item);
+    program.set("u_lod_bias", context.sample_count >= 4 ? -1.0f : 0.0f);
+    if (is_extended(context, item)) set_extension_uniforms(program, *context.resolved, item);
     unsigned unit = 0;
-    for_each_texture(frame, item, [&](const TextureUse& use, size_t index) {
+    for_each_texture(context, item, [&](const TextureUse& use, size_t index) {
         const Texture& texture = m.*use.member;
         textures.get(texture, use.color).bind(unit);
         program.set(use.sampler, int(unit++));

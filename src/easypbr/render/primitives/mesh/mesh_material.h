@@ -8,12 +8,20 @@
 
 namespace easypbr::render {
 
-/// Macros for the item's textures and extensions, those of the frame only.
-void add_material_defines(const Frame& frame, const DrawItem& item, std::vector<std::string>& defines);
+/// What the shader's values depend on beside the material.
+struct MaterialContext {
+    ExtensionSet extensions = 0;                 ///< those that the targets hold; 0: the core model only
+    int sample_count = 1;                        ///< of the accumulated picture
+    const ResolvedSettings* resolved = nullptr;  ///< needed with extensions
+};
+
+/// Macros for the item's textures and extensions, those of the context only.
+void add_material_defines(const MaterialContext& context, const DrawItem& item,
+                          std::vector<std::string>& defines);
 
 /// Sets the uniforms and binds the textures to units from 0 on, as many as the item has. Returns the first
 /// unit that is free.
-unsigned set_material(const gl::Program& program, const Frame& frame, const DrawItem& item,
+unsigned set_material(const gl::Program& program, const MaterialContext& context, const DrawItem& item,
                       gpu::TextureCache& textures);
 
 }  // namespace easypbr::render

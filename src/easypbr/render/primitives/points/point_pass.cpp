@@ -1,29 +1,21 @@
 #include "easypbr/render/primitives/points/point_pass.h"
 
-#include <epoxy/gl.h>
-
 #include "easypbr/render/raster/point_splats.h"
 
 namespace easypbr::render {
 
-void PointPass::draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets) {
+void PointPass::draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets,
+                     const SurfaceOutputs& outputs) {
     if (items.empty()) return;
-    (frame.with_ids ? targets.surface_ids : targets.surface_emission).bind();
-    glEnable(GL_PROGRAM_POINT_SIZE);
-    test_geometry_depth(frame);
-    draw_items(frame, items, false);
-    glDepthMask(GL_FALSE);
-    glDepthFunc(GL_EQUAL);
-    glEnable(GL_BLEND);
-    glBlendEquation(GL_MAX);
-    draw_items(frame, items, true);
-    glBlendEquation(GL_FUNC_ADD);
-    glDisable(GL_BLEND);
-    glDepthMask(GL_TRUE);
-    glDisable(GL_PROGRAM_POINT_SIZE);
+    (outputs.ids ? targets.surface_ids : targets.surface_emission).bind();
+    draw_items(frame, items, outputs, false);
+    draw_items(frame, items, outputs, true);
 }
 
-void PointPass::draw_items(const Frame& frame, const std::vector<DrawItem>& items, bool write) {
+void PointPass::draw_items(const Frame& frame, const std::vector<DrawItem>& items,
+                           const SurfaceOutputs& outputs, bool write) {
+    const gl::DrawState largest_at_depth{.depth_test = gl::DepthTest::equal, .blending = gl::maximum};
+    const gl::DrawState state = write ? largest_at_depth : geometry_state(outputs);
     const Mat3 world_from_view = frame.camera.T_world_cam.linear().cast<float>();
     for (const DrawItem& item : items) {
         const gpu::PointBuffers& buffers = cache_.get(item.mesh());
@@ -33,11 +25,11 @@ void PointPass::draw_items(const Frame& frame, const std::vector<DrawItem>& item
         if (buffers.normals) defines.emplace_back("NORMAL");
         if (item.with_colors) defines.emplace_back("VERTEX_COLOR");
         if (splats.round) defines.emplace_back("ROUND");
-        if (frame.with_ids) defines.emplace_back("OBJECT_ID");
+        if (outputs.ids) defines.emplace_back("OBJECT_ID");
         if (item.alpha == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
         if (item.alpha == AlphaMode::blend)
-            defines.emplace_back(frame.peel ? "ALPHA_BLEND" : "ALPHA_STOCHASTIC");
-        if (frame.peel) defines.emplace_back("PEEL");
+            defines.emplace_back(outputs.peel ? "ALPHA_BLEND" : "ALPHA_STOCHASTIC");
+        if (outputs.peel) defines.emplace_back("PEEL");
         const gl::Program& program = programs_.get(defines);
         program.use();
         const Mat4d mesh_matrix = item.object->T_world_mesh.matrix();
@@ -50,15 +42,14 @@ void PointPass::draw_items(const Frame& frame, const std::vector<DrawItem>& item
         program.set("u_size_pixels", Vec3(splats.pixels, splats.world_pixels, splats.least_pixels));
         program.set("u_base_color", Vec4(m.base_color.x(), m.base_color.y(), m.base_color.z(), m.opacity));
         program.set("u_alpha_cutoff", m.alpha_cutoff);
-        if (frame.peel) set_peel_uniforms(program, *frame.peel, 0);
+        if (outputs.peel) set_peel_uniforms(program, *outputs.peel, 0);
         program.set("u_towards_viewer", Vec3(world_from_view.col(2)));
         program.set("u_material", Vec4(m.metallic, m.roughness, 1, code_of(item.kind)));
         program.set("u_object_id", int(item.object - frame.scene->objects.data()) + 1);
         program.set("u_sample_index", float(frame.sample_index));
         set_noise_uniforms(program, frame);
         program.set("u_write", write ? 1.0f : 0.0f);
-        buffers.array.bind();
-        glDrawArrays(GL_POINTS, 0, int(item.mesh().V.rows()));
+        gl::draw_points(state, buffers.array, int(item.mesh().V.rows()));
     }
 }
 

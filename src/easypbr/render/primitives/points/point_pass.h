@@ -18,10 +18,12 @@ class PointPass {
     /// Adds the points to what the G-buffer holds, in two passes: the first finds the nearest depth and
     /// empties its pixel, the second keeps, channel by channel, the largest of what lies at that depth. So
     /// coincident points give the same picture in any order.
-    void draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets);
+    void draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets,
+              const SurfaceOutputs& outputs);
 
   private:
-    void draw_items(const Frame& frame, const std::vector<DrawItem>& items, bool write);
+    void draw_items(const Frame& frame, const std::vector<DrawItem>& items, const SurfaceOutputs& outputs,
+                    bool write);
 
     SpacingCache& spacings_;
     gpu::PointCache& cache_;

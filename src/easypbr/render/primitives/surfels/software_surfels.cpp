@@ -181,9 +181,9 @@ void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<Source>& s
 }
 
 void SoftwareSurfels::draw(const Frame& frame, const std::vector<Source>& sources,
-                           const std::vector<float>& opaque, NativePixels& pixels) {
+                           const std::vector<float>& opaque, bool with_ids, NativePixels& pixels) {
     const Vec2i tiles = (frame.size.array() + tile_size - 1) / tile_size;
-    pixels.resize({0, 0, frame.size.x(), frame.size.y()}, frame.with_ids);
+    pixels.resize({0, 0, frame.size.x(), frame.size.y()}, with_ids);
     bin(sources, tiles);
     parallel_for(size_t(tiles.x()) * size_t(tiles.y()), 1, [&](size_t tile) {
         const std::span<const uint64_t> surfels(entries_.data() + first_[tile],

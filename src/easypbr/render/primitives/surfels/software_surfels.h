@@ -19,7 +19,7 @@ class SoftwareSurfels {
 
     /// `opaque`: reversed depth of what is there already, for the whole picture row by row.
     void draw(const Frame& frame, const std::vector<Source>& sources, const std::vector<float>& opaque,
-              NativePixels& pixels);
+              bool with_ids, NativePixels& pixels);
 
   private:
     struct Tile;

@@ -1,7 +1,5 @@
 #include "easypbr/render/primitives/surfels/surfel_layers.h"
 
-#include <epoxy/gl.h>
-
 namespace easypbr::render {
 
 void SurfelLayers::begin(const Frame& frame, const std::vector<DrawItem>& items, const gl::Texture& opaque) {
@@ -23,7 +21,8 @@ void SurfelLayers::begin(const Frame& frame, const std::vector<DrawItem>& items,
     }
 }
 
-void SurfelLayers::draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& layer) {
+void SurfelLayers::draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& layer,
+                        const SurfaceOutputs& outputs) {
     if (items.empty()) return;
     // An identity may be given again, but not with another size: then claim_ is new too.
     if (layer_id_ != layer.albedo.id()) {
@@ -35,26 +34,22 @@ void SurfelLayers::draw(const Frame& frame, const std::vector<DrawItem>& items, 
     const float nobody[4] = {0, 0, 0, 0};
     layer_.clear_color(5, nobody);
     for (size_t i = 0; i < items.size(); ++i) {
-        splats_.sum(frame, {&items[i], 1}, limits_[i].depth);
+        splats_.sum(frame, {&items[i], 1}, limits_[i].depth, outputs);
         layer_.bind();
-        test_geometry_depth(frame);
-        splats_.write(frame, int(i) + 1);
+        splats_.write(frame, outputs, int(i) + 1);
     }
 }
 
 void SurfelLayers::take(const std::vector<DrawItem>& items) {
     if (items.empty()) return;
-    if (!no_attributes_) no_attributes_ = gl::VertexArray::make();
-    no_attributes_.bind();
     const gl::Program& program = take_.get({});
     program.use();
     program.set("u_claim", 0);
     claim_.bind(0);
-    glDisable(GL_DEPTH_TEST);
     for (size_t i = 0; i < items.size(); ++i) {
         limits_[i].framebuffer.bind();
         program.set("u_owner", float(i + 1));
-        draw_screen_triangle();
+        gl::draw_screen({});
     }
 }
 

@@ -24,7 +24,8 @@ class SurfelLayers {
     void begin(const Frame& frame, const std::vector<DrawItem>& items, const gl::Texture& opaque);
     /// Adds each item's next surface where it is farther than what the layer holds (in the last layer:
     /// nearer).
-    void draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& layer);
+    void draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& layer,
+              const SurfaceOutputs& outputs);
     /// What the layer took of each item is not drawn again.
     void take(const std::vector<DrawItem>& items);
 
@@ -41,7 +42,6 @@ class SurfelLayers {
     uint32_t layer_id_ = 0;
     std::vector<Limit> limits_;  ///< one for each item
     ProgramVariants take_{"screen_triangle.vert", "surfel_limit.frag"};
-    gl::VertexArray no_attributes_;
 };
 
 }  // namespace easypbr::render

@@ -17,13 +17,14 @@ class SurfelPass {
 
     /// Adds the surfels to what the G-buffer holds; natively, which is faster where there is no GPU, or by
     /// the driver. What is nearest at a pixel and within a band behind it is one surface, of whatever item.
-    void draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets, bool native);
+    void draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets,
+              const SurfaceOutputs& outputs, bool native);
 
   private:
-    void draw_natively(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets);
+    void draw_natively(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets,
+                       const SurfaceOutputs& outputs);
 
     SurfelSplats& splats_;
-    gl::VertexArray no_attributes_;
     SoftwareSurfels software_;
     NativePixels pixels_;
     SurfaceComposite composite_;

@@ -1,7 +1,5 @@
 #include "easypbr/render/primitives/surfels/surfel_splats.h"
 
-#include <epoxy/gl.h>
-
 #include <cmath>
 
 #include "easypbr/render/primitives/surfels/surfel_projection.h"
@@ -14,43 +12,33 @@ void set_depth_uniform(const gl::Program& program, const Frame& frame) {
     program.set("u_size", Vec2(frame.size.cast<float>()));
 }
 
-std::vector<std::string> peel_defines(const Frame& frame) {
+std::vector<std::string> peel_defines(const Frame& frame, const SurfaceOutputs& outputs) {
     std::vector<std::string> defines = camera_defines(frame);
-    if (frame.peel) defines.emplace_back("PEEL");
-    if (frame.peel && frame.peel->farthest) defines.emplace_back("FARTHEST");
+    if (outputs.peel) defines.emplace_back("PEEL");
+    if (outputs.peel && outputs.peel->farthest) defines.emplace_back("FARTHEST");
     return defines;
 }
 
 }  // namespace
 
-void SurfelSplats::sum(const Frame& frame, std::span<const DrawItem> items, const gl::Texture& limit) {
-    make_targets(frame);
-    const bool farthest = frame.peel && frame.peel->farthest;
+void SurfelSplats::sum(const Frame& frame, std::span<const DrawItem> items, const gl::Texture& limit,
+                       const SurfaceOutputs& outputs) {
+    make_targets(frame, outputs.ids);
+    const bool farthest = outputs.peel && outputs.peel->farthest;
     limit.bind(0);
-    const gl::Framebuffer& visibility = frame.with_ids ? visibility_ids_ : visibility_;
+    const gl::Framebuffer& visibility = outputs.ids ? visibility_ids_ : visibility_;
     visibility.bind();
-    visibility.allow_depth_writes();
     visibility.clear_depth(farthest ? 1 : 0);
-    glEnable(GL_DEPTH_TEST);
-    // Before the near plane all bands end alike.
-    glDepthFunc(farthest ? GL_LEQUAL : GL_GREATER);
-    for (const DrawItem& item : items) draw_item(frame, item, false);
+    for (const DrawItem& item : items) draw_item(frame, item, outputs, false);
 
     const float zero[4] = {0, 0, 0, 0};
     for (unsigned i = 0; i < 3; ++i) sums_.clear_color(i, zero);
     sums_.bind();
-    glDepthMask(GL_FALSE);
-    glDepthFunc(farthest ? GL_LEQUAL : GL_GEQUAL);
-    glEnable(GL_BLEND);
-    glBlendFunc(GL_ONE, GL_ONE);
-    for (const DrawItem& item : items) draw_item(frame, item, true);
-    glDisable(GL_BLEND);
-    glDepthMask(GL_TRUE);
+    for (const DrawItem& item : items) draw_item(frame, item, outputs, true);
 }
 
-void SurfelSplats::make_targets(const Frame& frame) {
+void SurfelSplats::make_targets(const Frame& frame, bool ids) {
     const int w = frame.size.x(), h = frame.size.y();
-    if (!no_attributes_) no_attributes_ = gl::VertexArray::make();
     if (!depth_ || depth_.width() != w || depth_.height() != h) {
         albedo_sum_ = gl::Texture(gl::Format::rgba32f, w, h);
         normal_sum_ = gl::Texture(gl::Format::rgba32f, w, h);
@@ -60,19 +48,20 @@ void SurfelSplats::make_targets(const Frame& frame) {
         sums_ = gl::Framebuffer({&albedo_sum_, &normal_sum_, &material_sum_}, &depth_);
         id_ = gl::Texture();
     }
-    if (!frame.with_ids || id_) return;
+    if (!ids || id_) return;
     id_ = gl::Texture(gl::Format::r32ui, w, h);
     element_ = gl::Texture(gl::Format::r32ui, w, h);
     visibility_ids_ = gl::Framebuffer({&id_, &element_}, &depth_);
 }
 
-void SurfelSplats::draw_item(const Frame& frame, const DrawItem& item, bool accumulate) {
+void SurfelSplats::draw_item(const Frame& frame, const DrawItem& item, const SurfaceOutputs& outputs,
+                             bool accumulate) {
     const gpu::SurfelBuffers& buffers = cache_.get(item.mesh());
-    std::vector<std::string> defines = peel_defines(frame);
+    std::vector<std::string> defines = peel_defines(frame, outputs);
     if (item.with_colors) defines.emplace_back("VERTEX_COLOR");
     if (item.alpha == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
     if (accumulate) defines.emplace_back("ACCUMULATE");
-    if (!accumulate && frame.with_ids) defines.emplace_back("OBJECT_ID");
+    if (!accumulate && outputs.ids) defines.emplace_back("OBJECT_ID");
     const gl::Program& program = splats_.get(defines);
     program.use();
     set_depth_uniform(program, frame);
@@ -95,14 +84,19 @@ void SurfelSplats::draw_item(const Frame& frame, const DrawItem& item, bool accu
     program.set("u_material", Vec3(m.metallic, m.roughness, code_of(item.kind)));
     program.set("u_object_id", int(item.object - frame.scene->objects.data()) + 1);
     program.set("u_depth_target", 0);
-    buffers.array.bind();
-    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, int(item.mesh().V.rows()));
+    const bool farthest = outputs.peel && outputs.peel->farthest;
+    gl::DrawState state{.depth_test = gl::DepthTest::greater, .write_depth = !accumulate};
+    if (accumulate) state.depth_test = gl::DepthTest::greater_equal;
+    // Before the near plane all bands end alike.
+    if (farthest) state.depth_test = gl::DepthTest::less_equal;
+    if (accumulate) state.blending = gl::add;
+    gl::draw_quads(state, buffers.array, int(item.mesh().V.rows()));
 }
 
-void SurfelSplats::write(const Frame& frame, int owner) {
+void SurfelSplats::write(const Frame& frame, const SurfaceOutputs& outputs, int owner) {
     std::vector<std::string> defines = camera_defines(frame);
-    if (frame.with_ids) defines.emplace_back("OBJECT_ID");
-    if (frame.peel) defines.emplace_back("PEEL");
+    if (outputs.ids) defines.emplace_back("OBJECT_ID");
+    if (outputs.peel) defines.emplace_back("PEEL");
     const gl::Program& program = quotients_.get(defines);
     program.use();
     set_depth_uniform(program, frame);
@@ -114,13 +108,12 @@ void SurfelSplats::write(const Frame& frame, int owner) {
     bind(albedo_sum_, "u_albedo_sum", 0);
     bind(normal_sum_, "u_normal_sum", 1);
     bind(material_sum_, "u_material_sum", 2);
-    if (frame.peel) bind(depth_, "u_band", 3);
-    if (frame.with_ids) {
+    if (outputs.peel) bind(depth_, "u_band", 3);
+    if (outputs.ids) {
         bind(id_, "u_id", 3);
         bind(element_, "u_element", 4);
     }
-    no_attributes_.bind();
-    draw_screen_triangle();
+    gl::draw_screen(geometry_state(outputs));
 }
 
 }  // namespace easypbr::render

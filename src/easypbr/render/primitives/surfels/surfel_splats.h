@@ -20,21 +20,21 @@ class SurfelSplats {
     SurfelSplats(SpacingCache& spacings, gpu::SurfelCache& surfels) : spacings_(spacings), cache_(surfels) {}
 
     /// The first two steps, for all items together. Left out is what lies behind `limit` (R32F, reversed
-    /// depth), and, while frame.peel is set, at it.
-    void sum(const Frame& frame, std::span<const DrawItem> items, const gl::Texture& limit);
+    /// depth), and, of a layer, at it.
+    void sum(const Frame& frame, std::span<const DrawItem> items, const gl::Texture& limit,
+             const SurfaceOutputs& outputs);
 
-    /// The third, into the framebuffer that is bound, by the depth function that is set: what
-    /// GBuffer::surface_emission or, with ids, surface_ids hold. While frame.peel is set, target 5 gets
-    /// `owner` and where in reversed depth the pixel's band ends.
-    void write(const Frame& frame, int owner = 0);
+    /// The third, into the framebuffer that is bound: what GBuffer::surface_emission or, with ids,
+    /// surface_ids hold. Of a layer, target 5 gets `owner` and where in reversed depth the pixel's band ends.
+    void write(const Frame& frame, const SurfaceOutputs& outputs, int owner = 0);
 
     double spacing_of(const DrawItem& item) {
         return item.mesh().T.empty() ? spacings_.get(item.mesh().V) : 0;
     }
 
   private:
-    void make_targets(const Frame& frame);
-    void draw_item(const Frame& frame, const DrawItem& item, bool accumulate);
+    void make_targets(const Frame& frame, bool ids);
+    void draw_item(const Frame& frame, const DrawItem& item, const SurfaceOutputs& outputs, bool accumulate);
 
     SpacingCache& spacings_;
     gpu::SurfelCache& cache_;
@@ -42,7 +42,6 @@ class SurfelSplats {
     gl::Framebuffer visibility_, visibility_ids_, sums_;
     ProgramVariants splats_{"geometry_surfels.vert", "geometry_surfels.frag"};
     ProgramVariants quotients_{"screen_triangle.vert", "normalise_surfels.frag"};
-    gl::VertexArray no_attributes_;
 };
 
 }  // namespace easypbr::render

@@ -1,9 +1,7 @@
-// The part of Renderer that draws what light passes, and lines.
-#include <epoxy/gl.h>
-
+// The part of the pipeline that draws transparent layers, and lines between them.
 #include <functional>
 
-#include "easypbr/render/pipeline/renderer.h"
+#include "easypbr/render/pipeline/pipeline.h"
 
 namespace easypbr::render {
 namespace {
@@ -14,7 +12,7 @@ bool is_shaded_point(const DrawItem& item) {
 
 }  // namespace
 
-const gl::Texture& Renderer::hiding_depth(const Frame& frame, const DrawList& list) {
+const gl::Texture& Pipeline::hiding_depth(const Frame& frame, const DrawList& list) {
     if (!list.without_layers().has(is_over)) return targets_.depth;
     if (!hiding_depth_ || Vec2i(hiding_depth_.width(), hiding_depth_.height()) != frame.size) {
         hiding_depth_ = gl::Texture(gl::Format::r32f, frame.size.x(), frame.size.y());
@@ -26,37 +24,37 @@ const gl::Texture& Renderer::hiding_depth(const Frame& frame, const DrawList& li
     program.set("u_depth_target", 0);
     program.set("u_over", 1);
     targets_.depth.bind(0);
-    over_.depth.bind(1);
-    glDisable(GL_DEPTH_TEST);
-    no_attributes_.bind();
-    draw_screen_triangle();
+    surfaces_.over(frame).depth.bind(1);
+    gl::draw_screen({});
     return hiding_depth_;
 }
 
-void Renderer::draw_lines(const Frame& frame, const DrawList& list) {
+void Pipeline::draw_lines(const Frame& frame, const DrawList& list) {
     if (list.lines.empty()) return;
     lines_.begin(frame, list.lines, targets_, hiding_depth(frame, list));
     lines_.draw_rest(frame, list.lines, targets_);
     lines_.draw_over(frame, list.lines, targets_);
-    no_attributes_.bind();
 }
 
-void Renderer::draw_transparent(Frame& frame, const DrawList& list) {
+bool Pipeline::draw_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
+                                bool with_overlay) {
     const DrawList layers = list.layers();
     const gl::Texture& opaque = hiding_depth(frame, list);
     if (!list.lines.empty()) lines_.begin(frame, list.lines, targets_, opaque);
-    draw_layers(frame, layers.without(is_over), list.lines, opaque);
+    draw_layers(frame, layers.without(is_over), list.lines, opaque, contents, with_overlay);
+    bool drawn = transparency_.has_layers();
     if (layers.has(is_over)) {
         // Hidden by what is drawn over everything else too, and by nothing but.
-        if (!over_.albedo || over_.size() != frame.size) over_ = GBuffer(frame.size);
-        if (!list.without_layers().has(is_over)) over_.clear(false);
-        draw_layers(frame, layers.without(std::not_fn(is_over)), {}, over_.depth);
+        const GBuffer& over = surfaces_.over(frame);
+        if (!list.without_layers().has(is_over)) over.clear(false);
+        draw_layers(frame, layers.without(std::not_fn(is_over)), {}, over.depth, contents, with_overlay);
+        drawn |= transparency_.has_layers();
     }
     lines_.draw_over(frame, list.lines, targets_);
-    no_attributes_.bind();
+    return drawn;
 }
 
-const gl::Texture* Renderer::shade_points(const Frame& frame, const DrawList& layers,
+const gl::Texture* Pipeline::shade_points(const Frame& frame, const DrawList& layers,
                                           const gl::Texture& opaque) {
     std::vector<DrawItem> points = layers.without(std::not_fn(is_shaded_point)).points;
     if (points.empty()) return nullptr;
@@ -66,43 +64,39 @@ const gl::Texture* Renderer::shade_points(const Frame& frame, const DrawList& la
     }
     // The layer is not in use yet.
     transparency_.layer().clear(false);
-    points_.draw(frame, points, transparency_.layer());
-    no_attributes_.bind();
+    surfaces_.draw_points(frame, points, transparency_.layer());
     return &display_.shade(frame, transparency_.layer().depth, opaque);
 }
 
-void Renderer::draw_layers(Frame& frame, const DrawList& list, const std::vector<LineItem>& lines,
-                           const gl::Texture& opaque) {
-    frame.extensions = list.extensions();
-    const bool see_through = frame.extensions & transmission_bit;
+void Pipeline::draw_layers(const Frame& frame, const DrawList& list, const std::vector<LineItem>& lines,
+                           const gl::Texture& opaque, const FrameContents& contents, bool with_overlay) {
+    SurfaceOutputs outputs{.extensions = list.extensions()};
+    const bool see_through = outputs.extensions & transmission_bit;
     const bool rough = std::ranges::any_of(list.meshes, &DrawItem::blurs_behind);
-    DrawList volumes = list;
-    std::erase_if(volumes.meshes, [](const DrawItem& item) { return !item.is_volume(); });
+    std::vector<DrawItem> volumes = list.meshes;
+    std::erase_if(volumes, [](const DrawItem& item) { return !item.is_volume(); });
     const Box3d& bounds = bounds_of(*frame.scene);
     const double reach = (bounds.center() - frame.camera.position()).norm() + bounds.diagonal().norm() / 2;
-    transparency_.begin(frame, targets_, opaque);
+    transparency_.begin(frame, targets_, opaque, outputs.extensions, with_overlay);
     const gl::Texture* shade = shade_points(frame, list, opaque);
-    surfel_layers_.begin(frame, list.surfels, opaque);
+    surfaces_.begin_layers(frame, list, opaque);
+    outputs.peel = &transparency_.peel();
     while (transparency_.open_layer(frame)) {
-        geometry_.draw(frame, list.meshes, transparency_.layer());
-        points_.draw(frame, list.points, transparency_.layer());
-        surfel_layers_.draw(frame, list.surfels, transparency_.layer());
-        if (!transparency_.close_layer(frame)) break;
-        surfel_layers_.take(list.surfels);
+        surfaces_.draw_layer(frame, list, transparency_.layer(), outputs);
+        if (!transparency_.close_layer()) break;
+        surfaces_.take_layer(list);
         lines_.draw_behind(frame, lines, targets_, transparency_.layer());
-        no_attributes_.bind();
-        if (see_through) transparency_.look_behind(frame, targets_, rough, reach);
-        if (!volumes.meshes.empty()) {
+        if (see_through) transparency_.keep_picture(frame, targets_, rough, reach);
+        if (!volumes.empty()) {
             transparency_.open_exits(frame);
-            geometry_.draw(frame, volumes.meshes, transparency_.exits());
-            transparency_.close_exits(frame);
+            surfaces_.draw_backs(frame, volumes, transparency_.exits(), outputs);
+            transparency_.close_exits();
         }
-        draw_lights(frame, transparency_.layer());
+        light(frame, transparency_.layer(), contents,
+              {.extensions = outputs.extensions, .transmission = transparency_.transmission()}, false);
         transparency_.blend(frame, targets_, shade);
     }
-    transparency_.end(frame);
     lines_.draw_rest(frame, lines, targets_);
-    no_attributes_.bind();
 }
 
 }  // namespace easypbr::render

@@ -1,11 +1,10 @@
-// The part of Renderer that reads surfaces back and draws parts of them alone.
-#include "easypbr/render/pipeline/surface_frame.h"
+#include "easypbr/render/pipeline/kept_surfaces.h"
 
-#include <fmt/format.h>
+#include <span>
+#include <utility>
 
+#include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
-#include "easypbr/gl/context.h"
-#include "easypbr/render/pipeline/renderer.h"
 #include "easypbr/scene/draw_style.h"
 
 namespace easypbr::render {
@@ -42,28 +41,44 @@ Mat4d crop(const PixelRect& area, Vec2i size) {
 
 }  // namespace
 
-SurfaceFrame Renderer::read_surfaces() const {
-    if (!drawn_ || drawn_->scene.objects.size() != element_sources_.size() || !targets_.id)
-        throw ArgumentError("read_surfaces: the last picture was drawn without surfaces");
+KeptSurfaces::KeptSurfaces(const SceneSnapshot& scene, DrawableScene drawable,
+                           const ResolvedSettings& resolved, Vec2i size, const Material& textures,
+                           const ShaderFiles& shader_files)
+    : scene_(scene), drawable_(std::move(drawable)), resolved_(resolved), size_(size) {
+    list_ = draw_list(drawable_, resolved_.settings, textures, shader_files).as_surfaces();
+}
+
+Shot KeptSurfaces::shot() const {
+    return {.scene = &drawable_.scene, .resolved = &resolved_, .size = size_, .picture_size = size_};
+}
+
+void KeptSurfaces::draw(Pipeline& pipeline) const {
+    const Frame frame = make_frame(shot(), 0, resolved_.camera, pipeline.bounds_of(drawable_.scene),
+                                   list_.reaches_beyond_vertices());
+    pipeline.draw_surfaces(frame, list_, {.ids = true});
+}
+
+SurfaceFrame KeptSurfaces::read(const GBuffer& targets) const {
+    if (!targets.id) throw ArgumentError("read_surfaces: the last picture was drawn without surfaces");
     SurfaceFrame frame;
-    frame.size = targets_.size();
-    frame.camera = camera_;
-    frame.scene = drawn_->scene;
-    frame.depth = read_target<float>(targets_.surface, 3, gl::Format::r32f);
-    frame.object = read_target<uint32_t>(targets_.surface_ids, 5, gl::Format::r32ui);
-    frame.element = read_target<uint32_t>(targets_.surface_ids, 6, gl::Format::r32ui);
+    frame.size = targets.size();
+    frame.camera = resolved_.camera;
+    frame.scene = scene_;
+    frame.depth = read_target<float>(targets.surface, 3, gl::Format::r32f);
+    frame.object = read_target<uint32_t>(targets.surface_ids, 5, gl::Format::r32ui);
+    frame.element = read_target<uint32_t>(targets.surface_ids, 6, gl::Format::r32ui);
     frame.part.resize(frame.depth.size());
     frame.is_face.resize(frame.depth.size());
     std::vector<std::vector<uint32_t>> parts;
-    for (const auto& object : drawn_->drawable.scene.objects) parts.push_back(parts_of_faces(*object.mesh));
+    for (const auto& object : drawable_.scene.objects) parts.push_back(parts_of_faces(*object.mesh));
     std::vector<uint8_t> as_mesh;
     for (const auto& object : frame.scene.objects) {
-        const DrawStyle style = resolve_style(*object.mesh, drawn_->resolved.settings.style);
+        const DrawStyle style = resolve_style(*object.mesh, resolved_.settings.style);
         as_mesh.push_back(style.mode == DrawMode::mesh);
         frame.only_faces.push_back(style.mode == DrawMode::mesh && !style.show_points);
     }
-    const float near = float(camera_.near), far = float(camera_.far);
-    const bool orthographic = camera_.projection == Projection::orthographic;
+    const float near = float(frame.camera.near), far = float(frame.camera.far);
+    const bool orthographic = frame.camera.projection == Projection::orthographic;
     parallel_for(frame.depth.size(), 1 << 14, [&](size_t i) {
         if (!(frame.depth[i] > 0)) {
             frame.depth[i] = 0;
@@ -75,39 +90,21 @@ SurfaceFrame Renderer::read_surfaces() const {
         const uint32_t drawn = frame.element[i];
         frame.is_face[i] = as_mesh[object] && !(drawn & point_element);
         if (frame.is_face[i] && !parts[object].empty()) frame.part[i] = parts[object][drawn - 1];
-        frame.element[i] = element_sources_[object].own(drawn);
+        frame.element[i] = drawable_.sources[object].own(drawn);
     });
     return frame;
 }
 
-std::vector<uint8_t> Renderer::coverage(const PixelRect& area,
-                                        const std::function<bool(size_t, int)>& wanted) {
-    if (!drawn_ || drawn_->scene.objects.size() != element_sources_.size())
-        throw ArgumentError("coverage: the last picture was drawn without surfaces");
-    const SceneSnapshot::Object* first = drawn_->drawable.scene.objects.data();
-    const DrawList list = drawn_->surfaces.without(
+std::vector<uint8_t> KeptSurfaces::coverage(Pipeline& pipeline, const PixelRect& area,
+                                            const std::function<bool(size_t, int)>& wanted) const {
+    const SceneSnapshot::Object* first = drawable_.scene.objects.data();
+    const DrawList list = list_.without(
         [&](const DrawItem& item) { return !wanted(size_t(item.object - first), item.part.first_face); });
-    std::vector<uint8_t> covered(size_t(area.width) * size_t(area.height));
-    if (list.empty() || covered.empty()) return covered;
-    Frame frame;
-    frame.scene = &drawn_->drawable.scene;
-    frame.resolved = &drawn_->resolved;
-    frame.camera = drawn_->resolved.camera;
-    frame.size = frame.picture_size = drawn_->size;
-    frame.with_ids = true;
-    prepare_frame(frame, Box3d(), true);
+    Frame frame = make_frame(shot(), 0, resolved_.camera, Box3d(), true);
     frame.clip_from_view = crop(area, frame.size) * frame.clip_from_view;
     frame.size = {area.width, area.height};
-    frame.covered = {0, 0, area.width, area.height};
-    const bool native = native_geometry_ && gl::Context::current().info().software;
-    if (native && software_geometry_.cover(frame, list, covered)) return covered;
-    if (!coverage_targets_.albedo || coverage_targets_.size() != frame.size)
-        coverage_targets_ = GBuffer(frame.size);
-    coverage_targets_.add_ids();
-    draw_geometry(frame, list, coverage_targets_);
-    const auto depth = read_target<float>(coverage_targets_.surface, 3, gl::Format::r32f);
-    for (size_t i = 0; i < depth.size(); ++i) covered[i] = depth[i] > 0;
-    return covered;
+    frame.covered = frame.whole();
+    return pipeline.surfaces().coverage(frame, list);
 }
 
 }  // namespace easypbr::render

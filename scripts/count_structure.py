@@ -1,0 +1,127 @@
+#!/usr/bin/env python3
+"""Counts what the structure of the tree is judged by, and checks the bounds that shaders keep.
+
+usage: count_structure.py [ROOT]      prints the counts; exit code 1 and one line per fault when a bound does not hold
+"""
+import pathlib
+import re
+import sys
+from collections.abc import Iterator
+
+#: Most lines of #if in all shaders together. Variants are named features (gl/program.h); what remains has its reason.
+MOST_CONDITIONS = 60
+
+CONDITION = re.compile(r"\s*#\s*if")
+INCLUDE = re.compile(r'\s*#\s*include\s+["<]([^">]+)[">]')
+GL_CALL = re.compile(r"\bgl[A-Z]\w+\(")
+UNIFORM_BY_NAME = re.compile(r'\.set\(\s*"u_')
+BLOCK = re.compile(r"^\s*layout\(std(?:140|430)[^)]*\)\s*(?:uniform|buffer)\s+(\w+)", re.MULTILINE)
+CLASSES = {"Renderer": "render/pipeline/renderer.h", "Frame": "render/frame/frame.h", "Session": "app/session.h"}
+
+
+def shader_lines(root: pathlib.Path) -> Iterator[tuple[str, int, str]]:
+    """File, number and text of each line of the shaders."""
+    for path in sorted((root / "shaders").iterdir()):
+        for number, line in enumerate(path.read_text().splitlines(), 1):
+            yield path.name, number, line
+
+
+def sources(root: pathlib.Path) -> dict[str, str]:
+    """The text of each C++ file, by its path in src/easypbr."""
+    folder = root / "src/easypbr"
+    paths = sorted([*folder.rglob("*.h"), *folder.rglob("*.cpp")])
+    return {str(path.relative_to(folder)): path.read_text() for path in paths}
+
+
+def without_bodies(text: str) -> str:
+    """The text of a class without what stands in inner braces; where those end a statement, a semicolon."""
+    braces, brackets, kept = 0, 0, []
+    for letter in text:
+        braces -= letter == "}"
+        if braces == 0:
+            brackets += (letter == "(") - (letter == ")")
+            kept.append(letter if letter != "}" else "" if brackets else ";")
+        braces += letter == "{"
+    return "".join(kept)
+
+
+def members(text: str, name: str) -> tuple[int, int] | None:
+    """Fields and methods that a class or struct declares; None where the text does not define it."""
+    begin = re.search(rf"^(?:class|struct) {name}(?: final)?(?: : [^{{;]*)? {{$(.*?)^}};", text, re.MULTILINE | re.DOTALL)
+    if not begin:
+        return None
+    body = re.sub(r"//[^\n]*", "", begin[1])
+    body = re.sub(r"\b(?:public|private|protected):", "", body)
+    fields = methods = 0
+    for statement in without_bodies(body).split(";"):
+        statement = " ".join(statement.split())
+        if not statement or re.match(r"(using|friend|static constexpr|struct|class|enum) ", statement):
+            continue
+        if re.search(r"\w\(|operator|~", re.sub(r"=.*|<[^()]*(\([^()]*\))?[^()]*>", "", statement)):
+            methods += 1
+        else:
+            fields += 1 + re.sub(r"<[^<>]*>|\([^()]*\)|\{[^{}]*\}", "", statement).count(",")
+    return fields, methods
+
+
+def pulled_in(root: pathlib.Path, header: str) -> set[str]:
+    """Our headers that an include of one brings with it, itself left out."""
+    folders = [root / "include", root / "src"]
+    seen, waiting = set(), [header]
+    while waiting:
+        name = waiting.pop()
+        path = next((folder / name for folder in folders if (folder / name).exists()), None)
+        if name in seen or path is None:
+            continue
+        seen.add(name)
+        waiting += [match[1] for line in path.read_text().splitlines() if (match := INCLUDE.match(line))]
+    return seen - {header}
+
+
+def installed_headers(root: pathlib.Path) -> int:
+    """Headers of include/ where it stands, else of the rooms that cmake/install.cmake installs."""
+    if (root / "include/easypbr").is_dir():
+        return sum(1 for _ in (root / "include").rglob("*.h"))
+    left_out = {"cli", "python", "tools", "module", "ffmpeg"}
+    return sum(1 for path in (root / "src/easypbr").rglob("*.h") if not left_out & set(path.relative_to(root).parts))
+
+
+def counts(root: pathlib.Path) -> Iterator[tuple[str, str]]:
+    """What is counted, and how much of it there is."""
+    yield "lines of #if in shaders", str(sum(bool(CONDITION.match(line)) for _, _, line in shader_lines(root)))
+    texts = sources(root)
+    # The window's own renderer and its surface are a front end of their own.
+    calls = {name: len(GL_CALL.findall(text)) for name, text in texts.items() if not name.startswith(("gl/", "gui/"))}
+    yield "raw GL calls outside gl/ and gui/", f"{sum(calls.values())} in {sum(map(bool, calls.values()))} files"
+    yield "uniforms set by string", str(sum(len(UNIFORM_BY_NAME.findall(text)) for text in texts.values()))
+    for name, place in CLASSES.items():
+        found = next(filter(None, (members(text, name) for text in [texts.get(place, ""), *texts.values()])), None)
+        yield f"{name}: fields, methods", "not there" if found is None else f"{found[0]}, {found[1]}"
+    yield "headers installed", str(installed_headers(root))
+    yield "our headers that easypbr.h pulls in", str(len(pulled_in(root, "easypbr/easypbr.h")))
+    yield 'files of src that name "surfel"', str(sum("surfel" in text.lower() for text in texts.values()))
+
+
+def shader_faults(root: pathlib.Path) -> Iterator[str]:
+    """Where shaders break a bound: too many conditions, one without a reason, a block that two files declare."""
+    conditions = [place for place in shader_lines(root) if CONDITION.match(place[2])]
+    if len(conditions) > MOST_CONDITIONS:
+        yield f"shaders have {len(conditions)} lines of #if; expected at most {MOST_CONDITIONS}: declare a #feature"
+    for name, number, line in conditions:
+        if "//" not in line:
+            yield f"shaders/{name}:{number}: expected the reason of this #if in a comment behind it"
+    declared: dict[str, str] = {}
+    for path in sorted((root / "shaders").iterdir()):
+        for block in BLOCK.findall(path.read_text()):
+            if block in declared:
+                yield f"shaders/{path.name}: block {block} is declared in {declared[block]} too"
+            declared[block] = path.name
+
+
+if __name__ == "__main__":
+    base = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
+    for what, number in counts(base):
+        print(f"{what:36} {number}")
+    faults = list(shader_faults(base))
+    print("\n".join(faults), end="\n" if faults else "")
+    sys.exit(1 if faults else 0)

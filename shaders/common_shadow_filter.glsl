@@ -1,0 +1,96 @@
+// Part of a light that the casters of a shadow map leave to a receiver.
+#include "common_noise.glsl"
+
+#feature SHADOWS_HARD has_hard_shadows
+#feature SHADOWS_PCF has_filtered_shadows
+#feature SHADOWS_SOFT has_soft_shadows
+
+// Of the one texel that the point falls in.
+float lit_hard(Receiver r) {
+    vec2 texel = (floor(r.at.xy * u_shadow_resolution) + 0.5) / u_shadow_resolution;
+    float plane = r.depth + dot(r.slope, texel - r.at.xy);
+    return textureLod(u_shadow_maps, r.at, 0.0).r > plane ? 0.0 : 1.0;
+}
+
+// The surface's plane at the four texels around a corner, where its depth is given, in the order of textureGather.
+vec4 texel_planes(float depth, vec2 texel_slope) {
+    return depth + 0.5 * (texel_slope.x * vec4(-1.0, 1.0, 1.0, -1.0) + texel_slope.y * vec4(1.0, 1.0, -1.0, -1.0));
+}
+
+// Those of the four texels around `corner` (in texels) that are not in front of the plane.
+vec4 lit_texels(vec2 corner, float layer, float depth, vec2 texel_slope) {
+    vec4 casters = textureGather(u_shadow_maps, vec3(corner / u_shadow_resolution, layer));
+    return vec4(lessThanEqual(casters, texel_planes(depth, texel_slope)));
+}
+
+// Percentage-closer filtering (Reeves et al. 1987): the mean of 3x3 texels, interpolated between texels.
+float lit_filtered(Receiver r) {
+    vec2 at = r.at.xy * u_shadow_resolution - 0.5;
+    vec2 base = floor(at), f = at - base;
+    vec2 texel_slope = r.slope / u_shadow_resolution;
+    // Corner (0, 0) lies between the texels -1 and 0, half a texel before the point's own.
+    float depth = r.depth - dot(texel_slope, f + 0.5);
+    vec4 low_low = lit_texels(base, r.at.z, depth, texel_slope);
+    vec4 high_low = lit_texels(base + vec2(2.0, 0.0), r.at.z, depth + 2.0 * texel_slope.x, texel_slope);
+    vec4 low_high = lit_texels(base + vec2(0.0, 2.0), r.at.z, depth + 2.0 * texel_slope.y, texel_slope);
+    vec4 high_high = lit_texels(base + 2.0, r.at.z, depth + 2.0 * (texel_slope.x + texel_slope.y), texel_slope);
+    // Columns weigh 1 - f, 1, 1, f, and so do rows; textureGather starts below on the left and turns.
+    vec4 left = vec4(1.0 - f.x, 1.0, 1.0, 1.0 - f.x), right = vec4(1.0, f.x, f.x, 1.0);
+    vec4 low = vec4(1.0, 1.0, 1.0 - f.y, 1.0 - f.y), high = vec4(f.y, f.y, 1.0, 1.0);
+    return (dot(low_low, left * low) + dot(high_low, right * low) + dot(low_high, left * high) +
+            dot(high_high, right * high)) / 9.0;
+}
+
+const int search_taps = 16;
+const int filter_taps = 16;
+// Widest search and filter, in map coordinates.
+const float widest = 0.15;
+const float golden_angle = 2.39996323;
+
+// Percentage-closer soft shadows (Fernando 2005): the mean depth of what is in the light's way gives the size of the
+// penumbra. A texel is in the way when it lies in the cone between the point and the light, which in map coordinates
+// and depth is a cone again, so that neighbours of the point on its own surface are not taken for casters.
+float lit_soft(Receiver r, bool needed) {
+    float texel = 1.0 / u_shadow_resolution;
+    float turn = 6.28318531 * frame_noise(gl_FragCoord.xy, u_sample_index);
+    float reach = min(r.reach, widest / max(r.light.x, r.light.y));
+    vec2 search = r.light * reach;
+    // The texels around the point are looked at in any case: the cone is narrower than they are where casters are near.
+    vec2 corner = floor(r.at.xy * u_shadow_resolution - 0.5) + 1.0;
+    float plane = r.depth + dot(r.slope, corner * texel - r.at.xy);
+    vec4 casters = textureGather(u_shadow_maps, vec3(corner * texel, r.at.z));
+    vec4 blocks = vec4(greaterThan(casters, texel_planes(plane, r.slope * texel)));
+    float sum = dot(blocks, casters), count = dot(blocks, vec4(1.0));
+    int taps = needed && reach > 0.0 ? search_taps : 0;
+    for (int i = 0; i < taps; ++i) {
+        // Denser towards the middle: casters near the point are seen in the narrow part of the cone only.
+        float rho = (float(i) + 0.5) / float(search_taps), angle = turn + golden_angle * float(i);
+        vec2 at = r.at.xy + search * (rho * vec2(cos(angle), sin(angle)));
+        at = (floor(at * u_shadow_resolution) + 0.5) * texel;
+        float caster = textureLod(u_shadow_maps, vec3(at, r.at.z), 0.0).r;
+        float blocked = step(r.depth + max(rho * reach, dot(r.slope, at - r.at.xy)), caster);
+        sum += blocked * caster;
+        count += blocked;
+    }
+    float height = sum / max(count, 1.0) - r.depth;  // of the casters over the point
+    vec2 radius = clamp(r.light * height, vec2(0.5 * texel), vec2(widest));
+    float lit = 0.0;
+    taps = needed && count > 0.0 ? filter_taps : 0;
+    for (int i = 0; i < taps; ++i) {
+        float rho = sqrt((float(i) + 0.5) / float(filter_taps)), angle = turn + golden_angle * float(i);
+        vec2 at = (r.at.xy + radius * (rho * vec2(cos(angle), sin(angle)))) * u_shadow_resolution - 0.5;
+        vec2 base = floor(at), f = at - base;
+        corner = base + 1.0;
+        plane = dot(r.slope, corner * texel - r.at.xy);
+        vec4 texels = lit_texels(corner, r.at.z, r.depth + max(0.5 * rho * height, plane), r.slope * texel);
+        vec2 across = mix(texels.wx, texels.zy, f.x);
+        lit += mix(across.x, across.y, f.y);
+    }
+    return count > 0.0 ? lit / float(filter_taps) : 1.0;
+}
+
+// `needed`: whether the light counts at all; what no one needs may be anything.
+float lit_part(Receiver r, bool needed) {
+    if (has_hard_shadows) return lit_hard(r);
+    return has_filtered_shadows ? lit_filtered(r) : lit_soft(r, needed);
+}

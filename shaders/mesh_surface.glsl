@@ -1,0 +1,115 @@
+// A point of a mesh: what its vertices, its material and its textures make of it.
+#include "common_uv.glsl"
+#include "mesh_features.glsl"
+
+#feature TWO_SIDED is_two_sided
+#feature EXTENDED has_extensions
+#feature BASE_COLOR_TEXTURE has_base_color_texture
+#feature METALLIC_TEXTURE has_metallic_texture
+#feature ROUGHNESS_TEXTURE has_roughness_texture
+#feature ROUGHNESS_IN_METALLIC has_roughness_in_metallic
+#feature NORMAL_TEXTURE has_normal_texture
+#feature OCCLUSION_TEXTURE has_occlusion_texture
+#feature EMISSIVE_TEXTURE has_emissive_texture
+#feature OPACITY_TEXTURE has_opacity_texture
+#feature ALPHA_MASK has_alpha_mask
+
+in vec4 v_color;
+in vec2 v_uv;
+in vec4 v_tangent;
+in vec3 v_normal;
+in vec3 v_position;
+
+uniform vec4 u_base_color;  // linear, opacity in w
+uniform vec4 u_surface;     // metallic, roughness, occlusion strength, alpha cutoff
+uniform vec4 u_emissive;    // radiance; w: code of the surface's kind
+uniform float u_normal_scale;
+uniform float u_lod_bias;
+uniform vec3 u_up;  // world
+
+uniform mat3 u_uv_transform[UV_TRANSFORMS];
+uniform sampler2D u_base_color_texture;
+uniform sampler2D u_metallic_texture;
+uniform vec4 u_metallic_channel;
+uniform sampler2D u_roughness_texture;
+uniform vec4 u_roughness_channel;
+uniform sampler2D u_normal_texture;
+uniform sampler2D u_occlusion_texture;
+uniform vec4 u_occlusion_channel;
+uniform sampler2D u_emissive_texture;
+uniform sampler2D u_opacity_texture;
+uniform vec4 u_opacity_channel;
+
+vec2 uv_of(int slot) { return image_uv(u_uv_transform[slot], v_uv); }
+
+vec4 base_color() {
+    vec4 color = u_base_color;
+    if (has_vertex_colors) color *= v_color;
+    if (has_base_color_texture) color *= texture(u_base_color_texture, uv_of(0), u_lod_bias);
+    if (has_opacity_texture) color.a *= dot(texture(u_opacity_texture, uv_of(6), u_lod_bias), u_opacity_channel);
+    return color;
+}
+
+struct Normals {
+    vec3 shading, geometric;  // with and without the normal texture, towards the viewer's side
+    vec3 tangent, bitangent;  // of the texture coordinates; right-angled with the geometric normal
+};
+
+// A texel of a normal texture, in [0, 1].
+vec3 mapped_normal(Normals n, vec3 texel, float scale) {
+    vec3 m = texel * 2.0 - 1.0;
+    vec3 mapped = n.tangent * (m.x * scale) + n.bitangent * (m.y * scale) + n.geometric * max(m.z, 0.0);
+    return dot(mapped, mapped) > 1e-12 ? normalize(mapped) : n.geometric;
+}
+
+Normals read_normals() {
+    Normals n;
+    float side = 1.0;
+    vec3 face = vec3(0.0);
+    if (sees_by_faces) {
+        // Derivatives know which side is seen whatever the winding says. Rows run downwards, so dFdy points down.
+        face = normalize(cross(dFdy(v_position), dFdx(v_position)));
+        if (dot(face, v_position) > 0.0) face = -face;
+    }
+    n.geometric = is_flat ? face : normalize(v_normal);
+    if (!is_flat && sees_by_faces && dot(n.geometric, face) < 0.0) side = -1.0;
+    if (!is_flat && !sees_by_faces && is_two_sided && !gl_FrontFacing) side = -1.0;
+    if (has_tangents) {
+        vec3 t = v_tangent.xyz - n.geometric * dot(n.geometric, v_tangent.xyz);
+        n.tangent = t * inversesqrt(max(dot(t, t), 1e-20));
+        n.bitangent = cross(n.geometric, n.tangent) * (v_tangent.w < 0.0 ? -1.0 : 1.0);
+    } else if (has_extensions) {
+        // Without texture coordinates the tangent runs around the upright axis, as on a lathe.
+        vec3 around = cross(u_up, n.geometric);
+        n.tangent = dot(around, around) > 1e-6 ? normalize(around) : normalize(cross(u_up.yzx, n.geometric));
+        n.bitangent = cross(n.geometric, n.tangent);
+    }
+    n.geometric *= side;
+    n.tangent *= side;
+    n.bitangent *= side;
+    n.shading = n.geometric;
+    if (has_normal_texture)
+        n.shading = mapped_normal(n, texture(u_normal_texture, uv_of(4), u_lod_bias).xyz, u_normal_scale);
+    return n;
+}
+
+vec3 emission_of(vec3 color) {
+    vec3 emission = u_emissive.rgb;
+    if (has_emissive_texture) emission *= texture(u_emissive_texture, uv_of(5), u_lod_bias).rgb;
+    return u_emissive.w > 0.9 ? color : emission;
+}
+
+// Metallic, roughness, occlusion.
+vec3 read_parameters() {
+    vec3 p = vec3(u_surface.xy, 1.0);
+    if (has_metallic_texture) {
+        vec4 texel = texture(u_metallic_texture, uv_of(1), u_lod_bias);
+        p.x *= dot(texel, u_metallic_channel);
+        if (has_roughness_in_metallic) p.y *= dot(texel, u_roughness_channel);
+    }
+    if (has_roughness_texture && !has_roughness_in_metallic)
+        p.y *= dot(texture(u_roughness_texture, uv_of(2), u_lod_bias), u_roughness_channel);
+    if (has_occlusion_texture)
+        p.z = mix(1.0, dot(texture(u_occlusion_texture, uv_of(3), u_lod_bias), u_occlusion_channel), u_surface.z);
+    return p;
+}

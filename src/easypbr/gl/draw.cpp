@@ -1,0 +1,113 @@
+#include "easypbr/gl/draw.h"
+
+#include <epoxy/gl.h>
+
+#include "easypbr/gl/context.h"
+
+namespace easypbr::gl {
+namespace {
+
+void enable(GLenum capability, bool on) {
+    on ? glEnable(capability) : glDisable(capability);
+}
+
+GLenum function_of(DepthTest test) {
+    constexpr GLenum functions[] = {GL_ALWAYS, GL_ALWAYS, GL_LESS,   GL_LEQUAL,
+                                    GL_EQUAL,  GL_GEQUAL, GL_GREATER};
+    return functions[size_t(test)];
+}
+
+GLenum factor_of(Factor factor) {
+    constexpr GLenum factors[] = {GL_ZERO,
+                                  GL_ONE,
+                                  GL_SRC_COLOR,
+                                  GL_ONE_MINUS_SRC_ALPHA,
+                                  GL_ONE_MINUS_DST_ALPHA,
+                                  GL_SRC1_COLOR,
+                                  GL_ONE_MINUS_SRC1_ALPHA,
+                                  GL_CONSTANT_COLOR,
+                                  GL_ONE_MINUS_CONSTANT_COLOR};
+    return factors[size_t(factor)];
+}
+
+GLenum equation_of(BlendEquation equation) {
+    return equation == BlendEquation::add ? GL_FUNC_ADD : GL_MAX;
+}
+
+void apply(const Blending& b) {
+    enable(GL_BLEND, b != replace);
+    // A second source is an error where there are several targets, even with blending off: always set.
+    glBlendFuncSeparate(factor_of(b.source), factor_of(b.target), factor_of(b.source_alpha),
+                        factor_of(b.target_alpha));
+    glBlendEquationSeparate(equation_of(b.color_equation), equation_of(b.alpha_equation));
+    glBlendColor(b.constant, b.constant, b.constant, b.constant);
+}
+
+void apply(const DrawState& state) {
+    enable(GL_DEPTH_TEST, state.depth_test != DepthTest::off);
+    glDepthFunc(function_of(state.depth_test));
+    glDepthMask(state.write_depth);
+    glDepthRangef(state.least_depth, 1);
+    const auto write = GLboolean(state.write_color);
+    glColorMask(write, write, write, write);
+    apply(state.blending);
+    enable(GL_SCISSOR_TEST, state.scissor.has_value());
+    if (state.scissor)
+        glScissor(state.scissor->x, state.scissor->y, state.scissor->width, state.scissor->height);
+    enable(GL_CULL_FACE, state.culling != Culling::none);
+    if (state.culling != Culling::none) glCullFace(state.culling == Culling::front ? GL_FRONT : GL_BACK);
+    glFrontFace(state.clockwise_fronts ? GL_CW : GL_CCW);
+}
+
+}  // namespace
+
+void draw_screen(const DrawState& state) {
+    apply(state);
+    Context::current().no_attributes().bind();
+    glDrawArrays(GL_TRIANGLES, 0, 3);
+}
+
+void draw_points(const DrawState& state, const VertexArray& array, int count) {
+    apply(state);
+    array.bind();
+    glEnable(GL_PROGRAM_POINT_SIZE);
+    glDrawArrays(GL_POINTS, 0, count);
+    glDisable(GL_PROGRAM_POINT_SIZE);
+}
+
+void draw_quads(const DrawState& state, const VertexArray& array, int instances) {
+    apply(state);
+    array.bind();
+    glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, instances);
+}
+
+void draw_triangles(const DrawState& state, const VertexArray& array, int64_t first_index, int index_count) {
+    apply(state);
+    array.bind();
+    glDrawElements(GL_TRIANGLES, index_count, GL_UNSIGNED_INT,
+                   reinterpret_cast<const void*>(size_t(first_index) * sizeof(uint32_t)));
+}
+
+void reset_state() {
+    for (const GLenum off :
+         {GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL, GL_RASTERIZER_DISCARD, GL_SAMPLE_COVERAGE,
+          GL_FRAMEBUFFER_SRGB, GL_COLOR_LOGIC_OP, GL_PRIMITIVE_RESTART, GL_DEPTH_CLAMP})
+        glDisable(off);
+    glPolygonMode(GL_FRONT_AND_BACK, GL_FILL);
+    // Row 0 of every target is the top of the picture; depth runs from 1 (near) to 0 (infinitely far).
+    glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
+    glEnable(GL_TEXTURE_CUBE_MAP_SEAMLESS);
+    for (const GLenum target : {GL_PIXEL_PACK_BUFFER, GL_PIXEL_UNPACK_BUFFER}) glBindBuffer(target, 0);
+    for (const GLenum parameter : {GL_PACK_ALIGNMENT, GL_UNPACK_ALIGNMENT}) glPixelStorei(parameter, 1);
+    for (unsigned unit = 0; unit < 16; ++unit) glBindSampler(unit, 0);
+}
+
+void finish() {
+    glFinish();
+}
+
+void flush() {
+    glFlush();
+}
+
+}  // namespace easypbr::gl

@@ -1,0 +1,125 @@
+#include "easypbr/python/job.h"
+
+#include <nanobind/nanobind.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <chrono>
+#include <thread>
+
+namespace nb = nanobind;
+
+namespace easypbr::python {
+namespace {
+
+std::atomic<bool> interrupted = false;  ///< by SIGINT, during a job of the main thread
+std::atomic<bool> ending = false;       ///< the interpreter
+std::atomic<int> running = 0;           ///< jobs of threads other than the main one
+struct sigaction python_action;         ///< what SIGINT does while no job watches
+bool is_watching = false;
+unsigned long main_thread;  ///< as Python's threads are numbered on Linux
+pid_t process;
+PyObject *get_handler, *default_handler;  // Never freed: they are used until the interpreter has ended.
+
+bool on_main_thread() {
+    return static_cast<unsigned long>(pthread_self()) == main_thread;
+}
+
+/// Notes the signal and hands it on to Python, which raises KeyboardInterrupt when the job is over.
+void on_interrupt(int number, siginfo_t* info, void* context) {
+    interrupted = true;
+    if (python_action.sa_flags & SA_SIGINFO)
+        python_action.sa_sigaction(number, info, context);
+    else
+        python_action.sa_handler(number);
+}
+
+/// Whether it is Python's handler that waits for SIGINT.
+bool raises_keyboard_interrupt() {
+    const nb::object handler = nb::steal(PyObject_CallFunction(get_handler, "i", SIGINT));
+    if (!handler.is_valid()) throw nb::python_error();
+    return handler.ptr() == default_handler;
+}
+
+void watch() {
+    interrupted = false;
+    sigaction(SIGINT, nullptr, &python_action);
+    struct sigaction action = python_action;
+    action.sa_flags |= SA_SIGINFO;
+    action.sa_sigaction = on_interrupt;
+    sigaction(SIGINT, &action, nullptr);
+    is_watching = true;
+}
+
+void stop_watching() {
+    is_watching = false;
+    struct sigaction now = {};
+    sigaction(SIGINT, nullptr, &now);
+    // A callback of the job's may have set another handler.
+    if ((now.sa_flags & SA_SIGINFO) && now.sa_sigaction == on_interrupt)
+        sigaction(SIGINT, &python_action, nullptr);
+}
+
+/// Called by atexit, with the GIL: daemon threads are still there, and would be ended by force at their next
+/// step in Python.
+void end_jobs() {
+    if (getpid() != process) return;  // Threads do not survive a fork.
+    ending = true;
+    const nb::gil_scoped_release release;
+    constexpr std::chrono::seconds patience(5);
+    const auto start = std::chrono::steady_clock::now();
+    while (running > 0 && std::chrono::steady_clock::now() - start < patience)
+        std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
+/// A thread that asked for the GIL now would be ended by force, with the library's functions on its stack.
+void stay_if_ending() {
+    if (!ending || on_main_thread()) return;
+    --running;
+    while (true) pause();
+}
+
+}  // namespace
+
+Job::Job() {
+    if (on_main_thread()) {
+        watches_ = !is_watching && raises_keyboard_interrupt();
+        if (watches_) watch();
+        // Within a callback of another job that one's watch goes on.
+        if (is_watching) scope_.emplace([] { return interrupted.load(std::memory_order_relaxed); });
+    } else {
+        ++running;
+        scope_.emplace([] { return ending.load(std::memory_order_relaxed); });
+    }
+}
+
+Job::~Job() {
+    if (watches_) stop_watching();
+    if (!on_main_thread()) --running;
+}
+
+void Job::raise() {
+    // Python's own handler raises; unless a callback of the job's has met the signal before.
+    if (PyErr_CheckSignals() == 0) PyErr_SetNone(PyExc_KeyboardInterrupt);
+    throw nb::python_error();
+}
+
+Job::Running::Running() {
+    stay_if_ending();
+}
+
+Job::Running::~Running() {
+    stay_if_ending();
+}
+
+void bind_jobs() {
+    main_thread =
+        nb::cast<unsigned long>(nb::module_::import_("threading").attr("main_thread")().attr("ident"));
+    process = getpid();
+    const nb::module_ signal = nb::module_::import_("signal");
+    get_handler = nb::object(signal.attr("getsignal")).release().ptr();
+    default_handler = nb::object(signal.attr("default_int_handler")).release().ptr();
+    nb::module_::import_("atexit").attr("register")(nb::cpp_function(end_jobs));
+}
+
+}  // namespace easypbr::python

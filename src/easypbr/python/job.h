@@ -1,0 +1,51 @@
+// What Python may do to a call that works without its lock: interrupt it by Ctrl-C, and end while it works.
+#pragma once
+
+#include <csignal>
+#include <optional>
+
+#include "easypbr/core/interrupt.h"
+
+namespace easypbr::python {
+
+/// One call of the library. Made and destroyed with the GIL.
+///
+/// On the main thread a SIGINT ends it where Python's own handler waits for it; a handler of the user's is
+/// called afterwards, as for all functions that are not Python's. On every thread it ends when the
+/// interpreter does.
+class Job {
+  public:
+    Job();
+    ~Job();
+    Job(const Job&) = delete;
+    Job& operator=(const Job&) = delete;
+
+    /// Throws what Python makes of the interruption: KeyboardInterrupt. Needs the GIL.
+    [[noreturn]] static void raise();
+
+    /// The part without the GIL. Neither begins nor ends, but waits for the end of the process, once the
+    /// interpreter ends: Python would end the thread by force when it asks for the GIL, in the middle of the
+    /// library.
+    class Running {
+      public:
+        Running();
+        ~Running();
+        Running(const Running&) = delete;
+        Running& operator=(const Running&) = delete;
+    };
+
+  private:
+    bool watches_ = false;
+    std::optional<InterruptScope> scope_;
+};
+
+/// Makes the calls that are made while it lives run to their end: an update of the window is short, and its
+/// panels must be drawn whole.
+class Uninterrupted {
+    InterruptScope scope_{{}};
+};
+
+/// Has the interpreter end what runs on other threads before it ends itself.
+void bind_jobs();
+
+}  // namespace easypbr::python

@@ -1,0 +1,20 @@
+// The light that bloom spreads, as the output passes add it to a picture.
+#pragma once
+
+#include "easypbr/gl/program.h"
+#include "easypbr/gl/texture.h"
+
+namespace easypbr::render {
+
+/// Side of a texel of the glow, in pixels.
+inline constexpr int glow_texel = 4;
+
+struct Glow {
+    const gl::Texture* light = nullptr;  ///< RGBA16F, exposed light, a texel for 4 x 4 pixels
+    Vec4 parameters = Vec4::Zero();      ///< intensity, exposure, threshold, half width of the knee
+};
+
+/// Sets the uniforms of shaders/common_bloom.glsl and binds the light to a texture unit.
+void set_glow_uniforms(const gl::Program& program, const Glow& glow, unsigned unit);
+
+}  // namespace easypbr::render

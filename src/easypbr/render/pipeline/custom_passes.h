@@ -1,0 +1,37 @@
+// A program's own passes in the frame.
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "easypbr/render/frame/pass_timer.h"
+#include "easypbr/render/output/output_pass.h"
+#include "easypbr/render/pipeline/custom_pass.h"
+
+namespace easypbr::render {
+
+class CustomPasses {
+  public:
+    /// Each stage's in this order.
+    void set(std::vector<CustomPass> passes) { passes_ = std::move(passes); }
+    bool has(Stage stage) const;
+
+    /// Draws those of a stage into an image, which `target` has alone.
+    void draw(Stage stage, const Frame& frame, const GBuffer& targets, const gl::Texture& image,
+              const gl::Framebuffer& target, PassTimer& timer);
+    /// The same into one of the G-buffer's textures.
+    void draw(Stage stage, const Frame& frame, const GBuffer& targets, const gl::Texture& image,
+              PassTimer& timer);
+    /// Draws those of the stages light and overlay. What they draw may be anywhere in the picture.
+    void draw_in_frame(const Frame& frame, const GBuffer& targets, PassTimer& timer, LitPicture& lit);
+
+  private:
+    std::vector<CustomPass> passes_;
+    gl::Texture copies_[3];  ///< by stage, see PassInput::before()
+};
+
+inline bool has_custom(const CustomPasses* passes, Stage stage) {
+    return passes && passes->has(stage);
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,163 @@
+#include "easypbr/render/pipeline/pipeline.h"
+
+#include <algorithm>
+
+#include "easypbr/core/color.h"
+
+namespace easypbr::render {
+namespace {
+
+bool is_layered(const DrawItem& item) {
+    return item.layered;
+}
+
+bool sees_environment(const ResolvedSettings& resolved) {
+    const BackgroundMode mode = resolved.settings.background.mode;
+    return !resolved.environment.empty() &&
+           (mode == BackgroundMode::environment || mode == BackgroundMode::blur);
+}
+
+RayGround ray_ground(const ResolvedSettings& resolved) {
+    const GroundSettings& ground = resolved.settings.ground;
+    return {.up = parse_up(resolved.settings.camera.up),
+            .height = *ground.height,
+            .radius = double(*ground.radius),
+            .color = linear_from_srgb(ground.color),
+            .roughness = ground.roughness,
+            .shadow_catcher = GroundPass::is_shadow_catcher(resolved)};
+}
+
+}  // namespace
+
+void Pipeline::begin(Vec2i size, const ResolvedSettings& resolved) {
+    gl::reset_state();
+    if (!targets_.albedo || targets_.size() != size) targets_ = GBuffer(size);
+    if (!*resolved.settings.ssao.enabled) targets_.remove_ambient_occlusion();
+    timer_.reset();
+}
+
+void Pipeline::prepare_environment(const ResolvedSettings& resolved) {
+    if (resolved.environment.empty()) return;
+    timer_.run("environment", [&] {
+        const bool seen = sees_environment(resolved);
+        environment_.prepare(resolved.environment, seen ? resolved.seen_environment : Environment());
+    });
+}
+
+LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawList& casters,
+                          const FrameContents& contents) {
+    const ResolvedSettings& resolved = *frame.resolved;
+    const Box3d& bounds = bounds_of(*frame.scene);
+    const bool has_layers = list.has(is_layered);
+    const DrawList solid = has_layers ? list.without_layers() : DrawList();
+    const DrawList& opaque = has_layers ? solid : list;
+    const bool with_overlay = list.needs_overlay() || has_custom(contents.custom, Stage::overlay);
+    const SurfaceOutputs outputs{.ids = contents.ids, .extensions = contents.ids ? 0 : opaque.extensions()};
+    if (with_overlay) targets_.add_overlay();
+    if (outputs.extensions) targets_.add_extensions();
+
+    const PixelRect drawn =
+        timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
+    const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
+    if (contents.ground) timer_.run("ground", [&] { ground_.draw(seen, targets_); });
+    if (*resolved.settings.ssao.enabled && !contents.traced)
+        timer_.run("ambient occlusion", [&] { ambient_occlusion_.draw(seen, targets_, with_overlay); });
+    shadow_maps_.begin(seen, casters, bounds, contents.ground || list.has(&DrawItem::receives_shadows));
+    if (contents.traced) timer_.run("rays", [&] { update_ray_scene(seen, casters, contents.ground); });
+    const bool caught = contents.ground && GroundPass::is_shadow_catcher(resolved);
+    light(seen, targets_, contents, {.extensions = outputs.extensions}, caught);
+    if (contents.ground) timer_.run("ground", [&] { ground_.finish(seen, targets_, bounds); });
+    if (with_overlay) timer_.run("display", [&] { display_.draw(seen, targets_); });
+    if (!has_layers) timer_.run("lines", [&] { draw_lines(seen, list); });
+    if (sees_environment(resolved))
+        timer_.run("background", [&] { background_.draw(seen, targets_, environment_, contents.ground); });
+
+    LitPicture lit{.radiance = &targets_.radiance,
+                   .overlay = with_overlay ? &targets_.overlay : nullptr,
+                   .covered = has_layers ? frame.covered : seen.covered,
+                   .partly_covered = contents.ground};
+    if (has_layers)
+        lit.partly_covered |=
+            timer_.run("transparency", [&] { return draw_transparent(frame, list, contents, with_overlay); });
+    if (contents.custom) contents.custom->draw_in_frame(frame, targets_, timer_, lit);
+    if (!contents.layers) post_process(frame.covering(lit.covered), lit);
+    return lit;
+}
+
+void Pipeline::light(const Frame& frame, const GBuffer& targets, const FrameContents& contents,
+                     LightInputs inputs, bool caught) {
+    shadow_maps_.rewind();
+    if (contents.traced) {
+        timer_.run("rays", [&] { rays_.draw(frame, targets, ray_scene_); });
+        inputs.traced = &rays_.light();
+    }
+    if (caught) ground_.begin_light(frame, targets);
+    if (!frame.resolved->environment.empty()) inputs.environment = &environment_;
+    bool first = true;
+    do {
+        timer_.run("shadows", [&] { inputs.block = shadow_maps_.next_block(); });
+        inputs.block.first = first;
+        timer_.run("lighting", [&] { lighting_.draw(frame, targets, inputs); });
+        if (caught)
+            timer_.run("ground", [&] { lighting_.draw_caught(frame, targets, inputs, ground_.light()); });
+        inputs.environment = nullptr;
+        first = false;
+    } while (shadow_maps_.has_more());
+}
+
+void Pipeline::update_ray_scene(const Frame& frame, const DrawList& casters, bool ground) {
+    std::optional<RayGround> plane;
+    if (ground) plane = ray_ground(*frame.resolved);
+    ray_scene_.update(casters, shadow_maps_.caster_bounds(), shadow_maps_.casters_generation(),
+                      shadow_maps_.splats(), plane);
+}
+
+void Pipeline::post_process(const Frame& frame, LitPicture& lit) {
+    const ResolvedSettings& resolved = *frame.resolved;
+    lit.spreads |= resolved.settings.bloom.enabled || resolved.lens_radius > 0;
+    if (resolved.lens_radius > 0 && !frame.through_lens) {
+        lit.radiance = timer_.run("depth of field",
+                                  [&] { return &focus_.draw(frame, targets_, bounds_of(*frame.scene)); });
+        lit.partly_covered = true;
+    }
+    if (!resolved.settings.bloom.enabled) return;
+    lit.glow = timer_.run("bloom", [&] { return &bloom_.draw(frame, *lit.radiance); });
+    lit.partly_covered = true;  // Light falls where nothing is.
+}
+
+void Pipeline::draw_surfaces(const Frame& frame, const DrawList& list, const SurfaceOutputs& outputs) {
+    if (outputs.ids) targets_.add_ids();
+    surfaces_.draw(frame, list, targets_, outputs);
+}
+
+const gl::Texture* Pipeline::draw_overlay(const Frame& frame, const DrawList& list,
+                                          const FrameContents& contents) {
+    if (list.lines.empty() && !has_custom(contents.custom, Stage::overlay)) return nullptr;
+    targets_.add_overlay();
+    const float nothing[4] = {0, 0, 0, 0};
+    targets_.display.clear_color(0, nothing);
+    draw_lines(frame, list);
+    if (contents.custom) contents.custom->draw(Stage::overlay, frame, targets_, targets_.overlay, timer_);
+    return &targets_.overlay;
+}
+
+const Box3d& Pipeline::bounds_of(const SceneSnapshot& scene) {
+    std::vector<std::pair<uint64_t, Eigen::Affine3d>> key;
+    for (const auto& object : scene.objects) key.emplace_back(object.mesh->V.revision(), object.T_world_mesh);
+    const auto same = [](const auto& a, const auto& b) {
+        return a.first == b.first && a.second.matrix() == b.second.matrix();
+    };
+    if (!std::ranges::equal(key, bounded_, same)) {
+        bounds_ = scene.bounds();
+        bounded_ = std::move(key);
+    }
+    return bounds_;
+}
+
+void Pipeline::evict_unused() {
+    caches_.evict_unused();
+    surfaces_.evict_unused();
+    lines_.evict_unused();
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,120 @@
+// The frame: every pass from shadows to overlays, in pipeline order.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "easypbr/gpu/environment_maps.h"
+#include "easypbr/render/drawables/draw_list.h"
+#include "easypbr/render/effects/ambient_occlusion/ambient_occlusion_pass.h"
+#include "easypbr/render/effects/bloom/bloom_pass.h"
+#include "easypbr/render/effects/depth_of_field/focus_pass.h"
+#include "easypbr/render/effects/ground/ground_pass.h"
+#include "easypbr/render/frame/pass_timer.h"
+#include "easypbr/render/lighting/background_pass.h"
+#include "easypbr/render/lighting/lighting_pass.h"
+#include "easypbr/render/output/display_pass.h"
+#include "easypbr/render/output/output_pass.h"
+#include "easypbr/render/pipeline/custom_passes.h"
+#include "easypbr/render/primitives/lines/line_pass.h"
+#include "easypbr/render/primitives/surfaces.h"
+#include "easypbr/render/raytrace/ray_pass.h"
+#include "easypbr/render/shadow/shadow_maps.h"
+#include "easypbr/render/transparency/transparency_pass.h"
+
+namespace easypbr::render {
+
+/// What the frames of a picture are drawn for.
+struct FrameContents {
+    bool ids = false;                ///< the id targets are filled; surfaces are of the core model
+    bool ground = false;             ///< a plane under the content belongs to the picture
+    bool traced = false;             ///< rays look for the environment's light, in place of ambient occlusion
+    bool layers = false;             ///< targets are read, no picture: nothing follows the lit surfaces
+    CustomPasses* custom = nullptr;  ///< a program's own passes, where it is a picture
+};
+
+/// Owns the passes and the targets between them. All members need the context current.
+class Pipeline {
+  public:
+    Pipeline()
+        : surfaces_(caches_),
+          shadow_maps_(caches_.meshes, caches_.textures, caches_.closed_meshes, caches_.spacings,
+                       caches_.points, caches_.surfels) {}
+
+    /// Makes the targets for a size and forgets the times of passes.
+    void begin(Vec2i size, const ResolvedSettings& resolved);
+
+    /// Makes the maps of the environment that lights the scene.
+    void prepare_environment(const ResolvedSettings& resolved);
+
+    /// Draws a frame of `list`, with the shadows of `casters`. What it returns lives until the next call.
+    LitPicture draw(const Frame& frame, const DrawList& list, const DrawList& casters,
+                    const FrameContents& contents);
+    /// Fills the G-buffer alone.
+    void draw_surfaces(const Frame& frame, const DrawList& list, const SurfaceOutputs& outputs);
+    /// Clears the overlay and draws what is in it beside surfaces: lines, and a program's own passes.
+    const gl::Texture* draw_overlay(const Frame& frame, const DrawList& list, const FrameContents& contents);
+
+    GBuffer& targets() { return targets_; }
+    const GBuffer& targets() const { return targets_; }
+    SurfacePasses& surfaces() { return surfaces_; }
+    DataCaches& caches() { return caches_; }
+    const ShadowMaps& shadow_maps() const { return shadow_maps_; }
+    PassTimer& timer() { return timer_; }
+    const PassTimer& timer() const { return timer_; }
+    const Box3d& bounds_of(const SceneSnapshot& scene);
+
+    void allow_native_geometry(bool allow) {
+        surfaces_.allow_native(allow);
+        shadow_maps_.allow_native(allow);
+    }
+    void evict_unused();
+
+  private:
+    /// Lights a G-buffer, block by block of lights with their shadow maps; `caught`: with the light of the
+    /// shadow catcher.
+    void light(const Frame& frame, const GBuffer& targets, const FrameContents& contents, LightInputs inputs,
+               bool caught);
+    void update_ray_scene(const Frame& frame, const DrawList& casters, bool ground);
+    /// Depth that hides lines and layers: of what is drawn over everything else too.
+    const gl::Texture& hiding_depth(const Frame& frame, const DrawList& list);
+    /// Draws the lines where there are no layers.
+    void draw_lines(const Frame& frame, const DrawList& list);
+    /// Draws the layered items over the picture, before and behind each other and the lines; whether there
+    /// were any.
+    bool draw_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
+                          bool with_overlay);
+    /// Draws layers, and the lines between them, before the surfaces of which `opaque` is the depth.
+    void draw_layers(const Frame& frame, const DrawList& layers, const std::vector<LineItem>& lines,
+                     const gl::Texture& opaque, const FrameContents& contents, bool with_overlay);
+    /// The eye-dome lighting of the layers' points; nothing where there are none.
+    const gl::Texture* shade_points(const Frame& frame, const DrawList& layers, const gl::Texture& opaque);
+    /// What the lens and the eye make of the frame.
+    void post_process(const Frame& frame, LitPicture& lit);
+
+    GBuffer targets_;
+    DataCaches caches_;
+    gpu::EnvironmentMaps environment_;
+    SurfacePasses surfaces_;
+    ShadowMaps shadow_maps_;
+    AmbientOcclusionPass ambient_occlusion_;
+    RayScene ray_scene_;
+    RayPass rays_;
+    LightingPass lighting_;
+    GroundPass ground_;
+    DisplayPass display_;
+    LinePass lines_;
+    TransparencyPass transparency_;
+    BackgroundPass background_;
+    FocusPass focus_;
+    BloomPass bloom_;
+    PassTimer timer_;
+    gl::Texture hiding_depth_;
+    gl::Framebuffer hiding_;
+    ProgramVariants hiding_programs_{"screen_triangle.vert", "opaque_limit.frag"};
+    /// Bounds of the last scene, and what they were computed from.
+    std::vector<std::pair<uint64_t, Eigen::Affine3d>> bounded_;
+    Box3d bounds_;
+};
+
+}  // namespace easypbr::render

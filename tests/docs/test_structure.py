@@ -1,0 +1,66 @@
+"""The bounds that shaders keep hold, and are seen when they do not; the counts are of what they say."""
+import pathlib
+import sys
+
+import pytest
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.insert(0, str(ROOT / "scripts"))
+import count_structure  # noqa: E402
+
+
+def test_shaders_keep_their_bounds():
+    assert list(count_structure.shader_faults(ROOT)) == []
+
+
+@pytest.fixture
+def tree(tmp_path):
+    (tmp_path / "shaders").mkdir()
+
+    def write(**texts):
+        for name, text in texts.items():
+            (tmp_path / "shaders" / f"{name}.glsl").write_text(text)
+        return tmp_path
+
+    return write
+
+
+def test_too_many_conditions(tree):
+    bound = count_structure.MOST_CONDITIONS
+    one = "#ifdef A  // why\n#endif\n"
+    assert list(count_structure.shader_faults(tree(a=one * (bound - 1), b=one))) == []
+    assert list(count_structure.shader_faults(tree(b=2 * one))) == [
+        f"shaders have {bound + 1} lines of #if; expected at most {bound}: declare a #feature"]
+
+
+def test_a_condition_without_a_reason(tree):
+    folder = tree(a="// #ifdef IN_A_COMMENT\n#ifndef A\n#if B  // why\n#endif\n#endif\n")
+    assert list(count_structure.shader_faults(folder)) == [
+        "shaders/a.glsl:2: expected the reason of this #if in a comment behind it"]
+
+
+def test_a_block_that_is_declared_twice(tree):
+    block = "layout(std140, binding = 0) uniform Lights { vec4 u_lights[4]; };\n"
+    folder = tree(a=block, b=block, c=block.replace("Lights", "Shadows"))
+    assert list(count_structure.shader_faults(folder)) == ["shaders/b.glsl: block Lights is declared in a.glsl too"]
+
+
+def test_members_of_a_class():
+    text = """
+class Pass {
+  public:
+    Pass();
+    void draw(const Frame& frame, Options options = {}) { count_ = 0; }
+    int count() const { return count_; }  // not a field;
+
+  private:
+    struct Inner {
+        int not_counted = 0;
+    };
+    std::map<std::string, int> values_;
+    int count_ = 0, other_ = 1;
+    Programs programs_{"a.vert", "a.frag"};
+};
+"""
+    assert count_structure.members(text, "Pass") == (4, 3)
+    assert count_structure.members(text, "Inner") is None

@@ -1,0 +1,145 @@
+"""Ctrl-C ends what takes long at once and leaves nothing behind; threads that draw do not disturb the end of a program."""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+
+import numpy as np
+import pytest
+
+from easypbr import Mesh, Scene, Viewer, shapes
+
+#: Half a second is the promise; a machine that runs other tests beside this one gets more.
+LIMIT_S = 1.5
+
+
+def seconds_until_interrupted(work, after_s: float = 0.7) -> float:
+    """How long `work` goes on after a SIGINT that comes `after_s` after its start."""
+    sent = []
+
+    def interrupt():
+        sent.append(time.monotonic())
+        os.kill(os.getpid(), signal.SIGINT)
+
+    timer = threading.Timer(after_s, interrupt)
+    timer.start()
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            work()
+            pytest.fail("it ended before it was interrupted")
+    finally:
+        timer.cancel()
+        timer.join()
+    return time.monotonic() - sent[0]
+
+
+@pytest.fixture
+def scene():
+    scene = Scene()
+    scene.show(shapes.teapot(), "teapot")
+    return scene
+
+
+@pytest.mark.parametrize("size, samples", [((640, 480), 100_000), ((3000, 3000), 1000)])
+def test_render(scene, size, samples):
+    view = Viewer(size, scene=scene)
+    view.render((64, 48), samples=2)
+    assert seconds_until_interrupted(lambda: view.render(samples=samples)) < LIMIT_S
+    # Nothing is left behind: the next picture is that of a viewer that was never interrupted.
+    np.testing.assert_array_equal(view.render((64, 48), samples=4), Viewer((64, 48), scene=scene).render(samples=4))
+
+
+def test_the_first_picture_with_rays_and_effects(scene):
+    """Also while shadow maps, trees and environments are made."""
+    scene.environment = np.random.default_rng(1).random((512, 1024, 3), dtype=np.float32)
+    look = {"ground.mode": "plane", "bloom.enabled": True}
+    view = Viewer((800, 600), look, scene=scene)
+    for after in (0.05, 0.3, 1.0):
+        assert seconds_until_interrupted(lambda: view.render(samples=100_000), after) < LIMIT_S
+    np.testing.assert_array_equal(view.render((64, 48), samples=2), Viewer((64, 48), look, scene=scene).render(samples=2))
+
+
+def test_geometry_and_files(tmp_path):
+    ball = shapes.icosphere(1, 8)
+    assert seconds_until_interrupted(lambda: [ball.smooth_normals() for _ in range(10_000)]) < LIMIT_S
+    ball.save(tmp_path / "ball.ply")
+    assert seconds_until_interrupted(lambda: [Mesh(tmp_path / "ball.ply") for _ in range(10_000)]) < LIMIT_S
+    np.testing.assert_allclose(Mesh(tmp_path / "ball.ply").V, ball.V, atol=1e-6)
+
+
+def test_ground_truth(scene):
+    view = Viewer((640, 480), scene=scene)
+    assert seconds_until_interrupted(lambda: view.render_layers(["color", "depth"], samples=100_000)) < LIMIT_S
+    assert view.render_layers(["depth"])["depth"].max() > 0
+
+
+def test_a_handler_of_ones_own_is_called_afterwards(scene):
+    """It may not raise, so it ends nothing."""
+    called = []
+    before = signal.signal(signal.SIGINT, lambda *_: called.append(time.monotonic()))
+    try:
+        view = Viewer((64, 48), scene=scene)
+        expected = view.render(samples=64)
+        timer = threading.Timer(0.01, lambda: os.kill(os.getpid(), signal.SIGINT))
+        timer.start()
+        picture = view.render(samples=64)
+        timer.join()
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert len(called) == 1
+    np.testing.assert_array_equal(picture, expected)
+
+
+def test_python_has_its_handler_back(scene):
+    assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    view = Viewer((64, 48), scene=scene)
+    view.render(samples=1)
+    with pytest.raises(KeyboardInterrupt):
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(5)
+    assert view.render(samples=1).shape == (48, 64, 4)
+
+
+def test_another_thread_is_not_interrupted(scene):
+    pictures = []
+    thread = threading.Thread(target=lambda: pictures.append(Viewer((64, 48), scene=scene).render(samples=256)))
+    with pytest.raises(KeyboardInterrupt):
+        thread.start()
+        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(5)
+    thread.join()
+    np.testing.assert_array_equal(pictures[0], Viewer((64, 48), scene=scene).render(samples=256))
+
+
+DAEMON = """
+import threading, time, easypbr
+from easypbr import Scene, Viewer, shapes
+scene = Scene()
+scene.show(shapes.teapot(), "teapot")
+view = Viewer((320, 240), scene=scene)
+drawn = threading.Event()
+def draw():
+    while True:
+        view.render(samples={samples})
+        drawn.set()
+def measure():
+    while True:
+        shapes.teapot().smooth_normals()
+for work in (draw, measure, measure):
+    threading.Thread(target=work, daemon=True).start()
+{wait}
+print("end", flush=True)
+"""
+
+
+@pytest.mark.parametrize("samples, wait", [(1, "drawn.wait()"), (1, "time.sleep(0.05)"), (100000, "time.sleep(1)")])
+def test_the_interpreter_ends_while_daemon_threads_draw(samples, wait):
+    code = DAEMON.format(samples=samples, wait=wait)
+    for _ in range(5):
+        start = time.monotonic()
+        done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+        assert (done.returncode, done.stdout, done.stderr) == (0, "end\n", "")
+        assert time.monotonic() - start < 30
