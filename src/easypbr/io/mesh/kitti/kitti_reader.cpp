@@ -53,6 +53,7 @@ void read_labels(const fs::path& path, MeshData& mesh) {
         labels[Eigen::Index(i)] = int32_t(code & 0xffff);
         instances[Eigen::Index(i)] = float(code >> 16);
     });
+    file.check();
     const bool has_instances = (instances.array() != 0).any();
     mesh.L = std::move(labels);
     if (has_instances) mesh.scalars.push_back({"instance", std::move(instances)});
