@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
@@ -119,30 +120,53 @@ TEST_F(File, OpensOnlyRegularFilesAndNeverBlocks) {
     ::close(socket);
 }
 
-TEST_F(File, KeepsItsBytesWhenItIsTruncated) {
-    const std::string text = random_text(10'000'000);
-    write_file(folder_ / "a", text);
-    const FileBytes whole(folder_ / "a");
-    InputFile opened(folder_ / "a");
-    fs::resize_file(folder_ / "a", 5'000'000);
-    EXPECT_TRUE(whole.text() == text);
+TEST_F(File, TruncatedIsAnErrorAndNoSignal) {
+    // What is small is copied.
+    const std::string few = random_text(100'000);
+    write_file(folder_ / "small", few);
+    const FileBytes small(folder_ / "small");
+    InputFile opened(folder_ / "small");
+    fs::resize_file(folder_ / "small", 50'000);
+    EXPECT_TRUE(small.text() == few);
+    EXPECT_NO_THROW(small.check());
     const std::string message = message_of([&] { FileBytes{std::move(opened)}; });
-    EXPECT_NE(message.find("it had 10000000 bytes, now it ends at byte 5000000"), std::string::npos)
-        << message;
+    EXPECT_NE(message.find("it had 100000 bytes, now it ends at byte 50000"), std::string::npos) << message;
+
+    // What is large is mapped: bytes that are gone are zero.
+    const std::string many = random_text(10'000'000);
+    write_file(folder_ / "large", many);
+    const FileBytes whole(folder_ / "large"), other(folder_ / "large");
+    EXPECT_TRUE(whole.text() == many);
+    fs::resize_file(folder_ / "large", 5'000'000);
+    EXPECT_TRUE(whole.text().substr(0, 5'000'000) == std::string_view(many).substr(0, 5'000'000));
+    EXPECT_NO_THROW(whole.check());
+    EXPECT_EQ(whole.text().substr(6'000'000), std::string(4'000'000, '\0'));
+    EXPECT_NE(message_of([&] { whole.check(); }).find("truncated"), std::string::npos);
+    // The place is free for others.
+    EXPECT_NO_THROW(other.check());
+}
+
+TEST_F(File, MayBeMappedManyTimes) {
+    const std::string text = random_text(2'000'000);
+    write_file(folder_ / "a", text);
+    std::vector<FileBytes> files(300);
+    for (FileBytes& file : files) file = FileBytes(folder_ / "a");
+    EXPECT_TRUE(std::ranges::all_of(files, [&](const FileBytes& file) { return file.text() == text; }));
 }
 
 TEST_F(File, GivesMemoryBack) {
     const std::string text = random_text(10'000'000);
     write_file(folder_ / "a", text);
     const FileBytes file(folder_ / "a");
-    file.release_until(3'000'000);
     file.release_until(7'000'000);
-    EXPECT_TRUE(file.text().substr(7'000'000) == std::string_view(text).substr(7'000'000));
-    file.restore();
     EXPECT_TRUE(file.text() == text);
-    file.release_until(file.size());
-    fs::resize_file(folder_ / "a", 100);
-    EXPECT_THROW(file.restore(), FileError);
+}
+
+// The guard is not in the way of signals that have nothing to do with it.
+TEST_F(File, LeavesOtherBusErrorsAlone) {
+    write_file(folder_ / "a", random_text(2'000'000));
+    const FileBytes file(folder_ / "a");
+    EXPECT_EXIT(::raise(SIGBUS), testing::KilledBySignal(SIGBUS), "");
 }
 
 TEST_F(File, ReadsAPipeToItsEnd) {

@@ -12,7 +12,6 @@
 #include "easypbr/core/log.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
-#include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/io/settings/label_map_io.h"
 #include "easypbr/io/settings/settings_io.h"
@@ -100,18 +99,6 @@ TEST(SpecialFiles, AreRefusedWhereAMeshNamesThem) {
     }
 }
 
-// The lines before the wrong one are counted although their memory was given back.
-TEST(Source, CountsLinesOfMemoryThatWasGivenBack) {
-    const TemporaryFolder folder;
-    const std::string text(5'000'000, '\n');
-    write_file(folder / "a", text);
-    const FileBytes bytes(folder / "a");
-    const io::Source source(bytes, "a");
-    source.release_until(source.end());
-    EXPECT_EQ(message_of<FormatError>([&] { io::fail_at_line(source, source.begin() + 4'999'999, "wrong"); }),
-              "a:5000000: wrong");
-}
-
 /// Rows of lists with three vertices, the last one with four. The rows before it are read, and their memory
 /// given back, before it turns out that not all have three.
 TEST(Ply, ReadsRowsAgainWhenTheLastOneIsLonger) {
@@ -132,7 +119,7 @@ TEST(Ply, ReadsRowsAgainWhenTheLastOneIsLonger) {
         ASSERT_EQ(data.F.row(i), Eigen::RowVector3i(i % 3, i % 3 + 1, i % 3 + 2)) << i;
 }
 
-// Another process shortens files while they are read: what was mapped would end the process by SIGBUS.
+// Another process shortens files while they are read: a plain map would end the process by SIGBUS.
 TEST(ChangingFile, IsReadOrRefused) {
     const TemporaryFolder folder;
     const std::string text = "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n" + std::string(20'000'000, '\n');

@@ -11,17 +11,16 @@
 #include <atomic>
 #include <cerrno>
 #include <cstring>
-#include <mutex>
 #include <utility>
 
 #include "easypbr/core/error.h"
-#include "easypbr/core/parallel.h"
 
 namespace easypbr {
 namespace {
 
-/// Bytes that one thread reads at a time, and the size of the pages that large files are read into.
-constexpr size_t read_block = 4 << 20, large_page = 2 << 20;
+/// Files of fewer bytes are copied, which costs less than what a map has to guard against. Copying hundreds
+/// of megabytes would make loading a binary PLY a third slower.
+constexpr size_t smallest_map = 1 << 20;
 
 fs::path temporary_beside(const fs::path& path) {
     static std::atomic<unsigned> counter{0};
@@ -43,7 +42,6 @@ const char* kind_of(mode_t mode) {
 std::byte* allocate_pages(size_t size, std::string_view path) {
     void* pages = ::mmap(nullptr, size, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
     if (pages == MAP_FAILED) fail_read(path, fmt::format("no memory for its {} bytes", size));
-    if (size >= large_page) ::madvise(pages, size, MADV_HUGEPAGE);
     return static_cast<std::byte*>(pages);
 }
 
@@ -103,16 +101,22 @@ void check_readable(const fs::path& path) {
     const InputFile file(path);
 }
 
-FileBytes::FileBytes(InputFile file) : file_(std::move(file)) {
-    if (file_->size() == 0) return;
-    size_ = capacity_ = file_->size();
-    data_ = allocate_pages(capacity_, file_->path().string());
+FileBytes::FileBytes(InputFile file) : file_(std::move(file)), size_(file_->size()) {
+    if (size_ >= smallest_map) map_ = GuardedMap(file_->descriptor(), size_);
+    if (map_)
+        data_ = map_.data();
+    else if (size_ > 0)
+        copy();
+}
+
+void FileBytes::copy() {
+    own_ = allocate_pages(size_, file_->path().string());
+    data_ = own_;
+    capacity_ = size_;
     try {
-        parallel_chunks(size_, read_block, [&](size_t begin, size_t end) {
-            file_->read(begin, {data_ + begin, end - begin});
-        });
+        file_->read(0, {own_, size_});
     } catch (...) {
-        ::munmap(data_, capacity_);
+        ::munmap(own_, capacity_);
         throw;
     }
 }
@@ -121,7 +125,7 @@ FileBytes::FileBytes(int descriptor, std::string_view name) {
     FileBytes input;
     for (;;) {
         if (input.size_ == input.capacity_) input.grow(name);
-        const ssize_t count = ::read(descriptor, input.data_ + input.size_, input.capacity_ - input.size_);
+        const ssize_t count = ::read(descriptor, input.own_ + input.size_, input.capacity_ - input.size_);
         if (count == 0) break;
         if (count > 0)
             input.size_ += size_t(count);
@@ -134,19 +138,20 @@ FileBytes::FileBytes(int descriptor, std::string_view name) {
 }
 
 void FileBytes::grow(std::string_view name) {
-    const size_t capacity = std::max(2 * capacity_, read_block);
-    if (!data_) {
-        data_ = allocate_pages(capacity, name);
+    const size_t capacity = std::max(2 * capacity_, smallest_map);
+    if (!own_) {
+        own_ = allocate_pages(capacity, name);
     } else {
-        void* pages = ::mremap(data_, capacity_, capacity, MREMAP_MAYMOVE);
+        void* pages = ::mremap(own_, capacity_, capacity, MREMAP_MAYMOVE);
         if (pages == MAP_FAILED) fail_read(name, fmt::format("no memory for more than {} bytes", capacity_));
-        data_ = static_cast<std::byte*>(pages);
+        own_ = static_cast<std::byte*>(pages);
     }
+    data_ = own_;
     capacity_ = capacity;
 }
 
 FileBytes::~FileBytes() {
-    if (data_) ::munmap(data_, capacity_);
+    if (own_) ::munmap(own_, capacity_);
 }
 
 FileBytes::FileBytes(FileBytes&& other) noexcept {
@@ -155,27 +160,25 @@ FileBytes::FileBytes(FileBytes&& other) noexcept {
 
 FileBytes& FileBytes::operator=(FileBytes&& other) noexcept {
     std::swap(file_, other.file_);
+    std::swap(map_, other.map_);
+    std::swap(own_, other.own_);
+    std::swap(capacity_, other.capacity_);
     std::swap(data_, other.data_);
     std::swap(size_, other.size_);
-    std::swap(capacity_, other.capacity_);
-    std::swap(released_, other.released_);
     return *this;
 }
 
-void FileBytes::release_until(size_t end) const {
-    const size_t whole = std::min(end, size_) / large_page * large_page;
-    if (!file_ || whole <= released_) return;
-    ::madvise(data_ + released_, whole - released_, MADV_DONTNEED);
-    released_ = whole;
+void FileBytes::check() const {
+    if (map_.is_broken())
+        fail_read(
+            file_->path().string(),
+            fmt::format("it was truncated, or could not be read, while it was read: it had {} bytes", size_));
 }
 
-void FileBytes::restore() const {
-    // One thread reads: those of a loop come here when they fail, and may not wait for each other.
-    static std::mutex mutex;
-    const std::lock_guard lock(mutex);
-    if (released_ == 0) return;
-    file_->read(0, {data_, released_});
-    released_ = 0;
+void FileBytes::release_until(size_t end) const {
+    const size_t page = 1 << 16;
+    const size_t whole = std::min(end, size_) / page * page;
+    if (map_ && whole) ::madvise(const_cast<std::byte*>(data_), whole, MADV_DONTNEED);
 }
 
 namespace {

@@ -1,4 +1,4 @@
-// Files as bytes: reading that neither blocks nor changes afterwards, writing that never leaves half a file
+// Files as bytes: reading that neither blocks nor ends in a signal, writing that never leaves half a file
 // behind.
 #pragma once
 
@@ -9,6 +9,8 @@
 #include <string>
 #include <string_view>
 #include <utility>
+
+#include "easypbr/core/guarded_map.h"
 
 namespace easypbr {
 
@@ -39,6 +41,7 @@ class InputFile {
     explicit InputFile(fs::path path);
 
     const fs::path& path() const { return path_; }
+    int descriptor() const { return file_.get(); }
     /// Bytes that the file had when it was opened.
     size_t size() const { return size_; }
     /// Reads the bytes [from, from + out.size()). Throws FileError when the file has become shorter or cannot
@@ -51,7 +54,7 @@ class InputFile {
     size_t size_ = 0;
 };
 
-/// A file's bytes, copied into memory: what happens to the file afterwards does not change them. Move-only.
+/// A file's bytes: a copy, or where they are many a guarded map. Move-only.
 class FileBytes {
   public:
     FileBytes() = default;
@@ -69,20 +72,24 @@ class FileBytes {
     std::string_view text() const { return {reinterpret_cast<const char*>(data_), size_}; }
     size_t size() const { return size_; }
 
-    /// Gives the memory of the bytes [0, end) back, which must not be used again before restore(). Does
-    /// nothing where they could not be read again.
+    /// To be called when the bytes have been used. Throws FileError when the file became shorter, or could
+    /// not be read, meanwhile: bytes were zero then that are not in the file.
+    void check() const;
+
+    /// Tells the system that bytes [0, end) are not needed again soon, so that they do not count as used
+    /// memory.
     void release_until(size_t end) const;
-    /// Reads what was given back again. Throws FileError as InputFile::read() does. Thread-safe, but not
-    /// beside release_until().
-    void restore() const;
 
   private:
+    void copy();
     void grow(std::string_view name);
 
     std::optional<InputFile> file_;
-    std::byte* data_ = nullptr;
-    size_t size_ = 0, capacity_ = 0;
-    mutable size_t released_ = 0;
+    GuardedMap map_;
+    std::byte* own_ = nullptr;  ///< memory of a copy
+    size_t capacity_ = 0;       ///< of own_
+    const std::byte* data_ = nullptr;
+    size_t size_ = 0;
 };
 
 /// Throws FileError unless the file can be opened for reading and is a regular one.

@@ -48,7 +48,9 @@ Image decode_image(std::span<const std::byte> bytes, const std::string& name) {
 
 Image load_image(const std::filesystem::path& path) {
     const FileBytes file(path);
-    return decode_image(file.bytes(), path.string());
+    Image image = decode_image(file.bytes(), path.string());
+    file.check();
+    return image;
 }
 
 void save_image(const Image& image, const std::filesystem::path& path) {

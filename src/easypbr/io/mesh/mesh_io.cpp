@@ -76,6 +76,7 @@ LoadedScene decode(const FileBytes& bytes, const fs::path& path, const std::stri
                    const LoadOptions& options) {
     if (is_gltf(format)) return decode_gltf(bytes.bytes(), path);
     MeshData data = readers().at(format)(Source(bytes, path), options);
+    bytes.check();
     data.name = path.stem().string();
     data.source = path;
     return {Mesh(std::move(data)), {}, {}};

@@ -214,7 +214,10 @@ std::string to_json(const SettingsFile& file) {
 }
 
 std::string hash_file(const std::filesystem::path& path) {
-    return content_hash(FileBytes(path).bytes());
+    const FileBytes file(path);
+    std::string hash = content_hash(file.bytes());
+    file.check();
+    return hash;
 }
 
 }  // namespace easypbr::io

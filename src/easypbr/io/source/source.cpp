@@ -14,7 +14,6 @@ void fail_at_byte(const Source& source, const char* place, std::string_view mess
 }
 
 void fail_at_line(const Source& source, const char* place, std::string_view message) {
-    source.restore();
     const auto line = 1 + std::count(source.begin(), place, '\n');
     throw FormatError(fmt::format("{}:{}: {}", source.path.string(), line, message));
 }

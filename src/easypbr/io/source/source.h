@@ -26,13 +26,9 @@ struct Source {
     const char* begin() const { return bytes.data(); }
     const char* end() const { return bytes.data() + bytes.size(); }
 
-    /// Gives the memory of the bytes before `place` back, which must not be used again before restore().
+    /// Bytes before `place` are not needed again soon.
     void release_until(const char* place) const {
         if (file) file->release_until(size_t(place - begin()));
-    }
-    /// Reads what was given back again. Throws FileError.
-    void restore() const {
-        if (file) file->restore();
     }
 };
 

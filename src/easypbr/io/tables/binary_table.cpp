@@ -155,7 +155,6 @@ class ElementReader {
     /// Reads rows whose lists differ in length: one walk finds where each run of rows begins, then the runs
     /// are read in parallel.
     const char* read_varied(const char* body) {
-        source_.restore();
         std::vector<const char*> starts;
         const char* p = body;
         for (Column& column : plan_.columns) {

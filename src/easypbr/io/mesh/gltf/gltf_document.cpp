@@ -162,6 +162,10 @@ std::span<const std::byte> GltfDocument::buffer(size_t index) {
     return buffer.bytes;
 }
 
+void GltfDocument::check_files() const {
+    for (const Buffer& buffer : buffers_) buffer.file.check();
+}
+
 std::span<const std::byte> GltfDocument::buffer_view(size_t index) {
     const Json& view = item("bufferViews", index);
     if (extension(view, "EXT_meshopt_compression"))

@@ -42,6 +42,9 @@ class GltfDocument {
     /// that leads out of the document's folder.
     std::filesystem::path path_of_uri(std::string_view uri) const;
 
+    /// To be called when all has been read. Throws FileError when a buffer's file changed meanwhile.
+    void check_files() const;
+
     /// Throws FormatError: "cannot read PATH: WHAT".
     [[noreturn]] void fail(std::string_view what) const;
 

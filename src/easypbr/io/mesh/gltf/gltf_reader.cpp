@@ -232,13 +232,17 @@ class SceneReader {
 
 LoadedScene load_gltf(const std::filesystem::path& path) {
     const FileBytes file(path);
-    return decode_gltf(file.bytes(), path);
+    LoadedScene scene = decode_gltf(file.bytes(), path);
+    file.check();
+    return scene;
 }
 
 LoadedScene decode_gltf(std::span<const std::byte> bytes, const std::filesystem::path& path) {
     try {
         GltfDocument document(bytes, path);
-        return SceneReader(document).read();
+        LoadedScene scene = SceneReader(document).read();
+        document.check_files();
+        return scene;
     } catch (const ArgumentError& error) {
         throw FormatError(fmt::format("cannot read {}: {}", path.string(), error.what()));
     } catch (const Json::exception& error) {

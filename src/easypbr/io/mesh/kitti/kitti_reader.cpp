@@ -19,7 +19,8 @@ constexpr size_t point_size = 16, label_size = 4, grain = 1 << 16;
 /// The scan's labels: sequences/00/velodyne/000000.bin has sequences/00/labels/000000.label; or beside it.
 std::optional<fs::path> find_labels(const fs::path& scan) {
     const fs::path folder = scan.parent_path(), name = scan.stem().string() + ".label";
-    for (const fs::path& path : {fs::absolute(folder).parent_path() / "labels" / name, folder / name})
+    const fs::path above = fs::absolute(scan).parent_path().parent_path();
+    for (const fs::path& path : {above / "labels" / name, folder / name})
         if (fs::exists(path)) return path;
     return {};
 }
@@ -52,6 +53,7 @@ void read_labels(const fs::path& path, MeshData& mesh) {
         labels[Eigen::Index(i)] = int32_t(code & 0xffff);
         instances[Eigen::Index(i)] = float(code >> 16);
     });
+    file.check();
     const bool has_instances = (instances.array() != 0).any();
     mesh.L = std::move(labels);
     if (has_instances) mesh.scalars.push_back({"instance", std::move(instances)});
