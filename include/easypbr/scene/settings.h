@@ -9,6 +9,7 @@
 #include "easypbr/core/math.h"
 #include "easypbr/scene/auto.h"
 #include "easypbr/scene/camera.h"
+#include "easypbr/scene/effects/effects.h"
 #include "easypbr/scene/light.h"
 #include "easypbr/scene/material.h"
 #include "easypbr/scene/style.h"
@@ -19,11 +20,8 @@ enum class Antialias { none, fxaa };
 enum class BackgroundMode { color, environment, blur, image, transparent };
 enum class Brdf { height_correlated, separable, ue4 };
 enum class ShadowMode { hard, pcf, soft };
-enum class GroundMode { none, shadow, plane };
 enum class TransparencyMode { layers, stochastic };
 enum class Corner { top_left, top_right, bottom_left, bottom_right };
-enum class OcclusionMethod { horizon, hemisphere };
-enum class OcclusionResolution { adaptive, half, full };
 enum class ToneOperator { aces, reinhard, agx, neutral, none };
 
 /// Size and sampling of the image.
@@ -91,16 +89,6 @@ struct ShadowSettings {
     int resolution = 1024;               ///< width and height of a shadow map in texels, 16 to 8192
 };
 
-/// A ground plane under the content.
-struct GroundSettings {
-    GroundMode mode = GroundMode::none;  ///< shadow: a shadow catcher; plane: a visible surface
-    Auto<double> height;                 ///< along the up axis, world units; automatic: the lowest point
-    float strength = 1;                  ///< opacity factor of the shadow catcher, 0 to 1
-    Vec3 color{0.5f, 0.5f, 0.5f};        ///< base colour of the plane, sRGB-encoded
-    float roughness = 0.7f;              ///< perceptual roughness of the plane, 0 to 1
-    Auto<float> radius;  ///< distance at which the plane has faded out, world units; automatic: 12 radii
-};
-
 /// The specular BRDF of all materials.
 struct ShadingSettings {
     Brdf brdf = Brdf::height_correlated;  ///< masking-shadowing function of GGX
@@ -119,49 +107,6 @@ struct EdlSettings {
 struct TransparencySettings {
     TransparencyMode mode = TransparencyMode::layers;  ///< layers: depth peeling
     int max_layers = 64;                               ///< peeled per pixel, 1 to 10000
-};
-
-/// Screen-space ambient occlusion of image-based lighting.
-struct SsaoSettings {
-    Auto<bool> enabled;  ///< automatic: on if the scene has faces or normals
-    OcclusionMethod method = OcclusionMethod::horizon;
-    OcclusionResolution resolution = OcclusionResolution::adaptive;  ///< adaptive: full from 8 samples on
-    Auto<float> radius;        ///< maximum distance of occluders, world units; automatic: 5 % of the diagonal
-    float falloff = 0.6f;      ///< outer fraction of the radius over which occlusion fades, 0.01 to 1
-    float power = 1;           ///< exponent of the visibility, 0 to 16
-    int directions = 1;        ///< slices, or sets of points, per pixel and sample, 1 to 64
-    int steps = 6;             ///< depth-buffer samples per direction and side, 1 to 64
-    bool multi_bounce = true;  ///< approximates multiple bounces, which lighten occlusion by the albedo
-};
-
-/// Sky visibility and indirect light by ray tracing on the CPU, in place of ambient occlusion.
-struct RaySettings {
-    Auto<bool> enabled;  ///< automatic: from 32 samples on, if ssao.enabled
-    int count = 256;     ///< diffuse rays per pixel of an image, over all samples, 1 to 65536
-};
-
-/// Bloom, applied in linear HDR before tone mapping. Conserves energy.
-struct BloomSettings {
-    bool enabled = false;
-    float intensity = 0.2f;         ///< fraction of the light above the threshold that is scattered, 0 to 1
-    float threshold = 1;            ///< on the largest of red, green and blue after exposure; 0: all light
-    float knee = 0.5f;              ///< width of the soft knee as a fraction of the threshold, 0 to 1
-    Auto<int> levels;               ///< mip levels of the pyramid, 1 to 8; automatic: by the image size
-    Auto<bool> suppress_fireflies;  ///< weights bright pixels down; automatic: on if the threshold is above 0
-};
-
-/// Depth of field of a thin lens; perspective cameras only.
-struct DepthOfFieldSettings {
-    bool enabled = false;
-    float f_number = 2.8f;        ///< focal length / aperture diameter, 0.1 to 1000
-    Auto<double> focus_distance;  ///< along the optical axis, world units; automatic: the content's centre
-    Auto<double> sensor_height;   ///< world units; automatic: 5 % of the content's diagonal
-};
-
-/// Motion blur of accumulated images, by the time of each sample.
-struct MotionBlurSettings {
-    bool enabled = false;
-    float shutter = 0.5f;  ///< fraction of the time since the previous image that the shutter is open, 0 to 1
 };
 
 /// Exposure and tone mapping.
@@ -237,15 +182,12 @@ struct Settings {
     BackgroundSettings background;
     LightsSettings lights;
     ShadowSettings shadows;
-    GroundSettings ground;
     ShadingSettings shading;
     EdlSettings edl;
     TransparencySettings transparency;
-    SsaoSettings ssao;
-    RaySettings rays;
-    BloomSettings bloom;
-    DepthOfFieldSettings depth_of_field;
-    MotionBlurSettings motion_blur;
+#define EASYPBR_MEMBER(name, Type) Type name;
+    EASYPBR_EFFECTS(EASYPBR_MEMBER)
+#undef EASYPBR_MEMBER
     TonemapSettings tonemap;
     MaterialSettings material;
     Style style;  ///< overrides of the style of every object; automatic: the object's own value

@@ -209,7 +209,4 @@ inline Field with_sizes(Field field, std::vector<size_t> sizes) {
 
 using Table = std::vector<Field>;
 
-/// Rows of the effects, see fields_effects.cpp.
-void add_effects(Table& table);
-
 }  // namespace easypbr::detail

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "easypbr/core/image.h"
+#include "easypbr/scene/effect_settings.h"
 #include "easypbr/scene/field_builder.h"
 #include "easypbr/scene/fields.h"
 #include "easypbr/scene/material_table.h"
@@ -450,7 +451,9 @@ const std::vector<Field>& fields() {
         add_lights(all);
         add_shadows(all);
         add_shading(all);
-        detail::add_effects(all);
+#define EASYPBR_ADD(name, Type) detail::add_fields(all, &Settings::name);
+        EASYPBR_EFFECTS(EASYPBR_ADD)
+#undef EASYPBR_ADD
         add_overrides(all);
         add_style(all);
         add_clipping(all);

@@ -8,6 +8,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/image.h"
 #include "easypbr/scene/auto_parameters.h"
+#include "easypbr/scene/effect_settings.h"
 #include "easypbr/scene/fields.h"
 
 namespace easypbr {
@@ -71,72 +72,6 @@ void resolve_exposure(const detail::Content& content, ResolvedSettings& resolved
     resolved.exposure = *tone.exposure * std::exp2(tone.exposure_compensation);
 }
 
-/// The paper's radius.
-constexpr double occlusion_radius = 0.05;
-
-bool has_surfaces(const SceneSnapshot& scene) {
-    return std::ranges::any_of(scene.objects, [](const SceneSnapshot::Object& object) {
-        return !object.mesh->F.empty() || !object.mesh->N.empty();
-    });
-}
-
-/// Radii of the content after which a visible ground has faded.
-constexpr double ground_radii = 12;
-
-void resolve_ground(const detail::Content& content, ResolvedSettings& resolved) {
-    GroundSettings& ground = resolved.settings.ground;
-    if (content.empty()) return;
-    const Vec3d up = parse_up(resolved.settings.camera.up);
-    if (!ground.height.value()) detail::fill(ground.height, content.extent_along(up).first);
-    if (!ground.radius.value()) detail::fill(ground.radius, float(ground_radii * content.radius()));
-}
-
-/// The widest texel of the pyramid has an eighth of the picture's smaller side.
-int automatic_bloom_levels(Vec2i size) {
-    return std::clamp(int(std::lround(std::log2(size.minCoeff() / 16.0))), 1, 6);
-}
-
-/// The sensor's height as a part of the content's diagonal: a full-frame camera before a bust.
-constexpr double sensor_part = 0.05;
-
-/// Thin lens: an image at distance v behind it, with the field of view that the camera has, of what is in
-/// focus.
-void resolve_lens(const detail::Content& content, Vec2i size, ResolvedSettings& resolved) {
-    DepthOfFieldSettings& lens = resolved.settings.depth_of_field;
-    const Camera& camera = resolved.camera;
-    if (!lens.sensor_height.value())
-        detail::fill(lens.sensor_height, std::max(sensor_part * 2 * content.radius(), 1e-30));
-    if (!lens.enabled || camera.projection == Projection::orthographic) return;
-    const double depth = -camera.T_world_cam.linear().col(2).dot(content.centre() - camera.position());
-    resolved.focus_distance = lens.focus_distance.value_or(std::max(depth, 2 * camera.near));
-    const double half_slope = 1 / camera.projection_matrix(double(size.x()) / size.y())(1, 1);
-    const double v = *lens.sensor_height / (2 * half_slope), z = resolved.focus_distance;
-    const double focal_length = v * z / (v + z);
-    resolved.lens_radius = focal_length / lens.f_number / 2;
-}
-
-/// Pictures of fewer samples are previews, and refine in a window.
-constexpr int least_samples_for_rays = 32;
-
-/// The sky is what rays look for.
-bool traces_rays(const ResolvedSettings& resolved, int samples) {
-    if (resolved.environment.empty()) return false;
-    const bool automatic = samples >= least_samples_for_rays && *resolved.settings.ssao.enabled;
-    return resolved.settings.rays.enabled.value_or(automatic);
-}
-
-void resolve_effects(const detail::Content& content, Vec2i size, int samples, ResolvedSettings& resolved) {
-    SsaoSettings& ssao = resolved.settings.ssao;
-    if (!ssao.enabled.value()) detail::fill(ssao.enabled, has_surfaces(content.scene()));
-    if (!ssao.radius.value())
-        detail::fill(ssao.radius, float(std::max(occlusion_radius * 2 * content.radius(), 1e-30)));
-    resolved.traces_rays = traces_rays(resolved, samples);
-    const BloomSettings& bloom = resolved.settings.bloom;
-    resolved.bloom_levels = bloom.levels.value_or(automatic_bloom_levels(size));
-    resolved.suppress_fireflies = bloom.suppress_fireflies.value_or(bloom.threshold > 0);
-    resolve_lens(content, size, resolved);
-}
-
 /// Whether the pictures' single precision holds where the camera and the lights are.
 bool is_representable(const ResolvedSettings& resolved) {
     const auto holds = [](const Light& light) {
@@ -195,8 +130,10 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, V
     resolve_exposure(content, resolved);
     detail::fill(resolved.settings.annotation.legend, false);
     detail::fill(resolved.settings.annotation.colorbar, false);
-    resolve_effects(content, size, samples.value_or(settings.image.samples), resolved);
-    resolve_ground(content, resolved);
+    const detail::EffectContext context{content, size, samples.value_or(settings.image.samples), resolved};
+#define EASYPBR_INFER(name, Type) detail::infer(resolved.settings.name, context);
+    EASYPBR_EFFECTS(EASYPBR_INFER)
+#undef EASYPBR_INFER
     require_representable(scene, resolved);
     return resolved;
 }

@@ -1,0 +1,20 @@
+// The effects and their settings. A line here registers an effect's settings: they become a member of
+// Settings, and their rows and inferred values, which stand in the effect's own folder, part of the table and
+// of resolve().
+#pragma once
+
+#include "easypbr/scene/effects/ambient_occlusion.h"
+#include "easypbr/scene/effects/bloom.h"
+#include "easypbr/scene/effects/depth_of_field.h"
+#include "easypbr/scene/effects/ground.h"
+#include "easypbr/scene/effects/motion_blur.h"
+#include "easypbr/scene/effects/ray_tracing.h"
+
+/// EFFECT(member of Settings, struct), in the order of the table of settings.
+#define EASYPBR_EFFECTS(EFFECT)                  \
+    EFFECT(ground, GroundSettings)               \
+    EFFECT(ssao, SsaoSettings)                   \
+    EFFECT(rays, RaySettings)                    \
+    EFFECT(bloom, BloomSettings)                 \
+    EFFECT(depth_of_field, DepthOfFieldSettings) \
+    EFFECT(motion_blur, MotionBlurSettings)

@@ -1,0 +1,47 @@
+// The rows of the table for bloom, and what is inferred.
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/scene/effect_settings.h"
+#include "easypbr/scene/field_builder.h"
+
+namespace easypbr::detail {
+
+namespace {
+
+/// The widest texel of the pyramid has an eighth of the picture's smaller side.
+int automatic_levels(Vec2i size) {
+    return std::clamp(int(std::lround(std::log2(size.minCoeff() / 16.0))), 1, 6);
+}
+
+}  // namespace
+
+void add_fields(Table& table, BloomSettings Settings::*effect) {
+    const auto of = [&](auto member) { return at(effect, member); };
+    table.push_back(make("bloom.enabled", of(&BloomSettings::enabled),
+                         "Enables bloom, applied in linear HDR before tone mapping."));
+    table.push_back(make("bloom.intensity", of(&BloomSettings::intensity),
+                         "Fraction of the light above the threshold that is scattered; energy is conserved.",
+                         "", {0, 1}));
+    table.push_back(
+        make("bloom.threshold", of(&BloomSettings::threshold),
+             "Bloom threshold on the largest of red, green and blue after exposure; 0 scatters all light.",
+             "", {0, 1e6}));
+    table.push_back(make("bloom.knee", of(&BloomSettings::knee),
+                         "Width of the soft knee as a fraction of the threshold.", "", {0, 1}));
+    table.push_back(
+        make("bloom.levels", of(&BloomSettings::levels),
+             "Number of mip levels of the bloom pyramid, which starts at a quarter of the resolution; "
+             "automatic: up to 6, the widest texel an eighth of the smaller image side.",
+             "", {1, 8}));
+    table.push_back(make("bloom.suppress_fireflies", of(&BloomSettings::suppress_fireflies),
+                         "Weights bright pixels down in the first bloom level to suppress fireflies, which "
+                         "does not conserve energy; automatic: on if the threshold is above 0."));
+}
+
+void infer(BloomSettings& bloom, const EffectContext& context) {
+    context.resolved.bloom_levels = bloom.levels.value_or(automatic_levels(context.size));
+    context.resolved.suppress_fireflies = bloom.suppress_fireflies.value_or(bloom.threshold > 0);
+}
+
+}  // namespace easypbr::detail

@@ -1,0 +1,27 @@
+// What each effect brings to the settings: its rows of the table, and what is inferred for its automatic
+// values. Both are defined in the effect's folder.
+#pragma once
+
+#include <vector>
+
+#include "easypbr/scene/auto_parameters.h"
+#include "easypbr/scene/fields.h"
+
+namespace easypbr::detail {
+
+/// What an effect's values are inferred from. The camera, the lights and the environment are resolved
+/// already, and the effects before it in the list.
+struct EffectContext {
+    const Content& content;
+    Vec2i size;   ///< of the picture
+    int samples;  ///< of the picture
+    ResolvedSettings& resolved;
+};
+
+#define EASYPBR_DECLARE(name, Type)                                     \
+    void add_fields(std::vector<Field>& table, Type Settings::*effect); \
+    void infer(Type& effect, const EffectContext& context);
+EASYPBR_EFFECTS(EASYPBR_DECLARE)
+#undef EASYPBR_DECLARE
+
+}  // namespace easypbr::detail
