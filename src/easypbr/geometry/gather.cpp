@@ -103,19 +103,8 @@ void require_vertices(const char* what, const MeshData& mesh) {
     if (mesh.V.empty()) refuse(what, mesh, "vertices");
 }
 
-MeshData without_arrays(const MeshData& mesh) {
-    // All but the arrays, so that what a mesh may hold in future goes with it too.
-    MeshData result = mesh;
-    result.V = result.N = result.T = {};
-    result.C = {};
-    result.UV = {};
-    result.B = result.I = {};
-    result.F = {};
-    result.E = {};
-    result.L = result.source_vertex = result.source_face = {};
-    result.scalars.clear();
-    result.parts.clear();
-    result.voxel_size = 0;
+MeshData clone_without_arrays(const MeshData& mesh) {
+    MeshData result = without_arrays(mesh);
     for (Mesh& child : result.children) child = child.clone();
     return result;
 }
@@ -123,7 +112,7 @@ MeshData without_arrays(const MeshData& mesh) {
 MeshData gather_vertices(const MeshData& mesh, const std::vector<int32_t>& vertices) {
     Selection selection;
     selection.vertices = vertices;
-    MeshData result = without_arrays(mesh);
+    MeshData result = clone_without_arrays(mesh);
     choose_vertices(result, mesh, vertices);
     choose_values(result, mesh, selection);
     return result;
@@ -164,7 +153,7 @@ void drop_unreferenced(Selection& selection, const MeshData& mesh) {
 }
 
 MeshData chosen(const MeshData& mesh, const Selection& selection) {
-    MeshData result = without_arrays(mesh);
+    MeshData result = clone_without_arrays(mesh);
     result.voxel_size = mesh.voxel_size;
     choose_vertices(result, mesh, selection.vertices);
     choose_values(result, mesh, selection);

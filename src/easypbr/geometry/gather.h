@@ -15,7 +15,7 @@ void require_vertices(const char* what, const MeshData& mesh);
 
 /// Name, source, label map, materials, style, pose and clones of the children, but none of the arrays and
 /// parts.
-MeshData without_arrays(const MeshData& mesh);
+MeshData clone_without_arrays(const MeshData& mesh);
 
 /// The vertices alone, in the order given (an index may come more than once), with all that they have. Faces,
 /// edges and what belongs to faces are left out. source_vertex leads to the file's vertices, or to those of

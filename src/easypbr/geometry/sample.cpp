@@ -100,7 +100,7 @@ Mesh sample_surface(const Mesh& mesh, int64_t count, uint64_t seed) {
     const auto data = mesh.snapshot();
     geometry::require_faces("sample_surface", *data);
     const Samples samples = choose(*data, size_t(count), seed);
-    MeshData points = geometry::without_arrays(*data);
+    MeshData points = geometry::clone_without_arrays(*data);
     points.V = interpolated(data->V, *data, samples);
     points.N = sampled_normals(*data, samples);
     points.C = interpolated(data->C, *data, samples);

@@ -132,7 +132,7 @@ Array1i most_frequent(const Array1i& L, const CellGroups& groups) {
 
 /// What vertices have on average in each group.
 MeshData averaged(const MeshData& mesh, const CellGroups& groups) {
-    MeshData result = geometry::without_arrays(mesh);
+    MeshData result = geometry::clone_without_arrays(mesh);
     result.V = means(mesh.V, groups);
     result.N = mean_directions(mesh.N, groups);
     result.C = means(mesh.C, groups);
