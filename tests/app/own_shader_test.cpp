@@ -323,6 +323,29 @@ TEST(OwnPass, DrawsBeforeOrPastTheToneCurve) {
     EXPECT_NEAR(red(), encoded(0.25), 0.51);
 }
 
+// A value stays until it is set anew; only another one is a new revision, so that a window rests.
+TEST(OwnPass, TakesValuesOfUniforms) {
+    Session session = square_session({});
+    const auto pass = std::make_shared<ShaderPass>(
+        "body",
+        "uniform vec3 u_color;\nuniform float u_factor;\nlayout(location = 0) out vec4 o_color;\n"
+        "void main() { o_color = vec4(u_factor * u_color, 1.0); }",
+        Blend::replace);
+    pass->shader.set("u_color", Vec3(0.25f, 0.5f, 1));
+    pass->shader.set("u_factor", 0.5f);
+    pass->shader.set("u_none", 1);
+    session.add_pass("own", Stage::light, pass);
+    EXPECT_EQ(middle_of(render_linear(session)), Vec4(0.125f, 0.25f, 0.5f, 1));
+    const uint64_t revision = pass->revision(), version = session.picture_version();
+    pass->shader.set("u_factor", 0.5f);
+    EXPECT_EQ(pass->revision(), revision);
+    EXPECT_EQ(session.picture_version(), version);
+    pass->shader.set("u_factor", 1.0f);
+    EXPECT_NE(pass->revision(), revision);
+    EXPECT_GT(session.picture_version(), version);
+    EXPECT_EQ(middle_of(render_linear(session)), Vec4(0.25f, 0.5f, 1, 1));
+}
+
 // What is drawn past the content's edges belongs to the picture too, also on a background that has no
 // radiance.
 TEST(OwnPass, DrawsWhereNothingIs) {
