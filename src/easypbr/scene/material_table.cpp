@@ -10,47 +10,48 @@
 namespace easypbr {
 namespace {
 
-constexpr float unlimited = 3e38f;
+constexpr float largest_number = 3e38f;
 constexpr float infinite = std::numeric_limits<float>::infinity();
 /// Below any length that occurs, above zero.
-constexpr float positive = 1e-30f;
+constexpr float smallest_length = 1e-30f;
 
 constexpr MaterialNumber numbers[] = {
     {"opacity", &Material::opacity, 0, 1, "0 transparent to 1 opaque."},
     {"metallic", &Material::metallic, 0, 1, "0 dielectric to 1 metal."},
     {"roughness", &Material::roughness, 0, 1, "Perceptual roughness, 0 to 1; alpha = roughness^2."},
-    {"normal_scale", &Material::normal_scale, -unlimited, unlimited, "Scale of the normal texture."},
+    {"normal_scale", &Material::normal_scale, -largest_number, largest_number,
+     "Scale of the normal texture."},
     {"occlusion_strength", &Material::occlusion_strength, 0, 1, "Strength of the occlusion texture."},
-    {"alpha_cutoff", &Material::alpha_cutoff, 0, unlimited,
+    {"alpha_cutoff", &Material::alpha_cutoff, 0, largest_number,
      "Alpha mode mask: fragments below this alpha are discarded."},
     {"clearcoat", &Material::clearcoat, 0, 1, "Clearcoat strength, 0 to 1."},
     {"clearcoat_roughness", &Material::clearcoat_roughness, 0, 1, "Clearcoat roughness, 0 to 1."},
-    {"clearcoat_normal_scale", &Material::clearcoat_normal_scale, -unlimited, unlimited,
+    {"clearcoat_normal_scale", &Material::clearcoat_normal_scale, -largest_number, largest_number,
      "Scale of the clearcoat normal texture."},
     {"sheen_roughness", &Material::sheen_roughness, 0, 1, "Sheen roughness, 0 to 1."},
     {"ior", &Material::ior, 0, 100, "Index of refraction of a dielectric, at least 1; 0: reflectance 1."},
     {"specular", &Material::specular, 0, 1, "Strength of the specular reflection of dielectrics, 0 to 1."},
     {"transmission", &Material::transmission, 0, 1,
      "Transmission, the fraction of light transmitted by dielectrics, 0 to 1."},
-    {"thickness", &Material::thickness, 0, unlimited,
+    {"thickness", &Material::thickness, 0, largest_number,
      "Thickness of the volume below the surface in mesh units; 0: thin-walled."},
-    {"attenuation_distance", &Material::attenuation_distance, positive, infinite,
+    {"attenuation_distance", &Material::attenuation_distance, smallest_length, infinite,
      "Distance in the volume after which white light has the attenuation colour, in world units."},
     {"iridescence", &Material::iridescence, 0, 1, "Iridescence strength, 0 to 1."},
     {"iridescence_ior", &Material::iridescence_ior, 1, 100, "Index of refraction of the thin film."},
-    {"iridescence_thickness_min", &Material::iridescence_thickness_min, 0, unlimited,
+    {"iridescence_thickness_min", &Material::iridescence_thickness_min, 0, largest_number,
      "Thickness of the thin film in nanometres where its texture is 0."},
-    {"iridescence_thickness_max", &Material::iridescence_thickness_max, 0, unlimited,
+    {"iridescence_thickness_max", &Material::iridescence_thickness_max, 0, largest_number,
      "Thickness of the thin film in nanometres where its texture is 1 or absent."},
     {"anisotropy", &Material::anisotropy, 0, 1, "Anisotropy strength, 0 to 1."},
-    {"anisotropy_rotation_deg", &Material::anisotropy_rotation_deg, -unlimited, unlimited,
+    {"anisotropy_rotation_deg", &Material::anisotropy_rotation_deg, -largest_number, largest_number,
      "Rotation of the anisotropy in degrees, counter-clockwise from the tangent."}};
 
 constexpr MaterialColor colors[] = {
-    {"base_color", &Material::base_color, unlimited, "Linear base colour."},
-    {"emissive", &Material::emissive, unlimited, "Linear emitted radiance."},
+    {"base_color", &Material::base_color, largest_number, "Linear base colour."},
+    {"emissive", &Material::emissive, largest_number, "Linear emitted radiance."},
     {"sheen_color", &Material::sheen_color, 1, "Linear sheen colour; black: no sheen."},
-    {"specular_color", &Material::specular_color, unlimited,
+    {"specular_color", &Material::specular_color, largest_number,
      "Linear specular colour of dielectrics at normal incidence."},
     {"attenuation_color", &Material::attenuation_color, 1,
      "Linear colour of white light after the attenuation distance."}};
@@ -88,8 +89,8 @@ constexpr MaterialTexture textures[] = {
      "Red and green: direction in tangent space; blue: strength."}};
 
 std::string range_text(float min, float max) {
-    if (max >= unlimited && min <= -unlimited) return "a finite number";
-    if (max >= unlimited) return min > 0 ? "more than 0" : fmt::format("at least {}", min);
+    if (max >= largest_number && min <= -largest_number) return "a finite number";
+    if (max >= largest_number) return min > 0 ? "more than 0" : fmt::format("at least {}", min);
     return fmt::format("{} to {}", min, max);
 }
 
