@@ -10,6 +10,6 @@ target_precompile_headers(easypbr_cli PRIVATE <functional> <map> <string> <vecto
                           <fmt/format.h> <CLI/CLI.hpp>)
 
 add_executable(easypbr_program src/easypbr/cli/main.cpp)
-target_link_libraries(easypbr_program PRIVATE easypbr_cli)
+target_link_libraries(easypbr_program PRIVATE easypbr_cli easypbr_options)
 set_target_properties(easypbr_program PROPERTIES OUTPUT_NAME easypbr BUILD_WITH_INSTALL_RPATH ON
                       INSTALL_RPATH "$ORIGIN:$ORIGIN/../lib:$ORIGIN/../${CMAKE_INSTALL_LIBDIR}")

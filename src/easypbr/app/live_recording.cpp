@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "easypbr/app/output.h"
 #include "easypbr/core/error.h"
 #include "easypbr/io/image/image_io.h"
 

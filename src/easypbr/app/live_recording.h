@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "easypbr/app/recorder.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
 

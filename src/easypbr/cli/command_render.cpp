@@ -8,6 +8,7 @@
 
 #include "easypbr/app/output.h"
 #include "easypbr/app/recorder.h"
+#include "easypbr/app/recording_target.h"
 #include "easypbr/app/session.h"
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/console.h"

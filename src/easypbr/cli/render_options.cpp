@@ -7,6 +7,7 @@
 #include <charconv>
 #include <map>
 
+#include "easypbr/app/custom_pass.h"
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/drawable.h"
 #include "easypbr/cli/object_styles.h"

@@ -4,6 +4,7 @@
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/vector.h>
 
+#include "easypbr/app/output.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/gui/live_view.h"
@@ -243,13 +244,13 @@ void bind_window(ViewerClass& viewer) {
         .def("set_path",
              [](SharedViewer& self, const CameraPath& path) {
                  self.run([&](Viewer& v) {
-                     v.live().state().path.set(path);
+                     v.live().state().path().set(path);
                      v.live().touch();
                  });
              })
         .def("get_path",
              [](SharedViewer& self) {
-                 return self.run([](Viewer& v) { return v.live().state().path.path(); });
+                 return self.run([](Viewer& v) { return v.live().state().path().path(); });
              })
         .def("panel_names",
              [](SharedViewer&) {
