@@ -8,6 +8,7 @@
 #include "easypbr/scene/effects/depth_of_field.h"
 #include "easypbr/scene/effects/ground.h"
 #include "easypbr/scene/effects/motion_blur.h"
+#include "easypbr/scene/effects/outline.h"
 #include "easypbr/scene/effects/ray_tracing.h"
 
 /// EFFECT(member of Settings, struct), in the order of the table of settings.
@@ -17,4 +18,4 @@
     EFFECT(rays, RaySettings)                    \
     EFFECT(bloom, BloomSettings)                 \
     EFFECT(depth_of_field, DepthOfFieldSettings) \
-    EFFECT(motion_blur, MotionBlurSettings)
+    EFFECT(motion_blur, MotionBlurSettings) EFFECT(outline, OutlineSettings)

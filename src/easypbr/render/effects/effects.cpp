@@ -1,5 +1,6 @@
 #include "easypbr/render/effects/bloom/bloom_effect.h"
 #include "easypbr/render/effects/depth_of_field/depth_of_field_effect.h"
+#include "easypbr/render/effects/outline/outline_effect.h"
 
 namespace easypbr::render {
 namespace {
@@ -14,7 +15,7 @@ std::vector<std::unique_ptr<Effect>> list_of() {
 }  // namespace
 
 std::vector<std::unique_ptr<Effect>> make_effects() {
-    return list_of<DepthOfFieldEffect, BloomEffect>();
+    return list_of<OutlineEffect, DepthOfFieldEffect, BloomEffect>();
 }
 
 }  // namespace easypbr::render

@@ -75,7 +75,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         lit.partly_covered |=
             timer_.run("transparency", [&] { return draw_transparent(frame, list, contents, with_overlay); });
     if (contents.custom) contents.custom->draw_in_frame(frame, targets_, timer_, lit);
-    if (!contents.layers) draw_effects(frame, opaque, lit);
+    if (!contents.layers) draw_effects(frame, opaque, false, lit);
     return lit;
 }
 
@@ -114,7 +114,7 @@ bool Pipeline::draws_overlay(const Shot& shot, const FrameContents& contents) co
     });
 }
 
-void Pipeline::draw_effects(const Frame& frame, const DrawList& opaque, LitPicture& lit) {
+void Pipeline::draw_effects(const Frame& frame, const DrawList& opaque, bool overlay_only, LitPicture& lit) {
     bool has_ids = false;
     const auto with_ids = [&]() -> const GBuffer& {
         if (std::exchange(has_ids, true)) return with_ids_;
@@ -126,7 +126,7 @@ void Pipeline::draw_effects(const Frame& frame, const DrawList& opaque, LitPictu
     // The frames of an accumulated picture look through different places of the lens.
     lit.spreads |= frame.through_lens;
     for (const auto& effect : effects_) {
-        if (!effect->is_on(frame)) continue;
+        if (!effect->is_on(frame) || (overlay_only && !effect->draws_overlay())) continue;
         const Frame seen = frame.covering(lit.covered);
         timer_.run(effect->name(), [&] {
             effect->draw({seen, targets_, bounds_of(*frame.scene), with_ids}, lit);
@@ -141,11 +141,13 @@ void Pipeline::draw_surfaces(const Frame& frame, const DrawList& list, const Sur
 
 const gl::Texture* Pipeline::draw_overlay(const Frame& frame, const DrawList& list,
                                           const FrameContents& contents) {
-    if (list.lines.empty() && !has_custom(contents.custom, Stage::overlay)) return nullptr;
+    if (list.lines.empty() && !draws_overlay(frame, contents)) return nullptr;
     targets_.add_overlay();
     const float nothing[4] = {0, 0, 0, 0};
     targets_.display.clear_color(0, nothing);
     draw_lines(frame, list);
+    LitPicture lit{.overlay = &targets_.overlay, .covered = frame.covered};
+    draw_effects(frame, list, true, lit);
     if (contents.custom) contents.custom->draw(Stage::overlay, frame, targets_, targets_.overlay, timer_);
     return &targets_.overlay;
 }

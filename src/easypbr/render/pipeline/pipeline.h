@@ -51,7 +51,8 @@ class Pipeline {
                     const FrameContents& contents);
     /// Fills the G-buffer alone.
     void draw_surfaces(const Frame& frame, const DrawList& list, const SurfaceOutputs& outputs);
-    /// Clears the overlay and draws what is in it beside surfaces: lines, and a program's own passes.
+    /// Clears the overlay and draws what is in it beside surfaces: lines, effects, and a program's own
+    /// passes.
     const gl::Texture* draw_overlay(const Frame& frame, const DrawList& list, const FrameContents& contents);
 
     GBuffer& targets() { return targets_; }
@@ -89,7 +90,8 @@ class Pipeline {
     /// The eye-dome lighting of the layers' points; nothing where there are none.
     const gl::Texture* shade_points(const Frame& frame, const DrawList& layers, const gl::Texture& opaque);
     bool draws_overlay(const Shot& shot, const FrameContents& contents) const;
-    void draw_effects(const Frame& frame, const DrawList& opaque, LitPicture& lit);
+    /// Of those that draw into the overlay, or of the others too.
+    void draw_effects(const Frame& frame, const DrawList& opaque, bool overlay_only, LitPicture& lit);
 
     GBuffer targets_;
     DataCaches caches_;
