@@ -4,13 +4,17 @@ BUILD := build
 ROOMS := core|scene|io|gl|gpu|render|app|viewer|cli
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 
-.PHONY: demo test build setup setup-tests bench check-long docs format lint clean
+.PHONY: demo test library build setup setup-tests bench check-long docs format lint clean
 
-build: setup
+# Library, command line and Python module, without tests and benchmarks.
+library: setup
 	@echo "build, $$(date -u +%T)"
 	cmake --preset release -DPython_EXECUTABLE=$(CURDIR)/$(PYTHON)
-	cmake --build $(BUILD)
+	cmake --build $(BUILD) --target easypbr easypbr_program python_package
 	$(PYTHON) scripts/link_python.py $(BUILD) .venv
+
+build: library
+	cmake --build $(BUILD)
 
 setup:
 	@scripts/setup.sh
@@ -18,7 +22,7 @@ setup:
 setup-tests: setup
 	@scripts/setup.sh tests
 
-demo: build
+demo: library
 	$(BUILD)/easypbr demo -o demo.png
 
 test: setup-tests build

@@ -323,6 +323,25 @@ def bloom() -> np.ndarray:
     return row([*pictures, view.render()])
 
 
+def outline() -> np.ndarray:
+    """Without and with outlines; outlines of unlit white, as in a drawing."""
+    scene = Scene()
+    meshes = {"torus": shapes.torus(), "box": shapes.box(), "pot": teapot("#3f7f5f")}
+    meshes["torus"].material = Material(base_color="#b03a2e", roughness=0.5)
+    meshes["box"].material = Material(base_color="#d9a441", roughness=0.5)
+    for (name, mesh), x in zip(meshes.items(), (-1.3, 0, 1.6)):
+        mesh.T_parent_mesh = [[1, 0, 0, x], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+        scene.show(mesh, name)
+    view = Viewer((290, 220), {"rays": {"enabled": False}}, scene)
+    pictures = [view.render()]
+    view.settings.outline.enabled = True
+    pictures.append(view.render())
+    for name in scene.names():
+        scene.get(name).material = Material(base_color="#ffffff", unlit=True)
+    view.settings.background.color = "#ffffff"
+    return row([*pictures, view.render()])
+
+
 def depth_of_field() -> np.ndarray:
     """A row of teapots: without, focused on the nearest, on the farthest."""
     scene = Scene()
@@ -489,7 +508,7 @@ def outline() -> np.ndarray:
 
 
 PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion, rays,
-            bloom, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
+            bloom, outline, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
             viewer_slices, viewer_path, viewer_animations, viewer_lights, viewer_own, segmentation, detection, own_shading,
             outline]
 

@@ -262,6 +262,11 @@ const Case cases[] = {
          s.depth_of_field.enabled = true;
          s.depth_of_field.f_number = 1.4f;
      }},
+    {"outlined", solids,
+     [](Settings& s) {
+         s.outline.enabled = true;
+         s.outline.width = 7;
+     }},
     {"focus_averaged", solids, [](Settings& s) { s.depth_of_field.enabled = true; }, 4},
     {"orthographic", solids,
      [](Settings& s) {

@@ -86,6 +86,10 @@ def ground(mode):
     return drawn(scene, {"ground.mode": mode, "background.mode": "transparent", "ssao.enabled": True})
 
 
+def outline(width, samples):
+    return drawn(still_life(), {"outline.enabled": True, "outline.width": width, "rays.enabled": False}, samples)
+
+
 def eye_dome():
     angles = np.random.default_rng(3).uniform(0, 2 * np.pi, (20000, 2))
     around = 1 + 0.4 * np.cos(angles[:, 1])
@@ -113,4 +117,6 @@ EFFECTS = {
     "ground_shadow": lambda: ground("shadow"),
     "ground_plane": lambda: ground("plane"),
     "eye_dome": eye_dome,
+    "outline": lambda: outline(2.0, 1),
+    "outline_wide": lambda: outline(5.0, 8),
 }
