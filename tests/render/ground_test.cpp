@@ -67,7 +67,7 @@ TEST(Ground, ShowsThePartOfTheLightThatIsMissing) {
     scene.set_light("right", directional(Vec3(-1, 0, -1)));
     app::Session session = catcher_session(scene, ShadowMode::hard, 8);
     for (const float strength : {1.0f, 0.5f}) {
-        session.settings().ground.strength = strength;
+        session.settings().ground.shadow_strength = strength;
         const Image picture = render_linear(session);
         // 1e-5: roundings of sums in single precision.
         EXPECT_NEAR(pixel(picture, 2, 0, 8)[3], 0.5 * strength, 1e-5);
@@ -76,7 +76,7 @@ TEST(Ground, ShowsThePartOfTheLightThatIsMissing) {
     }
     // An environment adds light that no shadow map takes away: radiance L gives pi L beside the sum of the
     // lights' cosines, 2 / sqrt(2).
-    session.settings().ground.strength = 1;
+    session.settings().ground.shadow_strength = 1;
     session.settings().environment.enabled = true;
     session.scene().set_environment(constant_environment(0.5f));
     const double lights = std::sqrt(2.0), sky = pi * 0.5;
@@ -238,8 +238,8 @@ TEST(Ground, PlaneIsASurface) {
     look_from(session, Vec3d(2, -3, 3), 40);
     s.ground.mode = GroundMode::plane;
     s.ground.height = 0.0;
-    s.ground.color = Vec3(0.48452920448170694f, 0.66519138507f, 0.79773998775f);  // sRGB of the material's
-    s.ground.roughness = 0.5f;
+    s.ground.plane_color = Vec3(0.48452920448170694f, 0.66519138507f, 0.79773998775f);  // sRGB of the material's
+    s.ground.plane_roughness = 0.5f;
     s.ground.radius = 1000.0f;
     const Image own = render_linear(session);
     s.ground.mode = GroundMode::none;

@@ -12,9 +12,9 @@ enum class GroundMode { none, shadow, plane };
 struct GroundSettings {
     GroundMode mode = GroundMode::none;  ///< shadow: a shadow catcher; plane: a visible surface
     Auto<double> height;                 ///< along the up axis, world units; automatic: the lowest point
-    float strength = 1;                  ///< opacity factor of the shadow catcher, 0 to 1
-    Vec3 color{0.5f, 0.5f, 0.5f};        ///< base colour of the plane, sRGB-encoded
-    float roughness = 0.7f;              ///< perceptual roughness of the plane, 0 to 1
+    float shadow_strength = 1;           ///< opacity factor of the shadow catcher, 0 to 1
+    Vec3 plane_color{0.5f, 0.5f, 0.5f};  ///< base colour of the plane, sRGB-encoded
+    float plane_roughness = 0.7f;        ///< perceptual roughness of the plane, 0 to 1
     Auto<float> radius;  ///< distance at which the plane has faded out, world units; automatic: 12 radii
 };
 

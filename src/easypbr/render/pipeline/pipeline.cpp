@@ -17,8 +17,8 @@ RayGround ray_ground(const ResolvedSettings& resolved) {
     return {.up = parse_up(resolved.settings.camera.up),
             .height = *ground.height,
             .radius = double(*ground.radius),
-            .color = linear_from_srgb(ground.color),
-            .roughness = ground.roughness,
+            .color = linear_from_srgb(ground.plane_color),
+            .roughness = ground.plane_roughness,
             .shadow_catcher = GroundPass::is_shadow_catcher(resolved)};
 }
 

@@ -58,8 +58,8 @@ void GroundPass::draw(const Frame& frame, const GBuffer& targets) {
     set_camera_uniforms(program, frame);
     const Vec3 up = plane.up.cast<float>();
     program.set("u_plane", Vec4(up.x(), up.y(), up.z(), float(plane.offset)));
-    program.set("u_color", linear_from_srgb(ground.color));
-    program.set("u_roughness", ground.roughness);
+    program.set("u_color", linear_from_srgb(ground.plane_color));
+    program.set("u_roughness", ground.plane_roughness);
     program.set("u_kind", code_of(shadow_catcher ? SurfaceKind::ground_catcher : SurfaceKind::ground_plane));
     gl::draw_screen({.depth_test = gl::DepthTest::greater, .write_depth = true});
 }
@@ -91,7 +91,7 @@ void GroundPass::finish(const Frame& frame, const GBuffer& targets, const Box3d&
     if (shadow_catcher) {
         program.set("u_light", 1);
         light_.bind(1);
-        program.set("u_strength", ground.strength);
+        program.set("u_strength", ground.shadow_strength);
     } else {
         program.set("u_depth_target", 1);
         targets.depth.bind(1);

@@ -26,11 +26,11 @@ void add_fields(Table& table, GroundSettings Settings::*effect) {
         make("ground.height", of(&GroundSettings::height),
              "Height of the ground along the up axis; automatic: the lowest point of the content.",
              "world units"));
-    table.push_back(make("ground.shadow_strength", of(&GroundSettings::strength),
+    table.push_back(make("ground.shadow_strength", of(&GroundSettings::shadow_strength),
                          "Opacity factor of the shadow catcher; 1 is physically based.", "", {0, 1}));
     table.push_back(
-        color("ground.plane_color", of(&GroundSettings::color), "Base colour of the ground in mode plane."));
-    table.push_back(make("ground.plane_roughness", of(&GroundSettings::roughness),
+        color("ground.plane_color", of(&GroundSettings::plane_color), "Base colour of the ground in mode plane."));
+    table.push_back(make("ground.plane_roughness", of(&GroundSettings::plane_roughness),
                          "Perceptual roughness of the ground in mode plane.", "", {0, 1}));
     table.push_back(make("ground.radius", of(&GroundSettings::radius),
                          "Distance from the content at which the ground in mode plane has faded into the "

@@ -24,10 +24,10 @@ void add_fields(Table& table, OutlineSettings Settings::*effect) {
                          "Draws outlines at depth discontinuities."));
     table.push_back(make("outline.creases", of(&OutlineSettings::creases),
                          "Draws outlines where the normals of neighbouring pixels differ by more than "
-                         "outline.crease_angle."));
+                         "outline.crease_angle_deg."));
     table.push_back(
         make("outline.objects", of(&OutlineSettings::objects), "Draws outlines between objects."));
-    table.push_back(make("outline.crease_angle", of(&OutlineSettings::crease_angle_deg),
+    table.push_back(make("outline.crease_angle_deg", of(&OutlineSettings::crease_angle_deg),
                          "Least angle between the normals of a crease.", "degrees", {1, 180}));
     table.push_back(make("outline.depth_step", of(&OutlineSettings::depth_step),
                          "Least depth discontinuity of a silhouette; automatic: 1 % of the diagonal of the "
