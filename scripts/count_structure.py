@@ -78,6 +78,33 @@ def pulled_in(root: pathlib.Path, header: str) -> set[str]:
     return seen - {header}
 
 
+def rebuilt(root: pathlib.Path, headers: set[str]) -> tuple[int, int]:
+    """C++ units that include one of these headers, through others too, and how many units there are."""
+    folders = [root / "include", root / "src", root / "tests"]
+    direct: dict[pathlib.Path, set[pathlib.Path]] = {}
+    units = [path for part in ("src", "tests", "bench") for path in (root / part).rglob("*.cpp")]
+
+    def includes(path: pathlib.Path) -> set[pathlib.Path]:
+        if path not in direct:
+            names = [match[1] for line in path.read_text().splitlines() if (match := INCLUDE.match(line))]
+            found = (next((folder / name for folder in (path.parent, *folders) if (folder / name).is_file()), None)
+                     for name in names)
+            direct[path] = {file.resolve() for file in found if file}
+        return direct[path]
+
+    wanted = {(folder / name).resolve() for folder in folders for name in headers if (folder / name).exists()}
+    count = 0
+    for unit in units:
+        seen, waiting = set(), [unit]
+        while waiting:
+            path = waiting.pop()
+            if path not in seen:
+                seen.add(path)
+                waiting += includes(path)
+        count += bool(seen & wanted)
+    return count, len(units)
+
+
 def installed_headers(root: pathlib.Path) -> int:
     """Headers of include/ where it stands, else of the rooms that cmake/install.cmake installs."""
     if (root / "include/easypbr").is_dir():
@@ -99,6 +126,10 @@ def counts(root: pathlib.Path) -> Iterator[tuple[str, str]]:
         yield f"{name}: fields, methods", "not there" if found is None else f"{found[0]}, {found[1]}"
     yield "headers installed", str(installed_headers(root))
     yield "our headers that easypbr.h pulls in", str(len(pulled_in(root, "easypbr/easypbr.h")))
+    effect = {"easypbr/render/effects/bloom/bloom_effect.h", "easypbr/render/bloom_pass.h"}
+    for what, headers in (("bloom's header", effect), ("scene/settings.h", {"easypbr/scene/settings.h"}),
+                          ("scene/mesh.h", {"easypbr/scene/mesh.h"})):
+        yield f"units that a change of {what} rebuilds", "{} of {}".format(*rebuilt(root, headers))
     yield 'files of src that name "surfel"', str(sum("surfel" in text.lower() for text in texts.values()))
 
 
@@ -121,7 +152,7 @@ def shader_faults(root: pathlib.Path) -> Iterator[str]:
 if __name__ == "__main__":
     base = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
     for what, number in counts(base):
-        print(f"{what:36} {number}")
+        print(f"{what:52} {number}")
     faults = list(shader_faults(base))
     print("\n".join(faults), end="\n" if faults else "")
     sys.exit(1 if faults else 0)
