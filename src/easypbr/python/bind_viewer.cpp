@@ -244,13 +244,13 @@ void bind_window(ViewerClass& viewer) {
         .def("set_path",
              [](SharedViewer& self, const CameraPath& path) {
                  self.run([&](Viewer& v) {
-                     v.live().state().path().set(path);
+                     v.live().state().path().editor.set(path);
                      v.live().touch();
                  });
              })
         .def("get_path",
              [](SharedViewer& self) {
-                 return self.run([](Viewer& v) { return v.live().state().path().path(); });
+                 return self.run([](Viewer& v) { return v.live().state().path().editor.path(); });
              })
         .def("panel_names",
              [](SharedViewer&) {
