@@ -38,7 +38,7 @@ def _from_arrays(name: str = "", **arrays: Any) -> Mesh:
     return mesh
 
 
-def _rows(array, count: int):
+def _rows(array: Any, count: int) -> np.ndarray | None:
     """The array if it has `count` rows, else None."""
     array = None if array is None else np.asarray(array)
     return array if array is not None and count and len(array) == count else None
@@ -67,7 +67,7 @@ def _from_trimesh(what: Any) -> Mesh:
     return mesh
 
 
-def _with_face_colors(V, F, colors) -> Mesh:
+def _with_face_colors(V: Any, F: Any, colors: Any) -> Mesh:
     """Splits the mesh into separate corners, so that each face has its own colour."""
     F = np.asarray(F)
     return _from_arrays(

@@ -57,7 +57,7 @@ class StudioLight:
             value = known if known is not None else self._inferred(name, value)
         return tuple(map(_linear, value)) if name == "color" else value
 
-    def _inferred(self, name: str, automatic):
+    def _inferred(self, name: str, automatic: Any) -> Any:
         """The value for the next image; the setting itself if there is no content to infer it from."""
         try:
             return self._handle.resolved_setting(self._full(name))

@@ -31,7 +31,7 @@ class Panel:
             raise ArgumentError("a panel's widgets can be drawn only while its function runs")
         return self._handle
 
-    def _remembered(self, name, given, draw):
+    def _remembered(self, name: str, given: Value, draw: Callable[[Value], Any]) -> Value:
         """Draws a widget that keeps its value while the initial value stays the same."""
         last_given, value = self._memory.get(name, (given, given))
         if given != last_given:
@@ -108,7 +108,15 @@ class WindowCallbacks:
 
     _handle: "_easypbr.ViewerHandle"
 
-    def add_panel(self, name: str, function: Callable[[Panel], None] | None = None):
+    def _init_callbacks(self) -> None:
+        self._before_draw: list[Callable[[], object]] = []
+        self._after_draw: list[Callable[[], object]] = []
+        self._told: dict[int, str] = {}  # tracebacks, by who raised them
+        self._panels: dict[str, tuple[Callable[[Panel], object], Panel]] = {}
+        self._handlers: list[tuple[Callable[[_easypbr.Event], object], str | None]] = []
+        self._handler_number: int | None = None
+
+    def add_panel(self, name: str, function: Callable[[Panel], object] | None = None) -> Any:
         """Adds a panel to the window, drawn by function(ui) in each frame; see Panel. Exceptions are shown in the panel
         with their traceback, and the loop continues. Also as a decorator: @view.add_panel("Training")."""
         if function is None:
@@ -138,7 +146,7 @@ class WindowCallbacks:
         finally:
             panel._handle = None
 
-    def before_draw(self, function: Callable[[], None]) -> Callable[[], None]:
+    def before_draw(self, function: Callable[[], object]) -> Callable[[], object]:
         """Calls `function` in every update() before it draws. Exceptions are shown in the window with their traceback,
         and the loop continues. Also as a decorator."""
         self._before_draw.append(function)
@@ -149,7 +157,7 @@ class WindowCallbacks:
         self._after_draw.append(function)
         return function
 
-    def on_event(self, function: Callable | None = None, kind: str | None = None):
+    def on_event(self, function: Callable | None = None, kind: str | None = None) -> Any:
         """Calls function(event) for events of mouse and keyboard, dropped files and resizing, except those consumed
         by panels; see Event. If it returns True the viewer ignores the event. `kind`: only events of this kind. Also
         as a decorator: @view.on_event(kind="key_down")."""
@@ -191,7 +199,7 @@ class WindowCallbacks:
         for function in list(functions):
             self._call(function)
 
-    def _call(self, function, *arguments, in_panel: bool = False):
+    def _call(self, function: Callable, *arguments: object, in_panel: bool = False) -> tuple[Any, str | None]:
         """Calls a user's function: its result, and the traceback of an exception, which is written to stderr and
         shown in the window, once, unless its panel shows it."""
         try:

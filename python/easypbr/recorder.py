@@ -33,7 +33,7 @@ class Recorder:
     def __init__(self, viewer: WindowCallbacks) -> None:
         self._handle = viewer._handle
 
-    def record(self, path, size=None, samples: int | None = None, deep: bool = False) -> Path:
+    def record(self, path: str | os.PathLike, size: ArrayLike | None = None, samples: int | None = None, deep: bool = False) -> Path:
         """Writes one image, complete when the call returns: PNG (16 bits with `deep`), JPEG, HDR or EXR, by the
         extension."""
         return self._handle.record(path, size, samples, deep)
@@ -54,7 +54,7 @@ class Recorder:
         _started.add(self)
         return self
 
-    def add_frame(self, picture=None) -> None:
+    def add_frame(self, picture: ArrayLike | None = None) -> None:
         """Renders the scene as the next frame and advances view.time. A `picture` of the recording's size is
         added unchanged."""
         self._handle.add_frame(picture)

@@ -57,7 +57,7 @@ def render(
     return picture
 
 
-def render_png(what) -> bytes:
+def render_png(what: Any) -> bytes:
     """The bytes of a PNG file, for display in notebooks."""
     return _easypbr.encode_png(render(what))
 

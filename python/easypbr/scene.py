@@ -50,7 +50,7 @@ class Scene:
         return cls._of(_easypbr.demo_scene())
 
     @_OnDefaultScene
-    def show(self, what, name: str | None = None) -> "_easypbr.Mesh":
+    def show(self, what: Any, name: str | None = None) -> "_easypbr.Mesh":
         """Shows a mesh (or whatever as_mesh() takes) under a name; the same name again replaces it. For a path, the
         lights of the file are added too, as "name/light"."""
         lights = {}

@@ -66,7 +66,7 @@ class Settings(SettingsGroup):
     def __setitem__(self, name: str, value: Any) -> None:
         self._handle.set_setting(name, value)
 
-    def resolve(self, name: str):
+    def resolve(self, name: str) -> Any:
         """The value for the next image (auto: each mesh has its own), without latching it."""
         return self._handle.resolved_setting(name)
 

@@ -29,7 +29,9 @@ __all__ = [
 ]
 
 
-def camera_frustum(camera, image=None, size=None, depth: float = 1.0) -> "_easypbr.Mesh":
+def camera_frustum(
+    camera: Any, image: ArrayLike | None = None, size: ArrayLike | None = None, depth: float = 1.0
+) -> "_easypbr.Mesh":
     """A camera frustum as lines, with its image.
 
     `camera` is a Camera, or (K, T_world_cam) with OpenCV axes. The image plane is at `depth` along the optical axis,
@@ -58,7 +60,7 @@ def camera_path(
     return _easypbr._camera_path(path, size, fov_y_deg, depth)
 
 
-def image_plane(image, width: float | None = None, height: float | None = None) -> "_easypbr.Mesh":
+def image_plane(image: ArrayLike, width: float | None = None, height: float | None = None) -> "_easypbr.Mesh":
     """An image in the xy plane around the origin, facing +z, unlit.
 
     `image` is an array of height x width (x 1, 3 or 4), uint8, uint16 or linear floats. One of width and height is enough; by

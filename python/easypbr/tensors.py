@@ -19,7 +19,7 @@ def converter(name: str, device: str = "cpu") -> Callable:
     raise ArgumentError(f"as_: expected 'numpy' or 'torch', got '{name}'")
 
 
-def check_device(device: str):
+def check_device(device: str) -> Any:
     """The torch device of this name. Raises ArgumentError for an invalid name, ContextError if PyTorch does not see the
     device."""
     torch = _torch()
@@ -35,12 +35,12 @@ def check_device(device: str):
     return found
 
 
-def from_dlpack(capsule):
+def from_dlpack(capsule: Any) -> Any:
     """A torch tensor from a DLPack capsule, without a copy."""
     return _torch().utils.dlpack.from_dlpack(capsule)
 
 
-def layers_of_targets(raw: dict, names, from_dlpack: Callable) -> dict:
+def layers_of_targets(raw: dict, names: Iterable[str], from_dlpack: Callable) -> dict:
     """Layers by name as GPU tensors, computed from the targets; `raw` is the result of cuda_layers()."""
     torch = _torch()
     targets = {name: from_dlpack(target) for name, target in raw["targets"].items()}
@@ -76,7 +76,7 @@ def layers_of_targets(raw: dict, names, from_dlpack: Callable) -> dict:
     return result | {name: shown(make[name]()).contiguous() for name in names if name in make}
 
 
-def _octahedral(torch, p):
+def _octahedral(torch: Any, p: Any) -> Any:
     """Unit vectors from octahedral coordinates (Cigolle et al. 2014)."""
     z = 1 - p.abs().sum(-1, keepdim=True)
     fold = (-z).clamp(min=0)
@@ -95,7 +95,7 @@ def _is_torch(what: Any) -> bool:
     return type(what).__module__.split(".")[0] == "torch"
 
 
-def as_numpy(what):
+def as_numpy(what: Any) -> Any:
     """A numpy array of an array of another library, without a copy if it is in host memory: a torch tensor of any
     device, with or without gradients, or any object with DLPack. Other objects are returned unchanged."""
     if _is_torch(what) and hasattr(what, "detach"):
@@ -110,12 +110,12 @@ def as_numpy(what):
     return np.asarray(what)
 
 
-def eigen2tensor(array, device=None):
+def eigen2tensor(array: Any, device: str | None = None) -> Any:
     """A torch tensor of an array of a mesh (or any other): a copy, so that training may write to it."""
     torch = _torch()
     return torch.from_numpy(np.array(as_numpy(array))).to(check_device(device or "cpu"))
 
 
-def tensor2eigen(tensor) -> np.ndarray:
+def tensor2eigen(tensor: Any) -> np.ndarray:
     """A numpy array of a tensor of any device, with or without gradients: mesh.V = tensor2eigen(t)."""
     return np.ascontiguousarray(as_numpy(tensor))

@@ -75,7 +75,7 @@ class Viewer(WindowCallbacks):
             raise ArgumentError(f"'{name}' cannot be removed: use view.lights['{name}'].enabled = False")
         self.scene.remove_light(name)
 
-    def load_environment_map(self, source) -> None:
+    def load_environment_map(self, source: Any) -> None:
         """Sets the environment map: a path, an array or an Environment."""
         if isinstance(source, (str, os.PathLike)):
             self._handle.load_environment_map(source)
@@ -152,7 +152,7 @@ class Viewer(WindowCallbacks):
         """Releases latched values, so that the next image infers them again."""
         self._handle.refit()
 
-    def render(self, size=None, samples: int | None = None, hdr: bool = False) -> np.ndarray:
+    def render(self, size: ArrayLike | None = None, samples: int | None = None, hdr: bool = False) -> np.ndarray:
         """Renders an image, height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`."""
         return self._handle.render(size, samples, "linear" if hdr else "srgb8")
 
@@ -227,11 +227,11 @@ class Viewer(WindowCallbacks):
         """Masks, boxes, poses and visibility of all instances; options as render_layers() has them."""
         return self.render_layers(["instances"], size, **options)["instances"]
 
-    def moment(self, size=None) -> "_easypbr.Moment":
+    def moment(self, size: ArrayLike | None = None) -> "_easypbr.Moment":
         """The current scene and camera, for flow between frames: render_layers(..., previous=moment)."""
         return _easypbr.moment(self._handle, size)
 
-    def focus_at(self, x: int, y: int, size=None) -> float:
+    def focus_at(self, x: int, y: int, size: ArrayLike | None = None) -> float:
         """Focuses the lens (settings.depth_of_field) on the surface at pixel (x, y) and returns its depth."""
         return self._handle.focus_at(x, y, size)
 
@@ -239,12 +239,12 @@ class Viewer(WindowCallbacks):
         """Disables motion blur in the next image, as after a cut (settings.motion_blur)."""
         self._handle.forget_motion()
 
-    def save_settings(self, path) -> None:
+    def save_settings(self, path: str | os.PathLike) -> None:
         """Writes all settings, given and inferred, with hashes of the files in use."""
         sources = (self.scene.get(name).source for name in self.scene.names())
         self._handle.save_settings(path, [source for source in sources if source])
 
-    def load_settings(self, path) -> None:
+    def load_settings(self, path: str | os.PathLike) -> None:
         """Loads settings and lights from a file of save_settings()."""
         self._handle.load_settings(path)
 
@@ -380,7 +380,7 @@ class Viewer(WindowCallbacks):
         """Removes a custom pass."""
         self._handle.remove_pass(name)
 
-    def open(self, path) -> None:
+    def open(self, path: str | os.PathLike) -> None:
         """Adds the contents of a file, like a file dropped on the window; HDR and EXR become the environment map."""
         self._handle.open(path)
 
@@ -389,7 +389,7 @@ class Viewer(WindowCallbacks):
         position. None where there is no surface; lines are none."""
         return self._handle.pick(x, y, size)
 
-    def screenshot(self, size=None, scale: float = 1) -> np.ndarray:
+    def screenshot(self, size: ArrayLike | None = None, scale: float = 1) -> np.ndarray:
         """The contents of the window as an image, panels included; needs no display. `scale`: HiDPI scale."""
         return self._handle.screenshot(size, scale)
 
