@@ -323,7 +323,7 @@ def bloom() -> np.ndarray:
     return row([*pictures, view.render()])
 
 
-def outline() -> np.ndarray:
+def outlines() -> np.ndarray:
     """Without and with outlines; outlines of unlit white, as in a drawing."""
     scene = Scene()
     meshes = {"torus": shapes.torus(), "box": shapes.box(), "pot": teapot("#3f7f5f")}
@@ -508,7 +508,7 @@ def outline() -> np.ndarray:
 
 
 PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion, rays,
-            bloom, outline, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
+            bloom, outlines, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
             viewer_slices, viewer_path, viewer_animations, viewer_lights, viewer_own, segmentation, detection, own_shading,
             outline]
 

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "easypbr/app/session.h"
-#include "easypbr/core/compare.h"
+#include "easypbr/core/image.h"
 #include "easypbr/geometry/primitives.h"
 
 namespace easypbr {

@@ -1,11 +1,13 @@
 // Shaders and passes of a program's own. A square that fills the picture, so that every pixel is known.
 #include <epoxy/gl.h>
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <chrono>
 #include <filesystem>
 #include <fstream>
 
+#include "easypbr/app/custom_pass.h"
 #include "easypbr/core/error.h"
 #include "render/render_test.h"
 

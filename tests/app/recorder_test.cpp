@@ -5,6 +5,9 @@
 #include <regex>
 #include <stdexcept>
 
+#include "easypbr/app/frame_queue.h"
+#include "easypbr/app/recording_target.h"
+#include "easypbr/app/session.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
 #include "easypbr/geometry/primitives.h"

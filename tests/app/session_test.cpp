@@ -8,9 +8,8 @@
 #include <thread>
 
 #include "easypbr/app/output.h"
-#include "easypbr/core/image.h"
-#include "easypbr/core/compare.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/image.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/settings/settings_io.h"

@@ -95,11 +95,10 @@ TEST_F(LightsPanel, ShowsEveryFieldThatConcernsTheLight) {
         Light light = lamp();
         light.type = type;
         session_.scene().set_light("lamp", light);
-        view_.state().places.clear();
         settle();
         step();
         for (const LightField& field : light_fields())
-            EXPECT_EQ(view_.state().places.contains("Lights/" + field.name + " lamp"), field.concerns(type))
+            EXPECT_EQ(view_.places().contains("Lights/" + field.name + " lamp"), field.concerns(type))
                 << field.name << ", " << int(type);
     }
 }

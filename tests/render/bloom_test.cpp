@@ -1,11 +1,10 @@
 // Bloom against what must hold of any glow: it adds no light, stays where it is, and is round.
-#include <epoxy/gl.h>
 
 #include <cmath>
 #include <cstring>
 #include <limits>
 
-#include "easypbr/render/effects/bloom/bloom_pass.h"
+#include "easypbr/render/effects/bloom/bloom_effect.h"
 #include "easypbr/render/output/output_pass.h"
 #include "render_test.h"
 
@@ -54,25 +53,23 @@ class BloomTest : public ::testing::Test {
     /// What is left of the picture when all of its light is spread: the glow at every pixel.
     LightField glow_of(const LightField& light, int levels) {
         const gl::ContextScope scope(*context_);
-        glClipControl(GL_UPPER_LEFT, GL_ZERO_TO_ONE);
-        gl::VertexArray array = gl::VertexArray::make();
-        array.bind();
         const Vec2i size(light.width, light.height);
         resolved_.bloom_levels = levels;
         render::Frame frame;
         frame.resolved = &resolved_;
         frame.size = frame.picture_size = size;
         frame.covered = {0, 0, size.x(), size.y()};
-        frame.partly_covered = true;
         gl::Texture radiance(gl::Format::rgba32f, size.x(), size.y());
         std::vector<float> rgba;
         for (float v : light.values) rgba.insert(rgba.end(), {v, v, v, 1});
         radiance.upload(std::as_bytes(std::span(rgba)));
-        render::BloomPass bloom;
-        bloom.draw(frame, radiance);
+        render::BloomEffect bloom;
+        render::LitPicture lit{.radiance = &radiance, .covered = frame.covered, .partly_covered = true};
+        const render::GBuffer targets;
+        bloom.draw({frame, targets, Box3d(), {}}, lit);
         render::OutputPass output;
         output.begin(size, render::Encoding::scene_linear);
-        output.finish(frame, {&radiance, nullptr, &bloom.glow()}, render::GBuffer(), nullptr);
+        output.finish(frame, lit, nullptr, nullptr);
         std::vector<float> pixels(4 * light.values.size());
         output.picture().read(0, gl::Format::rgba32f, 0, 0, size.x(), size.y(),
                               std::as_writable_bytes(std::span(pixels)));

@@ -6,7 +6,8 @@ namespace {
 
 constexpr int size = 128;
 
-/// Red lines 2 pixels wide on a picture without light, seen from straight above: 16 units wide, 8 pixels each.
+/// Red lines 2 pixels wide on a picture without light, seen from straight above: 16 units wide, 8 pixels
+/// each.
 app::Session outlined(const Scene& scene) {
     app::Session session = plain_session(scene, size);
     Settings& s = session.settings();
@@ -67,8 +68,9 @@ TEST(Outline, HasItsWidth) {
     for (const int x : {29, 34}) EXPECT_EQ(pixel(image, x, 64)[0], 0) << x;
 }
 
-// Reversed depth is linear over a plane in the image. At the bottom of the picture a pixel's depth differs from its
-// neighbour's by 1 / 30, at the horizon by far more than the least step; only the horizon is an edge.
+// Reversed depth is linear over a plane in the image. At the bottom of the picture a pixel's depth differs
+// from its neighbour's by 1 / 30, at the horizon by far more than the least step; only the horizon is an
+// edge.
 TEST(Outline, OfASteepPlaneIsItsHorizonAlone) {
     Scene scene;
     scene.show(facing_square(50), "floor");
@@ -100,8 +102,8 @@ TEST(Outline, OfCreasesByTheirAngle) {
     EXPECT_EQ(red_pixels(session.render()), 0);
 }
 
-// Two squares side by side in one plane: neither depth nor normals know the border between pixels 63 and 64, the
-// ids do.
+// Two squares side by side in one plane: neither depth nor normals know the border between pixels 63 and 64,
+// the ids do.
 TEST(Outline, OfObjectsThatTouch) {
     Scene scene;
     scene.show(shifted_square(-2), "left");
@@ -116,8 +118,8 @@ TEST(Outline, OfObjectsThatTouch) {
     }
 }
 
-// The ground is no part of the content: neither its horizon nor its border with the content's foot is a silhouette
-// of its own.
+// The ground is no part of the content: neither its horizon nor its border with the content's foot is a
+// silhouette of its own.
 TEST(Outline, LeavesTheGroundOut) {
     Scene scene;
     scene.show(make_box(Vec3(2, 2, 2)), "box");
