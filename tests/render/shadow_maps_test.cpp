@@ -219,16 +219,18 @@ TEST(ShadowLights, WrongOnesAreNamed) {
         return std::string("accepted");
     };
     const float nan = std::nanf("");
-    EXPECT_EQ(message([](Light& l) { l.radius = -1.0f; }),
-              "light 'bad': radius: expected a finite number of at least 0, got -1");
-    EXPECT_EQ(message([&](Light& l) { l.radius = nan; }),
-              "light 'bad': radius: expected a finite number of at least 0, got nan");
+    EXPECT_EQ(
+        message([](Light& l) { l.radius = -1.0f; }),
+        "light 'bad': radius: expected a number of at least 0 world units, or 'auto' or 'follow', got -1");
+    EXPECT_EQ(
+        message([&](Light& l) { l.radius = nan; }),
+        "light 'bad': radius: expected a number of at least 0 world units, or 'auto' or 'follow', got nan");
     EXPECT_EQ(message([](Light& l) { l.type = LightType::directional, l.angular_radius_deg = 60; }),
               "light 'bad': angular_radius_deg: expected 0 to 45 degrees, got 60");
     EXPECT_EQ(message([](Light& l) { l.type = LightType::spot, l.direction = Vec3::Zero(); }),
               "light 'bad': direction: expected a vector with a length, got (0, 0, 0)");
     EXPECT_EQ(message([&](Light& l) { l.position.y() = nan; }),
-              "light 'bad': position: expected finite numbers, got (1, nan, 3)");
+              "light 'bad': position: expected 3 numbers, got (1, nan, 3)");
     EXPECT_EQ(message([](Light&) {}), "accepted");
 }
 

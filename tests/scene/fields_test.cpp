@@ -83,6 +83,7 @@ TEST(Fields, AreComplete) {
         {"bloom", 6},
         {"depth_of_field", 4},
         {"motion_blur", 2},
+        {"outline", 8},
         {"transparency", 2},
         {"tonemap", 3},
         {"material", 4 + 18 + 7 + 1},

@@ -211,7 +211,7 @@ TEST(Fit, TakesAPoseAndIntrinsicsAsTheyAre) {
 TEST(Fit, CopesWithContentWithoutExtent) {
     const std::vector<Mesh> meshes = {
         points({{0, 0, 0}}), points({{7, 8, 9}}), points({{0, 0, -1}, {0, 0, 1}}),
-        points({{1e30f, 0, 0}, {-1e30f, 0, 0}}), points({{1e-30f, 0, 0}, {0, 0, 0}})};
+        points({{1e12f, 0, 0}, {-1e12f, 0, 0}}), points({{1e-30f, 0, 0}, {0, 0, 0}})};
     for (const Mesh& mesh : meshes) {
         Scene scene;
         scene.show(mesh, "mesh");

@@ -48,7 +48,7 @@ std::string lower(std::string_view text) {
 }
 
 /// What a field is called without CloudCompare's prefix.
-std::string plain_name(std::string_view name) {
+std::string without_prefix(std::string_view name) {
     constexpr std::string_view prefix = "scalar_";
     return std::string(name.size() > prefix.size() && lower(name.substr(0, prefix.size())) == prefix
                            ? name.substr(prefix.size())
@@ -56,7 +56,7 @@ std::string plain_name(std::string_view name) {
 }
 
 bool has_name(const Spellings& spellings, std::string_view name) {
-    const std::string plain = lower(plain_name(name));
+    const std::string plain = lower(without_prefix(name));
     return std::ranges::any_of(
         spellings, [&](const Names& names) { return std::ranges::find(names, plain) != names.end(); });
 }
@@ -67,7 +67,7 @@ std::vector<size_t> find_spelling(const std::vector<VertexField>& fields, const 
         std::vector<size_t> found;
         for (const std::string_view name : names) {
             const auto it = std::ranges::find_if(fields, [&](const VertexField& field) {
-                return field.column->is_skipped() && lower(plain_name(field.property.name)) == name;
+                return field.column->is_skipped() && lower(without_prefix(field.property.name)) == name;
             });
             if (it != fields.end()) found.push_back(size_t(it - fields.begin()));
         }
@@ -144,7 +144,7 @@ void VertexArrays::plan_scalars(const std::vector<VertexField>& fields, size_t c
     for (const VertexField& field : fields) {
         if (!field.column->is_skipped() || field.property.name.empty() || field.property.name == "_")
             continue;
-        const std::string plain = plain_name(field.property.name);
+        const std::string plain = without_prefix(field.property.name);
         std::string name = plain;
         int& number = numbers.try_emplace(plain, 1).first->second;
         while (!taken.insert(name).second) name = fmt::format("{}_{}", plain, ++number);
@@ -214,7 +214,7 @@ FaceArrays::FaceArrays(ElementPlan& plan) {
         if (!field.column->is_skipped() || is_known_field(field.property.name) ||
             field.property.name == "texnumber")
             continue;
-        scalars_.emplace_back(plain_name(field.property.name), Array1f::Dense(rows));
+        scalars_.emplace_back(without_prefix(field.property.name), Array1f::Dense(rows));
         field.column->floats = scalars_.back().second.data();
     }
 }
