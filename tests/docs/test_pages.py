@@ -72,7 +72,7 @@ def test_every_option_is_on_the_page_of_the_command_line():
 
 
 @pytest.mark.parametrize("name, signature", [
-    ("render", "render(what, out=None, size=None"),
+    ("render", "render(what: Any, out: str | os.PathLike | None=None"),
     ("overloads", "Mesh(path: str | os.PathLike)"),
     ("attribute", "T_parent_mesh: numpy.ndarray"),
     ("method without self", "clone() -> Mesh"),

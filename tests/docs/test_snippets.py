@@ -37,22 +37,33 @@ def test_python_blocks_run_one_after_the_other(page, work):
     run(sys.executable, "page.py", cwd=work)
 
 
+def fed(call):
+    """The call without its redirection, and the file that it reads as standard input: `cat FILE | call`, `call < FILE`."""
+    if call[0] == "cat" and call[2:3] == ["|"]:
+        return call[3:], call[1]
+    if "<" in call:
+        at = call.index("<")
+        return call[:at], call[at + 1]
+    return call, None
+
+
 def commands(page):
-    """The lines of a page that call the command line; `make` is what runs these tests."""
+    """The lines of a page that call the command line, and what they read; `make` is what runs these tests."""
     lines = [line for block in blocks(page, "sh") for line in block.splitlines() if line.strip()]
-    calls = [shlex.split(line, comments=True) for line in lines]
-    unknown = [call for call in calls if call[0] not in ("easypbr", "make")]
+    calls = [fed(shlex.split(line, comments=True)) for line in lines]
+    unknown = [call for call, _ in calls if call[0] not in ("easypbr", "make")]
     assert not unknown, f"{page.name}: {unknown} is run by nobody"
-    return [call[1:] for call in calls if call[0] == "easypbr"]
+    return [(call[1:], source) for call, source in calls if call[0] == "easypbr"]
 
 
 @pytest.mark.parametrize("page", with_blocks("sh"))
 def test_commands_succeed_without_a_word(page, work):
-    for call in commands(page):
+    for call, source in commands(page):
         # The settings named last win: pictures of the text are large.
         small = ["--set", "image.size=64,48", "--set", "image.samples=2"] if call[0] == "render" else []
-        done = subprocess.run([BINARY, *call, *small], cwd=work, capture_output=True, text=True, timeout=300)
-        assert (done.returncode, done.stderr) == (0, ""), call
+        piped = (work / source).read_bytes() if source else None
+        done = subprocess.run([BINARY, *call, *small], cwd=work, capture_output=True, input=piped, timeout=300)
+        assert (done.returncode, done.stderr) == (0, b""), call
         if call[0] == "render":
             output = pathlib.Path(call[call.index("-o") + 1])
             expected = [pathlib.Path(file).stem for file in call if file.endswith((".ply", ".stl"))]
