@@ -36,6 +36,14 @@ def seconds_until_interrupted(work, after_s: float = 0.7) -> float:
     return time.monotonic() - sent[0]
 
 
+@pytest.fixture(autouse=True)
+def python_s_handler():
+    """Jobs that a shell starts in the background ignore SIGINT, and so do their children; a program in a terminal does not."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
 @pytest.fixture
 def scene():
     scene = Scene()
