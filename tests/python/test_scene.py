@@ -106,7 +106,7 @@ def test_radius_of_a_light_is_inferred_and_latched(size):
     assert light.radius == 0.25
     light.radius = auto
     assert light.radius == auto
-    expected = "light.radius: expected a number of at least 0, or 'auto' or 'follow', got "
+    expected = "light.radius: expected a number of at least 0 world units, or 'auto' or 'follow', got "
     with pytest.raises(ValueError, match=expected + "-1"):
         light.radius = -1
     with pytest.raises(ValueError, match=expected + "'big'"):
