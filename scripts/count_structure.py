@@ -149,10 +149,31 @@ def shader_faults(root: pathlib.Path) -> Iterator[str]:
             declared[block] = path.name
 
 
+#: Lines of the function that draws a frame, from its signature to its brace.
+LONGEST_FRAME = 50
+
+
+def frame_lines(root: pathlib.Path) -> int:
+    """Lines of Pipeline::draw(), the whole frame."""
+    text = (root / "src/easypbr/render/pipeline/pipeline.cpp").read_text()
+    begin = text.index("LitPicture Pipeline::draw(")
+    return text[begin : text.index("\n}\n", begin) + 2].count("\n") + 1
+
+
+def code_faults(root: pathlib.Path) -> Iterator[str]:
+    """Where the code breaks a bound: OpenGL outside the rooms that own it, a frame that does not fit a screen."""
+    for name, text in sources(root).items():
+        if not name.startswith(("gl/", "gui/imgui_renderer", "gui/window")):
+            for call in GL_CALL.findall(text):
+                yield f"src/easypbr/{name}: calls {call[:-1]}(): expected a function of gl/"
+    if frame_lines(root) > LONGEST_FRAME:
+        yield f"render/pipeline/pipeline.cpp: the frame has {frame_lines(root)} lines; expected at most {LONGEST_FRAME}"
+
+
 if __name__ == "__main__":
     base = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
     for what, number in counts(base):
         print(f"{what:52} {number}")
-    faults = list(shader_faults(base))
+    faults = [*shader_faults(base), *(code_faults(base) if (base / "src/easypbr/render/pipeline").is_dir() else ())]
     print("\n".join(faults), end="\n" if faults else "")
     sys.exit(1 if faults else 0)

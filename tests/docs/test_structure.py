@@ -13,6 +13,22 @@ def test_shaders_keep_their_bounds():
     assert list(count_structure.shader_faults(ROOT)) == []
 
 
+def test_code_keeps_its_bounds():
+    assert list(count_structure.code_faults(ROOT)) == []
+
+
+def test_opengl_outside_its_rooms_and_a_long_frame(tmp_path):
+    bound = count_structure.LONGEST_FRAME
+    frame = "LitPicture Pipeline::draw(const Frame& frame) {\n" + "    pass();\n" * (bound - 1) + "}\n"
+    for name, text in {"gl/draw.cpp": "glFinish();", "app/a.cpp": "// glossy\nglEnable(X);", "render/pipeline/pipeline.cpp": frame}.items():
+        path = tmp_path / "src/easypbr" / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+    assert list(count_structure.code_faults(tmp_path)) == [
+        "src/easypbr/app/a.cpp: calls glEnable(): expected a function of gl/",
+        f"render/pipeline/pipeline.cpp: the frame has {bound + 1} lines; expected at most {bound}"]
+
+
 @pytest.fixture
 def tree(tmp_path):
     (tmp_path / "shaders").mkdir()
