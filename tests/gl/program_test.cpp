@@ -100,7 +100,7 @@ TEST_F(ProgramTest, RefusesAFeatureThatNoShaderDeclares) {
     EXPECT_EQ(message("feature.frag", {"SHADOW_CUBES"}), "compiled");
     EXPECT_NE(message("feature.frag", {"SHADOW_CUBE"}).find("(did you mean 'SHADOW_CUBES'?)"),
               std::string::npos);
-    // What programs of one's own mean by a macro is theirs.
+    // Custom programs may define any macro.
     const ShaderTexts own = {
         {"own.frag", {"own", "out vec4 o;\n#ifdef MINE\nvoid main() { o = vec4(1.0); }\n#endif\n"}}};
     EXPECT_NO_THROW(Program("screen_triangle.vert", "own.frag", {"MINE"}, own));

@@ -153,7 +153,7 @@ class Viewer {
     /// The GUI behind window and screenshots.
     gui::LiveView& live();
 
-    /// Draws a pass of one's own in every picture from now on; one of the same name is replaced. See
+    /// Draws a custom pass in every picture from now on; one of the same name is replaced. See
     /// app/custom_pass.h. Throws ArgumentError for none.
     void add_pass(const std::string& name, app::Stage stage, std::shared_ptr<app::Pass> pass);
     /// Throws NameError when there is none of this name.

@@ -18,7 +18,7 @@ void require_display();
 /// X11's. Needs no lock, unlike GLFW's own wait, which never ends when the connection is broken.
 bool wait_for_display(double seconds);
 
-/// The name of the X display that windows are on, for a connection of one's own; null where they are not
+/// The name of the X display that windows are on, for a separate connection; null where they are not
 /// X11's.
 const char* display_name();
 

@@ -15,7 +15,7 @@ namespace easypbr::gui {
 bool begin_rows(const char* id, bool with_auto = true);
 void end_rows();
 
-/// The first cells of a row of one's own; the value's widget comes next and fills the second column.
+/// The first cells of a custom row; the value's widget comes next and fills the second column.
 void begin_row(const std::string& name, const std::string& tooltip = {});
 
 /// A field's name as it is read: "exposure compensation".

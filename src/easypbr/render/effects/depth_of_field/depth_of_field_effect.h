@@ -1,5 +1,5 @@
 // Depth of field of a single frame. Stills of several samples look through different places of the lens
-// instead, which is exact: see prepare_frame().
+// instead, which is exact: see make_frame().
 #pragma once
 
 #include "easypbr/render/effects/effect.h"
