@@ -35,7 +35,7 @@ SUBROOMS = {
     "io": ["source", "archive", "tables", "image", "video", "settings", "mesh"],
 }
 # The face of a sub-room lists what stands in its folders: the one direction from a sub-room down into them.
-FACES = {"io/mesh/mesh_io.cpp", "io/video/video_loader.cpp", "render/primitives/surfaces.h", "render/effects/effects.cpp"}
+FACES = {"io/mesh/mesh_io.cpp", "io/video/video_loader.cpp", "render/primitives/primitives.cpp", "render/effects/effects.cpp"}
 INCLUDE = re.compile(r'#\s*include\s+["<]easypbr/([\w/]+)\.h')
 ANY_INCLUDE = re.compile(r'#\s*include\s+["<]([^">]+)[">]')
 # What programs see is small; see docs/cpp.md.

@@ -130,7 +130,7 @@ def counts(root: pathlib.Path) -> Iterator[tuple[str, str]]:
     for what, headers in (("bloom's header", effect), ("scene/settings.h", {"easypbr/scene/settings.h"}),
                           ("scene/mesh.h", {"easypbr/scene/mesh.h"})):
         yield f"units that a change of {what} rebuilds", "{} of {}".format(*rebuilt(root, headers))
-    yield 'files of src that name "surfel"', str(sum("surfel" in text.lower() for text in texts.values()))
+    yield 'files of src that name "surfel", but for its own', str(len(naming(root, "surfel")))
 
 
 def shader_faults(root: pathlib.Path) -> Iterator[str]:
@@ -152,6 +152,14 @@ def shader_faults(root: pathlib.Path) -> Iterator[str]:
 #: Lines of the function that draws a frame, from its signature to its brace.
 LONGEST_FRAME = 50
 
+#: Files that may name a kind of primitive beside its own: settings, style, bindings, the list of all kinds.
+MOST_NAMING_A_KIND = 8
+
+
+def naming(root: pathlib.Path, kind: str) -> list[str]:
+    """Files of src that name a kind of primitive; those that carry its name are its own."""
+    return [name for name, text in sources(root).items() if kind in text.lower() and kind not in name]
+
 
 def frame_lines(root: pathlib.Path) -> int:
     """Lines of Pipeline::draw(), the whole frame."""
@@ -166,6 +174,8 @@ def code_faults(root: pathlib.Path) -> Iterator[str]:
         if not name.startswith(("gl/", "gui/imgui_renderer", "gui/window")):
             for call in GL_CALL.findall(text):
                 yield f"src/easypbr/{name}: calls {call[:-1]}(): expected a function of gl/"
+    if len(names := naming(root, "surfel")) > MOST_NAMING_A_KIND:
+        yield f"src/easypbr: {len(names)} files name surfels; expected at most {MOST_NAMING_A_KIND}: {', '.join(names)}"
     if frame_lines(root) > LONGEST_FRAME:
         yield f"render/pipeline/pipeline.cpp: the frame has {frame_lines(root)} lines; expected at most {LONGEST_FRAME}"
 

@@ -59,10 +59,13 @@ class BloomTest : public ::testing::Test {
         frame.resolved = &resolved_;
         frame.size = frame.picture_size = size;
         frame.covered = {0, 0, size.x(), size.y()};
-        gl::Texture radiance(gl::Format::rgba32f, size.x(), size.y());
-        std::vector<float> rgba;
-        for (float v : light.values) rgba.insert(rgba.end(), {v, v, v, 1});
-        radiance.upload(std::as_bytes(std::span(rgba)));
+        const render::Target radiance(gl::Format::rgba32f, size);
+        radiance.write(radiance.whole());
+        for (size_t i = 0; i < light.values.size(); ++i)
+            for (size_t c = 0; c < 4; ++c)
+                radiance.pixels<float>()[4 * i + c] = c < 3 ? light.values[i] : 1.0f;
+        render::Transfers transfers;
+        radiance.upload(transfers);
         render::BloomEffect bloom;
         render::LitPicture lit{.radiance = &radiance, .covered = frame.covered, .partly_covered = true};
         const render::GBuffer targets;

@@ -4,7 +4,7 @@
 #include <set>
 
 #include "easypbr/core/error.h"
-#include "easypbr/render/shadow/shadow_view.h"
+#include "easypbr/render/frame/shadow_view.h"
 
 namespace easypbr {
 namespace {

@@ -103,6 +103,31 @@ TEST(TintedShadow, OfColouredGlass) {
     }
 }
 
+// Large meshes are rasterised natively, and of them the opaque parts alone: the glass tints all the same.
+TEST(TintedShadow, OfALargeMeshWithAnOpaquePart) {
+    const Vec3 color(0.9f, 0.5f, 0.1f);
+    constexpr int n = 60;  // 7200 faces
+    Array3f::Dense V((n + 1) * (n + 1), 3);
+    Array3i::Dense F(2 * n * n, 3);
+    for (int i = 0; i <= n; ++i)
+        for (int j = 0; j <= n; ++j) V.row(i * (n + 1) + j) << float(i) / n - 0.5f, float(j) / n - 0.5f, 0.5f;
+    for (int i = 0; i < n; ++i)
+        for (int j = 0; j < n; ++j) {
+            const int a = i * (n + 1) + j, b = a + n + 1;
+            F.row(2 * (i * n + j)) << a, b, b + 1;
+            F.row(2 * (i * n + j) + 1) << a, b + 1, a + 1;
+        }
+    MeshData data;
+    data.V = Array3f(V);
+    data.F = Array3i(F);
+    data.materials = {thin_glass(color), matt()};
+    data.parts = {{"glass", 0, n * n, 0}, {"matt", n * n, n * n, 1}};
+    app::Session session = under({Mesh(data)}, ShadowMode::hard, sun);
+    const Lit glass = lit_floor(session, 1, -0.35, -0.1);
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(glass.mean[c], 0.96 * double(color[c]), 2 * rounding) << c;
+    EXPECT_NEAR(lit_floor(session, 1, 0.1, 0.35).mean.y(), 0, rounding);
+}
+
 // Behind two, the product; between them, the first alone. The two are of one mesh.
 TEST(TintedShadow, MultipliesAlongTheWay) {
     for (const ShadowMode mode : modes) {

@@ -97,19 +97,19 @@ const Settings& PassInput::settings() const {
 }
 
 unsigned PassInput::albedo() const {
-    return frame_.input.gbuffer.albedo.id();
+    return frame_.input.gbuffer.albedo.texture().id();
 }
 
 unsigned PassInput::normal() const {
-    return frame_.input.gbuffer.normal.id();
+    return frame_.input.gbuffer.normal.texture().id();
 }
 
 unsigned PassInput::material() const {
-    return frame_.input.gbuffer.material.id();
+    return frame_.input.gbuffer.material.texture().id();
 }
 
 unsigned PassInput::depth() const {
-    return frame_.input.gbuffer.depth.id();
+    return frame_.input.gbuffer.depth.texture().id();
 }
 
 unsigned PassInput::image() const {

@@ -59,7 +59,7 @@ void SceneWarnings::Once::tell(const std::string& text) {
 void SceneWarnings::check(const SceneSnapshot& scene, const Settings& settings,
                           const ResolvedSettings& resolved) {
     lens_.tell(lens_text(settings, resolved));
-    surfels_.tell(surfels_text(scene, settings));
+    normals_.tell(surfels_text(scene, settings));
     shaders_.tell(shaders_text(scene, settings));
 }
 

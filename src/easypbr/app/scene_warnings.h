@@ -10,8 +10,8 @@ namespace easypbr::app {
 
 class SceneWarnings {
   public:
-    /// Logs what is new: a lens for an orthographic camera; surfels of a mesh without normals, which is drawn
-    /// as points; a material with a shader that has no faces to act on.
+    /// Logs what is new: a lens for an orthographic camera; a style that needs normals for a mesh without any,
+    /// which is drawn as points; a material with a shader that has no faces to act on.
     void check(const SceneSnapshot& scene, const Settings& settings, const ResolvedSettings& resolved);
 
   private:
@@ -20,7 +20,7 @@ class SceneWarnings {
         bool told = false;
         void tell(const std::string& text);
     };
-    Once lens_, surfels_, shaders_;
+    Once lens_, normals_, shaders_;
 };
 
 }  // namespace easypbr::app

@@ -30,11 +30,12 @@ std::vector<std::string> targets_of(const std::vector<std::string>& layers) {
 }
 
 const gl::Texture& target(const render::GBuffer& targets, const std::string& name) {
-    return name == "normal"     ? targets.normal
-           : name == "albedo"   ? targets.albedo
-           : name == "material" ? targets.material
-           : name == "id"       ? targets.id
-                                : targets.depth;
+    const render::Target& target = name == "normal"     ? targets.normal
+                                   : name == "albedo"   ? targets.albedo
+                                   : name == "material" ? targets.material
+                                   : name == "id"       ? targets.id
+                                                        : targets.depth;
+    return target.texture();
 }
 
 }  // namespace

@@ -157,7 +157,7 @@ void Texture::bind(unsigned unit) const {
     glBindTextureUnit(unit, id());
 }
 
-Framebuffer::Framebuffer(std::initializer_list<const Texture*> colors, const Texture* depth)
+Framebuffer::Framebuffer(std::span<const Texture* const> colors, const Texture* depth)
     : object_(ObjectKind::framebuffer) {
     std::vector<GLenum> targets;
     for (const Texture* color : colors) {
@@ -166,7 +166,7 @@ Framebuffer::Framebuffer(std::initializer_list<const Texture*> colors, const Tex
     }
     if (depth) glNamedFramebufferTexture(object_.id(), GL_DEPTH_ATTACHMENT, depth->id(), 0);
     glNamedFramebufferDrawBuffers(object_.id(), GLsizei(targets.size()), targets.data());
-    const Texture& first = colors.size() ? **colors.begin() : *depth;
+    const Texture& first = colors.empty() ? *depth : *colors.front();
     width_ = first.width();
     height_ = first.height();
     require_complete();

@@ -74,7 +74,9 @@ class Framebuffer {
   public:
     Framebuffer() = default;
     /// Throws ContextError when the driver cannot draw to this set of textures.
-    Framebuffer(std::initializer_list<const Texture*> colors, const Texture* depth = nullptr);
+    explicit Framebuffer(std::span<const Texture* const> colors, const Texture* depth = nullptr);
+    Framebuffer(std::initializer_list<const Texture*> colors, const Texture* depth = nullptr)
+        : Framebuffer(std::span(colors.begin(), colors.size()), depth) {}
     /// One layer of an array, or the same layer of several. Throws ContextError when the driver cannot draw
     /// to it.
     Framebuffer(const Texture& array, int layer) : Framebuffer({&array}, layer) {}

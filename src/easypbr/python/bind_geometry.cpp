@@ -74,7 +74,7 @@ void bind_placing(MeshClass& mesh) {
                 return released([&] { return transformed(m, affine); });
             },
             nb::arg("T"),
-            "A new mesh with vertices transformed by T (4 x 4), and normals, winding order, surfels and "
+            "A new mesh with vertices transformed by T (4 x 4), and normals, winding order, tangents and "
             "children with them. T_parent_mesh is kept.")
         .def(
             "center", [](const Mesh& m) { return released([&] { return centered(m); }); },

@@ -351,7 +351,7 @@ void bind_viewer(nb::module_& module) {
         .def_ro("object", &app::Pick::object, "Name in the scene; 'car/wheel' for a child.")
         .def_ro("part", &app::Pick::part, "Name of the part of the mesh; empty without parts.")
         .def_ro("is_face", &app::Pick::is_face,
-                "Whether `element` is a face; else it is a vertex of a point, surfel or voxel.")
+                "Whether `element` is a face; else it is a vertex, also of a voxel.")
         .def_ro("element", &app::Pick::element, "Index of the face or vertex in the mesh's own arrays.")
         .def_prop_ro(
             "position", [](const app::Pick& pick) { return matrix_to_numpy(pick.position.transpose()); },

@@ -57,4 +57,10 @@ DrawStyle resolve_style(const MeshData& mesh, const Style& overrides) {
     return style;
 }
 
+DrawMode primitive_of(const MeshData& mesh, const DrawStyle& style) {
+    if (style.mode == DrawMode::voxels) return DrawMode::mesh;
+    if (style.mode == DrawMode::surfels && mesh.N.empty()) return DrawMode::points;
+    return style.mode;
+}
+
 }  // namespace easypbr

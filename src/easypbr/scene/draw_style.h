@@ -36,4 +36,8 @@ DrawMode natural_mode(const MeshData& mesh);
 /// The overrides' choice, else the object's own, else what follows from the data.
 DrawStyle resolve_style(const MeshData& mesh, const Style& overrides);
 
+/// The kind of primitive that a mesh is drawn as in a style: voxels are meshes, and surfels without normals
+/// points.
+DrawMode primitive_of(const MeshData& mesh, const DrawStyle& style);
+
 }  // namespace easypbr

@@ -44,7 +44,7 @@ std::pair<Vec3d, Vec3d> semi_axes(const Vec3d& t, const Vec3d& b) {
     return {v(0, 1) * t + v(1, 1) * b, v(0, 0) * t + v(1, 0) * b};
 }
 
-void transform_surfels(MeshData& mesh, const MeshData& before, const Mat3d& M) {
+void transform_ellipses(MeshData& mesh, const MeshData& before, const Mat3d& M) {
     Array1f::Dense B(before.B.rows());
     const bool complete = !before.N.empty() && !before.B.empty();
     mesh.T = rows(before.T.rows(), [&](size_t i) -> Vec3d {
@@ -69,7 +69,7 @@ MeshData transformed(const MeshData& mesh, const Eigen::Affine3d& T) {
     if (!mesh.V.empty())
         result.V = rows(mesh.V.rows(), [&](size_t i) -> Vec3d { return T * row(mesh.V, i); });
     if (!mesh.N.empty()) result.N = turned_normals(mesh.N, M);
-    if (!mesh.T.empty()) transform_surfels(result, mesh, M);
+    if (!mesh.T.empty()) transform_ellipses(result, mesh, M);
     if (determinant < 0 && !mesh.F.empty()) result.F = Array3i::Dense(mesh.F.rowwise().reverse());
     result.voxel_size = float(mesh.voxel_size * std::cbrt(std::abs(determinant)));
     return result;

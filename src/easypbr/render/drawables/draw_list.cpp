@@ -52,32 +52,29 @@ SurfaceKind kind_of(const Source& source) {
 void add_mesh(const Source& source, DrawList& list) {
     if (source.object.mesh->F.empty()) return;
     for (const MeshPart& part : parts_of(*source.object.mesh)) {
-        list.meshes.push_back(make_item(source, part));
-        list.meshes.back().kind = kind_of(source);
-        if (source.style.mode == DrawMode::voxels) list.meshes.back().style.flat = true;
+        DrawItem item = make_item(source, part);
+        item.kind = kind_of(source);
+        if (source.style.mode == DrawMode::voxels) item.style.flat = true;
+        list.items[DrawMode::mesh].push_back(std::move(item));
     }
 }
 
-void add_points(const Source& source, DrawList& list) {
+/// Of vertices that are drawn as something on their own.
+void add_vertices(const Source& source, DrawMode kind, DrawList& list) {
     const MeshData& mesh = *source.object.mesh;
     if (mesh.V.empty()) return;
     DrawItem item = make_item(source, {});
-    // Labels of clouds are there to be read.
-    const bool lit = source.style.lit.value_or(!source.colors.labels);
     item.kind = kind_of(source);
-    if (lit && mesh.N.empty())
-        item.kind = source.settings.edl.enabled ? SurfaceKind::eye_dome : SurfaceKind::display;
-    else if (!lit && source.colors.exact)
-        item.kind = SurfaceKind::exact;
-    list.points.push_back(std::move(item));
-}
-
-void add_surfels(const Source& source, DrawList& list) {
-    // A surfel without a normal is a point.
-    if (source.object.mesh->N.empty()) return add_points(source, list);
-    DrawItem item = make_item(source, {});
-    item.kind = kind_of(source);
-    list.surfels.push_back(std::move(item));
+    item.reaches_beyond = true;
+    if (kind == DrawMode::points) {
+        // Labels of clouds are there to be read.
+        const bool lit = source.style.lit.value_or(!source.colors.labels);
+        if (lit && mesh.N.empty())
+            item.kind = source.settings.edl.enabled ? SurfaceKind::eye_dome : SurfaceKind::display;
+        else if (!lit && source.colors.exact)
+            item.kind = SurfaceKind::exact;
+    }
+    list.items[kind].push_back(std::move(item));
 }
 
 /// sRGB colours that stand out on most surfaces.
@@ -116,6 +113,15 @@ void add_lines(const Source& source, DrawList& list) {
 
 }  // namespace
 
+std::span<const DrawItem> DrawList::of(DrawMode kind) const {
+    const auto found = items.find(kind);
+    return found == items.end() ? std::span<const DrawItem>() : found->second;
+}
+
+bool DrawList::empty() const {
+    return std::ranges::all_of(items, [](const auto& of_kind) { return of_kind.second.empty(); });
+}
+
 DrawList DrawList::without_exact() const {
     return without([](const DrawItem& item) { return item.kind == SurfaceKind::exact && !item.layered; });
 }
@@ -136,14 +142,14 @@ bool DrawItem::needs_tangents() const {
 
 ExtensionSet DrawList::extensions() const {
     ExtensionSet set = 0;
-    for (const DrawItem& item : meshes) set |= item.extensions();
+    for (const DrawItem& item : of(DrawMode::mesh)) set |= item.extensions();
     return set;
 }
 
 DrawList DrawList::as_surfaces() const {
     DrawList surfaces = *this;
-    for (std::vector<DrawItem>* items : {&surfaces.meshes, &surfaces.points, &surfaces.surfels})
-        for (DrawItem& item : *items) {
+    for (auto& [kind, of_kind] : surfaces.items)
+        for (DrawItem& item : of_kind) {
             item.layered = false;
             if (item.alpha != AlphaMode::blend) continue;
             item.alpha = AlphaMode::mask;
@@ -160,21 +166,24 @@ DrawList draw_list(const DrawableScene& drawable, const Settings& settings, cons
         const DrawStyle style = resolve_style(*object.mesh, settings.style);
         if (!style.visible) continue;
         const Source source{object, style, settings, textures, drawable.meanings[i]};
-        if (style.mode == DrawMode::mesh || style.mode == DrawMode::voxels) add_mesh(source, list);
+        const DrawMode kind = primitive_of(*object.mesh, style);
+        if (kind == DrawMode::mesh) add_mesh(source, list);
         add_lines(source, list);
-        if (style.mode == DrawMode::surfels) add_surfels(source, list);
-        if (style.mode == DrawMode::points || style.show_points) add_points(source, list);
+        if (kind != DrawMode::mesh && kind != DrawMode::lines) add_vertices(source, kind, list);
+        if (kind != DrawMode::points && style.show_points) add_vertices(source, DrawMode::points, list);
     }
-    for (DrawItem& item : list.meshes)
+    for (DrawItem& item : list.items[DrawMode::mesh])
         if (SurfaceShader& shader = item.material.shader; shader.text.empty() && !shader.path.empty())
             shader.text = shader_files.at(shader.path);
-    const bool blend_in_layers = settings.transparency.mode == TransparencyMode::layers;
-    for (std::vector<DrawItem>* items : {&list.meshes, &list.points})
-        for (DrawItem& item : *items)
-            item.layered = (item.alpha == AlphaMode::blend && blend_in_layers) ||
-                           (item.kind == SurfaceKind::lit && item.material.transmits());
-    // Splats that overlap are one surface: a random number for each would draw them all.
-    for (DrawItem& item : list.surfels) item.layered = item.alpha == AlphaMode::blend;
+    for (auto& [kind, of_kind] : list.items) {
+        // Primitives that are one surface where they overlap are drawn in layers in any case: a random number
+        // for each would draw them all.
+        const bool apart = kind == DrawMode::mesh || kind == DrawMode::points;
+        const bool in_layers = !apart || settings.transparency.mode == TransparencyMode::layers;
+        for (DrawItem& item : of_kind)
+            item.layered = (item.alpha == AlphaMode::blend && in_layers) ||
+                           (apart && item.kind == SurfaceKind::lit && item.material.transmits());
+    }
     return list;
 }
 

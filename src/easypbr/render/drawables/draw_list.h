@@ -1,8 +1,10 @@
-// What a frame draws: items with their final material and style, one list per kind of primitive.
+// What a frame draws: items with their final material and style, by kind of primitive.
 #pragma once
 
 #include <algorithm>
+#include <functional>
 #include <map>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,7 +26,8 @@ struct DrawItem {
     bool two_sided = true;
     bool with_colors = false;  ///< vertex colours count
     SurfaceKind kind = SurfaceKind::lit;
-    bool layered = false;  ///< other surfaces are seen behind: drawn in layers over the picture
+    bool layered = false;         ///< other surfaces are seen behind: drawn in layers over the picture
+    bool reaches_beyond = false;  ///< its primitives reach beyond the vertices
 
     const MeshData& mesh() const { return *object->mesh; }
     bool emits() const { return material.unlit || !material.emissive.isZero() || material.shader; }
@@ -61,37 +64,37 @@ struct LineItem {
 };
 
 struct DrawList {
-    std::vector<DrawItem> meshes;  ///< one per part
-    std::vector<DrawItem> points;
-    std::vector<DrawItem> surfels;  ///< with normals
+    /// By kind of primitive, in the order in which they are drawn; of meshes one item per part.
+    std::map<DrawMode, std::vector<DrawItem>> items;
     std::vector<LineItem> lines;
 
+    std::span<const DrawItem> of(DrawMode kind) const;
     template <class Predicate>
     bool has(Predicate&& predicate) const {
-        return std::ranges::any_of(meshes, predicate) || std::ranges::any_of(points, predicate) ||
-               std::ranges::any_of(surfels, predicate);
+        return std::ranges::any_of(items, [&](const auto& of_kind) {
+            return std::ranges::any_of(of_kind.second, std::ref(predicate));
+        });
     }
     /// Whether something is shown past light and tone curve.
     bool needs_overlay() const {
         return !lines.empty() || has([](const DrawItem& item) { return is_display(item.kind); });
     }
-    bool reaches_beyond_vertices() const { return !points.empty() || !surfels.empty() || !lines.empty(); }
+    bool reaches_beyond_vertices() const { return !lines.empty() || has(&DrawItem::reaches_beyond); }
     template <class Predicate>
     DrawList without(Predicate&& predicate) const {
         DrawList rest = *this;
-        std::erase_if(rest.meshes, predicate);
-        std::erase_if(rest.points, predicate);
-        std::erase_if(rest.surfels, predicate);
+        for (auto& [kind, of_kind] : rest.items) std::erase_if(of_kind, std::ref(predicate));
         return rest;
     }
-    bool empty() const { return meshes.empty() && points.empty() && surfels.empty(); }
+    /// Of surfaces; there may be lines.
+    bool empty() const;
     /// The items whose colours may be averaged: others are mixed with them in any case where they are
     /// layers.
     DrawList without_exact() const;
     /// The items that light passes, which are drawn in layers, and the others.
     DrawList layers() const;
     DrawList without_layers() const;
-    /// Of all meshes together.
+    /// Of all items together.
     ExtensionSet extensions() const;
     /// All items as surfaces that hide what is behind them: what depth, ids and labels are of. A blended
     /// surface is one where its opacity is at least one half.

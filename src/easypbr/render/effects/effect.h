@@ -14,12 +14,12 @@ struct Glow;
 
 /// What a frame shows once its passes have run.
 struct LitPicture {
-    const gl::Texture* radiance = nullptr;  ///< as GBuffer::radiance
-    const gl::Texture* overlay = nullptr;   ///< as GBuffer::overlay, where there is one
-    const Glow* glow = nullptr;             ///< where bloom spreads light
-    PixelRect covered;                      ///< all surfaces, lines and layers are inside
-    bool partly_covered = false;            ///< the radiance may hold coverages between 0 and 1
-    bool spreads = false;                   ///< light may fall beyond `covered`
+    const Target* radiance = nullptr;  ///< as GBuffer::radiance
+    const Target* overlay = nullptr;   ///< as GBuffer::overlay, where there is one
+    const Glow* glow = nullptr;        ///< where bloom spreads light
+    PixelRect covered;                 ///< all surfaces, lines and layers are inside
+    bool partly_covered = false;       ///< the radiance may hold coverages between 0 and 1
+    bool spreads = false;              ///< light may fall beyond `covered`
 };
 
 struct EffectInputs {

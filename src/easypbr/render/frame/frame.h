@@ -3,25 +3,14 @@
 
 #include <vector>
 
-#include "easypbr/core/picture.h"
 #include "easypbr/gl/draw.h"
 #include "easypbr/gl/program.h"
-#include "easypbr/gl/texture.h"
-#include "easypbr/render/frame/extensions.h"
+#include "easypbr/render/frame/surface_outputs.h"
+#include "easypbr/render/frame/target.h"
 #include "easypbr/scene/motion.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
-
-using easypbr::PixelRect;
-
-/// One layer of depth peeling: of what is nearer than the limit the farthest, or else the nearest.
-struct Peel {
-    const gl::Texture* limit = nullptr;  ///< R32F, reversed depth
-    bool first = true;  ///< the limit is the opaque surfaces' depth; else a pixel with 0 takes no more
-    bool farthest = true;
-    bool backs = false;  ///< instead the nearest back faces that lie behind the limit
-};
 
 /// A picture that is drawn whole sees all of itself.
 inline constexpr double unlimited_reach = 1e9;
@@ -55,13 +44,6 @@ struct Frame : Shot {
         frame.covered = area;
         return frame;
     }
-};
-
-/// What geometry is drawn for.
-struct SurfaceOutputs {
-    bool ids = false;             ///< the id and element targets are filled too
-    ExtensionSet extensions = 0;  ///< of the surfaces that are drawn; 0: all are of the core model
-    const Peel* peel = nullptr;   ///< one layer of depth peeling is drawn, into targets cleared before
 };
 
 /// Sub-pixel offset of a sample in [-0.5, 0.5): points of the Halton sequence in bases 2 and 3, moved so that

@@ -1,56 +1,128 @@
 #include "easypbr/render/frame/gbuffer.h"
 
+#include <span>
+#include <vector>
+
 namespace easypbr::render {
 
-GBuffer::GBuffer(Vec2i size) {
-    const int w = size.x(), h = size.y();
-    albedo = gl::Texture(gl::Format::rgba16, w, h);
-    normal = gl::Texture(gl::Format::rg16, w, h);
-    material = gl::Texture(gl::Format::rgba8, w, h);
-    depth = gl::Texture(gl::Format::r32f, w, h);
-    depth_test = gl::Texture(gl::Format::depth32f, w, h);
-    radiance = gl::Texture(gl::Format::rgba32f, w, h);
-    surface = gl::Framebuffer({&albedo, &normal, &material, &depth}, &depth_test);
-    surface_emission = gl::Framebuffer({&albedo, &normal, &material, &depth, &radiance}, &depth_test);
-    lit = gl::Framebuffer({&radiance}, &depth_test);
-}
+GBuffer::GBuffer(Vec2i size)
+    : albedo(gl::Format::rgba16, size),
+      normal(gl::Format::rg16, size),
+      material(gl::Format::rgba8, size),
+      depth(gl::Format::r32f, size),
+      radiance(gl::Format::rgba32f, size) {}
 
 void GBuffer::add_ids() {
     if (id) return;
-    id = gl::Texture(gl::Format::r32ui, albedo.width(), albedo.height());
-    element = gl::Texture(gl::Format::r32ui, albedo.width(), albedo.height());
-    surface_ids =
-        gl::Framebuffer({&albedo, &normal, &material, &depth, &radiance, &id, &element}, &depth_test);
+    id = Target(gl::Format::r32ui, size());
+    element = Target(gl::Format::r32ui, size());
 }
 
 void GBuffer::add_extensions() {
     if (extension[0]) return;
-    for (gl::Texture& texture : extension)
-        texture = gl::Texture(gl::Format::rgba32ui, albedo.width(), albedo.height());
-    surface_extended = gl::Framebuffer(
-        {&albedo, &normal, &material, &depth, &radiance, &extension[0], &extension[1]}, &depth_test);
+    for (Target& target : extension) target = Target(gl::Format::rgba32ui, size());
 }
 
 void GBuffer::add_overlay() {
-    if (overlay) return;
-    overlay = gl::Texture(gl::Format::rgba16f, albedo.width(), albedo.height());
-    display = gl::Framebuffer({&overlay}, &depth_test);
+    if (!overlay) overlay = Target(gl::Format::rgba16f, size());
+}
+
+void GBuffer::add_ambient_occlusion() {
+    if (!ambient_occlusion) ambient_occlusion = Target(gl::Format::r16, size());
+}
+
+void GBuffer::remove_ambient_occlusion() {
+    ambient_occlusion = Target();
+    occluded_ = gl::Framebuffer();
+}
+
+const gl::Texture& GBuffer::depth_test() const {
+    if (!depth_test_) depth_test_ = gl::Texture(gl::Format::depth32f, size().x(), size().y());
+    return depth_test_;
+}
+
+const gl::Framebuffer& GBuffer::framebuffer(gl::Framebuffer& made, Attachments attachments) const {
+    if (made) return made;
+    std::vector<const gl::Texture*> textures;
+    for (const Target* target : attachments) textures.push_back(&target->attachment());
+    return made = gl::Framebuffer(textures, &depth_test());
+}
+
+const gl::Framebuffer& GBuffer::drawn(gl::Framebuffer& made, Attachments attachments) const {
+    for (const Target* target : attachments) target->drawn();
+    return framebuffer(made, attachments);
+}
+
+const gl::Framebuffer& GBuffer::surface() const {
+    return drawn(surface_, {&albedo, &normal, &material, &depth});
+}
+
+const gl::Framebuffer& GBuffer::surface_emission() const {
+    return drawn(surface_emission_, {&albedo, &normal, &material, &depth, &radiance});
+}
+
+const gl::Framebuffer& GBuffer::surface_extended() const {
+    return drawn(surface_extended_,
+                 {&albedo, &normal, &material, &depth, &radiance, &extension[0], &extension[1]});
+}
+
+const gl::Framebuffer& GBuffer::surface_ids() const {
+    return drawn(surface_ids_, {&albedo, &normal, &material, &depth, &radiance, &id, &element});
+}
+
+const gl::Framebuffer& GBuffer::lit() const {
+    return drawn(lit_, {&radiance});
+}
+
+const gl::Framebuffer& GBuffer::display() const {
+    return drawn(display_, {&overlay});
+}
+
+const gl::Framebuffer& GBuffer::occluded() const {
+    return drawn(occluded_, {&ambient_occlusion});
 }
 
 void GBuffer::clear(bool with_ids) const {
     const float zero[4] = {0, 0, 0, 0};
-    if (with_ids) surface_ids.clear_integer(5, 0);
-    if (with_ids) surface_ids.clear_integer(6, 0);
-    surface.clear_color(3, zero);
-    surface.clear_depth(0);
-    lit.clear_color(0, zero);
+    if (with_ids) surface_ids().clear_integer(5, 0);
+    if (with_ids) surface_ids().clear_integer(6, 0);
+    surface().clear_color(3, zero);
+    surface().clear_depth(0);
+    lit().clear_color(0, zero);
 }
 
 void GBuffer::clear_layer() const {
     const float zero[4] = {0, 0, 0, 0};
-    surface.clear_color(3, zero);
-    surface.clear_depth(from_behind ? 1 : 0);
-    lit.clear_color(0, zero);
+    surface().clear_color(3, zero);
+    surface().clear_depth(from_behind ? 1 : 0);
+    lit().clear_color(0, zero);
+}
+
+void GBuffer::write(const PixelRect& area, bool with_ids) const {
+    for (const Target* target : {&albedo, &normal, &material, &depth}) target->write(area);
+    if (!with_ids) return;
+    id.write(area);
+    element.write(area);
+}
+
+void GBuffer::upload(Transfers& transfers) const {
+    if (!depth.is_ahead()) return;
+    const float zero[4] = {0, 0, 0, 0};
+    // Beyond the rectangle nothing is drawn, and nowhere is light.
+    const gl::Framebuffer& cleared = framebuffer(surface_, {&albedo, &normal, &material, &depth});
+    cleared.clear_color(3, zero);
+    cleared.clear_depth(0);
+    lit().clear_color(0, zero);
+    if (id && id.is_ahead()) {
+        const gl::Framebuffer& ids =
+            framebuffer(surface_ids_, {&albedo, &normal, &material, &depth, &radiance, &id, &element});
+        ids.clear_integer(5, 0);
+        ids.clear_integer(6, 0);
+        id.upload(transfers);
+        element.upload(transfers);
+    }
+    for (const Target* target : {&albedo, &normal, &material, &depth}) target->upload(transfers);
+    depth.copy_to(depth_test(), transfers);
 }
 
 gl::DrawState GBuffer::covered_state(const gl::Blending& blending) const {
@@ -58,17 +130,6 @@ gl::DrawState GBuffer::covered_state(const gl::Blending& blending) const {
     // rasterisers skip the rest before shading.
     if (!from_behind) return {.depth_test = gl::DepthTest::less, .blending = blending};
     return {.depth_test = gl::DepthTest::greater, .least_depth = 1, .blending = blending};
-}
-
-void GBuffer::add_ambient_occlusion() {
-    if (ambient_occlusion) return;
-    ambient_occlusion = gl::Texture(gl::Format::r16, albedo.width(), albedo.height());
-    occluded = gl::Framebuffer({&ambient_occlusion}, &depth_test);
-}
-
-void GBuffer::remove_ambient_occlusion() {
-    ambient_occlusion = gl::Texture();
-    occluded = gl::Framebuffer();
 }
 
 }  // namespace easypbr::render

@@ -22,7 +22,7 @@ void BackgroundPass::draw(const Frame& frame, const GBuffer& targets, const gpu:
     std::vector<std::string> defines = camera_defines(frame);
     if (blur) defines.emplace_back("BLUR");
     const gl::Program& program = programs_.get(defines);
-    targets.lit.bind();
+    targets.lit().bind();
     program.use();
     set_camera_uniforms(program, frame);
     program.set("u_env_from_world", Mat3(frame.resolved->R_env_world.cast<float>()));

@@ -140,7 +140,8 @@ void LightingPass::set_extensions(const gl::Program& program, const Frame& frame
         sheen_albedo_.upload(std::as_bytes(gpu::sheen_albedo_table()));
         sheen_albedo_.sampling(gl::Filtering::linear);
     }
-    const gl::Texture* sources[] = {&targets.extension[0], &targets.extension[1], &sheen_albedo_};
+    const gl::Texture* sources[] = {&targets.extension[0].texture(), &targets.extension[1].texture(),
+                                    &sheen_albedo_};
     const char* samplers[] = {"u_extension0", "u_extension1", "u_sheen_albedo"};
     for (int i = 0; i < 3; ++i) {
         sources[i]->bind(unsigned(extension_unit + i));
@@ -168,8 +169,8 @@ void LightingPass::set_transmission(const gl::Program& program, const Frame& fra
 
 void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightInputs& inputs) {
     const LightBlock& block = inputs.block;
-    targets.lit.bind();
-    const gl::Texture* sources[] = {&targets.albedo, &targets.normal, &targets.material, &targets.depth};
+    targets.lit().bind();
+    const Target* sources[] = {&targets.albedo, &targets.normal, &targets.material, &targets.depth};
     for (unsigned unit = 0; unit < 4; ++unit) sources[unit]->bind(unit);
     dfg(frame.resolved->settings.shading.brdf).bind(4);
     const gl::Program& program = programs_.get(defines_of(frame, targets, inputs));
@@ -202,7 +203,7 @@ void LightingPass::draw_caught(const Frame& frame, const GBuffer& targets, const
     const gl::Program& program = catcher_.get(light_defines(frame, targets, inputs));
     program.use();
     set_camera_uniforms(program, frame);
-    const std::pair<const char*, const gl::Texture*> sources[] = {
+    const std::pair<const char*, const Target*> sources[] = {
         {"u_normal", &targets.normal}, {"u_material", &targets.material}, {"u_depth_target", &targets.depth}};
     for (int unit = 0; unit < 3; ++unit) {
         program.set(sources[unit].first, unit);
@@ -228,7 +229,7 @@ void LightingPass::set_environment(const gl::Program& program, const Frame& fram
         program.set("u_lobe_slope", lobe_slope(frame.sample_index, frame.sample_count));
     program.set("u_env_intensity", frame.resolved->settings.environment.intensity);
     if (!inputs.traced) return;
-    const std::pair<const char*, const gl::Texture*> sources[] = {
+    const std::pair<const char*, const Target*> sources[] = {
         {"u_sky_visibility", &inputs.traced->sky_visibility},
         {"u_indirect_diffuse", &inputs.traced->indirect_diffuse},
         {"u_indirect_specular", &inputs.traced->indirect_specular}};

@@ -25,14 +25,14 @@ void set_eye_dome_uniforms(const gl::Program& program, const Frame& frame) {
 
 void DisplayPass::draw(const Frame& frame, const GBuffer& targets) {
     const float zero[4] = {0, 0, 0, 0};
-    targets.display.clear_color(0, zero);
-    targets.display.bind();
+    targets.display().clear_color(0, zero);
+    targets.display().bind();
     std::vector<std::string> defines = camera_defines(frame);
     if (targets.ambient_occlusion) defines.emplace_back("AMBIENT_OCCLUSION");
     const gl::Program& program = programs_.get(defines);
     program.use();
     set_eye_dome_uniforms(program, frame);
-    const gl::Texture* sources[] = {&targets.albedo, &targets.material, &targets.depth};
+    const Target* sources[] = {&targets.albedo, &targets.material, &targets.depth};
     const char* samplers[] = {"u_albedo", "u_material", "u_depth_target"};
     for (unsigned unit = 0; unit < 3; ++unit) {
         sources[unit]->bind(unit);

@@ -65,7 +65,7 @@ void add_defines(const LitPicture& lit, std::vector<std::string>& defines) {
     if (lit.glow) defines.emplace_back("BLOOM");
 }
 
-void bind_overlay(const gl::Program& program, const gl::Texture& overlay) {
+void bind_overlay(const gl::Program& program, const Target& overlay) {
     program.set("u_overlay", int(overlay_unit));
     overlay.bind(overlay_unit);
 }

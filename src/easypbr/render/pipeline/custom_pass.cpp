@@ -28,7 +28,7 @@ const gl::Texture& PassInput::before() const {
 }
 
 void PassInput::draw(const gl::Program& program, Blend blend) const {
-    const std::array<std::pair<const char*, const gl::Texture*>, 4> sources = {
+    const std::array<std::pair<const char*, const Target*>, 4> sources = {
         {{"u_albedo", &gbuffer.albedo},
          {"u_normal", &gbuffer.normal},
          {"u_material", &gbuffer.material},

@@ -26,8 +26,8 @@ void CustomPasses::draw_in_frame(const Frame& frame, const GBuffer& targets, Pas
     lit.covered = frame.whole();
     lit.partly_covered = lit.spreads = true;
     const Frame whole = frame.covering(lit.covered);
-    draw(Stage::light, whole, targets, targets.radiance, timer);
-    draw(Stage::overlay, whole, targets, targets.overlay, timer);
+    draw(Stage::light, whole, targets, targets.radiance.drawn(), timer);
+    draw(Stage::overlay, whole, targets, targets.overlay.drawn(), timer);
 }
 
 }  // namespace easypbr::render

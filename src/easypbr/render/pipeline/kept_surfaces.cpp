@@ -1,6 +1,5 @@
 #include "easypbr/render/pipeline/kept_surfaces.h"
 
-#include <span>
 #include <utility>
 
 #include "easypbr/core/error.h"
@@ -9,14 +8,6 @@
 
 namespace easypbr::render {
 namespace {
-
-template <class T>
-std::vector<T> read_target(const gl::Framebuffer& framebuffer, unsigned index, gl::Format format) {
-    std::vector<T> values(size_t(framebuffer.width()) * size_t(framebuffer.height()));
-    framebuffer.read(index, format, 0, 0, framebuffer.width(), framebuffer.height(),
-                     std::as_writable_bytes(std::span(values)));
-    return values;
-}
 
 /// Which part each face of a mesh is in.
 std::vector<uint32_t> parts_of_faces(const MeshData& mesh) {
@@ -58,15 +49,15 @@ void KeptSurfaces::draw(Pipeline& pipeline) const {
     pipeline.draw_surfaces(frame, list_, {.ids = true});
 }
 
-SurfaceFrame KeptSurfaces::read(const GBuffer& targets) const {
+SurfaceFrame KeptSurfaces::read(const GBuffer& targets, Transfers& transfers) const {
     if (!targets.id) throw ArgumentError("read_surfaces: the last picture was drawn without surfaces");
     SurfaceFrame frame;
     frame.size = targets.size();
     frame.camera = resolved_.camera;
     frame.scene = scene_;
-    frame.depth = read_target<float>(targets.surface, 3, gl::Format::r32f);
-    frame.object = read_target<uint32_t>(targets.surface_ids, 5, gl::Format::r32ui);
-    frame.element = read_target<uint32_t>(targets.surface_ids, 6, gl::Format::r32ui);
+    frame.depth = targets.depth.read<float>(transfers);
+    frame.object = targets.id.read<uint32_t>(transfers);
+    frame.element = targets.element.read<uint32_t>(transfers);
     frame.part.resize(frame.depth.size());
     frame.is_face.resize(frame.depth.size());
     std::vector<std::vector<uint32_t>> parts;

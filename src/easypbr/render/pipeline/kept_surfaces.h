@@ -20,7 +20,7 @@ class KeptSurfaces {
     /// Fills the pipeline's targets, ids too.
     void draw(Pipeline& pipeline) const;
     /// What the targets hold after draw(). Throws ArgumentError when they have no ids.
-    SurfaceFrame read(const GBuffer& targets) const;
+    SurfaceFrame read(const GBuffer& targets, Transfers& transfers) const;
     /// See Renderer::coverage().
     std::vector<uint8_t> coverage(Pipeline& pipeline, const PixelRect& area,
                                   const std::function<bool(size_t object, int first_face)>& wanted) const;

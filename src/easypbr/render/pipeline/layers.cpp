@@ -11,19 +11,6 @@
 #include "easypbr/core/suggest.h"
 
 namespace easypbr::render {
-namespace {
-
-template <class T>
-std::vector<T> read(const gl::Framebuffer& framebuffer, unsigned index, gl::Format format) {
-    const size_t bytes = size_t(framebuffer.width()) * size_t(framebuffer.height()) * gl::pixel_bytes(format);
-    std::vector<T> values(bytes / sizeof(T));
-    framebuffer.read(index, format, 0, 0, framebuffer.width(), framebuffer.height(),
-                     std::as_writable_bytes(std::span(values)));
-    return values;
-}
-
-}  // namespace
-
 const std::vector<std::string>& layer_names() {
     static const std::vector<std::string> names = {
         "albedo",    "normal_world",      "depth",     "roughness", "metallic",
@@ -50,8 +37,8 @@ Layer layer_named(const std::string& name) {
 }
 
 Image read_layer(Layer layer, const GBuffer& targets, const Camera& camera,
-                 const std::vector<ElementSources>& sources) {
-    const std::vector<float> depth = read<float>(targets.surface, 3, gl::Format::r32f);
+                 const std::vector<ElementSources>& sources, Transfers& transfers) {
+    const std::vector<float> depth = targets.depth.read<float>(transfers);
     const int channels = layer == Layer::albedo ? 4 : layer == Layer::normal_world ? 3 : 1;
     Image image(targets.size().x(), targets.size().y(), channels, PixelType::f32);
     float* to = image.pixels<float>().data();
@@ -66,13 +53,13 @@ Image read_layer(Layer layer, const GBuffer& targets, const Camera& camera,
         for_each_covered(
             [&](size_t i) { to[i] = orthographic ? far + (near - far) * depth[i] : near / depth[i]; });
     } else if (layer == Layer::albedo) {
-        const auto texels = read<uint16_t>(targets.surface, 0, gl::Format::rgba16);
+        const auto texels = targets.albedo.read<uint16_t>(transfers);
         for_each_covered([&](size_t i) {
             for (size_t c = 0; c < 3; ++c) to[4 * i + c] = float(texels[4 * i + c]) / 65535.0f;
             to[4 * i + 3] = 1;
         });
     } else if (layer == Layer::normal_world) {
-        const auto texels = read<uint16_t>(targets.surface, 1, gl::Format::rg16);
+        const auto texels = targets.normal.read<uint16_t>(transfers);
         for_each_covered([&](size_t i) {
             const Vec3 n = oct_decode(Vec2(texels[2 * i], texels[2 * i + 1]) / 32767.5f - Vec2(1, 1));
             std::copy_n(n.data(), 3, to + 3 * i);
@@ -81,13 +68,13 @@ Image read_layer(Layer layer, const GBuffer& targets, const Camera& camera,
         if (!targets.id)
             throw ArgumentError(fmt::format("layer {}: the last picture was drawn without ids",
                                             layer_names()[size_t(layer)]));
-        const auto texels =
-            read<uint32_t>(targets.surface_ids, layer == Layer::object_id ? 5 : 6, gl::Format::r32ui);
+        const Target& target = layer == Layer::object_id ? targets.id : targets.element;
+        const auto texels = target.read<uint32_t>(transfers);
         if (layer == Layer::object_id) {
             for_each_covered([&](size_t i) { to[i] = float(texels[i]); });
         } else {
             // Elements of the user's own data, not of what was made of them to be drawn.
-            const auto objects = read<uint32_t>(targets.surface_ids, 5, gl::Format::r32ui);
+            const auto objects = targets.id.read<uint32_t>(transfers);
             for_each_covered([&](size_t i) { to[i] = float(sources[objects[i] - 1].own(texels[i])); });
         }
     } else if (layer == Layer::ambient_occlusion) {
@@ -95,11 +82,11 @@ Image read_layer(Layer layer, const GBuffer& targets, const Camera& camera,
             for_each_covered([&](size_t i) { to[i] = 1; });
             return image;
         }
-        const auto texels = read<uint16_t>(targets.occluded, 0, gl::Format::r16);
+        const auto texels = targets.ambient_occlusion.read<uint16_t>(transfers);
         for_each_covered([&](size_t i) { to[i] = float(texels[i]) / 65535.0f; });
     } else {
         const size_t channel = layer == Layer::metallic ? 0 : layer == Layer::roughness ? 1 : 2;
-        const auto texels = read<uint8_t>(targets.surface, 2, gl::Format::rgba8);
+        const auto texels = targets.material.read<uint8_t>(transfers);
         for_each_covered([&](size_t i) { to[i] = float(texels[4 * i + channel]) / 255.0f; });
     }
     return image;

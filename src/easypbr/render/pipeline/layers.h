@@ -35,6 +35,6 @@ std::string layer_formerly(const std::string& name);
 /// Reads a layer of what the targets hold, seen by `camera`; `sources` of the objects that were drawn. Throws
 /// ArgumentError for ids that were not drawn.
 Image read_layer(Layer layer, const GBuffer& targets, const Camera& camera,
-                 const std::vector<ElementSources>& sources);
+                 const std::vector<ElementSources>& sources, Transfers& transfers);
 
 }  // namespace easypbr::render

@@ -26,9 +26,10 @@ RayGround ray_ground(const ResolvedSettings& resolved) {
 
 void Pipeline::begin(Vec2i size, const ResolvedSettings& resolved) {
     gl::reset_state();
-    if (!targets_.albedo || targets_.size() != size) targets_ = GBuffer(size);
+    if (targets_.size() != size) targets_ = GBuffer(size);
     if (!*resolved.settings.ssao.enabled) targets_.remove_ambient_occlusion();
     timer_.reset();
+    transfers_ = {};
 }
 
 void Pipeline::prepare_environment(const ResolvedSettings& resolved) {
@@ -52,7 +53,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     if (outputs.extensions) targets_.add_extensions();
 
     const PixelRect drawn =
-        timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
+        timer_.run("geometry", [&] { return draw_geometry(frame, opaque, targets_, outputs); });
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
     if (contents.ground) timer_.run("ground", [&] { ground_.draw(seen, targets_); });
     if (*resolved.settings.ssao.enabled && !contents.traced)
@@ -79,11 +80,19 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     return lit;
 }
 
+PixelRect Pipeline::draw_geometry(const Frame& frame, const DrawList& list, const GBuffer& targets,
+                                  const SurfaceOutputs& outputs) {
+    const PixelRect drawn = surfaces_.draw(frame, list, targets, outputs);
+    targets.upload(transfers_);
+    return drawn;
+}
+
 void Pipeline::light(const Frame& frame, const GBuffer& targets, const FrameContents& contents,
                      LightInputs inputs, bool caught) {
     shadow_maps_.rewind();
     if (contents.traced) {
-        timer_.run("rays", [&] { rays_.draw(frame, targets, ray_scene_); });
+        timer_.run("rays", [&] { rays_.draw(frame, targets, ray_scene_, transfers_); });
+        rays_.light().upload(transfers_);
         inputs.traced = &rays_.light();
     }
     if (caught) ground_.begin_light(frame, targets);
@@ -103,8 +112,8 @@ void Pipeline::light(const Frame& frame, const GBuffer& targets, const FrameCont
 void Pipeline::update_ray_scene(const Frame& frame, const DrawList& casters, bool ground) {
     std::optional<RayGround> plane;
     if (ground) plane = ray_ground(*frame.resolved);
-    ray_scene_.update(casters, shadow_maps_.caster_bounds(), shadow_maps_.casters_generation(),
-                      shadow_maps_.splats(), plane);
+    ray_scene_.update(casters, shadow_maps_.caster_bounds(), shadow_maps_.casters_generation(), primitives_,
+                      plane);
 }
 
 bool Pipeline::draws_overlay(const Shot& shot, const FrameContents& contents) const {
@@ -118,9 +127,9 @@ void Pipeline::draw_effects(const Frame& frame, const DrawList& opaque, bool ove
     bool has_ids = false;
     const auto with_ids = [&]() -> const GBuffer& {
         if (std::exchange(has_ids, true)) return with_ids_;
-        if (!with_ids_.albedo || with_ids_.size() != frame.size) with_ids_ = GBuffer(frame.size);
+        if (with_ids_.size() != frame.size) with_ids_ = GBuffer(frame.size);
         with_ids_.add_ids();
-        surfaces_.draw(frame, opaque, with_ids_, {.ids = true});
+        draw_geometry(frame, opaque, with_ids_, {.ids = true});
         return with_ids_;
     };
     // The frames of an accumulated picture look through different places of the lens.
@@ -139,16 +148,17 @@ void Pipeline::draw_surfaces(const Frame& frame, const DrawList& list, const Sur
     surfaces_.draw(frame, list, targets_, outputs);
 }
 
-const gl::Texture* Pipeline::draw_overlay(const Frame& frame, const DrawList& list,
-                                          const FrameContents& contents) {
+const Target* Pipeline::draw_overlay(const Frame& frame, const DrawList& list,
+                                     const FrameContents& contents) {
     if (list.lines.empty() && !draws_overlay(frame, contents)) return nullptr;
     targets_.add_overlay();
     const float nothing[4] = {0, 0, 0, 0};
-    targets_.display.clear_color(0, nothing);
+    targets_.display().clear_color(0, nothing);
     draw_lines(frame, list);
     LitPicture lit{.overlay = &targets_.overlay, .covered = frame.covered};
     draw_effects(frame, list, true, lit);
-    if (contents.custom) contents.custom->draw(Stage::overlay, frame, targets_, targets_.overlay, timer_);
+    if (contents.custom)
+        contents.custom->draw(Stage::overlay, frame, targets_, targets_.overlay.drawn(), timer_);
     return &targets_.overlay;
 }
 
@@ -167,7 +177,7 @@ const Box3d& Pipeline::bounds_of(const SceneSnapshot& scene) {
 
 void Pipeline::evict_unused() {
     caches_.evict_unused();
-    surfaces_.evict_unused();
+    for (const auto& kind : primitives_) kind->evict_unused();
     lines_.evict_unused();
 }
 

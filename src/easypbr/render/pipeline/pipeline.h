@@ -36,9 +36,9 @@ struct FrameContents {
 class Pipeline {
   public:
     Pipeline()
-        : surfaces_(caches_),
-          shadow_maps_(caches_.meshes, caches_.textures, caches_.closed_meshes, caches_.spacings,
-                       caches_.points, caches_.surfels) {}
+        : primitives_(make_primitives(caches_)),
+          surfaces_(primitives_, transfers_),
+          shadow_maps_(primitives_, transfers_) {}
 
     /// Makes the targets for a size and forgets the times of passes.
     void begin(Vec2i size, const ResolvedSettings& resolved);
@@ -49,17 +49,19 @@ class Pipeline {
     /// Draws a frame of `list`, with the shadows of `casters`. What it returns lives until the next call.
     LitPicture draw(const Frame& frame, const DrawList& list, const DrawList& casters,
                     const FrameContents& contents);
-    /// Fills the G-buffer alone.
+    /// Fills the G-buffer alone, in whichever memory that is done.
     void draw_surfaces(const Frame& frame, const DrawList& list, const SurfaceOutputs& outputs);
     /// Clears the overlay and draws what is in it beside surfaces: lines, effects, and a program's own
     /// passes.
-    const gl::Texture* draw_overlay(const Frame& frame, const DrawList& list, const FrameContents& contents);
+    const Target* draw_overlay(const Frame& frame, const DrawList& list, const FrameContents& contents);
 
     GBuffer& targets() { return targets_; }
     const GBuffer& targets() const { return targets_; }
-    SurfacePasses& surfaces() { return surfaces_; }
+    Surfaces& surfaces() { return surfaces_; }
     DataCaches& caches() { return caches_; }
     const ShadowMaps& shadow_maps() const { return shadow_maps_; }
+    /// Between host memory and textures, since begin().
+    Transfers& transfers() const { return transfers_; }
     PassTimer& timer() { return timer_; }
     const PassTimer& timer() const { return timer_; }
     const Box3d& bounds_of(const SceneSnapshot& scene);
@@ -71,6 +73,9 @@ class Pipeline {
     void evict_unused();
 
   private:
+    /// Fills the textures of a G-buffer.
+    PixelRect draw_geometry(const Frame& frame, const DrawList& list, const GBuffer& targets,
+                            const SurfaceOutputs& outputs);
     /// Lights a G-buffer, block by block of lights with their shadow maps; `caught`: with the light of the
     /// shadow catcher.
     void light(const Frame& frame, const GBuffer& targets, const FrameContents& contents, LightInputs inputs,
@@ -94,9 +99,11 @@ class Pipeline {
     void draw_effects(const Frame& frame, const DrawList& opaque, bool overlay_only, LitPicture& lit);
 
     GBuffer targets_;
+    mutable Transfers transfers_;  ///< reading targets counts too
     DataCaches caches_;
+    std::vector<std::unique_ptr<Primitive>> primitives_;
     gpu::EnvironmentMaps environment_;
-    SurfacePasses surfaces_;
+    Surfaces surfaces_;
     ShadowMaps shadow_maps_;
     AmbientOcclusionPass ambient_occlusion_;
     RayScene ray_scene_;

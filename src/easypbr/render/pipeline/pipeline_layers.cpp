@@ -6,14 +6,14 @@
 namespace easypbr::render {
 namespace {
 
-bool is_shaded_point(const DrawItem& item) {
+bool is_shaded(const DrawItem& item) {
     return item.kind == SurfaceKind::eye_dome;
 }
 
 }  // namespace
 
 const gl::Texture& Pipeline::hiding_depth(const Frame& frame, const DrawList& list) {
-    if (!list.without_layers().has(is_over)) return targets_.depth;
+    if (!list.without_layers().has(is_over)) return targets_.depth.texture();
     if (!hiding_depth_ || Vec2i(hiding_depth_.width(), hiding_depth_.height()) != frame.size) {
         hiding_depth_ = gl::Texture(gl::Format::r32f, frame.size.x(), frame.size.y());
         hiding_ = gl::Framebuffer({&hiding_depth_});
@@ -47,7 +47,8 @@ bool Pipeline::draw_transparent(const Frame& frame, const DrawList& list, const 
         // Hidden by what is drawn over everything else too, and by nothing but.
         const GBuffer& over = surfaces_.over(frame);
         if (!list.without_layers().has(is_over)) over.clear(false);
-        draw_layers(frame, layers.without(std::not_fn(is_over)), {}, over.depth, contents, with_overlay);
+        draw_layers(frame, layers.without(std::not_fn(is_over)), {}, over.depth.texture(), contents,
+                    with_overlay);
         drawn |= transparency_.has_layers();
     }
     lines_.draw_over(frame, list.lines, targets_);
@@ -56,25 +57,26 @@ bool Pipeline::draw_transparent(const Frame& frame, const DrawList& list, const 
 
 const gl::Texture* Pipeline::shade_points(const Frame& frame, const DrawList& layers,
                                           const gl::Texture& opaque) {
-    std::vector<DrawItem> points = layers.without(std::not_fn(is_shaded_point)).points;
-    if (points.empty()) return nullptr;
-    for (DrawItem& item : points) {
-        item.alpha = AlphaMode::mask;
-        item.material.alpha_cutoff = 1e-6f;  // whatever can be seen at all
-    }
+    DrawList shaded = layers.without(std::not_fn(is_shaded));
+    if (shaded.empty()) return nullptr;
+    for (auto& [kind, items] : shaded.items)
+        for (DrawItem& item : items) {
+            item.alpha = AlphaMode::mask;
+            item.material.alpha_cutoff = 1e-6f;  // whatever can be seen at all
+        }
     // The layer is not in use yet.
     transparency_.layer().clear(false);
-    surfaces_.draw_points(frame, points, transparency_.layer());
-    return &display_.shade(frame, transparency_.layer().depth, opaque);
+    surfaces_.draw_by_driver(frame, shaded, transparency_.layer(), {});
+    return &display_.shade(frame, transparency_.layer().depth.texture(), opaque);
 }
 
 void Pipeline::draw_layers(const Frame& frame, const DrawList& list, const std::vector<LineItem>& lines,
                            const gl::Texture& opaque, const FrameContents& contents, bool with_overlay) {
     SurfaceOutputs outputs{.extensions = list.extensions()};
     const bool see_through = outputs.extensions & transmission_bit;
-    const bool rough = std::ranges::any_of(list.meshes, &DrawItem::blurs_behind);
-    std::vector<DrawItem> volumes = list.meshes;
-    std::erase_if(volumes, [](const DrawItem& item) { return !item.is_volume(); });
+    const auto meshes = list.of(DrawMode::mesh);
+    const bool rough = std::ranges::any_of(meshes, &DrawItem::blurs_behind);
+    const bool volumes = std::ranges::any_of(meshes, &DrawItem::is_volume);
     const Box3d& bounds = bounds_of(*frame.scene);
     const double reach = (bounds.center() - frame.camera.position()).norm() + bounds.diagonal().norm() / 2;
     transparency_.begin(frame, targets_, opaque, outputs.extensions, with_overlay);
@@ -87,9 +89,9 @@ void Pipeline::draw_layers(const Frame& frame, const DrawList& list, const std::
         surfaces_.take_layer(list);
         lines_.draw_behind(frame, lines, targets_, transparency_.layer());
         if (see_through) transparency_.keep_picture(frame, targets_, rough, reach);
-        if (!volumes.empty()) {
+        if (volumes) {
             transparency_.open_exits(frame);
-            surfaces_.draw_backs(frame, volumes, transparency_.exits(), outputs);
+            surfaces_.draw_backs(frame, list, transparency_.exits(), outputs);
             transparency_.close_exits();
         }
         light(frame, transparency_.layer(), contents,

@@ -196,7 +196,10 @@ void Renderer::draw_exact() {
         lit = pipeline_.draw(frame, picture.list, picture.list, contents);
         lit.partly_covered |= picture.lit.partly_covered;
     }
-    if (averaged && !has_layers) pipeline_.draw_surfaces(frame, picture.list, {.ids = picture.contents.ids});
+    if (averaged && !has_layers) {
+        pipeline_.draw_surfaces(frame, picture.list, {.ids = picture.contents.ids});
+        pipeline_.targets().upload(pipeline_.transfers());
+    }
     if (!has_layers) lit.overlay = pipeline_.draw_overlay(frame, picture.list, picture.contents);
     output_.write_exact(frame, lit, pipeline_.targets(), has_layers);
 }
@@ -252,12 +255,12 @@ Image Renderer::begin_reading(gl::Readback& readback) const {
 }
 
 Image Renderer::read_layer(Layer layer) const {
-    return render::read_layer(layer, pipeline_.targets(), camera_, sources_);
+    return render::read_layer(layer, pipeline_.targets(), camera_, sources_, pipeline_.transfers());
 }
 
 SurfaceFrame Renderer::read_surfaces() const {
     if (!kept_) throw ArgumentError("read_surfaces: the last picture was drawn without surfaces");
-    return kept_->read(pipeline_.targets());
+    return kept_->read(pipeline_.targets(), pipeline_.transfers());
 }
 
 std::vector<uint8_t> Renderer::coverage(const PixelRect& area,

@@ -99,6 +99,10 @@ class Renderer {
     /// light or what casts changes.
     uint64_t shadow_maps_drawn() const { return pipeline_.shadow_maps().drawn(); }
 
+    /// Copies of targets between host memory and textures since the last picture began; reading it is not
+    /// counted.
+    const Transfers& transfers() const { return pipeline_.transfers(); }
+
     /// From now on every pass is finished before the next begins, and timed.
     void measure_passes(bool measure) { pipeline_.timer().enable(measure); }
     /// Milliseconds of each pass of the last picture, in pipeline order, summed over its frames.

@@ -18,7 +18,7 @@ struct SurfaceFrame {
     std::vector<uint32_t> object;   ///< 1 + place in `scene`, 0 where there is nothing
     std::vector<uint32_t> element;  ///< 1 + index of the face in the object's own data, or of the
                                     ///< vertex: of a voxel the first one in it
-    std::vector<uint8_t> is_face;   ///< 1: the element is a face; else a point, a surfel or a voxel
+    std::vector<uint8_t> is_face;   ///< 1: the element is a face; else a vertex, of a voxel too
     std::vector<uint32_t> part;     ///< of faces, index into MeshData::parts; 0 of all else
     SceneSnapshot scene;            ///< with the objects' own data
     std::vector<bool> only_faces;   ///< for each object: nothing of it reaches beyond its vertices

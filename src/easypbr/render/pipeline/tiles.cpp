@@ -8,6 +8,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/render/effects/effect.h"
 #include "easypbr/render/effects/ground/ground_pass.h"
+#include "easypbr/render/primitives/primitive.h"
 #include "easypbr/scene/draw_style.h"
 
 namespace easypbr::render {
@@ -17,9 +18,6 @@ namespace {
 constexpr double most_reach = 1024, most_reach_beside_transmission = 512;
 /// Smoothing along edges, the blur of occlusion, lines' edges.
 constexpr int smallest_guard = 16;
-/// Points of more pixels are none to drivers: the centres of half of them may lie outside of a tile.
-constexpr int largest_point = 256;
-
 /// Parts of one side of the picture.
 struct Span {
     int inner, inner_end, outer, outer_end;
@@ -64,15 +62,15 @@ bool has_transmission(const SceneSnapshot& scene, const ResolvedSettings& resolv
     });
 }
 
-/// Half the widest point of the scene.
-int point_reach(const SceneSnapshot& scene, const ResolvedSettings& resolved) {
+/// How far what the scene shows reaches beyond its pixels.
+int reach_in_pixels(const SceneSnapshot& scene, const ResolvedSettings& resolved) {
+    DataCaches caches;
+    const auto primitives = make_primitives(caches);
     int reach = 0;
     for (const auto& object : scene.objects) {
         const DrawStyle style = resolve_style(*object.mesh, resolved.settings.style);
-        if (!style.visible || (style.mode != DrawMode::points && !style.show_points)) continue;
-        const bool in_pixels = style.point_size && style.point_size_unit == SizeUnit::pixels;
-        const float size = in_pixels ? std::min(*style.point_size, float(largest_point)) : largest_point;
-        reach = std::max(reach, int(std::ceil(size / 2)));
+        for (const auto& kind : primitives)
+            if (style.visible) reach = std::max(reach, kind->reach_in_pixels(style));
     }
     return reach;
 }
@@ -92,7 +90,7 @@ Guard guard_of(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec
     const Frame whole = make_frame(shot, 0, resolved.camera, bounds, true);
 
     Guard guard;
-    guard.pixels = smallest_guard + settings.points.hole_filling + point_reach(scene, resolved);
+    guard.pixels = smallest_guard + settings.points.hole_filling + reach_in_pixels(scene, resolved);
     // Eye-dome lighting looks four of its radii far.
     guard.pixels += int(std::ceil(4 * std::max(1.0f, settings.edl.radius * float(picture.y()) / 1080)));
     const bool transmits = has_transmission(scene, resolved);

@@ -1,96 +1,160 @@
 #include "easypbr/render/primitives/surfaces.h"
 
+#include <algorithm>
 #include <functional>
-#include <span>
 
 #include "easypbr/gl/context.h"
 
 namespace easypbr::render {
+namespace {
 
-SurfacePasses::SurfacePasses(DataCaches& caches)
-    : meshes_(caches.meshes, caches.textures),
-      software_(caches.spacings, caches.closed_meshes),
-      points_(caches.spacings, caches.points),
-      surfel_splats_(caches.spacings, caches.surfels) {}
+/// The frames of one picture are jittered by up to a pixel, and edges are smoothed one pixel beyond them.
+PixelRect with_margin(const PixelRect& r, Vec2i size) {
+    constexpr int margin = 2;
+    if (r.width == 0) return {};
+    const int x0 = std::max(0, r.x - margin), y0 = std::max(0, r.y - margin);
+    return {x0, y0, std::min(size.x(), r.x + r.width + margin) - x0,
+            std::min(size.y(), r.y + r.height + margin) - y0};
+}
 
-bool SurfacePasses::is_native() const {
+}  // namespace
+
+std::vector<Surfaces::Group> Surfaces::groups_of(const DrawList& list) const {
+    std::vector<Group> groups;
+    for (const auto& kind : primitives_)
+        if (const DrawItems items = list.of(kind->mode()); !items.empty())
+            groups.push_back({kind.get(), items});
+    return groups;
+}
+
+bool Surfaces::is_native() const {
     return allow_native_ && gl::Context::current().info().software;
 }
 
-PixelRect SurfacePasses::draw_kinds(const Frame& frame, const DrawList& list, const GBuffer& targets,
-                                    const SurfaceOutputs& outputs) {
-    const bool native = is_native();
-    std::optional<PixelRect> covered;
-    if (native && SoftwareGeometryPass::handles(list))
-        covered = software_.draw(frame, list, targets, outputs);
-    if (!covered) {
-        meshes_.draw(frame, list.meshes, targets, outputs);
-        if (native && !list.points.empty() && SoftwareGeometryPass::handles_points(list))
-            software_.draw_points_over(frame, list, targets, outputs);
-        else
-            points_.draw(frame, list.points, targets, outputs);
+void Surfaces::rasterise(const Frame& frame, std::vector<Group>& groups) {
+    const auto use = [](const Group& group) { return group.kind->native_use(group.items); };
+    if (std::ranges::find(groups, NativeUse::preferred, use) == groups.end()) return;
+    visible_.clear(frame.size, frame.covered);
+    std::vector<Group> native = groups;
+    std::erase_if(native, [&](const Group& group) { return use(group) == NativeUse::none; });
+    // One that only the driver can draw may have added some of its items.
+    for (auto next = native.begin(); next != native.end();) {
+        if (next->kind->rasterise(frame, next->items, visible_)) {
+            ++next;
+            continue;
+        }
+        native.erase(next);
+        visible_.clear(frame.size, frame.covered);
+        next = native.begin();
     }
-    surfels_.draw(frame, list.surfels, targets, outputs, native);
-    const int fillings = frame.resolved->settings.points.hole_filling;
-    if (fillings > 0 && !list.points.empty()) composite_.fill_holes(frame, targets, outputs, fillings);
-    return covered.value_or(frame.covered);
+    std::erase_if(groups, [&](const Group& group) {
+        return std::ranges::find(native, group.kind, &Group::kind) != native.end();
+    });
 }
 
-GBuffer& SurfacePasses::over(const Frame& frame) {
-    if (!over_.albedo || over_.size() != frame.size) over_ = GBuffer(frame.size);
+PixelRect Surfaces::draw_groups(const Frame& frame, const DrawList& list, const GBuffer& targets,
+                                const SurfaceOutputs& outputs) {
+    std::vector<Group> groups = groups_of(list), means;
+    const bool native = is_native(), is_empty = groups.empty();
+    visible_.clear({0, 0}, {});
+    if (native) {
+        const auto by_mean = [](const Group& group) { return group.kind->is_mean(); };
+        std::ranges::copy_if(groups, std::back_inserter(means), by_mean);
+        std::erase_if(groups, by_mean);
+        rasterise(frame, groups);
+    }
+    const PixelRect seen = visible_.empty() ? PixelRect{} : visible_.crop();
+    const bool in_host_memory = native && groups.empty();
+    if (in_host_memory) {
+        SurfaceWriter writer(targets, means.empty() ? seen : frame.whole(), outputs.ids);
+        if (!means.empty()) writer.clear();
+        visible_.resolve(frame, writer);
+        for (const Group& group : means)
+            group.kind->add_mean(frame, group.items, targets.depth.pixels<float>(), writer);
+    } else {
+        targets.clear(outputs.ids);
+        for (const Group& group : groups) group.kind->draw(frame, group.items, targets, outputs);
+        if (!visible_.empty()) {
+            SurfaceWriter writer(composite_.staging(frame, outputs), seen, outputs.ids);
+            visible_.resolve(frame, writer);
+            composite_.draw(frame, targets, outputs, transfers_);
+        }
+        draw_means(frame, means, targets, outputs);
+    }
+    const int fillings = frame.resolved->settings.points.hole_filling;
+    if (fillings > 0 && !list.of(DrawMode::points).empty()) {
+        targets.upload(transfers_);
+        composite_.fill_holes(frame, targets, outputs, fillings);
+    }
+    const bool is_known = in_host_memory && means.empty() && list.lines.empty() && !is_empty;
+    return is_known ? with_margin(seen, frame.size) : frame.covered;
+}
+
+void Surfaces::draw_means(const Frame& frame, const std::vector<Group>& groups, const GBuffer& targets,
+                          const SurfaceOutputs& outputs) {
+    for (const Group& group : groups) {
+        targets.depth.download(frame.whole(), transfers_);
+        SurfaceWriter writer(composite_.staging(frame, outputs), frame.whole(), outputs.ids);
+        writer.clear();
+        group.kind->add_mean(frame, group.items, targets.depth.pixels<float>(), writer);
+        composite_.draw(frame, targets, outputs, transfers_);
+    }
+}
+
+GBuffer& Surfaces::over(const Frame& frame) {
+    if (over_.size() != frame.size) over_ = GBuffer(frame.size);
     return over_;
 }
 
-PixelRect SurfacePasses::draw(const Frame& frame, const DrawList& list, const GBuffer& targets,
-                              const SurfaceOutputs& outputs) {
-    if (!list.has(is_over)) return draw_kinds(frame, list, targets, outputs);
-    draw_kinds(frame, list.without(is_over), targets, outputs);
+PixelRect Surfaces::draw(const Frame& frame, const DrawList& list, const GBuffer& targets,
+                         const SurfaceOutputs& outputs) {
+    if (!list.has(is_over)) return draw_groups(frame, list, targets, outputs);
+    draw_groups(frame, list.without(is_over), targets, outputs);
     GBuffer& over_everything = over(frame);
     if (outputs.ids) over_everything.add_ids();
     if (outputs.extensions) over_everything.add_extensions();
-    draw_kinds(frame, list.without(std::not_fn(is_over)), over_everything, outputs);
+    draw_groups(frame, list.without(std::not_fn(is_over)), over_everything, outputs);
+    targets.upload(transfers_);
+    over_everything.upload(transfers_);
     composite_.draw_over(frame, over_everything, targets, outputs);
     return frame.covered;
 }
 
-std::vector<uint8_t> SurfacePasses::coverage(const Frame& frame, const DrawList& list) {
+void Surfaces::draw_by_driver(const Frame& frame, const DrawList& list, const GBuffer& targets,
+                              const SurfaceOutputs& outputs) {
+    for (const Group& group : groups_of(list)) group.kind->draw(frame, group.items, targets, outputs);
+}
+
+std::vector<uint8_t> Surfaces::coverage(const Frame& frame, const DrawList& list) {
     const size_t count = size_t(frame.size.x()) * size_t(frame.size.y());
     std::vector<uint8_t> covered(count);
     if (list.empty() || covered.empty()) return covered;
-    if (is_native() && software_.cover(frame, list, covered)) return covered;
-    if (!coverage_.albedo || coverage_.size() != frame.size) coverage_ = GBuffer(frame.size);
+    const auto covers = [&](const Group& group) { return group.kind->cover(frame, group.items, covered); };
+    if (is_native() && std::ranges::all_of(groups_of(list), covers)) return covered;
+    if (coverage_.size() != frame.size) coverage_ = GBuffer(frame.size);
     coverage_.add_ids();
     draw(frame, list, coverage_, {.ids = true});
-    std::vector<float> depth(count);
-    coverage_.surface.read(3, gl::Format::r32f, 0, 0, frame.size.x(), frame.size.y(),
-                           std::as_writable_bytes(std::span(depth)));
+    const std::vector<float> depth = coverage_.depth.read<float>(transfers_);
     for (size_t i = 0; i < count; ++i) covered[i] = depth[i] > 0;
     return covered;
 }
 
-void SurfacePasses::begin_layers(const Frame& frame, const DrawList& list, const gl::Texture& opaque) {
-    surfel_layers_.begin(frame, list.surfels, opaque);
+void Surfaces::begin_layers(const Frame& frame, const DrawList& list, const gl::Texture& opaque) {
+    for (const Group& group : groups_of(list)) group.kind->begin_layers(frame, group.items, opaque);
 }
 
-void SurfacePasses::draw_layer(const Frame& frame, const DrawList& list, const GBuffer& layer,
-                               const SurfaceOutputs& outputs) {
-    meshes_.draw(frame, list.meshes, layer, outputs);
-    points_.draw(frame, list.points, layer, outputs);
-    surfel_layers_.draw(frame, list.surfels, layer, outputs);
+void Surfaces::draw_layer(const Frame& frame, const DrawList& list, const GBuffer& layer,
+                          const SurfaceOutputs& outputs) {
+    for (const Group& group : groups_of(list)) group.kind->draw_layer(frame, group.items, layer, outputs);
 }
 
-void SurfacePasses::take_layer(const DrawList& list) {
-    surfel_layers_.take(list.surfels);
+void Surfaces::take_layer(const DrawList& list) {
+    for (const Group& group : groups_of(list)) group.kind->take_layer(group.items);
 }
 
-void SurfacePasses::draw_backs(const Frame& frame, const std::vector<DrawItem>& meshes,
-                               const GBuffer& targets, const SurfaceOutputs& outputs) {
-    meshes_.draw(frame, meshes, targets, outputs);
-}
-
-void SurfacePasses::draw_points(const Frame& frame, const std::vector<DrawItem>& points,
-                                const GBuffer& targets) {
-    points_.draw(frame, points, targets, {});
+void Surfaces::draw_backs(const Frame& frame, const DrawList& list, const GBuffer& targets,
+                          const SurfaceOutputs& outputs) {
+    for (const Group& group : groups_of(list)) group.kind->draw_backs(frame, group.items, targets, outputs);
 }
 
 }  // namespace easypbr::render

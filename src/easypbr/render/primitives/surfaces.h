@@ -2,66 +2,67 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
-#include "easypbr/render/drawables/draw_list.h"
-#include "easypbr/render/frame/frame.h"
-#include "easypbr/render/frame/gbuffer.h"
-#include "easypbr/render/primitives/caches.h"
-#include "easypbr/render/primitives/mesh/geometry_pass.h"
-#include "easypbr/render/primitives/points/point_pass.h"
-#include "easypbr/render/primitives/surfels/surfel_layers.h"
-#include "easypbr/render/primitives/surfels/surfel_pass.h"
-#include "easypbr/render/raster/software_geometry_pass.h"
+#include "easypbr/render/primitives/primitive.h"
+#include "easypbr/render/raster/surface_composite.h"
 
 namespace easypbr::render {
 
-class SurfacePasses {
+class Surfaces {
   public:
-    /// The caches must outlive this.
-    explicit SurfacePasses(DataCaches& caches);
+    using Primitives = std::vector<std::unique_ptr<Primitive>>;
+    /// Both must outlive this.
+    Surfaces(const Primitives& primitives, Transfers& transfers)
+        : primitives_(primitives), transfers_(transfers) {}
 
     /// Fills the targets with the surfaces of the list, each kind by the faster way that can draw it:
-    /// natively without a GPU, by the driver otherwise. What is drawn over everything else comes last.
-    /// Returns the rectangle that all surfaces and lines are inside.
+    /// natively without a GPU, by the driver otherwise. They are in host memory where all of them could be
+    /// drawn natively, else in the textures. What is drawn over everything else comes last. Returns the
+    /// rectangle that all surfaces and lines are inside.
     PixelRect draw(const Frame& frame, const DrawList& list, const GBuffer& targets,
                    const SurfaceOutputs& outputs);
+    /// Adds surfaces by the driver, to cleared targets.
+    void draw_by_driver(const Frame& frame, const DrawList& list, const GBuffer& targets,
+                        const SurfaceOutputs& outputs);
     /// The surfaces alone that are drawn over everything else, after draw(); those of layers may come later.
     GBuffer& over(const Frame& frame);
 
     /// Which pixels of a small frame the list covers: 1 or 0, row by row.
     std::vector<uint8_t> coverage(const Frame& frame, const DrawList& list);
 
-    /// Layers: begin_layers() once, then draw_layer() for each that is peeled, and take_layer() for those
-    /// that hold something. Nothing behind `opaque` (R32F, reversed depth) is drawn.
+    // Layers, see Primitive.
     void begin_layers(const Frame& frame, const DrawList& list, const gl::Texture& opaque);
     void draw_layer(const Frame& frame, const DrawList& list, const GBuffer& layer,
                     const SurfaceOutputs& outputs);
     void take_layer(const DrawList& list);
-    /// The back faces of the meshes of a list.
-    void draw_backs(const Frame& frame, const std::vector<DrawItem>& meshes, const GBuffer& targets,
+    void draw_backs(const Frame& frame, const DrawList& list, const GBuffer& targets,
                     const SurfaceOutputs& outputs);
-    /// Points alone, into cleared targets.
-    void draw_points(const Frame& frame, const std::vector<DrawItem>& points, const GBuffer& targets);
 
-    /// Without a GPU, plain triangles are rasterised natively; false leaves them to the driver.
+    /// Without a GPU, surfaces are drawn natively; false leaves them to the driver.
     void allow_native(bool allow) { allow_native_ = allow; }
-    void evict_unused() { software_.evict_unused(); }
 
   private:
+    /// Items of a list, with their kind.
+    struct Group {
+        Primitive* kind;
+        DrawItems items;
+    };
+    std::vector<Group> groups_of(const DrawList& list) const;
     bool is_native() const;
-    PixelRect draw_kinds(const Frame& frame, const DrawList& list, const GBuffer& targets,
-                         const SurfaceOutputs& outputs);
+    /// Takes the groups out of the list that are visible natively; the rest is left to others.
+    void rasterise(const Frame& frame, std::vector<Group>& groups);
+    void draw_means(const Frame& frame, const std::vector<Group>& groups, const GBuffer& targets,
+                    const SurfaceOutputs& outputs);
+    PixelRect draw_groups(const Frame& frame, const DrawList& list, const GBuffer& targets,
+                          const SurfaceOutputs& outputs);
 
-    GeometryPass meshes_;
-    SoftwareGeometryPass software_;
-    PointPass points_;
-    SurfelSplats surfel_splats_;
-    SurfelPass surfels_{surfel_splats_};
-    SurfelLayers surfel_layers_{surfel_splats_};
+    const Primitives& primitives_;
+    Transfers& transfers_;
+    VisibleSurfaces visible_;
     SurfaceComposite composite_;
-    GBuffer over_;
-    GBuffer coverage_;
+    GBuffer over_, coverage_;
     bool allow_native_ = true;
 };
 

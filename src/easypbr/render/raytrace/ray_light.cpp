@@ -139,7 +139,7 @@ Vec3 RayLight::from_lights(const Vec3& at, const Vec3& normal) const {
         if (falls <= 0) continue;
         const float reach = parallel ? std::numeric_limits<float>::infinity() : distance;
         if (light.casts_shadows && resolved_->settings.shadows.enabled &&
-            scene_->blocked(off_surface(at, normal, scene_->splat_reach()), l, reach))
+            scene_->blocked(off_surface(at, normal, scene_->reach()), l, reach))
             continue;
         sum += light.color * (light.intensity * falls * cosine / float(pi));
     }
@@ -178,7 +178,7 @@ Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, 
                      : cosine_direction(frame, u);
         if (next.dot(hit.normal) <= 0) break;
         weight = weight.cwiseProduct(mirrored ? Vec3(reflects / likely) : Vec3(diffuse / (1 - likely)));
-        const auto found = scene_->trace(off_surface(hit.position, hit.normal, scene_->splat_reach()), next);
+        const auto found = scene_->trace(off_surface(hit.position, hit.normal, scene_->reach()), next);
         // What is seen past a matt surface is blurred, so that few paths do: the sky's mean around a
         // direction.
         const bool blurred = scattered || !mirrored;

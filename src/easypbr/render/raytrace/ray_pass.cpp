@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "easypbr/core/octahedral.h"
 #include "easypbr/core/parallel.h"
@@ -34,26 +36,33 @@ bool is_lit(uint8_t kind) {
 
 }  // namespace
 
-/// A rectangle of the G-buffer in memory, and what becomes of it.
+/// A rectangle of the G-buffer in host memory, and what becomes of it.
 struct RayPass::Pixels {
-    Pixels(const Frame& frame_, const GBuffer& targets) : frame(frame_), area(frame_.covered) {
-        const size_t count = size_t(area.width) * size_t(area.height);
-        normal.resize(count * 2);
-        material.resize(count * 4);
-        depth.resize(count);
-        const auto read = [&](unsigned index, gl::Format format, auto& to) {
-            targets.surface.read(index, format, area.x, area.y, area.width, area.height,
-                                 std::as_writable_bytes(std::span(to)));
+    Pixels(const Frame& frame_, const GBuffer& targets, const TracedLight& light, Transfers& transfers)
+        : frame(frame_), area(frame_.covered) {
+        for (const Target* target : {&targets.normal, &targets.material, &targets.depth})
+            target->download(area, transfers);
+        held = targets.depth.area();
+        normal = targets.normal.pixels<uint16_t>();
+        material = targets.material.pixels<uint8_t>();
+        depth = targets.depth.pixels<float>();
+        const auto begin = [&](const Target& target, const Half4& nothing) {
+            target.write(area);
+            std::ranges::fill(target.pixels<Half4>(), nothing);
+            return target.pixels<Half4>();
         };
-        read(1, gl::Format::rg16, normal);
-        read(2, gl::Format::rgba8, material);
-        read(3, gl::Format::r32f, depth);
-        sky_visibility.assign(count, half4(Vec3::Ones(), 1));
-        indirect_diffuse.assign(count, half4(Vec3::Zero(), 0));
-        indirect_specular.assign(count, half4(Vec3::Zero(), 0));
+        sky_visibility = begin(light.sky_visibility, half4(Vec3::Ones(), 1));
+        indirect_diffuse = begin(light.indirect_diffuse, half4(Vec3::Zero(), 0));
+        indirect_specular = begin(light.indirect_specular, half4(Vec3::Zero(), 0));
         world_from_view = frame.camera.T_world_cam.linear();
     }
 
+    /// Of a pixel of the G-buffer in what it holds in host memory; nothing beyond.
+    std::optional<size_t> source(int x, int y) const {
+        if (x < held.x || y < held.y || x >= held.x + held.width || y >= held.y + held.height)
+            return std::nullopt;
+        return size_t(y - held.y) * size_t(held.width) + size_t(x - held.x);
+    }
     size_t index(int x, int y) const { return size_t(y - area.y) * size_t(area.width) + size_t(x - area.x); }
 
     /// View space; `d` > 0.
@@ -68,30 +77,20 @@ struct RayPass::Pixels {
         return {(ndc.x() + p(0, 2)) / p(0, 0) * z, (ndc.y() + p(1, 2)) / p(1, 1) * z, -z};
     }
 
-    void upload(const TracedLight& light) const {
-        const auto put = [&](const gl::Texture& texture, const std::vector<Half4>& pixels) {
-            texture.upload_area(area.x, area.y, area.width, area.height, std::as_bytes(std::span(pixels)));
-        };
-        put(light.sky_visibility, sky_visibility);
-        put(light.indirect_diffuse, indirect_diffuse);
-        put(light.indirect_specular, indirect_specular);
-    }
-
     const Frame& frame;
-    PixelRect area;
-    std::vector<uint16_t> normal;
-    std::vector<uint8_t> material;
-    std::vector<float> depth;
-    std::vector<Half4> sky_visibility, indirect_diffuse, indirect_specular;
+    PixelRect area;  ///< that is traced
+    PixelRect held;  ///< of the G-buffer, in host memory
+    std::span<const uint16_t> normal;
+    std::span<const uint8_t> material;
+    std::span<const float> depth;
+    std::span<Half4> sky_visibility, indirect_diffuse, indirect_specular;
     Mat3d world_from_view;
 };
 
 void RayPass::make_targets(Vec2i size) {
-    if (light_.sky_visibility && light_.sky_visibility.width() == size.x() &&
-        light_.sky_visibility.height() == size.y())
-        return;
-    for (gl::Texture* texture : {&light_.sky_visibility, &light_.indirect_diffuse, &light_.indirect_specular})
-        *texture = gl::Texture(gl::Format::rgba16f, size.x(), size.y());
+    if (light_.sky_visibility.size() == size) return;
+    for (Target* target : {&light_.sky_visibility, &light_.indirect_diffuse, &light_.indirect_specular})
+        *target = Target(gl::Format::rgba16f, size);
 }
 
 namespace {
@@ -180,11 +179,11 @@ void send_mirrored(const Seen& seen, const RayScene& scene, const RayLight& rays
 
 }  // namespace
 
-void RayPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& scene) {
+void RayPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& scene, Transfers& transfers) {
     make_targets(frame.size);
     if (frame.covered.width <= 0 || frame.covered.height <= 0) return;
-    Pixels pixels(frame, targets);
-    if (scene.empty()) return pixels.upload(light_);
+    Pixels pixels(frame, targets, light_, transfers);
+    if (scene.empty()) return;
     rays_.prepare(*frame.resolved, scene);
     const int wanted = frame.resolved->settings.rays.count;
     const int diffuse = std::max(least_rays, (wanted + frame.sample_count - 1) / frame.sample_count),
@@ -201,18 +200,20 @@ void RayPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& s
         return sum / float(frame.sample_index + 1);
     };
     const auto send = [&](int x, int y) {
-        const size_t at = pixels.index(x, y);
-        const uint8_t* material = &pixels.material[at * 4];
-        if (pixels.depth[at] <= 0 || !is_lit(material[3])) return;
-        const Vec3d position = pixels.view_position(x, y, pixels.depth[at]);
+        const std::optional<size_t> seen_at = pixels.source(x, y);
+        if (!seen_at || pixels.depth[*seen_at] <= 0) return;
+        const size_t from = *seen_at, at = pixels.index(x, y);
+        const uint8_t* material = &pixels.material[from * 4];
+        if (!is_lit(material[3])) return;
+        const Vec3d position = pixels.view_position(x, y, pixels.depth[from]);
         const Vec3d towards = frame.orthographic() ? Vec3d(0, 0, 1) : Vec3d(-position.normalized());
         Seen seen;
         seen.normal =
-            oct_decode(Vec2(pixels.normal[at * 2], pixels.normal[at * 2 + 1]) / 32767.5f - Vec2(1, 1));
+            oct_decode(Vec2(pixels.normal[from * 2], pixels.normal[from * 2 + 1]) / 32767.5f - Vec2(1, 1));
         seen.view = (pixels.world_from_view * towards).cast<float>();
         const Vec3 place = ((pixels.world_from_view * position + eye) / scene.unit()).cast<float>();
         seen.face = face_at(place, seen, scene);
-        seen.from = rays_.off_surface(place, seen.face, scene.splat_reach());
+        seen.from = rays_.off_surface(place, seen.face, scene.reach());
         const float roughness = float(material[1]) / 255;
         seen.alpha = roughness * roughness;
         const Vec2d pixel = (frame.origin + Vec2i(x, y)).cast<double>();
@@ -229,7 +230,6 @@ void RayPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& s
     parallel_for(size_t(area.height), 4, [&](size_t row) {
         for (int x = 0; x < area.width; ++x) send(area.x + x, area.y + int(row));
     });
-    pixels.upload(light_);
 }
 
 }  // namespace easypbr::render

@@ -11,8 +11,8 @@ namespace easypbr::render {
 /// For the frames of a still: each sends a few rays from every pixel, evenly spread over all frames.
 class RayPass {
   public:
-    /// Fills what light() gives from the G-buffer's surfaces that are lit.
-    void draw(const Frame& frame, const GBuffer& targets, const RayScene& scene);
+    /// Fills what light() gives, in host memory, from the G-buffer's surfaces that are lit.
+    void draw(const Frame& frame, const GBuffer& targets, const RayScene& scene, Transfers& transfers);
     const TracedLight& light() const { return light_; }
 
   private:

@@ -2,11 +2,11 @@
 
 #include <embree3/rtcore.h>
 
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <numbers>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
@@ -15,9 +15,6 @@
 
 namespace easypbr::render {
 namespace {
-
-/// Corners of the polygon that a surfel's ellipse is drawn as; its area is that of the ellipse.
-constexpr int surfel_corners = 8;
 
 /// Well-spread number in [0, 1) of a ray and the element it meets.
 float hash_of(const RTCRay& ray, unsigned element) {
@@ -43,7 +40,10 @@ RTCRay ray_of(const Vec3& from, const Vec3& direction, float farthest) {
 /// What a filter needs to know.
 struct Element {
     const DrawItem* item = nullptr;
-    int first_face = 0;
+    int first = 0;      ///< element of the item
+    int triangles = 1;  ///< of each
+
+    int of(unsigned triangle) const { return first + int(triangle) / triangles; }
 };
 
 /// Leaves out holes and what lets the ray through.
@@ -51,20 +51,23 @@ void filter(const RTCFilterFunctionNArguments* args) {
     const auto& element = *static_cast<const Element*>(args->geometryUserPtr);
     if (args->valid[0] != -1 || args->N != 1) return;
     const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
-    const float stops = opacity_at(*element.item, element.first_face + int(hit.primID), hit.u, hit.v);
+    const float stops = opacity_at(*element.item, element.of(hit.primID), hit.u, hit.v);
     const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);
     if (stops < 1 && (stops <= 0 || hash_of(ray, hit.primID) >= stops)) args->valid[0] = 0;
 }
 
 }  // namespace
 
-struct RayScene::Scene {
-    Scene() : device(rtcNewDevice(nullptr)) {
+struct RayScene::Scene final : RayGeometry {
+    Scene(const Vec3d& centre, double unit_)
+        : world_scale(1 / unit_),
+          from_world(Eigen::Scaling(1 / unit_) * Eigen::Translation3d(-centre)),
+          device(rtcNewDevice(nullptr)) {
         if (!device) throw Error("rays: Embree gives no device");
         scene = rtcNewScene(device);
         rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
     }
-    ~Scene() {
+    ~Scene() override {
         rtcReleaseScene(scene);
         rtcReleaseDevice(device);
     }
@@ -78,8 +81,13 @@ struct RayScene::Scene {
         return {static_cast<T*>(data), count};
     }
 
-    void attach(RTCGeometry geometry, const DrawItem& item, int first_face) {
-        elements.push_back(std::make_unique<Element>(Element{&item, first_face}));
+    Eigen::Affine3d placed(const DrawItem& item) const {
+        return Eigen::Affine3d(from_world * item.object->T_world_mesh);
+    }
+
+    void attach(RTCGeometry geometry, const Element& element) {
+        const DrawItem& item = *element.item;
+        elements.push_back(std::make_unique<Element>(element));
         rtcSetGeometryUserData(geometry, elements.back().get());
         if (item.alpha != AlphaMode::opaque || item.casts_tint()) {
             rtcSetGeometryIntersectFilterFunction(geometry, filter);
@@ -102,10 +110,10 @@ struct RayScene::Scene {
         return V;
     }
 
-    void add_faces(const DrawItem& item, const Eigen::Affine3d& T) {
+    void add_faces(const DrawItem& item) override {
         const MeshData& mesh = item.mesh();
         RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        const auto& V = vertices_of(item, T);
+        const auto& V = vertices_of(item, placed(item));
         rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, V.data(), 0,
                                    sizeof(Vec3), size_t(mesh.V.rows()));
         const auto F = buffer<std::array<uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
@@ -113,11 +121,13 @@ struct RayScene::Scene {
         for (size_t i = 0; i < F.size(); ++i)
             for (int c = 0; c < 3; ++c)
                 F[i][size_t(c)] = uint32_t(mesh.F(item.part.first_face + Eigen::Index(i), c));
-        attach(geometry, item, item.part.first_face);
+        attach(geometry, {&item, item.part.first_face});
     }
 
-    void add_points(const DrawItem& item, const Eigen::Affine3d& T, float radius) {
+    void add_discs(const DrawItem& item, double world_radius) override {
         const MeshData& mesh = item.mesh();
+        const Eigen::Affine3d T = placed(item);
+        const auto radius = float(world_radius * world_scale);
         const bool oriented = !mesh.N.empty();
         RTCGeometry geometry = rtcNewGeometry(
             device, oriented ? RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT : RTC_GEOMETRY_TYPE_DISC_POINT);
@@ -136,41 +146,35 @@ struct RayScene::Scene {
                 N[i] = {n.x(), n.y(), n.z()};
             }
         }
-        attach(geometry, item, 0);
+        attach(geometry, {&item});
     }
 
-    void add_surfels(const DrawItem& item, const Eigen::Affine3d& T, float own_radius) {
-        const MeshData& mesh = item.mesh();
-        const auto count = size_t(mesh.V.rows());
+    void add_polygons(const DrawItem& item, int corners,
+                      const std::function<void(Eigen::Index, std::span<Vec3d>)>& polygon) override {
+        const Eigen::Affine3d T = placed(item);
+        const auto count = size_t(item.mesh().V.rows()), n = size_t(corners), triangles = n - 2;
         RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        const auto V = buffer<std::array<float, 3>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
-                                                    count * surfel_corners);
+        const auto V =
+            buffer<std::array<float, 3>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, count * n);
         const auto F = buffer<std::array<uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
-                                                       count * (surfel_corners - 2));
-        const double turn = 2 * std::numbers::pi / surfel_corners;
-        const double same_area = std::sqrt(turn / std::sin(turn)) * item.style.surfel_scale;
+                                                       count * triangles);
         parallel_for(count, 1 << 10, [&](size_t i) {
-            const auto row = Eigen::Index(i);
-            const Vec3d centre = mesh.V.row(row).transpose().cast<double>(),
-                        n = mesh.N.row(row).transpose().cast<double>().normalized();
-            Vec3d t = mesh.T.empty() ? Vec3d(n.unitOrthogonal() * own_radius)
-                                     : Vec3d(mesh.T.row(row).transpose().cast<double>());
-            const double length = mesh.B.empty() ? t.norm() : double(mesh.B(row));
-            const Vec3d b = n.cross(t).normalized() * length;
-            for (int c = 0; c < surfel_corners; ++c) {
-                const Vec3 p =
-                    (T * Vec3d(centre + same_area * (std::cos(turn * c) * t + std::sin(turn * c) * b)))
-                        .cast<float>();
-                V[i * surfel_corners + size_t(c)] = {p.x(), p.y(), p.z()};
+            std::array<Vec3d, most_corners> places;
+            polygon(Eigen::Index(i), std::span(places.data(), n));
+            for (size_t c = 0; c < n; ++c) {
+                const Vec3 p = (T * places[c]).cast<float>();
+                V[i * n + c] = {p.x(), p.y(), p.z()};
             }
-            for (uint32_t c = 0; c + 2 < surfel_corners; ++c) {
-                const auto first = uint32_t(i * surfel_corners);
-                F[i * (surfel_corners - 2) + c] = {first, first + c + 1, first + c + 2};
-            }
+            const auto first = uint32_t(i * n);
+            for (uint32_t c = 0; c < triangles; ++c)
+                F[i * triangles + c] = {first, first + c + 1, first + c + 2};
         });
-        attach(geometry, item, -1);
+        attach(geometry, {&item, 0, int(triangles)});
     }
 
+    static constexpr size_t most_corners = 16;
+    double world_scale;
+    Eigen::Affine3d from_world;
     RTCDevice device;
     RTCScene scene = nullptr;
     std::vector<std::unique_ptr<Element>> elements;
@@ -180,39 +184,28 @@ struct RayScene::Scene {
 RayScene::RayScene() = default;
 RayScene::~RayScene() = default;
 
-void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t generation, SplatShadows& splats,
+void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t generation,
+                      const std::vector<std::unique_ptr<Primitive>>& primitives,
                       const std::optional<RayGround>& ground) {
     ground_ = ground;
-    std::vector<const DrawItem*> items;
-    for (const auto* list : {&casters.meshes, &casters.points, &casters.surfels})
-        for (const DrawItem& item : *list) items.push_back(&item);
+    std::vector<std::pair<Primitive*, const DrawItem*>> items;
+    for (const auto& kind : primitives)
+        for (const DrawItem& item : casters.of(kind->mode())) items.emplace_back(kind.get(), &item);
     if (scene_ && generation == generation_) {
         // The list may be another one of the same casters.
-        for (size_t i = 0; i < items.size(); ++i) scene_->elements[i]->item = items[i];
+        for (size_t i = 0; i < items.size(); ++i) scene_->elements[i]->item = items[i].second;
         return;
     }
     generation_ = generation;
     scene_.reset();
-    splat_reach_ = 0;
+    reach_ = 0;
     if (items.empty() || bounds.isEmpty() || !(bounds.diagonal().norm() > 0)) return;
     centre_ = bounds.center();
     unit_ = bounds.diagonal().norm() / 2;
-    scene_ = std::make_unique<Scene>();
-    const auto placed = [&](const DrawItem& item) {
-        return Eigen::Affine3d(Eigen::Scaling(1 / unit_) * Eigen::Translation3d(-centre_) *
-                               item.object->T_world_mesh);
-    };
-    for (const DrawItem& item : casters.meshes) scene_->add_faces(item, placed(item));
-    const auto note_reach = [&](const DrawItem& item, bool surfels) {
-        const auto reach = float(splats.reach(item, surfels) / unit_);
-        if (item.kind == SurfaceKind::lit) splat_reach_ = std::max(splat_reach_, reach);
-        return reach;
-    };
-    for (const DrawItem& item : casters.points)
-        scene_->add_points(item, placed(item), note_reach(item, false));
-    for (const DrawItem& item : casters.surfels) {
-        note_reach(item, true);
-        scene_->add_surfels(item, placed(item), float(splats.surfel_radius(item)));
+    scene_ = std::make_unique<Scene>(centre_, unit_);
+    for (const auto& [kind, item] : items) {
+        if (item->kind == SurfaceKind::lit) reach_ = std::max(reach_, float(kind->reach(*item) / unit_));
+        kind->add_to(*scene_, *item);
     }
     rtcCommitScene(scene_->scene);
 }
@@ -246,8 +239,7 @@ std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction) c
     }
     const Element& element = *scene_->elements[found.hit.geomID];
     hit.item = element.item;
-    hit.element = element.first_face < 0 ? int(found.hit.primID) / (surfel_corners - 2)
-                                         : element.first_face + int(found.hit.primID);
+    hit.element = element.of(found.hit.primID);
     hit.u = found.hit.u;
     hit.v = found.hit.v;
     const Vec3 n(found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z);

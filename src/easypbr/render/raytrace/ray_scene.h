@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "easypbr/render/drawables/draw_list.h"
-#include "easypbr/render/shadow/splat_shadows.h"
+#include "easypbr/render/primitives/primitive.h"
 
 namespace easypbr::render {
 
@@ -23,7 +23,7 @@ struct RayGround {
 /// Where a ray ends.
 struct RayHit {
     const DrawItem* item = nullptr;  ///< null: the ground
-    int element = 0;                 ///< face of the mesh, point or surfel
+    int element = 0;                 ///< face or vertex of the mesh
     float u = 0, v = 0;              ///< barycentric coordinates of the face's second and third vertex
     Vec3 position;                   ///< world, relative to RayScene::centre(), in RayScene::unit()
     Vec3 normal;                     ///< unit, of the element itself, towards where the ray came from
@@ -33,7 +33,6 @@ struct RayHit {
 /// Positions are relative to the casters' centre and in units of half their diagonal, so that single
 /// precision holds them at any scale and place. Masked surfaces have their holes, by the nearest texel;
 /// those that light passes stop the part of the rays that they take from light, chosen by a hash of the ray.
-/// Points are discs along their normal, or towards the ray where they have none; surfels are polygons.
 class RayScene {
   public:
     RayScene();
@@ -41,14 +40,15 @@ class RayScene {
 
     /// Takes note of the casters, which must live as long as rays are traced; the tree is made anew when
     /// `generation` is another one (ShadowMaps::casters_generation()). `bounds` are those of all casters.
-    void update(const DrawList& casters, const Box3d& bounds, uint64_t generation, SplatShadows& splats,
+    void update(const DrawList& casters, const Box3d& bounds, uint64_t generation,
+                const std::vector<std::unique_ptr<Primitive>>& primitives,
                 const std::optional<RayGround>& ground);
 
     bool empty() const { return scene_ == nullptr; }
     const Vec3d& centre() const { return centre_; }
     double unit() const { return unit_; }
-    /// How far rays of splats must start off their surface; 0 without splats.
-    float splat_reach() const { return splat_reach_; }
+    /// How far the lit surfaces around vertices reach, so that rays start beyond them; 0 where all are faces.
+    float reach() const { return reach_; }
 
     const std::optional<RayGround>& ground() const { return ground_; }
 
@@ -64,11 +64,10 @@ class RayScene {
 
     std::unique_ptr<Scene> scene_;
     std::optional<RayGround> ground_;
-    const DrawList* casters_ = nullptr;
     uint64_t generation_ = 0;
     Vec3d centre_{0, 0, 0};
     double unit_ = 1;
-    float splat_reach_ = 0;
+    float reach_ = 0;
 };
 
 }  // namespace easypbr::render

@@ -8,7 +8,7 @@ namespace easypbr::render {
 struct RayHit;
 
 /// Part of a ray that an element stops: 1 for opaque ones, 0 in the holes of masked ones, and for others what
-/// they take from light. Of faces at barycentric coordinates; of points and surfels by their material.
+/// they take from light. Of faces at barycentric coordinates; of others by their material.
 float opacity_at(const DrawItem& item, int element, float u, float v);
 
 /// glTF's core model.

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "easypbr/gl/texture.h"
-#include "easypbr/render/shadow/shadow_view.h"
+#include "easypbr/render/frame/shadow_view.h"
 
 namespace easypbr::render {
 

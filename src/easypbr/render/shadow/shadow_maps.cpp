@@ -33,8 +33,6 @@ ShadowMaps::Caster ShadowMaps::caster_of(const DrawItem& item) {
     const MeshData& mesh = item.mesh();
     const Material& m = item.material;
     Caster caster{};
-    caster.revisions = {mesh.V.revision(), mesh.F.revision()};
-    caster.splat = {0, 0};
     caster.first_face = item.part.first_face;
     caster.face_count = item.part.face_count;
     caster.T_world_mesh = item.object->T_world_mesh.matrix().topRows<3>();
@@ -48,9 +46,8 @@ ShadowMaps::Caster ShadowMaps::caster_of(const DrawItem& item) {
              m.occlusion_texture.image.get(), m.emissive_texture.image.get(),
              m.base_color_texture.image.get(), m.opacity_texture.image.get()}};
     if (item.alpha == AlphaMode::opaque && !item.casts_tint() && !m.shader) return caster;
-    caster.revisions[2] = mesh.UV.revision();
-    caster.revisions[3] = item.with_colors ? mesh.C.revision() : 0;
-    caster.revisions[4] = uint64_t(item.alpha);
+    caster.revisions = {mesh.UV.revision(), item.with_colors ? mesh.C.revision() : 0};
+    caster.alpha_mode = item.alpha;
     caster.images = {m.base_color_texture.image.get(), m.opacity_texture.image.get()};
     caster.alpha = {m.opacity, m.alpha_cutoff, float(m.opacity_texture.channel)};
     if (!item.casts_tint()) return caster;
@@ -60,33 +57,22 @@ ShadowMaps::Caster ShadowMaps::caster_of(const DrawItem& item) {
     return caster;
 }
 
-ShadowMaps::Caster ShadowMaps::splat_of(const DrawItem& item, bool surfels) {
-    const MeshData& mesh = item.mesh();
-    Caster caster = caster_of(item);
-    // Points have no faces: what the kind of splat and its light depend on instead.
-    caster.revisions[1] = 0;
-    caster.revisions[5] = mesh.N.revision();
-    caster.revisions[6] = surfels ? mesh.T.revision() : uint64_t(item.style.point_shape);
-    caster.revisions[7] = surfels ? mesh.B.revision() : uint64_t(item.kind);
-    caster.face_count = surfels ? -2 : -1;
-    caster.splat = {splats_.reach(item, surfels), surfels ? item.style.surfel_scale : 1.0};
-    return caster;
-}
-
 Box3d ShadowMaps::caster_bounds(const DrawList& list, const Box3d& bounds) {
     double reach = 0;
-    for (const DrawItem& item : list.points) reach = std::max(reach, splats_.reach(item, false));
-    for (const DrawItem& item : list.surfels) reach = std::max(reach, splats_.reach(item, true));
+    for (const auto& kind : primitives_)
+        for (const DrawItem& item : list.of(kind->mode())) reach = std::max(reach, kind->reach(item));
     if (bounds.isEmpty() || reach == 0) return bounds;
     return {bounds.min() - Vec3d::Constant(reach), bounds.max() + Vec3d::Constant(reach)};
 }
 
 void ShadowMaps::note_casters(const DrawList& list, const Box3d& bounds) {
     std::vector<Caster> casters;
-    casters.reserve(list.meshes.size());
-    for (const DrawItem& item : list.meshes) casters.push_back(caster_of(item));
-    for (const DrawItem& item : list.points) casters.push_back(splat_of(item, false));
-    for (const DrawItem& item : list.surfels) casters.push_back(splat_of(item, true));
+    for (const auto& kind : primitives_)
+        for (const DrawItem& item : list.of(kind->mode())) {
+            casters.push_back(caster_of(item));
+            casters.back().kind = kind->mode();
+            casters.back().shape = kind->shadow_shape(item);
+        }
     const bool same_bounds = bounds.min() == bounds_.min() && bounds.max() == bounds_.max();
     if (casters == casters_ && same_bounds && casters_generation_ != 0) return;
     casters_ = std::move(casters);
@@ -128,7 +114,6 @@ void ShadowMaps::set_resolution(int resolution) {
 
 void ShadowMaps::begin(const Frame& frame, const DrawList& casters, const Box3d& vertices, bool received) {
     const Box3d bounds = caster_bounds(casters, vertices);
-    splats_.evict_unused();
     note_casters(casters, bounds);
     list_ = &casters;
     ++frame_;

@@ -16,10 +16,9 @@ namespace easypbr::render {
 /// made anew for every frame.
 class ShadowMaps {
   public:
-    /// The caches are shared with other passes, must outlive this one, and are emptied by their owner.
-    ShadowMaps(gpu::MeshCache& meshes, gpu::TextureCache& textures, const gpu::ClosedMeshes& closed,
-               SpacingCache& spacings, gpu::PointCache& points, gpu::SurfelCache& surfels)
-        : splats_(spacings, points, surfels), pass_(meshes, textures, closed, splats_) {}
+    /// Both must outlive this.
+    ShadowMaps(const ShadowPass::Primitives& primitives, Transfers& transfers)
+        : primitives_(primitives), pass_(primitives, transfers) {}
 
     /// Takes note of a frame's lights and of what casts; `bounds` are those of its vertices. Nothing is drawn
     /// when no surface receives a shadow: a bare cloud, labels in their own colours. `casters` must live
@@ -39,7 +38,6 @@ class ShadowMaps {
     /// Changes with what casts shadows and its bounds; of the last frame, as are the bounds.
     uint64_t casters_generation() const { return casters_generation_; }
     const Box3d& caster_bounds() const { return bounds_; }
-    SplatShadows& splats() { return splats_; }
 
     /// How often the maps of a light have been drawn since the beginning; a cube counts once.
     uint64_t drawn() const { return drawn_; }
@@ -69,21 +67,22 @@ class ShadowMaps {
     };
     /// A part of an object as far as its shadow is concerned.
     struct Caster {
+        DrawMode kind{};
+        ShadowShape shape;
         Shaded shaded;
-        std::array<uint64_t, 8> revisions;
+        std::array<uint64_t, 2> revisions;
+        AlphaMode alpha_mode{};
         std::array<const void*, 3> images;
         std::array<float, 3> alpha;
         Vec3 through{0, 0, 0};
         std::array<float, 2> thickness;
-        std::array<double, 2> splat;  ///< radius, factor on it
         int first_face, face_count;
         Eigen::Matrix<double, 3, 4> T_world_mesh;
         bool operator==(const Caster&) const = default;
     };
 
     static Caster caster_of(const DrawItem& item);
-    Caster splat_of(const DrawItem& item, bool surfels);
-    /// The vertices' bounds and the splats around them.
+    /// The vertices' bounds and what reaches beyond them.
     Box3d caster_bounds(const DrawList& list, const Box3d& bounds);
     void note_casters(const DrawList& list, const Box3d& bounds);
     static Request request_of(const Light& light, const Frame& frame, const Box3d& bounds);
@@ -105,7 +104,7 @@ class ShadowMaps {
     void prepare_tints();
     void take(int first, int layers, bool taken);
 
-    SplatShadows splats_;
+    const ShadowPass::Primitives& primitives_;
     ShadowPass pass_;
     gl::Texture maps_;
     ShadowTints tints_;  ///< beside the maps while some casters weaken light

@@ -7,7 +7,7 @@ void TransparencyPass::begin(const Frame& frame, const GBuffer& targets, const g
     extensions_ = extensions;
     with_overlay_ = with_overlay;
     if (!query_) query_ = gl::OcclusionQuery::make();
-    if (!layer_.albedo || layer_.size() != frame.size) {
+    if (layer_.size() != frame.size) {
         layer_ = GBuffer(frame.size);
         layer_.from_behind = true;
         limit_ = gl::Texture(gl::Format::r32f, frame.size.x(), frame.size.y());
@@ -16,13 +16,13 @@ void TransparencyPass::begin(const Frame& frame, const GBuffer& targets, const g
     if (extensions) layer_.add_extensions();
     // The identity of a texture may be given again once it is deleted, but then the targets' size has
     // changed, and the layer with it.
-    if (radiance_id_ != targets.radiance.id()) {
-        radiance_ = gl::Framebuffer({&targets.radiance}, &layer_.depth_test);
-        radiance_id_ = targets.radiance.id();
+    if (radiance_id_ != targets.radiance.attachment().id()) {
+        radiance_ = gl::Framebuffer({&targets.radiance.drawn()}, &layer_.depth_test());
+        radiance_id_ = targets.radiance.attachment().id();
     }
-    if (with_overlay && overlay_id_ != targets.overlay.id()) {
-        overlay_ = gl::Framebuffer({&targets.overlay}, &layer_.depth_test);
-        overlay_id_ = targets.overlay.id();
+    if (with_overlay && overlay_id_ != targets.overlay.attachment().id()) {
+        overlay_ = gl::Framebuffer({&targets.overlay.drawn()}, &layer_.depth_test());
+        overlay_id_ = targets.overlay.attachment().id();
     }
     peel_ = {&opaque, true};
     count_ = 0;
@@ -32,7 +32,7 @@ bool TransparencyPass::open_layer(const Frame& frame) {
     kept_ = false;
     if (count_ >= frame.resolved->settings.transparency.max_layers + 1) return false;
     if (count_ > 0) {
-        gl::copy(layer_.depth, limit_);
+        gl::copy(layer_.depth.texture(), limit_);
         peel_ = {&limit_, false};
     }
     // Of what is left beyond the last allowed layer the nearest is worth the most.
@@ -62,8 +62,9 @@ void TransparencyPass::keep_picture(const Frame& frame, const GBuffer& targets, 
     if (with_overlay_)
         merge_overlay(frame, targets);
     else
-        gl::copy(targets.radiance, picture_);
-    transmission_ = {&picture_, rough ? int(levels_.size()) : 1, &targets.depth, nullptr, nullptr, reach};
+        gl::copy(targets.radiance.texture(), picture_);
+    transmission_ = {&picture_, rough ? int(levels_.size()) : 1, &targets.depth.texture(), nullptr, nullptr,
+                     reach};
     kept_ = true;
     if (!rough) return;
     const gl::Program& program = downsample_.get({});
@@ -94,23 +95,23 @@ void TransparencyPass::merge_overlay(const Frame& frame, const GBuffer& targets)
 }
 
 void TransparencyPass::open_exits(const Frame& frame) {
-    if (!exits_.albedo || exits_.size() != frame.size) exits_ = GBuffer(frame.size);
+    if (exits_.size() != frame.size) exits_ = GBuffer(frame.size);
     if (extensions_) exits_.add_extensions();
     exits_.clear_layer();
-    peel_.limit = &layer_.depth;
+    peel_.limit = &layer_.depth.texture();
     peel_.farthest = false;
     peel_.backs = true;
 }
 
 void TransparencyPass::close_exits() {
     peel_.backs = false;
-    transmission_.exit_depth = &exits_.depth;
-    transmission_.exit_normal = &exits_.normal;
+    transmission_.exit_depth = &exits_.depth.texture();
+    transmission_.exit_normal = &exits_.normal.texture();
 }
 
 void TransparencyPass::bind_layer(const gl::Program& program, const Frame& frame) const {
     program.set("u_size", Vec2(frame.size.cast<float>()));
-    const gl::Texture* sources[] = {&layer_.radiance, &layer_.albedo, &layer_.material};
+    const Target* sources[] = {&layer_.radiance, &layer_.albedo, &layer_.material};
     const char* samplers[] = {"u_radiance", "u_albedo", "u_material"};
     for (unsigned unit = 0; unit < 3; ++unit) {
         sources[unit]->bind(unit);

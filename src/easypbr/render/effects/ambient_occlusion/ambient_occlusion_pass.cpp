@@ -58,30 +58,30 @@ void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets, bool with_
 
     targets.add_ambient_occlusion();
     const float open[4] = {1, 1, 1, 1};
-    targets.occluded.clear_color(0, open);
+    targets.occluded().clear_color(0, open);
     estimated_ = with_points;
     if (estimated_) estimate_normals(frame, targets);
     const PixelRect area = in_texels(frame.covered, half ? 2 : 1);
-    if (!smooth) return run(frame, targets, {sampling, defines, targets.occluded, area});
+    if (!smooth) return run(frame, targets, {sampling, defines, targets.occluded(), area});
     make_targets(frame.size, half);
     if (half) {
         select_.clear_depth(0);
         run(frame, targets,
             {.programs = selecting_, .defines = defines, .to = select_, .area = area, .selects = true});
     } else {
-        gl::copy(targets.depth_test, depth_);
+        gl::copy(targets.depth_test(), depth_);
     }
     run(frame, targets, {sampling, defines, sample_, area});
     run(frame, targets, {blurring_, defines, blur_, area, &sampled_, {1, 0}});
-    run(frame, targets, {blurring_, defines, half ? sample_ : targets.occluded, area, &blurred_, {0, 1}});
-    if (half) run(frame, targets, {magnifying_, defines, targets.occluded, frame.covered, &sampled_});
+    run(frame, targets, {blurring_, defines, half ? sample_ : targets.occluded(), area, &blurred_, {0, 1}});
+    if (half) run(frame, targets, {magnifying_, defines, targets.occluded(), frame.covered, &sampled_});
 }
 
 void AmbientOcclusionPass::estimate_normals(const Frame& frame, const GBuffer& targets) {
     if (!normal_ || normal_.width() != frame.size.x() || normal_.height() != frame.size.y())
         normal_ = gl::Texture(gl::Format::rg16, frame.size.x(), frame.size.y());
-    gl::copy(targets.normal, normal_);
-    estimate_ = gl::Framebuffer({&normal_}, &targets.depth_test);
+    gl::copy(targets.normal.texture(), normal_);
+    estimate_ = gl::Framebuffer({&normal_}, &targets.depth_test());
     run(frame, targets, {estimating_, camera_defines(frame), estimate_, frame.covered});
 }
 
@@ -101,7 +101,7 @@ void AmbientOcclusionPass::run(const Frame& frame, const GBuffer& targets, const
     program.set("u_depth_target", 0);
     targets.depth.bind(0);
     program.set("u_normal", 1);
-    (estimated_ ? normal_ : targets.normal).bind(1);
+    (estimated_ ? normal_ : targets.normal.texture()).bind(1);
     program.set("u_material", 4);
     targets.material.bind(4);
     program.set("u_surface", 2);

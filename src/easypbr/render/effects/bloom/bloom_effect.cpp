@@ -62,7 +62,7 @@ void BloomEffect::draw(const EffectInputs& inputs, LitPicture& lit) {
     glow_.light = &levels_.front().glow;
     glow_.parameters = {bloom.intensity, frame.resolved->exposure, bloom.threshold,
                         bloom.knee * bloom.threshold};
-    gather(frame, *lit.radiance);
+    gather(frame, lit.radiance->texture());
     const size_t count = levels_.size();
     for (size_t i = 1; i < count; ++i)
         resample(levels_[i - 1].light, levels_[i - 1].extent, levels_[i].lit, {"DOWN"}, gl::replace);

@@ -28,7 +28,8 @@ double largest_confusion(const Frame& frame, const Box3d& bounds) {
     return std::min(largest, largest_part * frame.picture_size.y());
 }
 
-void bind(const gl::Program& program, const char* sampler, unsigned unit, const gl::Texture& texture) {
+template <class Picture>
+void bind(const gl::Program& program, const char* sampler, unsigned unit, const Picture& texture) {
     program.set(sampler, int(unit));
     texture.bind(unit);
 }
@@ -36,9 +37,9 @@ void bind(const gl::Program& program, const char* sampler, unsigned unit, const 
 }  // namespace
 
 void DepthOfFieldEffect::make_targets(Vec2i size) {
-    if (radiance_ && radiance_.width() == size.x() && radiance_.height() == size.y()) return;
+    if (radiance_.size() == size) return;
     const int w = (size.x() + 1) / 2, h = (size.y() + 1) / 2;
-    radiance_ = gl::Texture(gl::Format::rgba32f, size.x(), size.y());
+    radiance_ = Target(gl::Format::rgba32f, size);
     light_ = gl::Texture(gl::Format::rgba16f, w, h);
     confusion_ = gl::Texture(gl::Format::r32f, w, h);
     behind_ = gl::Texture(gl::Format::rgba16f, w, h);
@@ -47,7 +48,7 @@ void DepthOfFieldEffect::make_targets(Vec2i size) {
     for (gl::Texture* texture : {&behind_, &before_, &hidden_}) texture->sampling(gl::Filtering::linear);
     halved_ = gl::Framebuffer({&light_, &confusion_});
     gathered_ = gl::Framebuffer({&behind_, &before_, &hidden_});
-    composed_ = gl::Framebuffer({&radiance_});
+    composed_ = gl::Framebuffer({&radiance_.drawn()});
 }
 
 int DepthOfFieldEffect::reach(const Frame& whole, const Box3d& bounds) const {

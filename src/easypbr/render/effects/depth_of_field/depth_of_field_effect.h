@@ -22,7 +22,8 @@ class DepthOfFieldEffect : public Effect {
   private:
     void make_targets(Vec2i size);
 
-    gl::Texture light_, confusion_, behind_, before_, hidden_, radiance_;
+    gl::Texture light_, confusion_, behind_, before_, hidden_;
+    Target radiance_;
     gl::Framebuffer halved_, gathered_, composed_;
     ProgramVariants halve_{"screen_triangle.vert", "focus_halve.frag"};
     ProgramVariants gather_{"screen_triangle.vert", "focus_gather.frag"};

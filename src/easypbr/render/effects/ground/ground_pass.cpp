@@ -53,7 +53,7 @@ void GroundPass::draw(const Frame& frame, const GBuffer& targets) {
     const bool shadow_catcher = ground.mode == GroundMode::shadow;
     const Plane plane = plane_of(frame.camera, *frame.resolved);
     const gl::Program& program = surface_.get(camera_defines(frame));
-    targets.surface_emission.bind();
+    targets.surface_emission().bind();
     program.use();
     set_camera_uniforms(program, frame);
     const Vec3 up = plane.up.cast<float>();
@@ -69,9 +69,9 @@ void GroundPass::begin_light(const Frame& frame, const GBuffer& targets) {
         light_ = gl::Texture(gl::Format::rgba32f, frame.size.x(), frame.size.y());
         depth_id_ = 0;
     }
-    if (depth_id_ != targets.depth_test.id()) {
-        light_framebuffer_ = gl::Framebuffer({&light_}, &targets.depth_test);
-        depth_id_ = targets.depth_test.id();
+    if (depth_id_ != targets.depth_test().id()) {
+        light_framebuffer_ = gl::Framebuffer({&light_}, &targets.depth_test());
+        depth_id_ = targets.depth_test().id();
     }
     const float zero[4] = {0, 0, 0, 0};
     light_framebuffer_.clear_color(0, zero);
@@ -83,7 +83,7 @@ void GroundPass::finish(const Frame& frame, const GBuffer& targets, const Box3d&
     std::vector<std::string> defines = camera_defines(frame);
     if (shadow_catcher) defines.emplace_back("CATCHER");
     const gl::Program& program = finish_.get(defines);
-    targets.lit.bind();
+    targets.lit().bind();
     program.use();
     set_camera_uniforms(program, frame);
     program.set("u_material", 0);

@@ -35,9 +35,9 @@ void OutlineEffect::draw(const EffectInputs& inputs, LitPicture& lit) {
         found_ = gl::Framebuffer({&edges_});
     }
     find_edges(inputs);
-    if (overlay_id_ != inputs.targets.overlay.id()) {
-        overlay_ = gl::Framebuffer({&inputs.targets.overlay});
-        overlay_id_ = inputs.targets.overlay.id();
+    if (overlay_id_ != inputs.targets.overlay.attachment().id()) {
+        overlay_ = gl::Framebuffer({&inputs.targets.overlay.drawn()});
+        overlay_id_ = inputs.targets.overlay.attachment().id();
     }
     lit.covered = grown(lit.covered, line_reach(outline), frame.size);
     const gl::Program& program = line_programs_.get({});
@@ -65,11 +65,11 @@ void OutlineEffect::find_edges(const EffectInputs& inputs) {
     found_.bind();
     const gl::Program& program = edge_programs_.get(defines);
     program.use();
-    const std::pair<const char*, const gl::Texture*> sources[] = {{"u_depth_target", &inputs.targets.depth},
-                                                                  {"u_normal", &inputs.targets.normal},
-                                                                  {"u_material", &inputs.targets.material},
-                                                                  {"u_id", &ids.id},
-                                                                  {"u_id_depth", &ids.depth}};
+    const std::pair<const char*, const Target*> sources[] = {{"u_depth_target", &inputs.targets.depth},
+                                                             {"u_normal", &inputs.targets.normal},
+                                                             {"u_material", &inputs.targets.material},
+                                                             {"u_id", &ids.id},
+                                                             {"u_id_depth", &ids.depth}};
     for (unsigned unit = 0; unit < std::size(sources); ++unit) {
         if (!program.has(sources[unit].first)) continue;
         program.set(sources[unit].first, int(unit));

@@ -7,14 +7,14 @@ namespace easypbr::render {
 void LinePass::begin(const Frame& frame, const std::vector<LineItem>& items, const GBuffer& targets,
                      const gl::Texture& opaque) {
     if (items.empty()) return;
-    if (!depth_ || overlay_id_ != targets.overlay.id()) {
+    if (!depth_ || overlay_id_ != targets.overlay.attachment().id()) {
         depth_ = gl::Texture(gl::Format::depth32f, frame.size.x(), frame.size.y());
-        framebuffer_ = gl::Framebuffer({&targets.overlay}, &depth_);
-        overlay_id_ = targets.overlay.id();
+        framebuffer_ = gl::Framebuffer({&targets.overlay.drawn()}, &depth_);
+        overlay_id_ = targets.overlay.attachment().id();
         last_depth_ = gl::Texture();
     }
     opaque_ = &opaque;
-    normal_ = &targets.normal;
+    normal_ = &targets.normal.texture();
     has_last_ = false;
     framebuffer_.bind();
     framebuffer_.clear_depth(0);
@@ -29,8 +29,8 @@ void LinePass::draw_behind(const Frame& frame, const std::vector<LineItem>& item
         last_depth_ = gl::Texture(gl::Format::r32f, frame.size.x(), frame.size.y());
         last_normal_ = gl::Texture(gl::Format::rg16, frame.size.x(), frame.size.y());
     }
-    gl::copy(layer.depth, last_depth_);
-    gl::copy(layer.normal, last_normal_);
+    gl::copy(layer.depth.texture(), last_depth_);
+    gl::copy(layer.normal.texture(), last_normal_);
     has_last_ = true;
 }
 
@@ -45,7 +45,7 @@ void LinePass::draw_over(const Frame& frame, const std::vector<LineItem>& items,
 void LinePass::add(const Frame& frame, const std::vector<LineItem>& items, const GBuffer& targets, Kind kind,
                    const GBuffer* next) {
     if (items.empty()) return;
-    targets.display.bind();
+    targets.display().bind();
     draw_items(frame, items, kind, next);
 }
 
@@ -61,8 +61,8 @@ void LinePass::bind_surfaces(const gl::Program& program, const GBuffer* next) co
         bind(last_normal_, "u_last_normal", 4);
     }
     if (!next) return;
-    bind(next->depth, "u_next_depth", 5);
-    bind(next->normal, "u_next_normal", 6);
+    bind(next->depth.texture(), "u_next_depth", 5);
+    bind(next->normal.texture(), "u_next_normal", 6);
 }
 
 void LinePass::draw_items(const Frame& frame, const std::vector<LineItem>& items, Kind kind,
@@ -83,7 +83,7 @@ void LinePass::draw_items(const Frame& frame, const std::vector<LineItem>& items
     const gl::DrawState state = kind == Kind::nearest ? nearest : gl::DrawState{.blending = gl::over};
     for (const LineItem& item : items) {
         if (kind != Kind::nearest && item.style.overlay != (kind == Kind::over)) continue;
-        const gpu::LineBuffers& buffers = cache_.get(*item.object->mesh, item.kind, item.length);
+        const LineBuffers& buffers = cache_.get(*item.object->mesh, item.kind, item.length);
         if (buffers.count == 0) continue;
         const Mat4d clip_from_mesh =
             frame.clip_from_view * frame.camera.view() * item.object->T_world_mesh.matrix();

@@ -1,11 +1,11 @@
 // Lines into the overlay: unlit, wide in pixels, smooth, hidden by surfaces and by nearer lines.
 #pragma once
 
-#include "easypbr/gpu/line_buffers.h"
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/render/frame/programs.h"
+#include "easypbr/render/primitives/lines/line_buffers.h"
 
 namespace easypbr::render {
 
@@ -41,7 +41,7 @@ class LinePass {
              const GBuffer* next);
     void bind_surfaces(const gl::Program& program, const GBuffer* next) const;
 
-    gpu::LineCache cache_;
+    LineCache cache_;
     ProgramVariants programs_{"overlay_lines.vert", "overlay_lines.frag"};
     gl::Texture depth_;
     gl::Framebuffer framebuffer_;

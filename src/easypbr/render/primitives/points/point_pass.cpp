@@ -1,24 +1,24 @@
 #include "easypbr/render/primitives/points/point_pass.h"
 
-#include "easypbr/render/raster/point_splats.h"
+#include "easypbr/render/primitives/points/point_splats.h"
 
 namespace easypbr::render {
 
-void PointPass::draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& targets,
+void PointPass::draw(const Frame& frame, std::span<const DrawItem> items, const GBuffer& targets,
                      const SurfaceOutputs& outputs) {
     if (items.empty()) return;
-    (outputs.ids ? targets.surface_ids : targets.surface_emission).bind();
+    (outputs.ids ? targets.surface_ids() : targets.surface_emission()).bind();
     draw_items(frame, items, outputs, false);
     draw_items(frame, items, outputs, true);
 }
 
-void PointPass::draw_items(const Frame& frame, const std::vector<DrawItem>& items,
-                           const SurfaceOutputs& outputs, bool write) {
+void PointPass::draw_items(const Frame& frame, std::span<const DrawItem> items, const SurfaceOutputs& outputs,
+                           bool write) {
     const gl::DrawState largest_at_depth{.depth_test = gl::DepthTest::equal, .blending = gl::maximum};
     const gl::DrawState state = write ? largest_at_depth : geometry_state(outputs);
     const Mat3 world_from_view = frame.camera.T_world_cam.linear().cast<float>();
     for (const DrawItem& item : items) {
-        const gpu::PointBuffers& buffers = cache_.get(item.mesh());
+        const PointBuffers& buffers = cache_.get(item.mesh());
         const PointSplats splats =
             splats_of(item, frame, item.style.point_size ? 0 : spacings_.get(item.mesh().V));
         std::vector<std::string> defines = camera_defines(frame);

@@ -101,8 +101,8 @@ void SoftwareSurfels::bin(const std::vector<Source>& sources, Vec2i tiles) {
 }
 
 void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<Source>& sources,
-                                const std::vector<float>& opaque, Vec2i tile,
-                                std::span<const uint64_t> surfels, NativePixels& pixels) const {
+                                std::span<const float> opaque, Vec2i tile, std::span<const uint64_t> surfels,
+                                SurfaceWriter& writer) const {
     thread_local Tile t;
     const int left = tile.x() * tile_size, top = tile.y() * tile_size;
     const int right = std::min(left + tile_size, frame.size.x()),
@@ -157,12 +157,9 @@ void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<Source>& s
     }
     for (int y = top; y < bottom; ++y)
         for (int x = left; x < right; ++x) {
-            const size_t i = place(x, y), to = size_t(y) * size_t(frame.size.x()) + size_t(x);
+            const size_t i = place(x, y), to = writer.index(x, y);
             const auto& sum = t.sums[i];
-            if (sum[weight] == 0) {
-                pixels.put_nothing(to);
-                continue;
-            }
+            if (sum[weight] == 0) continue;
             const double scale = 1.0 / double(sum[weight]);
             const auto mean = [&](Channel c) { return float(double(sum[c]) * scale); };
             const Source& source = sources[t.nearest[i] >> 32];
@@ -176,20 +173,20 @@ void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<Source>& s
             pixel.object = uint32_t(source.item->object - frame.scene->objects.data());
             pixel.element = uint32_t(t.nearest[i]);
             pixel.is_point = true;
-            pixels.put(to, pixel);
+            // The mean may lie behind what hides some of the surfels.
+            if (pixel.depth > writer.depth(to)) writer.put(to, pixel);
         }
 }
 
 void SoftwareSurfels::draw(const Frame& frame, const std::vector<Source>& sources,
-                           const std::vector<float>& opaque, bool with_ids, NativePixels& pixels) {
+                           std::span<const float> opaque, SurfaceWriter& writer) {
     const Vec2i tiles = (frame.size.array() + tile_size - 1) / tile_size;
-    pixels.resize({0, 0, frame.size.x(), frame.size.y()}, with_ids);
     bin(sources, tiles);
     parallel_for(size_t(tiles.x()) * size_t(tiles.y()), 1, [&](size_t tile) {
         const std::span<const uint64_t> surfels(entries_.data() + first_[tile],
                                                 first_[tile + 1] - first_[tile]);
         draw_tile(frame, sources, opaque, Vec2i(int(tile) % tiles.x(), int(tile) / tiles.x()), surfels,
-                  pixels);
+                  writer);
     });
 }
 

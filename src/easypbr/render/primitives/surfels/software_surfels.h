@@ -2,7 +2,7 @@
 #pragma once
 
 #include "easypbr/render/primitives/surfels/surfel_projection.h"
-#include "easypbr/render/raster/native_pixels.h"
+#include "easypbr/render/raster/surface_writer.h"
 
 namespace easypbr::render {
 
@@ -17,15 +17,16 @@ class SoftwareSurfels {
         SurfelProjector projector;
     };
 
-    /// `opaque`: reversed depth of what is there already, for the whole picture row by row.
-    void draw(const Frame& frame, const std::vector<Source>& sources, const std::vector<float>& opaque,
-              bool with_ids, NativePixels& pixels);
+    /// `opaque`: reversed depth of what hides surfels, for the whole frame row by row. `writer` holds the
+    /// same frame, and keeps what is nearer.
+    void draw(const Frame& frame, const std::vector<Source>& sources, std::span<const float> opaque,
+              SurfaceWriter& writer);
 
   private:
     struct Tile;
     void bin(const std::vector<Source>& sources, Vec2i tiles);
-    void draw_tile(const Frame& frame, const std::vector<Source>& sources, const std::vector<float>& opaque,
-                   Vec2i tile, std::span<const uint64_t> surfels, NativePixels& pixels) const;
+    void draw_tile(const Frame& frame, const std::vector<Source>& sources, std::span<const float> opaque,
+                   Vec2i tile, std::span<const uint64_t> surfels, SurfaceWriter& writer) const;
 
     std::vector<size_t> first_;      ///< of each tile in entries_, and the end
     std::vector<uint64_t> entries_;  ///< source in the upper, surfel in the lower half

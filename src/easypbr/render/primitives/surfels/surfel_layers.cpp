@@ -2,7 +2,7 @@
 
 namespace easypbr::render {
 
-void SurfelLayers::begin(const Frame& frame, const std::vector<DrawItem>& items, const gl::Texture& opaque) {
+void SurfelLayers::begin(const Frame& frame, std::span<const DrawItem> items, const gl::Texture& opaque) {
     if (items.empty()) return;
     const int w = frame.size.x(), h = frame.size.y();
     if (!claim_ || claim_.width() != w || claim_.height() != h) {
@@ -21,15 +21,15 @@ void SurfelLayers::begin(const Frame& frame, const std::vector<DrawItem>& items,
     }
 }
 
-void SurfelLayers::draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& layer,
+void SurfelLayers::draw(const Frame& frame, std::span<const DrawItem> items, const GBuffer& layer,
                         const SurfaceOutputs& outputs) {
     if (items.empty()) return;
     // An identity may be given again, but not with another size: then claim_ is new too.
-    if (layer_id_ != layer.albedo.id()) {
-        layer_ = gl::Framebuffer(
-            {&layer.albedo, &layer.normal, &layer.material, &layer.depth, &layer.radiance, &claim_},
-            &layer.depth_test);
-        layer_id_ = layer.albedo.id();
+    if (layer_id_ != layer.albedo.attachment().id()) {
+        layer_ = gl::Framebuffer({&layer.albedo.drawn(), &layer.normal.drawn(), &layer.material.drawn(),
+                                  &layer.depth.drawn(), &layer.radiance.drawn(), &claim_},
+                                 &layer.depth_test());
+        layer_id_ = layer.albedo.attachment().id();
     }
     const float nobody[4] = {0, 0, 0, 0};
     layer_.clear_color(5, nobody);
@@ -40,7 +40,7 @@ void SurfelLayers::draw(const Frame& frame, const std::vector<DrawItem>& items, 
     }
 }
 
-void SurfelLayers::take(const std::vector<DrawItem>& items) {
+void SurfelLayers::take(std::span<const DrawItem> items) {
     if (items.empty()) return;
     const gl::Program& program = take_.get({});
     program.use();

@@ -21,13 +21,13 @@ class SurfelLayers {
     explicit SurfelLayers(SurfelSplats& splats) : splats_(splats) {}
 
     /// Nothing behind `opaque` (R32F, reversed depth) is drawn.
-    void begin(const Frame& frame, const std::vector<DrawItem>& items, const gl::Texture& opaque);
+    void begin(const Frame& frame, std::span<const DrawItem> items, const gl::Texture& opaque);
     /// Adds each item's next surface where it is farther than what the layer holds (in the last layer:
     /// nearer).
-    void draw(const Frame& frame, const std::vector<DrawItem>& items, const GBuffer& layer,
+    void draw(const Frame& frame, std::span<const DrawItem> items, const GBuffer& layer,
               const SurfaceOutputs& outputs);
     /// What the layer took of each item is not drawn again.
-    void take(const std::vector<DrawItem>& items);
+    void take(std::span<const DrawItem> items);
 
   private:
     struct Limit {

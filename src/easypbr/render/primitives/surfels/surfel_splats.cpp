@@ -56,7 +56,7 @@ void SurfelSplats::make_targets(const Frame& frame, bool ids) {
 
 void SurfelSplats::draw_item(const Frame& frame, const DrawItem& item, const SurfaceOutputs& outputs,
                              bool accumulate) {
-    const gpu::SurfelBuffers& buffers = cache_.get(item.mesh());
+    const SurfelBuffers& buffers = cache_.get(item.mesh());
     std::vector<std::string> defines = peel_defines(frame, outputs);
     if (item.with_colors) defines.emplace_back("VERTEX_COLOR");
     if (item.alpha == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");

@@ -3,10 +3,10 @@
 
 #include <span>
 
-#include "easypbr/gpu/surfel_buffers.h"
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/programs.h"
+#include "easypbr/render/primitives/surfels/surfel_buffers.h"
 #include "easypbr/scene/spacing_cache.h"
 
 namespace easypbr::render {
@@ -17,7 +17,7 @@ namespace easypbr::render {
 class SurfelSplats {
   public:
     /// The caches are shared with other passes, must outlive this one, and are emptied by their owner.
-    SurfelSplats(SpacingCache& spacings, gpu::SurfelCache& surfels) : spacings_(spacings), cache_(surfels) {}
+    SurfelSplats(SpacingCache& spacings, SurfelCache& surfels) : spacings_(spacings), cache_(surfels) {}
 
     /// The first two steps, for all items together. Left out is what lies behind `limit` (R32F, reversed
     /// depth), and, of a layer, at it.
@@ -37,7 +37,7 @@ class SurfelSplats {
     void draw_item(const Frame& frame, const DrawItem& item, const SurfaceOutputs& outputs, bool accumulate);
 
     SpacingCache& spacings_;
-    gpu::SurfelCache& cache_;
+    SurfelCache& cache_;
     gl::Texture albedo_sum_, normal_sum_, material_sum_, depth_, id_, element_;
     gl::Framebuffer visibility_, visibility_ids_, sums_;
     ProgramVariants splats_{"geometry_surfels.vert", "geometry_surfels.frag"};

@@ -1,0 +1,48 @@
+#include "easypbr/render/primitives/lines/line_buffers.h"
+
+#include <cstddef>
+
+namespace easypbr::render {
+namespace {
+
+std::vector<gpu::Segment> segments_of(const MeshData& mesh, gpu::LineKind kind, float length) {
+    switch (kind) {
+        case gpu::LineKind::wireframe:
+            return gpu::wireframe_segments(mesh);
+        case gpu::LineKind::normals:
+            return gpu::normal_segments(mesh, length);
+        default:
+            return gpu::edge_segments(mesh);
+    }
+}
+
+LineBuffers make_line_buffers(const std::vector<gpu::Segment>& segments) {
+    LineBuffers buffers;
+    buffers.count = int(segments.size());
+    if (segments.empty()) return buffers;
+    buffers.segments = upload(segments);
+    gl::VertexArray& array = buffers.array = gl::VertexArray::make();
+    const auto attribute = [&](unsigned location, int components, gl::AttributeType type, size_t offset) {
+        array.attribute(location, buffers.segments, components, type, sizeof(gpu::Segment), int(offset), 1);
+    };
+    attribute(0, 3, gl::AttributeType::f32, offsetof(gpu::Segment, a));
+    attribute(1, 4, gl::AttributeType::unorm8, offsetof(gpu::Segment, color_a));
+    attribute(2, 3, gl::AttributeType::f32, offsetof(gpu::Segment, b));
+    attribute(3, 4, gl::AttributeType::unorm8, offsetof(gpu::Segment, color_b));
+    return buffers;
+}
+
+}  // namespace
+
+const LineBuffers& LineCache::get(const MeshData& mesh, gpu::LineKind kind, float length) {
+    const Key key{mesh.V.revision(),
+                  mesh.E.revision(),
+                  mesh.F.revision(),
+                  mesh.N.revision(),
+                  mesh.C.revision(),
+                  kind,
+                  length};
+    return buffers_.get(key, [&] { return make_line_buffers(segments_of(mesh, kind, length)); });
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,52 @@
+// Triangle meshes, voxels among them.
+#pragma once
+
+#include "easypbr/render/primitives/mesh/mesh_pass.h"
+#include "easypbr/render/primitives/mesh/mesh_shadows.h"
+#include "easypbr/render/primitives/mesh/native_meshes.h"
+#include "easypbr/render/primitives/primitive.h"
+
+namespace easypbr::render {
+
+class MeshPrimitive final : public Primitive {
+  public:
+    explicit MeshPrimitive(DataCaches& caches)
+        : pass_(buffers_, caches.textures), native_(caches.closed_meshes), shadows_(buffers_, caches) {}
+
+    DrawMode mode() const override { return DrawMode::mesh; }
+    void draw(const Frame& frame, DrawItems items, const GBuffer& targets,
+              const SurfaceOutputs& outputs) override {
+        pass_.draw(frame, items, targets, outputs);
+    }
+    NativeUse native_use(DrawItems items) const override { return NativeMeshes::use(items); }
+    bool rasterise(const Frame& frame, DrawItems items, VisibleSurfaces& surfaces) override {
+        return native_.rasterise(frame, items, surfaces);
+    }
+    bool cover(const Frame& frame, DrawItems items, std::span<uint8_t> covered) override {
+        return native_.cover(frame, items, covered);
+    }
+    void draw_backs(const Frame& frame, DrawItems items, const GBuffer& targets,
+                    const SurfaceOutputs& outputs) override;
+    ShadowShape shadow_shape(const DrawItem& item) override {
+        return {{item.mesh().V.revision(), item.mesh().F.revision()}, {}};
+    }
+    void rasterise_shadows(const ShadowView& view, Casters& casters, ShadowDepths& depths) override {
+        shadows_.rasterise(view, casters, depths);
+    }
+    void draw_shadows(const ShadowLayer& layer, const Casters& casters) override {
+        shadows_.draw(layer, casters);
+    }
+    void add_to(RayGeometry& geometry, const DrawItem& item) override { geometry.add_faces(item); }
+    void evict_unused() override {
+        buffers_.evict_unused();
+        native_.evict_unused();
+    }
+
+  private:
+    MeshCache buffers_;
+    MeshPass pass_;
+    NativeMeshes native_;
+    MeshShadows shadows_;
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,62 @@
+#include "easypbr/render/primitives/points/point_primitive.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/render/primitives/points/point_splats.h"
+#include "easypbr/render/primitives/points/point_surface.h"
+
+namespace easypbr::render {
+namespace {
+
+/// Points of more pixels are none to drivers: the centres of half of them may lie outside of a tile.
+constexpr int largest_point = 256;
+
+bool is_opaque(const DrawItem& item) {
+    return item.alpha == AlphaMode::opaque;
+}
+
+}  // namespace
+
+NativeUse PointPrimitive::native_use(DrawItems items) const {
+    return std::ranges::all_of(items, is_opaque) ? NativeUse::preferred : NativeUse::none;
+}
+
+bool PointPrimitive::rasterise(const Frame& frame, DrawItems items, VisibleSurfaces& surfaces) {
+    const auto content = [&](uint32_t id) { return surfaces.content(id); };
+    for (const DrawItem& item : items) {
+        const Array3f& V = item.mesh().V;
+        if (!surfaces.has_room(V.rows())) return false;
+        const uint32_t first =
+            surfaces.add(item, uint32_t(V.rows()), std::make_unique<PointSurface>(item, frame));
+        const double spacing = item.style.point_size ? 0 : spacings_.get(V);
+        surfaces.buffer().draw_points(V, splats_of(item, frame, spacing), first, content);
+    }
+    return true;
+}
+
+bool PointPrimitive::cover(const Frame& frame, DrawItems items, std::span<uint8_t> covered) {
+    const auto has_holes = [](const DrawItem& item) { return !is_opaque(item) || item.material.shader; };
+    if (std::ranges::any_of(items, has_holes)) return false;
+    VisibleSurfaces surfaces;
+    surfaces.clear(frame.size, frame.whole());
+    if (!rasterise(frame, items, surfaces)) return false;
+    const auto pixels = surfaces.buffer().pixels();
+    for (size_t i = 0; i < covered.size(); ++i) covered[i] |= uint8_t(pixels[i] != 0);
+    return true;
+}
+
+ShadowShape PointPrimitive::shadow_shape(const DrawItem& item) {
+    const MeshData& mesh = item.mesh();
+    return {{mesh.V.revision(), mesh.N.revision(), uint64_t(item.style.point_shape), uint64_t(item.kind)},
+            {shadows_.radius(item), 1}};
+}
+
+int PointPrimitive::reach_in_pixels(const DrawStyle& style) const {
+    if (style.mode != DrawMode::points && !style.show_points) return 0;
+    const bool in_pixels = style.point_size && style.point_size_unit == SizeUnit::pixels;
+    const float size = in_pixels ? std::min(*style.point_size, float(largest_point)) : float(largest_point);
+    return int(std::ceil(size / 2));
+}
+
+}  // namespace easypbr::render

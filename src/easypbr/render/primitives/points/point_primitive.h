@@ -1,0 +1,44 @@
+// Point clouds.
+#pragma once
+
+#include "easypbr/render/primitives/points/point_pass.h"
+#include "easypbr/render/primitives/points/point_shadows.h"
+#include "easypbr/render/primitives/primitive.h"
+
+namespace easypbr::render {
+
+class PointPrimitive final : public Primitive {
+  public:
+    explicit PointPrimitive(DataCaches& caches)
+        : spacings_(caches.spacings), pass_(spacings_, buffers_), shadows_(spacings_, buffers_) {}
+
+    DrawMode mode() const override { return DrawMode::points; }
+    void draw(const Frame& frame, DrawItems items, const GBuffer& targets,
+              const SurfaceOutputs& outputs) override {
+        pass_.draw(frame, items, targets, outputs);
+    }
+    NativeUse native_use(DrawItems items) const override;
+    bool rasterise(const Frame& frame, DrawItems items, VisibleSurfaces& surfaces) override;
+    bool cover(const Frame& frame, DrawItems items, std::span<uint8_t> covered) override;
+    ShadowShape shadow_shape(const DrawItem& item) override;
+    void rasterise_shadows(const ShadowView& view, Casters& casters, ShadowDepths& depths) override {
+        shadows_.rasterise(view, casters, depths);
+    }
+    void draw_shadows(const ShadowLayer& layer, const Casters& casters) override {
+        shadows_.draw(layer, casters);
+    }
+    void add_to(RayGeometry& geometry, const DrawItem& item) override {
+        geometry.add_discs(item, shadows_.radius(item));
+    }
+    double reach(const DrawItem& item) override { return shadows_.radius(item); }
+    int reach_in_pixels(const DrawStyle& style) const override;
+    void evict_unused() override { buffers_.evict_unused(); }
+
+  private:
+    SpacingCache& spacings_;
+    PointCache buffers_;
+    PointPass pass_;
+    PointShadows shadows_;
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,93 @@
+#include "easypbr/render/primitives/points/point_shadows.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/parallel.h"
+#include "easypbr/render/primitives/points/point_splats.h"
+#include "easypbr/render/primitives/splat_casters.h"
+
+namespace easypbr::render {
+namespace {
+
+/// Steepest surface, as a tangent, whose points are pushed behind it.
+constexpr float steepest = 4;
+/// Radii that a lit point's disc is pushed further: pixels of a splat lie beside their surface.
+constexpr float push = 1;
+
+double scale_of(const DrawItem& item) {
+    return std::cbrt(std::abs(item.object->T_world_mesh.linear().determinant()));
+}
+
+bool is_pushed(const DrawItem& item) {
+    return item.kind == SurfaceKind::lit && !item.mesh().N.empty();
+}
+
+bool suits_native(const DrawItem* item) {
+    return item->alpha == AlphaMode::opaque && !item->casts_tint();
+}
+
+}  // namespace
+
+double PointShadows::radius(const DrawItem& item) {
+    const DrawStyle& style = item.style;
+    if (style.point_size && style.point_size_unit == SizeUnit::world) return 0.5 * double(*style.point_size);
+    return 0.5 * spacings_per_splat * spacings_.get(item.mesh().V) * scale_of(item);
+}
+
+void PointShadows::draw(const ShadowLayer& layer, const Casters& casters) {
+    for (const DrawItem* item : casters) draw(layer, *item);
+}
+
+void PointShadows::draw(const ShadowLayer& layer, const DrawItem& item) {
+    const PointBuffers& buffers = points_.get(item.mesh());
+    std::vector<std::string> defines = caster_defines(item);
+    if (is_pushed(item) && buffers.normals) defines.emplace_back("PUSHED");
+    if (item.style.point_shape == PointShape::round) defines.emplace_back("ROUND");
+    const gl::Program& program = programs_.get(defines);
+    program.use();
+    const double r = radius(item);
+    program.set("u_clip_from_mesh", layer.clip_from_mesh(item));
+    program.set("u_diameter", Vec2((2 * r * layer.resolution * layer.view.scale).cast<float>()));
+    program.set("u_light", light_in_mesh(layer.view, item));
+    program.set("u_push", Vec3(float(r / scale_of(item)), steepest, push));
+    set_caster_alpha(program, item);
+    gl::draw_points(layer.state(), buffers.array, int(item.mesh().V.rows()));
+}
+
+void PointShadows::rasterise(const ShadowView& view, Casters& casters, ShadowDepths& depths) {
+    if (std::ranges::none_of(casters, suits_native)) return;
+    const int size = depths.resolution();
+    visibility_.clear(Vec2i(size, size), {0, 0, size, size});
+    for (const DrawItem* item : casters)
+        if (suits_native(item)) rasterise(ShadowLayer{view, size}, *item);
+    depths.buffer().add(visibility_);
+    std::erase_if(casters, suits_native);
+}
+
+void PointShadows::rasterise(const ShadowLayer& layer, const DrawItem& item) {
+    const ShadowView& view = layer.view;
+    const MeshData& mesh = item.mesh();
+    const double r = radius(item);
+    PointSplats splats;
+    splats.clip_from_mesh = layer.clip_from_mesh(item);
+    splats.world_pixels = float(2 * r * view.scale.x() * layer.resolution);
+    splats.y_per_x = float(view.scale.y() / view.scale.x());
+    splats.least_pixels = 1;
+    splats.round = item.style.point_shape == PointShape::round;
+    const auto same = [](uint32_t) -> uint64_t { return 0; };
+    if (!is_pushed(item)) return visibility_.draw_points(mesh.V, splats, 0, same);
+    const Vec4 light = light_in_mesh(view, item);
+    const float in_mesh = float(r / scale_of(item));
+    Array3f::Dense pushed(mesh.V.rows(), 3);
+    parallel_for(size_t(mesh.V.rows()), 1 << 12, [&](size_t i) {
+        const Vec3 p = mesh.V.row(Eigen::Index(i)), n = mesh.N.row(Eigen::Index(i));
+        const Vec3 l = (light.head<3>() - light.w() * p).normalized();
+        const float c = std::abs(n.dot(l)) / std::max(n.norm(), 1e-20f);
+        const float tangent = std::sqrt(std::max(0.0f, 1 - c * c)) / std::max(c, 1e-3f);
+        pushed.row(Eigen::Index(i)) = p - l * (in_mesh * (std::min(tangent, steepest) + push));
+    });
+    visibility_.draw_points(Array3f(std::move(pushed)), splats, 0, same);
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,53 @@
+#include "easypbr/render/primitives/points/point_surface.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/color.h"
+#include "easypbr/core/octahedral.h"
+
+namespace easypbr::render {
+
+PointSurface::PointSurface(const DrawItem& item, const Frame& frame) : item_(&item) {
+    const Camera& camera = frame.camera;
+    const Eigen::Affine3d& T = item.object->T_world_mesh;
+    normal_from_mesh_ = T.linear().inverse().transpose().cast<float>();
+    world_from_mesh_ = T.linear().cast<float>();
+    const Mat3d inverse = T.linear().inverse();
+    view_position_ = (inverse * (camera.position() - T.translation())).cast<float>();
+    view_direction_ = (inverse * camera.T_world_cam.linear().col(2)).cast<float>();
+    orthographic_ = frame.orthographic();
+}
+
+Vec3 PointSurface::color(uint32_t point) const {
+    return item_->with_colors ? Vec3(item_->mesh().C.row(point).head<3>()) : Vec3(1, 1, 1);
+}
+
+SurfacePixel PointSurface::at(uint32_t point, double, double, float depth) const {
+    const MeshData& mesh = item_->mesh();
+    SurfacePixel pixel;
+    pixel.albedo = linear_from_srgb(color(point)).cwiseProduct(item_->material.base_color);
+    pixel.depth = depth;
+    pixel.element = point;
+    pixel.is_point = true;
+    const Vec3 p = mesh.V.row(point);
+    const Vec3 to_viewer = orthographic_ ? view_direction_ : Vec3(view_position_ - p);
+    Vec3 n = mesh.N.empty() ? Vec3(0, 0, 0) : Vec3(mesh.N.row(point));
+    if (n.dot(to_viewer) < 0) n = -n;
+    // A normal of no length tells nothing: the point faces the viewer.
+    pixel.normal = (n.squaredNorm() > 0 ? normal_from_mesh_ * n : world_from_mesh_ * to_viewer).normalized();
+    return pixel;
+}
+
+uint64_t PointSurface::content(uint32_t point) const {
+    const Vec3 c = color(point);
+    uint64_t bits = 0;
+    for (int k = 0; k < 3; ++k)
+        bits = bits << 10 | uint64_t(std::lrint(std::clamp(c[k], 0.0f, 1.0f) * 1023.0f));
+    if (item_->mesh().N.empty()) return bits << 32;
+    const Vec2 n = oct_encode(item_->mesh().N.row(point).transpose());
+    for (int k = 0; k < 2; ++k) bits = bits << 16 | uint64_t(std::lrint((n[k] + 1) * 32767.5f));
+    return bits;
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,92 @@
+// A kind of primitive: all that the frame, shadows, layers, rays and tiles need to know of it.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "easypbr/render/drawables/draw_list.h"
+#include "easypbr/render/frame/frame.h"
+#include "easypbr/render/frame/gbuffer.h"
+#include "easypbr/render/primitives/caches.h"
+#include "easypbr/render/primitives/ray_geometry.h"
+#include "easypbr/render/primitives/shadow_layer.h"
+#include "easypbr/render/raster/surface_writer.h"
+#include "easypbr/render/raster/visible_surfaces.h"
+
+namespace easypbr::render {
+
+/// Items of one kind, in the order of the scene.
+using DrawItems = std::span<const DrawItem>;
+
+/// How well the CPU draws some items without the driver, where there is no GPU.
+enum class NativeUse {
+    none,      ///< only the driver can
+    possible,  ///< gains nothing on its own
+    preferred
+};
+
+/// One kind of primitive; a folder of its own, and a line in primitives.cpp. Items are drawn into the
+/// G-buffer in one of three ways: by the driver, by finding the nearest primitive of each pixel natively, or,
+/// where the primitives of a pixel are one surface together, by computing their mean natively. Members that
+/// draw need the context current.
+class Primitive {
+  public:
+    virtual ~Primitive() = default;
+
+    /// The items that are of this kind: DrawList::of(mode()).
+    virtual DrawMode mode() const = 0;
+
+    // The G-buffer.
+
+    /// Adds items to what the textures hold, by the driver.
+    virtual void draw(const Frame& frame, DrawItems items, const GBuffer& targets,
+                      const SurfaceOutputs& outputs) = 0;
+    virtual NativeUse native_use(DrawItems) const { return NativeUse::none; }
+    /// Adds the nearest primitive of each pixel; false, where anything may have been added, when only the
+    /// driver can draw the items in this frame.
+    virtual bool rasterise(const Frame&, DrawItems, VisibleSurfaces&) { return false; }
+    /// The primitives of a pixel are one surface: then add_mean() takes the place of rasterise().
+    virtual bool is_mean() const { return false; }
+    /// Adds the surface of each pixel of the whole frame where it is nearer than `hides` (reversed depth, row
+    /// by row) says; `writer` holds the same frame.
+    virtual void add_mean(const Frame&, DrawItems, std::span<const float>, SurfaceWriter&) {}
+    /// Sets to 1 what items cover of the frame, row by row; false when only the G-buffer can tell.
+    virtual bool cover(const Frame&, DrawItems, std::span<uint8_t>) { return false; }
+
+    // Layers of what light passes. begin_layers() once, then draw_layer() for each that is peeled, and
+    // take_layer() for those that hold something.
+
+    /// Nothing behind `opaque` (R32F, reversed depth) is drawn.
+    virtual void begin_layers(const Frame&, DrawItems, const gl::Texture&) {}
+    virtual void draw_layer(const Frame& frame, DrawItems items, const GBuffer& layer,
+                            const SurfaceOutputs& outputs) {
+        draw(frame, items, layer, outputs);
+    }
+    virtual void take_layer(DrawItems) {}
+    /// Draws the back faces of volumes.
+    virtual void draw_backs(const Frame&, DrawItems, const GBuffer&, const SurfaceOutputs&) {}
+
+    // Shadows and rays.
+
+    virtual ShadowShape shadow_shape(const DrawItem& item) = 0;
+    /// Rasterises casters that stop light, and takes them out of the list.
+    virtual void rasterise_shadows(const ShadowView&, Casters&, ShadowDepths&) {}
+    virtual void draw_shadows(const ShadowLayer& layer, const Casters& casters) = 0;
+    virtual void add_to(RayGeometry& geometry, const DrawItem& item) = 0;
+
+    // Bounds.
+
+    /// How far an item reaches beyond its vertices, in world units.
+    virtual double reach(const DrawItem&) { return 0; }
+    /// How far primitives of a style reach beyond their own pixel, in pixels: for tiles of large pictures.
+    virtual int reach_in_pixels(const DrawStyle&) const { return 0; }
+
+    /// Drops what nothing has asked for since the last call.
+    virtual void evict_unused() {}
+};
+
+/// All kinds, in the order in which they are drawn. The caches must outlive them. No context is needed.
+std::vector<std::unique_ptr<Primitive>> make_primitives(DataCaches& caches);
+
+}  // namespace easypbr::render

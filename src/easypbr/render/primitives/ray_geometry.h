@@ -1,0 +1,27 @@
+// What rays can meet, as kinds of primitives tell it.
+#pragma once
+
+#include <functional>
+#include <span>
+
+#include "easypbr/render/drawables/draw_list.h"
+
+namespace easypbr::render {
+
+class RayGeometry {
+  public:
+    virtual ~RayGeometry() = default;
+
+    /// The triangles of the item's part of its mesh.
+    virtual void add_faces(const DrawItem& item) = 0;
+    /// A disc around each vertex, across its normal, or towards the ray where the mesh has none. `radius` is
+    /// in world units.
+    virtual void add_discs(const DrawItem& item, double radius) = 0;
+    /// A convex polygon of `corners` corners for each vertex. polygon(vertex, out) gives them in the mesh's
+    /// frame; it is called from several threads.
+    virtual void add_polygons(
+        const DrawItem& item, int corners,
+        const std::function<void(Eigen::Index vertex, std::span<Vec3d> out)>& polygon) = 0;
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,55 @@
+#include "easypbr/render/primitives/surfels/surfel_primitive.h"
+
+#include <cmath>
+#include <numbers>
+
+namespace easypbr::render {
+namespace {
+
+/// Corners of the polygon that an ellipse is for rays; its area is that of the ellipse.
+constexpr int polygon_corners = 8;
+
+}  // namespace
+
+void SurfelPrimitive::draw(const Frame& frame, DrawItems items, const GBuffer& targets,
+                           const SurfaceOutputs& outputs) {
+    if (items.empty()) return;
+    splats_.sum(frame, items, targets.depth.texture(), outputs);
+    (outputs.ids ? targets.surface_ids() : targets.surface_emission()).bind();
+    splats_.write(frame, outputs);
+}
+
+void SurfelPrimitive::add_mean(const Frame& frame, DrawItems items, std::span<const float> hides,
+                               SurfaceWriter& writer) {
+    std::vector<SoftwareSurfels::Source> sources;
+    for (const DrawItem& item : items)
+        sources.push_back({&item, SurfelProjector(item, frame, splats_.spacing_of(item))});
+    software_.draw(frame, sources, hides, writer);
+}
+
+ShadowShape SurfelPrimitive::shadow_shape(const DrawItem& item) {
+    const MeshData& mesh = item.mesh();
+    return {{mesh.V.revision(), mesh.N.revision(), mesh.T.revision(), mesh.B.revision()},
+            {shadows_.reach(item), item.style.surfel_scale}};
+}
+
+void SurfelPrimitive::add_to(RayGeometry& geometry, const DrawItem& item) {
+    const MeshData& mesh = item.mesh();
+    const auto own_radius = float(shadows_.radius(item));
+    const double turn = 2 * std::numbers::pi / polygon_corners;
+    const double same_area = std::sqrt(turn / std::sin(turn)) * item.style.surfel_scale;
+    geometry.add_polygons(item, polygon_corners, [&](Eigen::Index i, std::span<Vec3d> corners) {
+        const Vec3d centre = mesh.V.row(i).transpose().cast<double>(),
+                    n = mesh.N.row(i).transpose().cast<double>().normalized();
+        const Vec3d t = mesh.T.empty() ? Vec3d(n.unitOrthogonal() * own_radius)
+                                       : Vec3d(mesh.T.row(i).transpose().cast<double>());
+        const double length = mesh.B.empty() ? t.norm() : double(mesh.B(i));
+        const Vec3d b = n.cross(t).normalized() * length;
+        for (size_t c = 0; c < corners.size(); ++c) {
+            const double angle = turn * int(c);
+            corners[c] = centre + same_area * (std::cos(angle) * t + std::sin(angle) * b);
+        }
+    });
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,52 @@
+// Surfels: oriented ellipses, of which those that overlap are one surface.
+#pragma once
+
+#include "easypbr/render/primitives/primitive.h"
+#include "easypbr/render/primitives/surfels/software_surfels.h"
+#include "easypbr/render/primitives/surfels/surfel_layers.h"
+#include "easypbr/render/primitives/surfels/surfel_shadows.h"
+#include "easypbr/render/primitives/surfels/surfel_splats.h"
+
+namespace easypbr::render {
+
+class SurfelPrimitive final : public Primitive {
+  public:
+    explicit SurfelPrimitive(DataCaches& caches)
+        : splats_(caches.spacings, buffers_), layers_(splats_), shadows_(caches.spacings, buffers_) {}
+
+    DrawMode mode() const override { return DrawMode::surfels; }
+    /// What is nearest at a pixel and within a band behind it is one surface, of whatever item.
+    void draw(const Frame& frame, DrawItems items, const GBuffer& targets,
+              const SurfaceOutputs& outputs) override;
+    NativeUse native_use(DrawItems) const override { return NativeUse::preferred; }
+    bool is_mean() const override { return true; }
+    void add_mean(const Frame& frame, DrawItems items, std::span<const float> hides,
+                  SurfaceWriter& writer) override;
+    void begin_layers(const Frame& frame, DrawItems items, const gl::Texture& opaque) override {
+        layers_.begin(frame, items, opaque);
+    }
+    void draw_layer(const Frame& frame, DrawItems items, const GBuffer& layer,
+                    const SurfaceOutputs& outputs) override {
+        layers_.draw(frame, items, layer, outputs);
+    }
+    void take_layer(DrawItems items) override { layers_.take(items); }
+    ShadowShape shadow_shape(const DrawItem& item) override;
+    void draw_shadows(const ShadowLayer& layer, const Casters& casters) override {
+        shadows_.draw(layer, casters);
+    }
+    void add_to(RayGeometry& geometry, const DrawItem& item) override;
+    double reach(const DrawItem& item) override { return shadows_.reach(item); }
+    void evict_unused() override {
+        buffers_.evict_unused();
+        shadows_.evict_unused();
+    }
+
+  private:
+    SurfelCache buffers_;
+    SurfelSplats splats_;
+    SurfelLayers layers_;
+    SoftwareSurfels software_;
+    SurfelShadows shadows_;
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,51 @@
+// Writes surfaces that were found natively into a G-buffer in host memory.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "easypbr/render/frame/gbuffer.h"
+#include "easypbr/render/frame/surface_kind.h"
+
+namespace easypbr::render {
+
+/// What the G-buffer holds of one pixel.
+struct SurfacePixel {
+    Vec3 albedo{0, 0, 0};
+    Vec3 normal{0, 0, 1};  ///< unit, world, on the side that is seen
+    float metallic = 0, roughness = 0;
+    SurfaceKind kind = SurfaceKind::lit;
+    float depth = 0;        ///< reversed; 0: nothing
+    uint32_t object = 0;    ///< place in the snapshot
+    uint32_t element = 0;   ///< of its object: the face or the vertex
+    bool is_point = false;  ///< a vertex
+};
+
+/// Pixels of a rectangle in the targets' formats. They are counted row by row; different ones may be written
+/// by different threads.
+class SurfaceWriter {
+  public:
+    /// Begins to write a rectangle (GBuffer::write()), whose pixels are undefined.
+    SurfaceWriter(const GBuffer& targets, const PixelRect& area, bool with_ids);
+
+    size_t index(int x, int y) const {
+        return size_t(y - area_.y) * size_t(area_.width) + size_t(x - area_.x);
+    }
+    float depth(size_t index) const { return depth_[index]; }
+    void put(size_t index, const SurfacePixel& pixel);
+    void put_nothing(size_t index) {
+        depth_[index] = 0;
+        if (!id_.empty()) id_[index] = element_[index] = 0;
+    }
+    /// Nothing in all of the rectangle.
+    void clear();
+
+  private:
+    PixelRect area_;
+    std::span<uint16_t> albedo_, normal_;
+    std::span<uint8_t> material_;
+    std::span<float> depth_;
+    std::span<uint32_t> id_, element_;  ///< empty where they are not asked for
+};
+
+}  // namespace easypbr::render

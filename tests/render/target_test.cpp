@@ -1,0 +1,142 @@
+// Targets live in host memory or in a texture; transfers between the two are counted, and are those that a
+// frame needs.
+#include <vector>
+
+#include "easypbr/core/error.h"
+#include "easypbr/geometry/surfels.h"
+#include "easypbr/gl/context.h"
+#include "easypbr/render/frame/target.h"
+#include "easypbr/render/pipeline/renderer.h"
+#include "render_test.h"
+
+namespace easypbr::render {
+namespace {
+
+class TargetTest : public testing::Test {
+  protected:
+    /// Writes 1, 2, ... in host memory.
+    void write(const PixelRect& area) const {
+        target_.write(area);
+        float next = 0;
+        for (float& value : target_.pixels<float>()) value = ++next;
+    }
+    void clear_texture(float value) const {
+        const float rgba[4] = {value, 0, 0, 0};
+        gl::Framebuffer({&target_.drawn()}).clear_color(0, rgba);
+    }
+
+    const std::unique_ptr<gl::Context> context_ = gl::Context::create();
+    const gl::ContextScope scope_{*context_};
+    const Target target_{gl::Format::r32f, Vec2i(3, 2)};
+    Transfers transfers_;
+};
+
+TEST_F(TargetTest, HostMemoryIsReadWithoutATransfer) {
+    write({1, 0, 2, 2});
+    EXPECT_EQ(target_.read<float>(transfers_), (std::vector<float>{0, 1, 2, 0, 3, 4}));
+    EXPECT_EQ(transfers_, Transfers());
+}
+
+TEST_F(TargetTest, TheTextureNeedsAnUpload) {
+    clear_texture(7);
+    write({1, 1, 2, 1});
+    EXPECT_THROW(target_.texture(), Error);
+    target_.upload(transfers_);
+    target_.upload(transfers_);  // there already
+    EXPECT_EQ(transfers_, (Transfers{1, 0, 8, 0}));
+    float pixels[6];
+    gl::Framebuffer({&target_.texture()})
+        .read(0, gl::Format::r32f, 0, 0, 3, 2, std::as_writable_bytes(std::span(pixels)));
+    EXPECT_EQ(std::vector<float>(pixels, pixels + 6), (std::vector<float>{7, 7, 7, 7, 1, 2}));
+}
+
+TEST_F(TargetTest, WhatTheDriverDrewIsDownloadedOnce) {
+    write(target_.whole());
+    clear_texture(5);
+    target_.download({0, 0, 2, 1}, transfers_);
+    target_.download({1, 0, 1, 1}, transfers_);  // a part of what is there
+    EXPECT_EQ(transfers_, (Transfers{0, 1, 0, 8}));
+    EXPECT_EQ(target_.pixels<float>()[1], 5);
+    EXPECT_EQ(target_.read<float>(transfers_), std::vector<float>(6, 5));
+    EXPECT_EQ(target_.read<float>(transfers_), std::vector<float>(6, 5));
+    EXPECT_EQ(transfers_.downloads, 2);
+    clear_texture(6);
+    EXPECT_EQ(target_.read<float>(transfers_), std::vector<float>(6, 6));
+}
+
+TEST_F(TargetTest, NoMemoryUntilItIsAskedFor) {
+    EXPECT_TRUE(bool(target_));
+    EXPECT_FALSE(bool(Target()));
+    target_.write({});
+    target_.upload(transfers_);
+    EXPECT_EQ(transfers_, Transfers());
+}
+
+/// The transfers of a picture without shadows, whose maps would count too; nothing on machines with a GPU.
+std::optional<Transfers> transfers_of(const Scene& scene, const Settings& changes, int samples = 1) {
+    const auto context = gl::Context::create();
+    if (!context->info().software) return std::nullopt;
+    const gl::ContextScope scope(*context);
+    Settings settings = changes;
+    settings.shadows.enabled = false;
+    const SceneSnapshot snapshot = scene.snapshot();
+    const Vec2i size(64, 48);
+    Renderer renderer;
+    renderer.draw(snapshot, resolve(snapshot, settings, size), {size, samples, Encoding::srgb8});
+    return renderer.transfers();
+}
+
+Scene scene_of(const Mesh& mesh) {
+    Scene scene;
+    scene.show(mesh, "mesh");
+    return scene;
+}
+
+/// Albedo, normal, material, depth, and the depth of the driver's depth test.
+constexpr int gbuffer_uploads = 5;
+
+TEST(Transfers, ANativeFrameUploadsItsSurfacesOnce) {
+    const Mesh mesh = make_teapot(1, 20);
+    for (const Scene& scene : {scene_of(mesh), scene_of(surfels_from_mesh(mesh))}) {
+        const auto transfers = transfers_of(scene, {});
+        if (!transfers) GTEST_SKIP() << "this machine has a GPU: nothing is drawn natively";
+        EXPECT_EQ(transfers->uploads, gbuffer_uploads);
+        EXPECT_EQ(transfers->downloads, 0);
+    }
+}
+
+TEST(Transfers, RaysReadNativeSurfacesWhereTheyAre) {
+    Settings settings;
+    settings.rays.enabled = true;
+    settings.ground.mode = GroundMode::none;
+    const int samples = 2;
+    const auto transfers = transfers_of(scene_of(make_teapot(1, 20)), settings, samples);
+    if (!transfers) GTEST_SKIP() << "this machine has a GPU: nothing is drawn natively";
+    EXPECT_EQ(transfers->uploads, samples * (gbuffer_uploads + 3));
+    EXPECT_EQ(transfers->downloads, 0);
+}
+
+TEST(Transfers, RaysDownloadWhatTheDriverDrew) {
+    Settings settings;
+    settings.rays.enabled = true;
+    settings.ground.mode = GroundMode::plane;  // drawn by the driver
+    const auto transfers = transfers_of(scene_of(make_teapot(1, 20)), settings, 2);
+    if (!transfers) GTEST_SKIP() << "this machine has a GPU: nothing is drawn natively";
+    EXPECT_EQ(transfers->downloads, 2 * 3);  // normal, material, depth
+}
+
+TEST(Transfers, NativeGroundTruthNeverLeavesHostMemory) {
+    const auto context = gl::Context::create();
+    if (!context->info().software) GTEST_SKIP() << "this machine has a GPU: nothing is drawn natively";
+    const gl::ContextScope scope(*context);
+    const SceneSnapshot snapshot = scene_of(make_teapot(1, 20)).snapshot();
+    const Vec2i size(64, 48);
+    Renderer renderer;
+    renderer.draw_surfaces(snapshot, resolve(snapshot, {}, size), size);
+    const SurfaceFrame surfaces = renderer.read_surfaces();
+    EXPECT_GT(std::ranges::count(surfaces.object, 1u), 100);
+    EXPECT_EQ(renderer.transfers(), Transfers());
+}
+
+}  // namespace
+}  // namespace easypbr::render
