@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "easypbr/core/picture.h"
 #include "easypbr/gl/buffer.h"
 
 namespace easypbr::gl {
@@ -42,10 +43,6 @@ inline constexpr Blending maximum{.color_equation = BlendEquation::maximum};
 
 enum class Culling { none, back, front };
 
-struct Scissor {
-    int x = 0, y = 0, width = 0, height = 0;
-};
-
 /// Depth is reversed: 1 at the near plane, 0 infinitely far. Row 0 of a target is the top of the picture.
 struct DrawState {
     DepthTest depth_test = DepthTest::off;
@@ -53,7 +50,7 @@ struct DrawState {
     bool write_color = true;
     float least_depth = 0;  ///< fragments' depths are mapped to [least_depth, 1]
     Blending blending = replace;
-    std::optional<Scissor> scissor = {};
+    std::optional<PixelRect> scissor = {};
     Culling culling = Culling::none;
     bool clockwise_fronts = false;  ///< front faces are clockwise in the window, for mirroring transforms
 };

@@ -151,7 +151,7 @@ gl::DrawState geometry_state(const SurfaceOutputs& outputs) {
 }
 
 gl::DrawState screen_state(const PixelRect& area, const gl::Blending& blending) {
-    return {.blending = blending, .scissor = gl::Scissor{area.x, area.y, area.width, area.height}};
+    return {.blending = blending, .scissor = area};
 }
 
 void set_peel_uniforms(const gl::Program& program, const Peel& peel, unsigned unit) {

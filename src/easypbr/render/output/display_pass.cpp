@@ -13,15 +13,24 @@ double doublings_per_depth(const Camera& camera) {
     return (camera.far - camera.near) / (distance * std::log(2.0));
 }
 
+/// Of eye-dome lighting, in pixels.
+float radius_of(const Frame& frame) {
+    return std::max(1.0f, frame.resolved->settings.edl.radius * float(frame.picture_size.y()) / 1080);
+}
+
 void set_eye_dome_uniforms(const gl::Program& program, const Frame& frame) {
     const EdlSettings& eye_dome = frame.resolved->settings.edl;
-    const float radius = eye_dome.radius * float(frame.picture_size.y()) / 1080;
     program.set("u_size", Vec2(frame.size.cast<float>()));
-    program.set("u_eye_dome", Vec2(eye_dome.strength, std::max(1.0f, radius)));
+    program.set("u_eye_dome", Vec2(eye_dome.strength, radius_of(frame)));
     program.set("u_depth_scale", Vec2(float(doublings_per_depth(frame.camera)), 0));
 }
 
 }  // namespace
+
+int DisplayPass::reach(const Frame& whole) {
+    // At the coarsest of its scales it looks four radii far.
+    return int(std::ceil(4 * radius_of(whole)));
+}
 
 void DisplayPass::draw(const Frame& frame, const GBuffer& targets) {
     const float zero[4] = {0, 0, 0, 0};

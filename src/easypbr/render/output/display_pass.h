@@ -17,6 +17,9 @@ class DisplayPass {
     /// where the opaque surfaces (both R32F, reversed depth). Until the next call.
     const gl::Texture& shade(const Frame& frame, const gl::Texture& nearest, const gl::Texture& opaque);
 
+    /// How far eye-dome lighting sees, in pixels of a frame of the whole picture.
+    static int reach(const Frame& whole);
+
   private:
     ProgramVariants programs_{"screen_triangle.vert", "display_surface.frag"};
     ProgramVariants shades_{"screen_triangle.vert", "eye_dome_layers.frag"};

@@ -6,8 +6,10 @@
 #include <cmath>
 
 #include "easypbr/core/error.h"
+#include "easypbr/render/effects/ambient_occlusion/ambient_occlusion_pass.h"
 #include "easypbr/render/effects/effect.h"
 #include "easypbr/render/effects/ground/ground_pass.h"
+#include "easypbr/render/output/display_pass.h"
 #include "easypbr/render/primitives/primitive.h"
 #include "easypbr/scene/draw_style.h"
 
@@ -42,16 +44,6 @@ std::vector<Span> spans_of(int side, int guard, int limit) {
             {at, end, std::max(at - guard, 0) / tile_grid * tile_grid, std::min(end + guard, side)});
     }
     return spans;
-}
-
-/// Depth of the nearest content, but no nearer than a hundredth of its size.
-double nearest_depth(const Box3d& bounds, const Camera& camera) {
-    double nearest = 1e300;
-    for (int i = 0; i < 8; ++i) {
-        const Vec3d corner = bounds.corner(Box3d::CornerType(i)) - camera.position();
-        nearest = std::min(nearest, -camera.T_world_cam.linear().col(2).dot(corner));
-    }
-    return std::max(nearest, bounds.diagonal().norm() / 100);
 }
 
 bool has_transmission(const SceneSnapshot& scene, const ResolvedSettings& resolved) {
@@ -91,14 +83,11 @@ Guard guard_of(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec
 
     Guard guard;
     guard.pixels = smallest_guard + settings.points.hole_filling + reach_in_pixels(scene, resolved);
-    // Eye-dome lighting looks four of its radii far.
-    guard.pixels += int(std::ceil(4 * std::max(1.0f, settings.edl.radius * float(picture.y()) / 1080)));
+    guard.pixels += DisplayPass::reach(whole);
     const bool transmits = has_transmission(scene, resolved);
-    if (*settings.ssao.enabled && !bounds.isEmpty()) {
-        const double depth = whole.orthographic() ? 1 : nearest_depth(bounds, whole.camera);
-        const double radius = *settings.ssao.radius * whole.clip_from_view(1, 1) * picture.y() / 2 / depth;
+    if (const double reach = AmbientOcclusionPass::reach(whole, bounds); reach > 0) {
         // A ground comes as near to the camera as it likes.
-        guard.reach = GroundPass::is_on(resolved) ? most_reach : std::min(std::ceil(radius), most_reach);
+        guard.reach = GroundPass::is_on(resolved) ? most_reach : std::min(reach, most_reach);
         if (transmits) guard.reach = std::min(guard.reach, most_reach_beside_transmission);
         guard.pixels += int(guard.reach);
     }

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "easypbr/core/hash.h"
+#include "easypbr/scene/material_table.h"
 
 namespace easypbr::render {
 namespace {
@@ -29,6 +30,17 @@ double extent_of(const Light& light) {
 
 }  // namespace
 
+ShadowMaps::Shaded ShadowMaps::shaded_by(const DrawItem& item) {
+    const Material& m = item.material;
+    Shaded shaded{m.shader.text, {m.unlit ? 1.0f : 0.0f, item.style.flat ? 1.0f : 0.0f}, {}};
+    for (const MaterialNumber& row : material_numbers()) shaded.numbers.push_back(m.*row.value);
+    for (const MaterialColor& row : material_colors())
+        for (const float channel : m.*row.value) shaded.numbers.push_back(channel);
+    for (const MaterialTexture& row : material_textures())
+        shaded.images.push_back((m.*row.texture).image.get());
+    return shaded;
+}
+
 ShadowMaps::Caster ShadowMaps::caster_of(const DrawItem& item) {
     const MeshData& mesh = item.mesh();
     const Material& m = item.material;
@@ -36,15 +48,7 @@ ShadowMaps::Caster ShadowMaps::caster_of(const DrawItem& item) {
     caster.first_face = item.part.first_face;
     caster.face_count = item.part.face_count;
     caster.T_world_mesh = item.object->T_world_mesh.matrix().topRows<3>();
-    if (m.shader)
-        caster.shaded = {
-            m.shader.text,
-            {m.base_color[0], m.base_color[1], m.base_color[2], m.metallic, m.roughness, m.occlusion_strength,
-             m.normal_scale, m.emissive[0], m.emissive[1], m.emissive[2], m.unlit ? 1.0f : 0.0f,
-             item.style.flat ? 1.0f : 0.0f},
-            {m.metallic_texture.image.get(), m.roughness_texture.image.get(), m.normal_texture.image.get(),
-             m.occlusion_texture.image.get(), m.emissive_texture.image.get(),
-             m.base_color_texture.image.get(), m.opacity_texture.image.get()}};
+    if (m.shader) caster.shaded = shaded_by(item);
     if (item.alpha == AlphaMode::opaque && !item.casts_tint() && !m.shader) return caster;
     caster.revisions = {mesh.UV.revision(), item.with_colors ? mesh.C.revision() : 0};
     caster.alpha_mode = item.alpha;

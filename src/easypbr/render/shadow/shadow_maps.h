@@ -61,8 +61,8 @@ class ShadowMaps {
     /// What the shader of a caster sees of its material.
     struct Shaded {
         std::string text;
-        std::array<float, 12> numbers{};
-        std::array<const void*, 7> images{};
+        std::vector<float> numbers;
+        std::vector<const void*> images;
         bool operator==(const Shaded&) const = default;
     };
     /// A part of an object as far as its shadow is concerned.
@@ -81,6 +81,7 @@ class ShadowMaps {
         bool operator==(const Caster&) const = default;
     };
 
+    static Shaded shaded_by(const DrawItem& item);
     static Caster caster_of(const DrawItem& item);
     /// The vertices' bounds and what reaches beyond them.
     Box3d caster_bounds(const DrawList& list, const Box3d& bounds);

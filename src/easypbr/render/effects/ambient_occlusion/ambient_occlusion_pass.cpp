@@ -1,6 +1,7 @@
 #include "easypbr/render/effects/ambient_occlusion/ambient_occlusion_pass.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace easypbr::render {
 namespace {
@@ -19,6 +20,16 @@ bool at_half_resolution(const Frame& frame) {
 PixelRect in_texels(const PixelRect& r, int scale) {
     const int x1 = (r.x + r.width + scale - 1) / scale, y1 = (r.y + r.height + scale - 1) / scale;
     return {r.x / scale, r.y / scale, x1 - r.x / scale, y1 - r.y / scale};
+}
+
+/// Depth of the nearest content, but no nearer than a hundredth of its size.
+double nearest_depth(const Box3d& bounds, const Camera& camera) {
+    double nearest = 1e300;
+    for (int i = 0; i < 8; ++i) {
+        const Vec3d corner = bounds.corner(Box3d::CornerType(i)) - camera.position();
+        nearest = std::min(nearest, -camera.T_world_cam.linear().col(2).dot(corner));
+    }
+    return std::max(nearest, bounds.diagonal().norm() / 100);
 }
 
 }  // namespace
@@ -83,6 +94,13 @@ void AmbientOcclusionPass::estimate_normals(const Frame& frame, const GBuffer& t
     gl::copy(targets.normal.texture(), normal_);
     estimate_ = gl::Framebuffer({&normal_}, &targets.depth_test());
     run(frame, targets, {estimating_, camera_defines(frame), estimate_, frame.covered});
+}
+
+double AmbientOcclusionPass::reach(const Frame& whole, const Box3d& bounds) {
+    const SsaoSettings& ssao = whole.resolved->settings.ssao;
+    if (!*ssao.enabled || bounds.isEmpty()) return 0;
+    const double depth = whole.orthographic() ? 1 : nearest_depth(bounds, whole.camera);
+    return std::ceil(*ssao.radius * whole.clip_from_view(1, 1) * whole.picture_size.y() / 2 / depth);
 }
 
 void AmbientOcclusionPass::run(const Frame& frame, const GBuffer& targets, const Step& step) {

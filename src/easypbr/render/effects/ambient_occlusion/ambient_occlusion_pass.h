@@ -17,6 +17,9 @@ class AmbientOcclusionPass {
     /// depth.
     void draw(const Frame& frame, GBuffer& targets, bool with_points);
 
+    /// How far occluders are looked for, in pixels of a frame of the whole picture; 0 where it is off.
+    static double reach(const Frame& whole, const Box3d& bounds);
+
   private:
     struct Step;
     void make_targets(Vec2i size, bool half);
