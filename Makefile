@@ -1,7 +1,6 @@
 # The two commands: `make demo` and `make test`. Each installs what is missing.
 PYTHON := .venv/bin/python
 BUILD := build
-ROOMS := core|scene|io|gl|gpu|render|app|viewer|cli
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 
 .PHONY: demo test library build setup setup-tests bench check-long docs format lint clean
@@ -42,11 +41,8 @@ docs: setup-tests build
 format:
 	clang-format -i $$(git ls-files 'include/**.h' 'src/**.h' 'src/**.cpp' 'tests/**.h' 'tests/**.cpp' 'examples/**.cpp')
 
-# Without precompiled headers, which clang-tidy cannot read; also shows includes that are missing.
 lint: setup
-	cmake -S . -B build-lint -G Ninja -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DEASYPBR_BUILD_PYTHON=OFF -DEASYPBR_BUILD_TESTS=OFF
-	ninja -C build-lint generated/easypbr_shaders.inc generated/easypbr_dfg.inc
-	run-clang-tidy -quiet -p build-lint "src/easypbr/($(ROOMS))/.*"
+	@scripts/lint.sh
 
 clean:
 	rm -rf build build-* demo.png

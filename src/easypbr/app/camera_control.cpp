@@ -75,7 +75,7 @@ void CameraControl::drag(const InputEvent& event, ViewPoint& view, Vec2i size, c
 }
 
 bool CameraControl::flies() const {
-    for (const int code : {'W', 'A', 'S', 'D', 'Q', 'E'})
+    for (const char code : {'W', 'A', 'S', 'D', 'Q', 'E'})
         if (keys_.contains(code)) return true;
     return false;
 }

@@ -25,6 +25,14 @@ Vec3 seen(const T* pixel) {
         return (color.array() * alpha + paper).matrix();
 }
 
+/// A number in [0, 1] as a channel.
+template <class T>
+T channel(float value) {
+    if constexpr (std::is_floating_point_v<T>) return value;
+    const float code = value * largest<T> + 0.5f;
+    return T(code);
+}
+
 }  // namespace
 
 template <class T>
@@ -37,9 +45,9 @@ void Canvas::blend_pixel(T* pixel, const Rgb8& color, float alpha) const {
         const float there = float(pixel[c]) / largest<T>;
         const float mixed =
             premultiplied ? own * alpha + there * (1 - alpha) : (own * alpha + there * below) / total;
-        pixel[c] = premultiplied ? T(mixed) : T(mixed * largest<T> + 0.5f);
+        pixel[c] = channel<T>(mixed);
     }
-    pixel[3] = premultiplied ? T(total) : T(total * largest<T> + 0.5f);
+    pixel[3] = channel<T>(total);
 }
 
 void Canvas::blend(int x, int y, const Rgb8& color, float alpha) {

@@ -16,7 +16,7 @@ int EventHandlers::add(EventHandler handler) {
 bool EventHandlers::offer(const InputEvent& event) {
     bool taken = false;
     const auto present = handlers_;  // They may add and remove others.
-    for (const auto& [number, handler] : present) guarded([&] { taken |= handler(event); });
+    for (const auto& entry : present) guarded([&] { taken |= entry.second(event); });
     return taken;
 }
 

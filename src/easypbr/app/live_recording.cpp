@@ -52,7 +52,7 @@ void LiveRecording::begin(const RecordingForm& form, Vec2i window, std::optional
         const WithoutBackground without(session_.settings(), form.transparent && !form.panels);
         recorder_.start(form.video, {.fps = form.fps, .size = size, .samples = samples});
     }
-    running_.emplace();
+    running_ = Running();
     running_->form = form;
     running_->size = size;
 }

@@ -32,7 +32,8 @@ void show_loaded(Session& session, AnimationPlayer& player, const fs::path& path
         io::load_scene(path, {.crease_angle_deg = session.settings().load.crease_deg});
     session.scene().show(loaded.mesh, name);
     if (!loaded.animations.empty()) player.add(name, loaded.animations);
-    for (const auto& [light, value] : loaded.lights) session.scene().set_light(name + "/" + light, value);
+    for (const auto& [light, value] : loaded.lights)
+        session.scene().set_light(fmt::format("{}/{}", name, light), value);
 }
 
 }  // namespace

@@ -74,7 +74,8 @@ Camera find_camera(const std::vector<io::LoadedScene>& loaded, const std::string
 
 void show(Scene& scene, const io::LoadedScene& loaded, const std::string& name) {
     scene.show(loaded.mesh, name);
-    for (const auto& [light_name, light] : loaded.lights) scene.set_light(name + "/" + light_name, light);
+    for (const auto& [light_name, light] : loaded.lights)
+        scene.set_light(fmt::format("{}/{}", name, light_name), light);
 }
 
 }  // namespace easypbr::cli

@@ -39,7 +39,7 @@ std::vector<double> load_pose(const std::filesystem::path& path, PoseAxes axes) 
             fmt::format("{}: expected the 16 numbers of a 4x4 matrix, got {}", path.string(), pose.size()));
     if (axes == PoseAxes::opencv)
         for (int row = 0; row < 3; ++row)
-            for (int column : {1, 2}) pose[size_t(row * 4 + column)] *= -1;
+            for (int column : {1, 2}) pose[size_t(row) * 4 + size_t(column)] *= -1;
     return pose;
 }
 

@@ -88,8 +88,9 @@ void optical_flow(const Surfaces& now, const Surfaces& other, LayerArray& flow, 
         const Vec3d p = moved(now, i, motion);
         if (!orthographic && !(p.z() > 0)) return;
         const Vec2d place = project(other.camera, other.size, p);
-        f[2 * i] = float(place.x() - double(i % size_t(now.size.x())));
-        f[2 * i + 1] = float(place.y() - double(i / size_t(now.size.x())));
+        const size_t x = i % size_t(now.size.x()), y = i / size_t(now.size.x());
+        f[2 * i] = float(place.x() - double(x));
+        f[2 * i + 1] = float(place.y() - double(y));
         o[i] = !is_seen(other, place, motion, float(p.z()));
     });
 }

@@ -174,13 +174,12 @@ void count_warped(Instance& instance, const PixelBox& area, const std::vector<ui
     for (size_t i = 0; i < alone.size(); ++i) {
         if (!alone[i]) continue;
         ++all;
-        const Vec3d ray((area.x + int(i) % area.width - k.cx) / k.fx,
-                        (area.y + int(i) / area.width - k.cy) / k.fy, 1);
+        const int x = area.x + int(i) % area.width, y = area.y + int(i) / area.width;
+        const Vec3d ray((x - k.cx) / k.fx, (y - k.cy) / k.fy, 1);
         const Vec2d pixel = project(s.camera, s.size, ray);
         const bool in_picture = pixel.x() >= -0.5 && pixel.y() >= -0.5 && pixel.x() < s.size.x() - 0.5 &&
                                 pixel.y() < s.size.y() - 0.5;
-        const bool in_drawn =
-            contains(lens.drawn_size, {area.x + int(i) % area.width, area.y + int(i) / area.width, 1, 1});
+        const bool in_drawn = contains(lens.drawn_size, {x, y, 1, 1});
         inside += in_drawn && in_picture;
         if (!in_picture && ray.head<2>().norm() < reach)
             extent.add(int(std::lround(pixel.x())), int(std::lround(pixel.y())));

@@ -39,7 +39,8 @@ MeshData centers(const VoxelGrid& grid, const std::vector<size_t>& places) {
     Array3f::Dense V(Eigen::Index(places.size()), 3);
     parallel_for(places.size(), size_t(1) << 15, [&](size_t row) {
         const size_t place = places[row];
-        const Vec3d cell(double(place / nz / ny), double(place / nz % ny), double(place % nz));
+        const size_t x = place / nz / ny, y = place / nz % ny, z = place % nz;
+        const Vec3d cell{double(x), double(y), double(z)};
         V.row(Eigen::Index(row)) =
             (grid.origin + grid.cell_size * (cell.array() + 0.5).matrix()).cast<float>().transpose();
     });

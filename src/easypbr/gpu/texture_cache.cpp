@@ -40,7 +40,8 @@ Image next_level(const Image& image, bool color) {
             for (int c = 0; c < channels; ++c) {
                 if (color && c < 3) {
                     const float sum = decode[p[0][c]] + decode[p[1][c]] + decode[p[2][c]] + decode[p[3][c]];
-                    to[c] = encode[size_t(sum * (4095.0f / 4) + 0.5f)];
+                    const float code = sum * (4095.0f / 4) + 0.5f;
+                    to[c] = encode[size_t(code)];
                 } else {
                     to[c] = uint8_t((p[0][c] + p[1][c] + p[2][c] + p[3][c] + 2) / 4);
                 }

@@ -19,7 +19,8 @@ float number(const T* pixel, int channel) {
 }
 
 uint8_t code(float t) {
-    return uint8_t(std::clamp(t, 0.0f, 1.0f) * 255 + 0.5f);
+    const float scaled = std::clamp(t, 0.0f, 1.0f) * 255 + 0.5f;
+    return uint8_t(scaled);
 }
 
 /// A colour in front of the chequered ground; `alpha` in [0, 1].

@@ -216,8 +216,8 @@ void bind_space(InstanceClass& instance) {
 }  // namespace
 
 void bind_ground_truth(nb::module_& module) {
-    nb::class_<app::Moment>(module, "Moment",
-                            "A scene and its camera at one moment, for optical flow: Viewer.moment().");
+    const nb::class_<app::Moment> moment(
+        module, "Moment", "A scene and its camera at one moment, for optical flow: Viewer.moment().");
     InstanceClass instance(module, "Instance", "Annotation of one instance in an image.");
     bind_counts(instance);
     bind_space(instance);

@@ -128,14 +128,15 @@ std::string style_text(nb::handle style) {
         if (!field.name.starts_with(prefix)) continue;
         const std::string name = field.name.substr(prefix.size());
         const std::string value = nb::cast<std::string>(nb::repr(style.attr(name.c_str())));
-        if (value != "auto") text += (text.empty() ? "" : ", ") + name + "=" + value;
+        if (value != "auto") text += fmt::format("{}{}={}", text.empty() ? "" : ", ", name, value);
     }
     return "Style(" + text + ")";
 }
 
 void bind_style(nb::module_& module) {
     nb::class_<StyleHandle> style(module, "Style", "Style of a mesh; `auto` values follow from the data.");
-    style.def("__init__", construct_material<StyleHandle>, nb::sig("def __init__(self, **values: object) -> None"));
+    style.def("__init__", construct_material<StyleHandle>,
+              nb::sig("def __init__(self, **values: object) -> None"));
     style.def("__repr__", style_text);
     const std::string prefix = "style.";
     for (const Field& field : fields()) {

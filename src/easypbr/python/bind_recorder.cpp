@@ -88,7 +88,7 @@ struct CameraState {
 }  // namespace
 
 void bind_recorder(nb::module_& module, nb::class_<SharedViewer>& viewer) {
-    nb::class_<CameraState>(module, "_CameraState");
+    const nb::class_<CameraState> state(module, "_CameraState");
     bind_recording(viewer);
     bind_clock(viewer);
     viewer.def_prop_rw(

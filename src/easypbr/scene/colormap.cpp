@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <limits>
 #include <numbers>
 #include <string_view>
@@ -117,7 +118,8 @@ Extent central_extent(const Array1f& values) {
         if (std::isfinite(values(i))) samples.push_back(values(i));
     if (samples.empty()) return {};
     const auto at = [&](double part) {
-        const auto place = samples.begin() + std::ptrdiff_t(part * double(samples.size() - 1) + 0.5);
+        const auto place =
+            samples.begin() + std::ptrdiff_t(std::floor(part * double(samples.size() - 1) + 0.5));
         std::nth_element(samples.begin(), place, samples.end());
         return *place;
     };

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <numeric>
+#include <tuple>
 #include <vector>
 
 #include "easypbr/core/error.h"
@@ -100,7 +101,9 @@ class Fan {
         int32_t other;
         int orientation;
         uint32_t corner;
-        auto operator<=>(const Edge&) const = default;
+        bool operator<(const Edge& edge) const {
+            return std::tie(other, orientation, corner) < std::tie(edge.other, edge.orientation, edge.corner);
+        }
     };
 
     int32_t vertex(uint32_t corner, int step) const {

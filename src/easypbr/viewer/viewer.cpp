@@ -52,9 +52,9 @@ struct Viewer::Window {
     std::optional<Clock::time_point> last;
     Callbacks before, after;
 
-    void call(const Callbacks& functions) {
-        const Callbacks present = functions;  // They may add and remove others.
-        for (const auto& [number, function] : present) live.guarded(function);
+    // A copy, as they may add and remove others.
+    void call(Callbacks functions) {
+        for (const auto& [number, function] : functions) live.guarded(function);
     }
     int keep(Callbacks& functions, std::function<void()> function) {
         if (!function) throw ArgumentError("a callback is no function");

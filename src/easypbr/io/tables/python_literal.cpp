@@ -80,8 +80,8 @@ class LiteralParser {
         while (!take('}')) {
             PythonLiteral key = parse(depth + 1);
             if (key.kind != PythonLiteral::string || !take(':')) return {};
-            value.entries.emplace_back(std::move(key.text), parse(depth + 1));
-            if (value.entries.back().second.kind == PythonLiteral::none) return {};
+            value.entries.push_back({std::move(key.text), parse(depth + 1)});
+            if (value.entries.back().value.kind == PythonLiteral::none) return {};
             if (!take(',') && (at_end() || *p_ != '}')) return {};
         }
         value.kind = PythonLiteral::dictionary;

@@ -4,10 +4,11 @@
 #include <cstdint>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 namespace easypbr::io {
+
+struct PythonEntry;
 
 /// A value; tuples are lists, True and False are the integers 1 and 0.
 struct PythonLiteral {
@@ -16,10 +17,16 @@ struct PythonLiteral {
     int64_t number = 0;
     std::string text;
     std::vector<PythonLiteral> items;
-    std::vector<std::pair<std::string, PythonLiteral>> entries;
+    std::vector<PythonEntry> entries;
 
     /// The entry of a dictionary, or null.
     const PythonLiteral* find(std::string_view key) const;
+};
+
+/// Of a dictionary.
+struct PythonEntry {
+    std::string key;
+    PythonLiteral value;
 };
 
 /// The value at the text's begin; what is not understood gives `none`, and ends what holds it.

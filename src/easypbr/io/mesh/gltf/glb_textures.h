@@ -15,7 +15,7 @@ using OrderedJson = nlohmann::ordered_json;
 
 /// The growing content of a GLB file.
 struct GlbContent {
-    OrderedJson json;
+    OrderedJson json = OrderedJson::object();
     std::string binary;
 
     /// Appends bytes, aligned to 4, as a buffer view and returns its index.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "easypbr/core/parallel.h"
 
@@ -129,8 +130,9 @@ class Accessor {
                                    sparse_count, size_of_component(index_type));
         std::vector<uint32_t> out(sparse_count);
         with_component(index_type, [&]<class T>(T) {
-            for (size_t i = 0; i < sparse_count; ++i)
-                out[i] = uint32_t(load<T>(where.data + i * where.stride));
+            if constexpr (std::is_unsigned_v<T>)
+                for (size_t i = 0; i < sparse_count; ++i)
+                    out[i] = uint32_t(load<T>(where.data + i * where.stride));
         });
         for (const uint32_t row : out)
             if (row >= count) fail(fmt::format("replaces row {} of {}", row, count));
@@ -198,9 +200,10 @@ std::vector<uint32_t> read_indices(GltfDocument& document, size_t index) {
     if (accessor.sparse() || !accessor.rows.data) accessor.fail("holds indices without plain data");
     std::vector<uint32_t> out(accessor.count);
     with_component(accessor.type, [&]<class T>(T) {
-        parallel_for(out.size(), row_grain, [&](size_t i) {
-            out[i] = uint32_t(load<T>(accessor.rows.data + i * accessor.rows.stride));
-        });
+        if constexpr (std::is_unsigned_v<T>)
+            parallel_for(out.size(), row_grain, [&](size_t i) {
+                out[i] = uint32_t(load<T>(accessor.rows.data + i * accessor.rows.stride));
+            });
     });
     return out;
 }

@@ -57,7 +57,7 @@ std::optional<std::vector<std::byte>> base64_decoded(std::string_view text) {
     uint32_t bits = 0;
     int held = 0;
     for (const char c : text) {
-        const int digit = table[uint8_t(c)];
+        const int8_t digit = table[uint8_t(c)];
         if (digit < 0) return std::nullopt;
         bits = bits << 6 | uint32_t(digit);
         held += 6;

@@ -145,12 +145,10 @@ class MtlParser {
                 scale = pair(scale);
             else if (option == "-o")
                 offset = pair(offset);
-            else if (option == "-t")
+            else if (option == "-t" || option == "-mm")
                 pair(offset);
             else if (option == "-bm")
                 map.bump = number().value_or(1);
-            else if (option == "-mm")
-                pair(offset);
             else if (option == "-clamp")
                 clamp = read_word(p_, end_) == "on";
             else if (option == "-imfchan")
