@@ -38,6 +38,7 @@
 #include "easypbr/scene/light.h"
 #include "easypbr/scene/material.h"
 #include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 #include "easypbr/scene/normals.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/scene/settings.h"

@@ -10,7 +10,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/math.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr {
 

@@ -3,6 +3,8 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/mesh/assimp/assimp_loader.h"
+#include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/scene/mesh.h"
 #include "io/temporary_folder.h"
 
 using namespace easypbr;

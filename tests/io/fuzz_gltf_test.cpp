@@ -1,5 +1,6 @@
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "io/fuzz.h"
 #include "io/gltf_builder.h"
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "easypbr/core/error.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/mesh/obj/mtl_reader.h"
 #include "io/las_builder.h"

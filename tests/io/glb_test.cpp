@@ -4,6 +4,8 @@
 #include "easypbr/core/image.h"
 #include "easypbr/io/mesh/gltf/glb_writer.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
+#include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/scene/mesh.h"
 #include "io/temporary_folder.h"
 #include "test_data.h"
 

@@ -2,6 +2,8 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
+#include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/scene/mesh.h"
 #include "io/gltf_builder.h"
 #include "test_data.h"
 

@@ -9,7 +9,9 @@
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/gltf/glb_writer.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/scene/material_table.h"
+#include "easypbr/scene/mesh.h"
 #include "io/gltf_builder.h"
 
 using namespace easypbr;

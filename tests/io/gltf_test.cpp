@@ -7,6 +7,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "io/gltf_builder.h"
 #include "io/temporary_folder.h"
 #include "test_data.h"

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "easypbr/core/error.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 
 using namespace easypbr;

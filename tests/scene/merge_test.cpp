@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "easypbr/core/log.h"
+#include "easypbr/scene/mesh.h"
 
 namespace easypbr {
 namespace {

@@ -205,6 +205,23 @@ TEST(Mesh, HandlesShareAndClonesDoNot) {
     EXPECT_EQ(copy.snapshot()->children[0].name(), "");
 }
 
+TEST(Mesh, ChildrenAreAVector) {
+    const Mesh a(triangle()), b(triangle());
+    MeshData data;
+    data.children = {a, b};
+    const std::vector<Mesh> both = data.children;
+    EXPECT_EQ(both, std::vector({a, b}));
+    data.children = {b};
+    data.children.push_back(a);
+    EXPECT_EQ(data.children, std::vector({b, a}));
+    data.children = both;
+    EXPECT_EQ(data.children, both);
+    MeshData moved = std::move(data);
+    EXPECT_EQ(moved.children, both);
+    moved.children = {};
+    EXPECT_TRUE(moved.children.empty());
+}
+
 TEST(Mesh, HasMaterials) {
     Mesh mesh(triangle());
     EXPECT_EQ(mesh.material().base_color, Material{}.base_color);

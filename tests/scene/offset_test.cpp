@@ -6,6 +6,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/merge.h"
+#include "easypbr/scene/mesh.h"
 #include "easypbr/scene/scene.h"
 
 using namespace easypbr;

@@ -6,7 +6,12 @@
 #include <vector>
 
 #include "easypbr/app/clock.h"
-#include "easypbr/scene/animation.h"
+#include "easypbr/core/math.h"
+
+namespace easypbr {
+class Animations;
+class Mesh;
+}  // namespace easypbr
 
 namespace easypbr::app {
 
@@ -60,10 +65,7 @@ class AnimationPlayer {
     void update();
 
   private:
-    struct File {
-        std::string name;
-        Animations animations;
-    };
+    struct File;
     struct Place {
         size_t file, index;
     };

@@ -7,7 +7,7 @@
 
 #include "easypbr/core/math.h"
 #include "easypbr/scene/array.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr {
 

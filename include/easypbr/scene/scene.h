@@ -8,7 +8,7 @@
 
 #include "easypbr/scene/environment.h"
 #include "easypbr/scene/light.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr {
 
@@ -23,8 +23,8 @@ struct SceneSnapshot {
     /// hidden, or invisible by its style, is left out with its descendants.
     std::vector<Object> objects;
     std::map<std::string, Light> lights;
-    Environment environment;       ///< empty: none was given
-    Vec3d origin{0, 0, 0};  ///< see Scene::origin()
+    Environment environment;  ///< empty: none was given
+    Vec3d origin{0, 0, 0};    ///< see Scene::origin()
 
     /// Bounding box of all vertices in world space (exact under rotation); empty when there are none.
     Box3d bounds() const;

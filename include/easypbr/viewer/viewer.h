@@ -21,6 +21,8 @@
 
 namespace easypbr {
 
+class Animations;
+
 namespace app {
 class Session;
 class Widgets;

@@ -7,8 +7,14 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/scene/animation.h"
 
 namespace easypbr::app {
+
+struct AnimationPlayer::File {
+    std::string name;
+    Animations animations;
+};
 
 void AnimationPlayer::rebuild_names() {
     places_.clear();

@@ -3,7 +3,15 @@
 #include <algorithm>
 #include <utility>
 
+#include "easypbr/scene/mesh.h"
+
 namespace easypbr::app {
+
+/// The objects with looks, at the last keep_looks().
+struct Edits::Shown {
+    std::map<std::string, Mesh> objects;
+};
+
 namespace {
 
 std::optional<Light> light_named(const Scene& scene, const std::string& name) {
@@ -44,6 +52,9 @@ std::optional<Mesh> node_named(const Scene& scene, const std::string& name) {
     return {};
 }
 
+Edits::Edits(Session& session) : session_(session), shown_(std::make_unique<Shown>()) {}
+Edits::~Edits() = default;
+
 void Edits::change_look(const std::string& object, const std::string& property, const LookChange& change) {
     std::optional<Mesh> node = node_named(session_.scene(), object);
     if (!node) return;
@@ -59,12 +70,12 @@ void Edits::keep_looks() {
         const std::optional<Mesh> node = node_named(session_.scene(), object);
         if (!node) continue;
         present.insert_or_assign(object, *node);
-        const auto known = shown_.find(object);
-        if (known == shown_.end() || known->second == *node) continue;
+        const auto known = shown_->objects.find(object);
+        if (known == shown_->objects.end() || known->second == *node) continue;
         Mesh shown = *node;
         for (const auto& [property, change] : changes) shown.edit(change);
     }
-    shown_ = std::move(present);
+    shown_->objects = std::move(present);
 }
 
 void Edits::will_move(const std::string& object, const Mesh& node) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -18,7 +19,8 @@ std::optional<Mesh> node_named(const Scene& scene, const std::string& name);
 class Edits {
   public:
     /// The session must outlive it.
-    explicit Edits(Session& session) : session_(session) {}
+    explicit Edits(Session& session);
+    ~Edits();
 
     /// Changes a node's look now and whenever other data are shown under its name (keep_looks()). `property`
     /// names what is changed: a later change of the same one takes its place. Throws what the change throws.
@@ -45,7 +47,8 @@ class Edits {
     Session& session_;
     History history_;
     std::map<std::string, std::map<std::string, LookChange>> looks_;  ///< by object, by property
-    std::map<std::string, Mesh> shown_;  ///< the objects with looks, at the last keep_looks()
+    struct Shown;
+    std::unique_ptr<Shown> shown_;
     /// Objects and lights that were changed since the last note().
     std::set<std::string> changed_looks_, changed_poses_, changed_lights_;
 };

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "easypbr/scene/light.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr::app {

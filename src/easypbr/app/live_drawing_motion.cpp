@@ -6,6 +6,7 @@
 
 #include "easypbr/app/live_drawing.h"
 #include "easypbr/core/error.h"
+#include "easypbr/scene/mesh.h"
 
 namespace easypbr::app {
 namespace {

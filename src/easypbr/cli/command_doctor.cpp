@@ -11,6 +11,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh/assimp/assimp_loader.h"
+#include "easypbr/io/mesh/mesh_io.h"
 
 namespace easypbr::cli {
 namespace {

@@ -20,6 +20,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/io/settings/label_map_io.h"
 #include "easypbr/scene/setting_files.h"

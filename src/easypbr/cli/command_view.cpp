@@ -11,6 +11,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/gui/live_view.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/scene/fields.h"
 #include "easypbr/viewer/viewer.h"

@@ -6,8 +6,13 @@
 #include <string_view>
 #include <vector>
 
-#include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/scene/camera.h"
 #include "easypbr/scene/scene.h"
+
+namespace easypbr::io {
+struct LoadedScene;
+struct LoadOptions;
+}  // namespace easypbr::io
 
 namespace easypbr::cli {
 

@@ -10,6 +10,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/mesh.h"
 
 namespace easypbr::cli {
 namespace {

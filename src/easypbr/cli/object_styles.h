@@ -1,10 +1,14 @@
 // --style and --label-map: how objects are drawn, all of them or one by its name.
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
-#include "easypbr/io/mesh/mesh_io.h"
+namespace easypbr {
+class LabelMap;
+class Mesh;
+}  // namespace easypbr
 
 namespace easypbr::cli {
 

@@ -8,6 +8,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
 #include "easypbr/geometry/spatial_order.h"
+#include "easypbr/scene/mesh.h"
 #include "easypbr/scene/mesh_arrays.h"
 
 namespace easypbr::geometry {

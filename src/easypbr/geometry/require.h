@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "easypbr/core/error.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::geometry {
 

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "easypbr/core/math.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::geometry {
 

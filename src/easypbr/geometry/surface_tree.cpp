@@ -1,7 +1,10 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <limits>
 
+#include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/geometry/gather.h"
 #include "easypbr/geometry/nearest.h"

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::geometry {
 

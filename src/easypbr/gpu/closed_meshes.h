@@ -5,7 +5,7 @@
 
 #include "easypbr/core/revision_cache.h"
 #include "easypbr/gpu/facing.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::gpu {
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "easypbr/gpu/packing.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::gpu {
 

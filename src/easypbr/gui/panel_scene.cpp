@@ -8,6 +8,7 @@
 #include "easypbr/gui/panels.h"
 #include "easypbr/gui/widgets.h"
 #include "easypbr/scene/material_table.h"
+#include "easypbr/scene/mesh.h"
 
 namespace easypbr::gui {
 namespace {

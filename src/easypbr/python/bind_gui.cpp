@@ -8,6 +8,7 @@
 #include "easypbr/gui/live_view.h"
 #include "easypbr/python/shared_viewer.h"
 #include "easypbr/python/text.h"
+#include "easypbr/scene/animation.h"
 
 namespace easypbr::python {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "easypbr/python/bindings.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::python {
 

@@ -11,6 +11,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
+#include "easypbr/scene/mesh.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr {

@@ -3,7 +3,7 @@
 
 #include <span>
 
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr {
 

@@ -1,152 +1,15 @@
 #include "easypbr/scene/mesh.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <atomic>
-#include <limits>
-#include <map>
-#include <string_view>
 
 #include "easypbr/core/error.h"
-#include "easypbr/core/parallel.h"
-#include "easypbr/core/suggest.h"
-#include "easypbr/scene/material_table.h"
 #include "easypbr/scene/mesh_shared.h"
 #include "easypbr/scene/offset.h"
 
 namespace easypbr {
 namespace {
-
-constexpr size_t scan_grain = 1 << 15;
-constexpr size_t no_row = std::numeric_limits<size_t>::max();
-
-/// The first row in [0, count) for which is_bad(row) holds, or no_row; the same for any number of threads.
-template <class IsBad>
-size_t first_bad_row(Eigen::Index count, IsBad&& is_bad) {
-    std::atomic<size_t> first{no_row};
-    parallel_chunks(size_t(count), scan_grain, [&](size_t begin, size_t end) {
-        for (size_t row = begin; row < end; ++row) {
-            if (!is_bad(row)) continue;
-            size_t known = first.load();
-            while (row < known && !first.compare_exchange_weak(known, row)) {
-            }
-            return;
-        }
-    });
-    return first;
-}
-
-/// An array that is optional and otherwise has one row for each of `rows` things.
-template <class Array>
-void require_rows(const char* name, const Array& array, Eigen::Index rows, const char* of) {
-    if (array.empty() || array.rows() == rows) return;
-    throw ArgumentError(fmt::format("mesh array {}: expected {} rows, one per {}, or none; got {} x {}", name,
-                                    rows, of, array.rows(), array.cols()));
-}
-
-/// Values that belong to the vertices or to the faces.
-template <class Array>
-void require_rows_of_either(const std::string& name, const Array& array, const MeshData& data) {
-    const Eigen::Index n = data.V.rows(), m = data.F.rows();
-    if (array.empty() || array.rows() == n || array.rows() == m) return;
-    throw ArgumentError(
-        fmt::format("mesh array {}: expected {} rows, one per vertex, or {}, one per face, or none; got {} "
-                    "x {}",
-                    name, n, m, array.rows(), array.cols()));
-}
-
-void require_scalars(const MeshData& data) {
-    std::map<std::string_view, size_t> places;
-    for (size_t i = 0; i < data.scalars.size(); ++i) {
-        const ScalarArray& scalar = data.scalars[i];
-        if (scalar.name.empty())
-            throw ArgumentError(fmt::format("mesh scalars: expected a name for array {}, got none", i));
-        if (const auto [same, is_new] = places.emplace(scalar.name, i); !is_new)
-            throw ArgumentError(
-                fmt::format("mesh scalars: expected different names, got '{}' for arrays {} and {}",
-                            scalar.name, same->second, i));
-        require_rows_of_either("scalars['" + scalar.name + "']", scalar.values, data);
-    }
-}
-
-void require_shapes(const MeshData& data) {
-    const Eigen::Index n = data.V.rows(), m = data.F.rows();
-    require_rows("N", data.N, n, "vertex");
-    require_rows("C", data.C, n, "vertex");
-    require_rows("UV", data.UV, n, "vertex");
-    require_rows("T", data.T, n, "vertex");
-    require_rows("B", data.B, n, "vertex");
-    require_rows_of_either("L", data.L, data);
-    require_rows("I", data.I, n, "vertex");
-    require_scalars(data);
-    require_rows("source_vertex", data.source_vertex, n, "vertex");
-    require_rows("source_face", data.source_face, m, "face");
-    if (!data.C.empty() && data.C.cols() != 3 && data.C.cols() != 4)
-        throw ArgumentError(fmt::format("mesh array C: expected {} x 3 or {} x 4, got {} x {}", n, n,
-                                        data.C.rows(), data.C.cols()));
-}
-
-void require_finite(const Array3f& V) {
-    const size_t row = first_bad_row(V.rows(), [&](size_t i) { return !V.row(Eigen::Index(i)).allFinite(); });
-    if (row == no_row) return;
-    const Eigen::Index i = Eigen::Index(row);
-    throw ArgumentError(
-        fmt::format("mesh array V: expected finite positions, got ({}, {}, {}) in row {} of {}", V(i, 0),
-                    V(i, 1), V(i, 2), row, V.rows()));
-}
-
-template <class Indices>
-void require_indices(const char* name, const Indices& indices, Eigen::Index vertices) {
-    const auto is_outside = [&](int32_t index) { return index < 0 || index >= vertices; };
-    const size_t row = first_bad_row(indices.rows(), [&](size_t i) {
-        for (Eigen::Index k = 0; k < indices.cols(); ++k)
-            if (is_outside(indices(Eigen::Index(i), k))) return true;
-        return false;
-    });
-    if (row == no_row) return;
-    for (Eigen::Index k = 0; k < indices.cols(); ++k)
-        if (const int32_t index = indices(Eigen::Index(row), k); is_outside(index))
-            throw ArgumentError(
-                fmt::format("mesh array {}: expected vertex indices from 0 to {}, got {} in row {} of {}",
-                            name, vertices - 1, index, row, indices.rows()));
-}
-
-/// Why a label may be unknown: SemanticKITTI's files hold an instance's number in the upper 16 bits.
-std::string advice_on(int32_t label, const LabelMap& map) {
-    const LabelClass* const lower = label > 0xffff ? map.find(label & 0xffff) : nullptr;
-    if (!lower) return "add it, or let the map show unknown labels as unlabelled";
-    return fmt::format("its lower 16 bits are '{}' ({}): take labels & 0xFFFF", lower->name, lower->label);
-}
-
-void require_labels(const Array1i& L, const LabelMap& map) {
-    const size_t row = first_bad_row(L.rows(), [&](size_t i) { return !map.accepts(L(Eigen::Index(i))); });
-    if (row == no_row) return;
-    const int32_t label = L(Eigen::Index(row));
-    throw ArgumentError(
-        fmt::format("mesh array L: label {} in row {} of {} is not in the label map '{}', which has {}; {}",
-                    label, row, L.rows(), map.name(), map.range_text(), advice_on(label, map)));
-}
-
-void require_parts(const MeshData& data) {
-    for (const MeshPart& part : data.parts) {
-        const int64_t end = int64_t(part.first_face) + part.face_count;
-        if (part.first_face < 0 || part.face_count < 0 || end > data.F.rows())
-            throw ArgumentError(
-                fmt::format("mesh part '{}': expected a range of the {} faces, got faces {} to {}", part.name,
-                            data.F.rows(), part.first_face, end));
-        const size_t materials = std::max<size_t>(1, data.materials.size());
-        if (part.material < 0 || size_t(part.material) >= materials)
-            throw ArgumentError(fmt::format("mesh part '{}': expected a material index from 0 to {}, got {}",
-                                            part.name, materials - 1, part.material));
-    }
-}
-
-template <class Array>
-bool same_array(const Array& a, const Array& b) {
-    return a.data() == b.data() && a.rows() == b.rows() && a.revision() == b.revision();
-}
 
 using NodeVisitor = std::function<void(const std::shared_ptr<const MeshData>&, const Eigen::Affine3d&)>;
 
@@ -161,36 +24,14 @@ void visit_node(const Mesh& mesh, const Eigen::Affine3d& T_world_parent, const N
 
 }  // namespace
 
-void validate(const MeshData& data) {
-    validate(data, MeshData{});
-}
-
-void validate(const MeshData& data, const MeshData& valid) {
-    require_shapes(data);
-    if (!data.offset.allFinite())
-        throw ArgumentError(fmt::format("mesh offset: expected finite numbers, got ({}, {}, {})",
-                                        data.offset.x(), data.offset.y(), data.offset.z()));
-    const bool same_V = same_array(data.V, valid.V);
-    const bool same_count = data.V.rows() == valid.V.rows();
-    if (!same_V) require_finite(data.V);
-    if (!same_count || !same_array(data.F, valid.F)) require_indices("F", data.F, data.V.rows());
-    if (!same_count || !same_array(data.E, valid.E)) require_indices("E", data.E, data.V.rows());
-    const bool same_labels = same_array(data.L, valid.L) && data.label_map == valid.label_map;
-    if (data.label_map && !same_labels) require_labels(data.L, *data.label_map);
-    require_parts(data);
-    for (const Material& material : data.materials) validate(material);
-}
-
-const ScalarArray& scalar_named(const MeshData& data, const std::string& name) {
-    std::vector<std::string> names;
-    for (const ScalarArray& scalar : data.scalars) {
-        if (scalar.name == name) return scalar;
-        names.push_back(scalar.name);
-    }
-    throw NameError(fmt::format("mesh '{}' has no scalars '{}'{}; it has {}", data.name, name,
-                                did_you_mean(name, names),
-                                names.empty() ? "none" : fmt::format("{}", fmt::join(names, ", "))));
-}
+MeshList::MeshList() = default;
+MeshList::MeshList(std::vector<Mesh> meshes) : std::vector<Mesh>(std::move(meshes)) {}
+MeshList::MeshList(std::initializer_list<Mesh> meshes) : std::vector<Mesh>(meshes) {}
+MeshList::MeshList(const MeshList& other) = default;
+MeshList::MeshList(MeshList&& other) noexcept = default;
+MeshList& MeshList::operator=(const MeshList& other) = default;
+MeshList& MeshList::operator=(MeshList&& other) noexcept = default;
+MeshList::~MeshList() = default;
 
 void require_mesh_depth(int depth) {
     if (depth > max_mesh_depth)

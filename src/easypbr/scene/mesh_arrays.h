@@ -5,7 +5,7 @@
 #include <span>
 
 #include "easypbr/core/parallel.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr {
 

@@ -9,6 +9,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/scene/mesh.h"
 #include "easypbr/scene/spacing.h"
 
 namespace easypbr {

@@ -1,7 +1,7 @@
 // Cubes for the cells of a grid.
 #pragma once
 
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr {
 

@@ -8,7 +8,7 @@
 
 #include "easypbr/io/tables/element_table.h"
 #include "easypbr/io/tables/vertex_arrays.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::io {
 

@@ -1,7 +1,7 @@
 // Sharp edges: vertices whose faces meet at an angle get one normal per side.
 #pragma once
 
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::io {
 

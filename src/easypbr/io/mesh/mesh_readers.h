@@ -3,10 +3,12 @@
 
 #include <string>
 
-#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/source/source.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::io {
+
+struct LoadOptions;
 
 /// Each throws FormatError as load_scene() does. The result passes validate() and has no name yet.
 MeshData read_ply(const Source& source);

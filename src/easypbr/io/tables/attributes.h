@@ -2,7 +2,7 @@
 #pragma once
 
 #include "easypbr/io/tables/polygons.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::io {
 

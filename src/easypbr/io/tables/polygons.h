@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "easypbr/io/source/source.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::io {
 

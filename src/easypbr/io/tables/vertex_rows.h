@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "easypbr/io/tables/element_table.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::io {
 

@@ -5,6 +5,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/mesh/assimp/module/module.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/source/module_loader.h"
 
 namespace easypbr::io {

@@ -5,9 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "easypbr/io/mesh/mesh_io.h"
-
 namespace easypbr::io {
+
+struct LoadedScene;
 
 /// Reads any format that assimp knows. Throws FileError; FormatError when assimp refuses the file, or when
 /// its module (libeasypbr_assimp.so, searched beside libeasypbr.so and then where the system searches) is not

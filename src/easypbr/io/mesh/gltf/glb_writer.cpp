@@ -9,6 +9,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/io/mesh/gltf/glb_textures.h"
 #include "easypbr/scene/merge.h"
+#include "easypbr/scene/mesh.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::io {

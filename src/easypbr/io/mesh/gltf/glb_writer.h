@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::io {
 

@@ -4,7 +4,7 @@
 #include "easypbr/io/mesh/gltf/gltf_document.h"
 #include "easypbr/io/mesh/gltf/gltf_materials.h"
 #include "easypbr/scene/animation.h"
-#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_data.h"
 
 namespace easypbr::io {
 

@@ -14,6 +14,7 @@
 #include "easypbr/io/mesh/gltf/gltf_extensions.h"
 #include "easypbr/io/mesh/gltf/gltf_materials.h"
 #include "easypbr/io/mesh/gltf/gltf_mesh.h"
+#include "easypbr/io/mesh/mesh_io.h"
 
 namespace easypbr::io {
 namespace {

@@ -4,9 +4,9 @@
 #include <filesystem>
 #include <span>
 
-#include "easypbr/io/mesh/mesh_io.h"
-
 namespace easypbr::io {
+
+struct LoadedScene;
 
 /// Reads the file's default scene: a mesh named after the file without vertices of its own, whose children
 /// are the scene's nodes. Understood: KHR_materials_emissive_strength, KHR_texture_transform,

@@ -10,6 +10,7 @@
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh/crease.h"
+#include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/source/text_scanner.h"
 #include "easypbr/io/tables/polygons.h"

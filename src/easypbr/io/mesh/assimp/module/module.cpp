@@ -12,6 +12,8 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/mesh/assimp/module/materials.h"
+#include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/scene/mesh.h"
 
 namespace easypbr::io {
 namespace {

@@ -5,7 +5,9 @@
 #include <string>
 #include <vector>
 
-#include "easypbr/io/mesh/mesh_io.h"
+namespace easypbr::io {
+struct LoadedScene;
+}
 
 extern "C" {
 /// Throws FileError, FormatError.

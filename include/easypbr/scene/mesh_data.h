@@ -1,0 +1,100 @@
+// MeshData: the plain data of a mesh. The handle to them, which programs edit, is Mesh (scene/mesh.h).
+#pragma once
+
+#include <filesystem>
+#include <initializer_list>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/math.h"
+#include "easypbr/scene/array.h"
+#include "easypbr/scene/label_map.h"
+#include "easypbr/scene/material.h"
+#include "easypbr/scene/style.h"
+
+namespace easypbr {
+
+class Mesh;
+
+/// A range of faces with one material.
+struct MeshPart {
+    std::string name;
+    int first_face = 0;
+    int face_count = 0;
+    int material = 0;  ///< index into MeshData::materials
+};
+
+/// Named values, one for each vertex or one for each face: curvature, temperature, error. NaN: no value.
+struct ScalarArray {
+    std::string name;        ///< not empty, unique within a mesh
+    Array1f values;          ///< n x 1 or m x 1; with as many faces as vertices they belong to the vertices
+    bool from_file = false;  ///< one of many that came with a file: colours the mesh only when asked for
+};
+
+/// Handles to meshes: a vector, made and destroyed out of line, so that MeshData can be used where only the
+/// name of Mesh is known. To look into it, include scene/mesh.h.
+class MeshList : public std::vector<Mesh> {
+  public:
+    MeshList();
+    MeshList(std::vector<Mesh> meshes);
+    MeshList(std::initializer_list<Mesh> meshes);
+    MeshList(const MeshList& other);
+    MeshList(MeshList&& other) noexcept;
+    MeshList& operator=(const MeshList& other);
+    MeshList& operator=(MeshList&& other) noexcept;
+    ~MeshList();
+};
+
+/// The plain data of a mesh: n vertices, m faces, k edges. Copying is cheap (arrays are shared).
+struct MeshData {
+    std::string name;
+    std::filesystem::path source;  ///< the file it was read from; empty for a mesh made in memory
+
+    Array3f V;   ///< n x 3 positions, local: offset + V are the coordinates that the mesh was given
+    Array3f N;   ///< n x 3 unit normals, or empty: computed when it is drawn
+    ArrayXf C;   ///< n x 3 or n x 4 colours, sRGB-encoded, 0 .. 1 (alpha last), or empty
+    Array2f UV;  ///< n x 2 texture coordinates, v upwards, or empty
+    Array3f T;   ///< n x 3 tangent vectors (surfels), or empty
+    Array1f B;   ///< n x 1 bitangent lengths (surfels), or empty
+    Array3i F;   ///< m x 3 vertex indices of triangles, counter-clockwise seen from outside
+    Array2i E;   ///< k x 2 vertex indices of line segments
+    Array1i L;   ///< n x 1 or m x 1 labels; with as many faces as vertices those of the vertices
+    Array1f I;   ///< n x 1 intensities
+    std::vector<ScalarArray> scalars;           ///< any number of named values
+    std::shared_ptr<const LabelMap> label_map;  ///< what the labels mean; none: generated colours
+    /// What was subtracted from positions far from zero, so that float32 holds them (scene/offset.h). Meshes
+    /// of one scene are placed by it: the scene's own frame has an origin (Scene::origin), and a vertex
+    /// stands at T_world_mesh * (V + offset - origin).
+    Vec3d offset{0, 0, 0};
+    float voxel_size = 0;  ///< edge of the cubes that V are the centres of; 0: V are no voxels
+
+    Array1i source_vertex;  ///< n x 1 index of the file's vertex that each vertex came from; empty: the same
+    Array1i source_face;  ///< m x 1 index of the file's polygon that each triangle came from; empty: the same
+
+    std::vector<Material> materials;  ///< at least one as soon as the mesh is drawn; a default one is added
+    std::vector<MeshPart> parts;      ///< cover F without overlap; empty: all faces have material 0
+
+    Style style;
+    Eigen::Affine3d T_parent_mesh = Eigen::Affine3d::Identity();
+    MeshList children;
+};
+
+/// What the rows of labels or scalars belong to.
+enum class PerElement { vertex, face };
+/// Vertices when there are as many rows as vertices, else faces.
+inline PerElement element_of(const MeshData& data, Eigen::Index rows) {
+    return rows == data.V.rows() ? PerElement::vertex : PerElement::face;
+}
+
+/// The scalars of that name. Throws NameError with the nearest name.
+const ScalarArray& scalar_named(const MeshData& data, const std::string& name);
+
+/// Throws ArgumentError that names the array, the expected and the given shape, when arrays do not fit
+/// together, when a face or edge index is out of range, when a position or the offset is not finite, or when
+/// a label is not in the label map (see LabelMap::accepts).
+void validate(const MeshData& data);
+/// The same, without reading arrays again that `data` shares with data known to be valid.
+void validate(const MeshData& data, const MeshData& valid);
+
+}  // namespace easypbr
