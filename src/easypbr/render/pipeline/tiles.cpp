@@ -86,7 +86,7 @@ TileLimits TileLimits::of(const gl::ContextInfo& context) {
 }
 
 Guard guard_of(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i picture) {
-    const Settings& settings = resolved.settings;
+    const InferredSettings& settings = resolved.settings;
     const Box3d bounds = scene.bounds();
     const Shot shot{.resolved = &resolved, .size = picture, .picture_size = picture};
     const Frame whole = make_frame(shot, 0, resolved.camera, bounds, true);
@@ -96,9 +96,9 @@ Guard guard_of(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec
     // Eye-dome lighting looks four of its radii far.
     guard.pixels += int(std::ceil(4 * std::max(1.0f, settings.edl.radius * float(picture.y()) / 1080)));
     const bool transmits = has_transmission(scene, resolved);
-    if (*settings.ssao.enabled && !bounds.isEmpty()) {
+    if (settings.ssao.enabled && !bounds.isEmpty()) {
         const double depth = whole.orthographic() ? 1 : nearest_depth(bounds, whole.camera);
-        const double radius = *settings.ssao.radius * whole.clip_from_view(1, 1) * picture.y() / 2 / depth;
+        const double radius = settings.ssao.radius * whole.clip_from_view(1, 1) * picture.y() / 2 / depth;
         // A ground comes as near to the camera as it likes.
         guard.reach = GroundPass::is_on(resolved) ? most_reach : std::min(std::ceil(radius), most_reach);
         if (transmits) guard.reach = std::min(guard.reach, most_reach_beside_transmission);

@@ -86,12 +86,12 @@ void AmbientOcclusionPass::estimate_normals(const Frame& frame, const GBuffer& t
 }
 
 void AmbientOcclusionPass::run(const Frame& frame, const GBuffer& targets, const Step& step) {
-    const SsaoSettings& ssao = frame.resolved->settings.ssao;
+    const auto& ssao = frame.resolved->settings.ssao;
     const gl::Program& program = step.programs.get(step.defines);
     step.to.bind();
     program.use();
     set_camera_uniforms(program, frame);
-    program.set("u_radius", *ssao.radius);
+    program.set("u_radius", ssao.radius);
     program.set("u_inverse_falloff", 1 / ssao.falloff);
     program.set("u_power", ssao.power);
     program.set("u_directions", ssao.directions);
