@@ -155,7 +155,7 @@ TEST(Annotation, IsTheSameInEveryPixelType) {
 TEST(Annotation, SwatchesStandInOrderWithTheirNames) {
     const Legend legend = legend_of(4);
     Image picture = plain(PixelType::u8);
-    AnnotationSettings settings;
+    BasicAnnotationSettings<Inferred> settings;
     settings.text_size = 0.1f;
     draw_annotation({{legend}, {}}, settings, picture);
     int last = -1;
@@ -178,7 +178,7 @@ TEST(Annotation, StandsInItsCornerAndLeavesTheRest) {
     const Image before = plain(PixelType::u8);
     for (const Corner corner :
          {Corner::top_left, Corner::top_right, Corner::bottom_left, Corner::bottom_right}) {
-        AnnotationSettings settings;
+        BasicAnnotationSettings<Inferred> settings;
         settings.corner = corner;
         Image picture = before;
         draw_annotation({{legend_of(3)}, {}}, settings, picture);
@@ -206,7 +206,7 @@ TEST(Annotation, GrowsWithThePicture) {
 
 TEST(Annotation, TextIsDarkOnLightAndLightOnDark) {
     const Legend legend{"", {{"MMMM", {128, 128, 128}}}};
-    AnnotationSettings settings;
+    BasicAnnotationSettings<Inferred> settings;
     settings.text_size = 0.1f;
     for (const uint8_t grey : {0, 255}) {
         const Image before = plain(PixelType::u8, 400, 300, grey);
@@ -226,7 +226,7 @@ TEST(Annotation, TextIsDarkOnLightAndLightOnDark) {
 
 TEST(Annotation, IsReadableOnNothing) {
     Image picture(400, 300, 4, PixelType::u8);  // transparent
-    AnnotationSettings settings;
+    BasicAnnotationSettings<Inferred> settings;
     settings.text_size = 0.1f;
     draw_annotation({{legend_of(3)}, {}}, settings, picture);
     EXPECT_GT(places(picture, {16, 16, 16}).size(), 200u) << "paper is white, so the text is dark";
@@ -288,7 +288,7 @@ TEST(Annotation, NamesWhatOccurs) {
         {"t", Array1f(Array1f::Dense{{0.0f}, {3.0f}, {std::numeric_limits<float>::quiet_NaN()}})}};
     for (const MeshData& mesh : {cloud, values, values})
         scene.objects.push_back({"m", std::make_shared<const MeshData>(mesh), Eigen::Affine3d::Identity()});
-    Settings settings;
+    InferredSettings settings;
     EXPECT_TRUE(annotation_of(scene, settings).empty()) << "nobody asked";
     settings.annotation.legend = true;
     settings.annotation.colorbar = true;

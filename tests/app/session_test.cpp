@@ -129,11 +129,11 @@ TEST_F(SessionFiles, FollowsWhenAskedTo) {
 TEST_F(SessionFiles, NewEnvironmentIsInferredAnew) {
     Session session = small_session();
     session.render();
-    EXPECT_TRUE(session.resolve().settings.lights.key.enabled.value_or(false));
+    EXPECT_TRUE(session.resolve().settings.lights.key.enabled);
     io::save_image(constant_image(Vec3(4, 4, 4)), folder_ / "env.exr");
     session.load_environment(folder_ / "env.exr");
     const ResolvedSettings resolved = session.resolve();
-    EXPECT_FALSE(resolved.settings.lights.key.enabled.value_or(true));
+    EXPECT_FALSE(resolved.settings.lights.key.enabled);
     // A constant environment of 4 gives a white diffuse object a radiance of 4: it is brought to 1.
     EXPECT_NEAR(resolved.exposure, 0.25f, 0.01f);
 }

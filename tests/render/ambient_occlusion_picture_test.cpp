@@ -119,7 +119,7 @@ TEST(AmbientOcclusion, NoiseAveragesOut) {
     place(session, Vec3d(1.2, 1.8, 2.4), Vec3d(-0.1, 0.3, 0), 40);
     const Occlusion o(session);
     const RayCaster caster(scene.snapshot());
-    const SsaoSettings ssao = session.resolve().settings.ssao;
+    const auto ssao = session.resolve().settings.ssao;
     double noise_few = 0, noise_many = 0, error = 0;
     int count = 0;
     for (int y = 0; y < 192; y += 2)
@@ -129,7 +129,7 @@ TEST(AmbientOcclusion, NoiseAveragesOut) {
             noise_few += std::pow(at(few) - at(most), 2);
             noise_many += std::pow(at(many) - at(most), 2);
             error += std::pow(at(many) - ray_cast_visibility(caster, o.world(x, y).cast<float>(),
-                                                             o.normal_at(x, y), *ssao.radius, ssao.falloff),
+                                                             o.normal_at(x, y), ssao.radius, ssao.falloff),
                               2);
             ++count;
         }
@@ -194,7 +194,7 @@ TEST(AmbientOcclusion, DarkensRecessesOfClouds) {
     app::Session session = plain_session(scene, 128);
     session.settings().ssao.enabled = automatic;
     place(session, Vec3d(0, 2, 2), Vec3d(0, 0.3, 0.3), 40);
-    EXPECT_FALSE(*session.resolve().settings.ssao.enabled);
+    EXPECT_FALSE(session.resolve().settings.ssao.enabled);
     const Image plain = session.render();
     session.settings().ssao.enabled = true;
     session.settings().ssao.radius = 0.3f;

@@ -77,12 +77,12 @@ TEST(AmbientOcclusion, SphereOnAPlane) {
 Difference against_rays(app::Session& session, int step) {
     const Occlusion o(session);
     const RayCaster caster(session.scene().snapshot());
-    const SsaoSettings ssao = session.resolve().settings.ssao;
+    const auto ssao = session.resolve().settings.ssao;
     return difference(
         o,
         [&](int x, int y) {
             if (!o.off_silhouettes(x, y, 4)) return std::nan("");
-            return ray_cast_visibility(caster, o.world(x, y).cast<float>(), o.normal_at(x, y), *ssao.radius,
+            return ray_cast_visibility(caster, o.world(x, y).cast<float>(), o.normal_at(x, y), ssao.radius,
                                        ssao.falloff);
         },
         step);
@@ -102,7 +102,7 @@ void expect_agreement_with_rays(const Scene& scene, const std::string& name) {
     }
     EXPECT_LT(rmse[0], rmse[1]) << name;
     app::Session wide = occlusion_session(scene, 512);
-    wide.settings().ssao.radius = 4 * *wide.resolve().settings.ssao.radius;
+    wide.settings().ssao.radius = 4 * wide.resolve().settings.ssao.radius;
     EXPECT_LT(against_rays(wide, 3).rmse, 0.1) << name;
 }
 

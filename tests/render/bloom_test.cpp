@@ -46,7 +46,7 @@ class BloomTest : public ::testing::Test {
         resolved_.settings.bloom.enabled = true;
         resolved_.settings.bloom.intensity = 1;
         resolved_.settings.bloom.threshold = 0;
-        resolved_.suppress_fireflies = false;
+        resolved_.settings.bloom.suppress_fireflies = false;
         resolved_.settings.background.mode = BackgroundMode::transparent;
     }
 
@@ -54,7 +54,7 @@ class BloomTest : public ::testing::Test {
     LightField glow_of(const LightField& light, int levels) {
         const gl::ContextScope scope(*context_);
         const Vec2i size(light.width, light.height);
-        resolved_.bloom_levels = levels;
+        resolved_.settings.bloom.levels = levels;
         render::Frame frame;
         frame.resolved = &resolved_;
         frame.size = frame.picture_size = size;
@@ -210,7 +210,7 @@ TEST_F(BloomTest, SuppressesFireflies) {
     for (float& v : light.values) v = 0.2f;
     light.at(77, 40) = 1e4f;
     const double with = glow_of(light, 3).at(77, 45);
-    resolved_.suppress_fireflies = true;
+    resolved_.settings.bloom.suppress_fireflies = true;
     const double without = glow_of(light, 3).at(77, 45);
     EXPECT_GT(with, 5);
     EXPECT_LT(without, 0.4);

@@ -173,9 +173,9 @@ TEST(DepthOfField, FocusesOnAPixel) {
 TEST(DepthOfField, FocusesOnTheMiddleOfTheContentByItself) {
     app::Session session = lens_session(lamp_at(7, 1));
     session.settings().depth_of_field.focus_distance = automatic;
-    EXPECT_NEAR(session.resolve().focus_distance, 7, 1e-6);
+    EXPECT_NEAR(session.resolve().settings.depth_of_field.focus_distance, 7, 1e-6);
     session.settings().camera.position = Vec3d(0, 0, 3);
-    EXPECT_NEAR(session.resolve().focus_distance, 10, 1e-6);
+    EXPECT_NEAR(session.resolve().settings.depth_of_field.focus_distance, 10, 1e-6);
 }
 
 TEST(DepthOfField, TheWorldsUnitMakesNoDifference) {

@@ -117,7 +117,7 @@ TEST(Ground, LiesAtTheFoot) {
         s.shadows.enabled = true;
         s.ground.mode = GroundMode::shadow;
         const ResolvedSettings resolved = session.resolve(Vec2i(size, size));
-        EXPECT_NEAR(*resolved.settings.ground.height, axis.dot(Vec3d(3, 4, 5)) - 0.5, 1e-6) << up;
+        EXPECT_NEAR(resolved.settings.ground.height, axis.dot(Vec3d(3, 4, 5)) - 0.5, 1e-6) << up;
         EXPECT_TRUE(session.settings().ground.height.value() == std::nullopt) << "before the first picture";
         // The sun in the zenith: all of the shadow is under the box, none is seen.
         const Image picture = render_linear(session);
@@ -238,7 +238,8 @@ TEST(Ground, PlaneIsASurface) {
     look_from(session, Vec3d(2, -3, 3), 40);
     s.ground.mode = GroundMode::plane;
     s.ground.height = 0.0;
-    s.ground.plane_color = Vec3(0.48452920448170694f, 0.66519138507f, 0.79773998775f);  // sRGB of the material's
+    s.ground.plane_color =
+        Vec3(0.48452920448170694f, 0.66519138507f, 0.79773998775f);  // sRGB of the material's
     s.ground.plane_roughness = 0.5f;
     s.ground.radius = 1000.0f;
     const Image own = render_linear(session);

@@ -188,7 +188,7 @@ TEST(Fit, LooksAtTheMiddleFromAPinnedPosition) {
     scene.show(mesh, "mesh");
     Settings settings;
     settings.camera.position = Vec3d(10, 10, 10);
-    EXPECT_EQ(*resolve(scene.snapshot(), settings, {800, 600}).settings.camera.target, Vec3d(1, 2, 3));
+    EXPECT_EQ(resolve(scene.snapshot(), settings, {800, 600}).settings.camera.target, Vec3d(1, 2, 3));
     // From the middle itself there is no direction to it; the camera then looks as the automatic one.
     settings.camera.position = Vec3d(1, 2, 3);
     const Camera inside = resolve(scene.snapshot(), settings, {800, 600}).camera;

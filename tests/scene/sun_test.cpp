@@ -126,14 +126,14 @@ TEST(Sun, BecomesALight) {
     settings.environment.intensity = 2;
     ResolvedSettings resolved = resolve(scene.snapshot(), settings, Vec2i(64, 64));
     ASSERT_EQ(resolved.lights.size(), 1u);
-    const Light& light = resolved.lights[0];
+    const ResolvedLight& light = resolved.lights[0];
     EXPECT_EQ(light.type, LightType::directional);
     const Vec3 towards = resolved.R_env_world * -light.direction;
     EXPECT_GT(towards.dot(sun_at), std::cos(radians(0.1)));
     EXPECT_NEAR(light.color.x() * light.intensity / 2, scene.environment().sun()->irradiance.x(), 1e-4);
     EXPECT_NE(resolved.environment.hash(), resolved.seen_environment.hash());
     EXPECT_EQ(resolved.seen_environment.hash(), scene.environment().hash());
-    EXPECT_TRUE(*resolved.settings.environment.sun);
+    EXPECT_TRUE(resolved.settings.environment.sun);
 
     settings.environment.sun = false;
     resolved = resolve(scene.snapshot(), settings, Vec2i(64, 64));

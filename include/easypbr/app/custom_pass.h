@@ -63,8 +63,7 @@ class PassInput {
     Vec2i origin() const;
     /// Factor on radiance before the tone curve.
     float exposure() const;
-    /// With what was inferred.
-    const Settings& settings() const;
+    const InferredSettings& settings() const;
 
     // The G-buffer of the opaque surfaces. In stage `picture` that of the last frame, which was drawn within
     // half a pixel of the pixels' centres.

@@ -1,4 +1,5 @@
-// Auto<T>: a setting that is inferred unless the user gives a value.
+// Auto<T>: a setting that is inferred unless the user gives a value. Override<T>: one that replaces a value
+// of an object.
 #pragma once
 
 #include <optional>
@@ -50,6 +51,33 @@ class Auto {
     enum class Mode { automatic, follow, pinned };
     std::optional<T> value_;
     Mode mode_ = Mode::automatic;
+};
+
+/// Stands for Auto<T> where the value is inferred: the value itself. One definition of a group of settings
+/// serves both: users write a BasicBloomSettings<Auto>, an image is drawn with a
+/// BasicBloomSettings<Inferred>.
+template <class T>
+using Inferred = T;
+
+/// A value that replaces the one of an object, or `automatic`: the object keeps its own.
+template <class T>
+class Override {
+  public:
+    Override() = default;
+    Override(AutomaticTag) {}
+    Override(FollowTag) {}
+    Override(T value) : value_(std::move(value)) {}
+
+    /// Nothing when automatic.
+    const std::optional<T>& value() const { return value_; }
+    const T& operator*() const { return *value_; }
+
+    T value_or(T own) const { return value_ ? *value_ : std::move(own); }
+
+    bool operator==(const Override&) const = default;
+
+  private:
+    std::optional<T> value_;
 };
 
 }  // namespace easypbr

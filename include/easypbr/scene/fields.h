@@ -48,7 +48,14 @@ struct FieldOf : FieldInfo {
     std::function<void(Owner&, const Value&)> put;
 };
 
-using Field = FieldOf<Settings>;
+/// A field of the settings.
+struct Field : FieldOf<Settings> {
+    bool is_kept =
+        true;  ///< an automatic value, once inferred, is kept, see latch(); else it is inferred anew
+    std::function<Value(const InferredSettings&)> get_inferred;
+    /// Copies the value. Throws std::logic_error where there is none.
+    std::function<void(InferredSettings&, const Settings&)> copy;
+};
 
 /// All fields in the order of the reference.
 const std::vector<Field>& fields();
@@ -59,6 +66,7 @@ const Field& field(std::string_view name);
 /// Throws NameError or ArgumentError that says what was expected.
 void set(Settings& settings, std::string_view name, const Value& value);
 Value get(const Settings& settings, std::string_view name);
+Value get(const InferredSettings& settings, std::string_view name);
 
 /// Whether the data of a value are in the field's range, and finite.
 bool is_valid(const Field& field, const Value& value);

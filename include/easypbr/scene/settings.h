@@ -32,31 +32,35 @@ struct ImageSettings {
 };
 
 /// Pose, projection and lens of the camera. Automatic values frame the content.
-struct CameraSettings {
+template <template <class> class MaybeAuto>
+struct BasicCameraSettings {
     Projection projection = Projection::perspective;
-    Auto<Vec3d> position;            ///< world units; automatic: frames the content
-    Auto<Vec3d> target;              ///< point looked at, world units; automatic: centres the content
-    std::string up = "+y";           ///< world axis that points up: +x, -x, +y, -y, +z or -z
-    float fov_y_deg = 30;            ///< vertical field of view in degrees, 1 to 170; perspective
-    Auto<double> ortho_height;       ///< height of the view volume, world units, above 0; orthographic
-    Auto<double> near;               ///< distance to the near clipping plane, world units, above 0
-    float azimuth_deg = 30;          ///< of an automatic camera, degrees: 0 in front, positive to the right
-    float elevation_deg = 15;        ///< of an automatic camera, degrees: 0 level, 90 from above
-    float margin = 0.05f;            ///< fraction of the image left free by an automatic camera, 0 to 0.9
-    std::vector<double> pose;        ///< empty, or 16 numbers: T_world_cam row by row, OpenGL axes
-    std::vector<double> intrinsics;  ///< empty, or fx, fy, cx, cy, width, height and skew (OpenCV), pixels
+    MaybeAuto<Vec3d> position{};       ///< world units; automatic: frames the content
+    MaybeAuto<Vec3d> target{};         ///< point looked at, world units; automatic: centres the content
+    std::string up = "+y";             ///< world axis that points up: +x, -x, +y, -y, +z or -z
+    float fov_y_deg = 30;              ///< vertical field of view in degrees, 1 to 170; perspective
+    MaybeAuto<double> ortho_height{};  ///< height of the view volume, world units, above 0; orthographic
+    MaybeAuto<double> near{};          ///< distance to the near clipping plane, world units, above 0
+    float azimuth_deg = 30;            ///< of an automatic camera, degrees: 0 in front, positive to the right
+    float elevation_deg = 15;          ///< of an automatic camera, degrees: 0 level, 90 from above
+    float margin = 0.05f;              ///< fraction of the image left free by an automatic camera, 0 to 0.9
+    std::vector<double> pose;          ///< empty, or 16 numbers: T_world_cam row by row, OpenGL axes
+    std::vector<double> intrinsics;    ///< empty, or fx, fy, cx, cy, width, height and skew (OpenCV), pixels
     DistortionModel distortion_model = DistortionModel::brown_conrady;  ///< meaning of `distortion` (OpenCV)
     std::vector<double> distortion;  ///< empty, or 4, 5 or 8 coefficients in OpenCV's order
 };
+using CameraSettings = BasicCameraSettings<Auto>;
 
 /// Image-based lighting by an equirectangular environment map.
-struct EnvironmentSettings {
-    std::string file;        ///< HDR, EXR, PNG or JPEG; empty: a built-in studio
-    Auto<bool> enabled;      ///< enables image-based lighting; automatic: on
-    float rotation_deg = 0;  ///< about the up axis, degrees, counter-clockwise seen from above
-    float intensity = 1;     ///< scale factor of the radiance, 0 to 1e6
-    Auto<bool> sun;          ///< sun as a directional light with shadows; automatic: if a given map has one
+template <template <class> class MaybeAuto>
+struct BasicEnvironmentSettings {
+    std::string file;           ///< HDR, EXR, PNG or JPEG; empty: a built-in studio
+    MaybeAuto<bool> enabled{};  ///< enables image-based lighting; automatic: on
+    float rotation_deg = 0;     ///< about the up axis, degrees, counter-clockwise seen from above
+    float intensity = 1;        ///< scale factor of the radiance, 0 to 1e6
+    MaybeAuto<bool> sun{};  ///< sun as a directional light with shadows; automatic: if a given map has one
 };
+using EnvironmentSettings = BasicEnvironmentSettings<Auto>;
 
 /// What is visible where there is no content.
 struct BackgroundSettings {
@@ -71,16 +75,20 @@ struct BackgroundSettings {
     }
 };
 
-/// A three-point light of a colour given in 8 bits per channel, sRGB-encoded.
-StudioLight studio_light(int red, int green, int blue);
+/// A colour of 8 bits per channel.
+inline Vec3 rgb8(int red, int green, int blue) {
+    return Vec3(float(red), float(green), float(blue)) / 255.0f;
+}
 
 /// Three-point lighting, placed relative to the camera.
-struct LightsSettings {
-    StudioLight key = studio_light(255, 241, 224);   ///< main light, slightly warm
-    StudioLight fill = studio_light(230, 239, 255);  ///< opposite to the key, weaker, slightly cool
-    StudioLight rim = studio_light(255, 255, 255);   ///< from behind
-    float intensity = 1;                             ///< scale factor of all three, 0 to 1e6
+template <template <class> class MaybeAuto>
+struct BasicLightsSettings {
+    BasicStudioLight<MaybeAuto> key{.color = rgb8(255, 241, 224)};   ///< main light, slightly warm
+    BasicStudioLight<MaybeAuto> fill{.color = rgb8(230, 239, 255)};  ///< opposite the key, weaker, cool
+    BasicStudioLight<MaybeAuto> rim{.color = rgb8(255, 255, 255)};   ///< from behind
+    float intensity = 1;                                             ///< scale factor of all three, 0 to 1e6
 };
+using LightsSettings = BasicLightsSettings<Auto>;
 
 /// Shadow maps of all lights that cast shadows.
 struct ShadowSettings {
@@ -110,39 +118,41 @@ struct TransparencySettings {
 };
 
 /// Exposure and tone mapping.
-struct TonemapSettings {
+template <template <class> class MaybeAuto>
+struct BasicTonemapSettings {
     /// Setting tonemap.operator. ACES (Hill's fit), Reinhard on luminance, AgX, Khronos PBR Neutral, or none:
     /// clamped.
     ToneOperator tone_operator = ToneOperator::aces;
-    Auto<float> exposure;             ///< linear scale factor; automatic: metered by incident light
+    MaybeAuto<float> exposure{};      ///< linear scale factor; automatic: metered by incident light
     float exposure_compensation = 0;  ///< EV, -30 to 30
 };
+using TonemapSettings = BasicTonemapSettings<Auto>;
 
 /// Overrides of every material from outside; automatic: the material's own value. Colours are sRGB-encoded;
 /// units and ranges are those of Material.
 struct MaterialSettings {
-    Auto<Vec3> color;                 ///< base colour
-    Auto<float> metallic;             ///< 0 dielectric to 1 metal
-    Auto<float> roughness;            ///< perceptual, 0 to 1
-    Auto<Vec3> emissive;              ///< emitted radiance
-    Auto<AlphaMode> alpha_mode;       ///< opaque, mask or blend
-    Auto<float> opacity;              ///< 0 transparent to 1 opaque
-    Auto<float> clearcoat;            ///< strength, 0 to 1
-    Auto<float> clearcoat_roughness;  ///< 0 to 1
-    Auto<Vec3> sheen_color;
-    Auto<float> sheen_roughness;          ///< 0 to 1
-    Auto<float> ior;                      ///< index of refraction, 1 to 100
-    Auto<float> specular;                 ///< strength of the specular reflection of dielectrics, 0 to 1
-    Auto<Vec3> specular_color;            ///< of dielectrics, at normal incidence
-    Auto<float> transmission;             ///< fraction of light transmitted by dielectrics, 0 to 1
-    Auto<float> thickness;                ///< of the volume, mesh units; 0: thin-walled
-    Auto<Vec3> attenuation_color;         ///< of white light after attenuation_distance
-    Auto<float> attenuation_distance;     ///< world units, above 0
-    Auto<float> iridescence;              ///< strength, 0 to 1
-    Auto<float> iridescence_ior;          ///< index of refraction of the thin film, 1 to 100
-    Auto<float> iridescence_thickness;    ///< of the thin film, nanometres
-    Auto<float> anisotropy;               ///< strength, 0 to 1
-    Auto<float> anisotropy_rotation_deg;  ///< degrees, counter-clockwise from the tangent
+    Override<Vec3> color;                 ///< base colour
+    Override<float> metallic;             ///< 0 dielectric to 1 metal
+    Override<float> roughness;            ///< perceptual, 0 to 1
+    Override<Vec3> emissive;              ///< emitted radiance
+    Override<AlphaMode> alpha_mode;       ///< opaque, mask or blend
+    Override<float> opacity;              ///< 0 transparent to 1 opaque
+    Override<float> clearcoat;            ///< strength, 0 to 1
+    Override<float> clearcoat_roughness;  ///< 0 to 1
+    Override<Vec3> sheen_color;
+    Override<float> sheen_roughness;          ///< 0 to 1
+    Override<float> ior;                      ///< index of refraction, 1 to 100
+    Override<float> specular;                 ///< strength of the specular reflection of dielectrics, 0 to 1
+    Override<Vec3> specular_color;            ///< of dielectrics, at normal incidence
+    Override<float> transmission;             ///< fraction of light transmitted by dielectrics, 0 to 1
+    Override<float> thickness;                ///< of the volume, mesh units; 0: thin-walled
+    Override<Vec3> attenuation_color;         ///< of white light after attenuation_distance
+    Override<float> attenuation_distance;     ///< world units, above 0
+    Override<float> iridescence;              ///< strength, 0 to 1
+    Override<float> iridescence_ior;          ///< index of refraction of the thin film, 1 to 100
+    Override<float> iridescence_thickness;    ///< of the thin film, nanometres
+    Override<float> anisotropy;               ///< strength, 0 to 1
+    Override<float> anisotropy_rotation_deg;  ///< degrees, counter-clockwise from the tangent
     /// Files; empty: the material's own.
     std::string base_color_texture, metallic_texture, roughness_texture, normal_texture, occlusion_texture,
         emissive_texture, opacity_texture;
@@ -161,13 +171,15 @@ struct PointsSettings {
 };
 
 /// Legends and colour bars drawn into the image, never into layers.
-struct AnnotationSettings {
-    Auto<bool> legend;    ///< of the labels that colour objects; automatic: no
-    Auto<bool> colorbar;  ///< of the values that colour objects; automatic: no
-    std::string title;    ///< empty: the name of the values
+template <template <class> class MaybeAuto>
+struct BasicAnnotationSettings {
+    MaybeAuto<bool> legend{};    ///< of the labels that colour objects; automatic: no
+    MaybeAuto<bool> colorbar{};  ///< of the values that colour objects; automatic: no
+    std::string title;           ///< empty: the name of the values
     Corner corner = Corner::top_right;
     float text_size = 0.03f;  ///< fraction of the image height, 0.005 to 0.2
 };
+using AnnotationSettings = BasicAnnotationSettings<Auto>;
 
 /// Loading of files by the command line and the window.
 struct LoadSettings {
@@ -175,12 +187,13 @@ struct LoadSettings {
 };
 
 /// All settings. Paths of members are the names of settings, as in bloom.intensity.
-struct Settings {
+template <template <class> class MaybeAuto>
+struct BasicSettings {
     ImageSettings image;
-    CameraSettings camera;
-    EnvironmentSettings environment;
+    BasicCameraSettings<MaybeAuto> camera;
+    BasicEnvironmentSettings<MaybeAuto> environment;
     BackgroundSettings background;
-    LightsSettings lights;
+    BasicLightsSettings<MaybeAuto> lights;
     ShadowSettings shadows;
     ShadingSettings shading;
     EdlSettings edl;
@@ -188,13 +201,19 @@ struct Settings {
 #define EASYPBR_MEMBER(name, Type) Type name;
     EASYPBR_EFFECTS(EASYPBR_MEMBER)
 #undef EASYPBR_MEMBER
-    TonemapSettings tonemap;
+    BasicTonemapSettings<MaybeAuto> tonemap;
     MaterialSettings material;
     Style style;  ///< overrides of the style of every object; automatic: the object's own value
     PointsSettings points;
     ClipSettings clip;
-    AnnotationSettings annotation;
+    BasicAnnotationSettings<MaybeAuto> annotation;
     LoadSettings load;
 };
+
+/// What users set.
+struct Settings : BasicSettings<Auto> {};
+
+/// What an image is drawn with: every automatic value is inferred.
+struct InferredSettings : BasicSettings<Inferred> {};
 
 }  // namespace easypbr

@@ -58,7 +58,7 @@ std::vector<LegendEntry> entries_of(const std::set<int32_t>& labels, const Label
 /// Gathers what the objects of a scene have in common.
 class Collector {
   public:
-    Collector(const SceneSnapshot& scene, const Settings& settings) : settings_(settings) {
+    Collector(const SceneSnapshot& scene, const InferredSettings& settings) : settings_(settings) {
         const Vec3d up = parse_up(settings.camera.up);
         for (const SceneSnapshot::Object& object : scene.objects) {
             const DrawStyle style = resolve_style(*object.mesh, settings.style);
@@ -78,10 +78,10 @@ class Collector {
 
   private:
     void add(const MeshData& mesh, const ColorPlan& plan) {
-        if (plan.by == ColorBy::label && settings_.annotation.legend.value_or(false)) add_labels(mesh);
+        if (plan.by == ColorBy::label && settings_.annotation.legend) add_labels(mesh);
         const bool has_values =
             plan.by == ColorBy::scalar || plan.by == ColorBy::height || plan.by == ColorBy::intensity;
-        if (has_values && settings_.annotation.colorbar.value_or(false)) add_bar(mesh, plan);
+        if (has_values && settings_.annotation.colorbar) add_bar(mesh, plan);
     }
 
     void add_labels(const MeshData& mesh) {
@@ -119,7 +119,7 @@ class Collector {
         return plan.by == ColorBy::scalar ? plan.scalar : plan.by == ColorBy::height ? "height" : "intensity";
     }
 
-    const Settings& settings_;
+    const InferredSettings& settings_;
     std::vector<std::pair<const LabelMap*, std::set<int32_t>>> labels_;  ///< in the order of the scene
     std::vector<ColorBar> bars_;
 };
@@ -166,9 +166,8 @@ std::vector<Tick> ticks_of(double min, double max, int most) {
     return ticks;
 }
 
-Annotation annotation_of(const SceneSnapshot& scene, const Settings& settings) {
-    const bool legend = settings.annotation.legend.value_or(false),
-               colorbar = settings.annotation.colorbar.value_or(false);
+Annotation annotation_of(const SceneSnapshot& scene, const InferredSettings& settings) {
+    const bool legend = settings.annotation.legend, colorbar = settings.annotation.colorbar;
     if (!legend && !colorbar) return {};
     const Collector found(scene, settings);
     Annotation annotation{found.legends(), found.bars()};

@@ -41,10 +41,11 @@ struct Annotation {
 
 /// What the settings ask for of the visible objects: a legend for each label map, a colour bar for each name,
 /// range and colormap. Logs a warning when they ask for something that there is nothing for.
-Annotation annotation_of(const SceneSnapshot& scene, const Settings& settings);
+Annotation annotation_of(const SceneSnapshot& scene, const InferredSettings& settings);
 
 /// Draws it from the settings' corner inwards, next to each other. Sizes are parts of the picture's height.
-void draw_annotation(const Annotation& annotation, const AnnotationSettings& settings, Image& picture);
+void draw_annotation(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
+                     Image& picture);
 
 struct Tick {
     double value = 0;

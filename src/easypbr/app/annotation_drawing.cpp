@@ -220,7 +220,8 @@ void draw_block(Pen& pen, const Block& block, const PixelRect& panel) {
 
 }  // namespace
 
-void draw_annotation(const Annotation& annotation, const AnnotationSettings& settings, Image& picture) {
+void draw_annotation(const Annotation& annotation, const BasicAnnotationSettings<Inferred>& settings,
+                     Image& picture) {
     if (annotation.empty()) return;
     Canvas canvas(picture);
     Pen pen(canvas, std::max(smallest_text, settings.text_size * float(picture.height())));

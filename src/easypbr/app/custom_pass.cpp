@@ -92,7 +92,7 @@ float PassInput::exposure() const {
     return frame_.input.frame.resolved->exposure;
 }
 
-const Settings& PassInput::settings() const {
+const InferredSettings& PassInput::settings() const {
     return frame_.input.frame.resolved->settings;
 }
 

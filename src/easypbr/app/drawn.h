@@ -26,7 +26,7 @@ struct Device {
 struct PictureFinish {
     std::shared_ptr<const LensMap> lens = std::make_shared<const LensMap>();
     Annotation annotation;
-    AnnotationSettings annotation_settings;
+    BasicAnnotationSettings<Inferred> annotation_settings;
 
     Image apply(Image drawn) const;
 };

@@ -20,8 +20,9 @@ bool same_scene(const SceneSnapshot& a, const SceneSnapshot& b) {
            hash(a.environment) == hash(b.environment);
 }
 
-bool same_settings(const Settings& a, const Settings& b) {
-    return std::ranges::all_of(fields(), [&](const Field& field) { return field.get(a) == field.get(b); });
+bool same_settings(const InferredSettings& a, const InferredSettings& b) {
+    return std::ranges::all_of(
+        fields(), [&](const Field& field) { return field.get_inferred(a) == field.get_inferred(b); });
 }
 
 bool same_images(const render::SettingsImages& a, const render::SettingsImages& b) {

@@ -80,7 +80,7 @@ Prepared Session::prepare(const PictureOptions& options) {
         prepared.images = files_.images();
     }
     const Stopwatch watch(timing_.draw);
-    prepared.resolved = 
+    prepared.resolved =
         easypbr::resolve(prepared.scene, settings_, prepared.options.size, prepared.options.samples);
     warnings_.check(prepared.scene, settings_, prepared.resolved);
     for (const render::CustomPass& custom : passes_)
@@ -207,7 +207,7 @@ PickBuffer Session::pick_buffer(std::optional<Vec2i> size) {
 
 ViewPoint Session::view_point(std::optional<Vec2i> size) {
     const ResolvedSettings resolved = resolve(size);
-    return {resolved.camera, *resolved.settings.camera.target};
+    return {resolved.camera, resolved.settings.camera.target};
 }
 
 std::map<std::string, Image> Session::render_layers(const std::vector<std::string>& names,

@@ -43,7 +43,8 @@ void settings_rows(GuiState& state, const std::string& prefix) {
     for (const Field& field : fields()) {
         if (!field.name.starts_with(prefix)) continue;
         std::optional<Value> inferred;
-        if (state.live.picture().resolved()) inferred = field.get(state.live.picture().resolved()->settings);
+        if (state.live.picture().resolved())
+            inferred = field.get_inferred(state.live.picture().resolved()->settings);
         field_row(field, field.get(state.settings()), inferred,
                   [&](const Value& value) { try_set(state, field.name, value); });
     }

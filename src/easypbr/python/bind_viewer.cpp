@@ -49,10 +49,9 @@ void set_setting(SharedViewer& self, const std::string& name, nb::handle object)
 }
 
 nb::object resolved_setting(SharedViewer& self, const std::string& name) {
-    const Settings settings = self.run([](Viewer& viewer) { return viewer.session().resolve().settings; });
-    Value value = get(settings, name);
-    if (value.latched) value = {value.data};
-    return value_to_python(field(name), value);
+    const InferredSettings settings =
+        self.run([](Viewer& viewer) { return viewer.session().resolve().settings; });
+    return value_to_python(field(name), get(settings, name));
 }
 
 std::string settings_to_json(SharedViewer& self) {

@@ -49,7 +49,7 @@ struct Incidence {
     double irradiance;
 };
 
-Incidence incidence_at(const Light& light, const Vec3d& point) {
+Incidence incidence_at(const LightSource& light, const Vec3d& point) {
     const double power = light.intensity * luminance_weights.dot(light.color.cast<double>());
     if (light.type == LightType::directional) return {-light.direction.cast<double>().normalized(), power};
     const Vec3d to_light = light.position.cast<double>() - point;
@@ -72,9 +72,10 @@ float plain_light_radius(const Content& content) {
     return float(plain_light_part * content.radius());
 }
 
-std::vector<Light> resolve_studio_lights(const Content& content, const Camera& camera, bool on_by_default,
-                                         LightsSettings& settings, const Vec3d& up) {
-    std::vector<Light> lights;
+std::vector<ResolvedLight> resolve_studio_lights(const Content& content, const Camera& camera,
+                                                 bool on_by_default, LightsSettings& settings,
+                                                 const Vec3d& up) {
+    std::vector<ResolvedLight> lights;
     const auto add = [&](StudioLight& studio, const Placement& placement) {
         fill(studio.enabled, on_by_default);
         if (!studio.position.value() || !studio.intensity.value()) {
@@ -85,7 +86,7 @@ std::vector<Light> resolve_studio_lights(const Content& content, const Camera& c
         }
         if (!studio.radius.value()) fill(studio.radius, float(studio_light_part * content.radius()));
         if (!*studio.enabled) return;
-        Light light;
+        ResolvedLight light;
         light.position = *studio.position;
         light.color = linear_from_srgb(studio.color);
         light.intensity = *studio.intensity * settings.intensity;
@@ -99,9 +100,11 @@ std::vector<Light> resolve_studio_lights(const Content& content, const Camera& c
     return lights;
 }
 
-float metered_exposure(const Content& content, const ResolvedSettings& resolved) {
+float metered_exposure(const Content& content, const ResolvedSettings& resolved,
+                       float environment_intensity) {
     std::vector<Incidence> incidences;
-    for (const Light& light : resolved.lights) incidences.push_back(incidence_at(light, content.centre()));
+    for (const LightSource& light : resolved.lights)
+        incidences.push_back(incidence_at(light, content.centre()));
     double sum = 0, weights = 0;
     for (int k = 0; k < meter_directions; ++k) {
         const Vec3d in_camera = meter_normal(k);
@@ -110,7 +113,7 @@ float metered_exposure(const Content& content, const ResolvedSettings& resolved)
         if (!resolved.environment.empty()) {
             const Vec3 in_environment = resolved.R_env_world * normal.cast<float>();
             radiance =
-                resolved.settings.environment.intensity *
+                environment_intensity *
                 luminance_weights.dot(resolved.environment.irradiance_over_pi(in_environment).cast<double>());
         }
         for (const Incidence& light : incidences)

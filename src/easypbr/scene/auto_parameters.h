@@ -62,11 +62,12 @@ Camera resolve_camera(const Content& content, CameraSettings& settings, double a
 float plain_light_radius(const Content& content);
 
 /// Key, fill and rim as far as they are on.
-std::vector<Light> resolve_studio_lights(const Content& content, const Camera& camera, bool on_by_default,
-                                         LightsSettings& settings, const Vec3d& up);
+std::vector<ResolvedLight> resolve_studio_lights(const Content& content, const Camera& camera,
+                                                 bool on_by_default, LightsSettings& settings,
+                                                 const Vec3d& up);
 
 /// Exposure by incident light at the content's centre, whatever the content looks like (as a hand-held meter
 /// does).
-float metered_exposure(const Content& content, const ResolvedSettings& resolved);
+float metered_exposure(const Content& content, const ResolvedSettings& resolved, float environment_intensity);
 
 }  // namespace easypbr::detail

@@ -172,7 +172,7 @@ class Planner {
     }
 
     template <class T>
-    std::optional<T> style(Auto<T> Style::*field) const {
+    std::optional<T> style(Override<T> Style::*field) const {
         const std::optional<T>& given = (overrides_.*field).value();
         return given ? given : (mesh_.style.*field).value();
     }

@@ -9,13 +9,13 @@ class Choice {
     Choice(const Style& overrides, const Style& own) : overrides_(overrides), own_(own) {}
 
     template <class T>
-    std::optional<T> operator()(Auto<T> Style::*field) const {
+    std::optional<T> operator()(Override<T> Style::*field) const {
         const std::optional<T>& given = (overrides_.*field).value();
         return given ? given : (own_.*field).value();
     }
 
     template <class T>
-    T operator()(Auto<T> Style::*field, T otherwise) const {
+    T operator()(Override<T> Style::*field, T otherwise) const {
         return (*this)(field).value_or(otherwise);
     }
 

@@ -13,14 +13,15 @@ namespace easypbr::detail {
 /// already, and the effects before it in the list.
 struct EffectContext {
     const Content& content;
-    Vec2i size;   ///< of the picture
-    int samples;  ///< of the picture
+    Vec2i size;                ///< of the picture
+    int samples;               ///< of the picture
+    const Settings& settings;  ///< as far as they are inferred
     ResolvedSettings& resolved;
 };
 
-#define EASYPBR_DECLARE(name, Type)                                     \
-    void add_fields(std::vector<Field>& table, Type Settings::*effect); \
-    void infer(Type& effect, const EffectContext& context);
+#define EASYPBR_DECLARE(name, Type)             \
+    void add_##name(std::vector<Field>& table); \
+    void infer(decltype(Settings::name)& effect, const EffectContext& context);
 EASYPBR_EFFECTS(EASYPBR_DECLARE)
 #undef EASYPBR_DECLARE
 

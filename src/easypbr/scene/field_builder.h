@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <charconv>
 #include <limits>
+#include <stdexcept>
 #include <type_traits>
 
 #include "easypbr/scene/fields.h"
@@ -105,6 +106,12 @@ Value to_value(const Auto<T>& member) {
 }
 
 template <class T>
+Value to_value(const Override<T>& member) {
+    if (!member.value()) return {{}, Value::State::automatic};
+    return {to_data(*member)};
+}
+
+template <class T>
 void from_value(const Value& value, T& member) {
     from_data(value.data, member);
 }
@@ -122,12 +129,38 @@ void from_value(const Value& value, Auto<T>& member) {
 }
 
 template <class T>
+void from_value(const Value& value, Override<T>& member) {
+    member = automatic;
+    if (value.state != Value::State::given) return;
+    T data{};
+    from_data(value.data, data);
+    member = data;
+}
+
+/// From settings to inferred ones.
+template <class T>
+void copy_value(const std::string& /*name*/, const T& from, T& to) {
+    to = from;
+}
+
+template <class T>
+void copy_value(const std::string& name, const Auto<T>& from, T& to) {
+    if (!from.value()) throw std::logic_error("setting '" + name + "' was not inferred");
+    to = *from;
+}
+
+template <class T>
 struct Unwrapped {
     using type = T;
     static constexpr bool is_auto = false;
 };
 template <class T>
 struct Unwrapped<Auto<T>> {
+    using type = T;
+    static constexpr bool is_auto = true;
+};
+template <class T>
+struct Unwrapped<Override<T>> {
     using type = T;
     static constexpr bool is_auto = true;
 };
@@ -156,13 +189,11 @@ void describe(FieldInfo& field) {
     }
 }
 
-/// Follows a chain of pointers to members to a field.
-template <class... Members>
-auto at(Members... members) {
-    return [members...](auto& owner) -> auto& {
-        return (owner.*....*members);
-    };
-}
+/// Access to a member by its path, in settings and in inferred ones.
+#define EASYPBR_AT(path)          \
+    [](auto& settings) -> auto& { \
+        return settings.path;     \
+    }
 
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 /// Below any length that occurs, above zero.
@@ -172,11 +203,11 @@ struct Range {
     double min = -unlimited, max = unlimited;
 };
 
-template <class Owner = Settings, class Access>
-FieldOf<Owner> make(std::string name, Access access, std::string doc, std::string unit = {},
-                    Range range = {}) {
+/// Fills what the owner's type says of a field.
+template <class Owner, class Access>
+void make(FieldOf<Owner>& field, std::string name, Access access, std::string doc, std::string unit,
+          Range range) {
     using Member = std::remove_cvref_t<decltype(access(std::declval<Owner&>()))>;
-    FieldOf<Owner> field;
     field.name = std::move(name);
     field.doc = std::move(doc);
     field.unit = std::move(unit);
@@ -186,6 +217,16 @@ FieldOf<Owner> make(std::string name, Access access, std::string doc, std::strin
     field.max = std::min(field.max, range.max);
     field.get = [access](const Owner& owner) { return to_value(access(owner)); };
     field.put = [access](Owner& owner, const Value& value) { from_value(value, access(owner)); };
+}
+
+template <class Access>
+Field make(std::string name, Access access, std::string doc, std::string unit = {}, Range range = {}) {
+    Field field;
+    make(field, std::move(name), access, std::move(doc), std::move(unit), range);
+    field.get_inferred = [access](const InferredSettings& settings) { return to_value(access(settings)); };
+    field.copy = [access, name = field.name](InferredSettings& to, const Settings& from) {
+        copy_value(name, access(from), access(to));
+    };
     return field;
 }
 
@@ -199,6 +240,12 @@ Field color(std::string name, Access access, std::string doc) {
 inline Field with_choices(Field field, std::vector<std::string> choices) {
     field.type = FieldType::choice;
     field.choices = std::move(choices);
+    return field;
+}
+
+/// A field that is inferred for every image anew.
+inline Field not_kept(Field field) {
+    field.is_kept = false;
     return field;
 }
 

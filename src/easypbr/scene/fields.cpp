@@ -197,6 +197,10 @@ Value get(const Settings& settings, std::string_view name) {
     return field(name).get(settings);
 }
 
+Value get(const InferredSettings& settings, std::string_view name) {
+    return field(name).get_inferred(settings);
+}
+
 void set_from_text(Settings& settings, std::string_view name, std::string_view text) {
     set(settings, name, parse_value(field(name), text));
 }

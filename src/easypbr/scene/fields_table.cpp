@@ -96,118 +96,119 @@ using namespace detail;
 constexpr size_t max_clip_planes = 16;
 
 void add_image(Table& table) {
-    const auto image = [](auto member) { return at(&Settings::image, member); };
-    table.push_back(make("image.size", image(&ImageSettings::size), "Width and height of the image.",
-                         "pixels", {1, max_image_side}));
+    table.push_back(make("image.size", EASYPBR_AT(image.size), "Width and height of the image.", "pixels",
+                         {1, max_image_side}));
     table.push_back(
-        make("image.samples", image(&ImageSettings::samples),
+        make("image.samples", EASYPBR_AT(image.samples),
              "Number of jittered samples averaged per pixel; 1 draws a single frame without accumulation.",
              "", {1, 65536}));
     table.push_back(
-        make("image.antialias", image(&ImageSettings::antialias),
+        make("image.antialias", EASYPBR_AT(image.antialias),
              "Anti-aliasing of a single frame; an accumulated image is anti-aliased by its samples."));
 }
 
 void add_camera(Table& table) {
-    const auto camera = [](auto member) { return at(&Settings::camera, member); };
-    table.push_back(make("camera.projection", camera(&CameraSettings::projection),
+    table.push_back(make("camera.projection", EASYPBR_AT(camera.projection),
                          "Camera projection, perspective or orthographic."));
-    table.push_back(make("camera.position", camera(&CameraSettings::position),
+    table.push_back(make("camera.position", EASYPBR_AT(camera.position),
                          "Camera position in world space; automatic: frames the content.", "world units"));
-    table.push_back(make("camera.target", camera(&CameraSettings::target),
+    table.push_back(make("camera.target", EASYPBR_AT(camera.target),
                          "Point in world space that the camera looks at; automatic: centres the content.",
                          "world units"));
     table.push_back(
-        with_choices(make("camera.up", camera(&CameraSettings::up),
+        with_choices(make("camera.up", EASYPBR_AT(camera.up),
                           "World axis that points up, for the camera, the environment and the ground."),
                      {"+x", "-x", "+y", "-y", "+z", "-z", "x", "y", "z"}));
-    table.push_back(make("camera.fov_y_deg", camera(&CameraSettings::fov_y_deg),
+    table.push_back(make("camera.fov_y_deg", EASYPBR_AT(camera.fov_y_deg),
                          "Vertical field of view of a perspective camera.", "degrees", {1, 170}));
     table.push_back(
-        make("camera.ortho_height", camera(&CameraSettings::ortho_height),
+        make("camera.ortho_height", EASYPBR_AT(camera.ortho_height),
              "Height of the view volume of an orthographic camera; automatic: frames the content.",
              "world units", {positive, unlimited}));
-    table.push_back(make("camera.near", camera(&CameraSettings::near),
+    table.push_back(make("camera.near", EASYPBR_AT(camera.near),
                          "Distance to the near clipping plane; automatic: a tenth of the smallest depth of "
                          "the content, but at least 0.001 of the distance to the target.",
                          "world units", {positive, unlimited}));
-    table.push_back(make("camera.azimuth_deg", camera(&CameraSettings::azimuth_deg),
+    table.push_back(make("camera.azimuth_deg", EASYPBR_AT(camera.azimuth_deg),
                          "Azimuth of an automatic camera: 0 in front of the content, positive to its right.",
                          "degrees", {-360, 360}));
-    table.push_back(make("camera.elevation_deg", camera(&CameraSettings::elevation_deg),
+    table.push_back(make("camera.elevation_deg", EASYPBR_AT(camera.elevation_deg),
                          "Elevation of an automatic camera: 0 level with the content, 90 directly above it.",
                          "degrees", {-90, 90}));
-    table.push_back(make("camera.margin", camera(&CameraSettings::margin),
+    table.push_back(make("camera.margin", EASYPBR_AT(camera.margin),
                          "Fraction of the image left free around the content by an automatic camera, both "
                          "sides of an axis together.",
                          "", {0, 0.9}));
-    table.push_back(with_sizes(make("camera.pose", camera(&CameraSettings::pose),
+    table.push_back(with_sizes(make("camera.pose", EASYPBR_AT(camera.pose),
                                     "Camera-to-world matrix, 16 numbers in row-major order, OpenGL axes (x "
                                     "right, y up, z backwards); overrides position and target."),
                                {0, 16}));
     table.push_back(
-        with_sizes(make("camera.intrinsics", camera(&CameraSettings::intrinsics),
+        with_sizes(make("camera.intrinsics", EASYPBR_AT(camera.intrinsics),
                         "Pinhole intrinsics fx, fy, cx, cy, width, height and optionally skew, in the OpenCV "
                         "convention (pixel centres at integers); overrides fov_y_deg.",
                         "pixels"),
                    {0, 6, 7}));
     table.push_back(
-        make("camera.distortion_model", camera(&CameraSettings::distortion_model),
+        make("camera.distortion_model", EASYPBR_AT(camera.distortion_model),
              "Lens distortion model of the coefficients in camera.distortion, as defined by OpenCV."));
     table.push_back(
-        with_sizes(make("camera.distortion", camera(&CameraSettings::distortion),
+        with_sizes(make("camera.distortion", EASYPBR_AT(camera.distortion),
                         "Lens distortion coefficients in the order of OpenCV: k1, k2, p1, p2, optionally k3, "
                         "optionally k4, k5, k6; fisheye: k1, k2, k3, k4. Requires camera.intrinsics."),
                    {0, 4, 5, 8}));
 }
 
 void add_surroundings(Table& table) {
-    const auto environment = [](auto member) { return at(&Settings::environment, member); };
-    table.push_back(make("environment.file", environment(&EnvironmentSettings::file),
+    table.push_back(make("environment.file", EASYPBR_AT(environment.file),
                          "Equirectangular environment map (HDR, EXR, PNG, JPEG) for image-based lighting; "
                          "empty: a built-in studio."));
-    table.push_back(make("environment.enabled", environment(&EnvironmentSettings::enabled),
+    table.push_back(make("environment.enabled", EASYPBR_AT(environment.enabled),
                          "Enables image-based lighting; automatic: on."));
     table.push_back(
-        make("environment.rotation_deg", environment(&EnvironmentSettings::rotation_deg),
+        make("environment.rotation_deg", EASYPBR_AT(environment.rotation_deg),
              "Rotation of the environment map about the up axis, counter-clockwise seen from above.",
              "degrees", {-360, 360}));
-    table.push_back(make("environment.intensity", environment(&EnvironmentSettings::intensity),
+    table.push_back(make("environment.intensity", EASYPBR_AT(environment.intensity),
                          "Scale factor of the radiance of the environment map.", "", {0, 1e6}));
-    table.push_back(make("environment.sun", environment(&EnvironmentSettings::sun),
+    table.push_back(make("environment.sun", EASYPBR_AT(environment.sun),
                          "Extracts the sun of the environment map as a directional light that casts shadows; "
                          "automatic: on if a given environment map contains a sun."));
 
-    const auto background = [](auto member) { return at(&Settings::background, member); };
-    table.push_back(make("background.mode", background(&BackgroundSettings::mode),
+    table.push_back(make("background.mode", EASYPBR_AT(background.mode),
                          "Background: a constant colour, the environment map, the environment map blurred, "
                          "an image file, or transparent (alpha 0)."));
     table.push_back(
-        color("background.color", background(&BackgroundSettings::color),
+        color("background.color", EASYPBR_AT(background.color),
               "Background colour in mode color; exposure and tone mapping are not applied to it."));
-    table.push_back(make("background.image", background(&BackgroundSettings::image),
+    table.push_back(make("background.image", EASYPBR_AT(background.image),
                          "Image file of the background in mode image."));
-    table.push_back(make("background.blur", background(&BackgroundSettings::blur),
+    table.push_back(make("background.blur", EASYPBR_AT(background.blur),
                          "Blur of the environment map in mode blur: 0 none, 1 the most.", "", {0, 1}));
 }
 
-void add_studio_light(Table& table, const std::string& name, StudioLight LightsSettings::*light) {
-    const auto field = [&](auto member) { return at(&Settings::lights, light, member); };
+template <class Access>
+void add_studio_light(Table& table, const std::string& name, Access light) {
+    const auto field = [light](auto member) {
+        return [=](auto& settings) -> auto& {
+            return member(light(settings));
+        };
+    };
     const std::string prefix = "lights." + name + ".", the = "the " + name + " light";
-    table.push_back(make(prefix + "enabled", field(&StudioLight::enabled),
+    table.push_back(make(prefix + "enabled", field(EASYPBR_AT(enabled)),
                          "Enables " + the + "; automatic: on if no environment map is given."));
     table.push_back(
-        make(prefix + "position", field(&StudioLight::position),
+        make(prefix + "position", field(EASYPBR_AT(position)),
              "Position of " + the + " in world space; automatic: placed relative to the first camera.",
              "world units"));
-    table.push_back(color(prefix + "color", field(&StudioLight::color), "Colour of " + the + "."));
+    table.push_back(color(prefix + "color", field(EASYPBR_AT(color)), "Colour of " + the + "."));
     table.push_back(make(
-        prefix + "intensity", field(&StudioLight::intensity),
+        prefix + "intensity", field(EASYPBR_AT(intensity)),
         "Luminous intensity of " + the + "; automatic: gives the content the same irradiance at any scale.",
         "candela", {0, unlimited}));
-    table.push_back(make(prefix + "casts_shadows", field(&StudioLight::casts_shadows),
+    table.push_back(make(prefix + "casts_shadows", field(EASYPBR_AT(casts_shadows)),
                          "Enables the shadows of " + the + "."));
-    table.push_back(make(prefix + "radius", field(&StudioLight::radius),
+    table.push_back(make(prefix + "radius", field(EASYPBR_AT(radius)),
                          "Radius of " + the +
                              " as a spherical emitter, which sets the size of its penumbrae; automatic: 0.3 "
                              "of the radius of the content.",
@@ -215,78 +216,79 @@ void add_studio_light(Table& table, const std::string& name, StudioLight LightsS
 }
 
 void add_lights(Table& table) {
-    table.push_back(make("lights.intensity", at(&Settings::lights, &LightsSettings::intensity),
+    table.push_back(make("lights.intensity", EASYPBR_AT(lights.intensity),
                          "Scale factor of the intensity of the key, fill and rim lights.", "", {0, 1e6}));
-    add_studio_light(table, "key", &LightsSettings::key);
-    add_studio_light(table, "fill", &LightsSettings::fill);
-    add_studio_light(table, "rim", &LightsSettings::rim);
+    add_studio_light(table, "key", EASYPBR_AT(lights.key));
+    add_studio_light(table, "fill", EASYPBR_AT(lights.fill));
+    add_studio_light(table, "rim", EASYPBR_AT(lights.rim));
 }
 
 void add_shadows(Table& table) {
-    const auto shadows = [](auto member) { return at(&Settings::shadows, member); };
-    table.push_back(make("shadows.enabled", shadows(&ShadowSettings::enabled), "Enables shadows."));
+    table.push_back(make("shadows.enabled", EASYPBR_AT(shadows.enabled), "Enables shadows."));
     table.push_back(
-        make("shadows.mode", shadows(&ShadowSettings::mode),
+        make("shadows.mode", EASYPBR_AT(shadows.mode),
              "Shadow filter: percentage-closer soft shadows with penumbrae from the size of the light "
              "(soft), percentage-closer filtering of 3x3 texels (pcf), or no filter (hard)."));
-    table.push_back(make("shadows.resolution", shadows(&ShadowSettings::resolution),
+    table.push_back(make("shadows.resolution", EASYPBR_AT(shadows.resolution),
                          "Width and height of a shadow map.", "texels", {16, 8192}));
 }
 
 void add_shading(Table& table) {
-    const auto shading = [](auto member) { return at(&Settings::shading, member); };
-    table.push_back(make("shading.brdf", shading(&ShadingSettings::brdf),
+    table.push_back(make("shading.brdf", EASYPBR_AT(shading.brdf),
                          "Masking-shadowing function of the GGX specular BRDF: height-correlated Smith, "
                          "separable Smith, or the Schlick approximation of Unreal Engine 4."));
-    table.push_back(make("shading.multiple_scattering", shading(&ShadingSettings::multiple_scattering),
+    table.push_back(make("shading.multiple_scattering", EASYPBR_AT(shading.multiple_scattering),
                          "Enables multiple-scattering energy compensation of the specular BRDF."));
-    table.push_back(make("shading.dielectric_f0", shading(&ShadingSettings::dielectric_f0),
+    table.push_back(make("shading.dielectric_f0", EASYPBR_AT(shading.dielectric_f0),
                          "Reflectance F0 of dielectrics at normal incidence, for materials with the default "
                          "index of refraction.",
                          "", {0, 1}));
 
-    const auto eye_dome = [](auto member) { return at(&Settings::edl, member); };
     table.push_back(
-        make("edl.enabled", eye_dome(&EdlSettings::enabled),
+        make("edl.enabled", EASYPBR_AT(edl.enabled),
              "Enables eye-dome lighting of points without normals, which darkens depth discontinuities."));
-    table.push_back(make("edl.strength", eye_dome(&EdlSettings::strength), "Strength of eye-dome lighting.",
-                         "", {0, 100}));
-    table.push_back(make("edl.radius", eye_dome(&EdlSettings::radius),
+    table.push_back(
+        make("edl.strength", EASYPBR_AT(edl.strength), "Strength of eye-dome lighting.", "", {0, 100}));
+    table.push_back(make("edl.radius", EASYPBR_AT(edl.radius),
                          "Sampling radius of eye-dome lighting, in pixels of an image 1080 pixels high.",
                          "pixels", {0.1, 100}));
 
-    const auto transparency = [](auto member) { return at(&Settings::transparency, member); };
-    table.push_back(make("transparency.mode", transparency(&TransparencySettings::mode),
+    table.push_back(make("transparency.mode", EASYPBR_AT(transparency.mode),
                          "Transparency algorithm: depth peeling (layers), exact at any number of samples, or "
                          "stochastic transparency, faster for very many layers but noisy."));
-    table.push_back(make("transparency.max_layers", transparency(&TransparencySettings::max_layers),
+    table.push_back(make("transparency.max_layers", EASYPBR_AT(transparency.max_layers),
                          "Maximum number of transparent layers peeled per pixel, farthest first; of the "
                          "layers in front of them only the nearest is drawn.",
                          "", {1, 10000}));
 
-    const auto tone = [](auto member) { return at(&Settings::tonemap, member); };
-    table.push_back(
-        make("tonemap.operator", tone(&TonemapSettings::tone_operator), "Tone mapping operator."));
-    table.push_back(make("tonemap.exposure", tone(&TonemapSettings::exposure),
+    table.push_back(make("tonemap.operator", EASYPBR_AT(tonemap.tone_operator), "Tone mapping operator."));
+    table.push_back(make("tonemap.exposure", EASYPBR_AT(tonemap.exposure),
                          "Exposure: linear scale factor applied before tone mapping; automatic: metered so "
                          "that a white diffuse surface facing the camera has a mean radiance of 1.",
                          "", {0, 1e30}));
-    table.push_back(make("tonemap.exposure_compensation", tone(&TonemapSettings::exposure_compensation),
+    table.push_back(make("tonemap.exposure_compensation", EASYPBR_AT(tonemap.exposure_compensation),
                          "Exposure compensation in EV.", "EV", {-30, 30}));
 }
 
+/// Access to an override of materials.
+template <class Member>
+auto in_material(Member member) {
+    return [member](auto& settings) -> auto& {
+        return settings.material.*member;
+    };
+}
+
 void add_extended_overrides(Table& table) {
-    const auto material = [](auto member) { return at(&Settings::material, member); };
     const std::string own = " of every material; automatic: the material's own.";
     const auto number = [&](const std::string& name, auto member, const std::string& doc, Range range,
                             const std::string& unit = {}) {
-        table.push_back(make("material." + name, material(member), doc + own, unit, range));
+        table.push_back(make("material." + name, in_material(member), doc + own, unit, range));
     };
     const auto tint = [&](const std::string& name, auto member, const std::string& doc) {
-        table.push_back(color("material." + name, material(member), doc + own));
+        table.push_back(color("material." + name, in_material(member), doc + own));
     };
     using M = MaterialSettings;
-    table.push_back(make("material.alpha_mode", material(&M::alpha_mode),
+    table.push_back(make("material.alpha_mode", EASYPBR_AT(material.alpha_mode),
                          "Alpha mode of every material as in glTF: opaque, mask (alpha cutoff) or blend; "
                          "automatic: the material's own."));
     number("opacity", &M::opacity, "Opacity, 0 transparent to 1 opaque,", {0, 1});
@@ -315,22 +317,21 @@ void add_extended_overrides(Table& table) {
 }
 
 void add_overrides(Table& table) {
-    const auto material = [](auto member) { return at(&Settings::material, member); };
     const auto file = [&](const std::string& name, std::string MaterialSettings::*member,
                           const std::string& doc) {
-        table.push_back(make("material." + name, material(member), doc + " Empty: the material's own."));
+        table.push_back(make("material." + name, in_material(member), doc + " Empty: the material's own."));
     };
-    table.push_back(color("material.color", material(&MaterialSettings::color),
+    table.push_back(color("material.color", EASYPBR_AT(material.color),
                           "Base colour of every material; automatic: the material's own."));
     table.push_back(
-        make("material.metallic", material(&MaterialSettings::metallic),
+        make("material.metallic", EASYPBR_AT(material.metallic),
              "Metallic factor of every material, 0 dielectric to 1 metal; automatic: the material's own.", "",
              {0, 1}));
     table.push_back(
-        make("material.roughness", material(&MaterialSettings::roughness),
+        make("material.roughness", EASYPBR_AT(material.roughness),
              "Perceptual roughness of every material, alpha = roughness^2; automatic: the material's own.",
              "", {0, 1}));
-    table.push_back(color("material.emissive", material(&MaterialSettings::emissive),
+    table.push_back(color("material.emissive", EASYPBR_AT(material.emissive),
                           "Emitted radiance of every material; automatic: the material's own."));
     add_extended_overrides(table);
     for (const MaterialTexture& row : replaceable_textures())
@@ -343,9 +344,9 @@ void add_overrides(Table& table) {
 void add_style(Table& table) {
     const auto add = [&](const std::string& name, auto member, const std::string& doc,
                          const std::string& inferred, const std::string& unit = {}, Range range = {}) {
-        table.push_back(make("style." + name, at(&Settings::style, member),
-                             doc + " Automatic: the object's own value, else " + inferred + ".", unit,
-                             range));
+        table.push_back(make(
+            "style." + name, [member](auto& settings) -> auto& { return settings.style.*member; },
+            doc + " Automatic: the object's own value, else " + inferred + ".", unit, range));
     };
     add("mode", &Style::mode, "Primitive that objects are drawn as.",
         "voxels for data with a voxel size, a mesh for faces, surfels for normals with tangents, lines for "
@@ -365,7 +366,7 @@ void add_style(Table& table) {
         {0.1, 1000});
     add("line_dash", &Style::line_dash, "Length of dashes and of the gaps between them; 0 draws solid lines.",
         "0", "pixels", {0, 10000});
-    table.push_back(color("style.line_color", at(&Settings::style, &Style::line_color),
+    table.push_back(color("style.line_color", EASYPBR_AT(style.line_color),
                           "Colour of lines, wireframes and normals. Automatic: the object's own value, else "
                           "the vertex colours for lines, dark for wireframes and blue for normals."));
     add("show_wireframe", &Style::show_wireframe, "Draws the edges of the faces as a wireframe.", "no");
@@ -395,46 +396,45 @@ void add_style(Table& table) {
     add("color_max", &Style::color_max,
         "Value mapped to the last colour of the colour map; higher values are clamped.",
         "the maximum, or the 99th percentile if outliers would take up most of the range", "", {-1e38, 1e38});
-    table.push_back(color("style.nan_color", at(&Settings::style, &Style::nan_color),
+    table.push_back(color("style.nan_color", EASYPBR_AT(style.nan_color),
                           "Colour of missing values (NaN). Automatic: the object's own value, else grey, or "
                           "magenta with the colour map grey."));
 }
 
 void add_clipping(Table& table) {
     table.push_back(
-        make("points.hole_filling", at(&Settings::points, &PointsSettings::hole_filling),
+        make("points.hole_filling", EASYPBR_AT(points.hole_filling),
              "Number of passes that fill one-pixel holes between points from the neighbouring pixels.", "",
              {0, 32}));
     std::vector<size_t> lengths;
     for (size_t planes = 0; planes <= max_clip_planes; ++planes) lengths.push_back(4 * planes);
-    table.push_back(with_sizes(make("clip.planes", at(&Settings::clip, &ClipSettings::planes),
+    table.push_back(with_sizes(make("clip.planes", EASYPBR_AT(clip.planes),
                                     "Clipping planes in world space, four numbers nx, ny, nz, d each; points "
                                     "p with n . p + d >= 0 are kept."),
                                lengths));
     table.push_back(with_sizes(
-        make("clip.box", at(&Settings::clip, &ClipSettings::box),
+        make("clip.box", EASYPBR_AT(clip.box),
              "Clipping box in world space, minimum x, y, z, then maximum x, y, z; its inside is kept.",
              "world units"),
         {0, 6}));
 }
 
 void add_annotation(Table& table) {
-    const auto annotation = [](auto member) { return at(&Settings::annotation, member); };
-    table.push_back(make("annotation.legend", annotation(&AnnotationSettings::legend),
+    table.push_back(make("annotation.legend", EASYPBR_AT(annotation.legend),
                          "Draws a legend of the labels that colour objects; automatic: no."));
-    table.push_back(make("annotation.colorbar", annotation(&AnnotationSettings::colorbar),
+    table.push_back(make("annotation.colorbar", EASYPBR_AT(annotation.colorbar),
                          "Draws a colour bar of the values that colour objects; automatic: no."));
-    table.push_back(make("annotation.title", annotation(&AnnotationSettings::title),
+    table.push_back(make("annotation.title", EASYPBR_AT(annotation.title),
                          "Title of legends and colour bars; empty: the name of the values for colour bars, "
                          "none for legends."));
-    table.push_back(make("annotation.corner", annotation(&AnnotationSettings::corner),
+    table.push_back(make("annotation.corner", EASYPBR_AT(annotation.corner),
                          "Corner of the image that legends and colour bars are placed in."));
-    table.push_back(make("annotation.text_size", annotation(&AnnotationSettings::text_size),
+    table.push_back(make("annotation.text_size", EASYPBR_AT(annotation.text_size),
                          "Text size as a fraction of the image height.", "", {0.005, 0.2}));
 }
 
 void add_loading(Table& table) {
-    table.push_back(make("load.crease_deg", at(&Settings::load, &LoadSettings::crease_deg),
+    table.push_back(make("load.crease_deg", EASYPBR_AT(load.crease_deg),
                          "Crease angle of STL files loaded by the command line and the window: edges between "
                          "faces at a larger angle stay sharp.",
                          "degrees", {0, 180}));
@@ -451,7 +451,7 @@ const std::vector<Field>& fields() {
         add_lights(all);
         add_shadows(all);
         add_shading(all);
-#define EASYPBR_ADD(name, Type) detail::add_fields(all, &Settings::name);
+#define EASYPBR_ADD(name, Type) detail::add_##name(all);
         EASYPBR_EFFECTS(EASYPBR_ADD)
 #undef EASYPBR_ADD
         add_overrides(all);

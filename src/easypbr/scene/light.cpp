@@ -4,17 +4,11 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/light_table.h"
-#include "easypbr/scene/settings.h"
 
 namespace easypbr {
 
+bool LightSource::operator==(const LightSource&) const = default;
 bool Light::operator==(const Light&) const = default;
-
-StudioLight studio_light(int red, int green, int blue) {
-    StudioLight light;
-    light.color = Vec3(float(red), float(green), float(blue)) / 255.0f;
-    return light;
-}
 
 void validate(const Light& light, const std::string& name) {
     const std::string owner = fmt::format("light '{}': ", name);

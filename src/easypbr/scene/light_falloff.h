@@ -10,7 +10,7 @@ namespace easypbr {
 
 /// Of KHR_lights_punctual, for point and spot lights: the inverse square, a smooth cone, and a window that
 /// ends the light at its range. `from_light` is a unit vector, `distance` > 0 in world units.
-inline double falloff(const Light& light, const Vec3d& from_light, double distance) {
+inline double falloff(const LightSource& light, const Vec3d& from_light, double distance) {
     double factor = 1 / (distance * distance);
     if (light.range > 0) {
         const double window = std::clamp(1 - std::pow(distance / light.range, 4), 0.0, 1.0);

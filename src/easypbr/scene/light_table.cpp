@@ -19,7 +19,11 @@ constexpr std::array<bool, 3> any{true, true, true}, placed{true, false, true}, 
 template <class Member>
 LightField row(const char* name, Member member, const char* doc, const std::array<bool, 3>& types = any,
                const char* unit = "", Range range = {}) {
-    return {make<Light>(name, at(member), doc, unit, range), types};
+    LightField field;
+    make(
+        field, name, [member](auto& light) -> auto& { return light.*member; }, doc, unit, range);
+    field.types = types;
+    return field;
 }
 
 LightField colored(LightField field) {

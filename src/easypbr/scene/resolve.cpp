@@ -21,25 +21,24 @@ Mat3 environment_rotation(const Vec3d& up, double rotation_deg) {
     return R.cast<float>();
 }
 
-void resolve_environment(const SceneSnapshot& scene, ResolvedSettings& resolved) {
-    EnvironmentSettings& settings = resolved.settings.environment;
-    detail::fill(settings.enabled, true);
-    if (*settings.enabled)
+void resolve_environment(const SceneSnapshot& scene, Settings& settings, ResolvedSettings& resolved) {
+    EnvironmentSettings& environment = settings.environment;
+    detail::fill(environment.enabled, true);
+    if (*environment.enabled)
         resolved.environment = scene.environment.empty() ? studio_environment() : scene.environment;
     resolved.seen_environment = resolved.environment;
-    resolved.R_env_world = environment_rotation(parse_up(resolved.settings.camera.up), settings.rotation_deg);
+    resolved.R_env_world = environment_rotation(parse_up(settings.camera.up), environment.rotation_deg);
 }
 
 /// Makes the environment's sun a light.
-void resolve_sun(const SceneSnapshot& scene, ResolvedSettings& resolved) {
-    EnvironmentSettings& settings = resolved.settings.environment;
+void resolve_sun(const SceneSnapshot& scene, EnvironmentSettings& settings, ResolvedSettings& resolved) {
     const Environment whole = resolved.environment;
     if (!settings.sun.value())
         detail::fill(settings.sun, !whole.empty() && !scene.environment.empty() && whole.sun());
     if (!*settings.sun || whole.empty() || !whole.sun()) return;
     const Sun& sun = *whole.sun();
     resolved.environment = whole.without_sun();
-    Light light;
+    ResolvedLight light;
     light.type = LightType::directional;
     light.direction = -(resolved.R_env_world.transpose() * sun.towards);
     light.color = sun.irradiance / sun.irradiance.maxCoeff();
@@ -48,35 +47,37 @@ void resolve_sun(const SceneSnapshot& scene, ResolvedSettings& resolved) {
     resolved.lights.push_back(light);
 }
 
-void resolve_lights(const detail::Content& content, ResolvedSettings& resolved) {
+void resolve_lights(const detail::Content& content, Settings& settings, ResolvedSettings& resolved) {
     for (const auto& [name, light] : content.scene().lights) {
         validate(light, name);
         if (!light.enabled) continue;
-        resolved.lights.push_back(light);
-        if (light.type == LightType::directional || light.radius.value()) continue;
-        resolved.light_radii[name] = detail::plain_light_radius(content);
-        resolved.lights.back().radius = resolved.light_radii[name];
+        if (light.type != LightType::directional && !light.radius.value())
+            resolved.light_radii[name] = detail::plain_light_radius(content);
+        const auto inferred = resolved.light_radii.find(name);
+        resolved.lights.push_back(
+            {light, inferred != resolved.light_radii.end() ? inferred->second : light.radius.value_or(0)});
     }
-    const EnvironmentSettings& environment = resolved.settings.environment;
+    const EnvironmentSettings& environment = settings.environment;
     const bool given =
         *environment.enabled && (!content.scene().environment.empty() || !environment.file.empty());
-    for (const Light& light :
-         detail::resolve_studio_lights(content, resolved.camera, !given, resolved.settings.lights,
-                                       parse_up(resolved.settings.camera.up)))
+    for (const ResolvedLight& light : detail::resolve_studio_lights(
+             content, resolved.camera, !given, settings.lights, parse_up(settings.camera.up)))
         resolved.lights.push_back(light);
 }
 
-void resolve_exposure(const detail::Content& content, ResolvedSettings& resolved) {
-    TonemapSettings& tone = resolved.settings.tonemap;
-    if (!tone.exposure.value()) detail::fill(tone.exposure, detail::metered_exposure(content, resolved));
+void resolve_exposure(const detail::Content& content, Settings& settings, ResolvedSettings& resolved) {
+    TonemapSettings& tone = settings.tonemap;
+    if (!tone.exposure.value())
+        detail::fill(tone.exposure,
+                     detail::metered_exposure(content, resolved, settings.environment.intensity));
     resolved.exposure = *tone.exposure * std::exp2(tone.exposure_compensation);
 }
 
 /// Whether the pictures' single precision holds where the camera and the lights are.
 bool is_representable(const ResolvedSettings& resolved) {
-    const auto holds = [](const Light& light) {
+    const auto holds = [](const ResolvedLight& light) {
         const bool has_place = light.type == LightType::directional ||
-                               (light.position.allFinite() && std::isfinite(light.radius.value_or(0)));
+                               (light.position.allFinite() && std::isfinite(light.radius));
         return has_place && std::isfinite(light.intensity);
     };
     return resolved.camera.T_world_cam.matrix().cast<float>().allFinite() &&
@@ -114,37 +115,38 @@ void require_representable(const SceneSnapshot& scene, const ResolvedSettings& r
 
 }  // namespace
 
-ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, Vec2i size,
+ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& given, Vec2i size,
                          std::optional<int> samples) {
     if (size.minCoeff() < 1 || size.maxCoeff() > max_image_side)
         throw ArgumentError(fmt::format("picture size: expected width and height from 1 to {}, got {}x{}",
                                         max_image_side, size.x(), size.y()));
-    for (const Field& field : fields()) checked(field, field.get(settings));
+    for (const Field& field : fields()) checked(field, field.get(given));
     const detail::Content content(scene);
+    Settings settings = given;
     ResolvedSettings resolved;
-    resolved.settings = settings;
-    resolved.camera = detail::resolve_camera(content, resolved.settings.camera, double(size.x()) / size.y());
-    resolve_environment(scene, resolved);
-    resolve_lights(content, resolved);
-    resolve_sun(scene, resolved);
-    resolve_exposure(content, resolved);
-    detail::fill(resolved.settings.annotation.legend, false);
-    detail::fill(resolved.settings.annotation.colorbar, false);
-    const detail::EffectContext context{content, size, samples.value_or(settings.image.samples), resolved};
-#define EASYPBR_INFER(name, Type) detail::infer(resolved.settings.name, context);
+    resolved.camera = detail::resolve_camera(content, settings.camera, double(size.x()) / size.y());
+    resolve_environment(scene, settings, resolved);
+    resolve_lights(content, settings, resolved);
+    resolve_sun(scene, settings.environment, resolved);
+    resolve_exposure(content, settings, resolved);
+    detail::fill(settings.annotation.legend, false);
+    detail::fill(settings.annotation.colorbar, false);
+    const detail::EffectContext context{content, size, samples.value_or(settings.image.samples), settings,
+                                        resolved};
+#define EASYPBR_INFER(name, Type) detail::infer(settings.name, context);
     EASYPBR_EFFECTS(EASYPBR_INFER)
 #undef EASYPBR_INFER
+    for (const Field& field : fields()) field.copy(resolved.settings, settings);
     require_representable(scene, resolved);
     return resolved;
 }
 
-void latch(Settings& settings, const Settings& resolved) {
+void latch(Settings& settings, const InferredSettings& all) {
     for (const Field& field : fields()) {
-        if (!field.can_be_automatic || field.get(settings).state != Value::State::automatic) continue;
-        Value inferred = field.get(resolved);
-        if (inferred.state == Value::State::follow ||
-            (inferred.state == Value::State::automatic && !inferred.latched) || !is_valid(field, inferred))
-            continue;
+        if (!field.can_be_automatic || !field.is_kept) continue;
+        if (field.get(settings).state != Value::State::automatic) continue;
+        Value inferred = field.get_inferred(all);
+        if (inferred.state != Value::State::given || !is_valid(field, inferred)) continue;
         inferred.state = Value::State::automatic;
         inferred.latched = true;
         field.put(settings, inferred);

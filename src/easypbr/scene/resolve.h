@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "easypbr/scene/camera.h"
+#include "easypbr/scene/resolved_light.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/scene/settings.h"
 
@@ -14,14 +15,11 @@ namespace easypbr {
 
 /// All inputs of the renderer from the settings, fully inferred.
 struct ResolvedSettings {
-    Settings settings;  ///< every automatic field holds its value, but overrides of materials and styles, and
-                        ///< what is inferred for every picture anew: the next four
-    int bloom_levels = 1;
-    bool suppress_fireflies = false;
-    bool traces_rays = false;   ///< rays replace ambient occlusion, see RaySettings
-    double focus_distance = 1;  ///< of the depth of field
+    InferredSettings settings;
+    bool traces_rays = false;           ///< rays replace ambient occlusion, see RaySettings
+    bool traces_single_frames = false;  ///< in a frame that stands for one sample too: the user asks for rays
     Camera camera;
-    std::vector<Light> lights;                 ///< enabled lights of the scene, then key, fill, rim and sun
+    std::vector<ResolvedLight> lights;         ///< enabled lights of the scene, then key, fill, rim and sun
     std::map<std::string, float> light_radii;  ///< those inferred for lights of the scene, by name
     Environment environment;       ///< environment map without its sun: the given one, the studio, or empty
     Environment seen_environment;  ///< the same with its sun, for the background
@@ -37,9 +35,9 @@ struct ResolvedSettings {
 ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, Vec2i size,
                          std::optional<int> samples = std::nullopt);
 
-/// Copies inferred values into the automatic (not pinned, not following) fields of `settings`, but those that
-/// are not finite or out of the field's range.
-void latch(Settings& settings, const Settings& resolved);
+/// Copies inferred values into the automatic (not pinned, not following) fields of `settings` that keep them,
+/// but those that are not finite or out of the field's range.
+void latch(Settings& settings, const InferredSettings& inferred);
 /// Releases all latched values, so that the next image infers them again.
 void release(Settings& settings);
 

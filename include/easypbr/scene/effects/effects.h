@@ -11,11 +11,12 @@
 #include "easypbr/scene/effects/outline.h"
 #include "easypbr/scene/effects/ray_tracing.h"
 
-/// EFFECT(member of Settings, struct), in the order of the table of settings.
-#define EASYPBR_EFFECTS(EFFECT)                  \
-    EFFECT(ground, GroundSettings)               \
-    EFFECT(ssao, SsaoSettings)                   \
-    EFFECT(rays, RaySettings)                    \
-    EFFECT(bloom, BloomSettings)                 \
-    EFFECT(depth_of_field, DepthOfFieldSettings) \
-    EFFECT(motion_blur, MotionBlurSettings) EFFECT(outline, OutlineSettings)
+/// EFFECT(member of BasicSettings, its type there), in the order of the table of settings.
+#define EASYPBR_EFFECTS(EFFECT)                                  \
+    EFFECT(ground, BasicGroundSettings<MaybeAuto>)               \
+    EFFECT(ssao, BasicSsaoSettings<MaybeAuto>)                   \
+    EFFECT(rays, BasicRaySettings<MaybeAuto>)                    \
+    EFFECT(bloom, BasicBloomSettings<MaybeAuto>)                 \
+    EFFECT(depth_of_field, BasicDepthOfFieldSettings<MaybeAuto>) \
+    EFFECT(motion_blur, MotionBlurSettings)                      \
+    EFFECT(outline, BasicOutlineSettings<MaybeAuto>)

@@ -19,7 +19,7 @@ Material material_of(const MeshData& mesh, const MeshPart& part) {
 struct Source {
     const SceneSnapshot::Object& object;
     const DrawStyle& style;
-    const Settings& settings;
+    const InferredSettings& settings;
     const Material& textures;
     const ColorMeaning& colors;
     bool transparent_colors = has_transparent_colors(object.mesh->C);
@@ -158,7 +158,7 @@ DrawList DrawList::as_surfaces() const {
     return surfaces;
 }
 
-DrawList draw_list(const DrawableScene& drawable, const Settings& settings, const Material& textures,
+DrawList draw_list(const DrawableScene& drawable, const InferredSettings& settings, const Material& textures,
                    const ShaderFiles& shader_files) {
     DrawList list;
     for (size_t i = 0; i < drawable.scene.objects.size(); ++i) {

@@ -106,7 +106,7 @@ using ShaderFiles = std::map<std::string, std::string>;
 
 /// All items in the order of the scene. `textures` are the settings' own, which stand in for the materials',
 /// its shader too.
-DrawList draw_list(const DrawableScene& drawable, const Settings& settings, const Material& textures,
+DrawList draw_list(const DrawableScene& drawable, const InferredSettings& settings, const Material& textures,
                    const ShaderFiles& shader_files = {});
 
 /// A material with the settings' overrides applied.

@@ -180,7 +180,7 @@ std::shared_ptr<const MeshData> DrawableCache::get(const std::string& key, const
     return mesh;
 }
 
-DrawableScene DrawableCache::apply(const SceneSnapshot& scene, const Settings& settings) {
+DrawableScene DrawableCache::apply(const SceneSnapshot& scene, const InferredSettings& settings) {
     require_colors(scene, settings.style);
     DrawableScene drawable{scene, std::vector<ColorMeaning>(scene.objects.size()),
                            std::vector<ElementSources>(scene.objects.size())};
@@ -189,8 +189,8 @@ DrawableScene DrawableCache::apply(const SceneSnapshot& scene, const Settings& s
     return drawable;
 }
 
-void DrawableCache::apply(SceneSnapshot::Object& object, const Settings& settings, ColorMeaning& meaning,
-                          ElementSources& sources) {
+void DrawableCache::apply(SceneSnapshot::Object& object, const InferredSettings& settings,
+                          ColorMeaning& meaning, ElementSources& sources) {
     const MeshData own = *object.mesh;
     const DrawStyle style = resolve_style(own, settings.style);
     const ColorPlan plan =

@@ -50,7 +50,7 @@ class DrawableCache {
     explicit DrawableCache(SpacingCache& spacings) : spacings_(spacings) {}
 
     /// Throws ArgumentError and NameError as plan_colors(), require_colors() and voxel_mesh() do.
-    DrawableScene apply(const SceneSnapshot& scene, const Settings& settings);
+    DrawableScene apply(const SceneSnapshot& scene, const InferredSettings& settings);
 
     /// Drops what was not asked for since the last call.
     void evict_unused() { entries_.evict_unused(); }
@@ -65,7 +65,7 @@ class DrawableCache {
     template <class Make>
     std::shared_ptr<const MeshData> get(const std::string& key, const MeshData& current,
                                         ElementSources& sources, Make&& make);
-    void apply(SceneSnapshot::Object& object, const Settings& settings, ColorMeaning& meaning,
+    void apply(SceneSnapshot::Object& object, const InferredSettings& settings, ColorMeaning& meaning,
                ElementSources& sources);
 
     SpacingCache& spacings_;

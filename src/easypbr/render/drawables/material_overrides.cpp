@@ -5,7 +5,7 @@ namespace easypbr::render {
 namespace {
 
 struct NumberOverride {
-    Auto<float> MaterialSettings::*setting;
+    Override<float> MaterialSettings::*setting;
     float Material::*value;
     Texture Material::*texture;  ///< of the material's own, which would multiply it; may be null
 };
@@ -29,7 +29,7 @@ constexpr NumberOverride number_overrides[] = {
     {&MaterialSettings::anisotropy_rotation_deg, &Material::anisotropy_rotation_deg, nullptr}};
 
 struct ColorOverride {
-    Auto<Vec3> MaterialSettings::*setting;
+    Override<Vec3> MaterialSettings::*setting;
     Vec3 Material::*value;
     Texture Material::*texture;
 };
@@ -89,7 +89,7 @@ Material overridden(const Material& material, const MaterialSettings& settings, 
     });
     if (textures.shader) m.shader = textures.shader;
     // Said outright, it holds for textures from outside too.
-    if (settings.alpha_mode.value()) m.alpha_mode = settings.alpha_mode;
+    if (settings.alpha_mode.value()) m.alpha_mode = *settings.alpha_mode;
     return m;
 }
 

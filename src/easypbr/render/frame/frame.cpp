@@ -70,7 +70,7 @@ namespace {
 
 /// Moves the camera to the frame's place on the lens; what is in focus stays where it is in the picture.
 void look_through_lens(Frame& frame) {
-    const double focus = frame.resolved->focus_distance;
+    const double focus = frame.resolved->settings.depth_of_field.focus_distance;
     const Vec2d place = frame.resolved->lens_radius * lens_position(frame.sample_index, frame.sample_count);
     frame.camera.T_world_cam.translate(Vec3d(place.x(), place.y(), 0));
     frame.clip_from_view(0, 2) -= frame.clip_from_view(0, 0) * place.x() / focus;

@@ -59,7 +59,7 @@ double distance_to(const Box3d& box, const Vec3d& point) {
     return std::sqrt(box.squaredExteriorDistance(point));
 }
 
-ShadowProjection parallel(const Light& light, const Box3d& casters, int resolution) {
+ShadowProjection parallel(const LightSource& light, const Box3d& casters, int resolution) {
     ShadowProjection projection;
     ShadowView& view = projection.views[0];
     view.perspective = false;
@@ -99,7 +99,7 @@ ShadowProjection cube(const Vec3d& position, const Box3d& casters) {
 }
 
 /// One perspective view towards the casters, or along a spot; nothing when neither sees enough.
-std::optional<ShadowProjection> perspective(const Light& light, const Box3d& casters, int resolution) {
+std::optional<ShadowProjection> perspective(const LightSource& light, const Box3d& casters, int resolution) {
     const Vec3d position = light.position.cast<double>();
     const double diagonal = casters.diagonal().norm();
     ShadowProjection projection;
@@ -177,15 +177,16 @@ Mat4d ShadowView::clip_from_world() const {
     return clip * local;
 }
 
-std::optional<ShadowProjection> project_shadows(const Light& light, const Box3d& casters, int resolution) {
+std::optional<ShadowProjection> project_shadows(const LightSource& light, const Box3d& casters,
+                                                int resolution) {
     if (casters.isEmpty() || !(casters.diagonal().norm() > 0)) return std::nullopt;
     if (light.type == LightType::directional) return parallel(light, casters, resolution);
     if (auto single = perspective(light, casters, resolution)) return single;
     return cube(light.position.cast<double>(), casters);
 }
 
-Light sampled_light(const Light& light, int index, int count) {
-    Light sampled = light;
+ResolvedLight sampled_light(const ResolvedLight& light, int index, int count) {
+    ResolvedLight sampled = light;
     if (count <= 1) return sampled;
     if (light.type == LightType::directional) {
         const Mat3d frame = frame_along(light.direction.cast<double>());
@@ -195,7 +196,7 @@ Light sampled_light(const Light& light, int index, int count) {
                                                           radius * std::sin(2 * pi * u.y()), 1);
         sampled.direction = direction.cast<float>();
     } else {
-        const Vec3d offset = double(light.radius.value_or(0)) * disc_like_point(spread_point(index));
+        const Vec3d offset = double(light.radius) * disc_like_point(spread_point(index));
         sampled.position = (light.position.cast<double>() + offset).cast<float>();
     }
     return sampled;

@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "easypbr/core/math.h"
-#include "easypbr/scene/light.h"
+#include "easypbr/scene/resolved_light.h"
 
 namespace easypbr::render {
 
@@ -40,11 +40,12 @@ inline constexpr double cube_slope = 1.1;
 /// Fits maps of `resolution` texels to the casters' bounds: a parallel view for directional lights, one
 /// perspective view for spots and for lights that see all casters within 60 degrees of one direction, a cube
 /// for others. Nothing when the bounds are empty or have no extent.
-std::optional<ShadowProjection> project_shadows(const Light& light, const Box3d& casters, int resolution);
+std::optional<ShadowProjection> project_shadows(const LightSource& light, const Box3d& casters,
+                                                int resolution);
 
 /// The light at one of its own points, for sample `index` of `count`: of the ball of its radius, distributed
 /// so that it looks like an evenly glowing disc from everywhere; of a directional light's disc of directions.
 /// One sample is the light's centre.
-Light sampled_light(const Light& light, int index, int count);
+ResolvedLight sampled_light(const ResolvedLight& light, int index, int count);
 
 }  // namespace easypbr::render

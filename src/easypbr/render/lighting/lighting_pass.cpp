@@ -29,7 +29,7 @@ static_assert(sizeof(vec4) == 16 && alignof(vec4) <= 16);
 using LightUniforms = std::array<blocks::Light, lights_per_block>;
 using ShadowUniforms = std::array<blocks::ShadowMap, lights_per_block>;
 
-void write_light(const Light& light, const Vec3d& camera, LightUniforms& uniforms, size_t index) {
+void write_light(const LightSource& light, const Vec3d& camera, LightUniforms& uniforms, size_t index) {
     blocks::Light& to = uniforms[index];
     const float kind = light.type == LightType::directional ? 0.0f
                        : light.type == LightType::point     ? 1.0f

@@ -14,7 +14,7 @@ std::vector<uint32_t> parts_of_faces(const MeshData& mesh) {
     std::vector<uint32_t> parts(mesh.parts.size() > 1 ? size_t(mesh.F.rows()) : 0);
     for (size_t p = 0; p < mesh.parts.size() && !parts.empty(); ++p)
         for (int i = 0; i < mesh.parts[p].face_count; ++i)
-            parts[size_t(mesh.parts[p].first_face + i)] = uint32_t(p);
+            parts[size_t(mesh.parts[p].first_face) + size_t(i)] = uint32_t(p);
     return parts;
 }
 

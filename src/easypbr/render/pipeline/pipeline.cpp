@@ -13,10 +13,10 @@ bool is_layered(const DrawItem& item) {
 }
 
 RayGround ray_ground(const ResolvedSettings& resolved) {
-    const GroundSettings& ground = resolved.settings.ground;
+    const auto& ground = resolved.settings.ground;
     return {.up = parse_up(resolved.settings.camera.up),
-            .height = *ground.height,
-            .radius = double(*ground.radius),
+            .height = ground.height,
+            .radius = double(ground.radius),
             .color = linear_from_srgb(ground.plane_color),
             .roughness = ground.plane_roughness,
             .shadow_catcher = GroundPass::is_shadow_catcher(resolved)};
@@ -27,7 +27,7 @@ RayGround ray_ground(const ResolvedSettings& resolved) {
 void Pipeline::begin(Vec2i size, const ResolvedSettings& resolved) {
     gl::reset_state();
     if (targets_.size() != size) targets_ = GBuffer(size);
-    if (!*resolved.settings.ssao.enabled) targets_.remove_ambient_occlusion();
+    if (!resolved.settings.ssao.enabled) targets_.remove_ambient_occlusion();
     timer_.reset();
     transfers_ = {};
 }
@@ -56,7 +56,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         timer_.run("geometry", [&] { return draw_geometry(frame, opaque, targets_, outputs); });
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
     if (contents.ground) timer_.run("ground", [&] { ground_.draw(seen, targets_); });
-    if (*resolved.settings.ssao.enabled && !contents.traced)
+    if (resolved.settings.ssao.enabled && !contents.traced)
         timer_.run("ambient occlusion", [&] { ambient_occlusion_.draw(seen, targets_, with_overlay); });
     shadow_maps_.begin(seen, casters, bounds, contents.ground || list.has(&DrawItem::receives_shadows));
     if (contents.traced) timer_.run("rays", [&] { update_ray_scene(seen, casters, contents.ground); });

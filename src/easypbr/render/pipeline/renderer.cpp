@@ -191,8 +191,7 @@ void Renderer::draw_exact() {
     // What lies before exact colours is lit and mixed with them in a whole frame.
     if (averaged && has_layers) {
         FrameContents contents = picture.contents;
-        contents.traced = picture.resolved.traces_rays && picture.resolved.settings.rays.enabled.value() &&
-                          !contents.layers;
+        contents.traced = picture.resolved.traces_single_frames && !contents.layers;
         lit = pipeline_.draw(frame, picture.list, picture.list, contents);
         lit.partly_covered |= picture.lit.partly_covered;
     }

@@ -76,7 +76,7 @@ TileLimits TileLimits::of(const gl::ContextInfo& context) {
 }
 
 Guard guard_of(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i picture) {
-    const Settings& settings = resolved.settings;
+    const InferredSettings& settings = resolved.settings;
     const Box3d bounds = scene.bounds();
     const Shot shot{.resolved = &resolved, .size = picture, .picture_size = picture};
     const Frame whole = make_frame(shot, 0, resolved.camera, bounds, true);

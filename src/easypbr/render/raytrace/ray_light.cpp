@@ -125,7 +125,7 @@ Vec3 RayLight::off_surface(const Vec3& at, const Vec3& normal, float reach) cons
 Vec3 RayLight::from_lights(const Vec3& at, const Vec3& normal) const {
     Vec3 sum = Vec3::Zero();
     const auto unit = float(scene_->unit());
-    for (const Light& light : resolved_->lights) {
+    for (const ResolvedLight& light : resolved_->lights) {
         const bool parallel = light.type == LightType::directional;
         const Vec3 towards =
             parallel ? Vec3(-light.direction.normalized())

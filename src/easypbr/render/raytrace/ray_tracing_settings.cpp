@@ -11,23 +11,24 @@ constexpr int least_samples_for_rays = 32;
 
 }  // namespace
 
-void add_fields(Table& table, RaySettings Settings::*effect) {
-    const auto of = [&](auto member) { return at(effect, member); };
-    table.push_back(
-        make("rays.enabled", of(&RaySettings::enabled),
+void add_rays(Table& table) {
+    table.push_back(not_kept(
+        make("rays.enabled", EASYPBR_AT(rays.enabled),
              "Enables ray-traced sky visibility and indirect diffuse and specular light on the CPU, which "
-             "replace ambient occlusion; automatic: on from 32 samples if ssao.enabled."));
+             "replace ambient occlusion; automatic: on from 32 samples if ssao.enabled.")));
     table.push_back(
-        make("rays.count", of(&RaySettings::count),
+        make("rays.count", EASYPBR_AT(rays.count),
              "Diffuse rays per pixel of an image, divided among its samples; each sample traces at least 4.",
              "", {1, 65536}));
 }
 
 void infer(RaySettings& rays, const EffectContext& context) {
     ResolvedSettings& resolved = context.resolved;
-    const bool automatic = context.samples >= least_samples_for_rays && *resolved.settings.ssao.enabled;
     // The environment's light is what rays look for.
-    resolved.traces_rays = !resolved.environment.empty() && rays.enabled.value_or(automatic);
+    const bool can_trace = !resolved.environment.empty();
+    resolved.traces_single_frames = can_trace && rays.enabled.value_or(false);
+    fill(rays.enabled, context.samples >= least_samples_for_rays && *context.settings.ssao.enabled);
+    resolved.traces_rays = can_trace && *rays.enabled;
 }
 
 }  // namespace easypbr::detail

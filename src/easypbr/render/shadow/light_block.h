@@ -31,7 +31,7 @@ inline constexpr size_t lights_per_block = 64;
 
 struct LightBlock {
     /// Those without shadows first, then those with one map, then those with a cube.
-    std::vector<const Light*> lights;
+    std::vector<const ResolvedLight*> lights;
     std::vector<LightShadow> shadows;  ///< of the last of the lights
     size_t cubes = 0;                  ///< how many of the shadows are cubes
     const gl::Texture* maps = nullptr;

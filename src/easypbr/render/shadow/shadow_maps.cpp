@@ -23,9 +23,9 @@ int most_layers(int resolution, bool tinted) {
 }
 
 /// What softens a light's shadows: its radius, or the tangent of a directional light's.
-double extent_of(const Light& light) {
+double extent_of(const ResolvedLight& light) {
     return light.type == LightType::directional ? std::tan(radians(light.angular_radius_deg))
-                                                : double(light.radius.value_or(0));
+                                                : double(light.radius);
 }
 
 }  // namespace
@@ -84,14 +84,15 @@ void ShadowMaps::note_casters(const DrawList& list, const Box3d& bounds) {
     casters_generation_ = next_revision();
 }
 
-ShadowMaps::Request ShadowMaps::request_of(const Light& light, const Frame& frame, const Box3d& bounds) {
+ShadowMaps::Request ShadowMaps::request_of(const ResolvedLight& light, const Frame& frame,
+                                           const Box3d& bounds) {
     const ShadowSettings& settings = frame.resolved->settings.shadows;
     Request request;
     request.light = &light;
     if (!settings.enabled || !light.casts_shadows) return request;
     const double extent = settings.mode == ShadowMode::soft ? extent_of(light) : 0;
     const int samples = extent > 0 ? frame.sample_count : 1;
-    const Light sampled = sampled_light(light, frame.sample_index, samples);
+    const ResolvedLight sampled = sampled_light(light, frame.sample_index, samples);
     const auto projection = project_shadows(sampled, bounds, settings.resolution);
     if (!projection) return request;
     request.shadowed = true;
@@ -123,7 +124,7 @@ void ShadowMaps::begin(const Frame& frame, const DrawList& casters, const Box3d&
     ++frame_;
     requests_.clear();
     next_ = 0;
-    for (const Light& light : frame.resolved->lights) {
+    for (const ResolvedLight& light : frame.resolved->lights) {
         requests_.push_back(request_of(light, frame, bounds));
         requests_.back().shadowed &= received;
     }

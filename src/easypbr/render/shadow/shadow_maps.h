@@ -52,7 +52,7 @@ class ShadowMaps {
         uint64_t last_block = 0;
     };
     struct Request {
-        const Light* light = nullptr;
+        const ResolvedLight* light = nullptr;
         bool shadowed = false;
         LightKey key{};
         ShadowProjection projection;
@@ -86,7 +86,7 @@ class ShadowMaps {
     /// The vertices' bounds and what reaches beyond them.
     Box3d caster_bounds(const DrawList& list, const Box3d& bounds);
     void note_casters(const DrawList& list, const Box3d& bounds);
-    static Request request_of(const Light& light, const Frame& frame, const Box3d& bounds);
+    static Request request_of(const ResolvedLight& light, const Frame& frame, const Box3d& bounds);
     /// Forgets all maps of another size; 0: no maps.
     void set_resolution(int resolution);
     /// The entry of a request, its maps drawn; null when there is no room beside the others of this block.

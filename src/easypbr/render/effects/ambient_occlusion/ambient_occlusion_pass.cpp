@@ -97,19 +97,19 @@ void AmbientOcclusionPass::estimate_normals(const Frame& frame, const GBuffer& t
 }
 
 double AmbientOcclusionPass::reach(const Frame& whole, const Box3d& bounds) {
-    const SsaoSettings& ssao = whole.resolved->settings.ssao;
-    if (!*ssao.enabled || bounds.isEmpty()) return 0;
+    const auto& ssao = whole.resolved->settings.ssao;
+    if (!ssao.enabled || bounds.isEmpty()) return 0;
     const double depth = whole.orthographic() ? 1 : nearest_depth(bounds, whole.camera);
-    return std::ceil(*ssao.radius * whole.clip_from_view(1, 1) * whole.picture_size.y() / 2 / depth);
+    return std::ceil(ssao.radius * whole.clip_from_view(1, 1) * whole.picture_size.y() / 2 / depth);
 }
 
 void AmbientOcclusionPass::run(const Frame& frame, const GBuffer& targets, const Step& step) {
-    const SsaoSettings& ssao = frame.resolved->settings.ssao;
+    const auto& ssao = frame.resolved->settings.ssao;
     const gl::Program& program = step.programs.get(step.defines);
     step.to.bind();
     program.use();
     set_camera_uniforms(program, frame);
-    program.set("u_radius", *ssao.radius);
+    program.set("u_radius", ssao.radius);
     program.set("u_inverse_falloff", 1 / ssao.falloff);
     program.set("u_power", ssao.power);
     program.set("u_directions", ssao.directions);

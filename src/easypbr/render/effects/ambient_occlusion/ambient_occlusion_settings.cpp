@@ -31,34 +31,33 @@ bool has_surfaces(const SceneSnapshot& scene) {
 
 }  // namespace
 
-void add_fields(Table& table, SsaoSettings Settings::*effect) {
-    const auto of = [&](auto member) { return at(effect, member); };
-    table.push_back(make("ssao.enabled", of(&SsaoSettings::enabled),
+void add_ssao(Table& table) {
+    table.push_back(make("ssao.enabled", EASYPBR_AT(ssao.enabled),
                          "Enables screen-space ambient occlusion of image-based lighting; automatic: on if "
                          "the scene has faces or normals."));
-    table.push_back(make("ssao.method", of(&SsaoSettings::method),
+    table.push_back(make("ssao.method", EASYPBR_AT(ssao.method),
                          "Ambient occlusion algorithm: horizon-based (ground-truth ambient occlusion), or "
                          "point samples in the normal-oriented hemisphere."));
-    table.push_back(make("ssao.resolution", of(&SsaoSettings::resolution),
+    table.push_back(make("ssao.resolution", EASYPBR_AT(ssao.resolution),
                          "Resolution of the ambient occlusion buffer: half, full, or adaptive (full from 8 "
                          "samples on, else half)."));
     table.push_back(make(
-        "ssao.radius", of(&SsaoSettings::radius),
+        "ssao.radius", EASYPBR_AT(ssao.radius),
         "Maximum distance of occluders; automatic: 5 % of the diagonal of the bounding box of the content.",
         "world units", {positive, unlimited}));
-    table.push_back(make("ssao.falloff", of(&SsaoSettings::falloff),
+    table.push_back(make("ssao.falloff", EASYPBR_AT(ssao.falloff),
                          "Outer fraction of the radius over which occlusion fades to zero.", "", {0.01, 1}));
-    table.push_back(make("ssao.power", of(&SsaoSettings::power),
+    table.push_back(make("ssao.power", EASYPBR_AT(ssao.power),
                          "Exponent of the visibility; values above 1 darken.", "", {0, 16}));
-    table.push_back(make("ssao.directions", of(&SsaoSettings::directions),
+    table.push_back(make("ssao.directions", EASYPBR_AT(ssao.directions),
                          "Slices (method horizon) or sets of points (hemisphere) per pixel in each sample.",
                          "", {1, 64}));
     table.push_back(
-        make("ssao.steps", of(&SsaoSettings::steps),
+        make("ssao.steps", EASYPBR_AT(ssao.steps),
              "Depth-buffer samples per direction and side; method horizon takes more over long distances.",
              "", {1, 64}));
     table.push_back(make(
-        "ssao.multi_bounce", of(&SsaoSettings::multi_bounce),
+        "ssao.multi_bounce", EASYPBR_AT(ssao.multi_bounce),
         "Approximates multiple bounces between occluded surfaces, which lightens occlusion by the albedo."));
 }
 

@@ -52,13 +52,13 @@ void BloomEffect::make_levels(Vec2i size, int count) {
 }
 
 int BloomEffect::reach(const Frame& whole, const Box3d& /*bounds*/) const {
-    return is_on(whole) ? visible_texels * (glow_texel << (whole.resolved->bloom_levels - 1)) : 0;
+    return is_on(whole) ? visible_texels * (glow_texel << (whole.resolved->settings.bloom.levels - 1)) : 0;
 }
 
 void BloomEffect::draw(const EffectInputs& inputs, LitPicture& lit) {
     const Frame& frame = inputs.frame;
-    make_levels(frame.size, frame.resolved->bloom_levels);
-    const BloomSettings& bloom = frame.resolved->settings.bloom;
+    make_levels(frame.size, frame.resolved->settings.bloom.levels);
+    const auto& bloom = frame.resolved->settings.bloom;
     glow_.light = &levels_.front().glow;
     glow_.parameters = {bloom.intensity, frame.resolved->exposure, bloom.threshold,
                         bloom.knee * bloom.threshold};
@@ -86,7 +86,7 @@ void BloomEffect::gather(const Frame& frame, const gl::Texture& radiance) {
     first.lit.clear_color(0, black);
     const PixelRect area = lit_texels(frame, first.light);
     std::vector<std::string> defines;
-    if (frame.resolved->suppress_fireflies) defines.emplace_back("SUPPRESS_FIREFLIES");
+    if (frame.resolved->settings.bloom.suppress_fireflies) defines.emplace_back("SUPPRESS_FIREFLIES");
     const gl::Program& blocks = blocks_.get(defines);
     summed_.bind();
     blocks.use();

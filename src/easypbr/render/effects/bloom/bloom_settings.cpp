@@ -16,32 +16,32 @@ int automatic_levels(Vec2i size) {
 
 }  // namespace
 
-void add_fields(Table& table, BloomSettings Settings::*effect) {
-    const auto of = [&](auto member) { return at(effect, member); };
-    table.push_back(make("bloom.enabled", of(&BloomSettings::enabled),
+void add_bloom(Table& table) {
+    table.push_back(make("bloom.enabled", EASYPBR_AT(bloom.enabled),
                          "Enables bloom, applied in linear HDR before tone mapping."));
-    table.push_back(make("bloom.intensity", of(&BloomSettings::intensity),
+    table.push_back(make("bloom.intensity", EASYPBR_AT(bloom.intensity),
                          "Fraction of the light above the threshold that is scattered; energy is conserved.",
                          "", {0, 1}));
     table.push_back(
-        make("bloom.threshold", of(&BloomSettings::threshold),
+        make("bloom.threshold", EASYPBR_AT(bloom.threshold),
              "Bloom threshold on the largest of red, green and blue after exposure; 0 scatters all light.",
              "", {0, 1e6}));
-    table.push_back(make("bloom.knee", of(&BloomSettings::knee),
+    table.push_back(make("bloom.knee", EASYPBR_AT(bloom.knee),
                          "Width of the soft knee as a fraction of the threshold.", "", {0, 1}));
-    table.push_back(
-        make("bloom.levels", of(&BloomSettings::levels),
+    table.push_back(not_kept(
+        make("bloom.levels", EASYPBR_AT(bloom.levels),
              "Number of mip levels of the bloom pyramid, which starts at a quarter of the resolution; "
              "automatic: up to 6, the widest texel an eighth of the smaller image side.",
-             "", {1, 8}));
-    table.push_back(make("bloom.suppress_fireflies", of(&BloomSettings::suppress_fireflies),
-                         "Weights bright pixels down in the first bloom level to suppress fireflies, which "
-                         "does not conserve energy; automatic: on if the threshold is above 0."));
+             "", {1, 8})));
+    table.push_back(
+        not_kept(make("bloom.suppress_fireflies", EASYPBR_AT(bloom.suppress_fireflies),
+                      "Weights bright pixels down in the first bloom level to suppress fireflies, which "
+                      "does not conserve energy; automatic: on if the threshold is above 0.")));
 }
 
 void infer(BloomSettings& bloom, const EffectContext& context) {
-    context.resolved.bloom_levels = bloom.levels.value_or(automatic_levels(context.size));
-    context.resolved.suppress_fireflies = bloom.suppress_fireflies.value_or(bloom.threshold > 0);
+    fill(bloom.levels, automatic_levels(context.size));
+    fill(bloom.suppress_fireflies, bloom.threshold > 0);
 }
 
 }  // namespace easypbr::detail

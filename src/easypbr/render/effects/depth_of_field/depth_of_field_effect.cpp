@@ -13,7 +13,7 @@ constexpr double largest_part = 1.0 / 16;
 /// at depth z moves by lens / focus - lens / z where the eye moves across the lens.
 Vec2d confusion_of(const Frame& frame) {
     const double scale = frame.resolved->lens_radius * frame.clip_from_view(1, 1) * frame.size.y() / 2;
-    return {scale / frame.resolved->focus_distance, scale / frame.camera.near};
+    return {scale / frame.resolved->settings.depth_of_field.focus_distance, scale / frame.camera.near};
 }
 
 /// Largest radius of a circle of confusion that a single frame draws, in pixels.

@@ -1,6 +1,7 @@
 #include "easypbr/render/effects/ground/ground_pass.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "easypbr/core/color.h"
 #include "easypbr/render/frame/surface_kind.h"
@@ -18,15 +19,15 @@ struct Plane {
 
 Plane plane_of(const Camera& camera, const ResolvedSettings& resolved) {
     const Vec3d up = parse_up(resolved.settings.camera.up);
-    return {up, *resolved.settings.ground.height - up.dot(camera.position())};
+    return {up, resolved.settings.ground.height - up.dot(camera.position())};
 }
 
 }  // namespace
 
 bool GroundPass::is_on(const ResolvedSettings& resolved) {
-    const GroundSettings& ground = resolved.settings.ground;
+    const auto& ground = resolved.settings.ground;
     // Without content there is no height.
-    return ground.mode != GroundMode::none && ground.height.value() && ground.radius.value();
+    return ground.mode != GroundMode::none && std::isfinite(ground.height) && std::isfinite(ground.radius);
 }
 
 bool GroundPass::is_shadow_catcher(const ResolvedSettings& resolved) {
@@ -49,7 +50,7 @@ void GroundPass::widen_depth(Camera& camera, const ResolvedSettings& resolved, c
 }
 
 void GroundPass::draw(const Frame& frame, const GBuffer& targets) {
-    const GroundSettings& ground = frame.resolved->settings.ground;
+    const auto& ground = frame.resolved->settings.ground;
     const bool shadow_catcher = ground.mode == GroundMode::shadow;
     const Plane plane = plane_of(frame.camera, *frame.resolved);
     const gl::Program& program = surface_.get(camera_defines(frame));
@@ -78,7 +79,7 @@ void GroundPass::begin_light(const Frame& frame, const GBuffer& targets) {
 }
 
 void GroundPass::finish(const Frame& frame, const GBuffer& targets, const Box3d& bounds) {
-    const GroundSettings& ground = frame.resolved->settings.ground;
+    const auto& ground = frame.resolved->settings.ground;
     const bool shadow_catcher = ground.mode == GroundMode::shadow;
     std::vector<std::string> defines = camera_defines(frame);
     if (shadow_catcher) defines.emplace_back("CATCHER");
@@ -99,7 +100,7 @@ void GroundPass::finish(const Frame& frame, const GBuffer& targets, const Box3d&
         Vec3d middle = bounds.center() - frame.camera.position();
         middle += plane.up * (plane.offset - plane.up.dot(middle));
         const Vec3 m = middle.cast<float>();
-        program.set("u_middle", Vec4(m.x(), m.y(), m.z(), *ground.radius));
+        program.set("u_middle", Vec4(m.x(), m.y(), m.z(), ground.radius));
     }
     const gl::Blending multiply{.source = gl::Factor::zero, .target = gl::Factor::source_color};
     gl::draw_screen(targets.covered_state(shadow_catcher ? gl::replace : multiply));

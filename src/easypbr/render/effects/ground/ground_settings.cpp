@@ -1,4 +1,6 @@
 // The rows of the table for the ground plane, and what is inferred.
+#include <limits>
+
 #include "easypbr/scene/effect_settings.h"
 #include "easypbr/scene/field_builder.h"
 
@@ -17,32 +19,36 @@ constexpr double ground_radii = 12;
 
 }  // namespace
 
-void add_fields(Table& table, GroundSettings Settings::*effect) {
-    const auto of = [&](auto member) { return at(effect, member); };
-    table.push_back(make("ground.mode", of(&GroundSettings::mode),
+void add_ground(Table& table) {
+    table.push_back(make("ground.mode", EASYPBR_AT(ground.mode),
                          "Ground plane under the content: none, a shadow catcher (shadow) over any "
                          "background, or a visible surface (plane)."));
     table.push_back(
-        make("ground.height", of(&GroundSettings::height),
+        make("ground.height", EASYPBR_AT(ground.height),
              "Height of the ground along the up axis; automatic: the lowest point of the content.",
              "world units"));
-    table.push_back(make("ground.shadow_strength", of(&GroundSettings::shadow_strength),
+    table.push_back(make("ground.shadow_strength", EASYPBR_AT(ground.shadow_strength),
                          "Opacity factor of the shadow catcher; 1 is physically based.", "", {0, 1}));
-    table.push_back(
-        color("ground.plane_color", of(&GroundSettings::plane_color), "Base colour of the ground in mode plane."));
-    table.push_back(make("ground.plane_roughness", of(&GroundSettings::plane_roughness),
+    table.push_back(color("ground.plane_color", EASYPBR_AT(ground.plane_color),
+                          "Base colour of the ground in mode plane."));
+    table.push_back(make("ground.plane_roughness", EASYPBR_AT(ground.plane_roughness),
                          "Perceptual roughness of the ground in mode plane.", "", {0, 1}));
-    table.push_back(make("ground.radius", of(&GroundSettings::radius),
+    table.push_back(make("ground.radius", EASYPBR_AT(ground.radius),
                          "Distance from the content at which the ground in mode plane has faded into the "
                          "background; automatic: 12 radii of the content.",
                          "world units", {positive, unlimited}));
 }
 
 void infer(GroundSettings& ground, const EffectContext& context) {
-    if (context.content.empty()) return;
-    const Vec3d up = parse_up(context.resolved.settings.camera.up);
-    if (!ground.height.value()) fill(ground.height, context.content.extent_along(up).first);
-    if (!ground.radius.value()) fill(ground.radius, float(ground_radii * context.content.radius()));
+    const Content& content = context.content;
+    if (ground.height.value() && ground.radius.value()) return;
+    // Below no content there is no ground, at a finite distance.
+    constexpr float nowhere = std::numeric_limits<float>::infinity();
+    const Vec3d up = parse_up(context.settings.camera.up);
+    if (!ground.height.value())
+        fill(ground.height, content.empty() ? nowhere : content.extent_along(up).first);
+    if (!ground.radius.value())
+        fill(ground.radius, content.empty() ? nowhere : float(ground_radii * content.radius()));
 }
 
 }  // namespace easypbr::detail

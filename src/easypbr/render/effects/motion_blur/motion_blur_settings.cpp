@@ -4,12 +4,11 @@
 
 namespace easypbr::detail {
 
-void add_fields(Table& table, MotionBlurSettings Settings::*effect) {
-    const auto of = [&](auto member) { return at(effect, member); };
-    table.push_back(make("motion_blur.enabled", of(&MotionBlurSettings::enabled),
+void add_motion_blur(Table& table) {
+    table.push_back(make("motion_blur.enabled", EASYPBR_AT(motion_blur.enabled),
                          "Enables motion blur of accumulated images, from the poses of camera and objects in "
                          "the previous image."));
-    table.push_back(make("motion_blur.shutter", of(&MotionBlurSettings::shutter),
+    table.push_back(make("motion_blur.shutter", EASYPBR_AT(motion_blur.shutter),
                          "Fraction of the time since the previous image that the shutter is open; it closes "
                          "at the time of this image.",
                          "", {0, 1}));

@@ -9,7 +9,7 @@ namespace easypbr::render {
 namespace {
 
 /// Pixels around an edge that its line touches.
-int line_reach(const OutlineSettings& outline) {
+int line_reach(const BasicOutlineSettings<Inferred>& outline) {
     return int(std::ceil(outline.width / 2 + 0.5f));
 }
 
@@ -29,7 +29,7 @@ int OutlineEffect::reach(const Frame& whole, const Box3d& /*bounds*/) const {
 
 void OutlineEffect::draw(const EffectInputs& inputs, LitPicture& lit) {
     const Frame& frame = inputs.frame;
-    const OutlineSettings& outline = frame.resolved->settings.outline;
+    const auto& outline = frame.resolved->settings.outline;
     if (!edges_ || Vec2i(edges_.width(), edges_.height()) != frame.size) {
         edges_ = gl::Texture(gl::Format::rg8, frame.size.x(), frame.size.y());
         found_ = gl::Framebuffer({&edges_});
@@ -53,7 +53,7 @@ void OutlineEffect::draw(const EffectInputs& inputs, LitPicture& lit) {
 
 void OutlineEffect::find_edges(const EffectInputs& inputs) {
     const Frame& frame = inputs.frame;
-    const OutlineSettings& outline = frame.resolved->settings.outline;
+    const auto& outline = frame.resolved->settings.outline;
     std::vector<std::string> defines = camera_defines(frame);
     if (outline.silhouettes) defines.emplace_back("SILHOUETTES");
     if (outline.creases) defines.emplace_back("CREASES");
@@ -77,7 +77,7 @@ void OutlineEffect::find_edges(const EffectInputs& inputs) {
     }
     program.set("u_depth", Vec3(float(frame.camera.near), float(frame.camera.far), 0));
     program.set("u_size", Vec2(frame.size.cast<float>()));
-    program.set("u_depth_step", *outline.depth_step);
+    program.set("u_depth_step", outline.depth_step);
     program.set("u_least_cosine", float(std::cos(radians(outline.crease_angle_deg))));
     // An edge lies between a pixel and the one after it: the first row before the content has some too.
     gl::draw_screen(screen_state(grown(frame.covered, 1, frame.size)));

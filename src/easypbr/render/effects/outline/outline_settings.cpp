@@ -12,24 +12,22 @@ constexpr double depth_part = 0.01;
 
 }  // namespace
 
-void add_fields(Table& table, OutlineSettings Settings::*effect) {
-    const auto of = [&](auto member) { return at(effect, member); };
-    table.push_back(make("outline.enabled", of(&OutlineSettings::enabled),
+void add_outline(Table& table) {
+    table.push_back(make("outline.enabled", EASYPBR_AT(outline.enabled),
                          "Enables outlines: unlit lines along the edges of opaque surfaces in the image, "
                          "drawn after tone mapping."));
     table.push_back(
-        make("outline.width", of(&OutlineSettings::width), "Width of outlines.", "pixels", {0.5, 16}));
-    table.push_back(color("outline.color", of(&OutlineSettings::color), "Color of outlines."));
-    table.push_back(make("outline.silhouettes", of(&OutlineSettings::silhouettes),
+        make("outline.width", EASYPBR_AT(outline.width), "Width of outlines.", "pixels", {0.5, 16}));
+    table.push_back(color("outline.color", EASYPBR_AT(outline.color), "Color of outlines."));
+    table.push_back(make("outline.silhouettes", EASYPBR_AT(outline.silhouettes),
                          "Draws outlines at depth discontinuities."));
-    table.push_back(make("outline.creases", of(&OutlineSettings::creases),
+    table.push_back(make("outline.creases", EASYPBR_AT(outline.creases),
                          "Draws outlines where the normals of neighbouring pixels differ by more than "
                          "outline.crease_angle_deg."));
-    table.push_back(
-        make("outline.objects", of(&OutlineSettings::objects), "Draws outlines between objects."));
-    table.push_back(make("outline.crease_angle_deg", of(&OutlineSettings::crease_angle_deg),
+    table.push_back(make("outline.objects", EASYPBR_AT(outline.objects), "Draws outlines between objects."));
+    table.push_back(make("outline.crease_angle_deg", EASYPBR_AT(outline.crease_angle_deg),
                          "Least angle between the normals of a crease.", "degrees", {1, 180}));
-    table.push_back(make("outline.depth_step", of(&OutlineSettings::depth_step),
+    table.push_back(make("outline.depth_step", EASYPBR_AT(outline.depth_step),
                          "Least depth discontinuity of a silhouette; automatic: 1 % of the diagonal of the "
                          "bounding box of the content.",
                          "world units", {positive, unlimited}));
