@@ -17,9 +17,10 @@
 #include "easypbr/app/recorder.h"
 #include "easypbr/core/image.h"
 #include "easypbr/scene/scene.h"
-#include "easypbr/scene/settings.h"
 
 namespace easypbr {
+
+struct Settings;
 
 namespace app {
 class Session;

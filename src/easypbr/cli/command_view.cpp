@@ -13,6 +13,7 @@
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/settings.h"
 #include "easypbr/viewer/viewer.h"
 
 namespace easypbr::cli {

@@ -8,6 +8,7 @@
 #include "easypbr/app/view_point.h"
 #include "easypbr/core/error.h"
 #include "easypbr/gui/panels.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::gui {
 namespace {

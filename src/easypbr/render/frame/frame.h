@@ -9,7 +9,11 @@
 #include "easypbr/gl/texture.h"
 #include "easypbr/render/frame/extensions.h"
 #include "easypbr/scene/motion.h"
-#include "easypbr/scene/resolve.h"
+#include "easypbr/scene/scene.h"
+
+namespace easypbr {
+struct ResolvedSettings;
+}
 
 namespace easypbr::render {
 

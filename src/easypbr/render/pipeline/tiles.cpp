@@ -9,6 +9,7 @@
 #include "easypbr/render/effects/effect.h"
 #include "easypbr/render/effects/ground/ground_pass.h"
 #include "easypbr/scene/draw_style.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {

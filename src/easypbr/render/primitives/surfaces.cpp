@@ -4,6 +4,7 @@
 #include <span>
 
 #include "easypbr/gl/context.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 

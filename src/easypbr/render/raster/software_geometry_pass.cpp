@@ -7,6 +7,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/gpu/facing.h"
 #include "easypbr/scene/normals.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "easypbr/core/hash.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {

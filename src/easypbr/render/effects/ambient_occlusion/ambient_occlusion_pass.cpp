@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "easypbr/scene/resolve.h"
+
 namespace easypbr::render {
 namespace {
 
