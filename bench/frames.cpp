@@ -15,6 +15,7 @@
 #include "easypbr/app/session.h"
 #include "easypbr/core/image.h"
 #include "easypbr/easypbr.h"
+#include "easypbr/scene/settings.h"
 
 namespace {
 

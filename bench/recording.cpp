@@ -11,6 +11,7 @@
 
 #include "easypbr/app/session.h"
 #include "easypbr/easypbr.h"
+#include "easypbr/scene/settings.h"
 
 namespace {
 

@@ -9,6 +9,7 @@
 #include "easypbr/app/font.h"
 #include "easypbr/core/log.h"
 #include "easypbr/scene/label_colors.h"
+#include "easypbr/scene/settings.h"
 
 using namespace easypbr;
 using namespace easypbr::app;

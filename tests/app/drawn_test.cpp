@@ -6,6 +6,7 @@
 #include "easypbr/app/session.h"
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
 namespace {

@@ -6,6 +6,7 @@
 #include "easypbr/app/session.h"
 #include "easypbr/core/image.h"
 #include "easypbr/geometry/primitives.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr {
 namespace {

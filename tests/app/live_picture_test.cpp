@@ -3,6 +3,7 @@
 
 #include "easypbr/app/session.h"
 #include "easypbr/geometry/primitives.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "easypbr/app/custom_pass.h"
 #include "easypbr/core/error.h"
+#include "easypbr/scene/settings.h"
 #include "render/render_test.h"
 
 namespace easypbr::app {

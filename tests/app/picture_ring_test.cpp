@@ -8,6 +8,7 @@
 
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/label_map.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
 namespace {

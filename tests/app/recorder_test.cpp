@@ -13,6 +13,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/video/video.h"
+#include "easypbr/scene/settings.h"
 #include "io/temporary_folder.h"
 
 namespace easypbr::app {

@@ -13,6 +13,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/settings/settings_io.h"
+#include "easypbr/scene/resolve.h"
 #include "easypbr/scene/setting_files.h"
 
 namespace easypbr::app {

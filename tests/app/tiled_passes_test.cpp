@@ -4,6 +4,7 @@
 #include "easypbr/app/custom_pass.h"
 #include "easypbr/app/session.h"
 #include "easypbr/geometry/primitives.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
 namespace {

@@ -15,6 +15,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/geometry/surfels.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
 namespace {

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "easypbr/dataset/ground_truth.h"
+#include "easypbr/scene/settings.h"
 #include "render/render_test.h"
 
 namespace easypbr::dataset {

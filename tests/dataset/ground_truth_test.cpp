@@ -5,6 +5,7 @@
 #include <random>
 
 #include "easypbr/geometry/primitives.h"
+#include "easypbr/scene/settings.h"
 #include "render/render_test.h"
 
 namespace easypbr::dataset {

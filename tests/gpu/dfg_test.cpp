@@ -1,4 +1,5 @@
 #include "easypbr/gpu/dfg.h"
+#include "easypbr/scene/settings.h"
 
 #include <gtest/gtest.h>
 

@@ -8,6 +8,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/gui/live_view.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::gui {
 namespace {

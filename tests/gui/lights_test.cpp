@@ -5,6 +5,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/gui/live_view.h"
 #include "easypbr/scene/light_table.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::gui {
 namespace {

@@ -7,6 +7,7 @@
 #include "easypbr/app/channels.h"
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::gui {
 namespace {
@@ -304,15 +305,15 @@ TEST(History, ForgetsWhatWasUndoneWhenSomethingNewIsDone) {
     history.note(settings);
     settings.image.samples = 3;
     history.note(settings);
-    EXPECT_EQ(history.undo().settings.image.samples, 2);
-    EXPECT_EQ(history.undo().settings.image.samples, Settings().image.samples);
+    EXPECT_EQ(history.undo().settings->image.samples, 2);
+    EXPECT_EQ(history.undo().settings->image.samples, Settings().image.samples);
     EXPECT_FALSE(history.can_undo());
     EXPECT_THROW(history.undo(), ArgumentError);
-    EXPECT_EQ(history.redo().settings.image.samples, 2);
+    EXPECT_EQ(history.redo().settings->image.samples, 2);
     settings.image.samples = 9;
     history.note(settings);
     EXPECT_FALSE(history.can_redo());
-    EXPECT_EQ(history.undo().settings.image.samples, 2);
+    EXPECT_EQ(history.undo().settings->image.samples, 2);
 }
 
 TEST(Slices, CutThePictureIntoSlantedParts) {

@@ -12,6 +12,7 @@
 #include "easypbr/gui/live_view.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/settings/camera_path_io.h"
+#include "easypbr/scene/settings.h"
 #include "scene/slide.h"
 
 namespace easypbr::gui {

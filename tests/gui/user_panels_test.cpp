@@ -9,6 +9,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/gui/live_view.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::gui {
 namespace {

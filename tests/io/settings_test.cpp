@@ -6,6 +6,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/io/settings/settings_io.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/settings.h"
 #include "io/temporary_folder.h"
 
 using namespace easypbr;

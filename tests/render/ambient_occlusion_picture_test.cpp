@@ -1,6 +1,7 @@
 // What ambient occlusion does to pictures: borders, sizes, noise, light, clouds.
 #include "easypbr/core/error.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/resolve.h"
 #include "occlusion_test.h"
 
 namespace easypbr {

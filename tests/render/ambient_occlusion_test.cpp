@@ -2,6 +2,8 @@
 #include "occlusion_test.h"
 #include "test_data.h"
 
+#include "easypbr/scene/resolve.h"
+
 namespace easypbr {
 namespace {
 

@@ -6,6 +6,7 @@
 
 #include "easypbr/render/effects/bloom/bloom_effect.h"
 #include "easypbr/render/output/output_pass.h"
+#include "easypbr/scene/resolve.h"
 #include "render_test.h"
 
 namespace easypbr {

@@ -5,6 +5,7 @@
 
 #include "easypbr/core/log.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/scene/settings.h"
 #include "render_test.h"
 
 namespace easypbr {

@@ -4,6 +4,7 @@
 
 #include "easypbr/core/color.h"
 #include "easypbr/scene/element_colors.h"
+#include "easypbr/scene/settings.h"
 #include "render_test.h"
 
 namespace easypbr::render {

@@ -6,6 +6,7 @@
 #include "easypbr/core/color.h"
 #include "easypbr/core/log.h"
 #include "easypbr/scene/material_table.h"
+#include "easypbr/scene/settings.h"
 #include "extension_sphere.h"
 #include "lobe_reference.h"
 

@@ -8,6 +8,8 @@
 
 #include "render_test.h"
 
+#include "easypbr/scene/settings.h"
+
 namespace easypbr::sphere {
 
 inline constexpr int size = 96;

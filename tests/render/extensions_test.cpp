@@ -6,6 +6,8 @@
 #include "extension_sphere.h"
 #include "lobe_reference.h"
 
+#include "easypbr/scene/settings.h"
+
 namespace easypbr {
 namespace {
 

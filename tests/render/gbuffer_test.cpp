@@ -2,6 +2,7 @@
 
 #include "easypbr/core/image.h"
 #include "easypbr/render/frame/frame.h"
+#include "easypbr/scene/settings.h"
 #include "render_test.h"
 
 namespace easypbr {

@@ -1,6 +1,8 @@
 // The ground under the content: what it shows is known on paper.
 #include "shadow_test.h"
 
+#include "easypbr/scene/resolve.h"
+
 namespace easypbr {
 namespace {
 

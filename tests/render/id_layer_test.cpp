@@ -2,6 +2,8 @@
 
 #include "render_test.h"
 
+#include "easypbr/scene/settings.h"
+
 namespace easypbr {
 namespace {
 

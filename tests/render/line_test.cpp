@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include "easypbr/gpu/line_segments.h"
+#include "easypbr/scene/settings.h"
 #include "render_test.h"
 
 namespace easypbr::render {

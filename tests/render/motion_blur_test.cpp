@@ -3,6 +3,7 @@
 #include <cstring>
 
 #include "easypbr/scene/motion.h"
+#include "easypbr/scene/settings.h"
 #include "render_test.h"
 
 namespace easypbr {

@@ -4,6 +4,7 @@
 #include "easypbr/gl/context.h"
 #include "easypbr/render/pipeline/renderer.h"
 #include "easypbr/render/raster/visibility.h"
+#include "easypbr/scene/resolve.h"
 #include "render_test.h"
 
 namespace easypbr::render {

@@ -7,6 +7,8 @@
 #include "ray_caster.h"
 #include "render_test.h"
 
+#include "easypbr/scene/settings.h"
+
 namespace easypbr {
 
 inline constexpr float far_beyond_the_scene = 1e4f;

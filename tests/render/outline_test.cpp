@@ -1,6 +1,8 @@
 // Outlines, where the edges and the lines around them are known on paper.
 #include "render_test.h"
 
+#include "easypbr/scene/settings.h"
+
 namespace easypbr {
 namespace {
 

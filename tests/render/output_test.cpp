@@ -2,6 +2,7 @@
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/image.h"
+#include "easypbr/scene/settings.h"
 #include "render_test.h"
 
 namespace easypbr {

@@ -6,6 +6,7 @@
 
 #include "easypbr/gl/context.h"
 #include "easypbr/render/pipeline/renderer.h"
+#include "easypbr/scene/settings.h"
 #include "easypbr/scene/spacing.h"
 #include "render_test.h"
 

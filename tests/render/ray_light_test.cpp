@@ -3,6 +3,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/settings.h"
 #include "shadow_test.h"
 
 namespace easypbr {

@@ -5,6 +5,7 @@
 
 #include "easypbr/app/session.h"
 #include "easypbr/geometry/primitives.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr {
 

@@ -1,5 +1,6 @@
 // Which maps are drawn when, what casts, and any number of lights.
 #include "easypbr/core/error.h"
+#include "easypbr/scene/settings.h"
 #include "shadow_test.h"
 
 namespace easypbr {

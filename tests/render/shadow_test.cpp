@@ -5,6 +5,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/render/frame/shadow_view.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr {
 namespace {

@@ -5,6 +5,8 @@
 
 #include "render_test.h"
 
+#include "easypbr/scene/settings.h"
+
 namespace easypbr {
 
 inline Material matt() {

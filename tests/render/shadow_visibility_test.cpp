@@ -2,6 +2,7 @@
 #include <cstdlib>
 
 #include "easypbr/core/parallel.h"
+#include "easypbr/scene/settings.h"
 #include "ray_caster.h"
 #include "shadow_test.h"
 

@@ -3,6 +3,8 @@
 
 #include "shadow_test.h"
 
+#include "easypbr/scene/settings.h"
+
 namespace easypbr {
 namespace {
 

@@ -7,6 +7,8 @@
 
 #include "render_test.h"
 
+#include "easypbr/scene/settings.h"
+
 namespace easypbr::render {
 namespace {
 

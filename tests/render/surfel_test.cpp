@@ -5,6 +5,7 @@
 #include <random>
 
 #include "easypbr/core/color.h"
+#include "easypbr/scene/settings.h"
 #include "render_test.h"
 
 namespace easypbr::render {

@@ -2,6 +2,8 @@
 // crossed.
 #include "shadow_test.h"
 
+#include "easypbr/scene/settings.h"
+
 namespace easypbr {
 namespace {
 

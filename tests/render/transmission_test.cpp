@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "easypbr/core/color.h"
+#include "easypbr/scene/settings.h"
 #include "lobe_reference.h"
 #include "render_test.h"
 

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "easypbr/core/color.h"
+#include "easypbr/scene/settings.h"
 #include "render_test.h"
 
 namespace easypbr {

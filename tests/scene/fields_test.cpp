@@ -10,6 +10,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/resolve.h"
+#include "easypbr/scene/settings.h"
 
 using namespace easypbr;
 

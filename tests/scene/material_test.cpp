@@ -8,6 +8,7 @@
 #include "easypbr/scene/fields.h"
 #include "easypbr/scene/material_table.h"
 #include "easypbr/scene/mesh.h"
+#include "easypbr/scene/settings.h"
 
 using namespace easypbr;
 

@@ -316,4 +316,8 @@ TEST(Resolve, NeedsContentOnlyToPlaceTheCamera) {
     const ResolvedSettings resolved = resolve(SceneSnapshot{}, settings, size);
     EXPECT_EQ(resolved.settings.camera.target, Vec3d(0, 0, 0));
     EXPECT_TRUE(std::isfinite(resolved.exposure));
+    // Content that is shown later gets a ground below it.
+    EXPECT_FALSE(std::isfinite(resolved.settings.ground.height));
+    latch(settings, resolved.settings);
+    EXPECT_FALSE(settings.ground.height.value());
 }

@@ -9,7 +9,10 @@
 #include "easypbr/core/math.h"
 #include "easypbr/core/picture.h"
 #include "easypbr/scene/camera.h"
-#include "easypbr/scene/settings.h"
+
+namespace easypbr {
+struct InferredSettings;
+}
 
 namespace easypbr::app {
 

@@ -9,9 +9,11 @@
 #include <variant>
 #include <vector>
 
-#include "easypbr/scene/settings.h"
-
 namespace easypbr {
+
+struct Settings;
+struct InferredSettings;
+struct Style;
 
 /// A setting's value in transit. Enumerations are strings, colours and vectors lists of numbers.
 struct Value {

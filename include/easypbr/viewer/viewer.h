@@ -17,11 +17,11 @@
 #include "easypbr/app/recorder.h"
 #include "easypbr/core/image.h"
 #include "easypbr/scene/scene.h"
-#include "easypbr/scene/settings.h"
 
 namespace easypbr {
 
 class Animations;
+struct Settings;
 
 namespace app {
 class Session;

@@ -6,6 +6,7 @@
 
 #include "easypbr/app/annotation.h"
 #include "easypbr/app/font.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
 namespace {

@@ -7,6 +7,7 @@
 #include "easypbr/app/pass_adapter.h"
 #include "easypbr/core/hash.h"
 #include "easypbr/gl/watched_program.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
 namespace {

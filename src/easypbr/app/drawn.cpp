@@ -8,7 +8,7 @@ namespace easypbr::app {
 
 Image PictureFinish::apply(Image drawn) const {
     Image picture = lens->is_identity() ? std::move(drawn) : warp(drawn, *lens);
-    draw_annotation(annotation, annotation_settings, picture);
+    if (annotate) annotate(picture);
     return picture;
 }
 

@@ -6,7 +6,6 @@
 #include <memory>
 #include <vector>
 
-#include "easypbr/app/annotation.h"
 #include "easypbr/app/lens.h"
 #include "easypbr/core/image.h"
 #include "easypbr/gl/context.h"
@@ -25,8 +24,7 @@ struct Device {
 /// What becomes of a picture's pixels once they are read: the lens, then the annotation.
 struct PictureFinish {
     std::shared_ptr<const LensMap> lens = std::make_shared<const LensMap>();
-    Annotation annotation;
-    BasicAnnotationSettings<Inferred> annotation_settings;
+    std::function<void(Image&)> annotate;  ///< empty: there is no annotation
 
     Image apply(Image drawn) const;
 };
@@ -68,10 +66,10 @@ class Drawn {
     /// From the pixels of the picture to those that were drawn.
     const LensMap& lens() const { return *finish_.lens; }
     const std::shared_ptr<const LensMap>& shared_lens() const { return finish_.lens; }
-    /// Legends and colour bars, which picture() draws.
-    const Annotation& annotation() const { return finish_.annotation; }
+    /// Whether picture() draws legends or colour bars.
+    bool is_annotated() const { return bool(finish_.annotate); }
     /// Pixels are those of texture(): nothing becomes of them when they are read.
-    bool is_plain() const { return lens().is_identity() && annotation().empty() && !tiled_; }
+    bool is_plain() const { return lens().is_identity() && !is_annotated() && !tiled_; }
 
     /// RGBA, row 0 on top.
     Image picture() const;

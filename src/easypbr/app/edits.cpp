@@ -109,7 +109,7 @@ void Edits::note() {
 }
 
 void Edits::restore(const History::Step& step) {
-    session_.replace_settings(step.settings);
+    session_.replace_settings(*step.settings);
     for (const auto& [name, object] : step.objects) {
         std::optional<Mesh> node = node_named(session_.scene(), name);
         if (!node) continue;

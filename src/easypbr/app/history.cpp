@@ -6,6 +6,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/hash.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
 
@@ -18,9 +19,9 @@ bool same_choices(const Settings& a, const Settings& b) {
 
 void History::note(const Settings& settings, const ObjectStates& changed, const LightStates& lights) {
     if (!states_.empty() && changed.empty() && lights.empty() &&
-        same_choices(states_[present_].settings, settings))
+        same_choices(*states_[present_].settings, settings))
         return;
-    Step state{settings, {}, {}};
+    Step state{std::make_shared<const Settings>(settings), {}, {}};
     if (!states_.empty()) {
         state.objects = states_[present_].objects;
         state.lights = states_[present_].lights;

@@ -3,13 +3,18 @@
 
 #include <functional>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "easypbr/scene/light.h"
 #include "easypbr/scene/mesh_data.h"
-#include "easypbr/scene/settings.h"
+#include "easypbr/scene/style.h"
+
+namespace easypbr {
+struct Settings;
+}
 
 namespace easypbr::app {
 
@@ -48,7 +53,7 @@ class History {
 
     /// What has to be restored.
     struct Step {
-        Settings settings;
+        std::shared_ptr<const Settings> settings;
         ObjectStates objects;  ///< what is another way than now
         LightStates lights;    ///< the same
     };

@@ -3,10 +3,11 @@
 #include <algorithm>
 
 #include "easypbr/app/channels.h"
-#include "easypbr/core/stopwatch.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/stopwatch.h"
 #include "easypbr/gl/context.h"
 #include "easypbr/gl/draw.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
 namespace {
@@ -108,7 +109,7 @@ void LivePicture::draw_quickly(const LiveShot& shot, bool adapt) {
     statistics_.total = layer ? 0 : session_.settings().image.samples;
     statistics_.frames = layer ? 0 : 1;
     frames_ = statistics_.total == 1 ? 1 : 0;
-    resolved_ = session_.resolve(shot.size);
+    resolved_ = std::make_shared<const ResolvedSettings>(session_.resolve(shot.size));
     const bool blurs = session_.settings().motion_blur.enabled && shot.motion;
     motion_ = blurs ? shot.motion(resolved_->camera) : nullptr;
     hovered_.reset();

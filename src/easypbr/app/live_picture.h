@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -67,7 +68,7 @@ class LivePicture {
 
     const LiveStatistics& statistics() const { return statistics_; }
     /// Of the last frame; none before.
-    const std::optional<ResolvedSettings>& resolved() const { return resolved_; }
+    const ResolvedSettings* resolved() const { return resolved_.get(); }
 
     /// Where the pointer is; `seen`: nothing lies over the picture there.
     void point_at(Vec2d pixel, bool seen);
@@ -106,7 +107,7 @@ class LivePicture {
     int frames_ = 0;                 ///< refined so far
     double reduction_ = 1;           ///< of the resolution while something moves
     LiveStatistics statistics_;
-    std::optional<ResolvedSettings> resolved_;
+    std::shared_ptr<const ResolvedSettings> resolved_;
 
     struct Surfaces {
         PickBuffer buffer;

@@ -5,6 +5,7 @@
 #include "easypbr/app/output.h"
 #include "easypbr/core/error.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
 namespace {
@@ -69,7 +70,7 @@ void LiveRecording::start_path(const RecordingForm& form, Vec2i window, const Ca
     running_->path = path;
     running_->times = std::move(times);
     running_->like = like;
-    running_->camera_before = session_.settings().camera;
+    running_->settings_before = std::make_shared<const Settings>(session_.settings());
     session_.begin_motion(camera_before());
 }
 
@@ -123,7 +124,7 @@ void LiveRecording::advance(const Screen& finished, const Screen& shown) {
 }
 
 void LiveRecording::end() {
-    if (running_ && running_->camera_before) session_.settings().camera = *running_->camera_before;
+    if (running_ && running_->settings_before) session_.settings().camera = running_->settings_before->camera;
     running_.reset();
     frame_ = {};
 }

@@ -4,12 +4,16 @@
 
 #include <chrono>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "easypbr/app/recorder.h"
-#include "easypbr/scene/settings.h"
+
+namespace easypbr {
+struct Settings;
+}
 
 namespace easypbr::app {
 
@@ -61,7 +65,7 @@ class LiveRecording {
         std::optional<CameraPath> path;
         std::vector<double> times;
         Camera like;
-        std::optional<CameraSettings> camera_before;
+        std::shared_ptr<const Settings> settings_before;  ///< of a recording that moves the camera
         int frames = 0;
         Steady::time_point begun = Steady::now();
     };

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "easypbr/scene/resolve.h"
+
 namespace easypbr::app {
 
 std::optional<Vec2d> Navigation::handle(const InputEvent& event, Vec2i size) {

@@ -11,6 +11,7 @@
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/settings/settings_io.h"
 #include "easypbr/scene/setting_files.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
 

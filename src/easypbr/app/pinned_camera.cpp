@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "easypbr/scene/settings.h"
+
 namespace easypbr::app {
 namespace {
 

@@ -4,6 +4,7 @@
 
 #include "easypbr/scene/fields.h"
 #include "easypbr/scene/material_table.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
 namespace {

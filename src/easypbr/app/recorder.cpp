@@ -11,6 +11,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
 namespace {

@@ -11,6 +11,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/video/video.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
 namespace {

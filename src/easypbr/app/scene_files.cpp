@@ -8,6 +8,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
 namespace {

@@ -6,6 +6,7 @@
 
 #include "easypbr/core/log.h"
 #include "easypbr/scene/draw_style.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
 namespace {

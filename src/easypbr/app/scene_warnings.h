@@ -3,8 +3,12 @@
 
 #include <string>
 
-#include "easypbr/scene/resolve.h"
 #include "easypbr/scene/scene.h"
+
+namespace easypbr {
+struct ResolvedSettings;
+struct Settings;
+}  // namespace easypbr
 
 namespace easypbr::app {
 

@@ -5,8 +5,12 @@
 #include <algorithm>
 #include <utility>
 
+#include "easypbr/app/annotation.h"
+#include "easypbr/app/pinned_camera.h"
+#include "easypbr/app/prepared.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/stopwatch.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
 namespace {
@@ -22,6 +26,18 @@ void check_size(Vec2i size) {
 }
 
 }  // namespace
+
+struct Session::Refined {
+    Prepared prepared;
+    Drawn frames_drawn;  ///< of all frames, when they are finished
+    Drawn drawn;         ///< finished last
+    int frames = 0;
+};
+
+Session::Session(Scene scene) : scene_(std::move(scene)), settings_(std::make_unique<Settings>()) {}
+Session::~Session() = default;
+Session::Session(Session&&) noexcept = default;
+Session& Session::operator=(Session&&) noexcept = default;
 
 const gl::ContextInfo& Session::context_info() {
     if (!device_->context) device_->context = gl::Context::create();
@@ -45,18 +61,18 @@ gl::Context& Session::context() {
 }
 
 SceneSnapshot Session::snapshot() {
-    files_.load(settings_);
+    files_.load(*settings_);
     SceneSnapshot scene = scene_.snapshot();
-    files_.load_shaders(settings_, scene);
+    files_.load_shaders(*settings_, scene);
     if (!files_.environment().empty()) scene.environment = files_.environment();
     const std::string hash = scene.environment.empty() ? "" : scene.environment.hash();
     if (environment_hash_ && hash != *environment_hash_) {
         // Which lights are on and how the picture is exposed follows from the environment: they are inferred
         // anew.
-        for (StudioLight* light : {&settings_.lights.key, &settings_.lights.fill, &settings_.lights.rim})
+        for (StudioLight* light : {&settings_->lights.key, &settings_->lights.fill, &settings_->lights.rim})
             light->enabled.release();
-        settings_.environment.sun.release();
-        settings_.tonemap.exposure.release();
+        settings_->environment.sun.release();
+        settings_->tonemap.exposure.release();
     }
     environment_hash_ = hash;
     return scene;
@@ -64,14 +80,14 @@ SceneSnapshot Session::snapshot() {
 
 ResolvedSettings Session::resolve(std::optional<Vec2i> size) {
     check_size(size_or(size));
-    return easypbr::resolve(snapshot(), settings_, size_or(size));
+    return easypbr::resolve(snapshot(), *settings_, size_or(size));
 }
 
 Prepared Session::prepare(const PictureOptions& options) {
     timing_ = {};
     Prepared prepared;
     prepared.options.size = size_or(options.size);
-    prepared.options.samples = options.samples.value_or(settings_.image.samples);
+    prepared.options.samples = options.samples.value_or(settings_->image.samples);
     prepared.options.encoding = options.encoding;
     check_size(prepared.options.size);
     {
@@ -81,8 +97,8 @@ Prepared Session::prepare(const PictureOptions& options) {
     }
     const Stopwatch watch(timing_.draw);
     prepared.resolved =
-        easypbr::resolve(prepared.scene, settings_, prepared.options.size, prepared.options.samples);
-    warnings_.check(prepared.scene, settings_, prepared.resolved);
+        easypbr::resolve(prepared.scene, *settings_, prepared.options.size, prepared.options.samples);
+    warnings_.check(prepared.scene, *settings_, prepared.resolved);
     for (const render::CustomPass& custom : passes_)
         prepared.passes.emplace_back(custom.pass.get(), custom.pass->revision());
     return prepared;
@@ -112,14 +128,18 @@ Drawn Session::begin(Prepared& prepared, bool picture, bool surfaces) {
 }
 
 void Session::annotate(Drawn& drawn, const Prepared& prepared) {
-    drawn.finish_.annotation = annotation_of(prepared.scene, prepared.resolved.settings);
-    drawn.finish_.annotation_settings = prepared.resolved.settings.annotation;
+    Annotation annotation = annotation_of(prepared.scene, prepared.resolved.settings);
+    if (annotation.empty()) return;
+    drawn.finish_.annotate = [annotation = std::move(annotation),
+                              settings = prepared.resolved.settings.annotation](Image& picture) {
+        draw_annotation(annotation, settings, picture);
+    };
 }
 
 Drawn Session::draw(const PictureOptions& options) {
     Prepared prepared = prepare(options);
     const std::shared_ptr<const Motion> before = motion_.before(prepared.resolved.camera);
-    if (settings_.motion_blur.enabled) prepared.options.motion = before;
+    if (settings_->motion_blur.enabled) prepared.options.motion = before;
     refined_.reset();
     Drawn drawn = begin(prepared, true, false);
     const gl::ContextScope scope(*device_->context);
@@ -149,7 +169,7 @@ Image Session::render(const PictureOptions& options) {
 
 Session::Refinement Session::refine(const PictureOptions& options, bool finish, const RefinedMotion& motion) {
     Prepared prepared = prepare(options);
-    if (settings_.motion_blur.enabled) prepared.options.motion = motion;
+    if (settings_->motion_blur.enabled) prepared.options.motion = motion;
     Refinement done;
     done.total = prepared.options.samples;
     done.began = !refined_ || !same_picture(refined_->prepared, prepared);
@@ -257,7 +277,7 @@ Drawn Session::draw_surfaces(const PictureOptions& options, bool picture, const 
 
 Moment Session::moment(std::optional<Vec2i> size) {
     Moment moment{snapshot(), {}};
-    moment.camera = easypbr::resolve(moment.scene, settings_, size_or(size)).camera;
+    moment.camera = easypbr::resolve(moment.scene, *settings_, size_or(size)).camera;
     return moment;
 }
 
@@ -269,24 +289,45 @@ double Session::focus_at(int x, int y, std::optional<Vec2i> size) {
     const double depth = render_layers({"depth"}, pixels).at("depth").at<float>(x, y)[0];
     if (!(depth > 0))
         throw ArgumentError(fmt::format("focus: pixel ({}, {}) shows nothing to focus on", x, y));
-    settings_.depth_of_field.focus_distance = depth;
+    settings_->depth_of_field.focus_distance = depth;
     return depth;
 }
 
+void Session::set_view_point(const ViewPoint& view) {
+    pin_view_point(settings_->camera, view);
+}
+
+void Session::set_camera(const Camera& camera) {
+    pin_camera(settings_->camera, camera);
+}
+
+Camera Session::camera() {
+    return resolve().camera;
+}
+
+void Session::refit() {
+    release(*settings_);
+    scene_.release_light_radii();
+}
+
+Vec2i Session::size_or(std::optional<Vec2i> size) const {
+    return size.value_or(settings_->image.size);
+}
+
 void Session::replace_settings(const Settings& settings) {
-    settings_ = settings;
+    *settings_ = settings;
     environment_hash_.reset();
 }
 
 void Session::latch_from(const Prepared& prepared) {
     if (prepared.scene.objects.empty()) return;
-    latch(settings_, prepared.resolved.settings);
+    latch(*settings_, prepared.resolved.settings);
     for (const auto& [name, radius] : prepared.resolved.light_radii) scene_.latch_light_radius(name, radius);
 }
 
 void Session::load_environment(const std::filesystem::path& path) {
     files_.load_environment(path);
-    settings_.environment.file = path.string();
+    settings_->environment.file = path.string();
 }
 
 std::vector<std::string> Session::object_names() const {

@@ -13,8 +13,6 @@
 #include "easypbr/app/motion_memory.h"
 #include "easypbr/app/picking.h"
 #include "easypbr/app/picture.h"
-#include "easypbr/app/pinned_camera.h"
-#include "easypbr/app/prepared.h"
 #include "easypbr/app/scene_warnings.h"
 #include "easypbr/app/settings_files.h"
 #include "easypbr/app/tiled_picture.h"
@@ -22,13 +20,17 @@
 #include "easypbr/core/image.h"
 #include "easypbr/gl/context.h"
 #include "easypbr/render/pipeline/renderer.h"
-#include "easypbr/scene/resolve.h"
 #include "easypbr/scene/scene.h"
-#include "easypbr/scene/settings.h"
+
+namespace easypbr {
+struct ResolvedSettings;
+struct Settings;
+}  // namespace easypbr
 
 namespace easypbr::app {
 
 class Pass;
+struct Prepared;
 
 /// Seconds that the steps of the last picture took.
 struct Timing {
@@ -42,12 +44,15 @@ struct Timing {
 /// The GL context is made at the first picture.
 class Session {
   public:
-    explicit Session(Scene scene = {}) : scene_(std::move(scene)) {}
+    explicit Session(Scene scene = {});
+    ~Session();
+    Session(Session&&) noexcept;
+    Session& operator=(Session&&) noexcept;
 
     Scene& scene() { return scene_; }
     const Scene& scene() const { return scene_; }
-    Settings& settings() { return settings_; }
-    const Settings& settings() const { return settings_; }
+    Settings& settings() { return *settings_; }
+    const Settings& settings() const { return *settings_; }
 
     /// Takes settings over as they are, latched values included.
     void replace_settings(const Settings& settings);
@@ -119,7 +124,7 @@ class Session {
     ViewPoint view_point(std::optional<Vec2i> size = std::nullopt);
     /// Pins the camera, as set_camera(), and keeps its target; an automatic near plane comes as near as the
     /// camera.
-    void set_view_point(const ViewPoint& view) { pin_view_point(settings_.camera, view); }
+    void set_view_point(const ViewPoint& view);
 
     /// Draws a pass of the program's own in every picture from now on; one of the same name is replaced. See
     /// app/custom_pass.h.
@@ -139,15 +144,12 @@ class Session {
     void load_environment(const std::filesystem::path& path);
 
     /// Pins the camera to a pose: settings().camera follows. A near plane that was inferred is inferred anew.
-    void set_camera(const Camera& camera) { pin_camera(settings_.camera, camera); }
+    void set_camera(const Camera& camera);
     /// The camera of the next picture.
-    Camera camera() { return resolve().camera; }
+    Camera camera();
 
     /// Forgets what was inferred, so that the next picture infers it anew.
-    void refit() {
-        release(settings_);
-        scene_.release_light_radii();
-    }
+    void refit();
 
     /// What the GL context is; makes it when there is none yet.
     const gl::ContextInfo& context_info();
@@ -177,10 +179,10 @@ class Session {
     TiledPicture tiled(const Prepared& prepared) const;
     /// Keeps what was inferred, unless there was nothing to infer it from.
     void latch_from(const Prepared& prepared);
-    Vec2i size_or(std::optional<Vec2i> size) const { return size.value_or(settings_.image.size); }
+    Vec2i size_or(std::optional<Vec2i> size) const;
 
     Scene scene_;
-    Settings settings_;
+    std::unique_ptr<Settings> settings_;
     Timing timing_;
     SettingsFiles files_;
     std::optional<std::string> environment_hash_;  ///< what was latched belongs to this environment
@@ -192,12 +194,7 @@ class Session {
     std::shared_ptr<Device> device_ = std::make_shared<Device>();
 
     /// What refine() adds frames to; nothing: it has to begin.
-    struct Refined {
-        Prepared prepared;
-        Drawn frames_drawn;  ///< of all frames, when they are finished
-        Drawn drawn;         ///< finished last
-        int frames = 0;
-    };
+    struct Refined;
     std::unique_ptr<Refined> refined_;
     /// What picture_version() saw last.
     struct Version {

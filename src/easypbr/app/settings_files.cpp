@@ -7,6 +7,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/scene/material_table.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::app {
 

@@ -11,7 +11,10 @@
 #include "easypbr/render/pipeline/renderer.h"
 #include "easypbr/scene/environment.h"
 #include "easypbr/scene/scene.h"
-#include "easypbr/scene/settings.h"
+
+namespace easypbr {
+struct Settings;
+}
 
 namespace easypbr::app {
 

@@ -3,6 +3,7 @@
 #include "easypbr/app/recorder.h"
 #include "easypbr/app/session.h"
 #include "easypbr/scene/offset.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
 namespace {

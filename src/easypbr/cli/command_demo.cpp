@@ -10,6 +10,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::cli {
 namespace {

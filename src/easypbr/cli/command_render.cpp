@@ -24,6 +24,7 @@
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/io/settings/label_map_io.h"
 #include "easypbr/scene/setting_files.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::cli {
 namespace {

@@ -14,6 +14,7 @@
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/scene/fields.h"
+#include "easypbr/scene/settings.h"
 #include "easypbr/viewer/viewer.h"
 
 namespace easypbr::cli {

@@ -21,6 +21,7 @@
 #include "easypbr/render/pipeline/renderer.h"
 #include "easypbr/scene/fields.h"
 #include "easypbr/scene/material_table.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::cli {
 namespace {

@@ -9,7 +9,6 @@
 
 #include "easypbr/app/session.h"
 #include "easypbr/core/math.h"
-#include "easypbr/scene/settings.h"
 
 namespace easypbr::cli {
 

@@ -13,7 +13,7 @@ namespace {
 /// Why the picture's targets are not the layers; empty when they are.
 std::string obstacle(const app::Drawn& drawn, const InstanceTable& table) {
     if (!drawn.lens().is_identity()) return "the camera's lens distorts";
-    if (!drawn.annotation().empty()) return "a legend or colour bar is drawn into the picture";
+    if (drawn.is_annotated()) return "a legend or colour bar is drawn into the picture";
     if (table.has_parts()) return "instances are parts of objects";
     return "";
 }

@@ -1,5 +1,7 @@
 #include "easypbr/gpu/dfg.h"
 
+#include "easypbr/scene/settings.h"
+
 namespace easypbr::gpu {
 namespace {
 

@@ -4,7 +4,9 @@
 #include <cstdint>
 #include <span>
 
-#include "easypbr/scene/settings.h"
+namespace easypbr {
+enum class Brdf;
+}
 
 namespace easypbr::gpu {
 

@@ -9,6 +9,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/gui/panels.h"
 #include "easypbr/scene/mesh.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::gui {
 namespace {

@@ -7,6 +7,7 @@
 #include "easypbr/gui/panels.h"
 #include "easypbr/gui/widgets.h"
 #include "easypbr/scene/light_table.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::gui {
 namespace {
@@ -63,7 +64,7 @@ bool light_row(GuiState& state, const std::string& name, const LightField& field
         value.data = std::vector<double>{srgb[0], srgb[1], srgb[2]};
     }
     std::optional<Value> inferred;
-    const std::optional<ResolvedSettings>& resolved = state.live.picture().resolved();
+    const ResolvedSettings* resolved = state.live.picture().resolved();
     if (field.can_be_automatic && resolved && resolved->light_radii.contains(name))
         inferred = Value{double(resolved->light_radii.at(name))};
     const Light before = light;

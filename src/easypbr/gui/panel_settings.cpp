@@ -8,6 +8,7 @@
 #include "easypbr/gui/panels.h"
 #include "easypbr/gui/widgets.h"
 #include "easypbr/render/pipeline/renderer.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::gui {
 namespace {

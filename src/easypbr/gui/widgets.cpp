@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "easypbr/core/math.h"
+
 namespace easypbr::gui {
 namespace {
 

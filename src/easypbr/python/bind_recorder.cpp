@@ -7,6 +7,7 @@
 #include "easypbr/io/video/video.h"
 #include "easypbr/python/shared_viewer.h"
 #include "easypbr/python/text.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::python {
 namespace {

@@ -13,6 +13,7 @@
 #include "easypbr/python/settings_value.h"
 #include "easypbr/python/shared_viewer.h"
 #include "easypbr/python/text.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::python {
 namespace {

@@ -6,6 +6,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/image.h"
 #include "easypbr/scene/auto_parameters.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::detail {
 namespace {

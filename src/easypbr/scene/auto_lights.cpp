@@ -4,6 +4,7 @@
 #include "easypbr/core/color.h"
 #include "easypbr/scene/auto_parameters.h"
 #include "easypbr/scene/light_falloff.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::detail {
 namespace {

@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <type_traits>
 
+#include "easypbr/core/math.h"
+#include "easypbr/scene/auto.h"
 #include "easypbr/scene/fields.h"
 
 namespace easypbr::detail {

@@ -11,6 +11,7 @@
 #include "easypbr/core/color.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr {
 namespace {

@@ -7,6 +7,7 @@
 #include "easypbr/scene/field_builder.h"
 #include "easypbr/scene/fields.h"
 #include "easypbr/scene/material_table.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr {
 namespace detail {

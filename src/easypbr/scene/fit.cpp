@@ -3,6 +3,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/auto_parameters.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr {
 namespace detail {

@@ -8,6 +8,7 @@
 #include "easypbr/gui/display.h"
 #include "easypbr/gui/live_view.h"
 #include "easypbr/gui/window.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr {
 namespace {

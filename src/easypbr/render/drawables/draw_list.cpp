@@ -1,6 +1,7 @@
 #include "easypbr/render/drawables/draw_list.h"
 
 #include "easypbr/core/color.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::render {
 namespace {

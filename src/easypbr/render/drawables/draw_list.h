@@ -13,7 +13,10 @@
 #include "easypbr/render/frame/extensions.h"
 #include "easypbr/render/frame/surface_kind.h"
 #include "easypbr/scene/draw_style.h"
-#include "easypbr/scene/resolve.h"
+
+namespace easypbr {
+struct MaterialSettings;
+}
 
 namespace easypbr::render {
 

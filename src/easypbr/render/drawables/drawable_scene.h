@@ -10,8 +10,11 @@
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/scene/element_colors.h"
 #include "easypbr/scene/scene.h"
-#include "easypbr/scene/settings.h"
 #include "easypbr/scene/spacing_cache.h"
+
+namespace easypbr {
+struct InferredSettings;
+}
 
 namespace easypbr::render {
 

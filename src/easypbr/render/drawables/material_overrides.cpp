@@ -1,5 +1,6 @@
 #include "easypbr/core/color.h"
 #include "easypbr/render/drawables/draw_list.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::render {
 namespace {

@@ -8,7 +8,11 @@
 #include "easypbr/render/frame/surface_outputs.h"
 #include "easypbr/render/frame/target.h"
 #include "easypbr/scene/motion.h"
-#include "easypbr/scene/resolve.h"
+#include "easypbr/scene/scene.h"
+
+namespace easypbr {
+struct ResolvedSettings;
+}
 
 namespace easypbr::render {
 

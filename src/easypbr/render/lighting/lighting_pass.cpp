@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "easypbr/gpu/dfg.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {

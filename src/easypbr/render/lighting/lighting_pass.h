@@ -8,6 +8,10 @@
 #include "easypbr/render/raytrace/traced_light.h"
 #include "easypbr/render/shadow/light_block.h"
 
+namespace easypbr {
+enum class Brdf;
+}
+
 namespace easypbr::render {
 
 /// What is seen through a transmissive layer.
@@ -49,7 +53,7 @@ class LightingPass {
     ProgramVariants programs_{"screen_triangle.vert", "lighting_surface.frag"};
     ProgramVariants catcher_{"screen_triangle.vert", "lighting_catcher.frag"};
     gl::Texture dfg_, sheen_albedo_;
-    Brdf dfg_brdf_ = Brdf::height_correlated;
+    Brdf dfg_brdf_{};
     gl::Buffer lights_, shadows_;
 };
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "easypbr/scene/resolve.h"
+
 namespace easypbr::render {
 namespace {
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "easypbr/core/color.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "easypbr/core/error.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {

@@ -5,6 +5,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/scene/draw_style.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {

@@ -7,6 +7,7 @@
 
 #include "easypbr/render/pipeline/pipeline.h"
 #include "easypbr/render/pipeline/surface_frame.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "easypbr/core/color.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {

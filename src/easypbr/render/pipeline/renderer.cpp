@@ -6,6 +6,8 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/gl/pace.h"
+#include "easypbr/render/pipeline/kept_surfaces.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {

@@ -9,11 +9,13 @@
 
 #include "easypbr/core/image.h"
 #include "easypbr/gl/readback.h"
-#include "easypbr/render/pipeline/kept_surfaces.h"
 #include "easypbr/render/pipeline/layers.h"
 #include "easypbr/render/pipeline/pipeline.h"
+#include "easypbr/render/pipeline/surface_frame.h"
 
 namespace easypbr::render {
+
+class KeptSurfaces;
 
 struct DrawOptions {
     Vec2i size{800, 600};

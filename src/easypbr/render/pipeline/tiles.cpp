@@ -12,6 +12,7 @@
 #include "easypbr/render/output/display_pass.h"
 #include "easypbr/render/primitives/primitive.h"
 #include "easypbr/scene/draw_style.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {

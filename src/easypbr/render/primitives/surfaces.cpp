@@ -4,6 +4,8 @@
 #include <functional>
 
 #include "easypbr/gl/context.h"
+#include "easypbr/scene/resolve.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {

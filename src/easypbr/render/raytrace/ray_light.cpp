@@ -6,6 +6,7 @@
 
 #include "easypbr/render/raytrace/ray_surface.h"
 #include "easypbr/scene/light_falloff.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {

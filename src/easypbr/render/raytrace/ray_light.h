@@ -3,7 +3,10 @@
 
 #include "easypbr/render/raytrace/ray_random.h"
 #include "easypbr/render/raytrace/ray_scene.h"
-#include "easypbr/scene/resolve.h"
+
+namespace easypbr {
+struct ResolvedSettings;
+}
 
 namespace easypbr::render {
 

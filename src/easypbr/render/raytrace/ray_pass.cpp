@@ -8,6 +8,7 @@
 #include "easypbr/core/octahedral.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/render/frame/surface_kind.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {

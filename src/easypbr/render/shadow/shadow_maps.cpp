@@ -5,6 +5,7 @@
 
 #include "easypbr/core/hash.h"
 #include "easypbr/scene/material_table.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {

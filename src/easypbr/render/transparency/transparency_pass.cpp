@@ -1,5 +1,7 @@
 #include "easypbr/render/transparency/transparency_pass.h"
 
+#include "easypbr/scene/resolve.h"
+
 namespace easypbr::render {
 
 void TransparencyPass::begin(const Frame& frame, const GBuffer& targets, const gl::Texture& opaque,

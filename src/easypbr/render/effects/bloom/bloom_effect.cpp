@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "easypbr/scene/resolve.h"
+
 namespace easypbr::render {
 namespace {
 
@@ -49,6 +51,10 @@ void BloomEffect::make_levels(Vec2i size, int count) {
     for (gl::Texture& sum : sums_)
         sum = gl::Texture(gl::Format::rgba32f, first.width() + 1, first.height() + 1);
     summed_ = gl::Framebuffer({&sums_[0], &sums_[1], &sums_[2], &sums_[3]});
+}
+
+bool BloomEffect::is_on(const Shot& shot) const {
+    return shot.resolved->settings.bloom.enabled;
 }
 
 int BloomEffect::reach(const Frame& whole, const Box3d& /*bounds*/) const {

@@ -15,7 +15,7 @@ namespace easypbr::render {
 class BloomEffect : public Effect {
   public:
     const char* name() const override { return "bloom"; }
-    bool is_on(const Shot& shot) const override { return shot.resolved->settings.bloom.enabled; }
+    bool is_on(const Shot& shot) const override;
     int reach(const Frame& whole, const Box3d& bounds) const override;
     void draw(const EffectInputs& inputs, LitPicture& lit) override;
 

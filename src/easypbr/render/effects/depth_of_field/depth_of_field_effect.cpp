@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "easypbr/scene/resolve.h"
+
 namespace easypbr::render {
 namespace {
 
@@ -49,6 +51,10 @@ void DepthOfFieldEffect::make_targets(Vec2i size) {
     halved_ = gl::Framebuffer({&light_, &confusion_});
     gathered_ = gl::Framebuffer({&behind_, &before_, &hidden_});
     composed_ = gl::Framebuffer({&radiance_.drawn()});
+}
+
+bool DepthOfFieldEffect::is_on(const Shot& shot) const {
+    return shot.resolved->lens_radius > 0 && !shot.through_lens;
 }
 
 int DepthOfFieldEffect::reach(const Frame& whole, const Box3d& bounds) const {

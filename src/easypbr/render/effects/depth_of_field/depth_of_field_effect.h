@@ -13,9 +13,7 @@ namespace easypbr::render {
 class DepthOfFieldEffect : public Effect {
   public:
     const char* name() const override { return "depth of field"; }
-    bool is_on(const Shot& shot) const override {
-        return shot.resolved->lens_radius > 0 && !shot.through_lens;
-    }
+    bool is_on(const Shot& shot) const override;
     int reach(const Frame& whole, const Box3d& bounds) const override;
     void draw(const EffectInputs& inputs, LitPicture& lit) override;
 

@@ -5,6 +5,7 @@
 
 #include "easypbr/core/color.h"
 #include "easypbr/render/frame/surface_kind.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "easypbr/core/color.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {
@@ -21,6 +22,10 @@ PixelRect grown(const PixelRect& r, int by, Vec2i size) {
 }
 
 }  // namespace
+
+bool OutlineEffect::is_on(const Shot& shot) const {
+    return shot.resolved->settings.outline.enabled;
+}
 
 int OutlineEffect::reach(const Frame& whole, const Box3d& /*bounds*/) const {
     // Edges are found from two pixels on either side.

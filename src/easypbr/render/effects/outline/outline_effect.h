@@ -12,7 +12,7 @@ namespace easypbr::render {
 class OutlineEffect : public Effect {
   public:
     const char* name() const override { return "outline"; }
-    bool is_on(const Shot& shot) const override { return shot.resolved->settings.outline.enabled; }
+    bool is_on(const Shot& shot) const override;
     bool draws_overlay() const override { return true; }
     int reach(const Frame& whole, const Box3d& bounds) const override;
     void draw(const EffectInputs& inputs, LitPicture& lit) override;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "easypbr/scene/material_table.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {
