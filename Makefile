@@ -27,6 +27,7 @@ demo: library
 test: setup-tests build
 	@scripts/oracle.sh
 	python3 scripts/check_includes.py
+	scripts/lint.sh
 	scripts/test.sh
 
 bench: build
@@ -41,7 +42,7 @@ docs: setup-tests build
 format:
 	clang-format -i $$(git ls-files 'include/**.h' 'src/**.h' 'src/**.cpp' 'tests/**.h' 'tests/**.cpp' 'examples/**.cpp')
 
-lint: setup
+lint: setup-tests
 	@scripts/lint.sh
 
 clean:

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # clang-tidy on all sources and headers of the library, the command line and the Python module: what it finds, and
-# exit status 1 if it finds anything. `make setup` must have run; no build is needed. usage: lint.sh
+# exit status 1 if it finds anything. `scripts/setup.sh tests` must have run; no build is needed. usage: lint.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
 build=build-lint

@@ -5,7 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 packages=(
-  g++ cmake ninja-build ccache pkg-config clang-format clang-tidy
+  g++ cmake ninja-build ccache pkg-config
   libeigen3-dev libfmt-dev libtbb-dev nlohmann-json3-dev libcli11-dev libxxhash-dev libfast-float-dev
   libepoxy-dev libegl1 libegl-mesa0 libopengl0 libgl1-mesa-dri
   libspng-dev libturbojpeg0-dev libtinyexr-dev zlib1g-dev libmeshoptimizer-dev libnanoflann-dev libassimp-dev libyaml-cpp-dev
@@ -16,7 +16,7 @@ packages=(
 )
 requirements=(scripts/requirements.txt)
 if [ "${1:-}" = tests ]; then
-  packages+=(ffmpeg xvfb openbox xdotool wmctrl xclip python3-torch)
+  packages+=(clang-format clang-tidy ffmpeg xvfb openbox xdotool wmctrl xclip python3-torch)
   requirements+=(scripts/requirements-test.txt)
 fi
 missing=()

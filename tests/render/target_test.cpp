@@ -7,6 +7,7 @@
 #include "easypbr/gl/context.h"
 #include "easypbr/render/frame/target.h"
 #include "easypbr/render/pipeline/renderer.h"
+#include "easypbr/scene/resolve.h"
 #include "render_test.h"
 
 namespace easypbr::render {
