@@ -80,3 +80,21 @@ def test_a_pipe_is_no_file(render, box, tmp_path, option):
     error = render(box, "-o", "out.png", option, pipe, code=1).stderr
     assert f"cannot read {pipe}: it is a pipe, not a regular file" in error
     assert "it is a pipe" in render(pipe, "-o", "out.png", code=1).stderr
+
+
+def write_zeros(path, rows):
+    """A glTF file of points on an accessor without data: 12 bytes each that nothing in the file bears out."""
+    path.write_text(json.dumps({
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"mode": 0, "attributes": {"POSITION": 0}}]}],
+        "accessors": [{"count": rows, "componentType": 5126, "type": "VEC3"}]}))
+    return path
+
+
+@pytest.mark.parametrize("command, limit", [(["render", "-o", "a.png"], ["--set", "limits.memory=0.01"]),
+                                            (["convert"], ["a.ply", "--memory", "0.01"])])
+def test_a_file_that_asks_for_too_much_memory(easypbr, tmp_path, command, limit):
+    path = write_zeros(tmp_path / "zeros.gltf", 1_000_000)
+    failed = easypbr(command[0], path, *command[1:], *limit, code=1)
+    assert "zeros.gltf: accessors[0] would take 12 MB, and of the 10 MB that reading may take 10 MB are left" in failed.stderr
+    assert not list(tmp_path.glob("a.*"))

@@ -118,3 +118,16 @@ def test_seams_of_texture_coordinates_are_smooth(tmp_path):
     normals = view.layers(["normal_world"])["normal_world"]
     # By symmetry the common edge's normal is +z; flat halves would have x = -0.707 and +0.707 beside each other.
     assert np.abs(normals[32, 30:34, 0]).max() < 0.1
+
+
+def test_a_file_that_asks_for_too_much_memory(tmp_path):
+    path = tmp_path / "zeros.gltf"
+    path.write_text(json.dumps({
+        "asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"mode": 0, "attributes": {"POSITION": 0}}]}],
+        "accessors": [{"count": 1_000_000, "componentType": 5126, "type": "VEC3"}]}))
+    with pytest.raises(easypbr.FormatError, match=r"accessors\[0\] would take 12 MB"):
+        easypbr.load_scene(path, memory_gb=0.01)
+    assert len(easypbr.load_scene(path, memory_gb=0.02).mesh.V) == 1_000_000
+    with pytest.raises(ValueError, match="expected 0 or more GB"):
+        easypbr.load_scene(path, memory_gb=-1)

@@ -54,7 +54,7 @@ class PassInput {
     struct Frame;
     explicit PassInput(const Frame& frame) : frame_(frame) {}
 
-    /// Of this frame: where a still is sampled over lens or shutter, it moves.
+    /// Of this frame: where an accumulated image samples lens or shutter, it moves.
     const Camera& camera() const;
     /// To clip space, of this frame or tile: depth from 1 (near) to 0, y down, offset by the sample's place
     /// within the pixel.

@@ -186,6 +186,12 @@ struct LoadSettings {
     float crease_deg = 30;  ///< STL: edges between faces at a larger angle stay sharp, degrees, 0 to 180
 };
 
+/// Limits on what files may ask for.
+struct LimitSettings {
+    float memory =
+        0;  ///< most that reading a file takes, GB, 0 to 1e6; 0: three quarters of what is available
+};
+
 /// All settings. Paths of members are the names of settings, as in bloom.intensity.
 template <template <class> class MaybeAuto>
 struct BasicSettings {
@@ -208,6 +214,7 @@ struct BasicSettings {
     ClipSettings clip;
     BasicAnnotationSettings<MaybeAuto> annotation;
     LoadSettings load;
+    LimitSettings limits;
 };
 
 /// What users set.

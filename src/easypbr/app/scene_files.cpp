@@ -30,7 +30,8 @@ std::string unique_name(const Scene& scene, const std::string& stem) {
 
 void show_loaded(Session& session, AnimationPlayer& player, const fs::path& path, const std::string& name) {
     const io::LoadedScene loaded =
-        io::load_scene(path, {.crease_angle_deg = session.settings().load.crease_deg});
+        io::load_scene(path, {.crease_angle_deg = session.settings().load.crease_deg,
+                              .memory_gb = session.settings().limits.memory});
     session.scene().show(loaded.mesh, name);
     if (!loaded.animations.empty()) player.add(name, loaded.animations);
     for (const auto& [light, value] : loaded.lights)

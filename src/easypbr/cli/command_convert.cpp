@@ -10,7 +10,7 @@ namespace {
 
 struct ConvertOptions {
     std::string in, out, format;
-    double crease_deg = io::LoadOptions{}.crease_angle_deg;
+    double crease_deg = io::LoadOptions{}.crease_angle_deg, memory_gb = 0;
     std::vector<MeshStep> steps;
 };
 
@@ -22,6 +22,10 @@ void declare(CLI::App& command, ConvertOptions& options) {
         .add_option("--crease", options.crease_deg,
                     "Crease angle of STL files: edges between faces at a larger angle stay sharp")
         ->option_text("DEG");
+    command
+        .add_option("--memory", options.memory_gb,
+                    "Most that the arrays and images of IN may take; 0: three quarters of what is available")
+        ->option_text("GB");
     declare_mesh_steps(command, options.steps);
 }
 
@@ -30,9 +34,10 @@ int run(const ConvertOptions& options) {
     check_input("convert", {options.in});
     check_writable(options.out);
     if (!is_image_file(options.in)) {
-        const Mesh mesh =
-            load_input(options.in, {.crease_angle_deg = float(options.crease_deg), .format = options.format})
-                .mesh;
+        const Mesh mesh = load_input(options.in, {.crease_angle_deg = float(options.crease_deg),
+                                                  .memory_gb = options.memory_gb,
+                                                  .format = options.format})
+                              .mesh;
         io::save_mesh(apply_mesh_steps(mesh, options.steps), options.out);
         return 0;
     }

@@ -215,6 +215,7 @@ class RenderJob {
     /// Reads the files while the GL context is made, for all of it takes long.
     void load(const Picture& picture, StageTimes& times) {
         const io::LoadOptions load_options{.crease_angle_deg = look_.settings.load.crease_deg,
+                                           .memory_gb = look_.settings.limits.memory,
                                            .format = options_.format};
         auto loading = std::async(std::launch::async, load_all, picture.files, load_options);
         auto lighting = std::async(std::launch::async, [this] { load_environment(); });

@@ -89,6 +89,7 @@ int run(const ViewOptions& options) {
     const std::vector<std::string> names = unique_names(options.files);
     for (size_t i = 0; i < names.size(); ++i) {
         const io::LoadOptions load{.crease_angle_deg = view.settings().load.crease_deg,
+                                   .memory_gb = view.settings().limits.memory,
                                    .format = options.format};
         const io::LoadedScene loaded = load_drawable(options.files[i], load);
         show(view.scene(), loaded, names[i]);

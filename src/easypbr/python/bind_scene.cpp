@@ -50,9 +50,13 @@ void bind_scene(nb::module_& module) {
                 "Animations of the mesh and its children (glTF).");
     module.def(
         "load_scene",
-        [](const std::filesystem::path& path) { return released([&] { return io::load_scene(path); }); },
-        nb::arg("path"),
-        "Reads a file with its cameras, lights and animations; Mesh(path) reads the mesh alone.");
+        [](const std::filesystem::path& path, double memory_gb) {
+            return released([&] { return io::load_scene(path, {.memory_gb = memory_gb}); });
+        },
+        nb::arg("path"), nb::arg("memory_gb") = 0.0,
+        "Reads a file with its cameras, lights and animations; Mesh(path) reads the mesh alone. Its arrays "
+        "and images "
+        "may take at most memory_gb; 0: three quarters of what is available.");
     module.def(
         "default_scene", [] { return default_scene(); }, "The default scene.");
     module.def("demo_scene", [] { return released([] { return make_demo_scene(); }); });

@@ -439,6 +439,11 @@ void add_loading(Table& table) {
                          "Crease angle of STL files loaded by the command line and the window: edges between "
                          "faces at a larger angle stay sharp.",
                          "degrees", {0, 180}));
+    table.push_back(
+        make("limits.memory", EASYPBR_AT(limits.memory),
+             "Most that the arrays and images of a file may take when the command line or the window "
+             "loads it; a file that asks for more is refused. 0: three quarters of what is available.",
+             "GB", {0, 1e6}));
 }
 
 }  // namespace

@@ -27,7 +27,9 @@ struct LoadedScene {
 
 struct LoadOptions {
     float crease_angle_deg =
-        30;  ///< STL: welded corners whose faces meet at a larger angle keep separate normals
+        30;                ///< STL: welded corners whose faces meet at a larger angle keep separate normals
+    double memory_gb = 0;  ///< most that the arrays and images of the file may take; 0: three quarters of
+                           ///< what the machine has left
     std::string format = {};  ///< extension of the format that a file is in; empty: its own extension
 };
 
@@ -36,7 +38,8 @@ struct LoadOptions {
 /// are not finite are left out with a warning that counts them. What is missing or unknown beside the
 /// geometry (a texture file, an element) is logged as a warning and left out. Throws FileError when the file
 /// cannot be read; FormatError, with line or byte, when it is empty, damaged, lies about its counts, has
-/// indices out of range or positions that are not finite, or when its extension is unknown.
+/// indices out of range or positions that are not finite, would take more memory than the options allow, or
+/// when its extension is unknown.
 LoadedScene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// The same from bytes without a file, as from a pipe. The format is that of the options, else it is told

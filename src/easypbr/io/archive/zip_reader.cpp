@@ -6,6 +6,7 @@
 #include <cstring>
 #include <limits>
 
+#include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
 
 namespace easypbr::io {
@@ -26,8 +27,12 @@ class ZipReader {
   public:
     explicit ZipReader(const Source& source) : source_(source), bytes_(source.bytes) {}
 
-    std::vector<ZipEntry> read() {
-        const std::vector<Record> records = read_directory();
+    std::vector<ZipEntry> read(std::string_view ending) {
+        std::vector<Record> records = read_directory();
+        std::erase_if(records, [&](const Record& record) { return !record.name.ends_with(ending); });
+        for (const Record& record : records)
+            if (record.method != 0)
+                charge_memory(record.size, fmt::format("'{}'", record.name.substr(0, 100)));
         std::vector<ZipEntry> entries(records.size());
         parallel_for(records.size(), 1, [&](size_t i) { entries[i] = read_entry(records[i]); });
         return entries;
@@ -158,8 +163,8 @@ class ZipReader {
 
 }  // namespace
 
-std::vector<ZipEntry> read_zip(const Source& source) {
-    return ZipReader(source).read();
+std::vector<ZipEntry> read_zip(const Source& source, std::string_view ending) {
+    return ZipReader(source).read(ending);
 }
 
 }  // namespace easypbr::io

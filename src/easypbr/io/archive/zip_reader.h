@@ -18,8 +18,9 @@ struct ZipEntry {
     std::shared_ptr<const void> owner;
 };
 
-/// All entries in the order of the archive's directory; those that are stored refer to the source. Throws
-/// FormatError for damage (checksums included), encryption and other compressions.
-std::vector<ZipEntry> read_zip(const Source& source);
+/// The entries whose names end with `ending`, in the order of the archive's directory; those that are stored
+/// refer to the source. Throws FormatError for damage of one of them (checksums included), encryption and
+/// other compressions, and when they would take more memory than reading may.
+std::vector<ZipEntry> read_zip(const Source& source, std::string_view ending);
 
 }  // namespace easypbr::io

@@ -259,7 +259,7 @@ class BlockReader {
 Image decode_exr(Bytes bytes, const std::string& name) {
     const ExrHeader header = read_header(bytes, name);
     const std::vector<int> chosen = picture_channels(header, name);
-    Image image(header.width, header.height, int(chosen.size()), PixelType::f32);
+    Image image = make_image(header.width, header.height, int(chosen.size()), PixelType::f32, name);
     BlockReader(bytes, header, chosen, image, name).read_all();
     return image;
 }

@@ -258,7 +258,7 @@ void encode_scanline(const std::vector<Rgbe>& row, std::vector<uint8_t>& out) {
 Image decode_hdr(Bytes bytes, const std::string& name) {
     const HdrHeader header = HeaderReader(bytes, name).read();
     const std::vector<size_t> starts = find_scanlines(bytes, header, name);
-    Image image(header.width, header.height, 3, PixelType::f32);
+    Image image = make_image(header.width, header.height, 3, PixelType::f32, name);
     parallel_chunks(starts.size(), 16, [&](size_t begin, size_t end) {
         std::vector<Rgbe> row(size_t(header.width));
         for (size_t y = begin; y < end; ++y) {

@@ -35,6 +35,9 @@ std::vector<std::byte> encode_exr(const Image& image);
 /// Throws FormatError unless 1 <= width, height <= max_image_side.
 void check_image_size(long long width, long long height, const std::string& name);
 
+/// A zero-filled image. Throws FormatError when it is more than reading may take (core/memory_budget.h).
+Image make_image(int width, int height, int channels, PixelType type, const std::string& name);
+
 /// Throws FormatError when `pixel_bytes` are more than `bytes_per_byte` for each byte of the file: a header
 /// that promises more than the rest can hold.
 void check_plausible(size_t pixel_bytes, size_t file_bytes, size_t bytes_per_byte, const std::string& name);

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "easypbr/core/file.h"
+#include "easypbr/core/memory_budget.h"
 #include "easypbr/io/image/image_codecs.h"
 
 namespace easypbr::io {
@@ -27,6 +28,12 @@ void check_image_size(long long width, long long height, const std::string& name
     if (width < 1 || height < 1 || width > max_image_side || height > max_image_side)
         fail_image(name, fmt::format("image size {}x{}: width and height must be 1 to {}", width, height,
                                      max_image_side));
+}
+
+Image make_image(int width, int height, int channels, PixelType type, const std::string& name) {
+    charge_memory(uint64_t(width) * uint64_t(height) * uint64_t(channels) * size_of(type),
+                  fmt::format("the pixels of {}", name));
+    return {width, height, channels, type};
 }
 
 void check_plausible(size_t pixel_bytes, size_t file_bytes, size_t bytes_per_byte, const std::string& name) {

@@ -74,11 +74,12 @@ Image decode_jpeg(Bytes bytes, const std::string& name) {
     const int channels = cmyk ? 4 : grey ? 1 : 3;
     const int format = cmyk ? TJPF_CMYK : grey ? TJPF_GRAY : TJPF_RGB;
     check_plausible(size_t(width) * height * channels, bytes.size(), most_jpeg_bytes_per_byte, name);
-    Image image(width, height, channels, PixelType::u8);
+    Image image = make_image(width, height, channels, PixelType::u8, name);
     // A progressive file may hold thousands of empty scans, each of which costs time for the whole picture.
-    check_decoded(tjDecompress2(handle.get(), jpeg_data_of(bytes), bytes.size(), image.pixels<uint8_t>().data(),
-                                width, 0, height, format, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS),
-                  handle, name);
+    check_decoded(
+        tjDecompress2(handle.get(), jpeg_data_of(bytes), bytes.size(), image.pixels<uint8_t>().data(), width,
+                      0, height, format, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS),
+        handle, name);
     return cmyk ? rgb_from_cmyk(image, has_adobe_marker(bytes)) : image;
 }
 

@@ -64,7 +64,7 @@ Image decode_png(Bytes bytes, const std::string& name) {
     const Layout layout = layout_of(header, transparent_color);
     check_plausible(size_t(header.width) * header.height * layout.channels * size_of(layout.type),
                     bytes.size(), most_png_bytes_per_byte, name);
-    Image image(int(header.width), int(header.height), layout.channels, layout.type);
+    Image image = make_image(int(header.width), int(header.height), layout.channels, layout.type, name);
     size_t expected = 0;
     check(spng_decoded_image_size(context.get(), layout.format, &expected), name);
     if (expected != image.bytes().size())

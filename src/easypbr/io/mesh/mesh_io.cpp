@@ -7,6 +7,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
+#include "easypbr/core/memory_budget.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/io/mesh/assimp/assimp_loader.h"
 #include "easypbr/io/mesh/cloud_writers.h"
@@ -117,9 +118,16 @@ void save_obj(const Mesh& mesh, const fs::path& path) {
     write_file(path, text.obj);
 }
 
+uint64_t limit_of(const LoadOptions& options) {
+    if (!(options.memory_gb >= 0))
+        throw ArgumentError(fmt::format("memory: expected 0 or more GB, got {}", options.memory_gb));
+    return uint64_t(std::min(options.memory_gb, 1e9) * 1e9);
+}
+
 }  // namespace
 
 LoadedScene load_scene(const fs::path& path, const LoadOptions& options) {
+    const MemoryScope memory(path.string(), limit_of(options));
     const std::string format = options.format.empty() ? extension_of(path) : options.format;
     if (is_gltf(format)) return load_gltf(path);
     if (readers().contains(format)) return decode(FileBytes(path), path, format, options);
@@ -128,6 +136,7 @@ LoadedScene load_scene(const fs::path& path, const LoadOptions& options) {
 }
 
 LoadedScene load_scene(const FileBytes& bytes, const fs::path& name, const LoadOptions& options) {
+    const MemoryScope memory(name.string(), limit_of(options));
     if (bytes.size() == 0) throw FormatError(fmt::format("{}: there is nothing to read", name.string()));
     const std::string format = options.format.empty() ? format_of_content(bytes.text()) : options.format;
     if (!is_gltf(format) && !readers().contains(format)) fail_format(name, format);

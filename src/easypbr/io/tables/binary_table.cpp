@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <atomic>
 
+#include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/tables/element_table.h"
 #include "easypbr/io/tables/value_copy.h"
@@ -11,7 +12,8 @@ namespace easypbr::io {
 namespace {
 
 constexpr size_t record_grain = 1 << 15;
-constexpr size_t record_slab = record_grain * 64;  ///< rows after which the memory of the rows before is given back
+constexpr size_t record_slab =
+    record_grain * 64;  ///< rows after which the memory of the rows before is given back
 
 /// Reads one element; keeps what the functions below share.
 class ElementReader {
@@ -80,7 +82,8 @@ class ElementReader {
         if (element_.count > size_t(source_.end() - body) / stride) return nullptr;
         for (size_t i = 0; i < plan_.columns.size(); ++i) allocate_uniform(plan_.columns[i], widths[i]);
         for (size_t row = 0; row < element_.count; row += record_slab) {
-            if (!read_uniform_slab(body, widths, row, std::min(record_slab, element_.count - row))) return nullptr;
+            if (!read_uniform_slab(body, widths, row, std::min(record_slab, element_.count - row)))
+                return nullptr;
             source_.release_until(body + row * stride);
         }
         return body + element_.count * stride;
@@ -98,6 +101,7 @@ class ElementReader {
     void allocate_uniform(const Column& column, size_t width) const {
         const auto allocate = [&](auto* list) {
             if (!list) return;
+            charge_memory(uint64_t(element_.count) * width * 4, "its lists");
             list->rows = element_.count;
             list->width = width;
             list->values.resize(Eigen::Index(element_.count * width));
@@ -166,8 +170,13 @@ class ElementReader {
             p = measure_row(p, row);
         }
         for (Column& column : plan_.columns) {
-            if (column.indices) column.indices->values.resize(Eigen::Index(column.indices->first.back()));
-            if (column.values) column.values->values.resize(Eigen::Index(column.values->first.back()));
+            const auto allocate = [](auto* list) {
+                if (!list) return;
+                charge_memory(uint64_t(list->first.back()) * 4, "its lists");
+                list->values.resize(Eigen::Index(list->first.back()));
+            };
+            allocate(column.indices);
+            allocate(column.values);
         }
         parallel_chunks(element_.count, record_grain, [&](size_t begin, size_t end) {
             const char* in = starts[begin / record_grain];

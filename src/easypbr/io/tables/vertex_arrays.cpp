@@ -9,6 +9,7 @@
 #include <set>
 
 #include "easypbr/core/log.h"
+#include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/tables/attributes.h"
 #include "easypbr/scene/mesh_arrays.h"
@@ -106,6 +107,7 @@ double color_scale(ScalarType type) {
 VertexArrays::VertexArrays(const std::vector<VertexField>& fields, size_t count) {
     const auto position = find_spelling(fields, position_names);
     if (position.empty()) return;
+    charge_memory(uint64_t(count) * fields.size() * sizeof(float), "its points");
     for (const VertexField& field : fields) {
         field.column->scale = field.property.scale;
         field.column->shift = field.property.shift;

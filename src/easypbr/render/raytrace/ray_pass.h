@@ -8,7 +8,8 @@
 
 namespace easypbr::render {
 
-/// For the frames of a still: each sends a few rays from every pixel, evenly spread over all frames.
+/// For the frames of an accumulated image: each sends a few rays from every pixel, evenly spread over all
+/// frames.
 class RayPass {
   public:
     /// Fills what light() gives, in host memory, from the G-buffer's surfaces that are lit.

@@ -7,6 +7,7 @@
 #include <limits>
 #include <type_traits>
 
+#include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
 
 namespace easypbr::io {
@@ -101,6 +102,11 @@ class Accessor {
         document_.fail(fmt::format("accessors[{}] {}", index_, what));
     }
 
+    /// Accounts for its values, so many bytes each.
+    void charge(size_t bytes) const {
+        charge_memory(uint64_t(count) * uint64_t(components) * bytes, fmt::format("accessors[{}]", index_));
+    }
+
     const Json* sparse() const { return member(json_, "sparse"); }
 
     Rows rows_of(size_t view, size_t offset, size_t row_count, size_t row_bytes) const {
@@ -176,6 +182,7 @@ ArrayXf::Dense read_floats(GltfDocument& document, size_t index, int least, int 
     const Accessor accessor(document, index);
     if (accessor.components < least || accessor.components > most)
         accessor.fail(fmt::format("has {} components, expected {} to {}", accessor.components, least, most));
+    accessor.charge(sizeof(float));
     ArrayXf::Dense out(Eigen::Index(accessor.count), accessor.components);
     if (!accessor.rows.data)
         out.setZero();
@@ -198,6 +205,7 @@ std::vector<uint32_t> read_indices(GltfDocument& document, size_t index) {
     if (accessor.components != 1 || !is_unsigned)
         accessor.fail("must be a scalar of an unsigned integer type");
     if (accessor.sparse() || !accessor.rows.data) accessor.fail("holds indices without plain data");
+    accessor.charge(sizeof(uint32_t));
     std::vector<uint32_t> out(accessor.count);
     with_component(accessor.type, [&]<class T>(T) {
         if constexpr (std::is_unsigned_v<T>)

@@ -149,7 +149,13 @@ class SceneReader {
     const GltfMesh& mesh_of(size_t index) {
         document_.item("meshes", index);
         auto& mesh = meshes_[index];
-        if (!mesh) mesh = read_gltf_mesh(document_, materials_, index);
+        if (mesh) return *mesh;
+        // Meshes that differ in nothing but their names share their arrays.
+        Json content = document_.item("meshes", index);
+        content.erase("name");
+        const auto [same, is_new] = first_of_.try_emplace(content.dump(), index);
+        mesh = is_new ? read_gltf_mesh(document_, materials_, index) : *meshes_[same->second];
+        mesh->data.name = document_.text(document_.item("meshes", index), "name");
         return *mesh;
     }
 
@@ -224,6 +230,7 @@ class SceneReader {
     GltfDocument& document_;
     GltfMaterials materials_;
     std::vector<std::optional<GltfMesh>> meshes_;
+    std::map<std::string, size_t> first_of_;  ///< meshes, by their JSON without names
     AnimationRig rig_;
     std::vector<bool> visited_;
     LoadedScene out_;

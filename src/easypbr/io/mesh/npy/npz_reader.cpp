@@ -20,7 +20,7 @@ using Integers = Eigen::Matrix<int32_t, Eigen::Dynamic, 1>;
 constexpr size_t most_scalars = 16;
 
 const Names npz_positions{"v",      "vertices", "points", "xyz", "pos",        "position",   "positions",
-                           "coords", "coord",    "pc",     "pcd", "pointcloud", "point_cloud"};
+                          "coords", "coord",    "pc",     "pcd", "pointcloud", "point_cloud"};
 const Names face_names{"f", "faces", "triangles"};
 const Names edge_names{"e", "edges"};
 const Names npz_labels{"l", "labels", "label"};
@@ -75,8 +75,10 @@ Values values_of(const NamedArray& named) {
 }
 
 class NpzReader {
+    static constexpr std::string_view extension = ".npy";
+
   public:
-    explicit NpzReader(const Source& source) : source_(source), entries_(read_zip(source)) {
+    explicit NpzReader(const Source& source) : source_(source), entries_(read_zip(source, extension)) {
         for (const ZipEntry& entry : entries_) add_array(entry);
     }
 
@@ -84,8 +86,8 @@ class NpzReader {
         const NamedArray* positions = find(npz_positions);
         if (!positions && arrays_.size() == 1) positions = &arrays_[0];
         if (!positions)
-            fail(source_, fmt::format("no array of positions; it would be called {}",
-                                      fmt::join(npz_positions, ", ")));
+            fail(source_,
+                 fmt::format("no array of positions; it would be called {}", fmt::join(npz_positions, ", ")));
         if (const NamedArray* faces = find(face_names)) read_faces(*faces);
         std::vector<BinaryTable> tables{point_table(positions->source, positions->array)};
         points_ = positions->array.rows();
@@ -100,8 +102,6 @@ class NpzReader {
 
   private:
     void add_array(const ZipEntry& entry) {
-        constexpr std::string_view extension = ".npy";
-        if (!entry.name.ends_with(extension)) return;
         const std::string name = entry.name.substr(0, entry.name.size() - extension.size());
         NamedArray array{name, name, Source(entry.bytes, source_.path), {}};
         for (char& c : array.lower_name) c = char(std::tolower(static_cast<unsigned char>(c)));

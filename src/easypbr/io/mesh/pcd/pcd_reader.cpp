@@ -5,6 +5,7 @@
 #include <cstring>
 #include <memory>
 
+#include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/archive/lzf.h"
 #include "easypbr/io/mesh/cloud_reader.h"
@@ -57,6 +58,7 @@ uint32_t read_size(const char* p) {
 
 MeshData read_at_once(const Source& source, std::string_view data, size_t size,
                       std::vector<Element> elements) {
+    charge_memory(size, "its points");
     const auto bytes = std::make_unique_for_overwrite<char[]>(size);
     if (!lzf_decompress(data, {bytes.get(), size})) fail_damaged(source, data);
     source.release_until(source.end());

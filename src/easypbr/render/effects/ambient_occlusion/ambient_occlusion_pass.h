@@ -9,7 +9,7 @@ namespace easypbr::render {
 
 /// Ground-truth ambient occlusion (Jimenez et al. 2016) or the normal-oriented hemisphere (Bavoil and Sainz
 /// 2008). A single frame is computed at half resolution, blurred within surfaces and magnified; the frames of
-/// a longer still each take other directions at full resolution, and their mean needs no blur.
+/// a longer accumulated image each take other directions at full resolution, and their mean needs no blur.
 class AmbientOcclusionPass {
   public:
     /// Adds and fills the G-buffer's visibility from its depth and normals. Points without normals
