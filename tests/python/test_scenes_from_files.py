@@ -128,6 +128,6 @@ def test_a_file_that_asks_for_too_much_memory(tmp_path):
         "accessors": [{"count": 1_000_000, "componentType": 5126, "type": "VEC3"}]}))
     with pytest.raises(easypbr.FormatError, match=r"accessors\[0\] would take 12 MB"):
         easypbr.load_scene(path, memory_gb=0.01)
-    assert len(easypbr.load_scene(path, memory_gb=0.02).mesh.V) == 1_000_000
+    assert len(easypbr.load_scene(path, memory_gb=0.02).mesh.children[0].V) == 1_000_000
     with pytest.raises(ValueError, match="expected 0 or more GB"):
         easypbr.load_scene(path, memory_gb=-1)

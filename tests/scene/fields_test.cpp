@@ -93,6 +93,7 @@ TEST(Fields, AreComplete) {
         {"clip", 2},
         {"annotation", 5},
         {"load", 1},
+        {"limits", 1},
     };
     // clang-format on
     EXPECT_EQ(counts, expected);
