@@ -84,10 +84,10 @@ std::vector<std::string> ask_extensions() {
 
 AssimpLimits assimp_limits(uint64_t file_bytes) {
     AssimpLimits limits;
-    // assimp's slowest readers of text take 0.5 s for each MiB on an idle machine; ten times that is a
-    // machine that is busy. Its scenes take up to 20 times a file's size; three times that are files that are
+    // assimp takes up to 0.06 s for each MiB of text on an idle machine (ASCII FBX); thirty times that is a
+    // machine that is very busy. Its scenes take up to 28 times a file's size; twice that are files that are
     // compressed.
-    limits.seconds += 5 * double(file_bytes) / (1 << 20);
+    limits.seconds += 2 * double(file_bytes) / (1 << 20);
     limits.bytes += 64 * file_bytes;
     return limits;
 }
