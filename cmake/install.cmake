@@ -1,8 +1,9 @@
 # The public headers are installed as they are: #include <easypbr/scene/mesh.h> inside and outside.
 include(CMakePackageConfigHelpers)
 install(TARGETS easypbr EXPORT easypbrTargets LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
-if(TARGET easypbr_assimp)
-  install(TARGETS easypbr_assimp LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
+# Beside the library, which starts it from there.
+if(TARGET easypbr_read_assimp)
+  install(TARGETS easypbr_read_assimp RUNTIME DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)
 endif()
 if(TARGET easypbr_ffmpeg)
   install(TARGETS easypbr_ffmpeg LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library)

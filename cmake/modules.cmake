@@ -10,7 +10,13 @@ endfunction()
 
 find_package(assimp QUIET)
 if(assimp_FOUND)
-  easypbr_add_module(assimp mesh/assimp/module assimp::assimp)
+  # A program, started beside libeasypbr.so for each file: a file that makes assimp crash or loop ends it alone. It
+  # has no sanitizers, whose address space is beyond every limit that it sets itself.
+  file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/easypbr/io/mesh/assimp/reader/*.cpp)
+  add_executable(easypbr_read_assimp ${sources})
+  target_link_libraries(easypbr_read_assimp PRIVATE Eigen3::Eigen assimp::assimp)
+  target_include_directories(easypbr_read_assimp PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
+  target_compile_options(easypbr_read_assimp PRIVATE -Wall -Wextra -Wpedantic $<$<BOOL:${EASYPBR_WERROR}>:-Werror>)
 else()
   message(STATUS "assimp not found: FBX, DAE, 3DS and the like are not read (Debian: libassimp-dev)")
 endif()

@@ -109,7 +109,7 @@ def installed_headers(root: pathlib.Path) -> int:
     """Headers of include/ where it stands, else of the rooms that cmake/install.cmake installs."""
     if (root / "include/easypbr").is_dir():
         return sum(1 for _ in (root / "include").rglob("*.h"))
-    left_out = {"cli", "python", "tools", "module", "ffmpeg"}
+    left_out = {"cli", "python", "tools", "module", "reader", "ffmpeg"}
     return sum(1 for path in (root / "src/easypbr").rglob("*.h") if not left_out & set(path.relative_to(root).parts))
 
 

@@ -10,7 +10,7 @@ import time
 import numpy as np
 import pytest
 
-from easypbr import Mesh, Scene, Viewer, shapes
+from easypbr import Error, FileError, Mesh, MeshLoader, Scene, Viewer, shapes
 
 #: Half a second is the promise; a machine that runs other tests beside this one gets more.
 LIMIT_S = 1.5
@@ -76,6 +76,18 @@ def test_geometry_and_files(tmp_path):
     ball.save(tmp_path / "ball.ply")
     assert seconds_until_interrupted(lambda: [Mesh(tmp_path / "ball.ply") for _ in range(10_000)]) < LIMIT_S
     np.testing.assert_allclose(Mesh(tmp_path / "ball.ply").V, ball.V, atol=1e-6)
+
+
+def test_files_that_assimp_never_ends(tmp_path):
+    (tmp_path / "endless.smd").write_text("version 1\nnodes\n0\n")
+    try:
+        Mesh(tmp_path / "gone.smd")
+    except FileError:
+        pass
+    except Error:
+        pytest.skip("left out: built without the assimp reader")
+    assert seconds_until_interrupted(lambda: Mesh(tmp_path / "endless.smd")) < LIMIT_S
+    assert seconds_until_interrupted(lambda: list(MeshLoader([tmp_path / "endless.smd"]))) < LIMIT_S
 
 
 def test_ground_truth(scene):

@@ -43,9 +43,9 @@ void print_formats() {
     print("formats", fmt::format("{}", fmt::join(io::readable_extensions(), " ")));
     print("assimp",
           extensions.empty()
-              ? "module not found: FBX, DAE, 3DS and others cannot be read; install libassimp5 and easypbr's "
-                "assimp module"
-              : fmt::format("module found, {} formats", extensions.size()));
+              ? "reader not found: FBX, DAE, 3DS and others cannot be read; install libassimp5 and keep "
+                "easypbr_read_assimp beside libeasypbr.so"
+              : fmt::format("reader found, {} formats", extensions.size()));
 }
 
 void print_context(const gl::ContextInfo& info) {

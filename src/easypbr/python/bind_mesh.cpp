@@ -246,7 +246,7 @@ void bind_mesh(nb::module_& module) {
             nb::arg("path"),
             "Reads PLY, OBJ, STL, OFF, glTF, GLB, the formats of point clouds (PCD, XYZ, NPY, LAS, ...), and "
             "what "
-            "the assimp module reads.")
+            "assimp reads, in a process of its own.")
         .def("__init__", construct_from_arrays, nb::arg("V"), nb::arg("F").none() = nb::none(),
              "n x 3 positions and m x 3 vertex indices, of any numeric type; a cloud without faces.");
     bind_arrays(mesh);

@@ -34,12 +34,12 @@ struct LoadOptions {
 };
 
 /// Reads PLY, OBJ (+ MTL), STL, OFF, glTF, GLB, the point clouds PCD, XYZ, PTS, CSV (also txt, asc), NPY,
-/// NPZ, LAS and KITTI's BIN, and by way of assimp what that library reads. Points of clouds whose positions
-/// are not finite are left out with a warning that counts them. What is missing or unknown beside the
-/// geometry (a texture file, an element) is logged as a warning and left out. Throws FileError when the file
-/// cannot be read; FormatError, with line or byte, when it is empty, damaged, lies about its counts, has
-/// indices out of range or positions that are not finite, would take more memory than the options allow, or
-/// when its extension is unknown.
+/// NPZ, LAS and KITTI's BIN, and by way of assimp, in a process of its own, what that library reads. Points
+/// of clouds whose positions are not finite are left out with a warning that counts them. What is missing or
+/// unknown beside the geometry (a texture file, an element) is logged as a warning and left out. Throws
+/// FileError when the file cannot be read; FormatError, with line or byte, when it is empty, damaged, lies
+/// about its counts, has indices out of range or positions that are not finite, would take more memory than
+/// the options allow, or when its extension is unknown.
 LoadedScene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// The same from bytes without a file, as from a pipe. The format is that of the options, else it is told
@@ -55,7 +55,7 @@ Mesh load_mesh(const std::filesystem::path& path, const LoadOptions& options = {
 /// FormatError for an unknown extension. Never leaves half a file.
 void save_mesh(const Mesh& mesh, const std::filesystem::path& path);
 
-/// Extensions that load_scene() reads without and with assimp's module.
+/// Extensions that load_scene() reads without and with assimp's reader.
 std::vector<std::string> readable_extensions();
 
 }  // namespace easypbr::io

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/interrupt.h"
 #include "easypbr/io/mesh/mesh_io.h"
 
 namespace easypbr::io {
@@ -29,6 +31,7 @@ MeshQueue::~MeshQueue() {
 }
 
 void MeshQueue::work() {
+    const InterruptScope scope([this] { return stop_.load(std::memory_order_relaxed); });
     std::unique_lock lock(mutex_);
     for (;;) {
         changed_.wait(lock,
@@ -51,7 +54,8 @@ void MeshQueue::work() {
 std::optional<Mesh> MeshQueue::next() {
     std::unique_lock lock(mutex_);
     if (given_ >= paths_.size()) return std::nullopt;
-    changed_.wait(lock, [&] { return results_.contains(given_); });
+    using namespace std::chrono_literals;
+    while (!changed_.wait_for(lock, 20ms, [&] { return results_.contains(given_); })) check_interrupt();
     Result result = std::move(results_.extract(given_).mapped());
     ++given_;
     lock.unlock();

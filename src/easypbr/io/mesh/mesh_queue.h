@@ -1,6 +1,7 @@
 // Reading many files ahead of where they are used.
 #pragma once
 
+#include <atomic>
 #include <condition_variable>
 #include <exception>
 #include <filesystem>
@@ -20,13 +21,14 @@ class MeshQueue {
   public:
     /// Throws ArgumentError unless workers and prefetch are at least 1.
     MeshQueue(std::vector<std::filesystem::path> paths, int workers, int prefetch);
-    /// Waits for the files that are being read.
+    /// Gives up the files that are being read.
     ~MeshQueue();
     MeshQueue(const MeshQueue&) = delete;
     MeshQueue& operator=(const MeshQueue&) = delete;
 
     /// The next file's mesh, waiting for it; nothing after the last one. What reading it threw is thrown
-    /// here, at its place; the next call goes on with the file after it.
+    /// here, at its place; the next call goes on with the file after it. Throws Interrupted, after which the
+    /// next call goes on with the same file.
     std::optional<Mesh> next();
 
     size_t size() const { return paths_.size(); }
@@ -44,7 +46,7 @@ class MeshQueue {
     std::condition_variable changed_;
     std::map<size_t, Result> results_;
     size_t claimed_ = 0, given_ = 0;
-    bool stop_ = false;
+    std::atomic<bool> stop_ = false;
     std::vector<std::thread> threads_;
 };
 

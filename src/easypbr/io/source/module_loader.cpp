@@ -3,8 +3,6 @@
 #include <dlfcn.h>
 #include <fmt/format.h>
 
-#include <filesystem>
-
 namespace easypbr::io {
 namespace {
 
@@ -13,12 +11,15 @@ constexpr char inside_library = 0;
 
 }  // namespace
 
-RuntimeModule::RuntimeModule(const char* file_name) : file_name_(file_name) {
+std::filesystem::path beside_library(const char* file_name) {
     Dl_info self{};
-    if (::dladdr(&inside_library, &self) && self.dli_fname) {
-        const auto beside = std::filesystem::path(self.dli_fname).parent_path() / file_name;
+    if (!::dladdr(&inside_library, &self) || !self.dli_fname) return {};
+    return std::filesystem::path(self.dli_fname).parent_path() / file_name;
+}
+
+RuntimeModule::RuntimeModule(const char* file_name) : file_name_(file_name) {
+    if (const auto beside = beside_library(file_name); !beside.empty())
         handle_ = ::dlopen(beside.c_str(), RTLD_NOW | RTLD_LOCAL);
-    }
     if (!handle_) handle_ = ::dlopen(file_name, RTLD_NOW | RTLD_LOCAL);
     if (handle_) return;
     const char* message = ::dlerror();

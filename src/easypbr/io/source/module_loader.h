@@ -1,7 +1,11 @@
 #pragma once
+#include <filesystem>
 #include <string>
 
 namespace easypbr::io {
+
+/// Where a file beside libeasypbr.so stands; empty where the system does not say where that is.
+std::filesystem::path beside_library(const char* file_name);
 
 /// A part of the library that is loaded at run time, because it needs what not every machine has. It is found
 /// beside libeasypbr.so or where the system looks, and is never unloaded: its exceptions may outlive a call.
