@@ -54,12 +54,14 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     if (outputs.extensions) targets_.add_extensions();
 
     const PixelRect drawn =
-        timer_.run("geometry", [&] { return draw_geometry(frame, opaque, targets_, outputs); });
+        timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
+    shadow_maps_.begin(seen, casters, bounds, contents.ground || list.has(&DrawItem::receives_shadows));
+    if (is_lit_natively(frame, list, contents, with_overlay)) return light_natively(seen);
+    targets_.upload(transfers_);
     if (contents.ground) timer_.run("ground", [&] { ground_.draw(seen, targets_); });
     if (resolved.settings.ssao.enabled && !contents.traced)
         timer_.run("ambient occlusion", [&] { ambient_occlusion_.draw(seen, targets_, with_overlay); });
-    shadow_maps_.begin(seen, casters, bounds, contents.ground || list.has(&DrawItem::receives_shadows));
     if (contents.traced) timer_.run("rays", [&] { update_ray_scene(seen, casters, contents.ground); });
     const bool caught = contents.ground && GroundPass::is_shadow_catcher(resolved);
     light(seen, targets_, contents, {.extensions = outputs.extensions}, caught);
@@ -79,6 +81,35 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     if (contents.custom) contents.custom->draw_in_frame(frame, targets_, timer_, lit);
     if (!contents.layers) draw_effects(frame, opaque, false, lit);
     return lit;
+}
+
+bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list, const FrameContents& contents,
+                               bool with_overlay) const {
+    const ResolvedSettings& resolved = *frame.resolved;
+    const auto is_on = [&](const auto& effect) { return effect->is_on(frame); };
+    return contents.in_host_memory && targets_.depth.is_ahead() && !contents.ground && !contents.traced &&
+           !resolved.settings.ssao.enabled && !with_overlay && !list.has(is_layered) && list.lines.empty() &&
+           !list.extensions() && !contents.layers && !(contents.custom && !contents.custom->empty()) &&
+           std::ranges::none_of(effects_, is_on) && !shadow_maps_.has_shadows();
+}
+
+LitPicture Pipeline::light_natively(const Frame& frame) {
+    const ResolvedSettings& resolved = *frame.resolved;
+    const bool shows_environment = resolved.settings.background.shows_environment();
+    targets_.radiance.write(shows_environment ? frame.whole() : targets_.depth.area());
+    shadow_maps_.rewind();
+    LightInputs inputs;
+    if (!resolved.environment.empty()) inputs.environment = &environment_;
+    bool first = true;
+    do {
+        inputs.block = shadow_maps_.next_block();
+        inputs.block.first = std::exchange(first, false);
+        timer_.run("lighting", [&] { lighting_.shade(frame, targets_, inputs, transfers_); });
+        inputs.environment = nullptr;
+    } while (shadow_maps_.has_more());
+    if (!resolved.environment.empty() && shows_environment)
+        timer_.run("background", [&] { background_.shade(frame, targets_, environment_, transfers_); });
+    return {.radiance = &targets_.radiance, .covered = frame.covered};
 }
 
 PixelRect Pipeline::draw_geometry(const Frame& frame, const DrawList& list, const GBuffer& targets,

@@ -30,6 +30,7 @@ struct FrameContents {
     bool traced = false;             ///< rays look for the environment's light, in place of ambient occlusion
     bool layers = false;             ///< targets are read, no picture: nothing follows the lit surfaces
     CustomPasses* custom = nullptr;  ///< a program's own passes, where it is a picture
+    bool in_host_memory = false;     ///< whatever follows can take the radiance from host memory
 };
 
 /// Owns the passes and the targets between them. All members need the context current.
@@ -94,6 +95,10 @@ class Pipeline {
                      const gl::Texture& opaque, const FrameContents& contents, bool with_overlay);
     /// The eye-dome lighting of the layers' points; nothing where there are none.
     const gl::Texture* shade_points(const Frame& frame, const DrawList& layers, const gl::Texture& opaque);
+    /// Whether a frame is lit natively: its surfaces are in host memory, and no pass needs the driver.
+    bool is_lit_natively(const Frame& frame, const DrawList& list, const FrameContents& contents,
+                         bool with_overlay) const;
+    LitPicture light_natively(const Frame& frame);
     bool draws_overlay(const Shot& shot, const FrameContents& contents) const;
     /// Of those that draw into the overlay, or of the others too.
     void draw_effects(const Frame& frame, const DrawList& opaque, bool overlay_only, LitPicture& lit);

@@ -119,13 +119,14 @@ class Renderer {
                        const SettingsImages& images);
     /// Draws the exact colours that nothing may mix with, once, through the pixels' centres.
     void draw_exact();
+    void draw_custom_over_picture();
     const gl::Texture* background_texture(const ResolvedSettings& resolved, const SettingsImages& images);
     void evict_unused();
 
     Pipeline pipeline_;
     DrawableCache drawables_{pipeline_.caches().spacings};
     CustomPasses custom_;
-    OutputPass output_;
+    OutputPass output_{pipeline_.transfers()};
     std::unique_ptr<KeptSurfaces> kept_;   ///< of a picture that was drawn with `surfaces`
     Camera camera_;                        ///< that the targets were seen by
     std::vector<ElementSources> sources_;  ///< of what the targets hold

@@ -1,6 +1,7 @@
 // Which light gets which shadow maps, and which of them must be drawn anew.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <vector>
@@ -24,6 +25,9 @@ class ShadowMaps {
     /// when no surface receives a shadow: a bare cloud, labels in their own colours. `casters` must live
     /// until its last block.
     void begin(const Frame& frame, const DrawList& casters, const Box3d& bounds, bool received);
+
+    /// Whether some light of the frame has maps.
+    bool has_shadows() const { return std::ranges::any_of(requests_, &Request::shadowed); }
 
     /// Goes back to the first block.
     void rewind() { next_ = 0; }
