@@ -37,8 +37,8 @@ class ShaderError(Exception):
 class Text:
     """A shader's text with its includes, after the preprocessor."""
 
-    def __init__(self, folder: Path, macros: dict[str, str]) -> None:
-        self.folder, self.macros = folder, macros
+    def __init__(self, folder: Path, macros: dict[str, str], without: list[str]) -> None:
+        self.folder, self.macros, self.without = folder, macros, without
         self.features: list[tuple[str, str]] = []  # macro, constant
         self.files: list[str] = []
 
@@ -123,7 +123,11 @@ class Translator:
     """Expressions and statements of function bodies."""
 
     def __init__(self) -> None:
-        self.uniforms: set[str] = set()  # features, and uniforms that are numbers
+        self.uniforms: set[str] = set()  # features
+        self.off: set[str] = set()  # features that are left out
+
+    def is_off(self, items: list) -> bool:
+        return len(items) == 1 and not is_group(items[0]) and items[0] in self.off
 
     def is_uniform(self, items: list) -> bool:
         """Whether only one side of the choice is evaluated: for all pixels the same."""
@@ -137,6 +141,8 @@ class Translator:
                     depth += (items[j] == "?") - (items[j] == ":")
                     j += 1
                 parts = items[:i], items[i + 1 : j], items[j + 1 :]
+                if self.is_off(parts[0]):
+                    return self.expression(parts[2])
                 if self.is_uniform(parts[0]):
                     return "({} ? {} : {})".format(*(self.expression(part) for part in parts))
                 return "select(" + ", ".join(self.expression(part) for part in parts) + ")"
@@ -262,6 +268,7 @@ class Shader:
         structs: dict[str, list] = {}
         translator = Translator()
         translator.uniforms = {constant for _, constant in text.features}
+        translator.off = {constant for macro, constant in text.features if macro in text.without}
         items: list = []
         for item in tree:
             items.append(item)
@@ -330,16 +337,16 @@ def write(path: Path, text: str) -> None:
         path.write_text(text)
 
 
-def translate(name: str, folder: Path, macros: dict[str, str]) -> tuple[str, str]:
+def translate(name: str, folder: Path, macros: dict[str, str], without: list[str]) -> tuple[str, str]:
     """The struct of a shader's uniforms, and that of the shader."""
-    text = Text(folder, macros)
+    text = Text(folder, macros, without)
     shader = Shader(text, f"{name}.frag")
     kinds = [
         (f"samplers::{uniform}" if kind.startswith("sampler") else UNIFORM_TYPES.get(kind, kind), uniform, size)
         for kind, uniform, size in shader.uniforms
     ]
     declared = [f"{kind} {uniform}{f'[{size}]' if size else ''} = {{}};" for kind, uniform, size in kinds]
-    declared += [f"bool {constant} = {str(macro in macros).lower()};" for macro, constant in text.features]
+    declared += [f"bool {constant} = false;" for _, constant in text.features]
     visits = [f'visit("{uniform}", {uniform});' for _, uniform, _ in kinds]
     visits += [f'visit.feature("{macro}", {constant});' for macro, constant in text.features]
     uniforms = [f"struct {name}_uniforms {{", *shader.uniform_structs, *declared]
@@ -354,12 +361,13 @@ def main() -> None:
     parser.add_argument("output", type=Path, help="folder to write to")
     parser.add_argument("names", nargs="+", help="fragment shaders, without .frag")
     parser.add_argument("--define", action="append", default=[], metavar="NAME[=VALUE]", help="a macro")
+    parser.add_argument("--without", action="append", default=[], metavar="NAME", help="a feature that is left out")
     arguments = parser.parse_args()
     macros = dict((*macro.split("=", 1), "")[:2] for macro in arguments.define)
     uniforms, shaders = [], []
     for name in arguments.names:
         try:
-            parts = translate(name, arguments.folder, macros)
+            parts = translate(name, arguments.folder, macros, arguments.without)
         except ShaderError as error:
             sys.exit(f"{name}: {error}")
         uniforms.append(parts[0])

@@ -16,7 +16,8 @@ enum class Store {
 enum class Pixels {
     rgba8,   ///< rounded to 8 bits
     rgba16,  ///< rounded to 16 bits
-    rgba32f
+    rgba32f,
+    r16  ///< rounded to 16 bits
 };
 /// The pixels that are shaded.
 enum class Where {
@@ -33,6 +34,7 @@ struct Region {
     Store store = Store::replace;
     Where where = Where::everywhere;
     R32f depth = {};
+    int depth_channels = 1;  ///< of the pixels of `depth`, which is the first
     int x0 = 0, x1 = 0;  ///< columns that are shaded
 };
 
@@ -40,7 +42,8 @@ struct Region {
 using ShadeRows = void (*)(const void* uniforms, const Region& region, int y0, int y1);
 
 struct Kernels {
-    ShadeRows lighting_surface, background_environment, display_output, accumulate_sample, antialias_fxaa;
+    ShadeRows lighting_surface, background_environment, display_output, accumulate_sample, antialias_fxaa, occlusion_select,
+        occlusion_horizon, occlusion_hemisphere, occlusion_blur, occlusion_magnify;
 };
 
 }  // namespace easypbr::native

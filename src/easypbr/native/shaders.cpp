@@ -137,18 +137,22 @@ std::string_view instruction_set() {
 
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1) {
     const Kernels& k = *chosen_set().kernels;
+#define EASYPBR_SHADER(name) \
+    case Shader::name:       \
+        return shade_with<name##_uniforms>(k.name, inputs, region, y0, y1);
     switch (shader) {
-        case Shader::lighting_surface:
-            return shade_with<lighting_surface_uniforms>(k.lighting_surface, inputs, region, y0, y1);
-        case Shader::background_environment:
-            return shade_with<background_environment_uniforms>(k.background_environment, inputs, region, y0, y1);
-        case Shader::display_output:
-            return shade_with<display_output_uniforms>(k.display_output, inputs, region, y0, y1);
-        case Shader::accumulate_sample:
-            return shade_with<accumulate_sample_uniforms>(k.accumulate_sample, inputs, region, y0, y1);
-        case Shader::antialias_fxaa:
-            return shade_with<antialias_fxaa_uniforms>(k.antialias_fxaa, inputs, region, y0, y1);
+        EASYPBR_SHADER(lighting_surface)
+        EASYPBR_SHADER(background_environment)
+        EASYPBR_SHADER(display_output)
+        EASYPBR_SHADER(accumulate_sample)
+        EASYPBR_SHADER(antialias_fxaa)
+        EASYPBR_SHADER(occlusion_select)
+        EASYPBR_SHADER(occlusion_horizon)
+        EASYPBR_SHADER(occlusion_hemisphere)
+        EASYPBR_SHADER(occlusion_blur)
+        EASYPBR_SHADER(occlusion_magnify)
     }
+#undef EASYPBR_SHADER
 }
 
 }  // namespace easypbr::native

@@ -14,7 +14,18 @@
 
 namespace easypbr::native {
 
-enum class Shader { lighting_surface, background_environment, display_output, accumulate_sample, antialias_fxaa };
+enum class Shader {
+    lighting_surface,
+    background_environment,
+    display_output,
+    accumulate_sample,
+    antialias_fxaa,
+    occlusion_select,
+    occlusion_horizon,
+    occlusion_hemisphere,
+    occlusion_blur,
+    occlusion_magnify
+};
 
 /// Names of the instruction sets that the library was built for and the processor has, the best first.
 /// `$EASYPBR_ISA` names the one that is used, "v2", "avx2" or "avx512".
@@ -26,7 +37,7 @@ std::string_view instruction_set();
 /// given is 0. Pictures must live until the shader has run.
 struct Inputs {
     using Bytes = std::span<const std::byte>;
-    using Value = std::variant<int, float, Vec2, Vec3, Vec4, Mat3, View, Cube, Panorama, Bytes>;
+    using Value = std::variant<int, float, Vec2, Vec3, Vec4, Mat3, View, Cube, Panorama, Layers, Bytes>;
 
     std::vector<std::string_view> features;
     std::vector<std::pair<std::string_view, Value>> values;

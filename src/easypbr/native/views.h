@@ -49,6 +49,12 @@ struct Panorama {
     size_t offsets[most_levels] = {};  ///< of levels, in texels
 };
 
+/// Square pictures of one float a texel, one after the other.
+struct Layers {
+    const float* data = nullptr;
+    int size = 0;
+};
+
 /// The type of each sampler, by the name of the uniform.
 namespace samplers {
 using u_albedo = Rgba16;
@@ -57,6 +63,11 @@ using u_material = Rgba8;
 using u_depth_target = R32f;
 using u_dfg = Rg16fLinear;
 using u_ambient_occlusion = R16;
+using u_surface = Rgba32f;
+using u_visibility = R16;
+using u_shadow_maps = Layers;
+using u_tint_absorption = Layers;
+using u_tint_moment = Layers;
 using u_prefiltered = Cube;
 using u_irradiance = Cube;
 using u_sky_visibility = Rgba16f;

@@ -12,6 +12,7 @@ namespace EASYPBR_ISA {
 
 struct Fragment {
     vec4 gl_FragCoord;
+    vfloat gl_FragDepth;  ///< native passes ignore it
 };
 
 #include "native/shaders.h"
@@ -79,6 +80,14 @@ INLINE void store_shorts(std::byte* to, const vec4& color, vbool active) {
     }
 }
 
+INLINE void store_short(std::byte* to, vfloat value, vbool active) {
+    const vint bits = rounded(value, 65535);
+    for (int k = 0; k < lanes; ++k) {
+        const auto pixel = uint16_t(bits.v[k]);
+        if (active.v[k]) std::memcpy(to + 2 * k, &pixel, sizeof pixel);
+    }
+}
+
 INLINE void store_pixels(const Region& region, int x, int y, const vec4& color, vbool active) {
     const size_t at = size_t(y - region.y) * size_t(region.width) + size_t(x - region.x);
     const bool all_active = !any_lane(!active);
@@ -86,13 +95,27 @@ INLINE void store_pixels(const Region& region, int x, int y, const vec4& color, 
         store_float(region.data + 16 * at, color, active, all_active, region.store);
     else if (region.pixels == Pixels::rgba8)
         store_bytes(region.data + 4 * at, color, active, all_active);
+    else if (region.pixels == Pixels::r16)
+        store_short(region.data + 2 * at, color.x, active);
     else
         store_shorts(region.data + 8 * at, color, active);
 }
 
+INLINE vfloat depth_at(const Region& region, vint x, int y) {
+    if (region.depth_channels == 1) return fetch(region.depth, x, y).x;
+    const Place p = place_of(region.depth, x, y);
+    if (!any_lane(p.inside)) return 0.0f;
+    const auto* data = reinterpret_cast<const int32_t*>(region.depth.data);
+    return select(p.inside, as_float(gather(data, p.index * region.depth_channels).v), vfloat(0.0f));
+}
+
 template <class Shader>
-INLINE const vec4& output_of(const Shader& s) {
-    if constexpr (requires { s.o_radiance; })
+INLINE vec4 output_of(const Shader& s) {
+    if constexpr (requires { s.o_visibility; })
+        return {s.o_visibility, 0.0f, 0.0f, 1.0f};
+    else if constexpr (requires { s.o_surface; })
+        return s.o_surface;
+    else if constexpr (requires { s.o_radiance; })
         return s.o_radiance;
     else if constexpr (requires { s.o_sum; })
         return s.o_sum;
@@ -112,7 +135,7 @@ __attribute__((flatten)) void shade_rows(const void* uniforms, const Region& reg
             const vbool inside = column < region.x1;
             vbool active = inside;
             if (region.where != Where::everywhere) {
-                const vfloat depth = fetch(region.depth, column, y).x;
+                const vfloat depth = depth_at(region, column, y);
                 active = inside && (region.where == Where::covered ? depth != 0.0f : depth == 0.0f);
             }
             const bool any = any_lane(active);
@@ -136,7 +159,12 @@ const Kernels kernels{shade_rows<lighting_surface, lighting_surface_uniforms>,
                       shade_rows<background_environment, background_environment_uniforms>,
                       shade_rows<display_output, display_output_uniforms>,
                       shade_rows<accumulate_sample, accumulate_sample_uniforms>,
-                      shade_rows<antialias_fxaa, antialias_fxaa_uniforms>};
+                      shade_rows<antialias_fxaa, antialias_fxaa_uniforms>,
+                      shade_rows<occlusion_select, occlusion_select_uniforms>,
+                      shade_rows<occlusion_horizon, occlusion_horizon_uniforms>,
+                      shade_rows<occlusion_hemisphere, occlusion_hemisphere_uniforms>,
+                      shade_rows<occlusion_blur, occlusion_blur_uniforms>,
+                      shade_rows<occlusion_magnify, occlusion_magnify_uniforms>};
 
 }  // namespace EASYPBR_ISA
 }  // namespace easypbr::native

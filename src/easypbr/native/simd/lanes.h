@@ -137,6 +137,10 @@ INLINE vuint operator<<(vuint a, vuint n) {
 INLINE vuint operator~(vuint a) {
     return ~a.v;
 }
+INLINE vfloat& operator++(vfloat& a) {
+    a.v += splat(1.0f);
+    return a;
+}
 INLINE vfloat operator-(vfloat a) {
     return -a.v;
 }
@@ -275,6 +279,26 @@ INLINE vfloat floor(vfloat a) {
 }
 INLINE vfloat abs(vfloat a) {
     return as_float(Ints(a.v) & 0x7fffffff);
+}
+INLINE int abs(int a) {
+    return a < 0 ? -a : a;
+}
+INLINE vfloat ceil(vfloat a) {
+    return -floor(-a);
+}
+INLINE vfloat mod(vfloat a, vfloat b) {
+    return a - b * floor(a / b);
+}
+INLINE int clamp(int x, int low, int high) {
+    return x < low ? low : x > high ? high : x;
+}
+/// The number of bits that are 1.
+INLINE vint bitCount(vuint a) {
+    Uints x = a.v;
+    x = x - ((x >> 1) & 0x55555555u);
+    x = (x & 0x33333333u) + ((x >> 2) & 0x33333333u);
+    x = (x + (x >> 4)) & 0x0f0f0f0fu;
+    return Ints((x * 0x01010101u) >> 24);
 }
 INLINE vfloat fract(vfloat a) {
     return a - floor(a);

@@ -130,6 +130,7 @@ INLINE vec4 fetch(const R32f& s, vint x, vint y) {
 }
 INLINE vec4 fetch(const R16& s, vint x, vint y) {
     const Place p = place_of(s, x, y);
+    if (!any_lane(p.inside)) return vec4(0.0f, 0.0f, 0.0f, 1.0f);
     Ints r;
     for (int k = 0; k < lanes; ++k) r[k] = load<uint16_t>(s.data + 2 * size_t(p.index.v[k]));
     return {to_float(select(p.inside, vint(r), vint(0))) * (1.0f / 65535.0f), 0.0f, 0.0f, 1.0f};
@@ -275,6 +276,24 @@ INLINE vec4 textureLod(const Panorama& s, const vec2& uv, float level) {
         pixels[k] = bilinear_halves(p, p + row, right.v[k], below.v[k]);
     }
     return planar(pixels);
+}
+
+/// Nearest, clamped to the borders; z is the layer.
+INLINE vfloat layer_texel(const Layers& s, vint x, vint y, vint layer) {
+    const vint index = (layer * s.size + clamp(y, 0, s.size - 1)) * s.size + clamp(x, 0, s.size - 1);
+    return as_float(gather(reinterpret_cast<const int32_t*>(s.data), index).v);
+}
+INLINE vec4 textureLod(const Layers& s, const vec3& place, float) {
+    const float size = float(s.size);
+    return {layer_texel(s, to_int(floor(place.x * size)), to_int(floor(place.y * size)), to_int(place.z + 0.5f)), 0.0f,
+            0.0f, 1.0f};
+}
+INLINE vec4 textureGather(const Layers& s, const vec3& place) {
+    const float size = float(s.size);
+    const vint x = to_int(floor(place.x * size - 0.5f)), y = to_int(floor(place.y * size - 0.5f)),
+               layer = to_int(place.z + 0.5f);
+    return {layer_texel(s, x, y + 1, layer), layer_texel(s, x + 1, y + 1, layer), layer_texel(s, x + 1, y, layer),
+            layer_texel(s, x, y, layer)};
 }
 
 struct CubePlace {

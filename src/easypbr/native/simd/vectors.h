@@ -57,10 +57,12 @@ struct vec4 {
     INLINE vec4(vfloat a, vfloat b, vfloat c, vfloat d) : x(a), y(b), z(c), w(d) {}
     INLINE vec4(const vec3& v, vfloat d) : x(v.x), y(v.y), z(v.z), w(d) {}
     INLINE vec4(const vec2& a, const vec2& b) : x(a.x), y(a.y), z(b.x), w(b.y) {}
+    INLINE vec4(vfloat a, const vec2& v, vfloat d) : x(a), y(v.x), z(v.y), w(d) {}
     INLINE explicit vec4(vfloat a) : x(a), y(a), z(a), w(a) {}
     INLINE explicit vec4(const bvec4& v);
     INLINE vec4(const uni::vec4& v) : x(v.x), y(v.y), z(v.z), w(v.w) {}
     INLINE vec2 xy() const { return {x, y}; }
+    INLINE vec2 yz() const { return {y, z}; }
     INLINE vec2 zw() const { return {z, w}; }
     INLINE vec2 wx() const { return {w, x}; }
     INLINE vec2 zy() const { return {z, y}; }
@@ -99,6 +101,9 @@ INLINE ivec2 operator+(const ivec2& a, vint b) {
 }
 INLINE ivec2 operator-(const ivec2& a, vint b) {
     return {a.x - b, a.y - b};
+}
+INLINE ivec2 operator&(const ivec2& a, vint b) {
+    return {a.x & b, a.y & b};
 }
 INLINE ivec2 clamp(const ivec2& v, const ivec2& low, const ivec2& high) {
     return {clamp(v.x, low.x, high.x), clamp(v.y, low.y, high.y)};
@@ -189,6 +194,9 @@ INLINE uvec3 floatBitsToUint(const vec3& a) {
     INLINE V mix(vfloat a, const V& b, const V& t) {                                                      \
         return mix(V(a), b, t);                                                                           \
     }                                                                                                     \
+    INLINE V step(vfloat edge, const V& b) {                                                              \
+        return step(V(edge), b);                                                                          \
+    }                                                                                                     \
     INLINE V select(vbool condition, const V& a, const V& b) {                                            \
         return {EACH(SELECT)};                                                                            \
     }                                                                                                     \
@@ -232,6 +240,15 @@ INLINE vfloat dot(const vec3& a, const vec3& b) {
 INLINE vfloat dot(const vec4& a, const vec4& b) {
     return a.x * b.x + a.y * b.y + a.z * b.z + a.w * b.w;
 }
+INLINE vbool operator==(const vec2& a, const vec2& b) {
+    return a.x == b.x && a.y == b.y;
+}
+INLINE vfloat length(const vec2& a) {
+    return sqrt(dot(a, a));
+}
+INLINE vfloat distance(const vec2& a, const vec2& b) {
+    return length(a - b);
+}
 INLINE vfloat length(const vec3& a) {
     return sqrt(dot(a, a));
 }
@@ -265,6 +282,10 @@ INLINE vec3 mix(const vec3& a, const vec3& b, const bvec3& t) {
 INLINE vec3 operator*(const mat3& m, const vec3& v) {
     return {m.m[0] * v.x + m.m[3] * v.y + m.m[6] * v.z, m.m[1] * v.x + m.m[4] * v.y + m.m[7] * v.z,
             m.m[2] * v.x + m.m[5] * v.y + m.m[8] * v.z};
+}
+INLINE vec3 operator*(const vec3& v, const mat3& m) {
+    return {m.m[0] * v.x + m.m[1] * v.y + m.m[2] * v.z, m.m[3] * v.x + m.m[4] * v.y + m.m[5] * v.z,
+            m.m[6] * v.x + m.m[7] * v.y + m.m[8] * v.z};
 }
 
 }  // namespace easypbr::native::EASYPBR_ISA

@@ -15,6 +15,8 @@ native::Pixels pixels_of(gl::Format format) {
             return native::Pixels::rgba16;
         case gl::Format::rgba32f:
             return native::Pixels::rgba32f;
+        case gl::Format::r16:
+            return native::Pixels::r16;
         default:
             throw Error("native shaders do not write this format");
     }
@@ -100,6 +102,7 @@ void ScreenShader::shade(const ShaderInputs& inputs, const NativeOutput& output,
     if (output.depth) {
         output.depth->download(output.depth->whole(), transfers);
         static_cast<native::View&>(region.depth) = view_of(*output.depth);
+        region.depth_channels = output.depth->format() == gl::Format::rgba32f ? 4 : 1;
     }
     native::shade(native_.value(), values, region, output.area.y, output.area.y + output.area.height);
 }

@@ -26,7 +26,7 @@ class ShaderInputs {
     }
 
     using Value = std::variant<int, float, Vec2, Vec3, Vec4, Mat3, const Target*, const gl::Texture*, native::View,
-                               native::Cube, native::Panorama>;
+                               native::Cube, native::Panorama, native::Layers>;
     template <class T>
     void set(std::string name, const T& value) {
         values_.emplace_back(std::move(name), value);
@@ -56,7 +56,7 @@ struct NativeOutput {
     PixelRect area = {};             ///< inside of what it holds
     native::Store store = native::Store::replace;
     native::Where where = native::Where::everywhere;
-    const Target* depth = nullptr;  ///< in host memory; not needed everywhere
+    const Target* depth = nullptr;  ///< its first channel, of floats; not needed everywhere
 };
 
 class ScreenShader {

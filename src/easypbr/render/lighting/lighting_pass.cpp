@@ -152,7 +152,7 @@ void set_environment(ShaderInputs& values, const Frame& frame, const LightInputs
     values.set("u_indirect_specular", inputs.traced->indirect_specular);
 }
 
-void set_lights(ShaderInputs& values, const Frame& frame, const LightBlock& block) {
+void set_lights(ShaderInputs& values, const Frame& frame, const LightBlock& block, bool native) {
     LightUniforms lights{};
     for (size_t i = 0; i < block.lights.size(); ++i)
         write_light(*block.lights[i], frame.camera.position(), lights, i);
@@ -162,16 +162,19 @@ void set_lights(ShaderInputs& values, const Frame& frame, const LightBlock& bloc
 
     ShadowUniforms shadows{};
     for (size_t i = 0; i < block.shadows.size(); ++i)
-        write_shadow(block.shadows[i], frame.camera.position(), block.maps->width(), shadows, i);
+        write_shadow(block.shadows[i], frame.camera.position(), block.resolution, shadows, i);
     values.set_block(1, "u_shadows", gl::bytes_of(shadows));
-    values.set("u_shadow_maps", *block.maps);
+    if (native)
+        values.set("u_shadow_maps", block.host_maps);
+    else
+        values.set("u_shadow_maps", *block.maps);
     if (block.tints) {
         values.set("u_tint_absorption", block.tints->absorption);
         values.set("u_tint_moment", block.tints->moment);
     }
     values.set("u_single_lights", int(block.lights.size() - block.cubes));
     values.set("u_cube_lights", int(block.lights.size()));
-    values.set("u_shadow_resolution", float(block.maps->width()));
+    values.set("u_shadow_resolution", float(block.resolution));
     values.set("u_sample_index", float(frame.sample_index));
     set_noise_uniforms(values, frame);
 }
@@ -227,7 +230,7 @@ ShaderInputs LightingPass::surface_inputs(const Frame& frame, const GBuffer& tar
     if (inputs.extensions) set_extensions(values, frame, targets);
     if (inputs.transmission) set_transmission(values, frame, *inputs.transmission);
     if (inputs.environment) set_environment(values, frame, inputs, native);
-    set_lights(values, frame, inputs.block);
+    set_lights(values, frame, inputs.block, native);
     return values;
 }
 
@@ -269,7 +272,7 @@ void LightingPass::draw_caught(const Frame& frame, const GBuffer& targets, const
     values.set("u_depth_target", targets.depth);
     if (targets.ambient_occlusion) values.set("u_ambient_occlusion", targets.ambient_occlusion);
     if (inputs.environment) set_environment(values, frame, inputs, false);
-    set_lights(values, frame, inputs.block);
+    set_lights(values, frame, inputs.block, false);
     light.bind();
     catcher_.draw(values, targets.covered_state(gl::add));
 }

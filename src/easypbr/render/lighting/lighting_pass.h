@@ -44,7 +44,7 @@ class LightingPass {
                      const gl::Framebuffer& light);
 
     /// Lights natively: writes the radiance target in host memory, where the surfaces are. There must be no
-    /// extensions, no transmission and no shadows.
+    /// extensions, no transmission and no tinted shadows, and the maps are in host memory.
     void shade(const Frame& frame, const GBuffer& targets, const LightInputs& inputs, Transfers& transfers);
 
   private:

@@ -57,7 +57,9 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
     shadow_maps_.begin(seen, casters, bounds, contents.ground || list.has(&DrawItem::receives_shadows));
-    if (is_lit_natively(frame, list, contents, with_overlay)) return light_natively(seen);
+    const bool native = is_lit_natively(frame, list, contents, with_overlay);
+    shadow_maps_.keep_in_host_memory(native);
+    if (native) return light_natively(seen);
     targets_.upload(transfers_);
     if (contents.ground) timer_.run("ground", [&] { ground_.draw(seen, targets_); });
     if (resolved.settings.ssao.enabled && !contents.traced)
@@ -85,24 +87,26 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
 
 bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list, const FrameContents& contents,
                                bool with_overlay) const {
-    const ResolvedSettings& resolved = *frame.resolved;
     const auto is_on = [&](const auto& effect) { return effect->is_on(frame); };
     return contents.in_host_memory && targets_.depth.is_ahead() && !contents.ground && !contents.traced &&
-           !resolved.settings.ssao.enabled && !with_overlay && !list.has(is_layered) && list.lines.empty() &&
+           !with_overlay && !list.has(is_layered) && list.lines.empty() &&
            !list.extensions() && !contents.layers && !(contents.custom && !contents.custom->empty()) &&
-           std::ranges::none_of(effects_, is_on) && !shadow_maps_.has_shadows();
+           std::ranges::none_of(effects_, is_on) && 
+           !(shadow_maps_.has_shadows() && shadow_maps_.has_tints());
 }
 
 LitPicture Pipeline::light_natively(const Frame& frame) {
     const ResolvedSettings& resolved = *frame.resolved;
     const bool shows_environment = resolved.settings.background.shows_environment();
     targets_.radiance.write(shows_environment ? frame.whole() : targets_.depth.area());
+    if (resolved.settings.ssao.enabled)
+        timer_.run("ambient occlusion", [&] { ambient_occlusion_.shade(frame, targets_, transfers_); });
     shadow_maps_.rewind();
     LightInputs inputs;
     if (!resolved.environment.empty()) inputs.environment = &environment_;
     bool first = true;
     do {
-        inputs.block = shadow_maps_.next_block();
+        timer_.run("shadows", [&] { inputs.block = shadow_maps_.next_block(); });
         inputs.block.first = std::exchange(first, false);
         timer_.run("lighting", [&] { lighting_.shade(frame, targets_, inputs, transfers_); });
         inputs.environment = nullptr;

@@ -29,6 +29,11 @@ class ShadowMaps {
     /// Whether some light of the frame has maps.
     bool has_shadows() const { return std::ranges::any_of(requests_, &Request::shadowed); }
 
+    /// Whether some casters weaken light instead of stopping it.
+    bool has_tints() const { return tinted_; }
+    /// Where the maps of the frame's lights are from now on: in host memory there are no tints.
+    void keep_in_host_memory(bool host);
+
     /// Goes back to the first block.
     void rewind() { next_ = 0; }
 
@@ -111,7 +116,9 @@ class ShadowMaps {
 
     const ShadowPass::Primitives& primitives_;
     ShadowPass pass_;
+    bool in_host_memory_ = false;
     gl::Texture maps_;
+    std::vector<float> host_maps_;
     ShadowTints tints_;  ///< beside the maps while some casters weaken light
     std::vector<gl::Framebuffer> framebuffers_, tint_framebuffers_;  ///< of each layer
     std::vector<bool> taken_;                                        ///< layers

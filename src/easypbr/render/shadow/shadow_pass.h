@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "easypbr/gl/texture.h"
@@ -21,6 +22,9 @@ class ShadowPass {
     void draw(const ShadowView& view, const DrawList& casters, gl::Texture& maps, int layer,
               const gl::Framebuffer& framebuffer);
 
+    /// The same in host memory, row by row. What cannot be rasterised natively is drawn and downloaded.
+    void draw(const ShadowView& view, const DrawList& casters, int resolution, std::span<float> layer);
+
     /// Fills one layer of the tints with the others, see shaders/shadow_target.glsl: what all of them take
     /// from the light, and where. `framebuffer` has both as attachments.
     void draw_tints(const ShadowView& view, const DrawList& casters, const gl::Framebuffer& framebuffer);
@@ -29,6 +33,10 @@ class ShadowPass {
     void allow_native(bool allow) { native_ = allow; }
 
   private:
+    /// Rasterises what can be, and returns what is left of each kind.
+    std::vector<Casters> rasterise(const ShadowView& view, const DrawList& list, bool native, ShadowDepths& depths);
+    void draw_rest(const ShadowView& view, int resolution, const std::vector<Casters>& left);
+
     const Primitives& primitives_;
     Transfers& transfers_;
     bool native_ = true;
