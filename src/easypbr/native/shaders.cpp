@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstdlib>
 #include <cstring>
 #include <type_traits>
@@ -54,16 +55,21 @@ const auto& known_sets() {
     return sets;
 }
 
+const InstructionSet& set_of(std::string_view name) {
+    for (const InstructionSet& set : known_sets())
+        if (set.is_there && (name.empty() || set.name == name)) return set;
+    std::string there;
+    for (std::string_view other : instruction_sets()) there += fmt::format(" {}", other);
+    throw ArgumentError(fmt::format("instruction set: '{}' is not one of{}", name, there));
+}
+
+std::atomic<const InstructionSet*> chosen;
+
 const InstructionSet& chosen_set() {
-    static const InstructionSet& chosen = []() -> const InstructionSet& {
-        const char* asked = std::getenv("EASYPBR_ISA");
-        for (const InstructionSet& set : known_sets())
-            if (set.is_there && (!asked || !*asked || set.name == asked)) return set;
-        std::string there;
-        for (std::string_view name : instruction_sets()) there += fmt::format(" {}", name);
-        throw ArgumentError(fmt::format("EASYPBR_ISA: '{}' is not one of{}", asked, there));
-    }();
-    return chosen;
+    if (const InstructionSet* set = chosen) return *set;
+    const char* asked = std::getenv("EASYPBR_ISA");
+    chosen = &set_of(asked ? asked : "");
+    return *chosen;
 }
 
 /// Fills in the uniforms of a shader.
@@ -133,6 +139,10 @@ std::vector<std::string_view> instruction_sets() {
 
 std::string_view instruction_set() {
     return chosen_set().name;
+}
+
+void use_instruction_set(std::string_view name) {
+    chosen = &set_of(name);
 }
 
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1) {

@@ -32,6 +32,8 @@ enum class Shader {
 std::vector<std::string_view> instruction_sets();
 /// The one in use. Throws ArgumentError when $EASYPBR_ISA names none of instruction_sets().
 std::string_view instruction_set();
+/// Chooses another one. Throws ArgumentError when it is none of instruction_sets().
+void use_instruction_set(std::string_view name);
 
 /// What a shader reads: features that are on, and values by the names of its uniforms. A uniform that is not
 /// given is 0. Pictures must live until the shader has run.

@@ -88,7 +88,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
 bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list, const FrameContents& contents,
                                bool with_overlay) const {
     const auto is_on = [&](const auto& effect) { return effect->is_on(frame); };
-    return contents.in_host_memory && targets_.depth.is_ahead() && !contents.ground && !contents.traced &&
+    return native_shading_ && contents.in_host_memory && targets_.depth.is_ahead() && !contents.ground && !contents.traced &&
            !with_overlay && !list.has(is_layered) && list.lines.empty() &&
            !list.extensions() && !contents.layers && !(contents.custom && !contents.custom->empty()) &&
            std::ranges::none_of(effects_, is_on) && 

@@ -71,6 +71,7 @@ class Pipeline {
         surfaces_.allow_native(allow);
         shadow_maps_.allow_native(allow);
     }
+    void allow_native_shading(bool allow) { native_shading_ = allow; }
     void evict_unused();
 
   private:
@@ -122,6 +123,7 @@ class Pipeline {
     std::vector<std::unique_ptr<Effect>> effects_ = make_effects();
     GBuffer with_ids_;  ///< for effects that ask for ids
     PassTimer timer_;
+    bool native_shading_ = true;
     gl::Texture hiding_depth_;
     gl::Framebuffer hiding_;
     ProgramVariants hiding_programs_{"screen_triangle.vert", "opaque_limit.frag"};
