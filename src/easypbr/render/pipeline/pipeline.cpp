@@ -97,7 +97,8 @@ bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list, const F
 
 LitPicture Pipeline::light_natively(const Frame& frame) {
     const ResolvedSettings& resolved = *frame.resolved;
-    const bool shows_environment = resolved.settings.background.shows_environment();
+    const bool shows_environment =
+        !resolved.environment.empty() && resolved.settings.background.shows_environment();
     targets_.radiance.write(shows_environment ? frame.whole() : targets_.depth.area());
     if (resolved.settings.ssao.enabled)
         timer_.run("ambient occlusion", [&] { ambient_occlusion_.shade(frame, targets_, transfers_); });
@@ -111,7 +112,7 @@ LitPicture Pipeline::light_natively(const Frame& frame) {
         timer_.run("lighting", [&] { lighting_.shade(frame, targets_, inputs, transfers_); });
         inputs.environment = nullptr;
     } while (shadow_maps_.has_more());
-    if (!resolved.environment.empty() && shows_environment)
+    if (shows_environment)
         timer_.run("background", [&] { background_.shade(frame, targets_, environment_, transfers_); });
     return {.radiance = &targets_.radiance, .covered = frame.covered};
 }
