@@ -65,7 +65,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     light(seen, targets_, contents, {.extensions = outputs.extensions}, caught);
     if (contents.ground) timer_.run("ground", [&] { ground_.finish(seen, targets_, bounds); });
     if (with_overlay) timer_.run("display", [&] { display_.draw(seen, targets_); });
-    if (!has_layers) timer_.run("lines", [&] { draw_lines(seen, list); });
+    if (!has_layers) timer_.run("overlays", [&] { draw_overlay_items(seen, list); });
     if (!resolved.environment.empty() && resolved.settings.background.shows_environment())
         timer_.run("background", [&] { background_.draw(seen, targets_, environment_, contents.ground); });
 
@@ -151,11 +151,11 @@ void Pipeline::draw_surfaces(const Frame& frame, const DrawList& list, const Sur
 
 const Target* Pipeline::draw_overlay(const Frame& frame, const DrawList& list,
                                      const FrameContents& contents) {
-    if (list.lines.empty() && !draws_overlay(frame, contents)) return nullptr;
+    if (list.overlays.empty() && !draws_overlay(frame, contents)) return nullptr;
     targets_.add_overlay();
     const float nothing[4] = {0, 0, 0, 0};
     targets_.display().clear_color(0, nothing);
-    draw_lines(frame, list);
+    draw_overlay_items(frame, list);
     LitPicture lit{.overlay = &targets_.overlay, .covered = frame.covered};
     draw_effects(frame, list, true, lit);
     if (contents.custom)
@@ -179,7 +179,6 @@ const Box3d& Pipeline::bounds_of(const SceneSnapshot& scene) {
 void Pipeline::evict_unused() {
     caches_.evict_unused();
     for (const auto& kind : primitives_) kind->evict_unused();
-    lines_.evict_unused();
 }
 
 }  // namespace easypbr::render

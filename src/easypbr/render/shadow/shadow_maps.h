@@ -17,7 +17,7 @@ namespace easypbr::render {
 class ShadowMaps {
   public:
     /// Both must outlive this.
-    ShadowMaps(const ShadowPass::Primitives& primitives, Transfers& transfers)
+    ShadowMaps(const Primitives& primitives, Transfers& transfers)
         : primitives_(primitives), pass_(primitives, transfers) {}
 
     /// Takes note of a frame's lights and of what casts; `bounds` are those of its vertices. Nothing is drawn
@@ -105,7 +105,7 @@ class ShadowMaps {
     void prepare_tints();
     void take(int first, int layers, bool taken);
 
-    const ShadowPass::Primitives& primitives_;
+    const Primitives& primitives_;
     ShadowPass pass_;
     gl::Texture maps_;
     ShadowTints tints_;  ///< beside the maps while some casters weaken light

@@ -2,9 +2,6 @@
 // way.
 #pragma once
 
-#include <memory>
-#include <vector>
-
 #include "easypbr/gl/texture.h"
 #include "easypbr/render/primitives/primitive.h"
 
@@ -12,7 +9,6 @@ namespace easypbr::render {
 
 class ShadowPass {
   public:
-    using Primitives = std::vector<std::unique_ptr<Primitive>>;
     /// Both must outlive this.
     ShadowPass(const Primitives& primitives, Transfers& transfers)
         : primitives_(primitives), transfers_(transfers) {}
