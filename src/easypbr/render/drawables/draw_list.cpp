@@ -1,5 +1,7 @@
 #include "easypbr/render/drawables/draw_list.h"
 
+#include <cmath>
+
 #include "easypbr/scene/settings.h"
 
 namespace easypbr::render {
@@ -111,6 +113,10 @@ DrawList DrawList::layers() const {
 
 DrawList DrawList::without_layers() const {
     return without([](const DrawItem& item) { return item.layered; });
+}
+
+double DrawItem::scale() const {
+    return std::cbrt(std::abs(object->T_world_mesh.linear().determinant()));
 }
 
 bool DrawItem::needs_tangents() const {

@@ -32,6 +32,8 @@ struct DrawItem {
     bool reaches_beyond = false;  ///< its primitives reach beyond the vertices
 
     const MeshData& mesh() const { return *object->mesh; }
+    /// The factor of its pose on lengths: the cube root of that on volumes.
+    double scale() const;
     bool emits() const { return material.unlit || !material.emissive.isZero() || material.shader; }
     bool textured() const { return material.has_textures() && !mesh().UV.empty(); }
     /// Its shadow is a tint: it weakens light instead of stopping it.
