@@ -49,7 +49,7 @@ Vec4 background_color(const Frame& frame) {
 
 /// Scale and offset of the frame's texture coordinates with which an image covers the picture, centred,
 /// nothing distorted.
-Vec4 cover(const gl::Texture& image, const Frame& frame) {
+Vec4 covering_uv(const gl::Texture& image, const Frame& frame) {
     const Vec2 whole = frame.picture_size.cast<float>();
     const float picture = whole.x() / whole.y(), own = float(image.width()) / float(image.height());
     const Vec2 scale = picture > own ? Vec2(1, own / picture) : Vec2(picture / own, 1);
@@ -71,7 +71,7 @@ void bind_overlay(const gl::Program& program, const Target& overlay) {
     overlay.bind(overlay_unit);
 }
 
-void bind(const LitPicture& lit, const gl::Program& program) {
+void bind_lit(const LitPicture& lit, const gl::Program& program) {
     lit.radiance->bind(0);
     if (lit.overlay) bind_overlay(program, *lit.overlay);
     if (lit.glow) set_glow_uniforms(program, *lit.glow, glow_unit);
@@ -119,7 +119,7 @@ void OutputPass::accumulate(const Frame& frame, const LitPicture& lit) {
     program.set("u_size", Vec2(frame.size.cast<float>()));
     program.set("u_exposure", exposure_of(frame, encoding_));
     program.set("u_radiance", 0);
-    bind(lit, program);
+    bind_lit(lit, program);
     gl::draw_screen(limited_to(lit.covered, frame, lit, gl::add));
 }
 
@@ -153,10 +153,10 @@ void OutputPass::finish(const Frame& frame, const LitPicture& lit, const gl::Tex
     if (sum)
         sum_.bind(0);
     else
-        bind(lit, program);
+        bind_lit(lit, program);
     if (background_image) {
         program.set("u_background_image", 1);
-        program.set("u_background_uv", cover(*background_image, frame));
+        program.set("u_background_uv", covering_uv(*background_image, frame));
         background_image->bind(1);
     }
     gl::draw_screen(state);

@@ -36,7 +36,7 @@ std::vector<Parts> objects_of(const Casters& casters) {
     return objects;
 }
 
-bool suits_native(Parts parts) {
+bool parts_suit_native(Parts parts) {
     const auto opaque = [](const DrawItem* item) {
         return item->alpha == AlphaMode::opaque && !item->material.shader;
     };
@@ -82,7 +82,7 @@ void MeshShadows::rasterise(const ShadowView& view, Casters& casters, ShadowDept
             return depths.buffer().draw({mesh.V, mesh.F, run.first_face, run.face_count,
                                          layer.clip_from_mesh(first), both_sides, mirrored});
         };
-        if (!suits_native(parts) || !std::ranges::all_of(runs_of(parts), rasterised))
+        if (!parts_suit_native(parts) || !std::ranges::all_of(runs_of(parts), rasterised))
             left.insert(left.end(), parts.begin(), parts.end());
     }
     casters = std::move(left);
