@@ -26,6 +26,7 @@ struct TransmissionInputs {
 
 /// What lights a G-buffer.
 struct LightInputs {
+    bool native = false;  ///< in host memory, by LightingPass::shade()
     LightBlock block = {};
     const gpu::EnvironmentMaps* environment = nullptr;  ///< with the first block, where there is one
     const TracedLight* traced = nullptr;                ///< what rays found of the environment's light
@@ -44,7 +45,7 @@ class LightingPass {
                      const gl::Framebuffer& light);
 
     /// Lights natively: writes the radiance target in host memory, where the surfaces are. There must be no
-    /// extensions, no transmission and no tinted shadows, and the maps are in host memory.
+    /// extensions, no transmission and no tinted shadows, and the shadow maps are in host memory.
     void shade(const Frame& frame, const GBuffer& targets, const LightInputs& inputs, Transfers& transfers);
 
   private:

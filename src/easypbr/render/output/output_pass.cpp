@@ -50,7 +50,7 @@ Vec4 background_color(const Frame& frame) {
 
 /// Scale and offset of the frame's texture coordinates with which an image covers the picture, centred,
 /// nothing distorted.
-Vec4 cover(const gl::Texture& image, const Frame& frame) {
+Vec4 covering_uv(const gl::Texture& image, const Frame& frame) {
     const Vec2 whole = frame.picture_size.cast<float>();
     const float picture = whole.x() / whole.y(), own = float(image.width()) / float(image.height());
     const Vec2 scale = picture > own ? Vec2(1, own / picture) : Vec2(picture / own, 1);
@@ -211,7 +211,7 @@ void OutputPass::finish(const Frame& frame, const LitPicture& lit, const gl::Tex
     framebuffer().bind();
     if (background_image) {
         values.define("BACKGROUND_IMAGE");
-        values.set("u_background_uv", cover(*background_image, frame));
+        values.set("u_background_uv", covering_uv(*background_image, frame));
         values.set("u_background_image", *background_image);
     } else {
         const Vec4 code = background_code(frame, encoding_);

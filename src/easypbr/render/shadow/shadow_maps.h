@@ -18,7 +18,7 @@ namespace easypbr::render {
 class ShadowMaps {
   public:
     /// Both must outlive this.
-    ShadowMaps(const ShadowPass::Primitives& primitives, Transfers& transfers)
+    ShadowMaps(const Primitives& primitives, Transfers& transfers)
         : primitives_(primitives), pass_(primitives, transfers) {}
 
     /// Takes note of a frame's lights and of what casts; `bounds` are those of its vertices. Nothing is drawn
@@ -114,7 +114,7 @@ class ShadowMaps {
     void prepare_tints();
     void take(int first, int layers, bool taken);
 
-    const ShadowPass::Primitives& primitives_;
+    const Primitives& primitives_;
     ShadowPass pass_;
     bool in_host_memory_ = false;
     gl::Texture maps_;

@@ -2,9 +2,7 @@
 // way.
 #pragma once
 
-#include <memory>
 #include <span>
-#include <vector>
 
 #include "easypbr/gl/texture.h"
 #include "easypbr/render/primitives/primitive.h"
@@ -13,7 +11,6 @@ namespace easypbr::render {
 
 class ShadowPass {
   public:
-    using Primitives = std::vector<std::unique_ptr<Primitive>>;
     /// Both must outlive this.
     ShadowPass(const Primitives& primitives, Transfers& transfers)
         : primitives_(primitives), transfers_(transfers) {}

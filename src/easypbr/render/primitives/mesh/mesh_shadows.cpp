@@ -1,7 +1,6 @@
 #include "easypbr/render/primitives/mesh/mesh_shadows.h"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <utility>
 
@@ -62,7 +61,7 @@ std::vector<MeshPart> runs_of(Parts parts) {
 Vec3 light_through(const DrawItem& item) {
     if (item.kind != SurfaceKind::lit) return Vec3::Zero();
     Material m = item.material;
-    m.thickness *= float(std::cbrt(std::abs(item.object->T_world_mesh.linear().determinant())));
+    m.thickness *= float(item.scale());
     const Vec3 through = m.transmittance(AlphaMode::opaque);
     return m.thickness > 0 ? Vec3(through.cwiseSqrt()) : through;
 }
