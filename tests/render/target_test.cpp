@@ -109,7 +109,7 @@ TEST(Transfers, ANativeFrameStaysInHostMemory) {
 TEST(Transfers, SurfacesAreUploadedOnceForPassesOfTheDriver) {
     Settings settings;
     settings.bloom.enabled = true;
-    settings.ground.mode = GroundMode::none;
+    settings.ssao.enabled = false;
     const auto transfers = transfers_of(scene_of(make_teapot(1, 20)), settings);
     if (!transfers) GTEST_SKIP() << "this machine has a GPU: nothing is drawn natively";
     EXPECT_EQ(transfers->uploads, gbuffer_uploads + 1);  // and the light

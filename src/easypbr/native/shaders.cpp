@@ -145,6 +145,11 @@ void use_instruction_set(std::string_view name) {
     chosen = &set_of(name);
 }
 
+void resolve_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels, int y, size_t row,
+                       int first_x) {
+    chosen_set().kernels->resolve_triangles(triangles, pixels.data(), int(pixels.size()), y, row, first_x);
+}
+
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1) {
     const Kernels& k = *chosen_set().kernels;
 #define EASYPBR_SHADER(name) \

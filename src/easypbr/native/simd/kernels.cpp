@@ -2,7 +2,7 @@
 // might keep this file's copy of them for processors that cannot run it.
 #include "easypbr/native/kernels.h"
 
-#include "easypbr/native/simd/samplers.h"
+#include "easypbr/native/simd/resolve_triangles.h"
 
 namespace easypbr::native {
 
@@ -16,6 +16,7 @@ struct Fragment {
 };
 
 #include "native/shaders.h"
+
 
 namespace {
 
@@ -155,7 +156,8 @@ __attribute__((flatten)) void shade_rows(const void* uniforms, const Region& reg
 
 // What other instruction sets export is declared here too, so that the definitions are seen elsewhere.
 extern const Kernels kernels;
-const Kernels kernels{shade_rows<lighting_surface, lighting_surface_uniforms>,
+const Kernels kernels{resolve_triangles,
+                      shade_rows<lighting_surface, lighting_surface_uniforms>,
                       shade_rows<background_environment, background_environment_uniforms>,
                       shade_rows<display_output, display_output_uniforms>,
                       shade_rows<accumulate_sample, accumulate_sample_uniforms>,

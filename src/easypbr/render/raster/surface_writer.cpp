@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 
 #include "easypbr/core/octahedral.h"
 
@@ -40,6 +41,22 @@ void SurfaceWriter::put(size_t i, const SurfacePixel& p) {
     if (id_.empty()) return;
     id_[i] = p.object + 1;
     element_[i] = (p.element + 1) | (p.is_point ? point_element : 0);
+}
+
+native::VisibleTriangles SurfaceWriter::target_of(const SurfacePixel& p) const {
+    native::VisibleTriangles to;
+    const uint16_t albedo[4] = {unorm16(p.albedo[0]), unorm16(p.albedo[1]), unorm16(p.albedo[2]), 65535};
+    const uint8_t material[4] = {unorm8(p.metallic), unorm8(p.roughness), 255, uint8_t(p.kind)};
+    std::memcpy(&to.albedo, albedo, sizeof albedo);
+    std::memcpy(&to.material, material, sizeof material);
+    to.id = p.object + 1;
+    to.albedos = reinterpret_cast<uint64_t*>(albedo_.data());
+    to.normals = reinterpret_cast<uint32_t*>(normal_.data());
+    to.materials = reinterpret_cast<uint32_t*>(material_.data());
+    to.depths = depth_.data();
+    to.ids = id_.data();
+    to.elements = element_.data();
+    return to;
 }
 
 void SurfaceWriter::clear() {

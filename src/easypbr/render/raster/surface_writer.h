@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 
+#include "easypbr/native/kernels.h"
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/render/frame/surface_kind.h"
 
@@ -31,12 +32,15 @@ class SurfaceWriter {
     size_t index(int x, int y) const {
         return size_t(y - area_.y) * size_t(area_.width) + size_t(x - area_.x);
     }
+    const PixelRect& area() const { return area_; }
     float depth(size_t index) const { return depth_[index]; }
     void put(size_t index, const SurfacePixel& pixel);
     void put_nothing(size_t index) {
         depth_[index] = 0;
         if (!id_.empty()) id_[index] = element_[index] = 0;
     }
+    /// Targets and constants for pixels of one surface: all that a pixel holds but its normal, depth and element.
+    native::VisibleTriangles target_of(const SurfacePixel& surface) const;
     /// Nothing in all of the rectangle.
     void clear();
 

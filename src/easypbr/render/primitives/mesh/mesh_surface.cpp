@@ -93,4 +93,32 @@ SurfacePixel MeshSurface::at(uint32_t face, double ndc_x, double ndc_y, float) c
     return pixel;
 }
 
+bool MeshSurface::resolve(const Frame& frame, const DrawItem& item, std::span<const native::VisiblePixel> pixels,
+                          int y, SurfaceWriter& writer) const {
+    if (item.with_colors) return false;
+    native::VisibleTriangles triangles =
+        writer.target_of({.albedo = item.material.base_color,
+                          .metallic = item.material.metallic,
+                          .roughness = item.material.roughness,
+                          .kind = item.kind,
+                          .object = uint32_t(item.object - frame.scene->objects.data())});
+    const MeshData& mesh = item.mesh();
+    triangles.V = mesh.V.data();
+    triangles.N = facts_->N.data();
+    triangles.F = mesh.F.data();
+    triangles.first_face = uint32_t(item.part.first_face);
+    std::copy_n(&clip_[0][0], 16, &triangles.clip_from_mesh[0][0]);
+    for (int row = 0; row < 3; ++row)
+        for (int column = 0; column < 3; ++column)
+            triangles.normal_from_mesh[row][column] = normal_from_mesh_(row, column);
+    triangles.flat = item.style.flat;
+    triangles.two_sided = item.two_sided;
+    triangles.normals_agree = facts_->normals_agree;
+    triangles.mirrored = mirrored_;
+    triangles.pixel_width = 2.0 / frame.size.x();
+    triangles.pixel_height = 2.0 / frame.size.y();
+    native::resolve_triangles(triangles, pixels, y, writer.index(writer.area().x, y), writer.area().x);
+    return true;
+}
+
 }  // namespace easypbr::render

@@ -22,6 +22,9 @@ class MeshSurface final : public VisibleItem {
     /// snapped.
     SurfacePixel at(uint32_t face, double ndc_x, double ndc_y, float depth) const override;
 
+    bool resolve(const Frame& frame, const DrawItem& item, std::span<const native::VisiblePixel> pixels, int y,
+                 SurfaceWriter& writer) const override;
+
   private:
     struct Hit;
     Hit intersect(const float* const (&corner)[3], double ndc_x, double ndc_y) const;

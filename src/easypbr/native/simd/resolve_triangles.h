@@ -1,0 +1,136 @@
+// The surfaces of pixels whose triangle is known: weights of the corners, depth, normal.
+#pragma once
+
+#include "easypbr/native/kernels.h"
+#include "easypbr/native/simd/samplers.h"
+
+namespace easypbr::native::EASYPBR_ISA {
+
+using Doubles = double __attribute__((vector_size(8 * lanes)));
+
+/// The corners' values of all lanes: [corner][component][lane].
+struct Corners {
+    alignas(64) float value[3][3][lanes];
+
+    INLINE vec3 corner(int c) const {
+        return {vfloat(load<Floats>(value[c][0])), vfloat(load<Floats>(value[c][1])),
+                vfloat(load<Floats>(value[c][2]))};
+    }
+    INLINE void set(int c, int lane, const float* from) {
+        for (int i = 0; i < 3; ++i) value[c][i][lane] = from[i];
+    }
+};
+
+INLINE vec3 transformed(const float (&m)[3][3], const vec3& v) {
+    return {m[0][0] * v.x + m[0][1] * v.y + m[0][2] * v.z, m[1][0] * v.x + m[1][1] * v.y + m[1][2] * v.z,
+            m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
+}
+
+/// A row of the clip matrix times a point, and times a difference of two.
+INLINE Doubles clip_of(const double (&row)[4], const vec3& p) {
+    return row[0] * __builtin_convertvector(p.x.v, Doubles) + row[1] * __builtin_convertvector(p.y.v, Doubles) +
+           row[2] * __builtin_convertvector(p.z.v, Doubles) + row[3];
+}
+INLINE vfloat edge_of(const double (&row)[4], const vec3& e) {
+    return float(row[0]) * e.x + float(row[1]) * e.y + float(row[2]) * e.z;
+}
+INLINE vfloat single(Doubles v) {
+    return __builtin_convertvector(v, Floats);
+}
+
+/// A pixel on a triangle: weights of the second and third corner, right under perspective, and the depth.
+struct TriangleHit {
+    vfloat second, third, depth;
+    vbool front;
+};
+
+/// Weights solve sum b_i (x_i - X w_i, y_i - Y w_i) = 0 for the pixel (X, Y) (Olano and Greer 1997). The first corner
+/// is transformed in double precision, the others relative to it: a small triangle keeps its shape far from the origin.
+INLINE TriangleHit intersect(const double (&clip)[4][4], const vec3& corner, const vec3& edge1, const vec3& edge2,
+                             Doubles ndc_x, double ndc_y) {
+    const Doubles w = clip_of(clip[3], corner);
+    const vfloat x = single(clip_of(clip[0], corner) - ndc_x * w), y = single(clip_of(clip[1], corner) - ndc_y * w);
+    const vfloat X = single(ndc_x), Y = float(ndc_y);
+    const vfloat w1 = edge_of(clip[3], edge1), w2 = edge_of(clip[3], edge2);
+    const vfloat x1 = edge_of(clip[0], edge1) - X * w1, y1 = edge_of(clip[1], edge1) - Y * w1;
+    const vfloat x2 = edge_of(clip[0], edge2) - X * w2, y2 = edge_of(clip[1], edge2) - Y * w2;
+    const vfloat sum = x1 * y2 - y1 * x2;
+    const vbool flat = sum == 0.0f;
+    const vfloat scale = 1.0f / select(flat, vfloat(1.0f), sum);
+    TriangleHit hit;
+    hit.second = select(flat, vfloat(1.0f / 3.0f), (x2 * y - y2 * x) * scale);
+    hit.third = select(flat, vfloat(1.0f / 3.0f), (x * y1 - y * x1) * scale);
+    const vfloat z = single(clip_of(clip[2], corner));
+    hit.depth = (z + hit.second * edge_of(clip[2], edge1) + hit.third * edge_of(clip[2], edge2)) /
+                (single(w) + hit.second * w1 + hit.third * w2);
+    hit.front = flat || sum > 0.0f;
+    return hit;
+}
+
+/// On the side that is seen, where the surface has two.
+INLINE vec3 normal_of(const VisibleTriangles& t, const vec3& mean, const vec3& edge1, const vec3& edge2, vbool front) {
+    const vbool back = t.mirrored ? front : !front;
+    if (t.flat) {
+        const vec3 n = normalize(transformed(t.normal_from_mesh, cross(edge1, edge2)));
+        return select(back, -n, n);
+    }
+    const vec3 world = transformed(t.normal_from_mesh, mean);
+    const vec3 n = world * (1.0f / max(length(world), 1e-30f));
+    if (!t.two_sided) return n;
+    if (t.normals_agree) return select(back, -n, n);
+    const vec3 face = transformed(t.normal_from_mesh, cross(edge1, edge2));
+    const vfloat side = dot(n, face);
+    return select(select(back, -side, side) < 0.0f, -n, n);
+}
+
+/// Octahedral, two values of 16 bits: shaders/common_encoding.glsl.
+INLINE vint encoded_normal(const vec3& n) {
+    const vfloat scale = 1.0f / (abs(n.x) + abs(n.y) + abs(n.z));
+    const vfloat x = n.x * scale, y = n.y * scale;
+    const vbool above = n.z >= 0.0f;
+    const vfloat u = select(above, x, (1.0f - abs(y)) * select(x >= 0.0f, 1.0f, -1.0f)),
+                 v = select(above, y, (1.0f - abs(x)) * select(y >= 0.0f, 1.0f, -1.0f));
+    const auto rounded = [](vfloat c) __attribute__((always_inline)) {
+        return to_int(clamp(c * 0.5f + 0.5f, 0.0f, 1.0f) * 65535.0f + 0.5f);
+    };
+    return rounded(u) | rounded(v) << 16;
+}
+
+inline void resolve_triangles(const VisibleTriangles& t, const VisiblePixel* pixels, int count, int y, size_t row,
+                              int first_x) {
+    const double ndc_y = 1 - (y + 0.5) * t.pixel_height;
+    Corners position, normal;
+    for (int first = 0; first < count; first += lanes) {
+        const int used = count - first < lanes ? count - first : lanes;
+        Doubles ndc_x;
+        for (int k = 0; k < lanes; ++k) {
+            // Lanes beyond the last pixel repeat it.
+            const VisiblePixel& pixel = pixels[first + (k < used ? k : used - 1)];
+            const int32_t* f = t.F + 3 * size_t(t.first_face + pixel.face);
+            ndc_x[k] = (pixel.x + 0.5) * t.pixel_width - 1;
+            for (int c = 0; c < 3; ++c) {
+                position.set(c, k, t.V + 3 * size_t(f[c]));
+                if (!t.flat) normal.set(c, k, t.N + 3 * size_t(f[c]));
+            }
+        }
+        const vec3 corner = position.corner(0), edge1 = position.corner(1) - corner, edge2 = position.corner(2) - corner;
+        const TriangleHit hit = intersect(t.clip_from_mesh, corner, edge1, edge2, ndc_x, ndc_y);
+        vec3 mean(vfloat(0.0f));
+        if (!t.flat)
+            mean = normal.corner(0) * (1.0f - hit.second - hit.third) + normal.corner(1) * hit.second +
+                   normal.corner(2) * hit.third;
+        const vint encoded = encoded_normal(normal_of(t, mean, edge1, edge2, hit.front));
+        for (int k = 0; k < used; ++k) {
+            const VisiblePixel& pixel = pixels[first + k];
+            const size_t at = row + size_t(pixel.x - first_x);
+            t.albedos[at] = t.albedo;
+            t.materials[at] = t.material;
+            t.normals[at] = uint32_t(encoded.v[k]);
+            t.depths[at] = hit.depth.v[k];
+            if (t.ids) t.ids[at] = t.id;
+            if (t.ids) t.elements[at] = t.first_face + pixel.face + 1;
+        }
+    }
+}
+
+}  // namespace easypbr::native::EASYPBR_ISA
