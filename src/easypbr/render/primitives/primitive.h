@@ -19,13 +19,6 @@ namespace easypbr::render {
 /// Items of one kind, in the order of the scene.
 using DrawItems = std::span<const DrawItem>;
 
-/// How well the CPU draws some items without the driver, where there is no GPU.
-enum class NativeUse {
-    none,      ///< only the driver can
-    possible,  ///< gains nothing on its own
-    preferred
-};
-
 /// One kind of primitive; a folder of its own, and a line in primitives.cpp. Its items are surfaces, or
 /// overlays: unlit, hiding no surface, drawn between the layers. The members for what a kind has not are left
 /// as they are and draw nothing. Members that draw need the context current.
@@ -42,7 +35,8 @@ class Primitive {
 
     /// Adds items to what the textures hold, by the driver.
     virtual void draw(const Frame&, DrawItems, const GBuffer&, const SurfaceOutputs&) {}
-    virtual NativeUse native_use(DrawItems) const { return NativeUse::none; }
+    /// Whether the CPU can draw some items without the driver, where there is no GPU.
+    virtual bool is_native(DrawItems) const { return false; }
     /// Adds the nearest primitive of each pixel; false, where anything may have been added, when only the
     /// driver can draw the items in this frame.
     virtual bool rasterise(const Frame&, DrawItems, VisibleSurfaces&) { return false; }

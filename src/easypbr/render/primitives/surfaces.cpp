@@ -33,11 +33,11 @@ bool Surfaces::is_native() const {
 }
 
 void Surfaces::rasterise(const Frame& frame, std::vector<Group>& groups) {
-    const auto use = [](const Group& group) { return group.kind->native_use(group.items); };
-    if (std::ranges::find(groups, NativeUse::preferred, use) == groups.end()) return;
+    const auto by_driver = [](const Group& group) { return !group.kind->is_native(group.items); };
+    if (std::ranges::all_of(groups, by_driver)) return;
     visible_.clear(frame.size, frame.covered);
     std::vector<Group> native = groups;
-    std::erase_if(native, [&](const Group& group) { return use(group) == NativeUse::none; });
+    std::erase_if(native, by_driver);
     // One that only the driver can draw may have added some of its items.
     for (auto next = native.begin(); next != native.end();) {
         if (next->kind->rasterise(frame, next->items, visible_)) {

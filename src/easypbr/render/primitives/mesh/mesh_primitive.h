@@ -18,7 +18,7 @@ class MeshPrimitive final : public Primitive {
               const SurfaceOutputs& outputs) override {
         pass_.draw(frame, items, targets, outputs);
     }
-    NativeUse native_use(DrawItems items) const override { return NativeMeshes::use(items); }
+    bool is_native(DrawItems items) const override { return NativeMeshes::draws(items); }
     bool rasterise(const Frame& frame, DrawItems items, VisibleSurfaces& surfaces) override {
         return native_.rasterise(frame, items, surfaces);
     }

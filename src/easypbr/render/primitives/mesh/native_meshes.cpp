@@ -8,9 +8,6 @@
 namespace easypbr::render {
 namespace {
 
-/// Small meshes alone are left to the driver; where exactly the two break even has not been measured.
-constexpr int64_t least_native_faces = 5000;
-
 Mat4d clip_from(const Frame& frame, const DrawItem& item) {
     return frame.clip_from_view * frame.camera.view() * item.object->T_world_mesh.matrix();
 }
@@ -28,14 +25,10 @@ ScreenTriangles triangles_of(const Frame& frame, const DrawItem& item, const Mes
 
 }  // namespace
 
-NativeUse NativeMeshes::use(DrawItems items) {
-    int64_t faces = 0;
-    for (const DrawItem& item : items) {
-        if (item.textured() || item.emits() || item.extensions() || item.alpha != AlphaMode::opaque)
-            return NativeUse::none;
-        faces += item.part.face_count;
-    }
-    return faces >= least_native_faces ? NativeUse::preferred : NativeUse::possible;
+bool NativeMeshes::draws(DrawItems items) {
+    return std::ranges::none_of(items, [](const DrawItem& item) {
+        return item.textured() || item.emits() || item.extensions() || item.alpha != AlphaMode::opaque;
+    });
 }
 
 const MeshFacts& NativeMeshes::facts_of(const MeshData& mesh) {

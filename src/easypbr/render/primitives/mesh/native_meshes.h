@@ -17,7 +17,7 @@ class NativeMeshes {
     explicit NativeMeshes(gpu::ClosedMeshes& closed) : closed_(closed) {}
 
     // See Primitive. Native are plain surfaces, without textures, emission or alpha.
-    static NativeUse use(DrawItems items);
+    static bool draws(DrawItems items);
     bool rasterise(const Frame& frame, DrawItems items, VisibleSurfaces& surfaces);
     bool cover(const Frame& frame, DrawItems items, std::span<uint8_t> covered);
 

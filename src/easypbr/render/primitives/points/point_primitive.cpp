@@ -18,8 +18,8 @@ bool is_opaque(const DrawItem& item) {
 
 }  // namespace
 
-NativeUse PointPrimitive::native_use(DrawItems items) const {
-    return std::ranges::all_of(items, is_opaque) ? NativeUse::preferred : NativeUse::none;
+bool PointPrimitive::is_native(DrawItems items) const {
+    return std::ranges::all_of(items, is_opaque);
 }
 
 bool PointPrimitive::rasterise(const Frame& frame, DrawItems items, VisibleSurfaces& surfaces) {

@@ -17,7 +17,7 @@ class PointPrimitive final : public Primitive {
               const SurfaceOutputs& outputs) override {
         pass_.draw(frame, items, targets, outputs);
     }
-    NativeUse native_use(DrawItems items) const override;
+    bool is_native(DrawItems items) const override;
     bool rasterise(const Frame& frame, DrawItems items, VisibleSurfaces& surfaces) override;
     bool cover(const Frame& frame, DrawItems items, std::span<uint8_t> covered) override;
     ShadowShape shadow_shape(const DrawItem& item) override;

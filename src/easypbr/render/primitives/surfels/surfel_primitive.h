@@ -18,7 +18,7 @@ class SurfelPrimitive final : public Primitive {
     /// What is nearest at a pixel and within a band behind it is one surface, of whatever item.
     void draw(const Frame& frame, DrawItems items, const GBuffer& targets,
               const SurfaceOutputs& outputs) override;
-    NativeUse native_use(DrawItems) const override { return NativeUse::preferred; }
+    bool is_native(DrawItems) const override { return true; }
     bool is_mean() const override { return true; }
     void add_mean(const Frame& frame, DrawItems items, std::span<const float> hides,
                   SurfaceWriter& writer) override;
