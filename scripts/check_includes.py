@@ -24,7 +24,7 @@ ROOMS = {
     "gui": {"core", "scene", "gl", "io", "gpu", "render", "app"},
     "dataset": {"core", "scene", "gl", "io", "gpu", "render", "app"},
     "viewer": {"core", "scene", "gl", "io", "gpu", "render", "app", "gui", "dataset"},
-    "cli": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "gui", "dataset", "viewer"},
+    "cli": {"core", "scene", "geometry", "gl", "native", "io", "gpu", "render", "app", "gui", "dataset", "viewer"},
     "python": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "gui", "dataset", "viewer", "cli"},
 }
 

@@ -12,6 +12,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh/assimp/assimp_loader.h"
 #include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/native/shaders.h"
 
 namespace easypbr::cli {
 namespace {
@@ -64,6 +65,8 @@ int run_doctor(const DoctorOptions&) {
     print_cache();
     print_formats();
     std::fflush(stdout);
+    print("CPU", fmt::format("shades with {} where there is no GPU (there are {})", native::instruction_set(),
+                             fmt::join(native::instruction_sets(), ", ")));
     app::Session session;
     print_context(session.context_info());
     return 0;
