@@ -13,6 +13,13 @@ bool is_layered(const DrawItem& item) {
     return item.layered;
 }
 
+/// The ground, and what is drawn larger than it is, reach beyond the bounds of what casts.
+ShadowMaps::Receivers receivers_of(const DrawList& list, const FrameContents& contents) {
+    if (!contents.ground && !list.has(&DrawItem::receives_shadows)) return ShadowMaps::Receivers::none;
+    const bool beyond = contents.ground || list.has(&DrawItem::reaches_beyond);
+    return beyond ? ShadowMaps::Receivers::anywhere : ShadowMaps::Receivers::within;
+}
+
 RayGround ray_ground(const ResolvedSettings& resolved) {
     const auto& ground = resolved.settings.ground;
     return {.up = parse_up(resolved.settings.camera.up),
@@ -59,7 +66,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     if (contents.ground) timer_.run("ground", [&] { ground_.draw(seen, targets_); });
     if (resolved.settings.ssao.enabled && !contents.traced)
         timer_.run("ambient occlusion", [&] { ambient_occlusion_.draw(seen, targets_, with_overlay); });
-    shadow_maps_.begin(seen, casters, bounds, contents.ground || list.has(&DrawItem::receives_shadows));
+    shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
     if (contents.traced) timer_.run("rays", [&] { update_ray_scene(seen, casters, contents.ground); });
     const bool caught = contents.ground && GroundPass::is_shadow_catcher(resolved);
     light(seen, targets_, contents, {.extensions = outputs.extensions}, caught);
