@@ -27,6 +27,7 @@ demo: library
 test: setup-tests build
 	@scripts/oracle.sh
 	python3 scripts/check_includes.py
+	python3 scripts/check_unity_names.py
 	scripts/lint.sh
 	scripts/test.sh
 

@@ -15,10 +15,11 @@ ROOMS = {
     "core": set(),
     "scene": {"core"},
     "gl": {"core"},
+    "native": {"core"},
     "geometry": {"core", "scene"},
     "io": {"core", "scene"},
-    "gpu": {"core", "scene", "gl"},
-    "render": {"core", "scene", "gl", "gpu"},
+    "gpu": {"core", "scene", "gl", "native"},
+    "render": {"core", "scene", "gl", "native", "gpu"},
     "app": {"core", "scene", "gl", "io", "gpu", "render"},
     "gui": {"core", "scene", "gl", "io", "gpu", "render", "app"},
     "dataset": {"core", "scene", "gl", "io", "gpu", "render", "app"},
@@ -36,6 +37,8 @@ SUBROOMS = {
 }
 # The face of a sub-room lists what stands in its folders: the one direction from a sub-room down into them.
 FACES = {"io/mesh/mesh_io.cpp", "io/video/video_loader.cpp", "render/primitives/primitives.cpp", "render/effects/effects.cpp"}
+# Sub-rooms whose folders nobody else names: what they share with the frame is an interface.
+CLOSED = {"render/primitives"}
 INCLUDE = re.compile(r'#\s*include\s+["<]easypbr/([\w/]+)\.h')
 ANY_INCLUDE = re.compile(r'#\s*include\s+["<]([^">]+)[">]')
 # What programs see is small; see docs/cpp.md.
@@ -61,6 +64,8 @@ def fault(source: str, target: str) -> str | None:
     order = SUBROOMS.get(room)
     if not order:
         return None
+    if f"{room}/{other_subroom}" in CLOSED and other_folder and folder != other_folder and source not in FACES:
+        return f"{room}/{subroom} may not include {other_folder}, a folder of {room}/{other_subroom}: expected its interface"
     if subroom != other_subroom:
         below = order.index(other_subroom) < order.index(subroom)
         return None if below else f"{room}/{subroom} may not include {room}/{other_subroom}"

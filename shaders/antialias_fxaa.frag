@@ -1,4 +1,5 @@
 // Fast approximate anti-aliasing of a single frame (Lottes 2009, the four-tap form): blurs along edges of luma.
+#include "common_lanes.glsl"
 #include "common_surface_kind.glsl"
 
 #feature EXACT has_exact_colors
@@ -26,8 +27,9 @@ bool touches_exact(vec2 uv) {
 
 /// What is blurred: the pixel itself in place of a table's colours, which nothing may mix with.
 vec4 sample_at(vec2 uv, vec4 centre) {
-    if (has_exact_colors && touches_exact(uv)) return premultiplied(centre);
-    return premultiplied(textureLod(u_color, uv, 0.0));
+    vec4 color = textureLod(u_color, uv, 0.0);
+    if (has_exact_colors) color = touches_exact(uv) ? centre : color;
+    return premultiplied(color);
 }
 
 void main() {
@@ -39,6 +41,9 @@ void main() {
     float nw = luma_of(texel_at(p - 1)), ne = luma_of(texel_at(p + ivec2(1, -1)));
     float sw = luma_of(texel_at(p + ivec2(-1, 1))), se = luma_of(texel_at(p + 1));
     float low = min(m, min(min(nw, ne), min(sw, se))), high = max(m, max(max(nw, ne), max(sw, se)));
+    bool edge = high - low > max(1.0 / 16.0, high * 0.125);
+    o_color = centre;
+    if (!any_lane(edge)) return;
 
     vec2 along = vec2(sw + se - nw - ne, nw + sw - ne - se);
     float reduce = max((nw + ne + sw + se) * 0.03125, 1.0 / 128.0);
@@ -48,6 +53,5 @@ void main() {
     vec4 wide = 0.5 * near + 0.25 * (sample_at(uv - along * 0.5, centre) + sample_at(uv + along * 0.5, centre));
     float wide_luma = dot(wide.rgb, luma_weights);
     vec4 blurred = wide_luma < low || wide_luma > high ? near : wide;
-    bool edge = high - low > max(1.0 / 16.0, high * 0.125);
     o_color = edge ? vec4(blurred.rgb / max(blurred.a, 1e-4), blurred.a) : centre;
 }

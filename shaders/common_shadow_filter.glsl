@@ -1,4 +1,5 @@
 // Part of a light that the casters of a shadow map leave to a receiver.
+#include "common_lanes.glsl"
 #include "common_noise.glsl"
 
 #feature SHADOWS_HARD has_hard_shadows
@@ -61,7 +62,8 @@ float lit_soft(Receiver r, bool needed) {
     vec4 casters = textureGather(u_shadow_maps, vec3(corner * texel, r.at.z));
     vec4 blocks = vec4(greaterThan(casters, texel_planes(plane, r.slope * texel)));
     float sum = dot(blocks, casters), count = dot(blocks, vec4(1.0));
-    int taps = needed && reach > 0.0 ? search_taps : 0;
+    bool searches = needed && reach > 0.0;
+    int taps = any_lane(searches) ? search_taps : 0;
     for (int i = 0; i < taps; ++i) {
         // Denser towards the middle: casters near the point are seen in the narrow part of the cone only.
         float rho = (float(i) + 0.5) / float(search_taps), angle = turn + golden_angle * float(i);
@@ -69,13 +71,14 @@ float lit_soft(Receiver r, bool needed) {
         at = (floor(at * u_shadow_resolution) + 0.5) * texel;
         float caster = textureLod(u_shadow_maps, vec3(at, r.at.z), 0.0).r;
         float blocked = step(r.depth + max(rho * reach, dot(r.slope, at - r.at.xy)), caster);
+        blocked = searches ? blocked : 0.0;
         sum += blocked * caster;
         count += blocked;
     }
     float height = sum / max(count, 1.0) - r.depth;  // of the casters over the point
     vec2 radius = clamp(r.light * height, vec2(0.5 * texel), vec2(widest));
     float lit = 0.0;
-    taps = needed && count > 0.0 ? filter_taps : 0;
+    taps = any_lane(needed && count > 0.0) ? filter_taps : 0;
     for (int i = 0; i < taps; ++i) {
         float rho = sqrt((float(i) + 0.5) / float(filter_taps)), angle = turn + golden_angle * float(i);
         vec2 at = (r.at.xy + radius * (rho * vec2(cos(angle), sin(angle)))) * u_shadow_resolution - 0.5;

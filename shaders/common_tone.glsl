@@ -40,11 +40,11 @@ vec3 neutral(vec3 c) {
     float low = min(c.r, min(c.g, c.b));
     c -= low < 0.08 ? low - 6.25 * low * low : 0.04;
     float peak = max(c.r, max(c.g, c.b));
-    if (peak < start) return max(c, 0.0);
     const float d = 1.0 - start;
     float new_peak = 1.0 - d * d / (peak + d - start);
-    c *= new_peak / peak;
-    return mix(vec3(new_peak), c, 1.0 / (desaturation * (peak - new_peak) + 1.0));
+    vec3 compressed = c * (new_peak / peak);
+    compressed = mix(vec3(new_peak), compressed, 1.0 / (desaturation * (peak - new_peak) + 1.0));
+    return peak < start ? max(c, 0.0) : compressed;
 }
 
 // Without a curve radiance is scene-referred: for HDR files.

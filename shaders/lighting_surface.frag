@@ -110,8 +110,8 @@ void main() {
 
     vec3 radiance = has_environment ? environment_light(s, uv, material.z) : vec3(0.0);
     float coverage = 1.0;
-    if (sees_behind && u_first_block > 0.5 && is_lit(material.w)) {
-        vec4 light = transmitted(s);
+    if (sees_behind && u_first_block > 0.5) {
+        vec4 light = is_lit(material.w) ? transmitted(s) : vec4(0.0, 0.0, 0.0, 1.0);
         radiance += light.rgb;
         coverage = light.a;
     }

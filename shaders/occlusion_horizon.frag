@@ -2,6 +2,7 @@
 // open. The hemisphere is cut into slices through the view direction, whose integrals are closed (Jimenez et al. 2016);
 // within a slice a bit mask remembers which sectors are covered (Therrien et al. 2023), so that what is seen between
 // and behind objects stays open, and each sector counts by the distance of what covers it first.
+#include "common_lanes.glsl"
 #include "occlusion_sample.glsl"
 #include "occlusion_surface.glsl"
 
@@ -84,12 +85,13 @@ float occluded(Surface s, vec3 view, vec3 normal, Side side, vec2 direction, flo
     reach = max(min(min(reach, u_reach), pixels_to_border(s.pixel, direction)), 1.0);
     // Places lie the farther apart the farther away they are. Twice as many see four times as far equally well.
     float steps = ceil(float(u_steps) * sqrt(max(reach / reach_of_steps, 1.0)));
-    for (float k = offset; k < steps; ++k) {
+    for (float k = offset; any_lane(k < steps); ++k) {
         float t = k / steps;
         float pixels = 1.0 + (reach - 1.0) * t * t;
         float weight;
         uint bits = covered_sectors(s, view, normal, side, s.pixel + direction * pixels,
                                     thickness * (1.0 - before / pixels), dither, weight);
+        bits = k < steps ? bits : 0u;
         sum += weight * float(bitCount(bits & ~covered));
         covered |= bits;
         before = pixels;

@@ -11,21 +11,19 @@ uniform int u_frame;       // index of the accumulated frame
 // coordinate, on which the azimuth depends most, has the golden ratio; with the generalised one for all three (Roberts
 // 2018) the noise of 16 frames is half as large again.
 vec3 sample_point(int i) {
-    int k;
-    vec3 start;
+    vec3 golden = vec3(0.54970048, 0.61803399, 0.75487767);
     if (is_blurred) {
         // The 4x4 pixels that are blurred together share one run of points, neighbours far apart in it.
         ivec2 p = ivec2(gl_FragCoord.xy) & 3;
         int place = ((p.x & 1) * 8) + (((p.x ^ p.y) & 1) * 4) + ((p.x >> 1) * 2) + (((p.x ^ p.y) >> 1) & 1);
-        k = (u_frame * 16 + place) * u_directions + i;
-        start = vec3(0.5);
-    } else {
-        // Every pixel starts elsewhere: interleaved gradient noise (Jimenez 2014) at three places.
-        k = u_frame * u_directions + i;
-        vec2 f = vec2(0.06711056, 0.00583715), p = gl_FragCoord.xy + u_picture.xy;
-        start = fract(52.9829189 * fract(vec3(dot(p, f), dot(p + vec2(47.0, 17.0), f.yx), dot(p + 113.0, f + f.yx))));
+        int k = (u_frame * 16 + place) * u_directions + i;
+        return fract(vec3(0.5) + float(k & 0xffff) * golden);
     }
-    return fract(start + float(k & 0xffff) * vec3(0.54970048, 0.61803399, 0.75487767));
+    // Every pixel starts elsewhere: interleaved gradient noise (Jimenez 2014) at three places.
+    int k = u_frame * u_directions + i;
+    vec2 f = vec2(0.06711056, 0.00583715), p = gl_FragCoord.xy + u_picture.xy;
+    vec3 start = fract(52.9829189 * fract(vec3(dot(p, f), dot(p + vec2(47.0, 17.0), f.yx), dot(p + 113.0, f + f.yx))));
+    return fract(start + float(k & 0xffff) * golden);
 }
 
 // Unit vector distributed by its cosine to the normal.

@@ -1,4 +1,4 @@
-"""The bounds that shaders keep hold, and are seen when they do not; the counts are of what they say."""
+"""The bounds that shaders and code keep hold, and are seen when they do not; the counts are of what they say."""
 import pathlib
 import sys
 
@@ -6,6 +6,7 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "scripts"))
+import check_includes  # noqa: E402
 import count_structure  # noqa: E402
 
 
@@ -27,6 +28,16 @@ def test_opengl_outside_its_rooms_and_a_long_frame(tmp_path):
     assert list(count_structure.code_faults(tmp_path)) == [
         "src/easypbr/app/a.cpp: calls glEnable(): expected a function of gl/",
         f"render/pipeline/pipeline.cpp: the frame has {bound + 1} lines; expected at most {bound}"]
+
+
+def test_a_kind_of_primitive_is_named_by_the_list_of_all_kinds_alone():
+    lines = "render/primitives/lines/line_primitive"
+    assert check_includes.fault("render/primitives/primitives.cpp", lines) is None
+    assert check_includes.fault("render/primitives/lines/line_primitive.cpp", lines) is None
+    assert check_includes.fault("render/pipeline/pipeline.h", "render/primitives/overlays") is None
+    for other in ("render/pipeline/pipeline.h", "render/primitives/surfaces.cpp", "render/primitives/mesh/mesh_pass.cpp"):
+        assert "may not include" in check_includes.fault(other, lines)
+    assert list(check_includes.include_faults(ROOT)) == []
 
 
 @pytest.fixture

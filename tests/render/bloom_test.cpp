@@ -71,12 +71,10 @@ class BloomTest : public ::testing::Test {
         render::LitPicture lit{.radiance = &radiance, .covered = frame.covered, .partly_covered = true};
         const render::GBuffer targets;
         bloom.draw({frame, targets, Box3d(), {}}, lit);
-        render::OutputPass output;
+        render::OutputPass output(transfers);
         output.begin(size, render::Encoding::scene_linear);
         output.finish(frame, lit, nullptr, nullptr);
-        std::vector<float> pixels(4 * light.values.size());
-        output.picture().read(0, gl::Format::rgba32f, 0, 0, size.x(), size.y(),
-                              std::as_writable_bytes(std::span(pixels)));
+        const std::vector<float> pixels = output.picture().read<float>(transfers);
         LightField result(size.x(), size.y());
         for (size_t i = 0; i < result.values.size(); ++i) result.values[i] = pixels[4 * i + 1];
         return result;

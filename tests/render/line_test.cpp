@@ -1,8 +1,14 @@
 // Lines: their width, colour, dashes and what hides them.
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <optional>
+#include <utility>
+#include <vector>
 
 #include "easypbr/gpu/line_segments.h"
+#include "easypbr/render/drawables/draw_list.h"
+#include "easypbr/scene/resolve.h"
 #include "easypbr/scene/settings.h"
 #include "render_test.h"
 
@@ -172,6 +178,53 @@ TEST(Lines, NormalsHaveTheirLength) {
     const auto data = make_sphere(1, 16).snapshot();
     for (const gpu::Segment& s : gpu::normal_segments(*data, 0.25f))
         EXPECT_NEAR((Vec3(s.b) - Vec3(s.a)).norm(), 0.25f, 1e-5f);
+}
+
+TEST(Lines, NormalsAreAsLongAsTwoPercentOfTheDiagonal) {
+    Scene scene;
+    scene.show(facing_square(1), "square");
+    const auto picture = [&](std::optional<float> length) {
+        app::Session session = plain_session(scene, 100);
+        session.settings().style.show_normals = true;
+        if (length) session.settings().style.normal_length = *length;
+        look_from(session, Vec3d(0, -4, 1));
+        const Image image = render_linear(session);
+        return std::vector<float>(image.pixels<float>().begin(), image.pixels<float>().end());
+    };
+    const float length = 0.02f * std::sqrt(8.0f);
+    EXPECT_EQ(picture({}), picture(length));
+    EXPECT_NE(picture({}), picture(1.5f * length));
+}
+
+// Lines take no part in what surfaces are drawn, shadowed and traced by.
+TEST(Lines, AreOverlaysAndNoSurfaces) {
+    SpacingCache spacings;
+    DrawableCache drawables(spacings);
+    const auto counts = [&](const Mesh& mesh, const std::function<void(Style&)>& change) {
+        Scene scene;
+        scene.show(mesh, "mesh");
+        app::Session session = plain_session(scene, 8);
+        change(session.settings().style);
+        const ResolvedSettings resolved = session.resolve();
+        const DrawableScene drawable = drawables.apply(scene.snapshot(), resolved.settings);
+        const DrawList list = draw_list(drawable, resolved.settings, Material());
+        size_t surfaces = 0;
+        for (const auto& [kind, items] : list.items) surfaces += items.size();
+        const size_t lines = items_of(list.overlays, DrawMode::lines).size();
+        EXPECT_EQ(list.overlays.empty(), lines == 0);
+        EXPECT_EQ(list.needs_overlay(), lines > 0);
+        EXPECT_EQ(list.reaches_beyond_vertices(), lines > 0);
+        return std::pair(surfaces, lines);
+    };
+    using Counts = std::pair<size_t, size_t>;
+    const Mesh line = segment(Vec3(0, 0, 0), Vec3(1, 0, 0)), square = facing_square();
+    EXPECT_EQ(counts(line, [](Style&) {}), Counts(0, 1));
+    EXPECT_EQ(counts(square, [](Style&) {}), Counts(1, 0));
+    EXPECT_EQ(counts(square, [](Style& s) { s.show_wireframe = s.show_normals = true; }), Counts(1, 1));
+    EXPECT_EQ(counts(square, [](Style& s) { s.mode = DrawMode::lines; }), Counts(0, 1));
+    // No faces that could have a wireframe.
+    EXPECT_EQ(counts(line, [](Style& s) { s.show_wireframe = true; }), Counts(0, 1));
+    EXPECT_EQ(counts(line, [](Style& s) { s.mode = DrawMode::mesh, s.show_wireframe = true; }), Counts(0, 0));
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ class WithoutBackground {
     BackgroundMode before_;
 };
 
-Vec2i size_of(const RecordingForm& form, Vec2i window, const Settings& settings) {
+Vec2i recording_size(const RecordingForm& form, Vec2i window, const Settings& settings) {
     if (form.panels) return window;
     return form.size.minCoeff() > 0 ? form.size : settings.image.size;
 }
@@ -43,12 +43,12 @@ std::string LiveRecording::picture(const RecordingForm& form, const Screen& scre
         return form.picture;
     }
     const WithoutBackground without(session_.settings(), form.transparent);
-    return recorder_.record(form.picture, {size_of(form, {0, 0}, session_.settings()), {}}).string();
+    return recorder_.record(form.picture, {recording_size(form, {0, 0}, session_.settings()), {}}).string();
 }
 
 void LiveRecording::begin(const RecordingForm& form, Vec2i window, std::optional<int> samples) {
     if (running_) throw ArgumentError("a recording is going on: stop it first");
-    const Vec2i size = size_of(form, window, session_.settings());
+    const Vec2i size = recording_size(form, window, session_.settings());
     {
         const WithoutBackground without(session_.settings(), form.transparent && !form.panels);
         recorder_.start(form.video, {.fps = form.fps, .size = size, .samples = samples});

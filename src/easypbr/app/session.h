@@ -161,6 +161,8 @@ class Session {
 
     /// See render::Renderer: false leaves all triangles to the driver.
     void allow_native_geometry(bool allow) { renderer().allow_native_geometry(allow); }
+    /// Without a GPU, pixels are shaded natively where they can be; false leaves them to the driver.
+    void allow_native_shading(bool allow) { renderer().allow_native_shading(allow); }
 
     /// See render::Renderer. 0 before the first picture.
     uint64_t shadow_maps_drawn() const {

@@ -15,7 +15,7 @@ struct CompareOptions {
     double max_difference = 0;
 };
 
-void declare(CLI::App& command, CompareOptions& options) {
+void declare_compare(CLI::App& command, CompareOptions& options) {
     command.add_option("A", options.a, "Image file");
     command.add_option("B", options.b, "Image file of the same size and type");
     command
@@ -25,7 +25,7 @@ void declare(CLI::App& command, CompareOptions& options) {
         ->check(CLI::NonNegativeNumber);
 }
 
-int run(const CompareOptions& options) {
+int run_compare(const CompareOptions& options) {
     require(!options.b.empty(), "compare", "two image files");
     const Image a = io::load_image(options.a), b = io::load_image(options.b);
     // A picture with opaque alpha is the same as one without.
@@ -44,7 +44,8 @@ int run(const CompareOptions& options) {
 }  // namespace
 
 void add_compare(CLI::App& app, Job& job) {
-    set_job<CompareOptions>(*app.add_subcommand("compare", "Compare two images"), job, declare, run);
+    set_job<CompareOptions>(*app.add_subcommand("compare", "Compare two images"), job, declare_compare,
+                            run_compare);
 }
 
 }  // namespace easypbr::cli

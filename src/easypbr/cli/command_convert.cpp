@@ -14,7 +14,7 @@ struct ConvertOptions {
     std::vector<MeshStep> steps;
 };
 
-void declare(CLI::App& command, ConvertOptions& options) {
+void declare_convert(CLI::App& command, ConvertOptions& options) {
     command.add_option("IN", options.in, "Mesh or image file; - is a mesh from standard input");
     declare_format(command, options.format);
     command.add_option("OUT", options.out, "Mesh (PLY, OBJ, GLB) or image file (PNG, JPEG, HDR, EXR)");
@@ -29,7 +29,7 @@ void declare(CLI::App& command, ConvertOptions& options) {
     declare_mesh_steps(command, options.steps);
 }
 
-int run(const ConvertOptions& options) {
+int run_convert(const ConvertOptions& options) {
     require(!options.out.empty(), "convert", "IN and OUT");
     check_input("convert", {options.in});
     check_writable(options.out);
@@ -55,7 +55,7 @@ void add_convert(CLI::App& app, Job& job) {
         *app.add_subcommand(
             "convert",
             "Convert a mesh or an image to another format; mesh operations run in the order given"),
-        job, declare, run);
+        job, declare_convert, run_convert);
 }
 
 }  // namespace easypbr::cli

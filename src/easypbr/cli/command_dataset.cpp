@@ -32,7 +32,7 @@ struct DatasetOptions {
     bool demo = false, quiet = false;
 };
 
-void declare(CLI::App& command, DatasetOptions& o) {
+void declare_dataset(CLI::App& command, DatasetOptions& o) {
     command.add_option("spec", o.spec, "Specification of the data set, a TOML file")->option_text("SPEC");
     command.add_flag("--demo", o.demo, "Generate the built-in drones instead of a SPEC");
     command
@@ -94,7 +94,7 @@ std::string python() {
     return is_ours ? own.string() : found_in_path("python3");
 }
 
-int run(const DatasetOptions& o) {
+int run_dataset(const DatasetOptions& o) {
     std::vector<std::string> arguments = {python(), "-c", start};
     if (!o.spec.empty()) arguments.push_back(o.spec);
     if (o.demo) arguments.emplace_back("--demo");
@@ -120,7 +120,7 @@ int run(const DatasetOptions& o) {
 
 void add_dataset(CLI::App& app, Job& job) {
     set_job<DatasetOptions>(*app.add_subcommand("dataset", "Generate annotated images for training"), job,
-                            declare, run);
+                            declare_dataset, run_dataset);
 }
 
 }  // namespace easypbr::cli

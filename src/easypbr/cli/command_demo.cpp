@@ -20,7 +20,7 @@ struct DemoOptions {
     int samples = 8;  // Seconds without a GPU; rays, so that metal mirrors its floor, take minutes.
 };
 
-void declare(CLI::App& command, DemoOptions& options) {
+void declare_demo(CLI::App& command, DemoOptions& options) {
     command.add_option("-o,--output", options.output, "Image file to write")->option_text("FILE");
     command.add_option("--size,--resolution", options.size, "Width and height in pixels")->option_text("WxH");
     command
@@ -30,7 +30,7 @@ void declare(CLI::App& command, DemoOptions& options) {
         ->capture_default_str();
 }
 
-int run(const DemoOptions& options) {
+int run_demo(const DemoOptions& options) {
     const Vec2i size = parse_size(options.size);
     const app::Encoding encoding = app::encoding_for(options.output);
     check_writable(options.output);
@@ -56,7 +56,8 @@ int run(const DemoOptions& options) {
 }  // namespace
 
 void add_demo(CLI::App& app, Job& job) {
-    set_job<DemoOptions>(*app.add_subcommand("demo", "Render the embedded demo scene"), job, declare, run);
+    set_job<DemoOptions>(*app.add_subcommand("demo", "Render the embedded demo scene"), job, declare_demo,
+                         run_demo);
 }
 
 }  // namespace easypbr::cli

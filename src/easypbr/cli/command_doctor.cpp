@@ -18,7 +18,7 @@ namespace {
 
 struct DoctorOptions {};
 
-void declare(CLI::App&, DoctorOptions&) {}
+void declare_doctor(CLI::App&, DoctorOptions&) {}
 
 void print(const std::string& name, const std::string& value) {
     fmt::print("{:<12}{}\n", name, value);
@@ -58,7 +58,7 @@ void print_context(const gl::ContextInfo& info) {
                                 info.max_texture_size, std::min(info.max_texture_size, info.max_viewport)));
 }
 
-int run(const DoctorOptions&) {
+int run_doctor(const DoctorOptions&) {
     print("easypbr", EASYPBR_VERSION);
     print("threads", fmt::format("{}", thread_count()));
     print_cache();
@@ -73,7 +73,7 @@ int run(const DoctorOptions&) {
 
 void add_doctor(CLI::App& app, Job& job) {
     set_job<DoctorOptions>(*app.add_subcommand("doctor", "Report the rendering capabilities of this machine"),
-                           job, declare, run);
+                           job, declare_doctor, run_doctor);
 }
 
 }  // namespace easypbr::cli

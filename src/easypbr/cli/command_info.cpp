@@ -23,7 +23,7 @@ struct InfoOptions {
     bool json = false;
 };
 
-void declare(CLI::App& command, InfoOptions& options) {
+void declare_info(CLI::App& command, InfoOptions& options) {
     command.add_option("FILE", options.file, "Mesh or image file; - is a mesh from standard input");
     declare_format(command, options.format);
     command.add_flag("--json", options.json, "Print JSON");
@@ -167,7 +167,7 @@ void print_mesh(const Json& mesh) {
     }
 }
 
-int run(const InfoOptions& options) {
+int run_info(const InfoOptions& options) {
     require(!options.file.empty(), "info", "a FILE");
     check_input("info", {options.file});
     const bool is_image = is_image_file(options.file);
@@ -186,7 +186,7 @@ int run(const InfoOptions& options) {
 
 void add_info(CLI::App& app, Job& job) {
     set_job<InfoOptions>(*app.add_subcommand("info", "Print the contents of a mesh or image file"), job,
-                         declare, run);
+                         declare_info, run_info);
 }
 
 }  // namespace easypbr::cli

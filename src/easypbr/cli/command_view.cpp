@@ -27,7 +27,7 @@ struct ViewOptions {
     float panel_scale = 1;
 };
 
-void declare(CLI::App& command, ViewOptions& options) {
+void declare_view(CLI::App& command, ViewOptions& options) {
     command.add_option("FILE", options.files,
                        "Meshes: PLY, OBJ, STL, OFF, glTF, GLB and more; - is standard input");
     declare_format(command, options.format);
@@ -61,7 +61,7 @@ void declare(CLI::App& command, ViewOptions& options) {
         ->option_text("FILE");
 }
 
-RenderOptions look_of(const ViewOptions& options) {
+RenderOptions look_of_view(const ViewOptions& options) {
     RenderOptions look;
     look.size = options.size;
     look.values = options.values;
@@ -79,11 +79,11 @@ void play(Viewer& view, const std::vector<std::string>& names, const std::string
         if (view.player().has(name)) return view.player().play(name, animation);
 }
 
-int run(const ViewOptions& options) {
+int run_view(const ViewOptions& options) {
     check_input("view", options.files);
     Viewer view{Scene()};
     if (!options.settings.empty()) app::load_settings(view.session(), options.settings);
-    apply(look_of(options), view.settings());
+    apply(look_of_view(options), view.settings());
     add_passes(options.passes, view.session());
     if (!options.screenshot.empty()) app::encoding_for(options.screenshot);
     const std::vector<std::string> names = unique_names(options.files);
@@ -112,7 +112,7 @@ int run(const ViewOptions& options) {
 
 void add_view(CLI::App& app, Job& job) {
     set_job<ViewOptions>(*app.add_subcommand("view", "Show mesh files in an interactive window"), job,
-                         declare, run);
+                         declare_view, run_view);
 }
 
 }  // namespace easypbr::cli

@@ -158,7 +158,7 @@ void set_value(Settings& settings, const std::string& option, const std::string&
 }
 
 /// "a=b" as its two sides.
-std::pair<std::string, std::string> split(const std::string& option, const std::string& text) {
+std::pair<std::string, std::string> name_and_value(const std::string& option, const std::string& text) {
     const size_t at = text.find('=');
     if (at == text.npos || at == 0)
         throw UsageError(fmt::format("{}: expected NAME=VALUE, got '{}'", option, text));
@@ -188,7 +188,7 @@ void apply_background(const std::string& text, BackgroundSettings& background) {
 }
 
 void apply_texture(const std::string& text, Settings& settings) {
-    auto [name, file] = split("--texture", text);
+    auto [name, file] = name_and_value("--texture", text);
     if (name == "ao") name = "occlusion";
     std::vector<std::string> names;
     for (const MaterialTexture& row : replaceable_textures()) names.emplace_back(row.name);
@@ -348,7 +348,7 @@ void apply(const RenderOptions& options, Settings& settings) {
     for (const StyleOption& style : parse_styles(options.styles, unique_names(options.files)))
         if (style.object.empty()) set_value(settings, "--style", "style." + style.key, style.value);
     for (const std::string& text : options.values) {
-        const auto [name, value] = split("--set", text);
+        const auto [name, value] = name_and_value("--set", text);
         set_value(settings, "--set", name, value);
     }
 }

@@ -19,7 +19,7 @@ bool is_alpha(int channel, int channels) {
 }
 
 template <class T>
-T opaque() {
+T opaque_value() {
     if constexpr (std::is_same_v<T, float>) return 1.0f;
     return std::numeric_limits<T>::max();
 }
@@ -36,7 +36,7 @@ Image convert_channels(const Image& image, int channels) {
         for (int c = 0; c < channels; ++c) {
             T& value = to[i * channels + c];
             if (is_alpha(c, channels))
-                value = from % 2 == 0 ? p[from - 1] : opaque<T>();
+                value = from % 2 == 0 ? p[from - 1] : opaque_value<T>();
             else
                 value = grey ? p[0] : p[std::min(c, from - 1)];
         }

@@ -116,7 +116,7 @@ bool is_smaller(const Vec3d& a, const Vec3d& b) {
 }
 
 /// Axes (columns) after each was kept in turn while the other two were turned to the best rectangle.
-Mat3d refined(const BoxPoints& points, Mat3d axes) {
+Mat3d refined_axes(const BoxPoints& points, Mat3d axes) {
     Vec3d size = extent(points, axes);
     for (int kept = 0, unchanged = 0; unchanged < 3; kept = (kept + 1) % 3, ++unchanged) {
         const Vec3d u = axes.col((kept + 1) % 3), v = axes.col((kept + 2) % 3);
@@ -162,7 +162,7 @@ OrientedBox oriented_bounding_box(const Mesh& mesh) {
     points.rowwise() -= mean;
     const Mat3d covariance = points.transpose() * points;
     const Mat3d principal = Eigen::SelfAdjointEigenSolver<Mat3d>(covariance).eigenvectors();
-    const Mat3d candidates[2] = {refined(points, principal), refined(points, Mat3d::Identity())};
+    const Mat3d candidates[2] = {refined_axes(points, principal), refined_axes(points, Mat3d::Identity())};
     const bool first = is_smaller(extent(points, candidates[0]), extent(points, candidates[1]));
     OrientedBox box = box_along(points, candidates[first ? 0 : 1]);
     box.T_world_box.pretranslate(mean.transpose());

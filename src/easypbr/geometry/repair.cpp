@@ -142,7 +142,7 @@ Array3f mean_normals(const MeshData& mesh, const Selection& selection) {
     return Array3f(sums);
 }
 
-bool has_area(const MeshData& mesh, int32_t f) {
+bool face_has_area(const MeshData& mesh, int32_t f) {
     const auto corner = [&](int k) -> Vec3d { return mesh.V.row(mesh.F(f, k)).transpose().cast<double>(); };
     const Vec3d a = corner(0), ab = corner(1) - a, ac = corner(2) - a;
     // Float coordinates are exact in double; what is left of an area below this is rounding of the product.
@@ -181,7 +181,7 @@ Mesh remove_duplicate_vertices(const Mesh& mesh, const DuplicateOptions& options
 Mesh remove_degenerate_faces(const Mesh& mesh) {
     const auto data = mesh.snapshot();
     Selection selection = geometry::select_all(*data);
-    std::erase_if(selection.faces, [&](int32_t f) { return !has_area(*data, f); });
+    std::erase_if(selection.faces, [&](int32_t f) { return !face_has_area(*data, f); });
     return Mesh(geometry::chosen(*data, selection));
 }
 

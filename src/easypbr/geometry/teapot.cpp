@@ -67,7 +67,7 @@ using Row = std::array<Vec3d, 4>;
 /// Control points; along a row s grows, from row to row t. Seen from outside, t x s points to the viewer.
 using Patch = std::array<Row, 4>;
 
-Patch turned(const Profile& profile, int quarter) {
+Patch turned_patch(const Profile& profile, int quarter) {
     const Eigen::AngleAxisd rotation(quarter * pi / 2, Vec3d::UnitY());
     Patch patch;
     for (int i = 0; i < 4; ++i) {
@@ -94,7 +94,7 @@ Patch half_of(const Tube& tube, int side) {
 std::vector<Patch> all_patches() {
     std::vector<Patch> patches;
     for (const Profile& profile : profiles)
-        for (int quarter = 0; quarter < 4; ++quarter) patches.push_back(turned(profile, quarter));
+        for (int quarter = 0; quarter < 4; ++quarter) patches.push_back(turned_patch(profile, quarter));
     for (const Tube& tube : tubes)
         for (const int side : {1, -1}) patches.push_back(half_of(tube, side));
     return patches;

@@ -117,7 +117,7 @@ EGLContext try_display(EGLDisplay display, std::string& error) {
     return context;
 }
 
-[[noreturn]] void fail(const std::vector<Attempt>& attempts) {
+[[noreturn]] void fail_without_context(const std::vector<Attempt>& attempts) {
     std::string message = "no OpenGL 4.5 context:";
     for (const Attempt& attempt : attempts) message += fmt::format(" [{}: {}]", attempt.what, attempt.error);
     message +=
@@ -162,7 +162,7 @@ std::unique_ptr<Context> Context::create() {
         made->initialize();
         return made;
     }
-    fail(attempts);
+    fail_without_context(attempts);
 }
 
 void Context::initialize() {

@@ -135,7 +135,7 @@ void Texture::upload_area(int x, int y, int width, int height, std::span<const s
     glTextureSubImage2D(id(), 0, x, y, width, height, f.layout, f.type, pixels.data());
 }
 
-void Texture::sampling(Filtering filtering, Wrapping u, Wrapping v, float anisotropy) {
+void Texture::sampling(Filtering filtering, Wrapping u, Wrapping v, float anisotropy) const {
     constexpr GLenum min_filters[] = {GL_NEAREST, GL_LINEAR, GL_LINEAR_MIPMAP_NEAREST,
                                       GL_LINEAR_MIPMAP_LINEAR};
     const GLenum min = min_filters[int(filtering)];

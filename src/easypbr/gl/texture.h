@@ -50,7 +50,7 @@ class Texture {
     /// Pixels of a rectangle of level 0, row 0 first.
     void upload_area(int x, int y, int width, int height, std::span<const std::byte> pixels) const;
     void sampling(Filtering filtering, Wrapping u = Wrapping::clamp, Wrapping v = Wrapping::clamp,
-                  float anisotropy = 1);
+                  float anisotropy = 1) const;
     /// Lets shaders see these levels alone, the first as level 0: while another level is drawn to.
     void show_levels(int first, int last) const;
     void bind(unsigned unit) const;

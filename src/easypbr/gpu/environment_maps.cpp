@@ -4,10 +4,14 @@
 #include <algorithm>
 
 #include "easypbr/core/parallel.h"
-#include "easypbr/gpu/prefilter.h"
+#include "easypbr/gpu/cube_map.h"
 
 namespace easypbr::gpu {
 namespace {
+
+Eigen::half half_of_bits(uint16_t bits) {
+    return Eigen::half_impl::raw_uint16_to_half(bits);
+}
 
 gl::Texture cube_texture(const std::vector<const std::vector<uint16_t>*>& levels, int size) {
     gl::Texture texture(gl::Format::rgba16f, size, size, int(levels.size()), gl::TextureKind::cube);
@@ -46,21 +50,113 @@ gl::Texture equirect_texture(const Image& image) {
     return texture;
 }
 
+std::vector<const std::vector<uint16_t>*> levels_of(const PrefilteredEnvironment& maps) {
+    std::vector<const std::vector<uint16_t>*> levels;
+    for (const auto& level : maps.radiance) levels.push_back(&level);
+    return levels;
+}
+
+/// Adds the six faces of a level, each with a border of one texel from its neighbours.
+void add_with_gutter(const std::vector<uint16_t>& faces, int size, std::vector<uint16_t>& texels) {
+    CubeMap map(size);
+    const uint16_t* from = faces.data();
+    for (int face = 0; face < 6; ++face)
+        for (int y = 0; y < size; ++y)
+            for (int x = 0; x < size; ++x)
+                for (int c = 0; c < 4; ++c) map.at(face, x, y)[c] = float(half_of_bits(*from++));
+    map.fill_gutter();
+    for (int face = 0; face < 6; ++face)
+        for (int y = -1; y <= size; ++y)
+            for (int x = -1; x <= size; ++x)
+                for (int c = 0; c < 4; ++c) texels.push_back(Eigen::half(map.at(face, x, y)[c]).x);
+}
+
+/// Adds the rows of a level, each with its first texel once more at the end.
+void add_with_first_column(const std::vector<uint16_t>& rows, int width, std::vector<uint16_t>& texels) {
+    const size_t row = 4 * size_t(width);
+    for (size_t at = 0; at < rows.size(); at += row) {
+        const auto first = rows.begin() + std::ptrdiff_t(at);
+        texels.insert(texels.end(), first, first + std::ptrdiff_t(row));
+        texels.insert(texels.end(), first, first + 4);
+    }
+}
+
 }  // namespace
 
 void EnvironmentMaps::prepare(const Environment& environment, const Environment& seen) {
-    if (environment.hash() != hash_) {
-        const PrefilteredEnvironment maps = prefilter_cached(environment);
-        std::vector<const std::vector<uint16_t>*> levels;
-        for (const auto& level : maps.radiance) levels.push_back(&level);
-        prefiltered_ = cube_texture(levels, PrefilteredEnvironment::base_size);
-        irradiance_ = cube_texture({&maps.irradiance}, PrefilteredEnvironment::irradiance_size);
-        hash_ = environment.hash();
+    if (environment_.empty() || environment.hash() != environment_.hash()) {
+        maps_ = prefilter_cached(environment);
+        environment_ = environment;
+        prefiltered_ = gl::Texture();
+        irradiance_ = gl::Texture();
+        host_prefiltered_ = {};
+        host_irradiance_ = {};
     }
-    if (!seen.empty() && equirect_hash_ != seen.hash()) {
-        equirect_ = equirect_texture(seen.image());
-        equirect_hash_ = seen.hash();
+    if (!seen.empty() && (seen_.empty() || seen_.hash() != seen.hash())) {
+        seen_ = seen;
+        equirect_ = gl::Texture();
+        host_equirect_ = {};
     }
+}
+
+const gl::Texture& EnvironmentMaps::prefiltered() const {
+    if (!prefiltered_) prefiltered_ = cube_texture(levels_of(maps_), PrefilteredEnvironment::base_size);
+    return prefiltered_;
+}
+
+const gl::Texture& EnvironmentMaps::irradiance() const {
+    if (!irradiance_) irradiance_ = cube_texture({&maps_.irradiance}, PrefilteredEnvironment::irradiance_size);
+    return irradiance_;
+}
+
+const gl::Texture& EnvironmentMaps::equirect() const {
+    if (!equirect_) equirect_ = equirect_texture(seen_.image());
+    return equirect_;
+}
+
+const native::Cube& EnvironmentMaps::host_prefiltered() const {
+    if (host_prefiltered_.texels.empty())
+        host_prefiltered_ = host_cube(levels_of(maps_), PrefilteredEnvironment::base_size);
+    return host_prefiltered_.cube;
+}
+
+const native::Cube& EnvironmentMaps::host_irradiance() const {
+    if (host_irradiance_.texels.empty())
+        host_irradiance_ = host_cube({&maps_.irradiance}, PrefilteredEnvironment::irradiance_size);
+    return host_irradiance_.cube;
+}
+
+const native::Panorama& EnvironmentMaps::host_equirect() const {
+    if (host_equirect_.texels.empty()) host_equirect_ = host_panorama(seen_.image());
+    return host_equirect_.panorama;
+}
+
+EnvironmentMaps::HostCube EnvironmentMaps::host_cube(const std::vector<const std::vector<uint16_t>*>& levels,
+                                                     int size) {
+    HostCube host;
+    host.cube = {.size = size, .levels = int(levels.size())};
+    for (size_t level = 0; level < levels.size(); ++level) {
+        host.cube.offsets[level] = int(host.texels.size() / 4);
+        add_with_gutter(*levels[level], size >> level, host.texels);
+    }
+    host.cube.data = host.texels.data();
+    return host;
+}
+
+EnvironmentMaps::HostPanorama EnvironmentMaps::host_panorama(const Image& image) {
+    HostPanorama host;
+    Image level = image;
+    const int levels = std::min(gl::full_levels(image.width(), image.height()), native::Panorama::most_levels);
+    for (int i = 0; i < levels; ++i) {
+        host.panorama.width[i] = level.width();
+        host.panorama.height[i] = level.height();
+        host.panorama.offsets[i] = host.texels.size() / 4;
+        add_with_first_column(halves_of(level), level.width(), host.texels);
+        if (i + 1 < levels) level = half_size(level);
+    }
+    host.panorama.levels = levels;
+    host.panorama.data = host.texels.data();
+    return host;
 }
 
 float EnvironmentMaps::last_level() const {

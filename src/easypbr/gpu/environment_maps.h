@@ -1,29 +1,53 @@
-// Textures of an environment.
+// Maps of an environment, as textures and in host memory.
 #pragma once
 
-#include <string>
+#include <cstdint>
+#include <vector>
 
 #include "easypbr/gl/texture.h"
+#include "easypbr/gpu/prefilter.h"
+#include "easypbr/native/views.h"
 #include "easypbr/scene/environment.h"
 
 namespace easypbr::gpu {
 
-/// Keeps the textures of the environment used last.
+/// Keeps the maps of the environment used last. Those of the driver and those in host memory are each made when
+/// they are first asked for.
 class EnvironmentMaps {
   public:
-    /// Makes the textures for this environment unless they are those already there, and, unless it is empty,
-    /// the picture of the one that is seen.
+    /// Prepares the maps for this environment unless they are those already there, and, unless it is empty, the
+    /// picture of the one that is seen.
     void prepare(const Environment& environment, const Environment& seen);
 
-    const gl::Texture& prefiltered() const { return prefiltered_; }
-    const gl::Texture& irradiance() const { return irradiance_; }
-    /// The picture itself with all mip levels; there once prepare() was given one.
-    const gl::Texture& equirect() const { return equirect_; }
+    const gl::Texture& prefiltered() const;
+    const gl::Texture& irradiance() const;
+    /// The picture itself with all mip levels, once prepare() was given one.
+    const gl::Texture& equirect() const;
+    int equirect_width() const { return seen_.image().width(); }
     float last_level() const;
 
+    // The same for native shaders; valid until the next prepare().
+    const native::Cube& host_prefiltered() const;
+    const native::Cube& host_irradiance() const;
+    const native::Panorama& host_equirect() const;
+
   private:
-    std::string hash_, equirect_hash_;
-    gl::Texture prefiltered_, irradiance_, equirect_;
+    struct HostCube {
+        std::vector<uint16_t> texels;
+        native::Cube cube;
+    };
+    struct HostPanorama {
+        std::vector<uint16_t> texels;
+        native::Panorama panorama;
+    };
+    static HostCube host_cube(const std::vector<const std::vector<uint16_t>*>& levels, int size);
+    static HostPanorama host_panorama(const Image& image);
+
+    Environment environment_, seen_;
+    PrefilteredEnvironment maps_;
+    mutable gl::Texture prefiltered_, irradiance_, equirect_;
+    mutable HostCube host_prefiltered_, host_irradiance_;
+    mutable HostPanorama host_equirect_;
 };
 
 }  // namespace easypbr::gpu

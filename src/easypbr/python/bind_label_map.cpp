@@ -34,7 +34,7 @@ T taken(nb::handle object, std::string_view what, std::string_view expected) {
     return value;
 }
 
-Rgb8 rgb8(nb::handle red, nb::handle green, nb::handle blue, bool whole) {
+Rgb8 rgb8_of(nb::handle red, nb::handle green, nb::handle blue, bool whole) {
     const Vec3d c(nb::cast<double>(red), nb::cast<double>(green), nb::cast<double>(blue));
     const double most = whole ? 255 : 1;
     if (!((c.array() >= 0).all() && (c.array() <= most).all()))
@@ -51,7 +51,7 @@ std::vector<Rgb8> colors_of_array(nb::handle object) {
             fmt::format("LabelMap colors: expected texts or an n x 3 array, got {}", shape_text(shape)));
     const bool whole = nb::cast<std::string>(array.attr("dtype").attr("kind")) != "f";
     std::vector<Rgb8> colors;
-    for (nb::handle row : array.attr("tolist")()) colors.push_back(rgb8(row[0], row[1], row[2], whole));
+    for (nb::handle row : array.attr("tolist")()) colors.push_back(rgb8_of(row[0], row[1], row[2], whole));
     return colors;
 }
 
@@ -92,8 +92,8 @@ UnknownLabels unknown_from(const std::string& text) {
 }
 
 void construct_label_map(LabelMapHandle* self, const NamesLike& names, const ColorsLike& colors,
-               const std::optional<std::vector<int32_t>>& labels, std::optional<int32_t> unlabelled,
-               const std::string& unknown, const std::string& name) {
+                         const std::optional<std::vector<int32_t>>& labels, std::optional<int32_t> unlabelled,
+                         const std::string& unknown, const std::string& name) {
     std::vector<LabelClass> classes = classes_from(names, labels);
     const std::vector<Rgb8> given = colors.is_none() ? std::vector<Rgb8>() : colors_from(colors);
     if (!colors.is_none() && given.size() != classes.size())

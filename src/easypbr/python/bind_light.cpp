@@ -33,7 +33,7 @@ void vector_property(nb::class_<Light>& light, const LightField& field) {
         field.doc.c_str());
 }
 
-void color_property(nb::class_<Light>& light, const LightField& field) {
+void light_color_property(nb::class_<Light>& light, const LightField& field) {
     light.def_prop_rw(
         field.name.c_str(),
         [&field](const Light& l) { return nb::tuple(value_to_python(field, field.get(l))); },
@@ -64,7 +64,7 @@ void automatic_property(nb::class_<Light>& light, const LightField& field) {
 
 void light_property(nb::class_<Light>& light, const LightField& field) {
     if (field.can_be_automatic) return automatic_property(light, field);
-    if (field.is_color) return color_property(light, field);
+    if (field.is_color) return light_color_property(light, field);
     if (field.type == FieldType::vector) return vector_property(light, field);
     if (field.type == FieldType::boolean) return plain_property<bool>(light, field);
     if (field.type == FieldType::number) return plain_property<double>(light, field);

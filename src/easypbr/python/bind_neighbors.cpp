@@ -13,7 +13,7 @@ Array3f to_points(nb::handle object, const char* name) {
     return to_array<float, 3>(object, {name, 3, 3});
 }
 
-nb::tuple nearest(const KdTree& tree, const ArrayLike& queries, int k) {
+nb::tuple find_nearest(const KdTree& tree, const ArrayLike& queries, int k) {
     const Array3f points = to_points(queries, "queries");
     KdTree::Nearest found = released([&] { return tree.nearest(points, k); });
     return nb::make_tuple(owning_array(std::move(found.distances)), owning_array(std::move(found.indices)));
@@ -42,7 +42,7 @@ void bind_kd_tree(nb::module_& module) {
             },
             nb::arg("points"))
         .def("__len__", &KdTree::size)
-        .def("nearest", nearest, nb::arg("queries"), nb::arg("k") = 1,
+        .def("nearest", find_nearest, nb::arg("queries"), nb::arg("k") = 1,
              nb::sig("def nearest(self, queries: numpy.typing.ArrayLike, k: int = 1) -> tuple[numpy.ndarray, "
                      "numpy.ndarray]"),
              "Distances and indices, both m x k, of the k nearest points of each query, nearest first.")

@@ -17,7 +17,7 @@ namespace {
 
 constexpr size_t morph_grain = 4096;
 
-Eigen::VectorXd row(const AnimationChannel& channel, Eigen::Index i) {
+Eigen::VectorXd key_row(const AnimationChannel& channel, Eigen::Index i) {
     return channel.values.row(i).transpose().cast<double>();
 }
 
@@ -26,31 +26,31 @@ Eigen::Quaterniond quaternion(const Eigen::VectorXd& xyzw) {
 }
 
 /// Between keys i and i + 1, at `part` of the `length` seconds between them.
-Eigen::VectorXd between(const AnimationChannel& channel, Eigen::Index i, double part, double length) {
-    if (channel.interpolation == Interpolation::step) return row(channel, i);
+Eigen::VectorXd between_keys(const AnimationChannel& channel, Eigen::Index i, double part, double length) {
+    if (channel.interpolation == Interpolation::step) return key_row(channel, i);
     if (channel.interpolation == Interpolation::linear) {
-        const Eigen::VectorXd from = row(channel, i), to = row(channel, i + 1);
+        const Eigen::VectorXd from = key_row(channel, i), to = key_row(channel, i + 1);
         if (channel.property != AnimatedProperty::rotation) return (1 - part) * from + part * to;
         return quaternion(from).normalized().slerp(part, quaternion(to).normalized()).coeffs();
     }
     // Each key: in-tangent, value, out-tangent.
     const double t = part, t2 = t * t, t3 = t2 * t;
-    return (2 * t3 - 3 * t2 + 1) * row(channel, 3 * i + 1) +
-           length * (t3 - 2 * t2 + t) * row(channel, 3 * i + 2) +
-           (3 * t2 - 2 * t3) * row(channel, 3 * i + 4) + length * (t3 - t2) * row(channel, 3 * i + 3);
+    return (2 * t3 - 3 * t2 + 1) * key_row(channel, 3 * i + 1) +
+           length * (t3 - 2 * t2 + t) * key_row(channel, 3 * i + 2) +
+           (3 * t2 - 2 * t3) * key_row(channel, 3 * i + 4) + length * (t3 - t2) * key_row(channel, 3 * i + 3);
 }
 
 Eigen::VectorXd sample_raw(const AnimationChannel& channel, double time_s) {
     const auto& times = channel.times;
     const bool cubic = channel.interpolation == Interpolation::cubic_spline;
-    const auto value = [&](Eigen::Index i) { return row(channel, cubic ? 3 * i + 1 : i); };
+    const auto value = [&](Eigen::Index i) { return key_row(channel, cubic ? 3 * i + 1 : i); };
     if (time_s <= double(times.front())) return value(0);
     if (time_s >= double(times.back())) return value(Eigen::Index(times.size()) - 1);
     const auto after = std::upper_bound(times.begin(), times.end(), time_s,
                                         [](double time, float key) { return time < double(key); });
     const auto i = size_t(after - times.begin()) - 1;
     const double length = double(times[i + 1]) - double(times[i]);
-    return between(channel, Eigen::Index(i), (time_s - double(times[i])) / length, length);
+    return between_keys(channel, Eigen::Index(i), (time_s - double(times[i])) / length, length);
 }
 
 void check_index(const char* what, int index, size_t count, bool may_lack) {

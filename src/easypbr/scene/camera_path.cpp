@@ -54,7 +54,7 @@ Eigen::Quaterniond towards(const Eigen::Quaterniond& from, const Eigen::Quaterni
     return from.dot(q) < 0 ? Eigen::Quaterniond(-q.coeffs()) : q;
 }
 
-CubicSpline::Points rows_of(const std::vector<Eigen::Quaterniond>& quaternions) {
+CubicSpline::Points quaternion_rows(const std::vector<Eigen::Quaterniond>& quaternions) {
     CubicSpline::Points rows(Eigen::Index(quaternions.size()), 4);
     for (size_t i = 0; i < quaternions.size(); ++i) rows.row(Eigen::Index(i)) = quaternions[i].coeffs();
     return rows;
@@ -165,9 +165,10 @@ void CameraPath::build_splines() {
     }
     if (options_.mode == PathMode::linear) return;
     RotationKnots knots = rotation_knots(keys_, times_, options_.closed);
-    splines_ = std::make_shared<const Splines>(Splines{
-        CubicSpline(times_, positions, ends), CubicSpline(knots.times, rows_of(knots.rotations), knots.ends),
-        CubicSpline(times_, zooms, ends)});
+    splines_ = std::make_shared<const Splines>(
+        Splines{CubicSpline(times_, positions, ends),
+                CubicSpline(knots.times, quaternion_rows(knots.rotations), knots.ends),
+                CubicSpline(times_, zooms, ends)});
     require_no_tumbling(splines_->rotations, knots.times);
 }
 

@@ -148,7 +148,7 @@ class Cutter {
 };
 
 template <class ArrayType>
-ArrayType rows_of(const std::vector<int32_t>& values) {
+ArrayType array_of_rows(const std::vector<int32_t>& values) {
     constexpr int cols = ArrayType::Dense::ColsAtCompileTime;
     return ArrayType(typename ArrayType::Dense(Eigen::Map<const typename ArrayType::Dense>(
         values.data(), Eigen::Index(values.size()) / cols, cols)));
@@ -177,10 +177,10 @@ MeshData cut_surface(const MeshData& given, const std::vector<Eigen::Vector4d>& 
     }
     for (Eigen::Index i = 0; i < mesh.E.rows(); ++i) cutter.edge(mesh.E.data() + 2 * i);
     MeshData out = with_vertices(mesh, cutter.vertices());
-    out.F = rows_of<Array3i>(cutter.faces());
-    out.E = rows_of<Array2i>(cutter.edges());
+    out.F = array_of_rows<Array3i>(cutter.faces());
+    out.E = array_of_rows<Array2i>(cutter.edges());
     out.parts = std::move(parts);
-    source = rows_of<Array1i>(from);
+    source = array_of_rows<Array1i>(from);
     vertices = sources_of(cutter.vertices());
     // Pieces of a face are one polygon, so that a wireframe shows no edges between them.
     Array1i::Dense polygon = source;

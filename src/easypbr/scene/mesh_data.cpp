@@ -86,7 +86,7 @@ void require_shapes(const MeshData& data) {
                                         data.C.rows(), data.C.cols()));
 }
 
-void require_finite(const Array3f& V) {
+void require_finite_positions(const Array3f& V) {
     const size_t row = first_bad_row(V.rows(), [&](size_t i) { return !V.row(Eigen::Index(i)).allFinite(); });
     if (row == no_row) return;
     const Eigen::Index i = Eigen::Index(row);
@@ -159,7 +159,7 @@ void validate(const MeshData& data, const MeshData& valid) {
                                         data.offset.x(), data.offset.y(), data.offset.z()));
     const bool same_V = same_array(data.V, valid.V);
     const bool same_count = data.V.rows() == valid.V.rows();
-    if (!same_V) require_finite(data.V);
+    if (!same_V) require_finite_positions(data.V);
     if (!same_count || !same_array(data.F, valid.F)) require_indices("F", data.F, data.V.rows());
     if (!same_count || !same_array(data.E, valid.E)) require_indices("E", data.E, data.V.rows());
     const bool same_labels = same_array(data.L, valid.L) && data.label_map == valid.label_map;

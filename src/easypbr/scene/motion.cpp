@@ -9,7 +9,7 @@ double mix(double from, double to, double t) {
     return from + (to - from) * t;
 }
 
-Mat3d turned(const Mat3d& from, const Mat3d& to, double t) {
+Mat3d rotation_between(const Mat3d& from, const Mat3d& to, double t) {
     return Eigen::Quaterniond(from).slerp(t, Eigen::Quaterniond(to)).normalized().toRotationMatrix();
 }
 
@@ -25,7 +25,7 @@ Eigen::Affine3d between(const Eigen::Affine3d& from, const Eigen::Affine3d& to, 
     to.computeRotationScaling(&to_rotation, &to_stretch);
     Eigen::Affine3d result = Eigen::Affine3d::Identity();
     result.linear() =
-        turned(from_rotation, to_rotation, t) * (from_stretch + (to_stretch - from_stretch) * t);
+        rotation_between(from_rotation, to_rotation, t) * (from_stretch + (to_stretch - from_stretch) * t);
     result.translation() = from.translation() + (to.translation() - from.translation()) * t;
     return result;
 }
@@ -33,7 +33,7 @@ Eigen::Affine3d between(const Eigen::Affine3d& from, const Eigen::Affine3d& to, 
 Camera between(const Camera& from, const Camera& to, double t) {
     Camera camera = to;
     const Vec3d a = from.position(), b = to.position();
-    camera.T_world_cam.linear() = turned(from.T_world_cam.linear(), to.T_world_cam.linear(), t);
+    camera.T_world_cam.linear() = rotation_between(from.T_world_cam.linear(), to.T_world_cam.linear(), t);
     camera.T_world_cam.translation() = a + (b - a) * t;
     if (from.projection != to.projection) return camera;
     camera.fov_y_deg = mix(from.fov_y_deg, to.fov_y_deg, t);

@@ -28,7 +28,7 @@ VertexKey key_of(const Array3f& V, const Array3f& N, const Array2f& UV, Eigen::I
     return key;
 }
 
-size_t hash_of(const VertexKey& key) {
+size_t vertex_hash(const VertexKey& key) {
     uint64_t hash = 0;
     for (const uint32_t bits : key) {
         hash = (hash ^ bits) * 0x9e3779b97f4a7c15u;
@@ -43,7 +43,7 @@ std::vector<int32_t> weld(const Array3f& V, const Array3f& N, const Array2f& UV)
     std::vector<int32_t> slots(mask + 1, -1), first(size_t(V.rows()));
     for (size_t v = 0; v < first.size(); ++v) {
         const VertexKey key = key_of(V, N, UV, Eigen::Index(v));
-        size_t slot = hash_of(key) & mask;
+        size_t slot = vertex_hash(key) & mask;
         while (slots[slot] >= 0 && key_of(V, N, UV, slots[slot]) != key) slot = (slot + 1) & mask;
         if (slots[slot] < 0) slots[slot] = int32_t(v);
         first[v] = slots[slot];

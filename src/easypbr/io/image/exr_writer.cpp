@@ -10,7 +10,7 @@
 namespace easypbr::io {
 namespace {
 
-void check_encode(bool good, const char* message) {
+void check_exr_encode(bool good, const char* message) {
     if (good) return;
     const std::string what = message ? message : "unknown reason";
     FreeEXRErrorMessage(message);
@@ -67,7 +67,7 @@ std::vector<std::byte> encode_exr(const Image& image) {
     const char* message = nullptr;
     const size_t size = SaveEXRImageToMemory(&picture, &header, &buffer, &message);
     const std::unique_ptr<unsigned char, decltype(&std::free)> owner(buffer, std::free);
-    check_encode(size > 0, message);
+    check_exr_encode(size > 0, message);
     const auto* begin = reinterpret_cast<const std::byte*>(buffer);
     return {begin, begin + size};
 }

@@ -44,7 +44,7 @@ void check(int error, const std::string& name) {
     if (error) fail_image(name, fmt::format("damaged PNG: {}", spng_strerror(error)));
 }
 
-void check_encode(int error) {
+void check_png_encode(int error) {
     if (error) throw ArgumentError(fmt::format("cannot encode PNG: {}", spng_strerror(error)));
 }
 
@@ -82,24 +82,24 @@ std::vector<std::byte> encode_png(const Image& image) {
     constexpr spng_color_type color_types[] = {SPNG_COLOR_TYPE_GRAYSCALE, SPNG_COLOR_TYPE_GRAYSCALE_ALPHA,
                                                SPNG_COLOR_TYPE_TRUECOLOR, SPNG_COLOR_TYPE_TRUECOLOR_ALPHA};
     const Context context(spng_ctx_new(SPNG_CTX_ENCODER), spng_ctx_free);
-    check_encode(spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1));
+    check_png_encode(spng_set_option(context.get(), SPNG_ENCODE_TO_BUFFER, 1));
     // Rendered pictures are smooth: one cheap filter and the fastest level give nearly the size of the slow
     // ones.
-    check_encode(spng_set_option(context.get(), SPNG_IMG_COMPRESSION_LEVEL, 1));
-    check_encode(spng_set_option(context.get(), SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_UP));
+    check_png_encode(spng_set_option(context.get(), SPNG_IMG_COMPRESSION_LEVEL, 1));
+    check_png_encode(spng_set_option(context.get(), SPNG_FILTER_CHOICE, SPNG_FILTER_CHOICE_UP));
     spng_ihdr header{};
     header.width = uint32_t(image.width());
     header.height = uint32_t(image.height());
     header.color_type = color_types[image.channels() - 1];
     header.bit_depth = uint8_t(8 * size_of(image.type()));
-    check_encode(spng_set_ihdr(context.get(), &header));
-    check_encode(spng_encode_image(context.get(), image.bytes().data(), image.bytes().size(), SPNG_FMT_PNG,
-                                   SPNG_ENCODE_FINALIZE));
+    check_png_encode(spng_set_ihdr(context.get(), &header));
+    check_png_encode(spng_encode_image(context.get(), image.bytes().data(), image.bytes().size(),
+                                       SPNG_FMT_PNG, SPNG_ENCODE_FINALIZE));
     size_t size = 0;
     int error = 0;
     const std::unique_ptr<void, decltype(&std::free)> data(spng_get_png_buffer(context.get(), &size, &error),
                                                            std::free);
-    check_encode(error);
+    check_png_encode(error);
     const auto* begin = static_cast<const std::byte*>(data.get());
     return {begin, begin + size};
 }

@@ -57,7 +57,7 @@ std::vector<std::string> words_of(std::string_view line) {
     return words;
 }
 
-bool is_number(const std::string& word) {
+bool is_number_word(const std::string& word) {
     const char* p = word.data();
     const char* end = p + word.size();
     double value;
@@ -82,7 +82,8 @@ std::string format_of_line(std::string_view line, bool is_first, bool after_coun
     if (words[0] == "version" || words[0] == "fields") return "pcd";
     if (std::ranges::find(obj_keywords, words[0]) != obj_keywords.end()) return "obj";
     if (names_position(words)) return "xyz";
-    const bool is_row = words.size() >= 3 && std::ranges::all_of(words.begin(), words.begin() + 3, is_number);
+    const bool is_row =
+        words.size() >= 3 && std::ranges::all_of(words.begin(), words.begin() + 3, is_number_word);
     return !is_row ? "" : after_count ? "pts" : "xyz";
 }
 
@@ -92,7 +93,7 @@ std::string format_of_text(std::string_view text) {
         const std::string_view line = read_rest(p, end);
         if (line.empty()) continue;
         if (std::string format = format_of_line(line, is_first, after_count); !format.empty()) return format;
-        after_count = is_first && is_number(std::string(line));
+        after_count = is_first && is_number_word(std::string(line));
         if (!after_count && !line.starts_with('#') && !line.starts_with("//")) return {};
         is_first = false;
     }

@@ -170,7 +170,7 @@ OrderedJson list_of(const Vec3d& v) {
     return {v.x(), v.y(), v.z()};
 }
 
-OrderedJson rows_of(const Eigen::Isometry3d& T) {
+OrderedJson matrix_rows(const Eigen::Isometry3d& T) {
     OrderedJson rows = OrderedJson::array();
     for (int row = 0; row < 4; ++row) rows.push_back({T(row, 0), T(row, 1), T(row, 2), T(row, 3)});
     return rows;
@@ -194,7 +194,7 @@ std::string to_json(const CameraPath& path) {
                      {"axes", "opengl"}};
     if (path.circle()) {
         const CameraPath::Orbit& orbit = *path.circle();
-        root["orbit"] = {{"T_world_cam", rows_of(orbit.T_world_cam)},
+        root["orbit"] = {{"T_world_cam", matrix_rows(orbit.T_world_cam)},
                          {"center", list_of(orbit.center)},
                          {"axis", list_of(orbit.axis)},
                          {"angle_deg", orbit.angle_deg},
@@ -204,7 +204,7 @@ std::string to_json(const CameraPath& path) {
     root["closed"] = path.is_closed();
     root["keys"] = OrderedJson::array();
     for (const CameraKey& key : path.keys()) {
-        OrderedJson entry{{"T_world_cam", rows_of(key.T_world_cam)}, {"segment_s", key.segment_s}};
+        OrderedJson entry{{"T_world_cam", matrix_rows(key.T_world_cam)}, {"segment_s", key.segment_s}};
         if (key.fov_y_deg) entry["fov_y_deg"] = *key.fov_y_deg;
         root["keys"].push_back(entry);
     }

@@ -25,7 +25,7 @@ struct ReadMap {
     UnknownLabels unknown = UnknownLabels::refused;
 };
 
-[[noreturn]] void fail(const std::string& file, const std::string& what) {
+[[noreturn]] void fail_label_map(const std::string& file, const std::string& what) {
     throw FormatError(fmt::format("cannot read a label map from {}: {}", file, what));
 }
 
@@ -128,7 +128,7 @@ ReadMap read(const fs::path& path, std::string_view text) {
     return {{}, parse_label_text(text, path.string()), {}, UnknownLabels::refused};
 }
 
-std::string to_json(const LabelMap& map) {
+std::string label_map_json(const LabelMap& map) {
     OrderedJson root;
     root["name"] = map.name();
     if (map.unlabelled()) root["unlabelled"] = *map.unlabelled();
@@ -152,7 +152,7 @@ LabelMap load_label_map(const fs::path& path) {
     } catch (const FormatError&) {
         throw;
     } catch (const std::exception& error) {  // of the parsers, of colours, of LabelMap itself
-        fail(path.string(), error.what());
+        fail_label_map(path.string(), error.what());
     }
 }
 
@@ -160,7 +160,7 @@ void save_label_map(const LabelMap& map, const fs::path& path) {
     if (is_yaml(path))
         throw FormatError(
             fmt::format("cannot write {}: label maps are written as JSON or text", path.string()));
-    write_file(path, extension_of(path) == "json" ? to_json(map) : to_label_text(map));
+    write_file(path, extension_of(path) == "json" ? label_map_json(map) : to_label_text(map));
 }
 
 std::shared_ptr<const LabelMap> find_label_map(const std::string& name_or_path) {

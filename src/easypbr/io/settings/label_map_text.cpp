@@ -80,7 +80,7 @@ std::vector<Line> lines_of(std::string_view text) {
 
 using Words = std::vector<std::string>;
 
-std::string joined(Words::const_iterator first, Words::const_iterator last) {
+std::string joined_words(Words::const_iterator first, Words::const_iterator last) {
     std::string text;
     for (; first != last; ++first) text += (text.empty() ? "" : " ") + *first;
     return text;
@@ -97,7 +97,7 @@ class TextReader {
         if (std::ranges::none_of(lines, numbered)) {
             for (const Line& line : lines)
                 classes.push_back(
-                    {int32_t(classes.size()), joined(line.words.begin(), line.words.end()), {}});
+                    {int32_t(classes.size()), joined_words(line.words.begin(), line.words.end()), {}});
             return classes;
         }
         if (!numbered(lines.front())) lines.erase(lines.begin());  // names of columns
@@ -115,13 +115,13 @@ class TextReader {
         const auto first_word = std::find_if_not(begin, end, is_number);
         // Colour first, as ITK-SNAP has it, when the name comes last.
         if (first_word - begin >= 3 && first_word != end)
-            return {*label, joined(first_word, end), color(line, begin)};
+            return {*label, joined_words(first_word, end), color(line, begin)};
         const auto last_word = std::find_if_not(words.rbegin(), words.rend() - 1, is_number).base();
         const std::ptrdiff_t numbers = end - last_word;
-        if (numbers == 0) return {*label, joined(begin, end), {}};
+        if (numbers == 0) return {*label, joined_words(begin, end), {}};
         if (numbers != 3 && numbers != 4)
             fail(line, fmt::format("expected 'LABEL NAME R G B', got {} numbers for the colour", numbers));
-        return {*label, joined(begin, last_word), color(line, last_word)};
+        return {*label, joined_words(begin, last_word), color(line, last_word)};
     }
 
     Rgb8 color(const Line& line, Words::const_iterator word) const {

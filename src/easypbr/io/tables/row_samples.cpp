@@ -14,8 +14,8 @@ struct PropertyLayout {
     size_t stride = 0, rows = 0;
 };
 
-PropertyLayout layout_of(const Source& source, const char* body, const std::vector<Element>& elements,
-                         PropertyPlace place) {
+PropertyLayout property_layout_of(const Source& source, const char* body,
+                                  const std::vector<Element>& elements, PropertyPlace place) {
     const auto has_list = [](const Element& element) {
         return std::ranges::any_of(element.properties, [](const Property& p) { return bool(p.count_type); });
     };
@@ -42,7 +42,7 @@ std::vector<std::vector<double>> sample_binary_rows(const Source& source, const 
     std::vector<PropertyLayout> layouts;
     size_t rows = std::numeric_limits<size_t>::max();
     for (const PropertyPlace& place : places) {
-        layouts.push_back(layout_of(source, body, elements, place));
+        layouts.push_back(property_layout_of(source, body, elements, place));
         rows = std::min(rows, layouts.back().rows);
     }
     std::vector<std::vector<double>> samples(std::min(rows, offset_sample_count),

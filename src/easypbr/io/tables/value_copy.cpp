@@ -24,7 +24,7 @@ struct Half {
 };
 
 template <class T, bool swap>
-T load(const char* p) {
+T load_value(const char* p) {
     std::array<char, sizeof(T)> bytes;
     std::memcpy(bytes.data(), p, sizeof(T));
     if constexpr (swap) std::reverse(bytes.begin(), bytes.end());
@@ -50,7 +50,7 @@ void copy_each(const ValueBlock& block, To* out, Convert&& convert_value) {
         const char* in = block.in + row * block.in_stride;
         To* target = out + row * block.out_stride;
         for (size_t k = 0; k < block.width; ++k)
-            target[k] = convert_value(load<From, swap>(in + k * sizeof(From)));
+            target[k] = convert_value(load_value<From, swap>(in + k * sizeof(From)));
     }
 }
 

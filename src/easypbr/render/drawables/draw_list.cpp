@@ -1,6 +1,7 @@
 #include "easypbr/render/drawables/draw_list.h"
 
-#include "easypbr/core/color.h"
+#include <cmath>
+
 #include "easypbr/scene/settings.h"
 
 namespace easypbr::render {
@@ -78,43 +79,22 @@ void add_vertices(const Source& source, DrawMode kind, DrawList& list) {
     list.items[kind].push_back(std::move(item));
 }
 
-/// sRGB colours that stand out on most surfaces.
-const Vec3 wireframe_color(0.1f, 0.1f, 0.12f), normals_color(0.16f, 0.35f, 0.9f);
-/// Length of normals, as a part of the object's diagonal.
-constexpr float normal_part = 0.02f;
+bool has_lines(const MeshData& mesh, const DrawStyle& style) {
+    const bool are_shape = style.mode == DrawMode::lines && !(mesh.E.empty() && mesh.F.empty());
+    return are_shape || (style.show_wireframe && !mesh.F.empty()) || (style.show_normals && !mesh.V.empty());
+}
 
 void add_lines(const Source& source, DrawList& list) {
-    const MeshData& mesh = *source.object.mesh;
-    const DrawStyle& style = source.style;
-    LineItem item;
-    item.object = &source.object;
-    item.style = style;
-    const auto add = [&](gpu::LineKind kind, const Vec3& color) {
-        item.kind = kind;
-        item.color = color;
-        list.lines.push_back(item);
-    };
-    const auto given_or = [&](const Vec3& color) {
-        return linear_from_srgb(style.line_color.value_or(color));
-    };
-    if (style.mode == DrawMode::lines && mesh.E.empty() && !mesh.F.empty())
-        add(gpu::LineKind::wireframe, style.line_color ? linear_from_srgb(*style.line_color)
-                                                       : make_item(source, {}).material.base_color);
-    if (style.mode == DrawMode::lines && !mesh.E.empty()) {
-        const Vec3 own = mesh.C.empty() ? make_item(source, {}).material.base_color : Vec3(1, 1, 1);
-        add(gpu::LineKind::edges, style.line_color ? linear_from_srgb(*style.line_color) : own);
-    }
-    if (style.show_wireframe && !mesh.F.empty()) add(gpu::LineKind::wireframe, given_or(wireframe_color));
-    if (style.show_normals && !mesh.V.empty()) {
-        const float diagonal = (mesh.V.colwise().maxCoeff() - mesh.V.colwise().minCoeff()).norm();
-        item.length = style.normal_length.value_or(normal_part * diagonal);
-        add(gpu::LineKind::normals, given_or(normals_color));
-    }
+    if (!has_lines(*source.object.mesh, source.style)) return;
+    DrawItem item = make_item(source, {});
+    item.kind = SurfaceKind::display;
+    item.reaches_beyond = true;
+    list.overlays[DrawMode::lines].push_back(std::move(item));
 }
 
 }  // namespace
 
-std::span<const DrawItem> DrawList::of(DrawMode kind) const {
+std::span<const DrawItem> items_of(const ItemsByKind& items, DrawMode kind) {
     const auto found = items.find(kind);
     return found == items.end() ? std::span<const DrawItem>() : found->second;
 }
@@ -133,6 +113,10 @@ DrawList DrawList::layers() const {
 
 DrawList DrawList::without_layers() const {
     return without([](const DrawItem& item) { return item.layered; });
+}
+
+double DrawItem::scale() const {
+    return std::cbrt(std::abs(object->T_world_mesh.linear().determinant()));
 }
 
 bool DrawItem::needs_tangents() const {

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "easypbr/gpu/line_segments.h"
 #include "easypbr/render/drawables/drawable_scene.h"
 #include "easypbr/render/frame/extensions.h"
 #include "easypbr/render/frame/surface_kind.h"
@@ -33,6 +32,8 @@ struct DrawItem {
     bool reaches_beyond = false;  ///< its primitives reach beyond the vertices
 
     const MeshData& mesh() const { return *object->mesh; }
+    /// The factor of its pose on lengths: the cube root of that on volumes.
+    double scale() const;
     bool emits() const { return material.unlit || !material.emissive.isZero() || material.shader; }
     bool textured() const { return material.has_textures() && !mesh().UV.empty(); }
     /// Its shadow is a tint: it weakens light instead of stopping it.
@@ -57,21 +58,18 @@ inline bool is_over(const DrawItem& item) {
     return item.style.overlay;
 }
 
-/// Lines of an object, drawn over the picture.
-struct LineItem {
-    const SceneSnapshot::Object* object = nullptr;
-    DrawStyle style;
-    gpu::LineKind kind = gpu::LineKind::edges;
-    Vec3 color{1, 1, 1};  ///< linear, a factor on the vertices' colours
-    float length = 0;     ///< of normals, in the mesh's own units
-};
+/// By kind of primitive, each in the order in which they are drawn.
+using ItemsByKind = std::map<DrawMode, std::vector<DrawItem>>;
+
+std::span<const DrawItem> items_of(const ItemsByKind& items, DrawMode kind);
 
 struct DrawList {
-    /// By kind of primitive, in the order in which they are drawn; of meshes one item per part.
-    std::map<DrawMode, std::vector<DrawItem>> items;
-    std::vector<LineItem> lines;
+    ItemsByKind items;  ///< surfaces; of meshes one item per part
+    /// Unlit, drawn into the overlay between the layers, without shadows; no list in it is empty.
+    ItemsByKind overlays;
 
-    std::span<const DrawItem> of(DrawMode kind) const;
+    std::span<const DrawItem> of(DrawMode kind) const { return items_of(items, kind); }
+    /// Whether a predicate holds for any of the surfaces.
     template <class Predicate>
     bool has(Predicate&& predicate) const {
         return std::ranges::any_of(items, [&](const auto& of_kind) {
@@ -80,16 +78,17 @@ struct DrawList {
     }
     /// Whether something is shown past light and tone curve.
     bool needs_overlay() const {
-        return !lines.empty() || has([](const DrawItem& item) { return is_display(item.kind); });
+        return !overlays.empty() || has([](const DrawItem& item) { return is_display(item.kind); });
     }
-    bool reaches_beyond_vertices() const { return !lines.empty() || has(&DrawItem::reaches_beyond); }
+    bool reaches_beyond_vertices() const { return !overlays.empty() || has(&DrawItem::reaches_beyond); }
+    /// The list without the surfaces for which a predicate holds.
     template <class Predicate>
     DrawList without(Predicate&& predicate) const {
         DrawList rest = *this;
         for (auto& [kind, of_kind] : rest.items) std::erase_if(of_kind, std::ref(predicate));
         return rest;
     }
-    /// Of surfaces; there may be lines.
+    /// Of surfaces; there may be overlays.
     bool empty() const;
     /// The items whose colours may be averaged: others are mixed with them in any case where they are
     /// layers.

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "easypbr/render/frame/screen_shader.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
@@ -129,18 +130,35 @@ void set_noise_uniforms(const gl::Program& program, const Frame& frame) {
     program.set("u_noise_origin", Vec2(frame.origin.cast<float>()));
 }
 
-void set_camera_uniforms(const gl::Program& program, const Frame& frame) {
+void set_noise_uniforms(ShaderInputs& inputs, const Frame& frame) {
+    inputs.set("u_noise_origin", Vec2(frame.origin.cast<float>()));
+}
+
+namespace {
+
+template <class To>
+void set_camera(To& to, const Frame& frame) {
     const Mat4d& p = frame.clip_from_view;
     const Camera& camera = frame.camera;
     const Vec2 shift =
         frame.orthographic() ? Vec2(float(-p(0, 3)), float(-p(1, 3))) : Vec2(float(p(0, 2)), float(p(1, 2)));
-    program.set("u_size", Vec2(frame.size.cast<float>()));
-    program.set("u_picture", Vec4(float(frame.origin.x()), float(frame.origin.y()),
+    to.set("u_size", Vec2(frame.size.cast<float>()));
+    to.set("u_picture", Vec4(float(frame.origin.x()), float(frame.origin.y()),
                                   float(frame.picture_size.x()), float(frame.picture_size.y())));
-    program.set("u_reach", float(frame.reach));
-    program.set("u_unproject", Vec4(float(1 / p(0, 0)), float(1 / p(1, 1)), shift.x(), shift.y()));
-    program.set("u_depth", Vec3(float(camera.near), float(camera.far), frame.orthographic() ? 1.0f : 0.0f));
-    program.set("u_world_from_view", Mat3(camera.T_world_cam.linear().cast<float>()));
+    to.set("u_reach", float(frame.reach));
+    to.set("u_unproject", Vec4(float(1 / p(0, 0)), float(1 / p(1, 1)), shift.x(), shift.y()));
+    to.set("u_depth", Vec3(float(camera.near), float(camera.far), frame.orthographic() ? 1.0f : 0.0f));
+    to.set("u_world_from_view", Mat3(camera.T_world_cam.linear().cast<float>()));
+}
+
+}  // namespace
+
+void set_camera_uniforms(const gl::Program& program, const Frame& frame) {
+    set_camera(program, frame);
+}
+
+void set_camera_uniforms(ShaderInputs& inputs, const Frame& frame) {
+    set_camera(inputs, frame);
 }
 
 std::vector<std::string> camera_defines(const Frame& frame) {

@@ -16,6 +16,8 @@ struct ResolvedSettings;
 
 namespace easypbr::render {
 
+class ShaderInputs;
+
 /// A picture that is drawn whole sees all of itself.
 inline constexpr double unlimited_reach = 1e9;
 
@@ -72,9 +74,11 @@ Frame make_frame(const Shot& shot, int sample_index, const Camera& camera, const
 
 /// First pixel of the frame, for shaders/common_noise.glsl: patterns lie on the picture, not on its tiles.
 void set_noise_uniforms(const gl::Program& program, const Frame& frame);
+void set_noise_uniforms(ShaderInputs& inputs, const Frame& frame);
 
 /// Sets the uniforms of shaders/common_camera.glsl.
 void set_camera_uniforms(const gl::Program& program, const Frame& frame);
+void set_camera_uniforms(ShaderInputs& inputs, const Frame& frame);
 
 /// Macros that shaders with the camera depend on.
 std::vector<std::string> camera_defines(const Frame& frame);

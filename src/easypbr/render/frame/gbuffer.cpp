@@ -112,7 +112,16 @@ void GBuffer::upload(Transfers& transfers) const {
     const gl::Framebuffer& cleared = framebuffer(surface_, {&albedo, &normal, &material, &depth});
     cleared.clear_color(3, zero);
     cleared.clear_depth(0);
-    lit().clear_color(0, zero);
+    framebuffer(lit_, {&radiance}).clear_color(0, zero);
+    if (radiance.is_ahead())
+        radiance.upload(transfers);
+    else
+        radiance.drawn();
+    if (ambient_occlusion && ambient_occlusion.is_ahead()) {
+        const float open[4] = {1, 1, 1, 1};
+        framebuffer(occluded_, {&ambient_occlusion}).clear_color(0, open);
+        ambient_occlusion.upload(transfers);
+    }
     if (id && id.is_ahead()) {
         const gl::Framebuffer& ids =
             framebuffer(surface_ids_, {&albedo, &normal, &material, &depth, &radiance, &id, &element});

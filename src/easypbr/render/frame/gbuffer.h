@@ -69,7 +69,7 @@ struct GBuffer {
     /// Begins to write surfaces in host memory, ids too where they are asked for: nothing but a rectangle,
     /// whose pixels are undefined.
     void write(const PixelRect& area, bool with_ids) const;
-    /// Brings surfaces that were written in host memory to the textures.
+    /// Brings surfaces that were written in host memory, and their light where they are lit, to the textures.
     void upload(Transfers& transfers) const;
 
     /// The state of a screen pass that touches the pixels that hold geometry, and no others.

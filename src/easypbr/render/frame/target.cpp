@@ -64,6 +64,14 @@ void Target::download(const PixelRect& area, Transfers& transfers) const {
     transfers.note_download(host_.size());
 }
 
+void Target::copy_out(const PixelRect& area, std::span<std::byte> values) const {
+    const size_t pixel = gl::pixel_bytes(format_), row = size_t(area.width) * pixel;
+    for (int y = 0; y < area.height; ++y) {
+        const size_t from = size_t(area.y + y - area_.y) * size_t(area_.width) + size_t(area.x - area_.x);
+        std::copy_n(host_.data() + from * pixel, row, values.data() + size_t(y) * row);
+    }
+}
+
 void Target::read_to(std::span<std::byte> values, Transfers& transfers) const {
     download(whole(), transfers);
     const size_t pixel = gl::pixel_bytes(format_), row = size_t(area_.width) * pixel;

@@ -82,6 +82,9 @@ class Target {
         return values;
     }
 
+    /// A rectangle of what host memory holds, which is the newest.
+    void copy_out(const PixelRect& area, std::span<std::byte> values) const;
+
   private:
     enum class Newest { both, host, texture };
     void read_to(std::span<std::byte> values, Transfers& transfers) const;

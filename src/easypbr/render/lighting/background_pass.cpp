@@ -15,31 +15,49 @@ float equirect_level(const Frame& frame, int equirect_width) {
     return float(std::max(0.0, std::log2(std::max(pixel, 1e-9) / texel)));
 }
 
+ShaderInputs inputs_of(const Frame& frame, const gpu::EnvironmentMaps& maps, bool native) {
+    const BackgroundSettings& background = frame.resolved->settings.background;
+    const bool blur = background.mode == BackgroundMode::blur;
+    ShaderInputs values;
+    values.define(camera_defines(frame));
+    if (blur) values.define("BLUR");
+    set_camera_uniforms(values, frame);
+    values.set("u_env_from_world", Mat3(frame.resolved->R_env_world.cast<float>()));
+    values.set("u_env_intensity", frame.resolved->settings.environment.intensity);
+    values.set("u_level", blur ? background.blur * maps.last_level() : equirect_level(frame, maps.equirect_width()));
+    if (blur && native)
+        values.set("u_prefiltered", maps.host_prefiltered());
+    else if (blur)
+        values.set("u_prefiltered", maps.prefiltered());
+    else if (native)
+        values.set("u_equirect", maps.host_equirect());
+    else
+        values.set("u_equirect", maps.equirect());
+    return values;
+}
+
 }  // namespace
 
 void BackgroundPass::draw(const Frame& frame, const GBuffer& targets, const gpu::EnvironmentMaps& maps,
                           bool under) {
-    const BackgroundSettings& background = frame.resolved->settings.background;
-    const bool blur = background.mode == BackgroundMode::blur;
-    std::vector<std::string> defines = camera_defines(frame);
-    if (blur) defines.emplace_back("BLUR");
-    const gl::Program& program = programs_.get(defines);
+    const ShaderInputs values = inputs_of(frame, maps, false);
     targets.lit().bind();
-    program.use();
-    set_camera_uniforms(program, frame);
-    program.set("u_env_from_world", Mat3(frame.resolved->R_env_world.cast<float>()));
-    program.set("u_env_intensity", frame.resolved->settings.environment.intensity);
-    const float level =
-        blur ? background.blur * maps.last_level() : equirect_level(frame, maps.equirect().width());
-    (blur ? maps.prefiltered() : maps.equirect()).bind(0);
-    program.set(blur ? "u_prefiltered" : "u_equirect", 0);
-    program.set("u_level", level);
     // The triangle lies infinitely far: "equal" draws it where there is no geometry.
     gl::DrawState state{.depth_test = gl::DepthTest::equal};
     if (under)
         state = {.depth_test = gl::DepthTest::always,
                  .blending = {.source = gl::Factor::one_minus_target_alpha, .target = gl::Factor::one}};
-    gl::draw_screen(state);
+    shader_.draw(values, state);
+}
+
+void BackgroundPass::shade(const Frame& frame, const GBuffer& targets, const gpu::EnvironmentMaps& maps,
+                           Transfers& transfers) {
+    shader_.shade(inputs_of(frame, maps, true),
+                  {.target = &targets.radiance,
+                   .area = targets.radiance.area(),
+                   .where = native::Where::empty,
+                   .depth = &targets.depth},
+                  transfers);
 }
 
 }  // namespace easypbr::render

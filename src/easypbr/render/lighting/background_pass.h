@@ -4,7 +4,7 @@
 #include "easypbr/gpu/environment_maps.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
-#include "easypbr/render/frame/programs.h"
+#include "easypbr/render/frame/screen_shader.h"
 
 namespace easypbr::render {
 
@@ -14,8 +14,12 @@ class BackgroundPass {
     /// does not cover its pixel.
     void draw(const Frame& frame, const GBuffer& targets, const gpu::EnvironmentMaps& maps, bool under);
 
+    /// The same, without `under`, natively: the radiance target is in host memory.
+    void shade(const Frame& frame, const GBuffer& targets, const gpu::EnvironmentMaps& maps,
+               Transfers& transfers);
+
   private:
-    ProgramVariants programs_{"screen_triangle.vert", "background_environment.frag"};
+    ScreenShader shader_{"background_environment.frag", native::Shader::background_environment};
 };
 
 }  // namespace easypbr::render

@@ -13,11 +13,6 @@
 namespace easypbr::render {
 namespace {
 
-constexpr unsigned tint_unit = 9;
-constexpr int extension_unit = 12;
-constexpr int behind_unit = 20;
-constexpr int traced_unit = 24;
-
 /// What the uniform blocks hold is stated once, in the text that the shaders include.
 namespace blocks {
 using vec4 = Vec4;
@@ -122,70 +117,127 @@ std::vector<std::string> defines_of(const Frame& frame, const GBuffer& targets, 
     return defines;
 }
 
+void set_transmission(ShaderInputs& values, const Frame& frame, const TransmissionInputs& behind) {
+    // Without volumes in the layer nobody asks for their backs.
+    const auto or_depth = [&](const gl::Texture* texture) -> const gl::Texture& {
+        return texture ? *texture : *behind.depth;
+    };
+    values.set("u_behind", *behind.picture);
+    values.set("u_behind_depth", *behind.depth);
+    values.set("u_exit_depth", or_depth(behind.exit_depth));
+    values.set("u_exit_normal", or_depth(behind.exit_normal));
+    values.set("u_behind_levels", float(behind.levels));
+    values.set("u_behind_reach", float(behind.reach));
+    values.set("u_lobe_sample", lobe_point(frame.sample_index, frame.sample_count));
+    values.set("u_lobe_share", 1 / std::sqrt(float(frame.sample_count)));
+}
+
+void set_environment(ShaderInputs& values, const Frame& frame, const LightInputs& inputs, bool native) {
+    const gpu::EnvironmentMaps& maps = *inputs.environment;
+    if (native) {
+        values.set("u_prefiltered", maps.host_prefiltered());
+        values.set("u_irradiance", maps.host_irradiance());
+    } else {
+        values.set("u_prefiltered", maps.prefiltered());
+        values.set("u_irradiance", maps.irradiance());
+    }
+    values.set("u_env_from_world", Mat3(frame.resolved->R_env_world.cast<float>()));
+    values.set("u_last_level", maps.last_level());
+    if (frame.sample_count > 1)
+        values.set("u_lobe_slope", lobe_slope(frame.sample_index, frame.sample_count));
+    values.set("u_env_intensity", frame.resolved->settings.environment.intensity);
+    if (!inputs.traced) return;
+    values.set("u_sky_visibility", inputs.traced->sky_visibility);
+    values.set("u_indirect_diffuse", inputs.traced->indirect_diffuse);
+    values.set("u_indirect_specular", inputs.traced->indirect_specular);
+}
+
+void set_lights(ShaderInputs& values, const Frame& frame, const LightBlock& block, bool native) {
+    LightUniforms lights{};
+    for (size_t i = 0; i < block.lights.size(); ++i)
+        write_light(*block.lights[i], frame.camera.position(), lights, i);
+    values.set_block(0, "u_lights", gl::bytes_of(lights));
+    values.set("u_plain_lights", int(block.plain()));
+    if (block.shadows.empty()) return;
+
+    ShadowUniforms shadows{};
+    for (size_t i = 0; i < block.shadows.size(); ++i)
+        write_shadow(block.shadows[i], frame.camera.position(), block.resolution, shadows, i);
+    values.set_block(1, "u_shadows", gl::bytes_of(shadows));
+    if (native)
+        values.set("u_shadow_maps", block.host_maps);
+    else
+        values.set("u_shadow_maps", *block.maps);
+    if (block.tints) {
+        values.set("u_tint_absorption", block.tints->absorption);
+        values.set("u_tint_moment", block.tints->moment);
+    }
+    values.set("u_single_lights", int(block.lights.size() - block.cubes));
+    values.set("u_cube_lights", int(block.lights.size()));
+    values.set("u_shadow_resolution", float(block.resolution));
+    values.set("u_sample_index", float(frame.sample_index));
+    set_noise_uniforms(values, frame);
+}
+
 }  // namespace
 
-const gl::Texture& LightingPass::dfg(Brdf brdf) {
+void LightingPass::set_dfg(ShaderInputs& values, Brdf brdf, bool native) {
+    static_assert(gpu::dfg_size == 64 && lights_per_block == 64, "cmake/native.cmake says so too");
+    if (native) {
+        values.set("u_dfg", native::View{.data = std::as_bytes(gpu::dfg_table(brdf)).data(),
+                                         .width = gpu::dfg_size,
+                                         .height = gpu::dfg_size,
+                                         .held_width = gpu::dfg_size,
+                                         .held_height = gpu::dfg_size});
+        return;
+    }
     if (!dfg_ || dfg_brdf_ != brdf) {
         dfg_ = gl::Texture(gl::Format::rg16f, gpu::dfg_size, gpu::dfg_size);
         dfg_.upload(std::as_bytes(gpu::dfg_table(brdf)));
         dfg_.sampling(gl::Filtering::linear);
         dfg_brdf_ = brdf;
     }
-    return dfg_;
+    values.set("u_dfg", dfg_);
 }
 
-void LightingPass::set_extensions(const gl::Program& program, const Frame& frame, const GBuffer& targets,
-                                  bool first) {
+void LightingPass::set_extensions(ShaderInputs& values, const Frame& frame, const GBuffer& targets) {
     if (!sheen_albedo_) {
         sheen_albedo_ = gl::Texture(gl::Format::r16f, gpu::dfg_size, gpu::dfg_size);
         sheen_albedo_.upload(std::as_bytes(gpu::sheen_albedo_table()));
         sheen_albedo_.sampling(gl::Filtering::linear);
     }
-    const gl::Texture* sources[] = {&targets.extension[0].texture(), &targets.extension[1].texture(),
-                                    &sheen_albedo_};
-    const char* samplers[] = {"u_extension0", "u_extension1", "u_sheen_albedo"};
-    for (int i = 0; i < 3; ++i) {
-        sources[i]->bind(unsigned(extension_unit + i));
-        program.set(samplers[i], extension_unit + i);
-    }
-    program.set("u_first_block", first ? 1.0f : 0.0f);
-    program.set("u_tap_gap", 1.0f / float(frame.sample_count));
-    program.set("u_tap_offset", (float(frame.sample_index) + 0.5f) / float(frame.sample_count));
+    values.set("u_extension0", targets.extension[0]);
+    values.set("u_extension1", targets.extension[1]);
+    values.set("u_sheen_albedo", sheen_albedo_);
+    values.set("u_tap_gap", 1.0f / float(frame.sample_count));
+    values.set("u_tap_offset", (float(frame.sample_index) + 0.5f) / float(frame.sample_count));
 }
 
-void LightingPass::set_transmission(const gl::Program& program, const Frame& frame,
-                                    const TransmissionInputs& behind) {
-    const gl::Texture* sources[] = {behind.picture, behind.depth, behind.exit_depth, behind.exit_normal};
-    const char* samplers[] = {"u_behind", "u_behind_depth", "u_exit_depth", "u_exit_normal"};
-    for (int i = 0; i < 4; ++i) {
-        // Without volumes in the layer nobody asks for their backs.
-        (sources[i] ? sources[i] : behind.depth)->bind(unsigned(behind_unit + i));
-        program.set(samplers[i], behind_unit + i);
-    }
-    program.set("u_behind_levels", float(behind.levels));
-    program.set("u_behind_reach", float(behind.reach));
-    program.set("u_lobe_sample", lobe_point(frame.sample_index, frame.sample_count));
-    program.set("u_lobe_share", 1 / std::sqrt(float(frame.sample_count)));
+ShaderInputs LightingPass::surface_inputs(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
+                                          bool native) {
+    const ShadingSettings& shading = frame.resolved->settings.shading;
+    ShaderInputs values;
+    values.define(defines_of(frame, targets, inputs));
+    set_camera_uniforms(values, frame);
+    values.set("u_albedo", targets.albedo);
+    values.set("u_normal", targets.normal);
+    values.set("u_material", targets.material);
+    values.set("u_depth_target", targets.depth);
+    if (targets.ambient_occlusion) values.set("u_ambient_occlusion", targets.ambient_occlusion);
+    set_dfg(values, shading.brdf, native);
+    values.set("u_dielectric_f0", shading.dielectric_f0);
+    values.set("u_first_block", inputs.block.first ? 1.0f : 0.0f);
+    if (inputs.extensions) set_extensions(values, frame, targets);
+    if (inputs.transmission) set_transmission(values, frame, *inputs.transmission);
+    if (inputs.environment) set_environment(values, frame, inputs, native);
+    set_lights(values, frame, inputs.block, native);
+    return values;
 }
 
 void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightInputs& inputs) {
     const LightBlock& block = inputs.block;
+    const ShaderInputs values = surface_inputs(frame, targets, inputs, false);
     targets.lit().bind();
-    const Target* sources[] = {&targets.albedo, &targets.normal, &targets.material, &targets.depth};
-    for (unsigned unit = 0; unit < 4; ++unit) sources[unit]->bind(unit);
-    dfg(frame.resolved->settings.shading.brdf).bind(4);
-    const gl::Program& program = programs_.get(defines_of(frame, targets, inputs));
-    program.use();
-    set_camera_uniforms(program, frame);
-    const char* samplers[] = {"u_albedo",      "u_normal",     "u_material",    "u_depth_target",     "u_dfg",
-                              "u_prefiltered", "u_irradiance", "u_shadow_maps", "u_ambient_occlusion"};
-    if (targets.ambient_occlusion) targets.ambient_occlusion.bind(8);
-    for (int unit = 0; unit < 9; ++unit) program.set(samplers[unit], unit);
-    program.set("u_dielectric_f0", frame.resolved->settings.shading.dielectric_f0);
-    if (inputs.extensions) set_extensions(program, frame, targets, block.first);
-    if (inputs.transmission) set_transmission(program, frame, *inputs.transmission);
-    if (inputs.environment) set_environment(program, frame, inputs);
-    set_lights(program, frame, block);
     // Layers of extended surfaces leave only a part of the emission that stands in the target.
     // The first block knows how much the surface covers.
     const auto kept = inputs.extensions ? gl::Factor::source1_color : gl::Factor::one;
@@ -195,79 +247,34 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightI
                                .source_alpha = block.first ? gl::Factor::one : gl::Factor::zero,
                                .target_alpha = block.first ? gl::Factor::zero : gl::Factor::one});
     state.scissor = screen_state(frame.covered).scissor;
-    gl::draw_screen(state);
+    surface_.draw(values, state);
+}
+
+void LightingPass::shade(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
+                         Transfers& transfers) {
+    const bool first = inputs.block.first;
+    surface_.shade(surface_inputs(frame, targets, inputs, true),
+                   {.target = &targets.radiance,
+                    .area = targets.depth.area(),
+                    .store = first ? native::Store::replace : native::Store::add_light,
+                    .where = native::Where::covered,
+                    .depth = &targets.depth},
+                   transfers);
 }
 
 void LightingPass::draw_caught(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
                                const gl::Framebuffer& light) {
+    ShaderInputs values;
+    values.define(light_defines(frame, targets, inputs));
+    set_camera_uniforms(values, frame);
+    values.set("u_normal", targets.normal);
+    values.set("u_material", targets.material);
+    values.set("u_depth_target", targets.depth);
+    if (targets.ambient_occlusion) values.set("u_ambient_occlusion", targets.ambient_occlusion);
+    if (inputs.environment) set_environment(values, frame, inputs, false);
+    set_lights(values, frame, inputs.block, false);
     light.bind();
-    const gl::Program& program = catcher_.get(light_defines(frame, targets, inputs));
-    program.use();
-    set_camera_uniforms(program, frame);
-    const std::pair<const char*, const Target*> sources[] = {
-        {"u_normal", &targets.normal}, {"u_material", &targets.material}, {"u_depth_target", &targets.depth}};
-    for (int unit = 0; unit < 3; ++unit) {
-        program.set(sources[unit].first, unit);
-        sources[unit].second->bind(unsigned(unit));
-    }
-    program.set("u_irradiance", 6);
-    program.set("u_shadow_maps", 7);
-    program.set("u_ambient_occlusion", 8);
-    if (targets.ambient_occlusion) targets.ambient_occlusion.bind(8);
-    if (inputs.environment) set_environment(program, frame, inputs);
-    set_lights(program, frame, inputs.block);
-    gl::draw_screen(targets.covered_state(gl::add));
-}
-
-void LightingPass::set_environment(const gl::Program& program, const Frame& frame,
-                                   const LightInputs& inputs) {
-    const gpu::EnvironmentMaps& maps = *inputs.environment;
-    maps.prefiltered().bind(5);
-    maps.irradiance().bind(6);
-    program.set("u_env_from_world", Mat3(frame.resolved->R_env_world.cast<float>()));
-    program.set("u_last_level", maps.last_level());
-    if (frame.sample_count > 1)
-        program.set("u_lobe_slope", lobe_slope(frame.sample_index, frame.sample_count));
-    program.set("u_env_intensity", frame.resolved->settings.environment.intensity);
-    if (!inputs.traced) return;
-    const std::pair<const char*, const Target*> sources[] = {
-        {"u_sky_visibility", &inputs.traced->sky_visibility},
-        {"u_indirect_diffuse", &inputs.traced->indirect_diffuse},
-        {"u_indirect_specular", &inputs.traced->indirect_specular}};
-    for (int i = 0; i < 3; ++i) {
-        program.set(sources[i].first, traced_unit + i);
-        sources[i].second->bind(unsigned(traced_unit + i));
-    }
-}
-
-void LightingPass::set_lights(const gl::Program& program, const Frame& frame, const LightBlock& block) {
-    if (!lights_) lights_ = gl::Buffer(sizeof(LightUniforms));
-    LightUniforms lights{};
-    for (size_t i = 0; i < block.lights.size(); ++i)
-        write_light(*block.lights[i], frame.camera.position(), lights, i);
-    lights_.update(0, gl::bytes_of(lights));
-    lights_.bind_uniform(0);
-    program.set("u_plain_lights", int(block.plain()));
-    if (block.shadows.empty()) return;
-
-    if (!shadows_) shadows_ = gl::Buffer(sizeof(ShadowUniforms));
-    ShadowUniforms shadows{};
-    for (size_t i = 0; i < block.shadows.size(); ++i)
-        write_shadow(block.shadows[i], frame.camera.position(), block.maps->width(), shadows, i);
-    shadows_.update(0, gl::bytes_of(shadows));
-    shadows_.bind_uniform(1);
-    block.maps->bind(7);
-    if (block.tints) {
-        block.tints->absorption.bind(tint_unit);
-        block.tints->moment.bind(tint_unit + 1);
-        program.set("u_tint_absorption", int(tint_unit));
-        program.set("u_tint_moment", int(tint_unit + 1));
-    }
-    program.set("u_single_lights", int(block.lights.size() - block.cubes));
-    program.set("u_cube_lights", int(block.lights.size()));
-    program.set("u_shadow_resolution", float(block.maps->width()));
-    program.set("u_sample_index", float(frame.sample_index));
-    set_noise_uniforms(program, frame);
+    catcher_.draw(values, targets.covered_state(gl::add));
 }
 
 }  // namespace easypbr::render

@@ -4,7 +4,7 @@
 #include "easypbr/gpu/environment_maps.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
-#include "easypbr/render/frame/programs.h"
+#include "easypbr/render/frame/screen_shader.h"
 #include "easypbr/render/raytrace/traced_light.h"
 #include "easypbr/render/shadow/light_block.h"
 
@@ -26,6 +26,7 @@ struct TransmissionInputs {
 
 /// What lights a G-buffer.
 struct LightInputs {
+    bool native = false;  ///< in host memory, by LightingPass::shade()
     LightBlock block = {};
     const gpu::EnvironmentMaps* environment = nullptr;  ///< with the first block, where there is one
     const TracedLight* traced = nullptr;                ///< what rays found of the environment's light
@@ -43,18 +44,20 @@ class LightingPass {
     void draw_caught(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
                      const gl::Framebuffer& light);
 
-  private:
-    const gl::Texture& dfg(Brdf brdf);
-    void set_environment(const gl::Program& program, const Frame& frame, const LightInputs& inputs);
-    void set_lights(const gl::Program& program, const Frame& frame, const LightBlock& block);
-    void set_transmission(const gl::Program& program, const Frame& frame, const TransmissionInputs& inputs);
-    void set_extensions(const gl::Program& program, const Frame& frame, const GBuffer& targets, bool first);
+    /// Lights natively: writes the radiance target in host memory, where the surfaces are. There must be no
+    /// extensions, no transmission and no tinted shadows, and the shadow maps are in host memory.
+    void shade(const Frame& frame, const GBuffer& targets, const LightInputs& inputs, Transfers& transfers);
 
-    ProgramVariants programs_{"screen_triangle.vert", "lighting_surface.frag"};
-    ProgramVariants catcher_{"screen_triangle.vert", "lighting_catcher.frag"};
+  private:
+    ShaderInputs surface_inputs(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
+                                bool native);
+    void set_dfg(ShaderInputs& values, Brdf brdf, bool native);
+    void set_extensions(ShaderInputs& values, const Frame& frame, const GBuffer& targets);
+
+    ScreenShader surface_{"lighting_surface.frag", native::Shader::lighting_surface};
+    ScreenShader catcher_{"lighting_catcher.frag"};
     gl::Texture dfg_, sheen_albedo_;
     Brdf dfg_brdf_{};
-    gl::Buffer lights_, shadows_;
 };
 
 }  // namespace easypbr::render

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "easypbr/core/color.h"
+#include "easypbr/core/parallel.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
@@ -49,7 +50,7 @@ Vec4 background_color(const Frame& frame) {
 
 /// Scale and offset of the frame's texture coordinates with which an image covers the picture, centred,
 /// nothing distorted.
-Vec4 cover(const gl::Texture& image, const Frame& frame) {
+Vec4 covering_uv(const gl::Texture& image, const Frame& frame) {
     const Vec2 whole = frame.picture_size.cast<float>();
     const float picture = whole.x() / whole.y(), own = float(image.width()) / float(image.height());
     const Vec2 scale = picture > own ? Vec2(1, own / picture) : Vec2(picture / own, 1);
@@ -59,22 +60,39 @@ Vec4 cover(const gl::Texture& image, const Frame& frame) {
     return {part.x(), part.y(), first.x(), first.y()};
 }
 
-constexpr unsigned overlay_unit = 2, glow_unit = 3;
-
-void add_defines(const LitPicture& lit, std::vector<std::string>& defines) {
-    if (lit.overlay) defines.emplace_back("OVERLAY");
-    if (lit.glow) defines.emplace_back("BLOOM");
+void add_lit(const LitPicture& lit, const char* radiance, ShaderInputs& values) {
+    if (lit.overlay) values.define("OVERLAY");
+    if (lit.glow) values.define("BLOOM");
+    values.set(radiance, *lit.radiance);
+    if (lit.overlay) values.set("u_overlay", *lit.overlay);
+    if (!lit.glow) return;
+    values.set("u_bloom", lit.glow->parameters);
+    values.set("u_glow", *lit.glow->light);
+    values.set("u_glow_size", lit.glow->size());
 }
 
-void bind_overlay(const gl::Program& program, const Target& overlay) {
-    program.set("u_overlay", int(overlay_unit));
-    overlay.bind(overlay_unit);
+ShaderInputs display_inputs(const Frame& frame, const LitPicture& lit, Encoding encoding, const Target* sum) {
+    ShaderInputs values;
+    values.define(tone_defines(frame, lit, encoding));
+    if (encoding == Encoding::scene_linear) values.define("LINEAR_OUTPUT");
+    values.set("u_size", Vec2(frame.size.cast<float>()));
+    values.set("u_exposure", exposure_of(frame, encoding));
+    values.set("u_sample_scale", 1.0f / float(frame.sample_index + 1));
+    values.set("u_background", background_color(frame));
+    if (sum) {
+        values.define("SUM");
+        values.set("u_source", *sum);
+    } else {
+        add_lit(lit, "u_source", values);
+    }
+    return values;
 }
 
-void bind(const LitPicture& lit, const gl::Program& program) {
-    lit.radiance->bind(0);
-    if (lit.overlay) bind_overlay(program, *lit.overlay);
-    if (lit.glow) set_glow_uniforms(program, *lit.glow, glow_unit);
+/// The background as the picture holds it.
+Vec4 background_code(const Frame& frame, Encoding encoding) {
+    Vec4 code = background_color(frame);
+    if (encoding != Encoding::scene_linear) code.head<3>() = srgb_from_linear(Vec3(code.head<3>()));
+    return code;
 }
 
 PixelRect united(const PixelRect& a, const PixelRect& b) {
@@ -82,10 +100,38 @@ PixelRect united(const PixelRect& a, const PixelRect& b) {
     return {x, y, std::max(a.x + a.width, b.x + b.width) - x, std::max(a.y + a.height, b.y + b.height) - y};
 }
 
+/// Writes one value to all pixels but those of a rectangle.
+template <class Pixel>
+void fill_around(const Target& picture, const PixelRect& area, const Pixel& value) {
+    const auto pixels = picture.pixels<Pixel>();
+    const int width = picture.width();
+    parallel_for(size_t(picture.height()), 64, [&](size_t y) {
+        Pixel* row = pixels.data() + y * size_t(width);
+        const bool crosses = int(y) >= area.y && int(y) < area.y + area.height && area.width > 0;
+        std::fill(row, row + (crosses ? area.x : width), value);
+        if (crosses) std::fill(row + area.x + area.width, row + width, value);
+    });
+}
+
+void fill_around(const Target& picture, const PixelRect& area, const Vec4& code) {
+    const Vec4 c = code.cwiseMax(0.0f).cwiseMin(1.0f);
+    if (picture.format() == gl::Format::rgba32f)
+        fill_around<Vec4>(picture, area, code);
+    else if (picture.format() == gl::Format::rgba16)
+        fill_around<Eigen::Vector4<uint16_t>>(picture, area, (c * 65535.0f).array().round().cast<uint16_t>());
+    else
+        fill_around<Eigen::Vector4<uint8_t>>(picture, area, (c * 255.0f).array().round().cast<uint8_t>());
+}
+
+/// Light may have reached all pixels.
+bool is_whole(const Frame& frame, const LitPicture& lit) {
+    return frame.resolved->settings.background.shows_environment() || lit.spreads;
+}
+
 /// Screen passes touch only where geometry may be, when nothing else was drawn.
 gl::DrawState limited_to(const PixelRect& area, const Frame& frame, const LitPicture& lit,
                          const gl::Blending& blending = gl::replace) {
-    if (frame.resolved->settings.background.shows_environment() || lit.spreads) return {.blending = blending};
+    if (is_whole(frame, lit)) return {.blending = blending};
     return screen_state(area, blending);
 }
 
@@ -93,120 +139,154 @@ gl::DrawState limited_to(const PixelRect& area, const Frame& frame, const LitPic
 
 void OutputPass::begin(Vec2i size, Encoding encoding) {
     const gl::Format format = format_of(encoding);
-    if (!picture_ || picture_.width() != size.x() || picture_.height() != size.y() ||
-        picture_.format() != format) {
-        picture_ = gl::Texture(format, size.x(), size.y());
-        picture_framebuffer_ = gl::Framebuffer({&picture_});
-        sum_ = gl::Texture();
-        aliased_ = gl::Texture();
+    if (picture_.size() != size || picture_.format() != format) {
+        picture_ = Target(format, size);
+        sum_ = Target(gl::Format::rgba32f, size);
+        aliased_ = Target(format, size);
+        picture_framebuffer_ = gl::Framebuffer();
+        sum_framebuffer_ = gl::Framebuffer();
     }
     encoding_ = encoding;
 }
 
+bool OutputPass::is_native(const Shot& shot, bool background_image, bool exact) const {
+    const bool blurs = shot.sample_count == 1 && shot.resolved->settings.image.antialias == Antialias::fxaa;
+    return !background_image && !exact && (!blurs || encoding_ != Encoding::srgb16);
+}
+
+const gl::Framebuffer& OutputPass::framebuffer() const {
+    picture_.upload(transfers_);
+    if (!picture_framebuffer_) picture_framebuffer_ = gl::Framebuffer({&picture_.attachment()});
+    picture_.drawn();
+    return picture_framebuffer_;
+}
+
+const gl::Texture& OutputPass::texture() const {
+    picture_.upload(transfers_);
+    return picture_.texture();
+}
+
 void OutputPass::accumulate(const Frame& frame, const LitPicture& lit) {
-    if (!sum_) {
-        sum_ = gl::Texture(gl::Format::rgba32f, frame.size.x(), frame.size.y());
-        sum_framebuffer_ = gl::Framebuffer({&sum_});
-    }
-    drawn_ = frame.sample_index == 0 ? lit.covered : united(drawn_, lit.covered);
+    const bool first = frame.sample_index == 0;
+    drawn_ = first ? lit.covered : united(drawn_, lit.covered);
+    ShaderInputs values;
+    values.define(tone_defines(frame, lit, encoding_));
+    values.set("u_size", Vec2(frame.size.cast<float>()));
+    values.set("u_exposure", exposure_of(frame, encoding_));
+    add_lit(lit, "u_radiance", values);
+    if (lit.radiance->is_ahead() && (first || sum_.is_ahead())) return add_natively(frame, lit, values);
+
+    lit.radiance->upload(transfers_);
+    sum_.upload(transfers_);
+    if (!sum_framebuffer_) sum_framebuffer_ = gl::Framebuffer({&sum_.attachment()});
+    sum_.drawn();
     const float zero[4] = {0, 0, 0, 0};
-    if (frame.sample_index == 0) sum_framebuffer_.clear_color(0, zero);
+    if (first) sum_framebuffer_.clear_color(0, zero);
     sum_framebuffer_.bind();
-    std::vector<std::string> defines = tone_defines(frame, lit, encoding_);
-    add_defines(lit, defines);
-    const gl::Program& program = accumulate_.get(defines);
-    program.use();
-    program.set("u_size", Vec2(frame.size.cast<float>()));
-    program.set("u_exposure", exposure_of(frame, encoding_));
-    program.set("u_radiance", 0);
-    bind(lit, program);
-    gl::draw_screen(limited_to(lit.covered, frame, lit, gl::add));
+    accumulate_.draw(values, limited_to(lit.covered, frame, lit, gl::add));
+}
+
+void OutputPass::add_natively(const Frame& frame, const LitPicture& lit, const ShaderInputs& values) {
+    if (frame.sample_index == 0) {
+        sum_.write(sum_.whole());
+        fill_around<Vec4>(sum_, {}, Vec4::Zero());
+    }
+    accumulate_.shade(values,
+                      {.target = &sum_,
+                       .area = is_whole(frame, lit) ? frame.whole() : lit.covered,
+                       .store = native::Store::add},
+                      transfers_);
 }
 
 void OutputPass::finish(const Frame& frame, const LitPicture& lit, const gl::Texture* background_image,
                         const GBuffer* exact) {
-    const bool sum = frame.sample_count > 1;
-    std::vector<std::string> defines = tone_defines(frame, lit, encoding_);
-    if (sum)
-        defines.emplace_back("SUM");
-    else
-        add_defines(lit, defines);
-    if (background_image) defines.emplace_back("BACKGROUND_IMAGE");
-    if (encoding_ == Encoding::scene_linear) defines.emplace_back("LINEAR_OUTPUT");
-    const gl::Program& program = display_.get(defines);
+    const Target* sum = frame.sample_count > 1 ? &sum_ : nullptr;
+    const Target& source = sum ? *sum : *lit.radiance;
+    if (source.is_ahead() && is_native(frame, background_image, exact)) return finish_natively(frame, lit);
+
+    source.upload(transfers_);
+    ShaderInputs values = display_inputs(frame, lit, encoding_, sum);
     gl::DrawState state;
-    picture_framebuffer_.bind();
-    if (!background_image) {
-        const Vec4 b = background_color(frame);
-        Vec4 code = b;
-        if (encoding_ != Encoding::scene_linear) code.head<3>() = srgb_from_linear(Vec3(b.head<3>()));
+    picture_.drawn();
+    framebuffer().bind();
+    if (background_image) {
+        values.define("BACKGROUND_IMAGE");
+        values.set("u_background_uv", covering_uv(*background_image, frame));
+        values.set("u_background_image", *background_image);
+    } else {
+        const Vec4 code = background_code(frame, encoding_);
         const float rgba[4] = {code.x(), code.y(), code.z(), code.w()};
         picture_framebuffer_.clear_color(0, rgba);
         state = limited_to(sum ? drawn_ : lit.covered, frame, lit);
     }
-    program.use();
-    program.set("u_size", Vec2(frame.size.cast<float>()));
-    program.set("u_exposure", exposure_of(frame, encoding_));
-    program.set("u_sample_scale", 1.0f / float(frame.sample_index + 1));
-    program.set("u_background", background_color(frame));
-    program.set("u_source", 0);
-    if (sum)
-        sum_.bind(0);
-    else
-        bind(lit, program);
-    if (background_image) {
-        program.set("u_background_image", 1);
-        program.set("u_background_uv", cover(*background_image, frame));
-        background_image->bind(1);
-    }
-    gl::draw_screen(state);
+    display_.draw(values, state);
     const bool single = !sum && encoding_ != Encoding::scene_linear;
     if (single && frame.resolved->settings.image.antialias == Antialias::fxaa)
         blur_edges(frame, lit.covered, exact);
 }
 
+void OutputPass::finish_natively(const Frame& frame, const LitPicture& lit) {
+    const Target* sum = frame.sample_count > 1 ? &sum_ : nullptr;
+    const PixelRect area = is_whole(frame, lit) ? frame.whole() : sum ? drawn_ : lit.covered;
+    picture_.write(picture_.whole());
+    fill_around(picture_, area, background_code(frame, encoding_));
+    display_.shade(display_inputs(frame, lit, encoding_, sum), {.target = &picture_, .area = area}, transfers_);
+    const bool single = !sum && encoding_ != Encoding::scene_linear;
+    if (single && frame.resolved->settings.image.antialias == Antialias::fxaa)
+        blur_edges_natively(frame, lit.covered);
+}
+
 void OutputPass::write_exact(const Frame& frame, const LitPicture& lit, const GBuffer& targets, bool layers) {
-    std::vector<std::string> defines = tone_defines(frame, lit, encoding_);
-    if (layers) defines.emplace_back("LAYERS");
-    if (encoding_ == Encoding::scene_linear) defines.emplace_back("LINEAR_OUTPUT");
-    if (lit.overlay) defines.emplace_back("OVERLAY");
-    const gl::Program& program = exact_.get(defines);
-    picture_framebuffer_.bind();
-    program.use();
-    program.set("u_size", Vec2(frame.size.cast<float>()));
-    program.set("u_albedo", 0);
-    program.set("u_material", 1);
-    targets.albedo.bind(0);
-    targets.material.bind(1);
-    if (lit.overlay) bind_overlay(program, *lit.overlay);
+    ShaderInputs values;
+    values.define(tone_defines(frame, lit, encoding_));
+    if (layers) values.define("LAYERS");
+    if (encoding_ == Encoding::scene_linear) values.define("LINEAR_OUTPUT");
+    if (lit.overlay) values.define("OVERLAY");
+    values.set("u_size", Vec2(frame.size.cast<float>()));
+    values.set("u_albedo", targets.albedo);
+    values.set("u_material", targets.material);
+    if (lit.overlay) values.set("u_overlay", *lit.overlay);
     if (layers) {
-        targets.radiance.bind(3);
-        program.set("u_radiance", 3);
-        program.set("u_exposure", exposure_of(frame, encoding_));
+        values.set("u_radiance", targets.radiance);
+        values.set("u_exposure", exposure_of(frame, encoding_));
     }
-    gl::draw_screen({});
+    framebuffer().bind();
+    exact_.draw(values, {});
 }
 
 void OutputPass::blur_edges(const Frame& frame, const PixelRect& area, const GBuffer* exact) {
     if (area.width == 0 || area.height == 0) return;
-    if (!aliased_) {
-        aliased_ = gl::Texture(picture_.format(), frame.size.x(), frame.size.y());
-        aliased_.sampling(gl::Filtering::linear);
-    }
-    gl::copy(picture_, aliased_);
-    picture_framebuffer_.bind();
-    const gl::Program& program =
-        fxaa_.get(exact ? std::vector<std::string>{"EXACT"} : std::vector<std::string>{});
-    program.use();
-    program.set("u_size", Vec2(frame.size.cast<float>()));
-    program.set("u_color", 0);
-    aliased_.bind(0);
+    const gl::Texture& aliased = aliased_.drawn();
+    aliased_.attachment().sampling(gl::Filtering::linear);
+    gl::copy(picture_.texture(), aliased);
+    ShaderInputs values;
     if (exact) {
-        program.set("u_material", 1);
-        exact->material.bind(1);
+        values.define("EXACT");
+        values.set("u_material", exact->material);
     }
+    values.set("u_size", Vec2(frame.size.cast<float>()));
+    values.set("u_color", aliased_);
+    framebuffer().bind();
     // Edges are where geometry is; the environment behind it is smooth.
-    gl::draw_screen(screen_state(area));
+    fxaa_.draw(values, screen_state(area));
+}
+
+void OutputPass::blur_edges_natively(const Frame& frame, const PixelRect& area) {
+    if (area.width == 0 || area.height == 0) return;
+    // As far as FXAA looks: half its span, and the filter.
+    constexpr int reach = 6;
+    const int first = std::max(0, area.y - reach), last = std::min(frame.size.y(), area.y + area.height + reach);
+    aliased_.write(aliased_.whole());
+    const auto from = picture_.pixels<std::byte>(), to = aliased_.pixels<std::byte>();
+    const size_t row = size_t(frame.size.x()) * gl::pixel_bytes(picture_.format());
+    parallel_for(size_t(last - first), 64, [&](size_t i) {
+        const size_t at = (size_t(first) + i) * row;
+        std::copy_n(from.data() + at, row, to.data() + at);
+    });
+    ShaderInputs values;
+    values.set("u_size", Vec2(frame.size.cast<float>()));
+    values.set("u_color", aliased_);
+    fxaa_.shade(values, {.target = &picture_, .area = area}, transfers_);
 }
 
 }  // namespace easypbr::render

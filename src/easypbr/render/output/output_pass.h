@@ -7,16 +7,22 @@
 #include "easypbr/render/effects/effect.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
-#include "easypbr/render/frame/programs.h"
+#include "easypbr/render/frame/screen_shader.h"
 
 namespace easypbr::render {
 
 using easypbr::Encoding;
 
+/// A picture whose radiance is in host memory alone is finished there, natively; any other by the driver.
 class OutputPass {
   public:
+    /// The transfers must outlive this.
+    explicit OutputPass(Transfers& transfers) : transfers_(transfers) {}
+
     /// Forgets the sum and makes targets for this size and encoding.
     void begin(Vec2i size, Encoding encoding);
+    /// Whether frames of a shot can be finished natively: there is nothing but radiance.
+    bool is_native(const Shot& shot, bool background_image, bool exact) const;
     /// Adds a frame's radiance to the sum. Not needed for a picture of one sample.
     void accumulate(const Frame& frame, const LitPicture& lit);
     /// Writes the picture from the sum of the frames so far, or from the radiance of the only one.
@@ -27,22 +33,29 @@ class OutputPass {
     /// them. With `layers` radiance and overlay are those of a whole frame with something before the colours.
     void write_exact(const Frame& frame, const LitPicture& lit, const GBuffer& targets, bool layers);
 
-    /// Row 0 of the framebuffer is the top of the picture.
-    const gl::Framebuffer& picture() const { return picture_framebuffer_; }
-    const gl::Texture& texture() const { return picture_; }
+    /// Row 0 is the top of the picture.
+    const Target& picture() const { return picture_; }
+    /// The picture's texture, to read and to draw to.
+    const gl::Framebuffer& framebuffer() const;
+    const gl::Texture& texture() const;
     gl::Format format() const { return picture_.format(); }
 
   private:
     void blur_edges(const Frame& frame, const PixelRect& area, const GBuffer* exact);
+    void finish_natively(const Frame& frame, const LitPicture& lit);
+    void blur_edges_natively(const Frame& frame, const PixelRect& area);
+    void add_natively(const Frame& frame, const LitPicture& lit, const ShaderInputs& values);
 
+    Transfers& transfers_;
     PixelRect drawn_;  ///< what the frames of the sum cover together
     Encoding encoding_ = Encoding::srgb8;
-    gl::Texture sum_, picture_, aliased_;
-    gl::Framebuffer sum_framebuffer_, picture_framebuffer_, aliased_framebuffer_;
-    ProgramVariants accumulate_{"screen_triangle.vert", "accumulate_sample.frag"};
-    ProgramVariants display_{"screen_triangle.vert", "display_output.frag"};
-    ProgramVariants exact_{"screen_triangle.vert", "exact_surface.frag"};
-    ProgramVariants fxaa_{"screen_triangle.vert", "antialias_fxaa.frag"};
+    Target sum_, picture_, aliased_;
+    gl::Framebuffer sum_framebuffer_;
+    mutable gl::Framebuffer picture_framebuffer_;
+    ScreenShader accumulate_{"accumulate_sample.frag", native::Shader::accumulate_sample};
+    ScreenShader display_{"display_output.frag", native::Shader::display_output};
+    ScreenShader exact_{"exact_surface.frag"};
+    ScreenShader fxaa_{"antialias_fxaa.frag", native::Shader::antialias_fxaa};
 };
 
 }  // namespace easypbr::render

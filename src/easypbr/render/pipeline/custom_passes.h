@@ -15,6 +15,7 @@ class CustomPasses {
     /// Each stage's in this order.
     void set(std::vector<CustomPass> passes) { passes_ = std::move(passes); }
     bool has(Stage stage) const;
+    bool empty() const { return passes_.empty(); }
 
     /// Draws those of a stage into an image, which `target` has alone.
     void draw(Stage stage, const Frame& frame, const GBuffer& targets, const gl::Texture& image,

@@ -61,19 +61,33 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     if (outputs.extensions) targets_.add_extensions();
 
     const PixelRect drawn =
-        timer_.run("geometry", [&] { return draw_geometry(frame, opaque, targets_, outputs); });
+        timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
+    shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
+    const bool native = is_lit_natively(frame, list, contents);
+    shadow_maps_.keep_in_host_memory(native);
+    if (!native) targets_.upload(transfers_);
     if (contents.ground) timer_.run("ground", [&] { ground_.draw(seen, targets_); });
     if (resolved.settings.ssao.enabled && !contents.traced)
-        timer_.run("ambient occlusion", [&] { ambient_occlusion_.draw(seen, targets_, with_overlay); });
-    shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
+        timer_.run("ambient occlusion", [&] {
+            if (native)
+                ambient_occlusion_.shade(seen, targets_, transfers_);
+            else
+                ambient_occlusion_.draw(seen, targets_, with_overlay);
+        });
     if (contents.traced) timer_.run("rays", [&] { update_ray_scene(seen, casters, contents.ground); });
     const bool caught = contents.ground && GroundPass::is_shadow_catcher(resolved);
-    light(seen, targets_, contents, {.extensions = outputs.extensions}, caught);
+    light(seen, targets_, contents, {.native = native, .extensions = outputs.extensions}, caught);
+    const bool shows_environment =
+        !resolved.environment.empty() && resolved.settings.background.shows_environment();
+    if (native && shows_environment)
+        timer_.run("background", [&] { background_.shade(seen, targets_, environment_, transfers_); });
+    if (native && (with_overlay || !stays_in_host_memory(frame, list, contents)))
+        targets_.upload(transfers_);
     if (contents.ground) timer_.run("ground", [&] { ground_.finish(seen, targets_, bounds); });
     if (with_overlay) timer_.run("display", [&] { display_.draw(seen, targets_); });
-    if (!has_layers) timer_.run("lines", [&] { draw_lines(seen, list); });
-    if (!resolved.environment.empty() && resolved.settings.background.shows_environment())
+    if (!has_layers) timer_.run("overlays", [&] { draw_overlay_items(seen, list); });
+    if (!native && shows_environment)
         timer_.run("background", [&] { background_.draw(seen, targets_, environment_, contents.ground); });
 
     LitPicture lit{.radiance = &targets_.radiance,
@@ -88,6 +102,21 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     return lit;
 }
 
+bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list, const FrameContents& contents) const {
+    const bool estimates_normals = frame.resolved->settings.ssao.enabled &&
+                                   list.has([](const DrawItem& item) { return is_display(item.kind); });
+    const bool has_tints = shadow_maps_.has_shadows() && shadow_maps_.has_tints();
+    return native_shading_ && targets_.depth.is_ahead() && !contents.ground && !contents.layers && !has_tints &&
+           !list.extensions() && !estimates_normals;
+}
+
+bool Pipeline::stays_in_host_memory(const Frame& frame, const DrawList& list,
+                                    const FrameContents& contents) const {
+    const auto is_on = [&](const auto& effect) { return effect->is_on(frame); };
+    return contents.in_host_memory && !list.has(is_layered) && std::ranges::none_of(effects_, is_on) &&
+           !(contents.custom && !contents.custom->empty());
+}
+
 PixelRect Pipeline::draw_geometry(const Frame& frame, const DrawList& list, const GBuffer& targets,
                                   const SurfaceOutputs& outputs) {
     const PixelRect drawn = surfaces_.draw(frame, list, targets, outputs);
@@ -100,16 +129,25 @@ void Pipeline::light(const Frame& frame, const GBuffer& targets, const FrameCont
     shadow_maps_.rewind();
     if (contents.traced) {
         timer_.run("rays", [&] { rays_.draw(frame, targets, ray_scene_, transfers_); });
-        rays_.light().upload(transfers_);
+        if (!inputs.native) rays_.light().upload(transfers_);
         inputs.traced = &rays_.light();
     }
     if (caught) ground_.begin_light(frame, targets);
     if (!frame.resolved->environment.empty()) inputs.environment = &environment_;
+    if (inputs.native) {
+        const bool whole = inputs.environment && frame.resolved->settings.background.shows_environment();
+        targets.radiance.write(whole ? frame.whole() : targets.depth.area());
+    }
     bool first = true;
     do {
         timer_.run("shadows", [&] { inputs.block = shadow_maps_.next_block(); });
         inputs.block.first = first;
-        timer_.run("lighting", [&] { lighting_.draw(frame, targets, inputs); });
+        timer_.run("lighting", [&] {
+            if (inputs.native)
+                lighting_.shade(frame, targets, inputs, transfers_);
+            else
+                lighting_.draw(frame, targets, inputs);
+        });
         if (caught)
             timer_.run("ground", [&] { lighting_.draw_caught(frame, targets, inputs, ground_.light()); });
         inputs.environment = nullptr;
@@ -158,11 +196,11 @@ void Pipeline::draw_surfaces(const Frame& frame, const DrawList& list, const Sur
 
 const Target* Pipeline::draw_overlay(const Frame& frame, const DrawList& list,
                                      const FrameContents& contents) {
-    if (list.lines.empty() && !draws_overlay(frame, contents)) return nullptr;
+    if (list.overlays.empty() && !draws_overlay(frame, contents)) return nullptr;
     targets_.add_overlay();
     const float nothing[4] = {0, 0, 0, 0};
     targets_.display().clear_color(0, nothing);
-    draw_lines(frame, list);
+    draw_overlay_items(frame, list);
     LitPicture lit{.overlay = &targets_.overlay, .covered = frame.covered};
     draw_effects(frame, list, true, lit);
     if (contents.custom)
@@ -186,7 +224,6 @@ const Box3d& Pipeline::bounds_of(const SceneSnapshot& scene) {
 void Pipeline::evict_unused() {
     caches_.evict_unused();
     for (const auto& kind : primitives_) kind->evict_unused();
-    lines_.evict_unused();
 }
 
 }  // namespace easypbr::render

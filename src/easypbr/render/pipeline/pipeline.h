@@ -15,7 +15,7 @@
 #include "easypbr/render/output/display_pass.h"
 #include "easypbr/render/output/output_pass.h"
 #include "easypbr/render/pipeline/custom_passes.h"
-#include "easypbr/render/primitives/lines/line_pass.h"
+#include "easypbr/render/primitives/overlays.h"
 #include "easypbr/render/primitives/surfaces.h"
 #include "easypbr/render/raytrace/ray_pass.h"
 #include "easypbr/render/shadow/shadow_maps.h"
@@ -30,6 +30,7 @@ struct FrameContents {
     bool traced = false;             ///< rays look for the environment's light, in place of ambient occlusion
     bool layers = false;             ///< targets are read, no picture: nothing follows the lit surfaces
     CustomPasses* custom = nullptr;  ///< a program's own passes, where it is a picture
+    bool in_host_memory = false;     ///< whatever follows can take the radiance from host memory
 };
 
 /// Owns the passes and the targets between them. All members need the context current.
@@ -38,6 +39,7 @@ class Pipeline {
     Pipeline()
         : primitives_(make_primitives(caches_)),
           surfaces_(primitives_, transfers_),
+          overlays_(primitives_),
           shadow_maps_(primitives_, transfers_) {}
 
     /// Makes the targets for a size and forgets the times of passes.
@@ -51,8 +53,8 @@ class Pipeline {
                     const FrameContents& contents);
     /// Fills the G-buffer alone, in whichever memory that is done.
     void draw_surfaces(const Frame& frame, const DrawList& list, const SurfaceOutputs& outputs);
-    /// Clears the overlay and draws what is in it beside surfaces: lines, effects, and a program's own
-    /// passes.
+    /// Clears the overlay and draws what is in it beside surfaces: overlays of primitives, effects, and a
+    /// program's own passes.
     const Target* draw_overlay(const Frame& frame, const DrawList& list, const FrameContents& contents);
 
     GBuffer& targets() { return targets_; }
@@ -70,6 +72,7 @@ class Pipeline {
         surfaces_.allow_native(allow);
         shadow_maps_.allow_native(allow);
     }
+    void allow_native_shading(bool allow) { native_shading_ = allow; }
     void evict_unused();
 
   private:
@@ -81,19 +84,23 @@ class Pipeline {
     void light(const Frame& frame, const GBuffer& targets, const FrameContents& contents, LightInputs inputs,
                bool caught);
     void update_ray_scene(const Frame& frame, const DrawList& casters, bool ground);
-    /// Depth that hides lines and layers: of what is drawn over everything else too.
+    /// Depth that hides overlays and layers: of what is drawn over everything else too.
     const gl::Texture& hiding_depth(const Frame& frame, const DrawList& list);
-    /// Draws the lines where there are no layers.
-    void draw_lines(const Frame& frame, const DrawList& list);
-    /// Draws the layered items over the picture, before and behind each other and the lines; whether there
-    /// were any.
+    /// Draws the overlays of primitives where there are no layers.
+    void draw_overlay_items(const Frame& frame, const DrawList& list);
+    /// Draws the layered items over the picture, before and behind each other and the overlays; whether
+    /// there were any.
     bool draw_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
                           bool with_overlay);
-    /// Draws layers, and the lines between them, before the surfaces of which `opaque` is the depth.
-    void draw_layers(const Frame& frame, const DrawList& layers, const std::vector<LineItem>& lines,
+    /// Draws layers, and the overlays between them, before the surfaces of which `opaque` is the depth.
+    void draw_layers(const Frame& frame, const DrawList& layers, const ItemsByKind& overlays,
                      const gl::Texture& opaque, const FrameContents& contents, bool with_overlay);
     /// The eye-dome lighting of the layers' points; nothing where there are none.
     const gl::Texture* shade_points(const Frame& frame, const DrawList& layers, const gl::Texture& opaque);
+    /// Whether a frame is lit natively: its surfaces are in host memory, and nothing of it needs the driver.
+    bool is_lit_natively(const Frame& frame, const DrawList& list, const FrameContents& contents) const;
+    /// Whether no pass after the lighting needs the driver.
+    bool stays_in_host_memory(const Frame& frame, const DrawList& list, const FrameContents& contents) const;
     bool draws_overlay(const Shot& shot, const FrameContents& contents) const;
     /// Of those that draw into the overlay, or of the others too.
     void draw_effects(const Frame& frame, const DrawList& opaque, bool overlay_only, LitPicture& lit);
@@ -101,9 +108,10 @@ class Pipeline {
     GBuffer targets_;
     mutable Transfers transfers_;  ///< reading targets counts too
     DataCaches caches_;
-    std::vector<std::unique_ptr<Primitive>> primitives_;
+    Primitives primitives_;
     gpu::EnvironmentMaps environment_;
     Surfaces surfaces_;
+    Overlays overlays_;
     ShadowMaps shadow_maps_;
     AmbientOcclusionPass ambient_occlusion_;
     RayScene ray_scene_;
@@ -111,12 +119,12 @@ class Pipeline {
     LightingPass lighting_;
     GroundPass ground_;
     DisplayPass display_;
-    LinePass lines_;
     TransparencyPass transparency_;
     BackgroundPass background_;
     std::vector<std::unique_ptr<Effect>> effects_ = make_effects();
     GBuffer with_ids_;  ///< for effects that ask for ids
     PassTimer timer_;
+    bool native_shading_ = true;
     gl::Texture hiding_depth_;
     gl::Framebuffer hiding_;
     ProgramVariants hiding_programs_{"screen_triangle.vert", "opaque_limit.frag"};

@@ -1,4 +1,4 @@
-// The part of the pipeline that draws transparent layers, and lines between them.
+// The part of the pipeline that draws transparent layers, and overlays between them.
 #include <functional>
 
 #include "easypbr/render/pipeline/pipeline.h"
@@ -29,19 +29,19 @@ const gl::Texture& Pipeline::hiding_depth(const Frame& frame, const DrawList& li
     return hiding_depth_;
 }
 
-void Pipeline::draw_lines(const Frame& frame, const DrawList& list) {
-    if (list.lines.empty()) return;
-    lines_.begin(frame, list.lines, targets_, hiding_depth(frame, list));
-    lines_.draw_rest(frame, list.lines, targets_);
-    lines_.draw_over(frame, list.lines, targets_);
+void Pipeline::draw_overlay_items(const Frame& frame, const DrawList& list) {
+    if (list.overlays.empty()) return;
+    overlays_.begin(frame, list.overlays, targets_, hiding_depth(frame, list));
+    overlays_.draw_rest(frame, list.overlays, targets_);
+    overlays_.draw_over(frame, list.overlays, targets_);
 }
 
 bool Pipeline::draw_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
                                 bool with_overlay) {
     const DrawList layers = list.layers();
     const gl::Texture& opaque = hiding_depth(frame, list);
-    if (!list.lines.empty()) lines_.begin(frame, list.lines, targets_, opaque);
-    draw_layers(frame, layers.without(is_over), list.lines, opaque, contents, with_overlay);
+    overlays_.begin(frame, list.overlays, targets_, opaque);
+    draw_layers(frame, layers.without(is_over), list.overlays, opaque, contents, with_overlay);
     bool drawn = transparency_.has_layers();
     if (layers.has(is_over)) {
         // Hidden by what is drawn over everything else too, and by nothing but.
@@ -51,7 +51,7 @@ bool Pipeline::draw_transparent(const Frame& frame, const DrawList& list, const 
                     with_overlay);
         drawn |= transparency_.has_layers();
     }
-    lines_.draw_over(frame, list.lines, targets_);
+    overlays_.draw_over(frame, list.overlays, targets_);
     return drawn;
 }
 
@@ -70,7 +70,7 @@ const gl::Texture* Pipeline::shade_points(const Frame& frame, const DrawList& la
     return &display_.shade(frame, transparency_.layer().depth.texture(), opaque);
 }
 
-void Pipeline::draw_layers(const Frame& frame, const DrawList& list, const std::vector<LineItem>& lines,
+void Pipeline::draw_layers(const Frame& frame, const DrawList& list, const ItemsByKind& overlays,
                            const gl::Texture& opaque, const FrameContents& contents, bool with_overlay) {
     SurfaceOutputs outputs{.extensions = list.extensions()};
     const bool see_through = outputs.extensions & transmission_bit;
@@ -87,7 +87,7 @@ void Pipeline::draw_layers(const Frame& frame, const DrawList& list, const std::
         surfaces_.draw_layer(frame, list, transparency_.layer(), outputs);
         if (!transparency_.close_layer()) break;
         surfaces_.take_layer(list);
-        lines_.draw_behind(frame, lines, targets_, transparency_.layer());
+        overlays_.draw_behind(frame, overlays, targets_, transparency_.layer());
         if (see_through) transparency_.keep_picture(frame, targets_, rough, reach);
         if (volumes) {
             transparency_.open_exits(frame);
@@ -98,7 +98,7 @@ void Pipeline::draw_layers(const Frame& frame, const DrawList& list, const std::
               {.extensions = outputs.extensions, .transmission = transparency_.transmission()}, false);
         transparency_.blend(frame, targets_, shade);
     }
-    lines_.draw_rest(frame, lines, targets_);
+    overlays_.draw_rest(frame, overlays, targets_);
 }
 
 }  // namespace easypbr::render

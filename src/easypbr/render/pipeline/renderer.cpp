@@ -126,6 +126,8 @@ void Renderer::prepare(Picture& picture) {
                         .custom = is_picture ? &custom_ : nullptr};
     picture.with_exact = picture.list.has(
         [](const DrawItem& item) { return item.kind == SurfaceKind::exact && !item.layered; });
+    const bool has_image = resolved.settings.background.mode == BackgroundMode::image && picture.images.background;
+    picture.contents.in_host_memory = is_picture && output_.is_native(picture.shot, has_image, picture.with_exact);
     // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
     const bool apart = options.samples > 1 && picture.with_exact;
     picture.averaged = apart ? picture.list.without_exact() : picture.list;
@@ -162,8 +164,7 @@ void Renderer::finish() {
     if (picture.shot.motion) move_objects(picture.drawable, picture.scene, *picture.shot.motion, 1);
     if (exact) timer.run("exact", [&] { draw_exact(); });
     if (picture.contents.custom)
-        custom_.draw(Stage::picture, picture.frame, pipeline_.targets(), output_.texture(), output_.picture(),
-                     timer);
+        draw_custom_over_picture();
     const bool is_last = picture.frames == picture.shot.sample_count;
     if (is_last && picture.options.surfaces && !picture.holds_surfaces)
         timer.run("surfaces", [&] { kept_->draw(pipeline_); });
@@ -239,18 +240,29 @@ const gl::Texture* Renderer::background_texture(const ResolvedSettings& resolved
     return &background_texture_;
 }
 
+void Renderer::draw_custom_over_picture() {
+    if (!has_custom(picture_->contents.custom, Stage::picture)) return;
+    const gl::Framebuffer& target = output_.framebuffer();
+    custom_.draw(Stage::picture, picture_->frame, pipeline_.targets(), output_.texture(), target,
+                 pipeline_.timer());
+}
+
 Image Renderer::read_picture() const {
     return read_picture(output_.picture().width(), output_.picture().height());
 }
 
 Image Renderer::read_picture(const PixelRect& area) const {
     Image image(area.width, area.height, 4, pixel_type(output_.format()));
-    output_.picture().read(0, output_.format(), area.x, area.y, area.width, area.height, image.bytes());
+    const Target& picture = output_.picture();
+    if (picture.is_ahead())
+        picture.copy_out(area, image.bytes());
+    else
+        output_.framebuffer().read(0, output_.format(), area.x, area.y, area.width, area.height, image.bytes());
     return image;
 }
 
 Image Renderer::begin_reading(gl::Readback& readback) const {
-    const gl::Framebuffer& from = output_.picture();
+    const gl::Framebuffer& from = output_.framebuffer();
     readback.begin(from, 0, output_.format(), 0, 0, from.width(), from.height());
     return {from.width(), from.height(), 4, pixel_type(output_.format())};
 }

@@ -93,6 +93,9 @@ class Renderer {
     /// Without a GPU, plain triangles are rasterised natively; false leaves them to the driver: for comparing
     /// the two.
     void allow_native_geometry(bool allow) { pipeline_.allow_native_geometry(allow); }
+    void allow_native_shading(bool allow) { pipeline_.allow_native_shading(allow); }
+    /// Whether the last frame was lit natively.
+    bool was_native() const { return output_.picture().is_ahead(); }
 
     /// Passes of the program's own, each stage's in this order. They belong to pictures, not to layers.
     void set_passes(std::vector<CustomPass> passes) { custom_.set(std::move(passes)); }
@@ -119,13 +122,14 @@ class Renderer {
                        const SettingsImages& images);
     /// Draws the exact colours that nothing may mix with, once, through the pixels' centres.
     void draw_exact();
+    void draw_custom_over_picture();
     const gl::Texture* background_texture(const ResolvedSettings& resolved, const SettingsImages& images);
     void evict_unused();
 
     Pipeline pipeline_;
     DrawableCache drawables_{pipeline_.caches().spacings};
     CustomPasses custom_;
-    OutputPass output_;
+    OutputPass output_{pipeline_.transfers()};
     std::unique_ptr<KeptSurfaces> kept_;   ///< of a picture that was drawn with `surfaces`
     Camera camera_;                        ///< that the targets were seen by
     std::vector<ElementSources> sources_;  ///< of what the targets hold

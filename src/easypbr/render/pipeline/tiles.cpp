@@ -19,7 +19,7 @@ namespace {
 
 /// Beyond these many pixels occlusion and refraction are cut.
 constexpr double most_reach = 1024, most_reach_beside_transmission = 512;
-/// Smoothing along edges, the blur of occlusion, lines' edges.
+/// Smoothing along edges, the blur of occlusion.
 constexpr int smallest_guard = 16;
 /// Parts of one side of the picture.
 struct Span {

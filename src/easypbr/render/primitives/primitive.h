@@ -26,22 +26,22 @@ enum class NativeUse {
     preferred
 };
 
-/// One kind of primitive; a folder of its own, and a line in primitives.cpp. Items are drawn into the
-/// G-buffer in one of three ways: by the driver, by finding the nearest primitive of each pixel natively, or,
-/// where the primitives of a pixel are one surface together, by computing their mean natively. Members that
-/// draw need the context current.
+/// One kind of primitive; a folder of its own, and a line in primitives.cpp. Its items are surfaces, or
+/// overlays: unlit, hiding no surface, drawn between the layers. The members for what a kind has not are left
+/// as they are and draw nothing. Members that draw need the context current.
 class Primitive {
   public:
     virtual ~Primitive() = default;
 
-    /// The items that are of this kind: DrawList::of(mode()).
+    /// The items that are of this kind: DrawList::of(mode()), and its overlays of that mode.
     virtual DrawMode mode() const = 0;
 
-    // The G-buffer.
+    // The G-buffer. Surfaces are drawn in one of three ways: by the driver, by finding the nearest primitive
+    // of each pixel natively, or, where the primitives of a pixel are one surface together, by computing
+    // their mean natively.
 
     /// Adds items to what the textures hold, by the driver.
-    virtual void draw(const Frame& frame, DrawItems items, const GBuffer& targets,
-                      const SurfaceOutputs& outputs) = 0;
+    virtual void draw(const Frame&, DrawItems, const GBuffer&, const SurfaceOutputs&) {}
     virtual NativeUse native_use(DrawItems) const { return NativeUse::none; }
     /// Adds the nearest primitive of each pixel; false, where anything may have been added, when only the
     /// driver can draw the items in this frame.
@@ -69,11 +69,24 @@ class Primitive {
 
     // Shadows and rays.
 
-    virtual ShadowShape shadow_shape(const DrawItem& item) = 0;
+    virtual ShadowShape shadow_shape(const DrawItem&) { return {}; }
     /// Rasterises casters that stop light, and takes them out of the list.
     virtual void rasterise_shadows(const ShadowView&, Casters&, ShadowDepths&) {}
-    virtual void draw_shadows(const ShadowLayer& layer, const Casters& casters) = 0;
-    virtual void add_to(RayGeometry& geometry, const DrawItem& item) = 0;
+    virtual void draw_shadows(const ShadowLayer&, const Casters&) {}
+    virtual void add_to(RayGeometry&, const DrawItem&) {}
+
+    // Overlays, which lie between the layers, each where it is: begin_overlay() once, then
+    // draw_overlay_behind() for each layer from the farthest on, draw_overlay_rest() and draw_overlay_over().
+
+    /// Hidden is what lies behind `opaque` (R32F, reversed depth), whose normals are those of `targets`; both
+    /// stay as they are until the last of the others.
+    virtual void begin_overlay(const Frame&, DrawItems, const GBuffer&, const gl::Texture&) {}
+    /// Adds to the overlay of `targets` what lies behind a layer and has not been drawn.
+    virtual void draw_overlay_behind(const Frame&, DrawItems, const GBuffer&, const GBuffer&) {}
+    /// Adds what lies before all layers so far.
+    virtual void draw_overlay_rest(const Frame&, DrawItems, const GBuffer&) {}
+    /// Adds the items that are drawn over everything else (is_over()).
+    virtual void draw_overlay_over(const Frame&, DrawItems, const GBuffer&) {}
 
     // Bounds.
 
@@ -86,7 +99,9 @@ class Primitive {
     virtual void evict_unused() {}
 };
 
+using Primitives = std::vector<std::unique_ptr<Primitive>>;
+
 /// All kinds, in the order in which they are drawn. The caches must outlive them. No context is needed.
-std::vector<std::unique_ptr<Primitive>> make_primitives(DataCaches& caches);
+Primitives make_primitives(DataCaches& caches);
 
 }  // namespace easypbr::render

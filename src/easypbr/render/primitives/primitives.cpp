@@ -1,14 +1,16 @@
+#include "easypbr/render/primitives/lines/line_primitive.h"
 #include "easypbr/render/primitives/mesh/mesh_primitive.h"
 #include "easypbr/render/primitives/points/point_primitive.h"
 #include "easypbr/render/primitives/surfels/surfel_primitive.h"
 
 namespace easypbr::render {
 
-std::vector<std::unique_ptr<Primitive>> make_primitives(DataCaches& caches) {
-    std::vector<std::unique_ptr<Primitive>> primitives;
+Primitives make_primitives(DataCaches& caches) {
+    Primitives primitives;
     primitives.push_back(std::make_unique<MeshPrimitive>(caches));
     primitives.push_back(std::make_unique<PointPrimitive>(caches));
     primitives.push_back(std::make_unique<SurfelPrimitive>(caches));
+    primitives.push_back(std::make_unique<LinePrimitive>());
     return primitives;
 }
 

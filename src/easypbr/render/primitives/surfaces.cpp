@@ -5,7 +5,6 @@
 
 #include "easypbr/gl/context.h"
 #include "easypbr/scene/resolve.h"
-#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {
@@ -88,7 +87,7 @@ PixelRect Surfaces::draw_groups(const Frame& frame, const DrawList& list, const 
         targets.upload(transfers_);
         composite_.fill_holes(frame, targets, outputs, fillings);
     }
-    const bool is_known = in_host_memory && means.empty() && list.lines.empty() && !is_empty;
+    const bool is_known = in_host_memory && means.empty() && list.overlays.empty() && !is_empty;
     return is_known ? with_margin(seen, frame.size) : frame.covered;
 }
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 #include "easypbr/render/primitives/primitive.h"
@@ -12,7 +11,6 @@ namespace easypbr::render {
 
 class Surfaces {
   public:
-    using Primitives = std::vector<std::unique_ptr<Primitive>>;
     /// Both must outlive this.
     Surfaces(const Primitives& primitives, Transfers& transfers)
         : primitives_(primitives), transfers_(transfers) {}
@@ -20,7 +18,7 @@ class Surfaces {
     /// Fills the targets with the surfaces of the list, each kind by the faster way that can draw it:
     /// natively without a GPU, by the driver otherwise. They are in host memory where all of them could be
     /// drawn natively, else in the textures. What is drawn over everything else comes last. Returns the
-    /// rectangle that all surfaces and lines are inside.
+    /// rectangle that all surfaces and overlays are inside.
     PixelRect draw(const Frame& frame, const DrawList& list, const GBuffer& targets,
                    const SurfaceOutputs& outputs);
     /// Adds surfaces by the driver, to cleared targets.

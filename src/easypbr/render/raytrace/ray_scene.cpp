@@ -185,8 +185,7 @@ RayScene::RayScene() = default;
 RayScene::~RayScene() = default;
 
 void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t generation,
-                      const std::vector<std::unique_ptr<Primitive>>& primitives,
-                      const std::optional<RayGround>& ground) {
+                      const Primitives& primitives, const std::optional<RayGround>& ground) {
     ground_ = ground;
     std::vector<std::pair<Primitive*, const DrawItem*>> items;
     for (const auto& kind : primitives)

@@ -41,8 +41,7 @@ class RayScene {
     /// Takes note of the casters, which must live as long as rays are traced; the tree is made anew when
     /// `generation` is another one (ShadowMaps::casters_generation()). `bounds` are those of all casters.
     void update(const DrawList& casters, const Box3d& bounds, uint64_t generation,
-                const std::vector<std::unique_ptr<Primitive>>& primitives,
-                const std::optional<RayGround>& ground);
+                const Primitives& primitives, const std::optional<RayGround>& ground);
 
     bool empty() const { return scene_ == nullptr; }
     const Vec3d& centre() const { return centre_; }

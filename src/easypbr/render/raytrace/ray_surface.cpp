@@ -64,7 +64,7 @@ class Texel {
 
 /// An attribute of a face's vertices between them.
 template <class Rows>
-auto between(const Rows& rows, const Array3i& F, int face, float u, float v) {
+auto interpolated(const Rows& rows, const Array3i& F, int face, float u, float v) {
     using Result = Eigen::Matrix<float, Rows::ColsAtCompileTime, 1>;
     return Result((1 - u - v) * rows.row(F(face, 0)) + u * rows.row(F(face, 1)) + v * rows.row(F(face, 2)));
 }
@@ -79,7 +79,7 @@ Vec4 vertex_color(const DrawItem& item, int element, float u, float v) {
     if (!item.with_colors || mesh.C.empty()) return Vec4::Ones();
     Eigen::VectorXf c;
     if (is_face(item))
-        c = between(mesh.C, mesh.F, element, u, v);
+        c = interpolated(mesh.C, mesh.F, element, u, v);
     else
         c = mesh.C.row(std::min<Eigen::Index>(element, mesh.C.rows() - 1));
     const Vec3 linear = linear_from_srgb(Vec3(c.head<3>().cwiseMax(0.0f).cwiseMin(1.0f)));
@@ -87,7 +87,7 @@ Vec4 vertex_color(const DrawItem& item, int element, float u, float v) {
 }
 
 Vec2 uv_at(const DrawItem& item, int element, float u, float v) {
-    return between(item.mesh().UV, item.mesh().F, element, u, v);
+    return interpolated(item.mesh().UV, item.mesh().F, element, u, v);
 }
 
 }  // namespace
@@ -124,7 +124,7 @@ RaySurface surface_at(const RayHit& hit, float dielectric_f0) {
     const bool face = is_face(item);
     if (face && !mesh.N.empty()) {
         const Mat3 normal_matrix = item.object->T_world_mesh.linear().inverse().transpose().cast<float>();
-        const Vec3 n = (normal_matrix * between(mesh.N, mesh.F, hit.element, hit.u, hit.v)).normalized();
+        const Vec3 n = (normal_matrix * interpolated(mesh.N, mesh.F, hit.element, hit.u, hit.v)).normalized();
         if (n.allFinite()) s.normal = n.dot(hit.normal) < 0 ? Vec3(-n) : n;
     }
     if (face && item.textured()) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "easypbr/gl/texture.h"
+#include "easypbr/native/views.h"
 #include "easypbr/render/frame/shadow_view.h"
 
 namespace easypbr::render {
@@ -34,7 +35,9 @@ struct LightBlock {
     std::vector<const ResolvedLight*> lights;
     std::vector<LightShadow> shadows;  ///< of the last of the lights
     size_t cubes = 0;                  ///< how many of the shadows are cubes
-    const gl::Texture* maps = nullptr;
+    int resolution = 0;                  ///< of the maps
+    const gl::Texture* maps = nullptr;   ///< the driver's
+    native::Layers host_maps = {};       ///< those in host memory
     const ShadowTints* tints = nullptr;  ///< where casters let light through
     bool first = true;                   ///< of the frame's blocks
 

@@ -130,8 +130,18 @@ void ShadowMaps::set_resolution(int resolution) {
     framebuffers_.clear();
     tint_framebuffers_.clear();
     maps_ = gl::Texture();
+    host_maps_.clear();
     tints_ = {};
     resolution_ = resolution;
+}
+
+void ShadowMaps::keep_in_host_memory(bool host) {
+    if (host == in_host_memory_) return;
+    const int resolution = resolution_;
+    set_resolution(0);
+    resolution_ = resolution;
+    in_host_memory_ = host;
+    prepare_tints();
 }
 
 void ShadowMaps::begin(const Frame& frame, const DrawList& casters, const Box3d& vertices,
@@ -171,7 +181,9 @@ LightBlock ShadowMaps::next_block() {
         }
         block.lights.push_back(request.light);
     }
+    block.resolution = resolution_;
     block.maps = &maps_;
+    block.host_maps = {.data = host_maps_.data(), .size = resolution_};
     if (tints_) block.tints = &tints_;
     return block;
 }
@@ -205,6 +217,11 @@ void ShadowMaps::draw(const Request& request, Entry& entry) {
         if (!(missing >> i & 1)) continue;
         const ShadowView& view = request.projection.views[size_t(i)];
         const int layer = entry.first_layer + i;
+        if (in_host_memory_) {
+            const size_t texels = size_t(resolution_) * size_t(resolution_);
+            pass_.draw(view, *list_, resolution_, std::span(host_maps_).subspan(size_t(layer) * texels, texels));
+            continue;
+        }
         pass_.draw(view, *list_, maps_, layer, framebuffers_[size_t(layer)]);
         if (tints_) pass_.draw_tints(view, *list_, tint_framebuffers_[size_t(layer)]);
     }
@@ -252,7 +269,7 @@ bool ShadowMaps::evict_before(uint64_t frame, uint64_t block) {
 }
 
 bool ShadowMaps::grow(int layers) {
-    const int before = maps_ ? maps_.layers() : 0, most = most_layers(resolution_, tinted_);
+    const int before = int(taken_.size()), most = most_layers(resolution_, tinted_);
     if (before >= most) return false;
     const int after = std::min(most, std::max({before + layers, before * 3 / 2, wanted_layers_}));
     const auto enlarge = [&](gl::Texture& texture, gl::Format format) {
@@ -260,10 +277,14 @@ bool ShadowMaps::grow(int layers) {
         if (before > 0) gl::copy_layers(texture, larger, before);
         texture = std::move(larger);
     };
+    taken_.resize(size_t(after), false);
+    if (in_host_memory_) {
+        host_maps_.resize(size_t(after) * size_t(resolution_) * size_t(resolution_));
+        return true;
+    }
     enlarge(maps_, map_format);
     if (tinted_) enlarge(tints_.absorption, tint_format);
     if (tinted_) enlarge(tints_.moment, tint_format);
-    taken_.resize(size_t(after), false);
     make_framebuffers();
     return true;
 }

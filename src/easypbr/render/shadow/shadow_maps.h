@@ -1,6 +1,7 @@
 // Which light gets which shadow maps, and which of them must be drawn anew.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <map>
 #include <vector>
@@ -17,7 +18,7 @@ namespace easypbr::render {
 class ShadowMaps {
   public:
     /// Both must outlive this.
-    ShadowMaps(const ShadowPass::Primitives& primitives, Transfers& transfers)
+    ShadowMaps(const Primitives& primitives, Transfers& transfers)
         : primitives_(primitives), pass_(primitives, transfers) {}
 
     /// Where surfaces are that receive shadows: nowhere for a bare cloud or labels in their own colours,
@@ -27,6 +28,14 @@ class ShadowMaps {
     /// Takes note of a frame's lights and of what casts; `bounds` are those of its vertices. Only maps that
     /// receivers need are drawn. `casters` must live until its last block.
     void begin(const Frame& frame, const DrawList& casters, const Box3d& bounds, Receivers receivers);
+
+    /// Whether some light of the frame has maps.
+    bool has_shadows() const { return std::ranges::any_of(requests_, &Request::shadowed); }
+
+    /// Whether some casters weaken light instead of stopping it.
+    bool has_tints() const { return tinted_; }
+    /// Where the maps of the frame's lights are from now on: in host memory there are no tints.
+    void keep_in_host_memory(bool host);
 
     /// Goes back to the first block.
     void rewind() { next_ = 0; }
@@ -113,9 +122,11 @@ class ShadowMaps {
     void prepare_tints();
     void take(int first, int layers, bool taken);
 
-    const ShadowPass::Primitives& primitives_;
+    const Primitives& primitives_;
     ShadowPass pass_;
+    bool in_host_memory_ = false;
     gl::Texture maps_;
+    std::vector<float> host_maps_;
     ShadowTints tints_;  ///< beside the maps while some casters weaken light
     std::vector<gl::Framebuffer> framebuffers_, tint_framebuffers_;  ///< of each layer
     std::vector<bool> taken_;                                        ///< layers

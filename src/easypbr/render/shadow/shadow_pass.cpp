@@ -23,11 +23,7 @@ void ShadowPass::draw(const ShadowView& view, const DrawList& list, gl::Texture&
     const int resolution = maps.width();
     const bool native = native_ && gl::Context::current().info().software;
     ShadowDepths depths(depths_, resolution);
-    std::vector<Casters> left;
-    for (const auto& kind : primitives_) {
-        left.push_back(casters_of(list, *kind, false));
-        if (native && !left.back().empty()) kind->rasterise_shadows(view, left.back(), depths);
-    }
+    const std::vector<Casters> left = rasterise(view, list, native, depths);
     if (depths.empty()) {
         const float nothing[4] = {no_shadow_depth, 0, 0, 0};
         framebuffer.clear_color(0, nothing);
@@ -38,8 +34,41 @@ void ShadowPass::draw(const ShadowView& view, const DrawList& list, gl::Texture&
     }
     if (std::ranges::all_of(left, &Casters::empty)) return;
     framebuffer.bind();
+    draw_rest(view, resolution, left);
+}
+
+std::vector<Casters> ShadowPass::rasterise(const ShadowView& view, const DrawList& list, bool native,
+                                           ShadowDepths& depths) {
+    std::vector<Casters> left;
+    for (const auto& kind : primitives_) {
+        left.push_back(casters_of(list, *kind, false));
+        if (native && !left.back().empty()) kind->rasterise_shadows(view, left.back(), depths);
+    }
+    return left;
+}
+
+void ShadowPass::draw_rest(const ShadowView& view, int resolution, const std::vector<Casters>& left) {
     for (size_t i = 0; i < left.size(); ++i)
         if (!left[i].empty()) primitives_[i]->draw_shadows({view, resolution, false}, left[i]);
+}
+
+void ShadowPass::draw(const ShadowView& view, const DrawList& list, int resolution, std::span<float> layer) {
+    ShadowDepths depths(depths_, resolution);
+    const std::vector<Casters> left = rasterise(view, list, true, depths);
+    if (depths.empty())
+        std::ranges::fill(layer, no_shadow_depth);
+    else
+        std::ranges::copy(std::as_bytes(depths_.bits()), std::as_writable_bytes(layer).begin());
+    if (std::ranges::all_of(left, &Casters::empty)) return;
+
+    gl::Texture map(gl::Format::r32f, resolution, resolution);
+    map.upload(std::as_bytes(layer));
+    transfers_.note_upload(layer.size_bytes());
+    const gl::Framebuffer framebuffer({&map});
+    framebuffer.bind();
+    draw_rest(view, resolution, left);
+    framebuffer.read(0, gl::Format::r32f, 0, 0, resolution, resolution, std::as_writable_bytes(layer));
+    transfers_.note_download(layer.size_bytes());
 }
 
 void ShadowPass::draw_tints(const ShadowView& view, const DrawList& list,

@@ -2,8 +2,7 @@
 // way.
 #pragma once
 
-#include <memory>
-#include <vector>
+#include <span>
 
 #include "easypbr/gl/texture.h"
 #include "easypbr/render/primitives/primitive.h"
@@ -12,7 +11,6 @@ namespace easypbr::render {
 
 class ShadowPass {
   public:
-    using Primitives = std::vector<std::unique_ptr<Primitive>>;
     /// Both must outlive this.
     ShadowPass(const Primitives& primitives, Transfers& transfers)
         : primitives_(primitives), transfers_(transfers) {}
@@ -20,6 +18,9 @@ class ShadowPass {
     /// Fills one layer with the casters that stop light.
     void draw(const ShadowView& view, const DrawList& casters, gl::Texture& maps, int layer,
               const gl::Framebuffer& framebuffer);
+
+    /// The same in host memory, row by row. What cannot be rasterised natively is drawn and downloaded.
+    void draw(const ShadowView& view, const DrawList& casters, int resolution, std::span<float> layer);
 
     /// Fills one layer of the tints with the others, see shaders/shadow_target.glsl: what all of them take
     /// from the light, and where. `framebuffer` has both as attachments.
@@ -29,6 +30,10 @@ class ShadowPass {
     void allow_native(bool allow) { native_ = allow; }
 
   private:
+    /// Rasterises what can be, and returns what is left of each kind.
+    std::vector<Casters> rasterise(const ShadowView& view, const DrawList& list, bool native, ShadowDepths& depths);
+    void draw_rest(const ShadowView& view, int resolution, const std::vector<Casters>& left);
+
     const Primitives& primitives_;
     Transfers& transfers_;
     bool native_ = true;

@@ -26,29 +26,31 @@ const fs::path& reader() {
     return beside;
 }
 
-[[noreturn]] void fail(const std::string& file, const std::string& why) {
+[[noreturn]] void fail_assimp(const std::string& file, const std::string& why) {
     throw FormatError(fmt::format("cannot read {}: {}", file, why));
 }
 
 [[noreturn]] void fail_missing(const std::string& file, const std::string& why) {
-    fail(file, fmt::format("files of this kind are read by the assimp reader, which cannot be started ({}); "
-                           "install the package libassimp5 and keep {} beside libeasypbr.so",
-                           why, reader_file));
+    fail_assimp(file,
+                fmt::format("files of this kind are read by the assimp reader, which cannot be started ({}); "
+                            "install the package libassimp5 and keep {} beside libeasypbr.so",
+                            why, reader_file));
 }
 
 [[noreturn]] void fail_late(const std::string& file, const AssimpLimits& limits) {
-    fail(file, fmt::format("the assimp reader took longer than {:.3g} s", limits.seconds));
+    fail_assimp(file, fmt::format("the assimp reader took longer than {:.3g} s", limits.seconds));
 }
 
 [[noreturn]] void fail_large(const std::string& file, const AssimpLimits& limits) {
-    fail(file, fmt::format("the assimp reader needs more than {} bytes of memory", limits.bytes));
+    fail_assimp(file, fmt::format("the assimp reader needs more than {} bytes of memory", limits.bytes));
 }
 
 [[noreturn]] void fail_signal(const std::string& file, int number, const AssimpLimits& limits) {
     if (number == SIGXCPU) fail_late(file, limits);
     if (number == SIGXFSZ) fail_large(file, limits);
-    if (number == SIGKILL) fail(file, "the assimp reader was killed, as when the machine is out of memory");
-    fail(file, fmt::format("the assimp reader crashed (signal {})", number));
+    if (number == SIGKILL)
+        fail_assimp(file, "the assimp reader was killed, as when the machine is out of memory");
+    fail_assimp(file, fmt::format("the assimp reader crashed (signal {})", number));
 }
 
 void require_end(const ChildEnd& end, const std::string& file, const AssimpLimits& limits) {
@@ -58,7 +60,7 @@ void require_end(const ChildEnd& end, const std::string& file, const AssimpLimit
     if (end.how == How::unknown || end.code == reader_done) return;
     if (end.code == reader_out_of_memory) fail_large(file, limits);
     if (end.code == not_loaded) fail_missing(file, "a library that it needs is not there");
-    fail(file, fmt::format("the assimp reader ended with status {}", end.code));
+    fail_assimp(file, fmt::format("the assimp reader ended with status {}", end.code));
 }
 
 /// `file` stands in messages; without `arguments` the extensions are asked for.

@@ -36,9 +36,9 @@ Array<int32_t, Cols> take_indices(MessageCursor& message) {
     return take_array<int32_t, Cols>(message, message.take_count(row, row));
 }
 
-class SceneReader {
+class MessageSceneReader {
   public:
-    SceneReader(MessageCursor& message, const std::filesystem::path& file)
+    MessageSceneReader(MessageCursor& message, const std::filesystem::path& file)
         : message_(message), materials_(take_materials(message, file)) {}
 
     Mesh take_node(int depth = 1) {
@@ -112,8 +112,8 @@ void take_header(MessageCursor& message, size_t size, MessageKind wanted) {
 
 /// Calls `take` on a message and makes what it throws an error about a file.
 template <class Take>
-auto decode(std::span<const std::byte> bytes, const std::string& name, uint64_t memory, MessageKind kind,
-            const Take& take) {
+auto decode_message(std::span<const std::byte> bytes, const std::string& name, uint64_t memory,
+                    MessageKind kind, const Take& take) {
     try {
         MessageCursor message(bytes, memory);
         take_header(message, bytes.size(), kind);
@@ -129,17 +129,17 @@ auto decode(std::span<const std::byte> bytes, const std::string& name, uint64_t 
 
 LoadedScene decode_scene(std::span<const std::byte> message, const std::filesystem::path& file,
                          uint64_t memory) {
-    return decode(message, file.string(), memory, MessageKind::scene, [&](MessageCursor& cursor) {
+    return decode_message(message, file.string(), memory, MessageKind::scene, [&](MessageCursor& cursor) {
         MeshData root;
         root.name = file.stem().string();
         root.source = file;
-        root.children.push_back(SceneReader(cursor, file).take_node());
+        root.children.push_back(MessageSceneReader(cursor, file).take_node());
         return LoadedScene{Mesh(std::move(root)), {}, {}};
     });
 }
 
 std::vector<std::string> decode_extensions(std::span<const std::byte> message, const std::string& name) {
-    return decode(message, name, message.size(), MessageKind::extensions, [](MessageCursor& cursor) {
+    return decode_message(message, name, message.size(), MessageKind::extensions, [](MessageCursor& cursor) {
         const size_t count = cursor.take_count(sizeof(uint64_t), 1);
         std::vector<std::string> out;
         for (size_t i = 0; i < count; ++i) out.push_back(cursor.take_text());

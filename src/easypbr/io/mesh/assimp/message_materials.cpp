@@ -62,9 +62,9 @@ Vec3 to_vector(const float (&values)[3]) {
     return {values[0], values[1], values[2]};
 }
 
-class MaterialReader {
+class MessageMaterialReader {
   public:
-    MaterialReader(MessageCursor& message, const std::filesystem::path& file)
+    MessageMaterialReader(MessageCursor& message, const std::filesystem::path& file)
         : message_(message), file_(file), loader_(file) {
         const size_t count = message_.take_count(smallest_image, sizeof(EmbeddedImage));
         for (size_t i = 0; i < count; ++i) images_.push_back(take_image(message_));
@@ -144,7 +144,7 @@ class MaterialReader {
 }  // namespace
 
 std::vector<Material> take_materials(MessageCursor& message, const std::filesystem::path& file) {
-    MaterialReader reader(message, file);
+    MessageMaterialReader reader(message, file);
     const size_t count = message.take_count(sizeof(MessageFactors), sizeof(Material));
     std::vector<Material> out;
     for (size_t i = 0; i < count; ++i) out.push_back(reader.take_material());

@@ -27,7 +27,7 @@ Plane plane_of(const Texture& texture, int channel) {
 }
 
 /// A texture like `like`, of the larger of its planes' sizes; a channel without an image is 255.
-Texture merged(const Texture& like, const std::vector<Plane>& planes) {
+Texture merged_texture(const Texture& like, const std::vector<Plane>& planes) {
     int width = 1, height = 1;
     for (const Plane& plane : planes) {
         width = std::max(width, plane.image.width());
@@ -54,7 +54,7 @@ Texture metallic_roughness(const Material& material) {
     std::vector<Plane> planes(3);
     if (roughness) planes[1] = plane_of(roughness, roughness.channel);
     if (metallic) planes[2] = plane_of(metallic, metallic.channel);
-    return merged(metallic ? metallic : roughness, planes);
+    return merged_texture(metallic ? metallic : roughness, planes);
 }
 
 Texture base_color(const Material& material) {
@@ -65,7 +65,7 @@ Texture base_color(const Material& material) {
     if (color)
         for (int c = 0; c < 3; ++c) planes[size_t(c)] = plane_of(color, color.image->channels() < 3 ? 0 : c);
     planes[3] = plane_of(opacity, opacity.channel);
-    return merged(color ? color : opacity, planes);
+    return merged_texture(color ? color : opacity, planes);
 }
 
 /// A texture whose values stand in the given channel.
@@ -73,7 +73,7 @@ Texture in_channel(const Texture& texture, int channel) {
     if (!texture || texture.channel == channel) return texture;
     std::vector<Plane> planes(size_t(channel) + 1);
     planes.back() = plane_of(texture, texture.channel);
-    return merged(texture, planes);
+    return merged_texture(texture, planes);
 }
 
 int wrap_code(Wrap wrap) {

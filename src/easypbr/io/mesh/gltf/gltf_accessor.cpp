@@ -13,7 +13,7 @@
 namespace easypbr::io {
 namespace {
 
-constexpr size_t row_grain = 1 << 15;
+constexpr size_t accessor_grain = 1 << 15;
 /// Rows of an accessor that names no buffer: nothing in the file bears its size out.
 constexpr size_t most_rows_without_data = size_t(1) << 24;
 
@@ -188,7 +188,7 @@ ArrayXf::Dense read_floats(GltfDocument& document, size_t index, int least, int 
         out.setZero();
     else
         with_component(accessor.type, [&]<class T>(T) {
-            parallel_for(accessor.count, row_grain, [&](size_t row) {
+            parallel_for(accessor.count, accessor_grain, [&](size_t row) {
                 const std::byte* from = accessor.rows.data + row * accessor.rows.stride;
                 float* to = out.data() + row * size_t(accessor.components);
                 for (int c = 0; c < accessor.components; ++c)
@@ -209,7 +209,7 @@ std::vector<uint32_t> read_indices(GltfDocument& document, size_t index) {
     std::vector<uint32_t> out(accessor.count);
     with_component(accessor.type, [&]<class T>(T) {
         if constexpr (std::is_unsigned_v<T>)
-            parallel_for(out.size(), row_grain, [&](size_t i) {
+            parallel_for(out.size(), accessor_grain, [&](size_t i) {
                 out[i] = uint32_t(load<T>(accessor.rows.data + i * accessor.rows.stride));
             });
     });

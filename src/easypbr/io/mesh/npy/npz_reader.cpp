@@ -40,7 +40,7 @@ const std::vector<Role> roles{
     {npz_labels, {"label"}, 1},
     {{"i", "intensity", "intensities"}, {"intensity"}, 1}};
 
-bool contains(const Names& names, std::string_view name) {
+bool is_any_of(const Names& names, std::string_view name) {
     return std::ranges::find(names, name) != names.end();
 }
 
@@ -109,7 +109,7 @@ class NpzReader {
             array.array = parse_npy(array.source, entry.bytes);
             arrays_.push_back(std::move(array));
         } catch (const FormatError& error) {
-            if (contains(npz_positions, array.lower_name)) throw;
+            if (is_any_of(npz_positions, array.lower_name)) throw;
             log_warning(fmt::format("array '{}' is left out: {}", name, error.what()));
         }
     }
@@ -144,8 +144,8 @@ class NpzReader {
     void add_values(const NamedArray& named, std::vector<BinaryTable>& tables) {
         const NpyArray& array = named.array;
         const size_t rows = array.rows(), columns = array.columns();
-        if (contains(face_names, named.lower_name)) return;
-        if (contains(edge_names, named.lower_name)) return read_edges(named);
+        if (is_any_of(face_names, named.lower_name)) return;
+        if (is_any_of(edge_names, named.lower_name)) return read_edges(named);
         if (named.lower_name == "offset") return read_offset(named);
         if (array.is_structured()) return leave_out(named);
         if (rows != points_ && rows == faces_.rows && columns == 1) {
@@ -153,7 +153,7 @@ class NpzReader {
             return;
         }
         const auto role =
-            std::ranges::find_if(roles, [&](const Role& r) { return contains(r.names, named.lower_name); });
+            std::ranges::find_if(roles, [&](const Role& r) { return is_any_of(r.names, named.lower_name); });
         std::vector<std::string> names;
         if (role != roles.end()) {
             if (rows != points_ || columns < role->least_columns || columns > role->columns.size())
@@ -207,7 +207,7 @@ class NpzReader {
     void add_face_values() {
         if (mesh_.F.rows() == mesh_.V.rows()) return;
         for (const NamedArray* named : face_values_) {
-            if (contains(npz_labels, named->lower_name) && mesh_.L.empty())
+            if (is_any_of(npz_labels, named->lower_name) && mesh_.L.empty())
                 mesh_.L = of_triangles(values_of<Integers>(*named));
             else if (std::ranges::none_of(mesh_.scalars,
                                           [&](const ScalarArray& s) { return s.name == named->name; }))

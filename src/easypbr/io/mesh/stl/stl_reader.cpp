@@ -41,7 +41,7 @@ bool starts_with_word(const char* p, const char* end, std::string_view word) {
 }
 
 /// Binary files may begin with "solid" as well, so the size decides first.
-bool is_text(const Source& source) {
+bool is_text_stl(const Source& source) {
     if (source.bytes.size() == header_bytes + facet_bytes * declared_facets(source)) return false;
     return starts_with_word(source.begin(), source.end(), "solid");
 }
@@ -134,7 +134,7 @@ void weld(Corners&& corners, MeshData& mesh) {
 
 MeshData read_stl(const Source& source, const LoadOptions& options) {
     if (source.bytes.empty()) fail(source, "the file is empty");
-    Corners corners = is_text(source) ? read_text(source) : read_binary(source);
+    Corners corners = is_text_stl(source) ? read_text(source) : read_binary(source);
     if (corners.size() == 0) fail(source, "no facets");
     MeshData mesh;
     weld(std::move(corners), mesh);

@@ -22,7 +22,7 @@ struct Samples {
     std::vector<bool> is_text;  ///< for each column: it holds words
 };
 
-Samples sample(const Source& source, const TextRows& rows) {
+Samples samples_of(const Source& source, const TextRows& rows) {
     Samples samples;
     for (const char* row : sample_rows(rows, 0, rows.count())) {
         const auto cells = split_cells(row, source.end(), rows.style);
@@ -77,7 +77,7 @@ MeshData read_xyz(const Source& source, bool is_pts) {
         log_warning(fmt::format("{}: {} rows behind the {} points that the file says it has are left out",
                                 source.path.string(), rows.count() - count, count));
     MeshData mesh =
-        read_text_cloud(source, rows, describe(source, layout, sample(source, rows), count, is_pts));
+        read_text_cloud(source, rows, describe(source, layout, samples_of(source, rows), count, is_pts));
     drop_points_without_position(source, mesh);
     return mesh;
 }

@@ -38,56 +38,95 @@ double nearest_depth(const Box3d& bounds, const Camera& camera) {
 
 /// One full-screen draw: what with, where to, and its inputs beside those that all have.
 struct AmbientOcclusionPass::Step {
-    ProgramVariants& programs;
+    ScreenShader& shader;
     std::vector<std::string> defines;
     const gl::Framebuffer& to;
     PixelRect area;  ///< of `to`
-    const gl::Texture* visibility = nullptr;
+    const Target* visibility = nullptr;
     Vec2 axis{0, 0};       ///< of a blur
     bool selects = false;  ///< writes the depth that the steps after it are tested by
 };
 
 void AmbientOcclusionPass::make_targets(Vec2i size, bool half) {
-    if (depth_ && size_ == size && half_ == half) return;
+    if (sampled_ && size_ == size && half_ == half) return;
     size_ = size;
     half_ = half;
-    const int w = half ? (size.x() + 1) / 2 : size.x(), h = half ? (size.y() + 1) / 2 : size.y();
-    depth_ = gl::Texture(gl::Format::depth32f, w, h);
-    sampled_ = gl::Texture(gl::Format::r16, w, h);
-    blurred_ = gl::Texture(gl::Format::r16, w, h);
-    surface_ = half ? gl::Texture(gl::Format::rgba32f, w, h) : gl::Texture();
-    select_ = half ? gl::Framebuffer({&surface_}, &depth_) : gl::Framebuffer();
-    sample_ = gl::Framebuffer({&sampled_}, &depth_);
-    blur_ = gl::Framebuffer({&blurred_}, &depth_);
+    const Vec2i own = half ? Vec2i((size.x() + 1) / 2, (size.y() + 1) / 2) : size;
+    sampled_ = Target(gl::Format::r16, own);
+    blurred_ = Target(gl::Format::r16, own);
+    surface_ = half ? Target(gl::Format::rgba32f, own) : Target();
+    depth_ = gl::Texture();
+}
+
+void AmbientOcclusionPass::make_framebuffers() {
+    for (const Target* target : {&sampled_, &blurred_, &surface_}) target->drawn();
+    if (depth_) return;
+    depth_ = gl::Texture(gl::Format::depth32f, sampled_.width(), sampled_.height());
+    select_ = half_ ? gl::Framebuffer({&surface_.attachment()}, &depth_) : gl::Framebuffer();
+    sample_ = gl::Framebuffer({&sampled_.attachment()}, &depth_);
+    blur_ = gl::Framebuffer({&blurred_.attachment()}, &depth_);
+}
+
+AmbientOcclusionPass::Plan AmbientOcclusionPass::plan_of(const Frame& frame) {
+    Plan plan;
+    plan.half = at_half_resolution(frame);
+    plan.smooth = plan.half || frame.sample_count < frames_without_blur;
+    plan.sampling = frame.resolved->settings.ssao.method == OcclusionMethod::horizon ? &horizon_ : &hemisphere_;
+    plan.defines = camera_defines(frame);
+    if (plan.half) plan.defines.emplace_back("HALF");
+    if (plan.smooth) plan.defines.emplace_back("BLURRED");
+    return plan;
 }
 
 void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets, bool with_points) {
-    const bool half = at_half_resolution(frame), smooth = half || frame.sample_count < frames_without_blur;
-    ProgramVariants& sampling =
-        frame.resolved->settings.ssao.method == OcclusionMethod::horizon ? horizon_ : hemisphere_;
-    std::vector<std::string> defines = camera_defines(frame);
-    if (half) defines.emplace_back("HALF");
-    if (smooth) defines.emplace_back("BLURRED");
-
+    const Plan plan = plan_of(frame);
     targets.add_ambient_occlusion();
     const float open[4] = {1, 1, 1, 1};
     targets.occluded().clear_color(0, open);
     estimated_ = with_points;
     if (estimated_) estimate_normals(frame, targets);
-    const PixelRect area = in_texels(frame.covered, half ? 2 : 1);
-    if (!smooth) return run(frame, targets, {sampling, defines, targets.occluded(), area});
-    make_targets(frame.size, half);
-    if (half) {
+    const PixelRect area = in_texels(frame.covered, plan.half ? 2 : 1);
+    if (!plan.smooth) return run(frame, targets, {*plan.sampling, plan.defines, targets.occluded(), area});
+    make_targets(frame.size, plan.half);
+    make_framebuffers();
+    if (plan.half) {
         select_.clear_depth(0);
         run(frame, targets,
-            {.programs = selecting_, .defines = defines, .to = select_, .area = area, .selects = true});
+            {.shader = selecting_, .defines = plan.defines, .to = select_, .area = area, .selects = true});
     } else {
         gl::copy(targets.depth_test(), depth_);
     }
-    run(frame, targets, {sampling, defines, sample_, area});
-    run(frame, targets, {blurring_, defines, blur_, area, &sampled_, {1, 0}});
-    run(frame, targets, {blurring_, defines, half ? sample_ : targets.occluded(), area, &blurred_, {0, 1}});
-    if (half) run(frame, targets, {magnifying_, defines, targets.occluded(), frame.covered, &sampled_});
+    run(frame, targets, {*plan.sampling, plan.defines, sample_, area});
+    run(frame, targets, {blurring_, plan.defines, blur_, area, &sampled_, {1, 0}});
+    run(frame, targets,
+        {blurring_, plan.defines, plan.half ? sample_ : targets.occluded(), area, &blurred_, {0, 1}});
+    if (plan.half) run(frame, targets, {magnifying_, plan.defines, targets.occluded(), frame.covered, &sampled_});
+}
+
+void AmbientOcclusionPass::shade(const Frame& frame, GBuffer& targets, Transfers& transfers) {
+    const Plan plan = plan_of(frame);
+    targets.add_ambient_occlusion();
+    estimated_ = false;
+    const PixelRect held = targets.depth.area(), area = in_texels(held, plan.half ? 2 : 1);
+    if (plan.smooth) make_targets(frame.size, plan.half);
+    const auto shade_to = [&](ScreenShader& shader, const Target& to, const PixelRect& pixels,
+                              const Target* visibility = nullptr, Vec2 axis = {0, 0}) {
+        to.write(pixels);
+        const bool of_half = plan.half && &to != &targets.ambient_occlusion && &to != &surface_;
+        const ShaderInputs inputs = inputs_of(frame, targets, plan.defines, visibility, axis);
+        shader.shade(inputs,
+                     {.target = &to,
+                      .area = pixels,
+                      .where = &to == &surface_ ? native::Where::everywhere : native::Where::covered,
+                      .depth = of_half ? &surface_ : &targets.depth},
+                     transfers);
+    };
+    if (!plan.smooth) return shade_to(*plan.sampling, targets.ambient_occlusion, held);
+    if (plan.half) shade_to(selecting_, surface_, area);
+    shade_to(*plan.sampling, sampled_, area);
+    shade_to(blurring_, blurred_, area, &sampled_, {1, 0});
+    shade_to(blurring_, plan.half ? sampled_ : targets.ambient_occlusion, area, &blurred_, {0, 1});
+    if (plan.half) shade_to(magnifying_, targets.ambient_occlusion, held, &sampled_);
 }
 
 void AmbientOcclusionPass::estimate_normals(const Frame& frame, const GBuffer& targets) {
@@ -105,36 +144,41 @@ double AmbientOcclusionPass::reach(const Frame& whole, const Box3d& bounds) {
     return std::ceil(ssao.radius * whole.clip_from_view(1, 1) * whole.picture_size.y() / 2 / depth);
 }
 
-void AmbientOcclusionPass::run(const Frame& frame, const GBuffer& targets, const Step& step) {
+ShaderInputs AmbientOcclusionPass::inputs_of(const Frame& frame, const GBuffer& targets,
+                                             const std::vector<std::string>& defines, const Target* visibility,
+                                             Vec2 axis) const {
     const auto& ssao = frame.resolved->settings.ssao;
-    const gl::Program& program = step.programs.get(step.defines);
-    step.to.bind();
-    program.use();
-    set_camera_uniforms(program, frame);
-    program.set("u_radius", ssao.radius);
-    program.set("u_inverse_falloff", 1 / ssao.falloff);
-    program.set("u_power", ssao.power);
-    program.set("u_directions", ssao.directions);
-    program.set("u_steps", ssao.steps);
-    program.set("u_frame", frame.sample_index);
-    program.set("u_axis", step.axis);
-    program.set("u_depth_target", 0);
-    targets.depth.bind(0);
-    program.set("u_normal", 1);
-    (estimated_ ? normal_ : targets.normal.texture()).bind(1);
-    program.set("u_material", 4);
-    targets.material.bind(4);
-    program.set("u_surface", 2);
-    if (surface_) {
-        surface_.bind(2);
-        program.set("u_surface_size", Vec2(float(surface_.width()), float(surface_.height())));
+    ShaderInputs values;
+    values.define(defines);
+    set_camera_uniforms(values, frame);
+    values.set("u_radius", ssao.radius);
+    values.set("u_inverse_falloff", 1 / ssao.falloff);
+    values.set("u_power", ssao.power);
+    values.set("u_directions", ssao.directions);
+    values.set("u_steps", ssao.steps);
+    values.set("u_frame", frame.sample_index);
+    values.set("u_axis", axis);
+    values.set("u_depth_target", targets.depth);
+    if (estimated_)
+        values.set("u_normal", normal_);
+    else
+        values.set("u_normal", targets.normal);
+    values.set("u_material", targets.material);
+    if (half_ && surface_) {
+        values.set("u_surface", surface_);
+        values.set("u_surface_size", Vec2(surface_.size().cast<float>()));
     }
-    program.set("u_visibility", 3);
-    if (step.visibility) step.visibility->bind(3);
+    if (visibility) values.set("u_visibility", *visibility);
+    return values;
+}
+
+void AmbientOcclusionPass::run(const Frame& frame, const GBuffer& targets, const Step& step) {
+    const ShaderInputs inputs = inputs_of(frame, targets, step.defines, step.visibility, step.axis);
+    step.to.bind();
     gl::DrawState state = screen_state(step.area);
     state.depth_test = step.selects ? gl::DepthTest::always : gl::DepthTest::less;
     state.write_depth = step.selects;
-    gl::draw_screen(state);
+    step.shader.draw(inputs, state);
 }
 
 }  // namespace easypbr::render

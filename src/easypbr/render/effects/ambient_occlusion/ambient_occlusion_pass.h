@@ -3,7 +3,7 @@
 
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
-#include "easypbr/render/frame/programs.h"
+#include "easypbr/render/frame/screen_shader.h"
 
 namespace easypbr::render {
 
@@ -20,26 +20,39 @@ class AmbientOcclusionPass {
     /// How far occluders are looked for, in pixels of a frame of the whole picture; 0 where it is off.
     static double reach(const Frame& whole, const Box3d& bounds);
 
+    /// The same, without points, natively: from and to host memory.
+    void shade(const Frame& frame, GBuffer& targets, Transfers& transfers);
+
   private:
     struct Step;
+    struct Plan {
+        bool half = false, smooth = false;
+        ScreenShader* sampling = nullptr;
+        std::vector<std::string> defines;
+    };
+    Plan plan_of(const Frame& frame);
     void make_targets(Vec2i size, bool half);
+    void make_framebuffers();
     void estimate_normals(const Frame& frame, const GBuffer& targets);
+    ShaderInputs inputs_of(const Frame& frame, const GBuffer& targets, const std::vector<std::string>& defines,
+                           const Target* visibility, Vec2 axis) const;
     void run(const Frame& frame, const GBuffer& targets, const Step& step);
 
     Vec2i size_{0, 0};
     bool half_ = false;
-    gl::Texture surface_;  ///< of half resolution, see shaders/occlusion_select.frag
-    gl::Texture depth_, sampled_, blurred_;
+    Target surface_;  ///< of half resolution, see shaders/occlusion_select.frag
+    Target sampled_, blurred_;
+    gl::Texture depth_;
     gl::Framebuffer select_, sample_, blur_;
     gl::Texture normal_;  ///< the G-buffer's and estimated ones
     gl::Framebuffer estimate_;
     bool estimated_ = false;
-    ProgramVariants estimating_{"screen_triangle.vert", "occlusion_normals.frag"};
-    ProgramVariants selecting_{"screen_triangle.vert", "occlusion_select.frag"};
-    ProgramVariants horizon_{"screen_triangle.vert", "occlusion_horizon.frag"};
-    ProgramVariants hemisphere_{"screen_triangle.vert", "occlusion_hemisphere.frag"};
-    ProgramVariants blurring_{"screen_triangle.vert", "occlusion_blur.frag"};
-    ProgramVariants magnifying_{"screen_triangle.vert", "occlusion_magnify.frag"};
+    ScreenShader estimating_{"occlusion_normals.frag"};
+    ScreenShader selecting_{"occlusion_select.frag", native::Shader::occlusion_select};
+    ScreenShader horizon_{"occlusion_horizon.frag", native::Shader::occlusion_horizon};
+    ScreenShader hemisphere_{"occlusion_hemisphere.frag", native::Shader::occlusion_hemisphere};
+    ScreenShader blurring_{"occlusion_blur.frag", native::Shader::occlusion_blur};
+    ScreenShader magnifying_{"occlusion_magnify.frag", native::Shader::occlusion_magnify};
 };
 
 }  // namespace easypbr::render

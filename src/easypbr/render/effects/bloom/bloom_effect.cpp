@@ -22,14 +22,6 @@ PixelRect lit_texels(const Frame& frame, const gl::Texture& level) {
 
 }  // namespace
 
-void set_glow_uniforms(const gl::Program& program, const Glow& glow, unsigned unit) {
-    program.set("u_bloom", glow.parameters);
-    program.set("u_glow", int(unit));
-    program.set("u_glow_size",
-                Vec2(float(glow_texel * glow.light->width()), float(glow_texel * glow.light->height())));
-    glow.light->bind(unit);
-}
-
 void BloomEffect::make_levels(Vec2i size, int count) {
     if (size_ == size && levels_.size() == size_t(count)) return;
     size_ = size;

@@ -1,7 +1,7 @@
 // The light that bloom spreads, as the output passes add it to a picture.
 #pragma once
 
-#include "easypbr/gl/program.h"
+#include "easypbr/core/math.h"
 #include "easypbr/gl/texture.h"
 
 namespace easypbr::render {
@@ -12,9 +12,9 @@ inline constexpr int glow_texel = 4;
 struct Glow {
     const gl::Texture* light = nullptr;  ///< RGBA16F, exposed light, a texel for 4 x 4 pixels
     Vec4 parameters = Vec4::Zero();      ///< intensity, exposure, threshold, half width of the knee
-};
 
-/// Sets the uniforms of shaders/common_bloom.glsl and binds the light to a texture unit.
-void set_glow_uniforms(const gl::Program& program, const Glow& glow, unsigned unit);
+    /// In pixels.
+    Vec2 size() const { return Vec2(float(glow_texel * light->width()), float(glow_texel * light->height())); }
+};
 
 }  // namespace easypbr::render

@@ -5,12 +5,20 @@
 namespace easypbr::render {
 namespace {
 
-std::vector<gpu::Segment> segments_of(const MeshData& mesh, gpu::LineKind kind, float length) {
+/// Length of normals, as a part of the mesh's diagonal.
+constexpr float normal_part = 0.02f;
+
+float normal_length_of(const MeshData& mesh) {
+    return normal_part * (mesh.V.colwise().maxCoeff() - mesh.V.colwise().minCoeff()).norm();
+}
+
+std::vector<gpu::Segment> segments_of(const MeshData& mesh, gpu::LineKind kind,
+                                      std::optional<float> normal_length) {
     switch (kind) {
         case gpu::LineKind::wireframe:
             return gpu::wireframe_segments(mesh);
         case gpu::LineKind::normals:
-            return gpu::normal_segments(mesh, length);
+            return gpu::normal_segments(mesh, normal_length ? *normal_length : normal_length_of(mesh));
         default:
             return gpu::edge_segments(mesh);
     }
@@ -34,15 +42,12 @@ LineBuffers make_line_buffers(const std::vector<gpu::Segment>& segments) {
 
 }  // namespace
 
-const LineBuffers& LineCache::get(const MeshData& mesh, gpu::LineKind kind, float length) {
-    const Key key{mesh.V.revision(),
-                  mesh.E.revision(),
-                  mesh.F.revision(),
-                  mesh.N.revision(),
-                  mesh.C.revision(),
-                  kind,
-                  length};
-    return buffers_.get(key, [&] { return make_line_buffers(segments_of(mesh, kind, length)); });
+const LineBuffers& LineCache::get(const MeshData& mesh, gpu::LineKind kind,
+                                  std::optional<float> normal_length) {
+    const Key key{mesh.V.revision(), mesh.E.revision(), mesh.F.revision(),
+                  mesh.N.revision(), mesh.C.revision(), kind,
+                  normal_length};
+    return buffers_.get(key, [&] { return make_line_buffers(segments_of(mesh, kind, normal_length)); });
 }
 
 }  // namespace easypbr::render

@@ -1,6 +1,7 @@
 // Line segments on the device: 32 bytes each.
 #pragma once
 
+#include <optional>
 #include <tuple>
 
 #include "easypbr/core/revision_cache.h"
@@ -18,14 +19,15 @@ struct LineBuffers {
 /// Buffers by the revisions of the arrays they were made from.
 class LineCache {
   public:
-    /// `length` is that of the normals.
-    const LineBuffers& get(const MeshData& mesh, gpu::LineKind kind, float length);
+    /// `normal_length` is in the mesh's own units; nothing: by the size of the mesh.
+    const LineBuffers& get(const MeshData& mesh, gpu::LineKind kind, std::optional<float> normal_length);
 
     /// Drops what was not asked for since the last call.
     void evict_unused() { buffers_.evict_unused(); }
 
   private:
-    using Key = std::tuple<uint64_t, uint64_t, uint64_t, uint64_t, uint64_t, gpu::LineKind, float>;
+    using Key =
+        std::tuple<uint64_t, uint64_t, uint64_t, uint64_t, uint64_t, gpu::LineKind, std::optional<float>>;
     RevisionCache<Key, LineBuffers> buffers_;
 };
 

@@ -89,8 +89,7 @@ void set_extension_uniforms(const gl::Program& program, const ResolvedSettings& 
                                m.iridescence_thickness_max));
     const double angle = radians(double(m.anisotropy_rotation_deg));
     program.set("u_anisotropy", Vec3(m.anisotropy, float(std::cos(angle)), float(std::sin(angle))));
-    const double scale = std::cbrt(std::abs(item.object->T_world_mesh.linear().determinant()));
-    const float thickness = m.thickness * float(scale);
+    const float thickness = m.thickness * float(item.scale());
     // What reflects all does not refract.
     program.set("u_volume", Vec3(m.transmission, thickness, m.ior > 0 ? m.ior : 1.0f));
     program.set("u_attenuation", log_transmittance(m, thickness));

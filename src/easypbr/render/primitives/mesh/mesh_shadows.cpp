@@ -1,7 +1,6 @@
 #include "easypbr/render/primitives/mesh/mesh_shadows.h"
 
 #include <algorithm>
-#include <cmath>
 #include <span>
 #include <utility>
 
@@ -37,7 +36,7 @@ std::vector<Parts> objects_of(const Casters& casters) {
     return objects;
 }
 
-bool suits_native(Parts parts) {
+bool parts_suit_native(Parts parts) {
     const auto opaque = [](const DrawItem* item) {
         return item->alpha == AlphaMode::opaque && !item->material.shader;
     };
@@ -62,7 +61,7 @@ std::vector<MeshPart> runs_of(Parts parts) {
 Vec3 light_through(const DrawItem& item) {
     if (item.kind != SurfaceKind::lit) return Vec3::Zero();
     Material m = item.material;
-    m.thickness *= float(std::cbrt(std::abs(item.object->T_world_mesh.linear().determinant())));
+    m.thickness *= float(item.scale());
     const Vec3 through = m.transmittance(AlphaMode::opaque);
     return m.thickness > 0 ? Vec3(through.cwiseSqrt()) : through;
 }
@@ -83,7 +82,7 @@ void MeshShadows::rasterise(const ShadowView& view, Casters& casters, ShadowDept
             return depths.buffer().draw({mesh.V, mesh.F, run.first_face, run.face_count,
                                          layer.clip_from_mesh(first), both_sides, mirrored});
         };
-        if (!suits_native(parts) || !std::ranges::all_of(runs_of(parts), rasterised))
+        if (!parts_suit_native(parts) || !std::ranges::all_of(runs_of(parts), rasterised))
             left.insert(left.end(), parts.begin(), parts.end());
     }
     casters = std::move(left);

@@ -15,10 +15,6 @@ constexpr float steepest = 4;
 /// Radii that a lit point's disc is pushed further: pixels of a splat lie beside their surface.
 constexpr float push = 1;
 
-double scale_of(const DrawItem& item) {
-    return std::cbrt(std::abs(item.object->T_world_mesh.linear().determinant()));
-}
-
 bool is_pushed(const DrawItem& item) {
     return item.kind == SurfaceKind::lit && !item.mesh().N.empty();
 }
@@ -32,7 +28,7 @@ bool suits_native(const DrawItem* item) {
 double PointShadows::radius(const DrawItem& item) {
     const DrawStyle& style = item.style;
     if (style.point_size && style.point_size_unit == SizeUnit::world) return 0.5 * double(*style.point_size);
-    return 0.5 * spacings_per_splat * spacings_.get(item.mesh().V) * scale_of(item);
+    return 0.5 * spacings_per_splat * spacings_.get(item.mesh().V) * item.scale();
 }
 
 void PointShadows::draw(const ShadowLayer& layer, const Casters& casters) {
@@ -50,7 +46,7 @@ void PointShadows::draw(const ShadowLayer& layer, const DrawItem& item) {
     program.set("u_clip_from_mesh", layer.clip_from_mesh(item));
     program.set("u_diameter", Vec2((2 * r * layer.resolution * layer.view.scale).cast<float>()));
     program.set("u_light", light_in_mesh(layer.view, item));
-    program.set("u_push", Vec3(float(r / scale_of(item)), steepest, push));
+    program.set("u_push", Vec3(float(r / item.scale()), steepest, push));
     set_caster_alpha(program, item);
     gl::draw_points(layer.state(), buffers.array, int(item.mesh().V.rows()));
 }
@@ -78,7 +74,7 @@ void PointShadows::rasterise(const ShadowLayer& layer, const DrawItem& item) {
     const auto same = [](uint32_t) -> uint64_t { return 0; };
     if (!is_pushed(item)) return visibility_.draw_points(mesh.V, splats, 0, same);
     const Vec4 light = light_in_mesh(view, item);
-    const float in_mesh = float(r / scale_of(item));
+    const float in_mesh = float(r / item.scale());
     Array3f::Dense pushed(mesh.V.rows(), 3);
     parallel_for(size_t(mesh.V.rows()), 1 << 12, [&](size_t i) {
         const Vec3 p = mesh.V.row(Eigen::Index(i)), n = mesh.N.row(Eigen::Index(i));

@@ -15,14 +15,13 @@ constexpr double lonely_pixels_at_1080 = 12;
 
 PointSplats splats_of(const DrawItem& item, const Frame& frame, double spacing) {
     const DrawStyle& style = item.style;
-    const Eigen::Affine3d& T = item.object->T_world_mesh;
-    const double scale = std::cbrt(std::abs(T.linear().determinant()));
     // clip_from_view(1, 1) / w is the height in half pictures of one unit of length.
     const double pixels_per_unit = frame.clip_from_view(1, 1) * frame.size.y() / 2;
     PointSplats splats;
-    splats.clip_from_mesh = (frame.clip_from_view * frame.camera.view() * T.matrix()).cast<float>();
+    splats.clip_from_mesh =
+        (frame.clip_from_view * frame.camera.view() * item.object->T_world_mesh.matrix()).cast<float>();
     splats.round = style.point_shape == PointShape::round;
-    const double world = !style.point_size                          ? spacing * spacings_per_splat * scale
+    const double world = !style.point_size ? spacing * spacings_per_splat * item.scale()
                          : style.point_size_unit == SizeUnit::world ? double(*style.point_size)
                                                                     : 0.0;
     splats.world_pixels = float(world * pixels_per_unit);

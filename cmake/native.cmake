@@ -1,0 +1,35 @@
+# Native shaders: the text of shaders/ as C++, compiled for each instruction set into a namespace of its own.
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+set(native_shaders lighting_surface background_environment display_output accumulate_sample antialias_fxaa
+                   occlusion_select occlusion_horizon occlusion_hemisphere occlusion_blur occlusion_magnify)
+set(native_folder ${PROJECT_BINARY_DIR}/generated/native)
+file(GLOB shader_texts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/shaders/*.glsl ${PROJECT_SOURCE_DIR}/shaders/*.frag)
+add_custom_command(
+  OUTPUT ${native_folder}/shader_uniforms.h ${native_folder}/shaders.h
+  COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/native_shaders.py ${PROJECT_SOURCE_DIR}/shaders
+          ${native_folder} --define DFG_SIZE=64 --define LIGHTS_PER_BLOCK=64 --define SHADOWS --without SHADOW_TINTS ${native_shaders}
+  DEPENDS ${shader_texts} ${PROJECT_SOURCE_DIR}/scripts/native_shaders.py
+  COMMENT "Translating shaders" VERBATIM)
+add_custom_target(easypbr_native_texts DEPENDS ${native_folder}/shader_uniforms.h ${native_folder}/shaders.h)
+add_dependencies(easypbr_native easypbr_native_texts)
+target_sources(easypbr_native PRIVATE ${native_folder}/shader_uniforms.h)
+
+# No contraction: all instruction sets compute the same bits.
+function(easypbr_add_instruction_set name)
+  add_library(easypbr_native_${name} OBJECT ${PROJECT_SOURCE_DIR}/src/easypbr/native/simd/kernels.cpp)
+  target_link_libraries(easypbr_native_${name} PRIVATE easypbr_options)
+  target_compile_definitions(easypbr_native_${name} PRIVATE EASYPBR_ISA=${name})
+  target_compile_options(easypbr_native_${name} PRIVATE -O2 -ffp-contract=off -fno-math-errno -fno-trapping-math
+                         # Shader functions ignore arguments. GCC 12 takes its own intrinsics for uninitialised.
+                         -Wno-unused-parameter -Wno-psabi -Wno-maybe-uninitialized -Wno-uninitialized ${ARGN})
+  add_dependencies(easypbr_native_${name} easypbr_native_texts)
+  set(room_objects ${room_objects} $<TARGET_OBJECTS:easypbr_native_${name}> PARENT_SCOPE)
+endfunction()
+
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  easypbr_add_instruction_set(v2 -march=x86-64-v2)
+  easypbr_add_instruction_set(avx2 -march=x86-64-v3)
+  easypbr_add_instruction_set(avx512 -march=x86-64-v4)
+else()
+  easypbr_add_instruction_set(base)
+endif()

@@ -1,0 +1,168 @@
+#include "easypbr/native/shaders.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cstdlib>
+#include <cstring>
+#include <type_traits>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/parallel.h"
+
+namespace easypbr::native {
+
+// clang-format off
+#include "native/shader_uniforms.h"
+// clang-format on
+
+#if defined(__x86_64__)
+namespace v2 {
+extern const Kernels kernels;
+}
+namespace avx2 {
+extern const Kernels kernels;
+}
+namespace avx512 {
+extern const Kernels kernels;
+}
+#else
+namespace base {
+extern const Kernels kernels;
+}
+#endif
+
+namespace {
+
+struct InstructionSet {
+    std::string_view name;
+    const Kernels* kernels;
+    bool is_there;
+};
+
+/// The best first.
+const auto& known_sets() {
+#if defined(__x86_64__)
+    static const std::array sets{
+        InstructionSet{"avx512", &avx512::kernels, bool(__builtin_cpu_supports("x86-64-v4"))},
+        InstructionSet{"avx2", &avx2::kernels, bool(__builtin_cpu_supports("x86-64-v3"))},
+        InstructionSet{"v2", &v2::kernels, true}};
+#else
+    static const std::array sets{InstructionSet{"base", &base::kernels, true}};
+#endif
+    return sets;
+}
+
+const InstructionSet& set_of(std::string_view name) {
+    for (const InstructionSet& set : known_sets())
+        if (set.is_there && (name.empty() || set.name == name)) return set;
+    std::string there;
+    for (std::string_view other : instruction_sets()) there += fmt::format(" {}", other);
+    throw ArgumentError(fmt::format("instruction set: '{}' is not one of{}", name, there));
+}
+
+std::atomic<const InstructionSet*> chosen;
+
+const InstructionSet& chosen_set() {
+    if (const InstructionSet* set = chosen) return *set;
+    const char* asked = std::getenv("EASYPBR_ISA");
+    chosen = &set_of(asked ? asked : "");
+    return *chosen;
+}
+
+/// Fills in the uniforms of a shader.
+class Setter {
+  public:
+    explicit Setter(const Inputs& inputs) : inputs_(inputs) {}
+
+    template <class T>
+    void operator()(std::string_view name, T& uniform) {
+        const auto at = std::ranges::find(inputs_.values, name, [](const auto& v) { return v.first; });
+        if (at == inputs_.values.end()) return;
+        const bool known = std::visit([&](const auto& value) { return assign(uniform, value); }, at->second);
+        if (!known) throw Error(fmt::format("the value of {} is not of the uniform's type", name));
+    }
+    void feature(std::string_view macro, bool& on) {
+        on = on || std::ranges::find(inputs_.features, macro) != inputs_.features.end();
+    }
+
+  private:
+    template <class T, class Value>
+    static bool assign(T& to, const Value& value) {
+        if constexpr (std::is_base_of_v<View, T> && std::is_same_v<Value, View>) {
+            static_cast<View&>(to) = value;
+            return true;
+        } else if constexpr (std::is_same_v<Value, Inputs::Bytes>) {
+            if constexpr (!std::is_array_v<T>) return false;
+            std::memcpy(&to, value.data(), std::min(sizeof to, value.size()));
+            return true;
+        } else if constexpr (std::is_same_v<T, Value>) {
+            to = value;
+            return true;
+        } else if constexpr (is_same_shape<T, Value>) {
+            static_assert(sizeof(T) == sizeof(float) * size_t(Value::SizeAtCompileTime));
+            std::memcpy(static_cast<void*>(&to), value.data(), sizeof to);
+            return true;
+        }
+        return false;
+    }
+    template <class T, class Value>
+    static constexpr bool is_same_shape =
+        (std::is_same_v<T, uni::vec2> && std::is_same_v<Value, Vec2>) ||
+        (std::is_same_v<T, uni::vec3> && std::is_same_v<Value, Vec3>) ||
+        (std::is_same_v<T, uni::vec4> && std::is_same_v<Value, Vec4>) ||
+        (std::is_same_v<T, mat3> && std::is_same_v<Value, Mat3>);
+
+    const Inputs& inputs_;
+};
+
+template <class Uniforms>
+void shade_with(ShadeRows kernel, const Inputs& inputs, const Region& region, int y0, int y1) {
+    Uniforms uniforms;
+    uniforms.visit(Setter(inputs));
+    constexpr size_t rows = 8;
+    parallel_chunks(size_t(std::max(0, y1 - y0)), rows, [&](size_t begin, size_t end) {
+        kernel(&uniforms, region, y0 + int(begin), y0 + int(end));
+    });
+}
+
+}  // namespace
+
+std::vector<std::string_view> instruction_sets() {
+    std::vector<std::string_view> names;
+    for (const InstructionSet& set : known_sets())
+        if (set.is_there) names.push_back(set.name);
+    return names;
+}
+
+std::string_view instruction_set() {
+    return chosen_set().name;
+}
+
+void use_instruction_set(std::string_view name) {
+    chosen = &set_of(name);
+}
+
+void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1) {
+    const Kernels& k = *chosen_set().kernels;
+#define EASYPBR_SHADER(name) \
+    case Shader::name:       \
+        return shade_with<name##_uniforms>(k.name, inputs, region, y0, y1);
+    switch (shader) {
+        EASYPBR_SHADER(lighting_surface)
+        EASYPBR_SHADER(background_environment)
+        EASYPBR_SHADER(display_output)
+        EASYPBR_SHADER(accumulate_sample)
+        EASYPBR_SHADER(antialias_fxaa)
+        EASYPBR_SHADER(occlusion_select)
+        EASYPBR_SHADER(occlusion_horizon)
+        EASYPBR_SHADER(occlusion_hemisphere)
+        EASYPBR_SHADER(occlusion_blur)
+        EASYPBR_SHADER(occlusion_magnify)
+    }
+#undef EASYPBR_SHADER
+}
+
+}  // namespace easypbr::native

@@ -1,0 +1,57 @@
+// Shaders that run on the CPU: the text of shaders/, translated by scripts/native_shaders.py and compiled for
+// several instruction sets, of which the best that the processor has is chosen when the first one runs.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "easypbr/core/math.h"
+#include "easypbr/native/kernels.h"
+
+namespace easypbr::native {
+
+enum class Shader {
+    lighting_surface,
+    background_environment,
+    display_output,
+    accumulate_sample,
+    antialias_fxaa,
+    occlusion_select,
+    occlusion_horizon,
+    occlusion_hemisphere,
+    occlusion_blur,
+    occlusion_magnify
+};
+
+/// Names of the instruction sets that the library was built for and the processor has, the best first.
+/// `$EASYPBR_ISA` names the one that is used, "v2", "avx2" or "avx512".
+std::vector<std::string_view> instruction_sets();
+/// The one in use. Throws ArgumentError when $EASYPBR_ISA names none of instruction_sets().
+std::string_view instruction_set();
+/// Chooses another one. Throws ArgumentError when it is none of instruction_sets().
+void use_instruction_set(std::string_view name);
+
+/// What a shader reads: features that are on, and values by the names of its uniforms. A uniform that is not
+/// given is 0. Pictures must live until the shader has run.
+struct Inputs {
+    using Bytes = std::span<const std::byte>;
+    using Value = std::variant<int, float, Vec2, Vec3, Vec4, Mat3, View, Cube, Panorama, Layers, Bytes>;
+
+    std::vector<std::string_view> features;
+    std::vector<std::pair<std::string_view, Value>> values;
+
+    template <class T>
+    void set(std::string_view name, const T& value) {
+        values.emplace_back(name, value);
+    }
+};
+
+/// Shades rows [y0, y1) of a region, on all cores. Throws Error when a value is not of the uniform's type,
+/// Interrupted.
+void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1);
+
+}  // namespace easypbr::native

@@ -1,0 +1,352 @@
+// GLSL's texture functions for pictures in host memory.
+#pragma once
+
+#include "easypbr/native/simd/vectors.h"
+
+namespace easypbr::native::EASYPBR_ISA {
+
+using Floats4 = float __attribute__((vector_size(16)));
+using Floats8 = float __attribute__((vector_size(32)));
+using Ints4 = int32_t __attribute__((vector_size(16)));
+using Ints8 = int32_t __attribute__((vector_size(32)));
+using Shorts4 = uint16_t __attribute__((vector_size(8)));
+using Shorts8 = uint16_t __attribute__((vector_size(16)));
+using Bytes4 = uint8_t __attribute__((vector_size(4)));
+using Bytes8 = uint8_t __attribute__((vector_size(8)));
+
+template <class T>
+INLINE T load(const void* from) {
+    T value;
+    std::memcpy(&value, from, sizeof value);
+    return value;
+}
+
+/// Four channels of each lane, from one pixel per lane.
+INLINE vec4 channels_of(const Floats4* pixels) {
+    vec4 c;
+    for (int k = 0; k < lanes; ++k) {
+        c.x.v[k] = pixels[k][0];
+        c.y.v[k] = pixels[k][1];
+        c.z.v[k] = pixels[k][2];
+        c.w.v[k] = pixels[k][3];
+    }
+    return c;
+}
+#if defined(__AVX2__)
+/// The same for 8 lanes: a transposition.
+INLINE void transpose8(const Floats4* p, Floats8* to) {
+    const __m256 a = _mm256_set_m128(p[4], p[0]), b = _mm256_set_m128(p[5], p[1]),
+                 c = _mm256_set_m128(p[6], p[2]), d = _mm256_set_m128(p[7], p[3]);
+    const __m256 ab_low = _mm256_unpacklo_ps(a, b), ab_high = _mm256_unpackhi_ps(a, b),
+                 cd_low = _mm256_unpacklo_ps(c, d), cd_high = _mm256_unpackhi_ps(c, d);
+    to[0] = Floats8(_mm256_shuffle_ps(ab_low, cd_low, 0x44));
+    to[1] = Floats8(_mm256_shuffle_ps(ab_low, cd_low, 0xee));
+    to[2] = Floats8(_mm256_shuffle_ps(ab_high, cd_high, 0x44));
+    to[3] = Floats8(_mm256_shuffle_ps(ab_high, cd_high, 0xee));
+}
+#endif
+INLINE vec4 planar(const Floats4* pixels) {
+#if defined(__AVX512F__)
+    Floats8 low[4], high[4];
+    transpose8(pixels, low);
+    transpose8(pixels + 8, high);
+    const auto both = [&](int i) {
+        return vfloat(Floats(_mm512_insertf32x8(_mm512_castps256_ps512(low[i]), high[i], 1)));
+    };
+    return {both(0), both(1), both(2), both(3)};
+#elif defined(__AVX2__)
+    Floats8 c[4];
+    transpose8(pixels, c);
+    return {vfloat(c[0]), vfloat(c[1]), vfloat(c[2]), vfloat(c[3])};
+#else
+    return channels_of(pixels);
+#endif
+}
+
+// Halves that are numbers: exact.
+INLINE Floats8 from_halves(Shorts8 h) {
+#if defined(__F16C__)
+    return Floats8(_mm256_cvtph_ps(__m128i(h)));
+#else
+    const Ints8 bits = __builtin_convertvector(h, Ints8);
+    return Floats8((bits & 0x7fff) << 13 | (bits & 0x8000) << 16) * 0x1p112f;
+#endif
+}
+INLINE Floats4 from_halves(Shorts4 h) {
+    const Ints4 bits = __builtin_convertvector(h, Ints4);
+    return Floats4((bits & 0x7fff) << 13 | (bits & 0x8000) << 16) * 0x1p112f;
+}
+INLINE Floats4 low_half(Floats8 v) {
+    return Floats4{v[0], v[1], v[2], v[3]};
+}
+INLINE Floats4 high_half(Floats8 v) {
+    return Floats4{v[4], v[5], v[6], v[7]};
+}
+
+INLINE vint gather(const int32_t* from, vint index) {
+    Ints r;
+    for (int k = 0; k < lanes; ++k) r[k] = from[index.v[k]];
+    return r;
+}
+
+/// Where lanes fetch from a view, by row and column; what lies outside of what is held is zero.
+struct Place {
+    vint index;
+    vbool inside;
+    bool all_inside, side_by_side;
+};
+INLINE Place place_of(const View& s, vint x, vint y) {
+    x = clamp(x, 0, s.width - 1) - s.x;
+    y = clamp(y, 0, s.height - 1) - s.y;
+    const vbool inside = x >= 0 && x < s.held_width && y >= 0 && y < s.held_height;
+    const vint index = y * s.held_width + x;
+    const Ints steps = index.v - splat(index.v[0]);
+    return {select(inside, index, vint(0)), inside, !any_lane(!inside),
+            !any_lane(vbool(Ints(steps != lane_numbers().v)))};
+}
+
+/// One value of 32 bits per pixel.
+INLINE vint fetch_bits(const View& s, vint x, vint y) {
+    const Place p = place_of(s, x, y);
+    const auto* data = reinterpret_cast<const int32_t*>(s.data);
+    if (p.all_inside && p.side_by_side) return load<Ints>(data + p.index.v[0]);
+    if (p.all_inside) return gather(data, p.index);
+    if (!any_lane(p.inside)) return 0;
+    return select(p.inside, gather(data, p.index), vint(0));
+}
+/// One pixel per lane, by a function of its index.
+template <class Load>
+INLINE vec4 fetch_pixels(const View& s, vint x, vint y, Load&& load_pixel) {
+    const Place p = place_of(s, x, y);
+    if (!any_lane(p.inside)) return vec4(vfloat(0.0f));
+    Floats4 pixels[lanes];
+    for (int k = 0; k < lanes; ++k) pixels[k] = load_pixel(p.index.v[k]);
+    const vec4 c = planar(pixels);
+    return p.all_inside ? c : select(p.inside, c, vec4(vfloat(0.0f)));
+}
+
+INLINE vec4 fetch(const R32f& s, vint x, vint y) {
+    return {vfloat(Floats(fetch_bits(s, x, y).v)), 0.0f, 0.0f, 1.0f};
+}
+INLINE vec4 fetch(const R16& s, vint x, vint y) {
+    const Place p = place_of(s, x, y);
+    if (!any_lane(p.inside)) return vec4(0.0f, 0.0f, 0.0f, 1.0f);
+    Ints r;
+    for (int k = 0; k < lanes; ++k) r[k] = load<uint16_t>(s.data + 2 * size_t(p.index.v[k]));
+    return {to_float(select(p.inside, vint(r), vint(0))) * (1.0f / 65535.0f), 0.0f, 0.0f, 1.0f};
+}
+INLINE vec4 fetch(const Rg16& s, vint x, vint y) {
+    const vint bits = fetch_bits(s, x, y);
+    return {to_float(bits & 0xffff) * (1.0f / 65535.0f), to_float(vuint(bits) >> 16) * (1.0f / 65535.0f), 0.0f, 1.0f};
+}
+INLINE vec4 from_bytes(vint bits) {
+    constexpr float scale = 1.0f / 255.0f;
+    return {to_float(bits & 255) * scale, to_float(bits >> 8 & 255) * scale, to_float(bits >> 16 & 255) * scale,
+            to_float(vuint(bits) >> 24) * scale};
+}
+INLINE vec4 fetch(const Rgba8& s, vint x, vint y) {
+    return from_bytes(fetch_bits(s, x, y));
+}
+INLINE vec4 fetch(const Rgba8Linear& s, vint x, vint y) {
+    return from_bytes(fetch_bits(s, x, y));
+}
+INLINE vec4 fetch(const Rgba16& s, vint x, vint y) {
+    const vec4 c = fetch_pixels(s, x, y, [&](int i) __attribute__((always_inline)) {
+        return __builtin_convertvector(__builtin_convertvector(load<Shorts4>(s.data + 8 * size_t(i)), Ints4), Floats4);
+    });
+    return c * (1.0f / 65535.0f);
+}
+INLINE vec4 fetch(const Rgba16f& s, vint x, vint y) {
+    return fetch_pixels(s, x, y, [&](int i) __attribute__((always_inline)) {
+        return from_halves(load<Shorts4>(s.data + 8 * size_t(i)));
+    });
+}
+INLINE vec4 fetch(const Rgba32f& s, vint x, vint y) {
+    return fetch_pixels(s, x, y,
+                        [&](int i) __attribute__((always_inline)) { return load<Floats4>(s.data + 16 * size_t(i)); });
+}
+
+template <class Sampler>
+INLINE vec4 texelFetch(const Sampler& s, const ivec2& p, int) {
+    return fetch(s, p.x, p.y);
+}
+
+// Nearest.
+template <class Sampler>
+INLINE vec4 nearest(const Sampler& s, const vec2& uv) {
+    return fetch(s, to_int(floor(uv.x * float(s.width))), to_int(floor(uv.y * float(s.height))));
+}
+#define NEAREST(Sampler)                                              \
+    INLINE vec4 textureLod(const Sampler& s, const vec2& uv, float) { \
+        return nearest(s, uv);                                        \
+    }
+NEAREST(R32f)
+NEAREST(R16)
+NEAREST(Rg16)
+NEAREST(Rgba8)
+NEAREST(Rgba16)
+NEAREST(Rgba16f)
+NEAREST(Rgba32f)
+#undef NEAREST
+
+/// One channel of the four texels around a point, from the lower left one on against the clock.
+template <class Sampler>
+INLINE vec4 textureGather(const Sampler& s, const vec2& uv, int channel) {
+    const vint x = to_int(floor(uv.x * float(s.width) - 0.5f)), y = to_int(floor(uv.y * float(s.height) - 0.5f));
+    const auto texel = [&](vint column, vint row) __attribute__((always_inline)) {
+        const vec4 c = fetch(s, column, row);
+        return channel == 0 ? c.x : channel == 1 ? c.y : channel == 2 ? c.z : c.w;
+    };
+    return {texel(x, y + 1), texel(x + 1, y + 1), texel(x + 1, y), texel(x, y)};
+}
+
+// Linear. The coordinate is clamped instead of the texels, so that pairs of texels lie side by side.
+struct Footprint {
+    vint x, y;
+    vfloat right, below;  ///< weights of the texels to the right and below
+};
+INLINE Footprint footprint(int width, int height, const vec2& uv) {
+    const vfloat x = clamp(uv.x * float(width) - 0.5f, 0.0f, float(width - 1)),
+                 y = clamp(uv.y * float(height) - 0.5f, 0.0f, float(height - 1));
+    const vfloat left = min(floor(x), float(width - 2)), top = min(floor(y), float(height - 2));
+    return {to_int(left), to_int(top), x - left, y - top};
+}
+INLINE Floats4 bilinear(Floats8 top, Floats8 bottom, float right, float below) {
+    const Floats8 v = top + (bottom - top) * below;
+    const Floats4 l = low_half(v), r = high_half(v);
+    return l + (r - l) * right;
+}
+INLINE Floats8 from_bytes8(const std::byte* p) {
+    return __builtin_convertvector(__builtin_convertvector(load<Bytes8>(p), Ints8), Floats8);
+}
+INLINE vec4 textureLod(const Rgba8Linear& s, const vec2& uv, float) {
+    const Footprint f = footprint(s.width, s.height, uv);
+    const vint at = f.y * s.width + f.x;
+    Floats4 pixels[lanes];
+    for (int k = 0; k < lanes; ++k) {
+        const std::byte* p = s.data + 4 * size_t(at.v[k]);
+        pixels[k] = bilinear(from_bytes8(p), from_bytes8(p + 4 * size_t(s.width)), f.right.v[k], f.below.v[k]);
+    }
+    return planar(pixels) * (1.0f / 255.0f);
+}
+INLINE Floats4 bilinear_halves(const uint16_t* top, const uint16_t* bottom, float right, float below) {
+    return bilinear(from_halves(load<Shorts8>(top)), from_halves(load<Shorts8>(bottom)), right, below);
+}
+INLINE vec4 textureLod(const Rgba16fLinear& s, const vec2& uv, float) {
+    const Footprint f = footprint(s.width, s.height, uv);
+    const vint at = f.y * s.width + f.x;
+    const auto* data = reinterpret_cast<const uint16_t*>(s.data);
+    Floats4 pixels[lanes];
+    for (int k = 0; k < lanes; ++k) {
+        const uint16_t* p = data + 4 * size_t(at.v[k]);
+        pixels[k] = bilinear_halves(p, p + 4 * size_t(s.width), f.right.v[k], f.below.v[k]);
+    }
+    return planar(pixels);
+}
+INLINE vec4 textureLod(const Rg16fLinear& s, const vec2& uv, float) {
+    const Footprint f = footprint(s.width, s.height, uv);
+    const vint at = f.y * s.width + f.x;
+    const auto* data = reinterpret_cast<const uint16_t*>(s.data);
+    Floats4 pixels[lanes];
+    for (int k = 0; k < lanes; ++k) {
+        const uint16_t* p = data + 2 * size_t(at.v[k]);
+        const Floats4 top = from_halves(load<Shorts4>(p)), bottom = from_halves(load<Shorts4>(p + 2 * size_t(s.width)));
+        const Floats4 v = top + (bottom - top) * f.below.v[k];
+        pixels[k] = v + (Floats4{v[2], v[3], v[2], v[3]} - v) * f.right.v[k];
+    }
+    return planar(pixels);
+}
+
+/// The filter of the level that is nearest to `level`; u repeats.
+INLINE vec4 textureLod(const Panorama& s, const vec2& uv, float level) {
+    const int l = level <= 0 ? 0 : level >= float(s.levels - 1) ? s.levels - 1 : int(level + 0.5f);
+    const int width = s.width[l], height = s.height[l];
+    vfloat x = uv.x * float(width) - 0.5f;
+    x = x - floor(x * (1.0f / float(width))) * float(width);
+    x = clamp(x, 0.0f, float(width) - 0.001f);
+    const vfloat y = clamp(uv.y * float(height) - 0.5f, 0.0f, float(height - 1));
+    const vfloat left = min(floor(x), float(width - 1)), top = max(min(floor(y), float(height - 2)), 0.0f);
+    const vfloat right = x - left, below = y - top;
+    const vint at = to_int(top) * (width + 1) + to_int(left);
+    const uint16_t* data = s.data + 4 * s.offsets[l];
+    const size_t row = height > 1 ? 4 * size_t(width + 1) : 0;
+    Floats4 pixels[lanes];
+    for (int k = 0; k < lanes; ++k) {
+        const uint16_t* p = data + 4 * size_t(at.v[k]);
+        pixels[k] = bilinear_halves(p, p + row, right.v[k], below.v[k]);
+    }
+    return planar(pixels);
+}
+
+/// Nearest, clamped to the borders; z is the layer.
+INLINE vfloat layer_texel(const Layers& s, vint x, vint y, vint layer) {
+    const vint index = (layer * s.size + clamp(y, 0, s.size - 1)) * s.size + clamp(x, 0, s.size - 1);
+    return as_float(gather(reinterpret_cast<const int32_t*>(s.data), index).v);
+}
+INLINE vec4 textureLod(const Layers& s, const vec3& place, float) {
+    const float size = float(s.size);
+    return {layer_texel(s, to_int(floor(place.x * size)), to_int(floor(place.y * size)), to_int(place.z + 0.5f)), 0.0f,
+            0.0f, 1.0f};
+}
+INLINE vec4 textureGather(const Layers& s, const vec3& place) {
+    const float size = float(s.size);
+    const vint x = to_int(floor(place.x * size - 0.5f)), y = to_int(floor(place.y * size - 0.5f)),
+               layer = to_int(place.z + 0.5f);
+    return {layer_texel(s, x, y + 1, layer), layer_texel(s, x + 1, y + 1, layer), layer_texel(s, x + 1, y, layer),
+            layer_texel(s, x, y, layer)};
+}
+
+struct CubePlace {
+    vint face;
+    vfloat s, t;  ///< within the face, in [0, 1]
+};
+/// OpenGL 4.5, table 8.19.
+INLINE CubePlace cube_place(const vec3& d) {
+    const vfloat ax = abs(d.x), ay = abs(d.y), az = abs(d.z);
+    const vbool is_z = az >= ax && az >= ay, is_y = !is_z && ay >= ax;
+    const vfloat major = select(is_z, d.z, select(is_y, d.y, d.x));
+    const vbool negative = major < 0.0f;
+    const vfloat s = select(is_z, select(negative, -d.x, d.x), select(is_y, d.x, select(negative, d.z, -d.z)));
+    const vfloat t = select(is_y, select(negative, -d.z, d.z), -d.y);
+    const vfloat scale = 0.5f / abs(major);
+    const vint face = select(is_z, 4, select(is_y, vint(2), vint(0))) + select(negative, 1, 0);
+    return {face, s * scale + 0.5f, t * scale + 0.5f};
+}
+/// Of the border's texel on: a face of n texels is n + 2 wide.
+struct CubeTaps {
+    vint index, row;
+    vfloat right, below;
+};
+INLINE CubeTaps cube_taps(const CubePlace& c, vfloat n, vint offset) {
+    const vfloat x = clamp(c.s * n + 0.5f, 0.0f, n + 0.5f), y = clamp(c.t * n + 0.5f, 0.0f, n + 0.5f);
+    const vfloat left = floor(x), top = floor(y);
+    const vint row = to_int(n) + 2;
+    return {offset + (c.face * row + to_int(top)) * row + to_int(left), row, x - left, y - top};
+}
+INLINE Floats4 cube_tap(const Cube& s, const CubeTaps& taps, int k) {
+    const uint16_t* p = s.data + 4 * size_t(taps.index.v[k]);
+    return bilinear_halves(p, p + 4 * size_t(taps.row.v[k]), taps.right.v[k], taps.below.v[k]);
+}
+/// Between two levels.
+INLINE vec4 textureLod(const Cube& s, const vec3& d, vfloat level) {
+    const CubePlace place = cube_place(d);
+    Floats4 pixels[lanes];
+    if (s.levels == 1) {
+        const CubeTaps taps = cube_taps(place, float(s.size), s.offsets[0]);
+        for (int k = 0; k < lanes; ++k) pixels[k] = cube_tap(s, taps, k);
+        return planar(pixels);
+    }
+    level = clamp(level, 0.0f, float(s.levels - 1));
+    const vfloat larger = min(floor(level), float(s.levels - 2)), part = level - larger;
+    const vint l = to_int(larger);
+    const vfloat n = float(s.size) * as_float((127 - l.v) << 23);
+    const CubeTaps first = cube_taps(place, n, gather(s.offsets, l)),
+                   second = cube_taps(place, n * 0.5f, gather(s.offsets + 1, l));
+    for (int k = 0; k < lanes; ++k) {
+        const Floats4 a = cube_tap(s, first, k), b = cube_tap(s, second, k);
+        pixels[k] = a + (b - a) * part.v[k];
+    }
+    return planar(pixels);
+}
+
+}  // namespace easypbr::native::EASYPBR_ISA

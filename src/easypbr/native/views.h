@@ -1,0 +1,120 @@
+// Pictures in host memory as native shaders see them. Plain data: shaders are compiled for several instruction
+// sets, and code in this header would be too.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace easypbr::native {
+
+/// A picture of which a rectangle is held, row by row; zeros beyond it.
+struct View {
+    const std::byte* data = nullptr;
+    int width = 0, height = 0;           ///< of the picture
+    int x = 0, y = 0;                    ///< first pixel that is held
+    int held_width = 0, held_height = 0;
+};
+
+// How a sampler reads: by the format, then by the filter. Nearest unless the name says more.
+struct R32f : View {};
+struct R16 : View {};
+struct Rg16 : View {};
+struct Rgba8 : View {};
+struct Rgba16 : View {};
+struct Rgba16f : View {};
+struct Rgba32f : View {};
+// Held whole, at least 2x2.
+struct Rgba8Linear : View {};
+struct Rg16fLinear : View {};
+struct Rgba16fLinear : View {};
+
+/// Faces of halves, four channels a texel, with a border of one texel from the neighbouring faces: bilinear
+/// filtering is seamless. Levels are from the largest on, six faces each.
+struct Cube {
+    static constexpr int most_levels = 16;
+
+    const uint16_t* data = nullptr;
+    int size = 0;                 ///< of a face of the largest level, without its border
+    int levels = 0;
+    int offsets[most_levels] = {};  ///< of levels, in texels
+};
+
+/// An equirectangular picture of halves, four channels a texel, with the first column once more after the last.
+struct Panorama {
+    static constexpr int most_levels = 16;
+
+    const uint16_t* data = nullptr;
+    int levels = 0;
+    int width[most_levels] = {}, height[most_levels] = {};
+    size_t offsets[most_levels] = {};  ///< of levels, in texels
+};
+
+/// Square pictures of one float a texel, one after the other.
+struct Layers {
+    const float* data = nullptr;
+    int size = 0;
+};
+
+/// The type of each sampler, by the name of the uniform.
+namespace samplers {
+using u_albedo = Rgba16;
+using u_normal = Rg16;
+using u_material = Rgba8;
+using u_depth_target = R32f;
+using u_dfg = Rg16fLinear;
+using u_ambient_occlusion = R16;
+using u_surface = Rgba32f;
+using u_visibility = R16;
+using u_shadow_maps = Layers;
+using u_tint_absorption = Layers;
+using u_tint_moment = Layers;
+using u_prefiltered = Cube;
+using u_irradiance = Cube;
+using u_sky_visibility = Rgba16f;
+using u_indirect_diffuse = Rgba16f;
+using u_indirect_specular = Rgba16f;
+using u_equirect = Panorama;
+using u_source = Rgba32f;
+using u_radiance = Rgba32f;
+using u_overlay = Rgba16f;
+using u_glow = Rgba16fLinear;
+using u_background_image = Rgba8Linear;
+using u_color = Rgba8Linear;
+}  // namespace samplers
+
+/// Values that are the same for all pixels, as GLSL names their types.
+namespace uni {
+
+#define EASYPBR_INLINE inline __attribute__((always_inline))
+
+struct vec2 {
+    float x, y;
+    EASYPBR_INLINE float operator[](int i) const { return i == 0 ? x : y; }
+    EASYPBR_INLINE constexpr vec2 xy() const { return *this; }
+};
+struct vec3 {
+    float x, y, z;
+    EASYPBR_INLINE constexpr vec3() : x(0), y(0), z(0) {}
+    EASYPBR_INLINE constexpr vec3(float a, float b, float c) : x(a), y(b), z(c) {}
+    EASYPBR_INLINE constexpr explicit vec3(float a) : x(a), y(a), z(a) {}
+    EASYPBR_INLINE constexpr vec2 xy() const { return {x, y}; }
+    EASYPBR_INLINE constexpr vec3 xyz() const { return *this; }
+};
+struct vec4 {
+    float x, y, z, w;
+    EASYPBR_INLINE constexpr vec2 xy() const { return {x, y}; }
+    EASYPBR_INLINE constexpr vec2 zw() const { return {z, w}; }
+    EASYPBR_INLINE constexpr vec3 xyz() const { return {x, y, z}; }
+};
+
+}  // namespace uni
+
+/// By columns.
+struct mat3 {
+    float m[9];
+    EASYPBR_INLINE constexpr mat3() : m{} {}
+    EASYPBR_INLINE constexpr mat3(float a, float b, float c, float d, float e, float f, float g, float h, float i)
+        : m{a, b, c, d, e, f, g, h, i} {}
+};
+
+}  // namespace easypbr::native

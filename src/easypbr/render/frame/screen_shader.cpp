@@ -1,0 +1,110 @@
+#include "easypbr/render/frame/screen_shader.h"
+
+#include <type_traits>
+
+#include "easypbr/core/error.h"
+
+namespace easypbr::render {
+namespace {
+
+native::Pixels pixels_of(gl::Format format) {
+    switch (format) {
+        case gl::Format::rgba8:
+            return native::Pixels::rgba8;
+        case gl::Format::rgba16:
+            return native::Pixels::rgba16;
+        case gl::Format::rgba32f:
+            return native::Pixels::rgba32f;
+        case gl::Format::r16:
+            return native::Pixels::r16;
+        default:
+            throw Error("native shaders do not write this format");
+    }
+}
+
+}  // namespace
+
+native::View view_of(const Target& target) {
+    const PixelRect& held = target.area();
+    return {.data = target.pixels<std::byte>().data(),
+            .width = target.width(),
+            .height = target.height(),
+            .x = held.x,
+            .y = held.y,
+            .held_width = held.width,
+            .held_height = held.height};
+}
+
+void ScreenShader::draw(const ShaderInputs& inputs, const gl::DrawState& state) {
+    const gl::Program& program = programs_.get(inputs.defines_);
+    program.use();
+    int unit = 0;
+    const auto bind = [&](const std::string& name, const gl::Texture& texture) {
+        texture.bind(unsigned(unit));
+        program.set(name, unit++);
+    };
+    for (const auto& [name, value] : inputs.values_) {
+        if (!program.has(name)) continue;
+        std::visit(
+            [&, &name = name](const auto& v) {
+                using T = std::remove_cvref_t<decltype(v)>;
+                if constexpr (std::is_same_v<T, const Target*>)
+                    bind(name, v->texture());
+                else if constexpr (std::is_same_v<T, const gl::Texture*>)
+                    bind(name, *v);
+                else if constexpr (requires { program.set(name, v); })
+                    program.set(name, v);
+                else
+                    throw Error("a picture for native shaders is given to the driver");
+            },
+            value);
+    }
+    for (const ShaderInputs::Block& block : inputs.blocks_) {
+        if (blocks_.size() <= block.binding) blocks_.resize(block.binding + 1);
+        gl::Buffer& buffer = blocks_[block.binding];
+        if (buffer.size() != block.bytes.size()) buffer = gl::Buffer(block.bytes.size());
+        buffer.update(0, block.bytes);
+        buffer.bind_uniform(block.binding);
+    }
+    gl::draw_screen(state);
+}
+
+void ScreenShader::shade(const ShaderInputs& inputs, const NativeOutput& output, Transfers& transfers) {
+    native::Inputs values;
+    for (const std::string& macro : inputs.defines_)
+        if (macro.find(' ') == std::string::npos) values.features.emplace_back(macro);
+    for (const auto& [name, value] : inputs.values_)
+        std::visit(
+            [&, &name = name](const auto& v) {
+                using T = std::remove_cvref_t<decltype(v)>;
+                if constexpr (std::is_same_v<T, const Target*>) {
+                    v->download(v->whole(), transfers);
+                    values.set(name, view_of(*v));
+                } else if constexpr (std::is_same_v<T, const gl::Texture*>)
+                    throw Error("a texture is given to a native shader");
+                else
+                    values.set(name, v);
+            },
+            value);
+    for (const ShaderInputs::Block& block : inputs.blocks_)
+        values.set(block.member, native::Inputs::Bytes(block.bytes));
+
+    const Target& target = *output.target;
+    native::Region region{.data = target.pixels<std::byte>().data(),
+                          .pixels = pixels_of(target.format()),
+                          .x = target.area().x,
+                          .y = target.area().y,
+                          .width = target.area().width,
+                          .store = output.store,
+                          .where = output.where,
+                          .x0 = output.area.x,
+                          .x1 = output.area.x + output.area.width};
+    if (output.depth) {
+        output.depth->download(output.depth->whole(), transfers);
+        static_cast<native::View&>(region.depth) = view_of(*output.depth);
+        region.depth_channels = output.depth->format() == gl::Format::rgba32f ? 4 : 1;
+    }
+    native::shade(native_.value(), values, region, output.area.y, output.area.y + output.area.height);
+}
+
+}  // namespace easypbr::render

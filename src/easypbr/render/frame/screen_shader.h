@@ -1,0 +1,82 @@
+// Shaders that shade each pixel of a picture: by the driver, or natively from and to host memory.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <variant>
+#include <vector>
+
+#include "easypbr/gl/buffer.h"
+#include "easypbr/gl/draw.h"
+#include "easypbr/native/shaders.h"
+#include "easypbr/render/frame/programs.h"
+#include "easypbr/render/frame/target.h"
+
+namespace easypbr::render {
+
+/// What a shader reads, by the names of its uniforms. Targets and textures must live until it has run.
+class ShaderInputs {
+  public:
+    /// `NAME`, a feature that is on, or `NAME VALUE`, a macro of the driver's text.
+    void define(std::string macro) { defines_.push_back(std::move(macro)); }
+    void define(const std::vector<std::string>& macros) {
+        defines_.insert(defines_.end(), macros.begin(), macros.end());
+    }
+
+    using Value = std::variant<int, float, Vec2, Vec3, Vec4, Mat3, const Target*, const gl::Texture*, native::View,
+                               native::Cube, native::Panorama, native::Layers>;
+    template <class T>
+    void set(std::string name, const T& value) {
+        values_.emplace_back(std::move(name), value);
+    }
+    void set(std::string name, const Target& target) { values_.emplace_back(std::move(name), &target); }
+    void set(std::string name, const gl::Texture& texture) { values_.emplace_back(std::move(name), &texture); }
+    /// A uniform block, by its binding and the name of its member.
+    void set_block(unsigned binding, std::string member, std::span<const std::byte> bytes) {
+        blocks_.push_back({binding, std::move(member), {bytes.begin(), bytes.end()}});
+    }
+
+  private:
+    friend class ScreenShader;
+    struct Block {
+        unsigned binding;
+        std::string member;
+        std::vector<std::byte> bytes;
+    };
+    std::vector<std::string> defines_;
+    std::vector<std::pair<std::string, Value>> values_;
+    std::vector<Block> blocks_;
+};
+
+/// Where a native shader writes.
+struct NativeOutput {
+    const Target* target = nullptr;  ///< held in host memory: Target::write() has been called
+    PixelRect area = {};             ///< inside of what it holds
+    native::Store store = native::Store::replace;
+    native::Where where = native::Where::everywhere;
+    const Target* depth = nullptr;  ///< its first channel, of floats; not needed everywhere
+};
+
+class ScreenShader {
+  public:
+    /// The name of a fragment shader, and its native form, where it has one.
+    explicit ScreenShader(std::string fragment, std::optional<native::Shader> shader = {})
+        : programs_("screen_triangle.vert", std::move(fragment)), native_(shader) {}
+
+    /// Draws to the framebuffer that is bound. Targets that it reads must be in their textures.
+    void draw(const ShaderInputs& inputs, const gl::DrawState& state);
+    /// Shades natively. Targets that it reads are downloaded where they are not in host memory.
+    void shade(const ShaderInputs& inputs, const NativeOutput& output, Transfers& transfers);
+
+  private:
+    ProgramVariants programs_;
+    std::optional<native::Shader> native_;
+    std::vector<gl::Buffer> blocks_;  ///< by binding
+};
+
+/// The host memory of a target, for native shaders.
+native::View view_of(const Target& target);
+
+}  // namespace easypbr::render

@@ -1,0 +1,134 @@
+#include "easypbr/render/primitives/lines/line_primitive.h"
+
+#include <optional>
+#include <vector>
+
+#include "easypbr/core/color.h"
+
+namespace easypbr::render {
+namespace {
+
+/// sRGB colours that stand out on most surfaces.
+const Vec3 wireframe_color(0.1f, 0.1f, 0.12f), normals_color(0.16f, 0.35f, 0.9f);
+
+/// Segments of an item that are drawn alike.
+struct Stroke {
+    gpu::LineKind kind;
+    Vec3 color;  ///< linear, a factor on the vertices' colours
+    std::optional<float> normal_length;
+};
+
+std::vector<Stroke> strokes_of(const DrawItem& item) {
+    const MeshData& mesh = item.mesh();
+    const DrawStyle& style = item.style;
+    std::vector<Stroke> strokes;
+    if (style.mode == DrawMode::lines && !(mesh.E.empty() && mesh.F.empty())) {
+        const bool colored = !mesh.E.empty() && !mesh.C.empty();
+        const Vec3 own = colored ? Vec3(1, 1, 1) : item.material.base_color;
+        strokes.push_back({mesh.E.empty() ? gpu::LineKind::wireframe : gpu::LineKind::edges,
+                           style.line_color ? linear_from_srgb(*style.line_color) : own,
+                           {}});
+    }
+    const auto given_or = [&](const Vec3& color) {
+        return linear_from_srgb(style.line_color.value_or(color));
+    };
+    if (style.show_wireframe && !mesh.F.empty())
+        strokes.push_back({gpu::LineKind::wireframe, given_or(wireframe_color), {}});
+    if (style.show_normals && !mesh.V.empty())
+        strokes.push_back({gpu::LineKind::normals, given_or(normals_color), style.normal_length});
+    return strokes;
+}
+
+}  // namespace
+
+void LinePrimitive::begin_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
+                                  const gl::Texture& opaque) {
+    if (!depth_ || overlay_id_ != targets.overlay.attachment().id()) {
+        depth_ = gl::Texture(gl::Format::depth32f, frame.size.x(), frame.size.y());
+        framebuffer_ = gl::Framebuffer({&targets.overlay.drawn()}, &depth_);
+        overlay_id_ = targets.overlay.attachment().id();
+        last_depth_ = gl::Texture();
+    }
+    opaque_ = &opaque;
+    normal_ = &targets.normal.texture();
+    has_last_ = false;
+    framebuffer_.bind();
+    framebuffer_.clear_depth(0);
+    draw_items(frame, items, Kind::nearest);
+}
+
+void LinePrimitive::draw_overlay_behind(const Frame& frame, DrawItems items, const GBuffer& targets,
+                                        const GBuffer& layer) {
+    add(frame, items, targets, Kind::ordered, &layer);
+    if (!last_depth_) {
+        last_depth_ = gl::Texture(gl::Format::r32f, frame.size.x(), frame.size.y());
+        last_normal_ = gl::Texture(gl::Format::rg16, frame.size.x(), frame.size.y());
+    }
+    gl::copy(layer.depth.texture(), last_depth_);
+    gl::copy(layer.normal.texture(), last_normal_);
+    has_last_ = true;
+}
+
+void LinePrimitive::draw_overlay_rest(const Frame& frame, DrawItems items, const GBuffer& targets) {
+    add(frame, items, targets, Kind::ordered, nullptr);
+}
+
+void LinePrimitive::draw_overlay_over(const Frame& frame, DrawItems items, const GBuffer& targets) {
+    add(frame, items, targets, Kind::over, nullptr);
+}
+
+void LinePrimitive::add(const Frame& frame, DrawItems items, const GBuffer& targets, Kind kind,
+                        const GBuffer* next) {
+    targets.display().bind();
+    draw_items(frame, items, kind, next);
+}
+
+void LinePrimitive::bind_surfaces(const gl::Program& program, const GBuffer* next) const {
+    const auto bind = [&](const gl::Texture& texture, const char* sampler, unsigned unit) {
+        texture.bind(unit);
+        program.set(sampler, int(unit));
+    };
+    bind(*opaque_, "u_depth_target", 0);
+    bind(*normal_, "u_normal", 1);
+    if (has_last_) {
+        bind(last_depth_, "u_last_depth", 3);
+        bind(last_normal_, "u_last_normal", 4);
+    }
+    if (!next) return;
+    bind(next->depth.texture(), "u_next_depth", 5);
+    bind(next->normal.texture(), "u_next_normal", 6);
+}
+
+void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, const GBuffer* next) {
+    std::vector<std::string> defines = camera_defines(frame);
+    if (kind == Kind::nearest) defines.emplace_back("DEPTH_ONLY");
+    if (kind == Kind::ordered && has_last_) defines.emplace_back("AFTER");
+    if (next) defines.emplace_back("BEFORE");
+    const gl::Program& program = programs_.get(defines);
+    program.use();
+    set_camera_uniforms(program, frame);
+    bind_surfaces(program, next);
+    if (kind != Kind::nearest) depth_.bind(2);
+    program.set("u_nearest_line", 2);
+    program.set("u_least_w", frame.orthographic() ? 0.5f : float(frame.camera.near));
+    const gl::DrawState nearest{
+        .depth_test = gl::DepthTest::greater_equal, .write_depth = true, .write_color = false};
+    const gl::DrawState state = kind == Kind::nearest ? nearest : gl::DrawState{.blending = gl::over};
+    for (const DrawItem& item : items) {
+        if (kind != Kind::nearest && is_over(item) != (kind == Kind::over)) continue;
+        const Mat4d clip_from_mesh =
+            frame.clip_from_view * frame.camera.view() * item.object->T_world_mesh.matrix();
+        program.set("u_clip_from_mesh", Mat4(clip_from_mesh.cast<float>()));
+        program.set("u_half_width", item.style.line_width / 2);
+        program.set("u_dash", item.style.line_dash);
+        program.set("u_always", is_over(item) ? 1.0f : 0.0f);
+        for (const Stroke& stroke : strokes_of(item)) {
+            const LineBuffers& buffers = cache_.get(item.mesh(), stroke.kind, stroke.normal_length);
+            if (buffers.count == 0) continue;
+            program.set("u_color", stroke.color);
+            gl::draw_quads(state, buffers.array, buffers.count);
+        }
+    }
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,41 @@
+// Lines into the overlay: unlit, wide in pixels, smooth, hidden by surfaces and by nearer lines.
+#pragma once
+
+#include "easypbr/render/frame/programs.h"
+#include "easypbr/render/primitives/lines/line_buffers.h"
+#include "easypbr/render/primitives/primitive.h"
+
+namespace easypbr::render {
+
+/// The edges, the wireframe and the normals of an item. A line on a surface, as wide as it is, counts as
+/// before it. A line is drawn wherever it covers a pixel, however far from its middle, so that tiles need to
+/// see no farther for it.
+class LinePrimitive final : public Primitive {
+  public:
+    DrawMode mode() const override { return DrawMode::lines; }
+    /// Finds the nearest line of each pixel.
+    void begin_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
+                       const gl::Texture& opaque) override;
+    void draw_overlay_behind(const Frame& frame, DrawItems items, const GBuffer& targets,
+                             const GBuffer& layer) override;
+    void draw_overlay_rest(const Frame& frame, DrawItems items, const GBuffer& targets) override;
+    void draw_overlay_over(const Frame& frame, DrawItems items, const GBuffer& targets) override;
+    void evict_unused() override { cache_.evict_unused(); }
+
+  private:
+    enum class Kind { nearest, ordered, over };
+    void draw_items(const Frame& frame, DrawItems items, Kind kind, const GBuffer* next = nullptr);
+    void add(const Frame& frame, DrawItems items, const GBuffer& targets, Kind kind, const GBuffer* next);
+    void bind_surfaces(const gl::Program& program, const GBuffer* next) const;
+
+    LineCache cache_;
+    ProgramVariants programs_{"overlay_lines.vert", "overlay_lines.frag"};
+    gl::Texture depth_;
+    gl::Framebuffer framebuffer_;
+    uint32_t overlay_id_ = 0;
+    const gl::Texture *opaque_ = nullptr, *normal_ = nullptr;  ///< since begin_overlay()
+    bool has_last_ = false;
+    gl::Texture last_depth_, last_normal_;  ///< of the layer that was drawn last
+};
+
+}  // namespace easypbr::render

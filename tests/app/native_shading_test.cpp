@@ -1,0 +1,176 @@
+// Shading on the CPU against the driver's: one text, two compilers.
+#include <cmath>
+#include <cstdlib>
+#include <random>
+#include <string>
+
+#include "easypbr/app/session.h"
+#include "easypbr/geometry/primitives.h"
+#include "easypbr/gl/context.h"
+#include "easypbr/native/shaders.h"
+#include "easypbr/scene/settings.h"
+#include "render/render_test.h"
+
+namespace easypbr {
+namespace {
+
+bool has_gpu() {
+    return !gl::Context::create()->info().software;
+}
+
+/// Scenes and settings at random, of all that is shaded natively.
+class Generator {
+  public:
+    explicit Generator(unsigned seed) : random_(seed) {}
+
+    Scene scene() {
+        Scene scene;
+        if (chance(0.7)) scene.set_environment(sky());
+        const int count = between(1, 3);
+        for (int i = 0; i < count; ++i) {
+            Mesh mesh = chance(0.5) ? make_teapot(1, between(2, 12)) : make_sphere(1, between(8, 60));
+            Material material;
+            material.base_color = color();
+            material.roughness = chance(0.2) ? 0.0f : number(0, 1);
+            material.metallic = chance(0.5) ? 0.0f : number(0, 1);
+            mesh.set_material(material);
+            Eigen::Affine3d pose = Eigen::Affine3d::Identity();
+            pose.translate(Vec3d(1.5 * i, number(-1, 1), number(-1, 1)));
+            pose.scale(double(number(0.5f, 1.5f)));
+            mesh.set_T_world_mesh(pose);
+            scene.show(mesh, "mesh" + std::to_string(i));
+        }
+        const int lights = between(0, 3);
+        for (int i = 0; i < lights; ++i) scene.set_light("light" + std::to_string(i), light());
+        return scene;
+    }
+
+    void change(Settings& s) {
+        constexpr int sizes[][2] = {{1, 1}, {7, 3}, {33, 17}, {64, 64}, {121, 83}, {16, 200}};
+        const auto& size = sizes[size_t(between(0, 5))];
+        s.image.size = Vec2i(size[0], size[1]);
+        s.image.samples = chance(0.7) ? 1 : between(2, 5);
+        s.image.antialias = chance(0.5) ? Antialias::fxaa : Antialias::none;
+        s.shadows.enabled = chance(0.6);
+        s.shadows.mode = ShadowMode(between(0, 2));
+        s.shadows.resolution = chance(0.5) ? 256 : 1024;
+        s.ssao.enabled = chance(0.5);
+        s.ssao.method = chance(0.7) ? OcclusionMethod::horizon : OcclusionMethod::hemisphere;
+        s.ssao.resolution = OcclusionResolution(between(0, 2));
+        s.ssao.directions = between(1, 3);
+        s.ssao.multi_bounce = chance(0.5);
+        s.environment.enabled = chance(0.8);
+        s.environment.intensity = number(0.2f, 2);
+        s.background.mode = std::array{BackgroundMode::color, BackgroundMode::environment, BackgroundMode::blur,
+                                       BackgroundMode::transparent}[size_t(between(0, 3))];
+        s.background.blur = number(0, 1);
+        s.shading.brdf = Brdf(between(0, 2));
+        s.shading.multiple_scattering = chance(0.5);
+        s.tonemap.tone_operator = ToneOperator(between(0, 4));
+        s.camera.projection = chance(0.7) ? Projection::perspective : Projection::orthographic;
+        s.rays.enabled = false;
+    }
+
+  private:
+    Environment sky() {
+        Image image(32, 16, 3, PixelType::f32);
+        for (float& value : image.pixels<float>()) value = number(0, 1.5f);
+        return Environment(image);
+    }
+    double unit() { return std::uniform_real_distribution<double>(0, 1)(random_); }
+    bool chance(double p) { return unit() < p; }
+    int between(int a, int b) { return a + int(unit() * (b - a + 1)); }
+    float number(float a, float b) { return a + float(unit()) * (b - a); }
+    Vec3 color() { return Vec3(number(0, 1), number(0, 1), number(0, 1)); }
+    Light light() {
+        Light light;
+        light.type = LightType(between(0, 2));
+        light.position = Vec3(number(-4, 4), number(2, 5), number(-4, 4));
+        light.direction = -light.position.normalized();
+        light.color = color();
+        light.intensity = light.type == LightType::directional ? 2.0f : 40.0f;
+        light.casts_shadows = chance(0.7);
+        return light;
+    }
+
+    std::mt19937 random_;
+};
+
+/// Pixels by how far apart their largest channels are.
+struct Difference {
+    size_t pixels = 0, by_one = 0, by_more = 0;
+    int most = 0;
+};
+
+Difference difference(const Image& a, const Image& b) {
+    Difference d;
+    d.pixels = a.pixel_count();
+    for (size_t i = 0; i < a.pixel_count(); ++i) {
+        int most = 0;
+        for (size_t c = 0; c < 4; ++c)
+            most = std::max(most, std::abs(int(a.pixels<uint8_t>()[4 * i + c]) - int(b.pixels<uint8_t>()[4 * i + c])));
+        d.by_one += most == 1;
+        d.by_more += most > 1;
+        d.most = std::max(d.most, most);
+    }
+    return d;
+}
+
+/// 200 in `make check-long`.
+unsigned scene_count() {
+    const char* asked = std::getenv("EASYPBR_TEST_SCENES");
+    return asked ? unsigned(std::atoi(asked)) : 60;
+}
+
+Image drawn(const Scene& scene, unsigned seed, bool native, const std::string& instruction_set = {}) {
+    if (!instruction_set.empty()) native::use_instruction_set(instruction_set);
+    Generator generator(seed);
+    generator.scene();
+    app::Session session(scene);
+    generator.change(session.settings());
+    session.allow_native_shading(native);
+    return session.render();
+}
+
+// Both round the same values to 8 bits, in another order of operations: they differ by 1 where a value lies beside
+// the middle of two. A texel of a shadow map that lies in the plane of a surface, to the last bit, is before it for
+// one and behind it for the other, and FXAA chooses between two blurs: few pixels differ by more.
+TEST(NativeShading, IsTheDrivers) {
+    if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
+    Difference all;
+    for (unsigned seed = 0; seed < scene_count(); ++seed) {
+        const Scene scene = Generator(seed).scene();
+        const Difference d = difference(drawn(scene, seed, true), drawn(scene, seed, false));
+        all.pixels += d.pixels;
+        all.by_one += d.by_one;
+        all.by_more += d.by_more;
+        all.most = std::max(all.most, d.most);
+        EXPECT_LE(d.by_more, 2 + d.pixels / 500) << "scene " << seed << ", largest " << d.most;
+    }
+    EXPECT_LE(all.by_more, all.pixels / 1000);
+    RecordProperty("largest", all.most);
+    RecordProperty("pixels", int(all.pixels));
+    RecordProperty("by_one", int(all.by_one));
+    RecordProperty("by_more", int(all.by_more));
+}
+
+TEST(NativeShading, IsTheSameForAllInstructionSets) {
+    if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
+    const std::string before(native::instruction_set());
+    for (unsigned seed = 0; seed < 40; ++seed) {
+        const Scene scene = Generator(seed).scene();
+        const Image first = drawn(scene, seed, true, "v2");
+        for (const std::string_view name : native::instruction_sets()) {
+            const Image other = drawn(scene, seed, true, std::string(name));
+            EXPECT_TRUE(std::ranges::equal(first.bytes(), other.bytes())) << name << ", scene " << seed;
+        }
+    }
+    native::use_instruction_set(before);
+}
+
+TEST(NativeShading, NamesUnknownInstructionSets) {
+    EXPECT_THROW(native::use_instruction_set("mmx"), ArgumentError);
+}
+
+}  // namespace
+}  // namespace easypbr
