@@ -14,7 +14,7 @@ if(assimp_FOUND)
   # has no sanitizers, whose address space is beyond every limit that it sets itself.
   file(GLOB sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/src/easypbr/io/mesh/assimp/reader/*.cpp)
   add_executable(easypbr_read_assimp ${sources})
-  target_link_libraries(easypbr_read_assimp PRIVATE Eigen3::Eigen assimp::assimp)
+  target_link_libraries(easypbr_read_assimp PRIVATE Eigen3::Eigen assimp::assimp easypbr_hardening)
   target_include_directories(easypbr_read_assimp PRIVATE ${PROJECT_SOURCE_DIR}/include ${PROJECT_SOURCE_DIR}/src)
   target_compile_options(easypbr_read_assimp PRIVATE -Wall -Wextra -Wpedantic $<$<BOOL:${EASYPBR_WERROR}>:-Werror>)
 else()

@@ -14,6 +14,7 @@
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/video/video.h"
 #include "easypbr/scene/settings.h"
+#include "file_limit.h"
 #include "io/temporary_folder.h"
 
 namespace easypbr::app {
@@ -234,6 +235,23 @@ TEST_F(Recordings, AFullDiskIsAnError) {
             FileError)
             << name;
         EXPECT_FALSE(recorder_.is_recording());
+        EXPECT_TRUE(fs::is_symlink(folder_ / name)) << "only what is a file is removed";
+    }
+}
+
+TEST_F(Recordings, LeaveNoHalfVideo) {
+    for (const char* name : {"a.mp4", "a.mov", "a.mkv", "a.webm", "a.gif"}) {
+        recorder_.start(folder_ / name);
+        recorder_.add_frame();
+        const FileLimit full(200);
+        EXPECT_THROW(
+            {
+                for (int i = 0; i < 100; ++i) recorder_.add_frame();
+                recorder_.stop();
+            },
+            FileError)
+            << name;
+        EXPECT_TRUE(fs::is_empty(folder_.path())) << name;
     }
 }
 

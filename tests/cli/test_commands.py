@@ -144,3 +144,35 @@ def test_data_sets_need_no_variable_in_a_built_tree(easypbr, environment, tmp_pa
     monkeypatch.setitem(environment, "PATH", "/usr/bin:/bin")  # Whose Python has no package of ours.
     easypbr("dataset", "--demo", "-o", "drones", "--count", "1", "--workers", "1", "--writers", "coco", "--quiet")
     assert (tmp_path / "drones/records/000000.json").exists()
+
+
+def test_cache_shows_its_entries_and_drops_the_oldest(environment, box, tmp_path):
+    """An entry is 4.2 MB: six faces of 4 half floats at each size, the first 256 (gpu/prefilter.h)."""
+    cache = tmp_path / "cache"
+    bounded = {**environment, "EASYPBR_CACHE_DIR": str(cache), "EASYPBR_CACHE_LIMIT": "0.009"}
+
+    def run(*arguments):
+        done = subprocess.run([BINARY, *map(str, arguments)], capture_output=True, text=True, env=bounded, cwd=tmp_path)
+        assert done.returncode == 0, done.stderr
+        return dict(line.split(None, 1) for line in done.stdout.splitlines())
+
+    assert run("cache") == {"folder": str(cache), "entries": "0", "size": "0.0 MB", "limit": "9.0 MB"}
+    kept = []
+    for value in (0.2, 0.4, 0.6):
+        exr.write(tmp_path / "map.exr", np.full((4, 8, 3), value, np.float32))
+        before = set(cache.glob("*")) if cache.exists() else set()
+        run("render", box, "-o", "out.png", "--env", "map.exr", "--size", "16x16", "--samples", "1")
+        (added,) = set(cache.glob("*")) - before
+        kept = [*kept[-1:], added]
+        assert set(cache.glob("*")) == set(kept), "the one that was used last is left, and the new one"
+    assert run("cache")["entries"] == "2" and run("cache")["size"] == "8.4 MB"
+    assert run("cache", "--limit", "0.005")["entries"] == "1"
+    assert list(cache.iterdir()) == [added]
+    (cache / "notes.txt").write_text("kept")
+    assert run("cache", "--clear") == {}
+    assert [path.name for path in cache.iterdir()] == ["notes.txt"]
+
+
+def test_cache_refuses_what_it_cannot_do(easypbr):
+    assert "--limit" in easypbr("cache", "--limit", "-1", code=2).stderr
+    assert "--clear" in easypbr("cache", "--limit", "1", "--clear", code=2).stderr

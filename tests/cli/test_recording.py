@@ -192,7 +192,7 @@ def test_a_full_disk_is_an_error(environment, box, tmp_path):
     """The system's limit on a file's size stands for a full disk."""
 
     def small_files():
-        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        signal.signal(signal.SIGXFSZ, signal.SIG_DFL)  # Python's processes ignore it; a shell's do not.
         resource.setrlimit(resource.RLIMIT_FSIZE, (2000, 2000))
 
     for name in ("a.mp4", "f_%03d.png"):
@@ -200,5 +200,6 @@ def test_a_full_disk_is_an_error(environment, box, tmp_path):
         # The caches of the run must not be what fails.
         done = subprocess.run(command, capture_output=True, text=True, env=environment, preexec_fn=small_files)
         assert done.returncode == 1 and "cannot write" in done.stderr, done.stderr
+    assert not list(tmp_path.glob("*.mp4")), "half a video"
     for picture in tmp_path.glob("f_*.png"):
         assert picture.stat().st_size > 2000 or png.read(picture).shape == (64, 96, 4)

@@ -6,9 +6,11 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 #include <sys/un.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cstdlib>
 #include <functional>
 #include <map>
@@ -219,6 +221,105 @@ TEST_F(Cache, DoesWithoutAFolder) {
     write_file(folder_ / "cache", std::string_view("a file where the folder should be"));
     EXPECT_NO_THROW(cache_store("key", bytes_of("content")));
     EXPECT_FALSE(cache_load("key"));
+}
+
+/// The key of a test's blob, as of any: a word and a hash.
+std::string key_of(int number) {
+    return "test1-" + content_hash(bytes_of(std::to_string(number)));
+}
+
+/// Blobs that were used one after the other: 1032 bytes each, 32 of them the hash.
+void store_blobs(int count) {
+    for (int i = 0; i < count; ++i) {
+        cache_store(key_of(i), bytes_of(std::string(1000, 'x')));
+        fs::last_write_time(cache_folder() / key_of(i),
+                            fs::file_time_type::clock::now() - std::chrono::minutes(count - i));
+    }
+}
+
+TEST_F(Cache, DropsWhatWasNotUsedForTheLongest) {
+    store_blobs(4);
+    EXPECT_EQ(cache_use().entries, 4u);
+    EXPECT_EQ(cache_use().bytes, 4 * 1032u);
+    EXPECT_TRUE(cache_load(key_of(0)));
+    const CacheUse left = trim_cache(2 * 1032);
+    EXPECT_EQ(left.entries, 2u);
+    EXPECT_EQ(left.bytes, 2 * 1032u);
+    // 1 and 2 are the oldest now.
+    for (const int i : {0, 3}) EXPECT_TRUE(cache_load(key_of(i))) << i;
+    for (const int i : {1, 2}) EXPECT_FALSE(cache_load(key_of(i))) << i;
+    EXPECT_EQ(trim_cache(0).entries, 0u);
+    EXPECT_TRUE(fs::is_empty(cache_folder()));
+}
+
+TEST_F(Cache, StaysWithinItsLimit) {
+    EXPECT_EQ(cache_limit(), 1'000'000'000u);
+    store_blobs(3);
+    setenv("EASYPBR_CACHE_LIMIT", "0.0000025", 1);
+    EXPECT_EQ(cache_limit(), 2500u);
+    cache_store(key_of(3), bytes_of(std::string(1000, 'x')));
+    EXPECT_EQ(cache_use().bytes, 2 * 1032u);
+    EXPECT_TRUE(cache_load(key_of(2)) && cache_load(key_of(3)));
+    // What is larger than all room drops nothing else.
+    cache_store(key_of(4), bytes_of(std::string(3000, 'x')));
+    EXPECT_EQ(cache_use().entries, 2u);
+    setenv("EASYPBR_CACHE_LIMIT", "0", 1);
+    cache_store(key_of(5), {});
+    EXPECT_FALSE(cache_load(key_of(5)));
+    for (const char* wrong : {"", "-1", "1GB", "nan"}) {
+        setenv("EASYPBR_CACHE_LIMIT", wrong, 1);
+        EXPECT_EQ(cache_limit(), 1'000'000'000u) << wrong;
+    }
+    unsetenv("EASYPBR_CACHE_LIMIT");
+}
+
+// The folder may be one that holds other things.
+TEST_F(Cache, LeavesFilesOfOthersAlone) {
+    store_blobs(1);
+    const std::string text = "d41d8cd98f00b204e9800998ecf8427e  sums.txt";
+    const fs::path folder = cache_folder();
+    for (const std::string& name :
+         {std::string("sums.txt"), std::string(".hidden.tmp"), "a-" + std::string(32, 'g')})
+        write_file(folder / name, std::string_view(text));
+    write_file(folder / ("photo-" + std::string(32, 'a')),
+               std::string_view("not a hash, but more than 32 bytes long"));
+    fs::create_directory(folder / key_of(7));
+    fs::create_symlink(folder / "sums.txt", folder / key_of(8));
+    // A killed process leaves a part of a blob; another one may be writing.
+    const std::string old = "." + key_of(0) + ".123.0.tmp", young = "." + key_of(1) + ".124.0.tmp";
+    for (const std::string& name : {old, young}) write_file(folder / name, std::string_view("part"));
+    fs::last_write_time(folder / old, fs::file_time_type::clock::now() - std::chrono::hours(2));
+    EXPECT_EQ(cache_use().entries, 1u);
+    EXPECT_EQ(trim_cache(0).entries, 0u);
+    EXPECT_FALSE(fs::exists(folder / old));
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder), {}), 7);
+}
+
+TEST_F(Cache, IsSharedByProcesses) {
+    setenv("EASYPBR_CACHE_LIMIT", "0.00001", 1);
+    std::vector<pid_t> children;
+    for (int child = 0; child < 4; ++child) {
+        children.push_back(fork());
+        if (children.back() != 0) continue;
+        bool right = true;
+        for (int i = 0; i < 300; ++i) {
+            const auto blob = bytes_of(std::string(1000, char('a' + i % 20)));
+            cache_store(key_of(i % 20), blob);
+            // Another process may have dropped it; it is never another's or half of one.
+            const auto back = cache_load(key_of(i % 20));
+            right &= !back || *back == blob;
+        }
+        _exit(right ? 0 : 1);
+    }
+    for (const pid_t child : children) {
+        int status = -1;
+        ASSERT_EQ(waitpid(child, &status, 0), child);
+        EXPECT_TRUE(WIFEXITED(status) && WEXITSTATUS(status) == 0) << status;
+    }
+    EXPECT_LE(cache_use().bytes, 10'000u);
+    EXPECT_EQ(trim_cache(0).entries, 0u);
+    EXPECT_TRUE(fs::is_empty(cache_folder()));
+    unsetenv("EASYPBR_CACHE_LIMIT");
 }
 
 // XXH3-128 of nothing with seed 0, from the reference implementation's published test vectors.

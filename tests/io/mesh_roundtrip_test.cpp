@@ -6,6 +6,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
+#include "file_limit.h"
 #include "io/temporary_folder.h"
 
 using namespace easypbr;
@@ -90,6 +91,23 @@ TEST(MeshFiles, ObjKeepsPositionsNormalsAndFaces) {
     EXPECT_TRUE(same_bits(mesh.F, back->F));
     EXPECT_TRUE(same_bits(mesh.E, back->E));
     EXPECT_TRUE(same_bits(ArrayXf::Dense(mesh.C.leftCols(3)), back->C));
+}
+
+TEST(MeshFiles, ObjAndItsMaterialsAreWrittenTogetherOrNotAtAll) {
+    const TemporaryFolder folder;
+    write_file(folder / "m.mtl", std::string_view("newmtl old\n"));
+    MeshData mesh = random_mesh(7, 300);
+    mesh.materials = {Material{}};
+    {
+        // There is room for the materials, about 150 bytes, only.
+        const FileLimit full(1000);
+        EXPECT_THROW(Mesh(mesh).save(folder / "m.obj"), FileError);
+    }
+    EXPECT_EQ(FileBytes(folder / "m.mtl").text(), "newmtl old\n");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 1);
+    Mesh(mesh).save(folder / "m.obj");
+    EXPECT_NE(FileBytes(folder / "m.mtl").text(), "newmtl old\n");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder.path()), {}), 2);
 }
 
 TEST(MeshFiles, ObjKeepsMaterialsAndParts) {

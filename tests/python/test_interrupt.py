@@ -70,6 +70,17 @@ def test_the_first_picture_with_rays_and_effects(scene):
     np.testing.assert_array_equal(view.render((64, 48), samples=2), Viewer((64, 48), look, scene=scene).render(samples=2))
 
 
+def test_a_mesh_that_is_drawn_for_seconds(scene):
+    """Five million transparent triangles: the driver takes seconds for one call."""
+    mesh = shapes.icosphere(1, 9)
+    mesh.material.alpha_mode = "blend"
+    mesh.material.opacity = 0.5
+    scene.show(mesh, "ball")
+    view = Viewer((64, 48), scene=scene)
+    for after in (3.0, 1.5):
+        assert seconds_until_interrupted(lambda: view.render(samples=1000), after) < LIMIT_S
+
+
 def test_geometry_and_files(tmp_path):
     ball = shapes.icosphere(1, 7)
     assert seconds_until_interrupted(lambda: [ball.sample_surface(3_000_000) for _ in range(1000)]) < LIMIT_S
@@ -94,6 +105,33 @@ def test_ground_truth(scene):
     view = Viewer((640, 480), scene=scene)
     assert seconds_until_interrupted(lambda: view.render_layers(["color", "depth"], samples=100_000)) < LIMIT_S
     assert view.render_layers(["depth"])["depth"].max() > 0
+
+
+def test_waiting_for_another_thread_that_draws(scene):
+    """Who gives up leaves the queue, and those behind still get their turn."""
+    view = Viewer((320, 240), scene=scene)
+    expected = view.render(samples=2)
+    start = time.monotonic()
+    view.render(samples=50)
+    seconds_a_sample = (time.monotonic() - start) / 50
+    done = []
+
+    def draw(samples):
+        picture = view.render(samples=samples)
+        done.append((samples, picture))
+
+    long = threading.Thread(target=draw, args=(int(5 / seconds_a_sample),))
+    short = threading.Thread(target=draw, args=(2,))
+    threading.Timer(0.6, short.start).start()
+    long.start()
+    time.sleep(0.2)
+    assert seconds_until_interrupted(view.render, 1.0) < LIMIT_S
+    assert not done, "the other threads were waited for"
+    long.join()
+    short.join()
+    assert [samples for samples, _ in done][1] == 2
+    np.testing.assert_array_equal(done[1][1], expected)
+    np.testing.assert_array_equal(view.render(samples=2), expected)
 
 
 def test_a_handler_of_ones_own_is_called_afterwards(scene):

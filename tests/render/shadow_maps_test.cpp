@@ -1,5 +1,9 @@
 // Which maps are drawn when, what casts, and any number of lights.
+#include <bit>
+#include <random>
+
 #include "easypbr/core/error.h"
+#include "easypbr/render/frame/shadow_view.h"
 #include "easypbr/scene/settings.h"
 #include "shadow_test.h"
 
@@ -107,6 +111,91 @@ TEST_F(ShadowCache, KeptMapsShowTheSame) {
     app::Session fresh(session_.scene());
     fresh.settings() = session_.settings();
     EXPECT_TRUE(std::ranges::equal(kept.bytes(), render_linear(fresh).bytes()));
+}
+
+TEST_F(ShadowCache, ALightThatReachesNothingDrawsNone) {
+    // The floor ends at x = 2, the light's range at 2.5 before the ground is there.
+    const auto far_light = [](Light& l) {
+        l.position = Vec3(4.5f, 0, 0.3f);
+        l.range = 2;
+    };
+    EXPECT_EQ(drawn_by([&](Session&) { change_light("inside", far_light); }), 0u);
+    EXPECT_EQ(drawn_by([&](Session&) { change_light("inside", [](Light& l) { l.range = 2.7f; }); }), 1u);
+    EXPECT_EQ(drawn_by([&](Session&) { change_light("inside", [](Light& l) { l.range = 2; }); }), 0u);
+    EXPECT_EQ(drawn_by([&](Session&) { change_light("inside", [](Light& l) { l.position.x() = 5; }); }), 0u);
+    EXPECT_EQ(drawn_by([&](Session& s) { s.settings().ground.mode = GroundMode::plane; }), 1u)
+        << "the ground is everywhere";
+}
+
+// A cube's face that sees nothing is drawn once something is there to be seen.
+TEST_F(ShadowCache, TheGroundNeedsMore) {
+    change_light("lamp", [](Light& l) { l.position = Vec3(2.2f, 0.3f, 0.3f); });
+    const uint64_t before = session_.shadow_maps_drawn();
+    session_.render();
+    session_.settings().ground.mode = GroundMode::plane;
+    const Image kept = render_linear(session_);
+    EXPECT_EQ(session_.shadow_maps_drawn(), before + 2);
+    app::Session fresh(session_.scene());
+    fresh.settings() = session_.settings();
+    EXPECT_TRUE(std::ranges::equal(kept.bytes(), render_linear(fresh).bytes()));
+    session_.settings().ground.mode = GroundMode::none;
+    session_.render();
+    EXPECT_EQ(session_.shadow_maps_drawn(), before + 2);
+}
+
+// Maps beyond the memory are drawn from in turns: of 4096 texels a side, 64 MB each, there is room for 8
+// of 13.
+TEST_F(ShadowCache, MoreLightsThanMemoryShowTheSame) {
+    const auto lit_by = [&](std::initializer_list<const char*> names) {
+        for (const char* name : {"lamp", "inside", "sun"})
+            change_light(name, [&](Light& l) { l.enabled = std::ranges::count(names, name) > 0; });
+        return render_linear(session_);
+    };
+    session_.settings().shadows.resolution = 4096;
+    session_.settings().shadows.mode = ShadowMode::hard;
+    change_light("lamp", [](Light& l) { l.position = Vec3(0.1f, 0.3f, 0.4f); });
+    const Image all = lit_by({"lamp", "inside", "sun"}), again = render_linear(session_);
+    EXPECT_TRUE(std::ranges::equal(all.bytes(), again.bytes()));
+    const Image parts[] = {lit_by({"lamp"}), lit_by({"inside"}), lit_by({"sun"})};
+    for (size_t i = 0; i < 4 * all.pixel_count(); ++i) {
+        if (i % 4 == 3) continue;
+        float sum = 0;
+        for (const Image& part : parts) sum += part.pixels<float>()[i];
+        // Radiance is held in half floats and added block by block.
+        ASSERT_NEAR(all.pixels<float>()[i], sum, 4e-3f * std::max(1.0f, sum)) << i;
+    }
+}
+
+// Every point belongs to the face of its largest component; a face is needed if one of the box does.
+TEST(ShadowView, NeedsTheFacesThatSeeAPointOfTheBox) {
+    render::ShadowProjection cube;
+    cube.count = 6;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> at(-2, 2);
+    std::array<int, 7> seen{};
+    for (int round = 0; round < 300; ++round) {
+        const Vec3d light(at(random), at(random), at(random));
+        Box3d box(Vec3d(at(random), at(random), at(random)));
+        box.extend(Vec3d(at(random), at(random), at(random)));
+        for (auto& view : cube.views) view.position = light;
+        unsigned expected = 0;
+        constexpr int n = 40;
+        for (int i = 0; i < n * n * n; ++i) {
+            const Vec3d part = Vec3d(i % n, i / n % n, i / n / n) / (n - 1);
+            const Vec3d p = box.min() + part.cwiseProduct(box.sizes()) - light;
+            Eigen::Index axis = 0;
+            p.cwiseAbs().maxCoeff(&axis);
+            expected |= 1u << (2 * axis + (p[axis] < 0));
+        }
+        const unsigned needed = render::needed_maps(cube, box);
+        EXPECT_EQ(needed & expected, expected);
+        // The grid misses what is thinner than its gaps.
+        EXPECT_LE(std::popcount(needed), std::popcount(expected) + 1);
+        ++seen[size_t(std::popcount(needed))];
+    }
+    EXPECT_GT(seen[1], 10);
+    EXPECT_GT(seen[3], 10);
+    EXPECT_GT(seen[6], 5);
 }
 
 /// Part of the light on a row of the floor at y = 0 under a square caster from -0.5 to 0.5 at height 0.5, lit

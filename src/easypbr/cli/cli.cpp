@@ -73,6 +73,7 @@ void add_commands(CLI::App& app, Job& job) {
     add_doctor(app, job);
     add_view(app, job);
     add_dataset(app, job);
+    add_cache(app, job);
 }
 
 /// A full disk shows when what is still buffered is written, which nobody looks at when the process ends.

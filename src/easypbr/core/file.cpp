@@ -8,7 +8,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -21,11 +20,6 @@ namespace {
 /// Files of fewer bytes are copied, which costs less than what a map has to guard against. Copying hundreds
 /// of megabytes would make loading a binary PLY a third slower.
 constexpr size_t smallest_map = 1 << 20;
-
-fs::path temporary_beside(const fs::path& path) {
-    static std::atomic<unsigned> counter{0};
-    return path.parent_path() / fmt::format(".{}.{}.{}.tmp", path.filename().string(), ::getpid(), counter++);
-}
 
 [[noreturn]] void fail_read(std::string_view path, std::string_view why) {
     throw FileError(fmt::format("cannot read {}: {}", path, why));
@@ -49,19 +43,6 @@ std::byte* allocate_pages(size_t size, std::string_view path) {
 void wait_for_input(int descriptor) {
     pollfd input{descriptor, POLLIN, 0};
     ::poll(&input, 1, -1);
-}
-
-[[noreturn]] void fail_write(const fs::path& path, int error) {
-    throw FileError(fmt::format("cannot write {}: {}", path.string(), std::strerror(error)));
-}
-
-void write_all(int descriptor, std::span<const std::byte> bytes, const fs::path& path) {
-    while (!bytes.empty()) {
-        const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
-        if (written < 0 && errno == EINTR) continue;
-        if (written < 0) fail_write(path, errno);
-        bytes = bytes.subspan(size_t(written));
-    }
 }
 
 }  // namespace
@@ -179,49 +160,6 @@ void FileBytes::release_until(size_t end) const {
     const size_t page = 1 << 16;
     const size_t whole = std::min(end, size_) / page * page;
     if (map_ && whole) ::madvise(const_cast<std::byte*>(data_), whole, MADV_DONTNEED);
-}
-
-namespace {
-
-/// Where a file is really written: a link stays a link.
-fs::path real_target(const fs::path& path) {
-    std::error_code ignored;
-    const fs::path real = fs::weakly_canonical(path, ignored);
-    return real.empty() ? path : real;
-}
-
-}  // namespace
-
-void write_file(const fs::path& given, std::span<const std::byte> bytes) {
-    const fs::path path = real_target(given);
-    const fs::path beside = temporary_beside(path);
-    try {
-        const Descriptor file{::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
-        if (file.get() < 0) fail_write(path, errno);
-        write_all(file.get(), bytes, path);
-    } catch (...) {
-        ::unlink(beside.c_str());
-        throw;
-    }
-    if (::rename(beside.c_str(), path.c_str()) != 0) {
-        const int error = errno;
-        ::unlink(beside.c_str());
-        fail_write(path, error);
-    }
-}
-
-void write_file(const fs::path& path, std::string_view text) {
-    write_file(path, std::as_bytes(std::span(text.data(), text.size())));
-}
-
-void check_writable(const fs::path& given) {
-    const fs::path path = real_target(given);
-    if (fs::exists(path) && ::access(path.c_str(), W_OK) != 0) fail_write(path, errno);
-    if (path.filename().empty() || fs::is_directory(path)) fail_write(path, EISDIR);
-    const fs::path beside = temporary_beside(path);
-    const Descriptor file{::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
-    if (file.get() < 0) fail_write(path, errno);
-    ::unlink(beside.c_str());
 }
 
 std::string extension_of(const fs::path& path) {

@@ -2,7 +2,12 @@
 
 #include <epoxy/gl.h>
 
+#include <algorithm>
+#include <array>
+
+#include "easypbr/core/interrupt.h"
 #include "easypbr/gl/context.h"
+#include "easypbr/gl/pace.h"
 
 namespace easypbr::gl {
 namespace {
@@ -59,12 +64,28 @@ void apply(const DrawState& state) {
     glFrontFace(state.clockwise_fronts ? GL_CW : GL_CCW);
 }
 
+/// A driver that draws on the CPU takes about a third of a second for as much.
+constexpr int64_t most_pixels = 1 << 22;
+constexpr int most_indices = 3 << 19;
+
+/// Whether what is large has to be drawn piece by piece, so that it can be interrupted between the pieces.
+bool draws_in_pieces() {
+    return can_be_interrupted() && Context::current().info().software;
+}
+
+bool is_large_viewport() {
+    std::array<GLint, 4> viewport{};
+    glGetIntegerv(GL_VIEWPORT, viewport.data());
+    return int64_t(viewport[2]) * viewport[3] > most_pixels;
+}
+
 }  // namespace
 
 void draw_screen(const DrawState& state) {
     apply(state);
     Context::current().no_attributes().bind();
     glDrawArrays(GL_TRIANGLES, 0, 3);
+    if (draws_in_pieces() && is_large_viewport()) wait_for_driver();
 }
 
 void draw_points(const DrawState& state, const VertexArray& array, int count) {
@@ -84,8 +105,13 @@ void draw_quads(const DrawState& state, const VertexArray& array, int instances)
 void draw_triangles(const DrawState& state, const VertexArray& array, int64_t first_index, int index_count) {
     apply(state);
     array.bind();
-    glDrawElements(GL_TRIANGLES, index_count, GL_UNSIGNED_INT,
-                   reinterpret_cast<const void*>(size_t(first_index) * sizeof(uint32_t)));
+    const int piece = index_count > most_indices && draws_in_pieces() ? most_indices : index_count;
+    for (int drawn = 0; drawn < index_count; drawn += piece) {
+        const size_t first = (size_t(first_index) + size_t(drawn)) * sizeof(uint32_t);
+        glDrawElements(GL_TRIANGLES, std::min(piece, index_count - drawn), GL_UNSIGNED_INT,
+                       reinterpret_cast<const void*>(first));
+        if (piece < index_count) wait_for_driver();
+    }
 }
 
 void reset_state() {

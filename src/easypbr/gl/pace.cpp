@@ -26,6 +26,7 @@ void Pace::step() {
 }
 
 void wait_for_driver() {
+    check_interrupt();
     if (can_be_interrupted()) wait_for(Object(ObjectKind::fence));
 }
 

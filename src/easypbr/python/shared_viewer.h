@@ -3,6 +3,7 @@
 
 #include <unistd.h>
 
+#include <chrono>
 #include <condition_variable>
 #include <exception>
 #include <map>
@@ -13,6 +14,7 @@
 
 #include "easypbr/app/session.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/interrupt.h"
 #include "easypbr/python/bindings.h"
 #include "easypbr/python/convert.h"
 #include "easypbr/viewer/viewer.h"
@@ -24,7 +26,7 @@ namespace easypbr::python {
 class Turns {
   public:
     /// Throws ContextError when it would wait for ever: the thread inside waits, within a callback, for a
-    /// viewer that this thread is in.
+    /// viewer that this thread is in. Throws Interrupted.
     void lock() {
         const std::thread::id self = std::this_thread::get_id();
         std::unique_lock lock(mutex());
@@ -39,7 +41,14 @@ class Turns {
                 "them on one thread");
         const uint64_t turn = next_++;
         waiting()[self] = this;
-        changed_.wait(lock, [&] { return turn == served_; });
+        try {
+            while (!changed_.wait_for(lock, std::chrono::milliseconds(20), [&] { return turn == served_; }))
+                check_interrupt();
+        } catch (const Interrupted&) {
+            waiting().erase(self);
+            given_up_.insert(turn);
+            throw;
+        }
         waiting().erase(self);
         owner_ = self;
         depth_ = 1;
@@ -50,6 +59,7 @@ class Turns {
             if (--depth_ > 0) return;
             owner_ = {};
             ++served_;
+            while (given_up_.erase(served_) > 0) ++served_;
         }
         changed_.notify_all();
     }
@@ -77,6 +87,7 @@ class Turns {
 
     std::condition_variable changed_;
     uint64_t next_ = 0, served_ = 0;
+    std::set<uint64_t> given_up_;  ///< turns that nobody waits for any more
     std::thread::id owner_;
     int depth_ = 0;
 };

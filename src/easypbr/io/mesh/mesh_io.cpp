@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/file_set.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/core/suggest.h"
@@ -114,8 +115,10 @@ void save_obj(const Mesh& mesh, const fs::path& path) {
     const fs::path library = fs::path(path).replace_extension(".mtl");
     const ObjText text =
         encode_obj(flatten(mesh), library.filename().string(), fs::absolute(path).parent_path());
-    if (!text.mtl.empty()) write_file(library, text.mtl);
-    write_file(path, text.obj);
+    FileSet files;
+    if (!text.mtl.empty()) files.add(library, text.mtl);
+    files.add(path, text.obj);
+    files.commit();
 }
 
 uint64_t limit_of(const LoadOptions& options) {

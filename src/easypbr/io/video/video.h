@@ -25,7 +25,8 @@ class VideoWriter {
     /// ArgumentError for another picture, FileError when the file cannot be written.
     virtual void add(const Image& picture) = 0;
     /// Writes what is still in the encoder and closes the file; add() may not follow. Throws FileError. A
-    /// writer that is destroyed before is finished as far as it can be.
+    /// writer that is destroyed before is finished as far as it can be. A file that cannot be written to its
+    /// end is removed, by add() too.
     virtual void finish() = 0;
 };
 

@@ -185,6 +185,22 @@ std::optional<ShadowProjection> project_shadows(const LightSource& light, const 
     return cube(light.position.cast<double>(), casters);
 }
 
+unsigned needed_maps(const ShadowProjection& projection, const Box3d& receivers) {
+    if (!projection.is_cube()) return 1;
+    unsigned needed = 0;
+    for (unsigned face = 0; face < 6; ++face) {
+        const Vec3d position = projection.views[face].position;
+        const Vec3d low = receivers.min() - position, high = receivers.max() - position;
+        const unsigned axis = face / 2;
+        // The face holds the points that are farther along its axis than along any other.
+        const double farthest = face % 2 ? -low[axis] : high[axis];
+        const Vec3d nearest = low.cwiseMax(-high).cwiseMax(0);
+        if (farthest > 0 && farthest >= nearest[(axis + 1) % 3] && farthest >= nearest[(axis + 2) % 3])
+            needed |= 1u << face;
+    }
+    return needed;
+}
+
 ResolvedLight sampled_light(const ResolvedLight& light, int index, int count) {
     ResolvedLight sampled = light;
     if (count <= 1) return sampled;

@@ -43,6 +43,10 @@ inline constexpr double cube_slope = 1.1;
 std::optional<ShadowProjection> project_shadows(const LightSource& light, const Box3d& casters,
                                                 int resolution);
 
+/// The maps that a light at `position` needs for surfaces within a box, as bits: faces of a cube that see any
+/// of it, or the only map.
+unsigned needed_maps(const ShadowProjection& projection, const Box3d& receivers);
+
 /// The light at one of its own points, for sample `index` of `count`: of the ball of its radius, distributed
 /// so that it looks like an evenly glowing disc from everywhere; of a directional light's disc of directions.
 /// One sample is the light's centre.

@@ -13,6 +13,13 @@ bool is_layered(const DrawItem& item) {
     return item.layered;
 }
 
+/// The ground, and what is drawn larger than it is, reach beyond the bounds of what casts.
+ShadowMaps::Receivers receivers_of(const DrawList& list, const FrameContents& contents) {
+    if (!contents.ground && !list.has(&DrawItem::receives_shadows)) return ShadowMaps::Receivers::none;
+    const bool beyond = contents.ground || list.has(&DrawItem::reaches_beyond);
+    return beyond ? ShadowMaps::Receivers::anywhere : ShadowMaps::Receivers::within;
+}
+
 RayGround ray_ground(const ResolvedSettings& resolved) {
     const auto& ground = resolved.settings.ground;
     return {.up = parse_up(resolved.settings.camera.up),
@@ -56,7 +63,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     const PixelRect drawn =
         timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
-    shadow_maps_.begin(seen, casters, bounds, contents.ground || list.has(&DrawItem::receives_shadows));
+    shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
     const bool native = is_lit_natively(frame, list, contents);
     shadow_maps_.keep_in_host_memory(native);
     if (!native) targets_.upload(transfers_);

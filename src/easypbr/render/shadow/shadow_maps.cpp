@@ -23,6 +23,17 @@ int most_layers(int resolution, bool tinted) {
     return int(std::clamp(memory_limit / bytes, size_t(6), layer_limit));
 }
 
+/// Receivers may stand so far beyond the casters' bounds, in their diagonals: positions that are taken from
+/// the depth of a distant camera are rounded.
+constexpr double slack = 0.01;
+
+/// Whether a light reaches a box at all: beyond its range it is zero.
+bool reaches(const ResolvedLight& light, const Box3d& box) {
+    if (light.type == LightType::directional || !(light.range > 0)) return true;
+    return box.squaredExteriorDistance(light.position.cast<double>()) <=
+           double(light.range) * double(light.range);
+}
+
 /// What softens a light's shadows: its radius, or the tangent of a directional light's.
 double extent_of(const ResolvedLight& light) {
     return light.type == LightType::directional ? std::tan(radians(light.angular_radius_deg))
@@ -86,11 +97,15 @@ void ShadowMaps::note_casters(const DrawList& list, const Box3d& bounds) {
 }
 
 ShadowMaps::Request ShadowMaps::request_of(const ResolvedLight& light, const Frame& frame,
-                                           const Box3d& bounds) {
+                                           const Box3d& bounds, Receivers receivers) {
     const ShadowSettings& settings = frame.resolved->settings.shadows;
     Request request;
     request.light = &light;
-    if (!settings.enabled || !light.casts_shadows) return request;
+    if (!settings.enabled || !light.casts_shadows || receivers == Receivers::none) return request;
+    const Vec3d margin = Vec3d::Constant(slack * (bounds.isEmpty() ? 0 : bounds.diagonal().norm()));
+    const Box3d lit(bounds.min() - margin, bounds.max() + margin);
+    const bool bounded = receivers == Receivers::within && !bounds.isEmpty();
+    if (bounded && !reaches(light, lit)) return request;
     const double extent = settings.mode == ShadowMode::soft ? extent_of(light) : 0;
     const int samples = extent > 0 ? frame.sample_count : 1;
     const ResolvedLight sampled = sampled_light(light, frame.sample_index, samples);
@@ -98,6 +113,7 @@ ShadowMaps::Request ShadowMaps::request_of(const ResolvedLight& light, const Fra
     if (!projection) return request;
     request.shadowed = true;
     request.projection = *projection;
+    request.needed = bounded ? needed_maps(*projection, lit) : (1u << projection->count) - 1;
     // What one sample stands for is as large a part of the light as it is of all samples.
     request.radius = extent / std::sqrt(double(samples));
     const Vec3 position = light.type == LightType::directional ? Vec3(Vec3::Zero()) : sampled.position,
@@ -128,16 +144,18 @@ void ShadowMaps::keep_in_host_memory(bool host) {
     prepare_tints();
 }
 
-void ShadowMaps::begin(const Frame& frame, const DrawList& casters, const Box3d& vertices, bool received) {
+void ShadowMaps::begin(const Frame& frame, const DrawList& casters, const Box3d& vertices,
+                       Receivers receivers) {
     const Box3d bounds = caster_bounds(casters, vertices);
     note_casters(casters, bounds);
     list_ = &casters;
     ++frame_;
     requests_.clear();
     next_ = 0;
+    wanted_layers_ = 0;
     for (const ResolvedLight& light : frame.resolved->lights) {
-        requests_.push_back(request_of(light, frame, bounds));
-        requests_.back().shadowed &= received;
+        requests_.push_back(request_of(light, frame, bounds, receivers));
+        if (requests_.back().shadowed) wanted_layers_ += requests_.back().projection.count;
     }
     const bool any = std::ranges::any_of(requests_, &Request::shadowed);
     set_resolution(any ? frame.resolved->settings.shadows.resolution : 0);
@@ -186,15 +204,17 @@ const ShadowMaps::Entry* ShadowMaps::acquire(const Request& request) {
     Entry& entry = found->second;
     entry.last_frame = frame_;
     entry.last_block = block_;
-    if (entry.casters != casters_generation_) {
-        draw(request, entry);
-        entry.casters = casters_generation_;
-    }
+    if (entry.casters != casters_generation_) entry.drawn = 0;
+    entry.casters = casters_generation_;
+    draw(request, entry);
     return &entry;
 }
 
-void ShadowMaps::draw(const Request& request, const Entry& entry) {
+void ShadowMaps::draw(const Request& request, Entry& entry) {
+    const unsigned missing = request.needed & ~entry.drawn;
+    if (missing == 0) return;
     for (int i = 0; i < entry.layers; ++i) {
+        if (!(missing >> i & 1)) continue;
         const ShadowView& view = request.projection.views[size_t(i)];
         const int layer = entry.first_layer + i;
         if (in_host_memory_) {
@@ -205,6 +225,7 @@ void ShadowMaps::draw(const Request& request, const Entry& entry) {
         pass_.draw(view, *list_, maps_, layer, framebuffers_[size_t(layer)]);
         if (tints_) pass_.draw_tints(view, *list_, tint_framebuffers_[size_t(layer)]);
     }
+    entry.drawn |= missing;
     ++drawn_;
 }
 
@@ -235,7 +256,11 @@ bool ShadowMaps::evict_before(uint64_t frame, uint64_t block) {
     for (auto it = entries_.begin(); it != entries_.end(); ++it) {
         const Entry& entry = it->second;
         if (entry.last_frame >= frame || entry.last_block >= block) continue;
-        if (oldest == entries_.end() || entry.last_frame < oldest->second.last_frame) oldest = it;
+        // Of those that the next frame asks for again, the one just drawn from is asked for last.
+        const auto goes_first = [](const Entry& a, const Entry& b) {
+            return a.last_frame != b.last_frame ? a.last_frame < b.last_frame : a.last_block > b.last_block;
+        };
+        if (oldest == entries_.end() || goes_first(entry, oldest->second)) oldest = it;
     }
     if (oldest == entries_.end()) return false;
     take(oldest->second.first_layer, oldest->second.layers, false);
@@ -246,7 +271,7 @@ bool ShadowMaps::evict_before(uint64_t frame, uint64_t block) {
 bool ShadowMaps::grow(int layers) {
     const int before = int(taken_.size()), most = most_layers(resolution_, tinted_);
     if (before >= most) return false;
-    const int after = std::min(most, std::max(before + layers, before * 3 / 2));
+    const int after = std::min(most, std::max({before + layers, before * 3 / 2, wanted_layers_}));
     const auto enlarge = [&](gl::Texture& texture, gl::Format format) {
         gl::Texture larger = gl::Texture::layered(format, resolution_, resolution_, after);
         if (before > 0) gl::copy_layers(texture, larger, before);

@@ -21,10 +21,13 @@ class ShadowMaps {
     ShadowMaps(const Primitives& primitives, Transfers& transfers)
         : primitives_(primitives), pass_(primitives, transfers) {}
 
-    /// Takes note of a frame's lights and of what casts; `bounds` are those of its vertices. Nothing is drawn
-    /// when no surface receives a shadow: a bare cloud, labels in their own colours. `casters` must live
-    /// until its last block.
-    void begin(const Frame& frame, const DrawList& casters, const Box3d& bounds, bool received);
+    /// Where surfaces are that receive shadows: nowhere for a bare cloud or labels in their own colours,
+    /// within the bounds of what casts, or beyond them too.
+    enum class Receivers { none, within, anywhere };
+
+    /// Takes note of a frame's lights and of what casts; `bounds` are those of its vertices. Only maps that
+    /// receivers need are drawn. `casters` must live until its last block.
+    void begin(const Frame& frame, const DrawList& casters, const Box3d& bounds, Receivers receivers);
 
     /// Whether some light of the frame has maps.
     bool has_shadows() const { return std::ranges::any_of(requests_, &Request::shadowed); }
@@ -57,6 +60,7 @@ class ShadowMaps {
     struct Entry {
         int first_layer = 0, layers = 0;
         uint64_t casters = 0;     ///< generation of the casters that it shows
+        unsigned drawn = 0;       ///< its maps that are, as bits
         uint64_t last_frame = 0;  ///< that asked for it
         uint64_t last_block = 0;
     };
@@ -65,6 +69,7 @@ class ShadowMaps {
         bool shadowed = false;
         LightKey key{};
         ShadowProjection projection;
+        unsigned needed = 0;  ///< maps, as bits
         double radius = 0;
     };
     /// What the shader of a caster sees of its material.
@@ -95,12 +100,14 @@ class ShadowMaps {
     /// The vertices' bounds and what reaches beyond them.
     Box3d caster_bounds(const DrawList& list, const Box3d& bounds);
     void note_casters(const DrawList& list, const Box3d& bounds);
-    static Request request_of(const ResolvedLight& light, const Frame& frame, const Box3d& bounds);
+    static Request request_of(const ResolvedLight& light, const Frame& frame, const Box3d& bounds,
+                              Receivers receivers);
     /// Forgets all maps of another size; 0: no maps.
     void set_resolution(int resolution);
     /// The entry of a request, its maps drawn; null when there is no room beside the others of this block.
     const Entry* acquire(const Request& request);
-    void draw(const Request& request, const Entry& entry);
+    /// Draws the maps of a request that are not drawn yet.
+    void draw(const Request& request, Entry& entry);
 
     /// First of so many free layers, made free if need be; -1 when there are none.
     int allocate(int layers);
@@ -108,6 +115,7 @@ class ShadowMaps {
     /// Gives back the layers of the entry that has not been asked for the longest, but for those asked for
     /// since a frame and block.
     bool evict_before(uint64_t frame, uint64_t block);
+    /// To what all requests of the frame need, as far as there is memory.
     bool grow(int layers);
     void make_framebuffers();
     /// Keeps tints beside the maps only while something needs them.
@@ -131,6 +139,7 @@ class ShadowMaps {
     int resolution_ = 0;
     bool tinted_ = false;  ///< some casters weaken light instead of stopping it
     uint64_t frame_ = 0, block_ = 0, drawn_ = 0;
+    int wanted_layers_ = 0;  ///< of all requests together
     std::vector<Request> requests_;
     size_t next_ = 0;
 };

@@ -107,7 +107,7 @@ class FfmpegVideo final : public VideoWriter {
         describe(encoder, options.fps);
         open_encoder(encoder);
         make_frame();
-        begin_file();
+        whole_or_none([&] { begin_file(); });
     }
 
     ~FfmpegVideo() override {
@@ -131,16 +131,18 @@ class FfmpegVideo final : public VideoWriter {
         else
             fill_planes(picture);
         frame_->pts = next_++;
-        encode(frame_.get());
+        whole_or_none([&] { encode(frame_.get()); });
     }
 
     void finish() override {
         if (finished_) return;
         finished_ = true;
-        encode(nullptr);
-        require_written(av_write_trailer(output_.get()), path_);
-        require_written(output_->pb->error, path_);
-        require_written(avio_closep(&output_->pb), path_);
+        whole_or_none([&] {
+            encode(nullptr);
+            require_written(av_write_trailer(output_.get()), path_);
+            require_written(output_->pb->error, path_);
+            require_written(avio_closep(&output_->pb), path_);
+        });
         if (!is_fragmented()) return;
         try {
             index_first(path_);
@@ -150,6 +152,20 @@ class FfmpegVideo final : public VideoWriter {
     }
 
   private:
+    /// A video that cannot be written to its end is removed: nothing tells half of one from a whole one.
+    template <class Write>
+    void whole_or_none(Write&& write) {
+        try {
+            write();
+        } catch (...) {
+            finished_ = true;
+            output_.reset();
+            std::error_code ignored;
+            if (is_opened_ && fs::is_regular_file(path_, ignored)) fs::remove(path_, ignored);
+            throw;
+        }
+    }
+
     bool is_fragmented() const {
         const std::string name = output_->oformat->name;
         return name == "mp4" || name == "mov";
@@ -233,6 +249,7 @@ class FfmpegVideo final : public VideoWriter {
         stream_->time_base = codec_->time_base;
         stream_->avg_frame_rate = codec_->framerate;
         require_written(avio_open(&output_->pb, path_.c_str(), AVIO_FLAG_WRITE), path_);
+        is_opened_ = true;
         output_->flags |= AVFMT_FLAG_FLUSH_PACKETS;
         AVDictionary* options = nullptr;
         if (is_fragmented())
@@ -289,7 +306,7 @@ class FfmpegVideo final : public VideoWriter {
     AVStream* stream_ = nullptr;
     Image padded_;
     int64_t next_ = 0;
-    bool finished_ = false;
+    bool is_opened_ = false, finished_ = false;
 };
 
 }  // namespace

@@ -1,0 +1,94 @@
+#include "easypbr/core/file_set.h"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+
+namespace easypbr {
+namespace {
+
+fs::path temporary_beside(const fs::path& path) {
+    static std::atomic<unsigned> counter{0};
+    return path.parent_path() / fmt::format(".{}.{}.{}.tmp", path.filename().string(), ::getpid(), counter++);
+}
+
+[[noreturn]] void fail_write(const fs::path& path, int error) {
+    throw FileError(fmt::format("cannot write {}: {}", path.string(), std::strerror(error)));
+}
+
+void write_all(int descriptor, std::span<const std::byte> bytes, const fs::path& path) {
+    while (!bytes.empty()) {
+        const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+        if (written < 0 && errno == EINTR) continue;
+        if (written < 0) fail_write(path, errno);
+        bytes = bytes.subspan(size_t(written));
+    }
+}
+
+/// Where a file is really written: a link stays a link.
+fs::path real_target(const fs::path& path) {
+    std::error_code ignored;
+    const fs::path real = fs::weakly_canonical(path, ignored);
+    return real.empty() ? path : real;
+}
+
+void require_writable(const fs::path& target) {
+    if (fs::exists(target) && ::access(target.c_str(), W_OK) != 0) fail_write(target, errno);
+    if (target.filename().empty() || fs::is_directory(target)) fail_write(target, EISDIR);
+}
+
+}  // namespace
+
+FileSet::~FileSet() {
+    for (const File& file : files_) ::unlink(file.beside.c_str());
+}
+
+void FileSet::add(const fs::path& path, std::span<const std::byte> bytes) {
+    const fs::path target = real_target(path);
+    const fs::path& beside = files_.emplace_back(File{temporary_beside(target), target}).beside;
+    const Descriptor file{::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
+    if (file.get() < 0) fail_write(target, errno);
+    write_all(file.get(), bytes, target);
+}
+
+void FileSet::add(const fs::path& path, std::string_view text) {
+    add(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+void FileSet::commit() {
+    if (files_.size() > 1)
+        for (const File& file : files_) require_writable(file.target);
+    while (!files_.empty()) {
+        const File& file = files_.front();
+        if (::rename(file.beside.c_str(), file.target.c_str()) != 0) fail_write(file.target, errno);
+        files_.erase(files_.begin());
+    }
+}
+
+void write_file(const fs::path& path, std::span<const std::byte> bytes) {
+    FileSet file;
+    file.add(path, bytes);
+    file.commit();
+}
+
+void write_file(const fs::path& path, std::string_view text) {
+    write_file(path, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+void check_writable(const fs::path& given) {
+    const fs::path path = real_target(given);
+    require_writable(path);
+    const fs::path beside = temporary_beside(path);
+    const Descriptor file{::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
+    if (file.get() < 0) fail_write(path, errno);
+    ::unlink(beside.c_str());
+}
+
+}  // namespace easypbr

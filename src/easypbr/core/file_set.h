@@ -1,0 +1,36 @@
+// Files that belong together, written as one.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace easypbr {
+
+/// All files of a set appear at once, or none: each is written beside its target, and commit() renames them.
+/// A set that is destroyed before leaves nothing behind, and the files that were there as they were.
+/// Move-only.
+class FileSet {
+  public:
+    FileSet() = default;
+    ~FileSet();
+    FileSet(FileSet&&) = default;
+    FileSet& operator=(FileSet&&) = delete;
+
+    /// Writes a file beside `path`; a link is followed. Throws FileError.
+    void add(const std::filesystem::path& path, std::span<const std::byte> bytes);
+    void add(const std::filesystem::path& path, std::string_view text);
+    /// Renames all, in the order in which they were added. Throws FileError; when a target cannot be written,
+    /// none is changed.
+    void commit();
+
+  private:
+    struct File {
+        std::filesystem::path beside, target;
+    };
+    std::vector<File> files_;
+};
+
+}  // namespace easypbr

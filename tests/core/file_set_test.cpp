@@ -1,0 +1,75 @@
+#include "easypbr/core/file_set.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "file_limit.h"
+#include "io/temporary_folder.h"
+
+namespace easypbr {
+namespace {
+
+class FileSets : public testing::Test {
+  protected:
+    FileSets() {
+        write_file(folder_ / "old", std::string_view("before"));
+        first_.add(folder_ / "old", std::string_view("after"));
+    }
+
+    std::string text_of(const char* name) const { return std::string(FileBytes(folder_ / name).text()); }
+    /// A failure leaves what was there, and nothing else.
+    void expect_untouched(size_t files) const {
+        EXPECT_EQ(text_of("old"), "before");
+        EXPECT_EQ(size_t(std::distance(fs::directory_iterator(folder_.path()), {})), files);
+    }
+
+    TemporaryFolder folder_;
+    FileSet first_;
+};
+
+TEST_F(FileSets, AppearTogether) {
+    first_.add(folder_ / "new", std::string_view("new"));
+    EXPECT_FALSE(fs::exists(folder_ / "new"));
+    EXPECT_EQ(text_of("old"), "before");
+    first_.commit();
+    EXPECT_EQ(text_of("old"), "after");
+    EXPECT_EQ(text_of("new"), "new");
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_.path()), {}), 2);
+}
+
+TEST_F(FileSets, AreGoneWithoutCommit) {
+    { const FileSet dropped = std::move(first_); }
+    expect_untouched(1);
+}
+
+TEST_F(FileSets, LeaveNothingOnAFullDisk) {
+    {
+        const FileSet set = std::move(first_);
+        FileSet full = {};
+        const FileLimit limit(1000);
+        EXPECT_NO_THROW(full.add(folder_ / "small", std::string(1000, 'x')));
+        try {
+            full.add(folder_ / "large", std::string(1001, 'x'));
+            FAIL() << "there is no room for it";
+        } catch (const FileError& error) {
+            EXPECT_NE(std::string(error.what()).find((folder_ / "large").string()), std::string::npos);
+        }
+    }
+    expect_untouched(1);
+}
+
+TEST_F(FileSets, ChangeNothingWhereOneTargetIsAFolder) {
+    fs::create_directory(folder_ / "folder");
+    {
+        FileSet set = std::move(first_);
+        set.add(folder_ / "folder", std::string_view("x"));
+        EXPECT_THROW(set.commit(), FileError);
+    }
+    expect_untouched(2);
+}
+
+}  // namespace
+}  // namespace easypbr
