@@ -209,6 +209,7 @@ TEST(TintedShadow, LeavesOpaqueCastersAlone) {
         app::Session session =
             under({pane(matt()), rectangle(-1, -1, 1, 1, -1)}, mode, directional(Vec3(0.2f, 0, -1), 2));
         session.settings().shadows.enabled = true;
+        session.allow_native_shading(false);  // tints are the driver's
         look_from(session, Vec3d(0, -1.5, 4));
         const Image before = render_linear(session, 3);
         session.scene().show(rectangle(-0.5f, -0.5f, 0.5f, 0.5f, -0.5f, blended(0.5f)), "below the floor");

@@ -56,8 +56,10 @@ void ImGuiRenderer::draw(const ImDrawData& data, const gl::Framebuffer& target) 
     glDisable(GL_DEPTH_TEST);
     glDisable(GL_CULL_FACE);
     glEnable(GL_BLEND);
+    glBlendEquation(GL_FUNC_ADD);
     glBlendFuncSeparate(GL_SRC_ALPHA, GL_ONE_MINUS_SRC_ALPHA, GL_ONE, GL_ONE_MINUS_SRC_ALPHA);
     glEnable(GL_SCISSOR_TEST);
+    glColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     program_.use();
     program_.set("u_size", Vec2(float(target.width()), float(target.height())));
     program_.set("u_texture", 0);

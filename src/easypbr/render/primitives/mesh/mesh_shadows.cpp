@@ -19,10 +19,6 @@ bool reads_uv(const DrawItem& item) {
     return (item.alpha != AlphaMode::opaque || item.casts_tint()) && item.textured() && any;
 }
 
-/// Smaller objects are left to the driver, which fills large triangles in parallel; where exactly the two
-/// break even has not been measured.
-constexpr Eigen::Index smallest_face_count = 5000;
-
 using Parts = std::span<const DrawItem* const>;
 
 /// The casters of each object.
@@ -40,7 +36,7 @@ bool parts_suit_native(Parts parts) {
     const auto opaque = [](const DrawItem* item) {
         return item->alpha == AlphaMode::opaque && !item->material.shader;
     };
-    return parts.front()->mesh().F.rows() >= smallest_face_count && std::ranges::all_of(parts, opaque);
+    return std::ranges::all_of(parts, opaque);
 }
 
 /// Parts whose faces follow each other, as one.
