@@ -37,8 +37,14 @@ float integral(float cos_tilt, float sin_tilt, float c) {
 
 Side side_of(float n_dot_v, float n_dot_a) {
     float scale = inversesqrt(n_dot_v * n_dot_v + n_dot_a * n_dot_a);
-    float whole = integral(n_dot_v * scale, n_dot_a * scale, -n_dot_a / n_dot_v);
-    return Side(n_dot_v, n_dot_a, n_dot_v * scale, n_dot_a * scale, whole, 1.0 / whole);
+    Side side;
+    side.n_dot_v = n_dot_v;
+    side.n_dot_a = n_dot_a;
+    side.cos_tilt = n_dot_v * scale;
+    side.sin_tilt = n_dot_a * scale;
+    side.whole = integral(side.cos_tilt, side.sin_tilt, -n_dot_a / n_dot_v);
+    side.inverse_whole = 1.0 / side.whole;
+    return side;
 }
 
 // Part of the side between the tangent plane and a direction that rises above it by this cotangent.

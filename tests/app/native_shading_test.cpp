@@ -61,8 +61,9 @@ class Generator {
         s.ssao.multi_bounce = chance(0.5);
         s.environment.enabled = chance(0.8);
         s.environment.intensity = number(0.2f, 2);
-        s.background.mode = std::array{BackgroundMode::color, BackgroundMode::environment, BackgroundMode::blur,
-                                       BackgroundMode::transparent}[size_t(between(0, 3))];
+        s.background.mode =
+            std::array{BackgroundMode::color, BackgroundMode::environment, BackgroundMode::blur,
+                       BackgroundMode::transparent}[size_t(between(0, 3))];
         s.background.blur = number(0, 1);
         s.shading.brdf = Brdf(between(0, 2));
         s.shading.multiple_scattering = chance(0.5);
@@ -108,7 +109,8 @@ Difference difference(const Image& a, const Image& b) {
     for (size_t i = 0; i < a.pixel_count(); ++i) {
         int most = 0;
         for (size_t c = 0; c < 4; ++c)
-            most = std::max(most, std::abs(int(a.pixels<uint8_t>()[4 * i + c]) - int(b.pixels<uint8_t>()[4 * i + c])));
+            most = std::max(
+                most, std::abs(int(a.pixels<uint8_t>()[4 * i + c]) - int(b.pixels<uint8_t>()[4 * i + c])));
         d.by_one += most == 1;
         d.by_more += most > 1;
         d.most = std::max(d.most, most);
@@ -132,9 +134,10 @@ Image drawn(const Scene& scene, unsigned seed, bool native, const std::string& i
     return session.render();
 }
 
-// Both round the same values to 8 bits, in another order of operations: they differ by 1 where a value lies beside
-// the middle of two. A texel of a shadow map that lies in the plane of a surface, to the last bit, is before it for
-// one and behind it for the other, and FXAA chooses between two blurs: few pixels differ by more.
+// Both round the same values to 8 bits, in another order of operations: they differ by 1 where a value lies
+// beside the middle of two. A texel of a shadow map that lies in the plane of a surface, to the last bit, is
+// before it for one and behind it for the other, and FXAA chooses between two blurs: few pixels differ by
+// more.
 TEST(NativeShading, IsTheDrivers) {
     if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
     Difference all;

@@ -47,8 +47,12 @@ TEST(Lanes, Angles) {
 }
 
 TEST(Lanes, Roots) {
-    EXPECT_EQ(error_of(sqrt, [](double x) { return double(std::sqrt(float(x))); }, 0, 1000), 0);
-    EXPECT_LT(error_of(inversesqrt, [](double x) { return 1 / std::sqrt(x); }, 0.01, 1000), 2e-7);
+    EXPECT_EQ(error_of(
+                  sqrt, [](double x) { return double(std::sqrt(float(x))); }, 0, 1000),
+              0);
+    EXPECT_LT(error_of(
+                  inversesqrt, [](double x) { return 1 / std::sqrt(x); }, 0.01, 1000),
+              2e-7);
     EXPECT_EQ(error_of(floor, std::floor, -1000, 1000), 0);
 }
 
@@ -112,7 +116,8 @@ TEST_F(Pictures, FetchesAnywhere) {
         for (int x = -3; x < width + 6; ++x)
             for (int step = 0; step < 3; ++step) {
                 const vec4 found = fetch(view(), lane_numbers() * step + x, vint(y));
-                for (int k = 0; k < lanes; ++k) EXPECT_EQ(found.x.v[k], expected(x + k * step, y)) << x << ' ' << y;
+                for (int k = 0; k < lanes; ++k)
+                    EXPECT_EQ(found.x.v[k], expected(x + k * step, y)) << x << ' ' << y;
             }
 }
 

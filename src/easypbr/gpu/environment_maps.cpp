@@ -105,7 +105,8 @@ const gl::Texture& EnvironmentMaps::prefiltered() const {
 }
 
 const gl::Texture& EnvironmentMaps::irradiance() const {
-    if (!irradiance_) irradiance_ = cube_texture({&maps_.irradiance}, PrefilteredEnvironment::irradiance_size);
+    if (!irradiance_)
+        irradiance_ = cube_texture({&maps_.irradiance}, PrefilteredEnvironment::irradiance_size);
     return irradiance_;
 }
 
@@ -146,7 +147,8 @@ EnvironmentMaps::HostCube EnvironmentMaps::host_cube(const std::vector<const std
 EnvironmentMaps::HostPanorama EnvironmentMaps::host_panorama(const Image& image) {
     HostPanorama host;
     Image level = image;
-    const int levels = std::min(gl::full_levels(image.width(), image.height()), native::Panorama::most_levels);
+    const int levels =
+        std::min(gl::full_levels(image.width(), image.height()), native::Panorama::most_levels);
     for (int i = 0; i < levels; ++i) {
         host.panorama.width[i] = level.width();
         host.panorama.height[i] = level.height();

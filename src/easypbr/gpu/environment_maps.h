@@ -11,12 +11,12 @@
 
 namespace easypbr::gpu {
 
-/// Keeps the maps of the environment used last. Those of the driver and those in host memory are each made when
-/// they are first asked for.
+/// Keeps the maps of the environment used last. Those of the driver and those in host memory are each made
+/// when they are first asked for.
 class EnvironmentMaps {
   public:
-    /// Prepares the maps for this environment unless they are those already there, and, unless it is empty, the
-    /// picture of the one that is seen.
+    /// Prepares the maps for this environment unless they are those already there, and, unless it is empty,
+    /// the picture of the one that is seen.
     void prepare(const Environment& environment, const Environment& seen);
 
     const gl::Texture& prefiltered() const;

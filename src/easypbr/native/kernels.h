@@ -35,7 +35,7 @@ struct Region {
     Where where = Where::everywhere;
     R32f depth = {};
     int depth_channels = 1;  ///< of the pixels of `depth`, which is the first
-    int x0 = 0, x1 = 0;  ///< columns that are shaded
+    int x0 = 0, x1 = 0;      ///< columns that are shaded
 };
 
 /// Shades rows [y0, y1) of a region; `uniforms` are those of the shader.
@@ -47,11 +47,11 @@ struct VisibleTriangles {
     const int32_t* F = nullptr;              ///< three indices a face
     uint32_t first_face = 0;                 ///< faces of pixels count from here
     double clip_from_mesh[4][4] = {};
-    float normal_from_mesh[3][3] = {};  ///< to world space
-    bool flat = false;                  ///< normals of faces in place of N
-    bool two_sided = false;             ///< normals are on the side that is seen
-    bool normals_agree = false;         ///< the winding tells the side of N
-    bool mirrored = false;              ///< front faces are clockwise
+    float normal_from_mesh[3][3] = {};         ///< to world space
+    bool flat = false;                         ///< normals of faces in place of N
+    bool two_sided = false;                    ///< normals are on the side that is seen
+    bool normals_agree = false;                ///< the winding tells the side of N
+    bool mirrored = false;                     ///< front faces are clockwise
     double pixel_width = 0, pixel_height = 0;  ///< in normalised device coordinates
     uint64_t albedo = 0;                       ///< of all pixels, in the formats of the targets
     uint32_t material = 0, id = 0;
@@ -68,13 +68,13 @@ struct VisiblePixel {
 };
 
 /// Writes the surfaces of pixels of row `y`, which stand in the targets from `row` on, less `first_x`.
-using ResolveTriangles = void (*)(const VisibleTriangles& triangles, const VisiblePixel* pixels, int count, int y,
-                                  size_t row, int first_x);
+using ResolveTriangles = void (*)(const VisibleTriangles& triangles, const VisiblePixel* pixels, int count,
+                                  int y, size_t row, int first_x);
 
 struct Kernels {
     ResolveTriangles resolve_triangles;
-    ShadeRows lighting_surface, background_environment, display_output, accumulate_sample, antialias_fxaa, occlusion_select,
-        occlusion_horizon, occlusion_hemisphere, occlusion_blur, occlusion_magnify;
+    ShadeRows lighting_surface, background_environment, display_output, accumulate_sample, antialias_fxaa,
+        occlusion_select, occlusion_horizon, occlusion_hemisphere, occlusion_blur, occlusion_magnify;
 };
 
 }  // namespace easypbr::native

@@ -109,11 +109,10 @@ class Setter {
         return false;
     }
     template <class T, class Value>
-    static constexpr bool is_same_shape =
-        (std::is_same_v<T, uni::vec2> && std::is_same_v<Value, Vec2>) ||
-        (std::is_same_v<T, uni::vec3> && std::is_same_v<Value, Vec3>) ||
-        (std::is_same_v<T, uni::vec4> && std::is_same_v<Value, Vec4>) ||
-        (std::is_same_v<T, mat3> && std::is_same_v<Value, Mat3>);
+    static constexpr bool is_same_shape = (std::is_same_v<T, uni::vec2> && std::is_same_v<Value, Vec2>) ||
+                                          (std::is_same_v<T, uni::vec3> && std::is_same_v<Value, Vec3>) ||
+                                          (std::is_same_v<T, uni::vec4> && std::is_same_v<Value, Vec4>) ||
+                                          (std::is_same_v<T, mat3> && std::is_same_v<Value, Mat3>);
 
     const Inputs& inputs_;
 };
@@ -145,8 +144,8 @@ void use_instruction_set(std::string_view name) {
     chosen = &set_of(name);
 }
 
-void resolve_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels, int y, size_t row,
-                       int first_x) {
+void resolve_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels, int y,
+                       size_t row, int first_x) {
     chosen_set().kernels->resolve_triangles(triangles, pixels.data(), int(pixels.size()), y, row, first_x);
 }
 

@@ -51,8 +51,8 @@ struct Inputs {
 };
 
 /// Writes the surfaces of pixels of a row, see ResolveTriangles. On the calling thread.
-void resolve_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels, int y, size_t row,
-                       int first_x);
+void resolve_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels, int y,
+                       size_t row, int first_x);
 
 /// Shades rows [y0, y1) of a region, on all cores. Throws Error when a value is not of the uniform's type,
 /// Interrupted.

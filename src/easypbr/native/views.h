@@ -1,5 +1,5 @@
-// Pictures in host memory as native shaders see them. Plain data: shaders are compiled for several instruction
-// sets, and code in this header would be too.
+// Pictures in host memory as native shaders see them. Plain data: shaders are compiled for several
+// instruction sets, and code in this header would be too.
 #pragma once
 
 #include <cstddef>
@@ -10,8 +10,8 @@ namespace easypbr::native {
 /// A picture of which a rectangle is held, row by row; zeros beyond it.
 struct View {
     const std::byte* data = nullptr;
-    int width = 0, height = 0;           ///< of the picture
-    int x = 0, y = 0;                    ///< first pixel that is held
+    int width = 0, height = 0;  ///< of the picture
+    int x = 0, y = 0;           ///< first pixel that is held
     int held_width = 0, held_height = 0;
 };
 
@@ -34,12 +34,13 @@ struct Cube {
     static constexpr int most_levels = 16;
 
     const uint16_t* data = nullptr;
-    int size = 0;                 ///< of a face of the largest level, without its border
+    int size = 0;  ///< of a face of the largest level, without its border
     int levels = 0;
     int offsets[most_levels] = {};  ///< of levels, in texels
 };
 
-/// An equirectangular picture of halves, four channels a texel, with the first column once more after the last.
+/// An equirectangular picture of halves, four channels a texel, with the first column once more after the
+/// last.
 struct Panorama {
     static constexpr int most_levels = 16;
 
@@ -113,7 +114,8 @@ struct vec4 {
 struct mat3 {
     float m[9];
     EASYPBR_INLINE constexpr mat3() : m{} {}
-    EASYPBR_INLINE constexpr mat3(float a, float b, float c, float d, float e, float f, float g, float h, float i)
+    EASYPBR_INLINE constexpr mat3(float a, float b, float c, float d, float e, float f, float g, float h,
+                                  float i)
         : m{a, b, c, d, e, f, g, h, i} {}
 };
 

@@ -17,7 +17,6 @@ struct Fragment {
 
 #include "native/shaders.h"
 
-
 namespace {
 
 /// Four channels of all lanes, pixel by pixel.
@@ -26,7 +25,8 @@ INLINE void interleave(const vec4& c, Floats4* pixels) {
     const __m256 xy_low = _mm256_unpacklo_ps(c.x.v, c.y.v), xy_high = _mm256_unpackhi_ps(c.x.v, c.y.v),
                  zw_low = _mm256_unpacklo_ps(c.z.v, c.w.v), zw_high = _mm256_unpackhi_ps(c.z.v, c.w.v);
     const __m256 p04 = _mm256_shuffle_ps(xy_low, zw_low, 0x44), p15 = _mm256_shuffle_ps(xy_low, zw_low, 0xee),
-                 p26 = _mm256_shuffle_ps(xy_high, zw_high, 0x44), p37 = _mm256_shuffle_ps(xy_high, zw_high, 0xee);
+                 p26 = _mm256_shuffle_ps(xy_high, zw_high, 0x44),
+                 p37 = _mm256_shuffle_ps(xy_high, zw_high, 0xee);
     const __m256 pairs[4] = {p04, p15, p26, p37};
     for (int i = 0; i < 4; ++i) {
         pixels[i] = Floats4(_mm256_castps256_ps128(pairs[i]));

@@ -1,6 +1,6 @@
-// Numbers of several pixels at once, and GLSL's functions of them. Compiled once for each instruction set, which
-// EASYPBR_ISA names, into a namespace of its own. No operation mixes lanes, none is contracted, and approximations
-// are the same everywhere: all instruction sets compute the same bits.
+// Numbers of several pixels at once, and GLSL's functions of them. Compiled once for each instruction set,
+// which EASYPBR_ISA names, into a namespace of its own. No operation mixes lanes, none is contracted, and
+// approximations are the same everywhere: all instruction sets compute the same bits.
 #pragma once
 
 #include <cstdint>
@@ -95,21 +95,22 @@ INLINE bool any_lane(vbool a) {
 #endif
 }
 
-#define ARITHMETIC(T, op)               \
-    INLINE T operator op(T a, T b) {    \
-        return a.v op b.v;              \
-    }                                   \
+#define ARITHMETIC(T, op)                 \
+    INLINE T operator op(T a, T b) {      \
+        return a.v op b.v;                \
+    }                                     \
     INLINE T& operator op##=(T& a, T b) { \
-        a.v = a.v op b.v;               \
-        return a;                       \
+        a.v = a.v op b.v;                 \
+        return a;                         \
     }
 #define COMPARISON(T, op)                \
     INLINE vbool operator op(T a, T b) { \
         return Ints(a.v op b.v);         \
     }
-#define NUMBER(T) \
-    ARITHMETIC(T, +) ARITHMETIC(T, -) ARITHMETIC(T, *) \
-    COMPARISON(T, <) COMPARISON(T, >) COMPARISON(T, <=) COMPARISON(T, >=) COMPARISON(T, ==) COMPARISON(T, !=)
+#define NUMBER(T)                                                                                           \
+    ARITHMETIC(T, +)                                                                                        \
+    ARITHMETIC(T, -) ARITHMETIC(T, *) COMPARISON(T, <) COMPARISON(T, >) COMPARISON(T, <=) COMPARISON(T, >=) \
+        COMPARISON(T, ==) COMPARISON(T, !=)
 #define BITS(T) ARITHMETIC(T, &) ARITHMETIC(T, |) ARITHMETIC(T, ^)
 NUMBER(vfloat)
 NUMBER(vint)
@@ -326,7 +327,8 @@ INLINE vfloat exp2(vfloat x) {
     p = p * f + 1.0f;
     return p * as_float((__builtin_convertvector(whole.v, Ints) + 127) << 23);
 }
-/// Of positive numbers, from the mantissa in [1/sqrt 2, sqrt 2) by the series of artanh. Absolute error below 1e-6.
+/// Of positive numbers, from the mantissa in [1/sqrt 2, sqrt 2) by the series of artanh. Absolute error below
+/// 1e-6.
 INLINE vfloat log2(vfloat x) {
     const Ints bits = Ints(x.v), exponent = (bits - 0x3f3504f3) >> 23;
     const vfloat mantissa = as_float(bits - (exponent << 23));

@@ -26,49 +26,49 @@ INLINE vec3 transformed(const float (&m)[3][3], const vec3& v) {
             m[2][0] * v.x + m[2][1] * v.y + m[2][2] * v.z};
 }
 
-/// A row of the clip matrix times a point, and times a difference of two.
+/// A row of the clip matrix times a point.
 INLINE Doubles clip_of(const double (&row)[4], const vec3& p) {
-    return row[0] * __builtin_convertvector(p.x.v, Doubles) + row[1] * __builtin_convertvector(p.y.v, Doubles) +
+    return row[0] * __builtin_convertvector(p.x.v, Doubles) +
+           row[1] * __builtin_convertvector(p.y.v, Doubles) +
            row[2] * __builtin_convertvector(p.z.v, Doubles) + row[3];
-}
-INLINE vfloat edge_of(const double (&row)[4], const vec3& e) {
-    return float(row[0]) * e.x + float(row[1]) * e.y + float(row[2]) * e.z;
 }
 INLINE vfloat single(Doubles v) {
     return __builtin_convertvector(v, Floats);
 }
 
-/// A pixel on a triangle: weights of the second and third corner, right under perspective, and the depth.
+/// A pixel on a triangle: weights of the corners, right under perspective, and the depth.
 struct TriangleHit {
-    vfloat second, third, depth;
+    vfloat weight[3], depth;
     vbool front;
 };
 
-/// Weights solve sum b_i (x_i - X w_i, y_i - Y w_i) = 0 for the pixel (X, Y) (Olano and Greer 1997). The first corner
-/// is transformed in double precision, the others relative to it: a small triangle keeps its shape far from the origin.
-INLINE TriangleHit intersect(const double (&clip)[4][4], const vec3& corner, const vec3& edge1, const vec3& edge2,
-                             Doubles ndc_x, double ndc_y) {
-    const Doubles w = clip_of(clip[3], corner);
-    const vfloat x = single(clip_of(clip[0], corner) - ndc_x * w), y = single(clip_of(clip[1], corner) - ndc_y * w);
-    const vfloat X = single(ndc_x), Y = float(ndc_y);
-    const vfloat w1 = edge_of(clip[3], edge1), w2 = edge_of(clip[3], edge2);
-    const vfloat x1 = edge_of(clip[0], edge1) - X * w1, y1 = edge_of(clip[1], edge1) - Y * w1;
-    const vfloat x2 = edge_of(clip[0], edge2) - X * w2, y2 = edge_of(clip[1], edge2) - Y * w2;
-    const vfloat sum = x1 * y2 - y1 * x2;
-    const vbool flat = sum == 0.0f;
-    const vfloat scale = 1.0f / select(flat, vfloat(1.0f), sum);
+/// Weights solve sum b_i (x_i - X w_i, y_i - Y w_i) = 0 for the pixel (X, Y) (Olano and Greer 1997). In
+/// double precision: occlusion on a plane notices depths that err by more than their rounding.
+INLINE TriangleHit intersect(const double (&clip)[4][4], const Corners& position, Doubles ndc_x,
+                             double ndc_y) {
+    Doubles x[3], y[3], z[3], w[3];
+    for (int k = 0; k < 3; ++k) {
+        const vec3 p = position.corner(k);
+        w[k] = clip_of(clip[3], p);
+        x[k] = clip_of(clip[0], p) - ndc_x * w[k];
+        y[k] = clip_of(clip[1], p) - ndc_y * w[k];
+        z[k] = clip_of(clip[2], p);
+    }
+    Doubles b[3] = {x[1] * y[2] - y[1] * x[2], x[2] * y[0] - y[2] * x[0], x[0] * y[1] - y[0] * x[1]};
+    const Doubles sum = b[0] + b[1] + b[2], one = 1.0 - Doubles{};
+    const auto flat = sum == 0.0;
+    for (Doubles& part : b) part = flat ? one / 3.0 : part;
+    const Doubles scale = 1.0 / (flat ? one : sum);
     TriangleHit hit;
-    hit.second = select(flat, vfloat(1.0f / 3.0f), (x2 * y - y2 * x) * scale);
-    hit.third = select(flat, vfloat(1.0f / 3.0f), (x * y1 - y * x1) * scale);
-    const vfloat z = single(clip_of(clip[2], corner));
-    hit.depth = (z + hit.second * edge_of(clip[2], edge1) + hit.third * edge_of(clip[2], edge2)) /
-                (single(w) + hit.second * w1 + hit.third * w2);
-    hit.front = flat || sum > 0.0f;
+    for (int k = 0; k < 3; ++k) hit.weight[k] = single(b[k] * scale);
+    hit.depth = single((b[0] * z[0] + b[1] * z[1] + b[2] * z[2]) / (b[0] * w[0] + b[1] * w[1] + b[2] * w[2]));
+    hit.front = single(flat ? one : sum) > 0.0f;
     return hit;
 }
 
 /// On the side that is seen, where the surface has two.
-INLINE vec3 normal_of(const VisibleTriangles& t, const vec3& mean, const vec3& edge1, const vec3& edge2, vbool front) {
+INLINE vec3 normal_of(const VisibleTriangles& t, const vec3& mean, const vec3& edge1, const vec3& edge2,
+                      vbool front) {
     const vbool back = t.mirrored ? front : !front;
     if (t.flat) {
         const vec3 n = normalize(transformed(t.normal_from_mesh, cross(edge1, edge2)));
@@ -96,8 +96,8 @@ INLINE vint encoded_normal(const vec3& n) {
     return rounded(u) | rounded(v) << 16;
 }
 
-inline void resolve_triangles(const VisibleTriangles& t, const VisiblePixel* pixels, int count, int y, size_t row,
-                              int first_x) {
+inline void resolve_triangles(const VisibleTriangles& t, const VisiblePixel* pixels, int count, int y,
+                              size_t row, int first_x) {
     const double ndc_y = 1 - (y + 0.5) * t.pixel_height;
     Corners position, normal;
     for (int first = 0; first < count; first += lanes) {
@@ -113,12 +113,13 @@ inline void resolve_triangles(const VisibleTriangles& t, const VisiblePixel* pix
                 if (!t.flat) normal.set(c, k, t.N + 3 * size_t(f[c]));
             }
         }
-        const vec3 corner = position.corner(0), edge1 = position.corner(1) - corner, edge2 = position.corner(2) - corner;
-        const TriangleHit hit = intersect(t.clip_from_mesh, corner, edge1, edge2, ndc_x, ndc_y);
+        const vec3 corner = position.corner(0), edge1 = position.corner(1) - corner,
+                   edge2 = position.corner(2) - corner;
+        const TriangleHit hit = intersect(t.clip_from_mesh, position, ndc_x, ndc_y);
         vec3 mean(vfloat(0.0f));
         if (!t.flat)
-            mean = normal.corner(0) * (1.0f - hit.second - hit.third) + normal.corner(1) * hit.second +
-                   normal.corner(2) * hit.third;
+            mean = normal.corner(0) * hit.weight[0] + normal.corner(1) * hit.weight[1] +
+                   normal.corner(2) * hit.weight[2];
         const vint encoded = encoded_normal(normal_of(t, mean, edge1, edge2, hit.front));
         for (int k = 0; k < used; ++k) {
             const VisiblePixel& pixel = pixels[first + k];

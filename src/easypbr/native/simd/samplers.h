@@ -137,12 +137,13 @@ INLINE vec4 fetch(const R16& s, vint x, vint y) {
 }
 INLINE vec4 fetch(const Rg16& s, vint x, vint y) {
     const vint bits = fetch_bits(s, x, y);
-    return {to_float(bits & 0xffff) * (1.0f / 65535.0f), to_float(vuint(bits) >> 16) * (1.0f / 65535.0f), 0.0f, 1.0f};
+    return {to_float(bits & 0xffff) * (1.0f / 65535.0f), to_float(vuint(bits) >> 16) * (1.0f / 65535.0f),
+            0.0f, 1.0f};
 }
 INLINE vec4 from_bytes(vint bits) {
     constexpr float scale = 1.0f / 255.0f;
-    return {to_float(bits & 255) * scale, to_float(bits >> 8 & 255) * scale, to_float(bits >> 16 & 255) * scale,
-            to_float(vuint(bits) >> 24) * scale};
+    return {to_float(bits & 255) * scale, to_float(bits >> 8 & 255) * scale,
+            to_float(bits >> 16 & 255) * scale, to_float(vuint(bits) >> 24) * scale};
 }
 INLINE vec4 fetch(const Rgba8& s, vint x, vint y) {
     return from_bytes(fetch_bits(s, x, y));
@@ -151,19 +152,23 @@ INLINE vec4 fetch(const Rgba8Linear& s, vint x, vint y) {
     return from_bytes(fetch_bits(s, x, y));
 }
 INLINE vec4 fetch(const Rgba16& s, vint x, vint y) {
-    const vec4 c = fetch_pixels(s, x, y, [&](int i) __attribute__((always_inline)) {
-        return __builtin_convertvector(__builtin_convertvector(load<Shorts4>(s.data + 8 * size_t(i)), Ints4), Floats4);
-    });
+    const vec4 c = fetch_pixels(
+        s, x, y, [&](int i) __attribute__((always_inline)) {
+            return __builtin_convertvector(
+                __builtin_convertvector(load<Shorts4>(s.data + 8 * size_t(i)), Ints4), Floats4);
+        });
     return c * (1.0f / 65535.0f);
 }
 INLINE vec4 fetch(const Rgba16f& s, vint x, vint y) {
-    return fetch_pixels(s, x, y, [&](int i) __attribute__((always_inline)) {
-        return from_halves(load<Shorts4>(s.data + 8 * size_t(i)));
-    });
+    return fetch_pixels(
+        s, x, y, [&](int i) __attribute__((always_inline)) {
+            return from_halves(load<Shorts4>(s.data + 8 * size_t(i)));
+        });
 }
 INLINE vec4 fetch(const Rgba32f& s, vint x, vint y) {
-    return fetch_pixels(s, x, y,
-                        [&](int i) __attribute__((always_inline)) { return load<Floats4>(s.data + 16 * size_t(i)); });
+    return fetch_pixels(
+        s, x,
+        y, [&](int i) __attribute__((always_inline)) { return load<Floats4>(s.data + 16 * size_t(i)); });
 }
 
 template <class Sampler>
@@ -192,7 +197,8 @@ NEAREST(Rgba32f)
 /// One channel of the four texels around a point, from the lower left one on against the clock.
 template <class Sampler>
 INLINE vec4 textureGather(const Sampler& s, const vec2& uv, int channel) {
-    const vint x = to_int(floor(uv.x * float(s.width) - 0.5f)), y = to_int(floor(uv.y * float(s.height) - 0.5f));
+    const vint x = to_int(floor(uv.x * float(s.width) - 0.5f)),
+               y = to_int(floor(uv.y * float(s.height) - 0.5f));
     const auto texel = [&](vint column, vint row) __attribute__((always_inline)) {
         const vec4 c = fetch(s, column, row);
         return channel == 0 ? c.x : channel == 1 ? c.y : channel == 2 ? c.z : c.w;
@@ -225,7 +231,8 @@ INLINE vec4 textureLod(const Rgba8Linear& s, const vec2& uv, float) {
     Floats4 pixels[lanes];
     for (int k = 0; k < lanes; ++k) {
         const std::byte* p = s.data + 4 * size_t(at.v[k]);
-        pixels[k] = bilinear(from_bytes8(p), from_bytes8(p + 4 * size_t(s.width)), f.right.v[k], f.below.v[k]);
+        pixels[k] =
+            bilinear(from_bytes8(p), from_bytes8(p + 4 * size_t(s.width)), f.right.v[k], f.below.v[k]);
     }
     return planar(pixels) * (1.0f / 255.0f);
 }
@@ -250,7 +257,8 @@ INLINE vec4 textureLod(const Rg16fLinear& s, const vec2& uv, float) {
     Floats4 pixels[lanes];
     for (int k = 0; k < lanes; ++k) {
         const uint16_t* p = data + 2 * size_t(at.v[k]);
-        const Floats4 top = from_halves(load<Shorts4>(p)), bottom = from_halves(load<Shorts4>(p + 2 * size_t(s.width)));
+        const Floats4 top = from_halves(load<Shorts4>(p)),
+                      bottom = from_halves(load<Shorts4>(p + 2 * size_t(s.width)));
         const Floats4 v = top + (bottom - top) * f.below.v[k];
         pixels[k] = v + (Floats4{v[2], v[3], v[2], v[3]} - v) * f.right.v[k];
     }
@@ -285,15 +293,16 @@ INLINE vfloat layer_texel(const Layers& s, vint x, vint y, vint layer) {
 }
 INLINE vec4 textureLod(const Layers& s, const vec3& place, float) {
     const float size = float(s.size);
-    return {layer_texel(s, to_int(floor(place.x * size)), to_int(floor(place.y * size)), to_int(place.z + 0.5f)), 0.0f,
-            0.0f, 1.0f};
+    return {
+        layer_texel(s, to_int(floor(place.x * size)), to_int(floor(place.y * size)), to_int(place.z + 0.5f)),
+        0.0f, 0.0f, 1.0f};
 }
 INLINE vec4 textureGather(const Layers& s, const vec3& place) {
     const float size = float(s.size);
     const vint x = to_int(floor(place.x * size - 0.5f)), y = to_int(floor(place.y * size - 0.5f)),
                layer = to_int(place.z + 0.5f);
-    return {layer_texel(s, x, y + 1, layer), layer_texel(s, x + 1, y + 1, layer), layer_texel(s, x + 1, y, layer),
-            layer_texel(s, x, y, layer)};
+    return {layer_texel(s, x, y + 1, layer), layer_texel(s, x + 1, y + 1, layer),
+            layer_texel(s, x + 1, y, layer), layer_texel(s, x, y, layer)};
 }
 
 struct CubePlace {
@@ -306,7 +315,8 @@ INLINE CubePlace cube_place(const vec3& d) {
     const vbool is_z = az >= ax && az >= ay, is_y = !is_z && ay >= ax;
     const vfloat major = select(is_z, d.z, select(is_y, d.y, d.x));
     const vbool negative = major < 0.0f;
-    const vfloat s = select(is_z, select(negative, -d.x, d.x), select(is_y, d.x, select(negative, d.z, -d.z)));
+    const vfloat s =
+        select(is_z, select(negative, -d.x, d.x), select(is_y, d.x, select(negative, d.z, -d.z)));
     const vfloat t = select(is_y, select(negative, -d.z, d.z), -d.y);
     const vfloat scale = 0.5f / abs(major);
     const vint face = select(is_z, 4, select(is_y, vint(2), vint(0))) + select(negative, 1, 0);

@@ -86,9 +86,13 @@ struct uvec3 {
 };
 
 INLINE vec2::vec2(const ivec2& v) : x(to_float(v.x)), y(to_float(v.y)) {}
-INLINE vec3::vec3(const bvec3& v) : x(select(v.x, 1.0f, 0.0f)), y(select(v.y, 1.0f, 0.0f)), z(select(v.z, 1.0f, 0.0f)) {}
+INLINE vec3::vec3(const bvec3& v)
+    : x(select(v.x, 1.0f, 0.0f)), y(select(v.y, 1.0f, 0.0f)), z(select(v.z, 1.0f, 0.0f)) {}
 INLINE vec4::vec4(const bvec4& v)
-    : x(select(v.x, 1.0f, 0.0f)), y(select(v.y, 1.0f, 0.0f)), z(select(v.z, 1.0f, 0.0f)), w(select(v.w, 1.0f, 0.0f)) {}
+    : x(select(v.x, 1.0f, 0.0f)),
+      y(select(v.y, 1.0f, 0.0f)),
+      z(select(v.z, 1.0f, 0.0f)),
+      w(select(v.w, 1.0f, 0.0f)) {}
 
 INLINE ivec2 operator+(const ivec2& a, const ivec2& b) {
     return {a.x + b.x, a.y + b.y};
@@ -124,21 +128,21 @@ INLINE uvec3 floatBitsToUint(const vec3& a) {
 #define TIMES(c) a.c* b.c
 #define OVER(c) a.c / b.c
 #define NEGATIVE(c) -a.c
-#define OPERATOR(V, EACH, op, TERM)                       \
-    INLINE V operator op(const V& a, const V& b) {        \
-        return {EACH(TERM)};                              \
-    }                                                     \
-    INLINE V operator op(const V& a, vfloat b) {          \
-        return a op V(b);                                 \
-    }                                                     \
-    INLINE V operator op(vfloat a, const V& b) {          \
-        return V(a) op b;                                 \
-    }                                                     \
-    INLINE V& operator op##=(V& a, const V& b) {          \
-        return a = a op b;                                \
-    }                                                     \
-    INLINE V& operator op##=(V& a, vfloat b) {            \
-        return a = a op V(b);                             \
+#define OPERATOR(V, EACH, op, TERM)                \
+    INLINE V operator op(const V& a, const V& b) { \
+        return {EACH(TERM)};                       \
+    }                                              \
+    INLINE V operator op(const V& a, vfloat b) {   \
+        return a op V(b);                          \
+    }                                              \
+    INLINE V operator op(vfloat a, const V& b) {   \
+        return V(a) op b;                          \
+    }                                              \
+    INLINE V& operator op##=(V& a, const V& b) {   \
+        return a = a op b;                         \
+    }                                              \
+    INLINE V& operator op##=(V& a, vfloat b) {     \
+        return a = a op V(b);                      \
     }
 #define MIN(c) min(a.c, b.c)
 #define MAX(c) max(a.c, b.c)
@@ -156,52 +160,52 @@ INLINE uvec3 floatBitsToUint(const vec3& a) {
     INLINE V name(const V& a) {    \
         return {EACH(TERM)};       \
     }
-#define BINARY(V, EACH, name, TERM)            \
-    INLINE V name(const V& a, const V& b) {    \
-        return {EACH(TERM)};                   \
-    }                                          \
-    INLINE V name(const V& a, vfloat b) {      \
-        return name(a, V(b));                  \
+#define BINARY(V, EACH, name, TERM)         \
+    INLINE V name(const V& a, const V& b) { \
+        return {EACH(TERM)};                \
+    }                                       \
+    INLINE V name(const V& a, vfloat b) {   \
+        return name(a, V(b));               \
     }
-#define VECTOR(V, EACH)                                                                                   \
-    OPERATOR(V, EACH, +, PLUS)                                                                            \
-    OPERATOR(V, EACH, -, MINUS)                                                                           \
-    OPERATOR(V, EACH, *, TIMES)                                                                           \
-    OPERATOR(V, EACH, /, OVER)                                                                            \
-    UNARY(V, EACH, operator-, NEGATIVE)                                                                   \
-    UNARY(V, EACH, abs, ABS)                                                                              \
-    UNARY(V, EACH, floor, FLOOR)                                                                          \
-    UNARY(V, EACH, fract, FRACT)                                                                          \
-    UNARY(V, EACH, sqrt, SQRT)                                                                            \
-    UNARY(V, EACH, log2, LOG2)                                                                            \
-    UNARY(V, EACH, exp2, EXP2)                                                                            \
-    BINARY(V, EACH, min, MIN)                                                                             \
-    BINARY(V, EACH, max, MAX)                                                                             \
-    BINARY(V, EACH, pow, POW)                                                                             \
-    BINARY(V, EACH, step, STEP)                                                                           \
-    INLINE V clamp(const V& a, vfloat low, vfloat high) {                                                 \
-        return min(max(a, low), high);                                                                    \
-    }                                                                                                     \
-    INLINE V clamp(const V& a, const V& low, const V& high) {                                             \
-        return min(max(a, low), high);                                                                    \
-    }                                                                                                     \
-    INLINE V mix(const V& a, const V& b, const V& t) {                                                    \
-        return {EACH(MIX)};                                                                               \
-    }                                                                                                     \
-    INLINE V mix(const V& a, const V& b, vfloat t) {                                                      \
-        return mix(a, b, V(t));                                                                           \
-    }                                                                                                     \
-    INLINE V mix(vfloat a, const V& b, const V& t) {                                                      \
-        return mix(V(a), b, t);                                                                           \
-    }                                                                                                     \
-    INLINE V step(vfloat edge, const V& b) {                                                              \
-        return step(V(edge), b);                                                                          \
-    }                                                                                                     \
-    INLINE V select(vbool condition, const V& a, const V& b) {                                            \
-        return {EACH(SELECT)};                                                                            \
-    }                                                                                                     \
-    INLINE V select(bool condition, const V& a, const V& b) {                                             \
-        return condition ? a : b;                                                                         \
+#define VECTOR(V, EACH)                                        \
+    OPERATOR(V, EACH, +, PLUS)                                 \
+    OPERATOR(V, EACH, -, MINUS)                                \
+    OPERATOR(V, EACH, *, TIMES)                                \
+    OPERATOR(V, EACH, /, OVER)                                 \
+    UNARY(V, EACH, operator-, NEGATIVE)                        \
+    UNARY(V, EACH, abs, ABS)                                   \
+    UNARY(V, EACH, floor, FLOOR)                               \
+    UNARY(V, EACH, fract, FRACT)                               \
+    UNARY(V, EACH, sqrt, SQRT)                                 \
+    UNARY(V, EACH, log2, LOG2)                                 \
+    UNARY(V, EACH, exp2, EXP2)                                 \
+    BINARY(V, EACH, min, MIN)                                  \
+    BINARY(V, EACH, max, MAX)                                  \
+    BINARY(V, EACH, pow, POW)                                  \
+    BINARY(V, EACH, step, STEP)                                \
+    INLINE V clamp(const V& a, vfloat low, vfloat high) {      \
+        return min(max(a, low), high);                         \
+    }                                                          \
+    INLINE V clamp(const V& a, const V& low, const V& high) {  \
+        return min(max(a, low), high);                         \
+    }                                                          \
+    INLINE V mix(const V& a, const V& b, const V& t) {         \
+        return {EACH(MIX)};                                    \
+    }                                                          \
+    INLINE V mix(const V& a, const V& b, vfloat t) {           \
+        return mix(a, b, V(t));                                \
+    }                                                          \
+    INLINE V mix(vfloat a, const V& b, const V& t) {           \
+        return mix(V(a), b, t);                                \
+    }                                                          \
+    INLINE V step(vfloat edge, const V& b) {                   \
+        return step(V(edge), b);                               \
+    }                                                          \
+    INLINE V select(vbool condition, const V& a, const V& b) { \
+        return {EACH(SELECT)};                                 \
+    }                                                          \
+    INLINE V select(bool condition, const V& a, const V& b) {  \
+        return condition ? a : b;                              \
     }
 VECTOR(vec2, EACH2)
 VECTOR(vec3, EACH3)

@@ -143,8 +143,8 @@ void set_camera(To& to, const Frame& frame) {
     const Vec2 shift =
         frame.orthographic() ? Vec2(float(-p(0, 3)), float(-p(1, 3))) : Vec2(float(p(0, 2)), float(p(1, 2)));
     to.set("u_size", Vec2(frame.size.cast<float>()));
-    to.set("u_picture", Vec4(float(frame.origin.x()), float(frame.origin.y()),
-                                  float(frame.picture_size.x()), float(frame.picture_size.y())));
+    to.set("u_picture", Vec4(float(frame.origin.x()), float(frame.origin.y()), float(frame.picture_size.x()),
+                             float(frame.picture_size.y())));
     to.set("u_reach", float(frame.reach));
     to.set("u_unproject", Vec4(float(1 / p(0, 0)), float(1 / p(1, 1)), shift.x(), shift.y()));
     to.set("u_depth", Vec3(float(camera.near), float(camera.far), frame.orthographic() ? 1.0f : 0.0f));

@@ -25,14 +25,16 @@ class ShaderInputs {
         defines_.insert(defines_.end(), macros.begin(), macros.end());
     }
 
-    using Value = std::variant<int, float, Vec2, Vec3, Vec4, Mat3, const Target*, const gl::Texture*, native::View,
-                               native::Cube, native::Panorama, native::Layers>;
+    using Value = std::variant<int, float, Vec2, Vec3, Vec4, Mat3, const Target*, const gl::Texture*,
+                               native::View, native::Cube, native::Panorama, native::Layers>;
     template <class T>
     void set(std::string name, const T& value) {
         values_.emplace_back(std::move(name), value);
     }
     void set(std::string name, const Target& target) { values_.emplace_back(std::move(name), &target); }
-    void set(std::string name, const gl::Texture& texture) { values_.emplace_back(std::move(name), &texture); }
+    void set(std::string name, const gl::Texture& texture) {
+        values_.emplace_back(std::move(name), &texture);
+    }
     /// A uniform block, by its binding and the name of its member.
     void set_block(unsigned binding, std::string member, std::span<const std::byte> bytes) {
         blocks_.push_back({binding, std::move(member), {bytes.begin(), bytes.end()}});

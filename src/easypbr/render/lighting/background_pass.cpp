@@ -24,7 +24,8 @@ ShaderInputs inputs_of(const Frame& frame, const gpu::EnvironmentMaps& maps, boo
     set_camera_uniforms(values, frame);
     values.set("u_env_from_world", Mat3(frame.resolved->R_env_world.cast<float>()));
     values.set("u_env_intensity", frame.resolved->settings.environment.intensity);
-    values.set("u_level", blur ? background.blur * maps.last_level() : equirect_level(frame, maps.equirect_width()));
+    values.set("u_level",
+               blur ? background.blur * maps.last_level() : equirect_level(frame, maps.equirect_width()));
     if (blur && native)
         values.set("u_prefiltered", maps.host_prefiltered());
     else if (blur)

@@ -213,8 +213,8 @@ void LightingPass::set_extensions(ShaderInputs& values, const Frame& frame, cons
     values.set("u_tap_offset", (float(frame.sample_index) + 0.5f) / float(frame.sample_count));
 }
 
-ShaderInputs LightingPass::surface_inputs(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
-                                          bool native) {
+ShaderInputs LightingPass::surface_inputs(const Frame& frame, const GBuffer& targets,
+                                          const LightInputs& inputs, bool native) {
     const ShadingSettings& shading = frame.resolved->settings.shading;
     ShaderInputs values;
     values.define(defines_of(frame, targets, inputs));

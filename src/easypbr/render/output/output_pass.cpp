@@ -230,7 +230,8 @@ void OutputPass::finish_natively(const Frame& frame, const LitPicture& lit) {
     const PixelRect area = is_whole(frame, lit) ? frame.whole() : sum ? drawn_ : lit.covered;
     picture_.write(picture_.whole());
     fill_around(picture_, area, background_code(frame, encoding_));
-    display_.shade(display_inputs(frame, lit, encoding_, sum), {.target = &picture_, .area = area}, transfers_);
+    display_.shade(display_inputs(frame, lit, encoding_, sum), {.target = &picture_, .area = area},
+                   transfers_);
     const bool single = !sum && encoding_ != Encoding::scene_linear;
     if (single && frame.resolved->settings.image.antialias == Antialias::fxaa)
         blur_edges_natively(frame, lit.covered);
@@ -275,7 +276,8 @@ void OutputPass::blur_edges_natively(const Frame& frame, const PixelRect& area) 
     if (area.width == 0 || area.height == 0) return;
     // As far as FXAA looks: half its span, and the filter.
     constexpr int reach = 6;
-    const int first = std::max(0, area.y - reach), last = std::min(frame.size.y(), area.y + area.height + reach);
+    const int first = std::max(0, area.y - reach),
+              last = std::min(frame.size.y(), area.y + area.height + reach);
     aliased_.write(aliased_.whole());
     const auto from = picture_.pixels<std::byte>(), to = aliased_.pixels<std::byte>();
     const size_t row = size_t(frame.size.x()) * gl::pixel_bytes(picture_.format());

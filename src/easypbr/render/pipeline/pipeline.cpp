@@ -82,8 +82,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         !resolved.environment.empty() && resolved.settings.background.shows_environment();
     if (native && shows_environment)
         timer_.run("background", [&] { background_.shade(seen, targets_, environment_, transfers_); });
-    if (native && (with_overlay || !stays_in_host_memory(frame, list, contents)))
-        targets_.upload(transfers_);
+    if (native && (with_overlay || !stays_in_host_memory(frame, list, contents))) targets_.upload(transfers_);
     if (contents.ground) timer_.run("ground", [&] { ground_.finish(seen, targets_, bounds); });
     if (with_overlay) timer_.run("display", [&] { display_.draw(seen, targets_); });
     if (!has_layers) timer_.run("overlays", [&] { draw_overlay_items(seen, list); });
@@ -102,12 +101,13 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     return lit;
 }
 
-bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list, const FrameContents& contents) const {
+bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list,
+                               const FrameContents& contents) const {
     const bool estimates_normals = frame.resolved->settings.ssao.enabled &&
                                    list.has([](const DrawItem& item) { return is_display(item.kind); });
     const bool has_tints = shadow_maps_.has_shadows() && shadow_maps_.has_tints();
-    return native_shading_ && targets_.depth.is_ahead() && !contents.ground && !contents.layers && !has_tints &&
-           !list.extensions() && !estimates_normals;
+    return native_shading_ && targets_.depth.is_ahead() && !contents.ground && !contents.layers &&
+           !has_tints && !list.extensions() && !estimates_normals;
 }
 
 bool Pipeline::stays_in_host_memory(const Frame& frame, const DrawList& list,

@@ -126,8 +126,10 @@ void Renderer::prepare(Picture& picture) {
                         .custom = is_picture ? &custom_ : nullptr};
     picture.with_exact = picture.list.has(
         [](const DrawItem& item) { return item.kind == SurfaceKind::exact && !item.layered; });
-    const bool has_image = resolved.settings.background.mode == BackgroundMode::image && picture.images.background;
-    picture.contents.in_host_memory = is_picture && output_.is_native(picture.shot, has_image, picture.with_exact);
+    const bool has_image =
+        resolved.settings.background.mode == BackgroundMode::image && picture.images.background;
+    picture.contents.in_host_memory =
+        is_picture && output_.is_native(picture.shot, has_image, picture.with_exact);
     // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
     const bool apart = options.samples > 1 && picture.with_exact;
     picture.averaged = apart ? picture.list.without_exact() : picture.list;
@@ -163,8 +165,7 @@ void Renderer::finish() {
     });
     if (picture.shot.motion) move_objects(picture.drawable, picture.scene, *picture.shot.motion, 1);
     if (exact) timer.run("exact", [&] { draw_exact(); });
-    if (picture.contents.custom)
-        draw_custom_over_picture();
+    if (picture.contents.custom) draw_custom_over_picture();
     const bool is_last = picture.frames == picture.shot.sample_count;
     if (is_last && picture.options.surfaces && !picture.holds_surfaces)
         timer.run("surfaces", [&] { kept_->draw(pipeline_); });
@@ -257,7 +258,8 @@ Image Renderer::read_picture(const PixelRect& area) const {
     if (picture.is_ahead())
         picture.copy_out(area, image.bytes());
     else
-        output_.framebuffer().read(0, output_.format(), area.x, area.y, area.width, area.height, image.bytes());
+        output_.framebuffer().read(0, output_.format(), area.x, area.y, area.width, area.height,
+                                   image.bytes());
     return image;
 }
 

@@ -39,7 +39,8 @@ class SurfaceWriter {
         depth_[index] = 0;
         if (!id_.empty()) id_[index] = element_[index] = 0;
     }
-    /// Targets and constants for pixels of one surface: all that a pixel holds but its normal, depth and element.
+    /// Targets and constants for pixels of one surface: all that a pixel holds but its normal, depth and
+    /// element.
     native::VisibleTriangles target_of(const SurfacePixel& surface) const;
     /// Nothing in all of the rectangle.
     void clear();

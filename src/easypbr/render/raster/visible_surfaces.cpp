@@ -69,13 +69,15 @@ void VisibleSurfaces::resolve_row(const Frame& frame, int y, std::vector<native:
     if (entry) resolve_run(frame, *entry, run, y, writer);
 }
 
-void VisibleSurfaces::resolve_run(const Frame& frame, const Entry& entry, std::span<const native::VisiblePixel> run,
-                                  int y, SurfaceWriter& writer) const {
+void VisibleSurfaces::resolve_run(const Frame& frame, const Entry& entry,
+                                  std::span<const native::VisiblePixel> run, int y,
+                                  SurfaceWriter& writer) const {
     if (entry.visible->resolve(frame, *entry.item, run, y, writer)) return;
     const double step_x = 2.0 / frame.size.x(), step_y = 2.0 / frame.size.y();
     const PixelRect& area = buffer_.area();
     for (const native::VisiblePixel& p : run) {
-        const uint64_t found = buffer_.pixels()[size_t(y - area.y) * size_t(area.width) + size_t(p.x - area.x)];
+        const uint64_t found =
+            buffer_.pixels()[size_t(y - area.y) * size_t(area.width) + size_t(p.x - area.x)];
         SurfacePixel pixel = entry.visible->at(p.face, (p.x + 0.5) * step_x - 1, 1 - (y + 0.5) * step_y,
                                                VisibilityBuffer::depth_of(found));
         pixel.metallic = entry.item->material.metallic;

@@ -54,7 +54,8 @@ class VisibleSurfaces {
         std::unique_ptr<VisibleItem> visible;
     };
     const Entry& entry_of(uint32_t id) const;
-    void resolve_row(const Frame& frame, int y, std::vector<native::VisiblePixel>& run, SurfaceWriter& writer) const;
+    void resolve_row(const Frame& frame, int y, std::vector<native::VisiblePixel>& run,
+                     SurfaceWriter& writer) const;
     /// Pixels of one item.
     void resolve_run(const Frame& frame, const Entry& entry, std::span<const native::VisiblePixel> run, int y,
                      SurfaceWriter& writer) const;

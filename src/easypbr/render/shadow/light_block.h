@@ -33,8 +33,8 @@ inline constexpr size_t lights_per_block = 64;
 struct LightBlock {
     /// Those without shadows first, then those with one map, then those with a cube.
     std::vector<const ResolvedLight*> lights;
-    std::vector<LightShadow> shadows;  ///< of the last of the lights
-    size_t cubes = 0;                  ///< how many of the shadows are cubes
+    std::vector<LightShadow> shadows;    ///< of the last of the lights
+    size_t cubes = 0;                    ///< how many of the shadows are cubes
     int resolution = 0;                  ///< of the maps
     const gl::Texture* maps = nullptr;   ///< the driver's
     native::Layers host_maps = {};       ///< those in host memory

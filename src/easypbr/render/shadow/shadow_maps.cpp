@@ -219,7 +219,8 @@ void ShadowMaps::draw(const Request& request, Entry& entry) {
         const int layer = entry.first_layer + i;
         if (in_host_memory_) {
             const size_t texels = size_t(resolution_) * size_t(resolution_);
-            pass_.draw(view, *list_, resolution_, std::span(host_maps_).subspan(size_t(layer) * texels, texels));
+            pass_.draw(view, *list_, resolution_,
+                       std::span(host_maps_).subspan(size_t(layer) * texels, texels));
             continue;
         }
         pass_.draw(view, *list_, maps_, layer, framebuffers_[size_t(layer)]);

@@ -31,7 +31,8 @@ class ShadowPass {
 
   private:
     /// Rasterises what can be, and returns what is left of each kind.
-    std::vector<Casters> rasterise(const ShadowView& view, const DrawList& list, bool native, ShadowDepths& depths);
+    std::vector<Casters> rasterise(const ShadowView& view, const DrawList& list, bool native,
+                                   ShadowDepths& depths);
     void draw_rest(const ShadowView& view, int resolution, const std::vector<Casters>& left);
 
     const Primitives& primitives_;

@@ -71,7 +71,8 @@ AmbientOcclusionPass::Plan AmbientOcclusionPass::plan_of(const Frame& frame) {
     Plan plan;
     plan.half = at_half_resolution(frame);
     plan.smooth = plan.half || frame.sample_count < frames_without_blur;
-    plan.sampling = frame.resolved->settings.ssao.method == OcclusionMethod::horizon ? &horizon_ : &hemisphere_;
+    plan.sampling =
+        frame.resolved->settings.ssao.method == OcclusionMethod::horizon ? &horizon_ : &hemisphere_;
     plan.defines = camera_defines(frame);
     if (plan.half) plan.defines.emplace_back("HALF");
     if (plan.smooth) plan.defines.emplace_back("BLURRED");
@@ -100,7 +101,8 @@ void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets, bool with_
     run(frame, targets, {blurring_, plan.defines, blur_, area, &sampled_, {1, 0}});
     run(frame, targets,
         {blurring_, plan.defines, plan.half ? sample_ : targets.occluded(), area, &blurred_, {0, 1}});
-    if (plan.half) run(frame, targets, {magnifying_, plan.defines, targets.occluded(), frame.covered, &sampled_});
+    if (plan.half)
+        run(frame, targets, {magnifying_, plan.defines, targets.occluded(), frame.covered, &sampled_});
 }
 
 void AmbientOcclusionPass::shade(const Frame& frame, GBuffer& targets, Transfers& transfers) {
@@ -145,8 +147,8 @@ double AmbientOcclusionPass::reach(const Frame& whole, const Box3d& bounds) {
 }
 
 ShaderInputs AmbientOcclusionPass::inputs_of(const Frame& frame, const GBuffer& targets,
-                                             const std::vector<std::string>& defines, const Target* visibility,
-                                             Vec2 axis) const {
+                                             const std::vector<std::string>& defines,
+                                             const Target* visibility, Vec2 axis) const {
     const auto& ssao = frame.resolved->settings.ssao;
     ShaderInputs values;
     values.define(defines);

@@ -34,8 +34,9 @@ class AmbientOcclusionPass {
     void make_targets(Vec2i size, bool half);
     void make_framebuffers();
     void estimate_normals(const Frame& frame, const GBuffer& targets);
-    ShaderInputs inputs_of(const Frame& frame, const GBuffer& targets, const std::vector<std::string>& defines,
-                           const Target* visibility, Vec2 axis) const;
+    ShaderInputs inputs_of(const Frame& frame, const GBuffer& targets,
+                           const std::vector<std::string>& defines, const Target* visibility,
+                           Vec2 axis) const;
     void run(const Frame& frame, const GBuffer& targets, const Step& step);
 
     Vec2i size_{0, 0};

@@ -14,7 +14,9 @@ struct Glow {
     Vec4 parameters = Vec4::Zero();      ///< intensity, exposure, threshold, half width of the knee
 
     /// In pixels.
-    Vec2 size() const { return Vec2(float(glow_texel * light->width()), float(glow_texel * light->height())); }
+    Vec2 size() const {
+        return Vec2(float(glow_texel * light->width()), float(glow_texel * light->height()));
+    }
 };
 
 }  // namespace easypbr::render

@@ -93,8 +93,8 @@ SurfacePixel MeshSurface::at(uint32_t face, double ndc_x, double ndc_y, float) c
     return pixel;
 }
 
-bool MeshSurface::resolve(const Frame& frame, const DrawItem& item, std::span<const native::VisiblePixel> pixels,
-                          int y, SurfaceWriter& writer) const {
+bool MeshSurface::resolve(const Frame& frame, const DrawItem& item,
+                          std::span<const native::VisiblePixel> pixels, int y, SurfaceWriter& writer) const {
     if (item.with_colors) return false;
     native::VisibleTriangles triangles =
         writer.target_of({.albedo = item.material.base_color,

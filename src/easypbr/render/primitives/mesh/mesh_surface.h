@@ -22,8 +22,8 @@ class MeshSurface final : public VisibleItem {
     /// snapped.
     SurfacePixel at(uint32_t face, double ndc_x, double ndc_y, float depth) const override;
 
-    bool resolve(const Frame& frame, const DrawItem& item, std::span<const native::VisiblePixel> pixels, int y,
-                 SurfaceWriter& writer) const override;
+    bool resolve(const Frame& frame, const DrawItem& item, std::span<const native::VisiblePixel> pixels,
+                 int y, SurfaceWriter& writer) const override;
 
   private:
     struct Hit;
