@@ -12,11 +12,12 @@ namespace easypbr::gpu {
 class ClosedMeshes {
   public:
     /// Takes note that a mesh is drawn and returns whether it is known to be closed and wound outward. That
-    /// is found out when it is drawn for the second time: it takes passes over all faces, which a single
-    /// picture would not earn back.
+    /// is found out when it is drawn for the second time, unless it is small: it takes passes over all faces,
+    /// which a single picture would not earn back.
     bool draw(const MeshData& mesh) {
         Entry& entry = entries_.get(key_of(mesh), [] { return Entry(); });
-        if (++entry.draws == 2) entry.closed_outward = is_closed_outward(mesh.V, mesh.F);
+        const int draws_before = mesh.F.rows() <= small_mesh ? 0 : 1;
+        if (entry.draws++ == draws_before) entry.closed_outward = is_closed_outward(mesh.V, mesh.F);
         return entry.closed_outward;
     }
 
@@ -30,6 +31,8 @@ class ClosedMeshes {
     void evict_unused() { entries_.evict_unused(); }
 
   private:
+    /// Faces that are looked through in less than a millisecond.
+    static constexpr Eigen::Index small_mesh = 1 << 14;
     struct Entry {
         int draws = 0;
         bool closed_outward = false;
