@@ -89,7 +89,7 @@ std::vector<uint8_t> Drawn::coverage(const render::PixelRect& area,
 }
 
 const render::GBuffer& Drawn::targets() const {
-    return surface_renderer().targets();
+    return surface_renderer().uploaded_targets();
 }
 
 }  // namespace easypbr::app

@@ -26,7 +26,7 @@ std::string megabytes(uint64_t bytes) {
     return fmt::format("{:.1f} MB", double(bytes) / 1e6);
 }
 
-int run(const CacheOptions& options) {
+int run_cache(const CacheOptions& options) {
     const bool trims = options.clear || options.limit_gb >= 0;
     const uint64_t limit = options.clear ? 0
                            : trims       ? uint64_t(std::min(options.limit_gb, 1e9) * 1e9)
@@ -48,7 +48,7 @@ int run(const CacheOptions& options) {
 void add_cache(CLI::App& app, Job& job) {
     set_job<CacheOptions>(
         *app.add_subcommand("cache", "Show or clear the cache of prefiltered environment maps"), job, declare,
-        run);
+        run_cache);
 }
 
 }  // namespace easypbr::cli

@@ -68,13 +68,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     shadow_maps_.keep_in_host_memory(native);
     if (!native) targets_.upload(transfers_);
     if (contents.ground) timer_.run("ground", [&] { ground_.draw(seen, targets_); });
-    if (resolved.settings.ssao.enabled && !contents.traced)
-        timer_.run("ambient occlusion", [&] {
-            if (native)
-                ambient_occlusion_.shade(seen, targets_, transfers_);
-            else
-                ambient_occlusion_.draw(seen, targets_, with_overlay);
-        });
+    if (resolved.settings.ssao.enabled && !contents.traced) occlude(seen, native, with_overlay);
     if (contents.traced) timer_.run("rays", [&] { update_ray_scene(seen, casters, contents.ground); });
     const bool caught = contents.ground && GroundPass::is_shadow_catcher(resolved);
     light(seen, targets_, contents, {.native = native, .extensions = outputs.extensions}, caught);
@@ -99,6 +93,15 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     if (contents.custom) contents.custom->draw_in_frame(frame, targets_, timer_, lit);
     if (!contents.layers) draw_effects(frame, opaque, false, lit);
     return lit;
+}
+
+void Pipeline::occlude(const Frame& frame, bool native, bool with_points) {
+    timer_.run("ambient occlusion", [&] {
+        if (native)
+            ambient_occlusion_.shade(frame, targets_, transfers_);
+        else
+            ambient_occlusion_.draw(frame, targets_, with_points);
+    });
 }
 
 bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list,

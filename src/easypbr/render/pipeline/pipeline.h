@@ -99,6 +99,7 @@ class Pipeline {
     const gl::Texture* shade_points(const Frame& frame, const DrawList& layers, const gl::Texture& opaque);
     /// Whether a frame is lit natively: its surfaces are in host memory, and nothing of it needs the driver.
     bool is_lit_natively(const Frame& frame, const DrawList& list, const FrameContents& contents) const;
+    void occlude(const Frame& frame, bool native, bool with_points);
     /// Whether no pass after the lighting needs the driver.
     bool stays_in_host_memory(const Frame& frame, const DrawList& list, const FrameContents& contents) const;
     bool draws_overlay(const Shot& shot, const FrameContents& contents) const;

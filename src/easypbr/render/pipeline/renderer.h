@@ -71,6 +71,12 @@ class Renderer {
     /// What read_layer() reads, until something else is drawn.
     const GBuffer& targets() const { return pipeline_.targets(); }
 
+    /// The same, all of it in textures. With the context current.
+    const GBuffer& uploaded_targets() {
+        pipeline_.targets().upload(pipeline_.transfers());
+        return pipeline_.targets();
+    }
+
     /// RGBA, row 0 on top: u8, u16 or f32 by the encoding.
     Image read_picture() const;
     /// The first `width` x `height` pixels only: forces the picture to be finished.

@@ -36,10 +36,11 @@ void RayLight::prepare(const ResolvedSettings& resolved, const RayScene& scene) 
     resolved_ = &resolved;
     scene_ = &scene;
     if (hash_ == resolved.environment.hash()) return;
-    hash_ = resolved.environment.hash();
+    hash_.clear();  // until all is there: it can be interrupted
     sky_ = resolved.environment.image();
     while (sky_.width() > widest_sky) sky_ = half_size(sky_);
     find_bright_parts();
+    hash_ = resolved.environment.hash();
 }
 
 void RayLight::find_bright_parts() {
