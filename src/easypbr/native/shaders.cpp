@@ -42,13 +42,24 @@ struct InstructionSet {
     bool is_there;
 };
 
-/// The best first.
-const auto& known_sets() {
 #if defined(__x86_64__)
-    static const std::array sets{
-        InstructionSet{"avx512", &avx512::kernels, bool(__builtin_cpu_supports("x86-64-v4"))},
-        InstructionSet{"avx2", &avx2::kernels, bool(__builtin_cpu_supports("x86-64-v3"))},
-        InstructionSet{"v2", &v2::kernels, true}};
+/// What x86-64-v3 has beyond v2, as far as compilers know its names: processors have all of it or nothing.
+bool has_v3() {
+    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi2");
+}
+bool has_v4() {
+    return has_v3() && __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+           __builtin_cpu_supports("avx512cd") && __builtin_cpu_supports("avx512dq") &&
+           __builtin_cpu_supports("avx512vl");
+}
+#endif
+
+/// The best first.
+std::span<const InstructionSet> known_sets() {
+#if defined(__x86_64__)
+    static const std::array sets{InstructionSet{"avx512", &avx512::kernels, has_v4()},
+                                 InstructionSet{"avx2", &avx2::kernels, has_v3()},
+                                 InstructionSet{"v2", &v2::kernels, true}};
 #else
     static const std::array sets{InstructionSet{"base", &base::kernels, true}};
 #endif

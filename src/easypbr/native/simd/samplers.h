@@ -267,7 +267,9 @@ INLINE vec4 textureLod(const Rg16fLinear& s, const vec2& uv, float) {
 
 /// The filter of the level that is nearest to `level`; u repeats.
 INLINE vec4 textureLod(const Panorama& s, const vec2& uv, float level) {
-    const int l = level <= 0 ? 0 : level >= float(s.levels - 1) ? s.levels - 1 : int(level + 0.5f);
+    const int l = level <= 0                     ? 0
+                  : level >= float(s.levels - 1) ? s.levels - 1
+                                                 : int(__builtin_floorf(level + 0.5f));
     const int width = s.width[l], height = s.height[l];
     vfloat x = uv.x * float(width) - 0.5f;
     x = x - floor(x * (1.0f / float(width))) * float(width);
