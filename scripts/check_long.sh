@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # Soaks: 10,000 updates of a cloud and data sets of 5,000 frames, whose memory must not grow; data sets killed 200 times; all
 # loaders on 10,000 mutated files each, and all C++ tests, under AddressSanitizer and UBSan; a picture of 16384 x 9216 pixels
-# in tiles. usage: check_long.sh
+# in tiles; native shading against the driver's on 200 random scenes. usage: check_long.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
 .venv/bin/python bench/cloud_updates.py
 .venv/bin/python -m pytest -q -s tests/long
+EASYPBR_TEST_SCENES=200 build/tests/test_app --gtest_filter='NativeShading.*'
 cmake --preset asan
 cmake --build build-asan
 # Mesa and its JIT keep memory until the process ends; what leaks is theirs.

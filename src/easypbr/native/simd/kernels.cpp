@@ -154,7 +154,7 @@ __attribute__((flatten)) void shade_rows(const void* uniforms, const Region& reg
 
 }  // namespace
 
-// What other instruction sets export is declared here too, so that the definitions are seen elsewhere.
+// A constant is local to its file unless it is declared extern.
 extern const Kernels kernels;
 const Kernels kernels{resolve_triangles,
                       shade_rows<lighting_surface, lighting_surface_uniforms>,

@@ -225,30 +225,30 @@ INLINE Floats4 bilinear(Floats8 top, Floats8 bottom, float right, float below) {
 INLINE Floats8 from_bytes8(const std::byte* p) {
     return __builtin_convertvector(__builtin_convertvector(load<Bytes8>(p), Ints8), Floats8);
 }
-INLINE vec4 textureLod(const Rgba8Linear& s, const vec2& uv, float) {
+/// `load_pair` loads two pixels side by side.
+template <class Load>
+INLINE vec4 linear(const View& s, const vec2& uv, size_t pixel_bytes, Load&& load_pair) {
     const Footprint f = footprint(s.width, s.height, uv);
     const vint at = f.y * s.width + f.x;
     Floats4 pixels[lanes];
     for (int k = 0; k < lanes; ++k) {
-        const std::byte* p = s.data + 4 * size_t(at.v[k]);
+        const std::byte* p = s.data + pixel_bytes * size_t(at.v[k]);
         pixels[k] =
-            bilinear(from_bytes8(p), from_bytes8(p + 4 * size_t(s.width)), f.right.v[k], f.below.v[k]);
+            bilinear(load_pair(p), load_pair(p + pixel_bytes * size_t(s.width)), f.right.v[k], f.below.v[k]);
     }
-    return planar(pixels) * (1.0f / 255.0f);
+    return planar(pixels);
+}
+INLINE vec4 textureLod(const Rgba8Linear& s, const vec2& uv, float) {
+    return linear(s, uv, 4, from_bytes8) * (1.0f / 255.0f);
+}
+INLINE Floats8 from_halves8(const std::byte* p) {
+    return from_halves(load<Shorts8>(p));
+}
+INLINE vec4 textureLod(const Rgba16fLinear& s, const vec2& uv, float) {
+    return linear(s, uv, 8, from_halves8);
 }
 INLINE Floats4 bilinear_halves(const uint16_t* top, const uint16_t* bottom, float right, float below) {
     return bilinear(from_halves(load<Shorts8>(top)), from_halves(load<Shorts8>(bottom)), right, below);
-}
-INLINE vec4 textureLod(const Rgba16fLinear& s, const vec2& uv, float) {
-    const Footprint f = footprint(s.width, s.height, uv);
-    const vint at = f.y * s.width + f.x;
-    const auto* data = reinterpret_cast<const uint16_t*>(s.data);
-    Floats4 pixels[lanes];
-    for (int k = 0; k < lanes; ++k) {
-        const uint16_t* p = data + 4 * size_t(at.v[k]);
-        pixels[k] = bilinear_halves(p, p + 4 * size_t(s.width), f.right.v[k], f.below.v[k]);
-    }
-    return planar(pixels);
 }
 INLINE vec4 textureLod(const Rg16fLinear& s, const vec2& uv, float) {
     const Footprint f = footprint(s.width, s.height, uv);

@@ -117,6 +117,15 @@ std::vector<std::string> defines_of(const Frame& frame, const GBuffer& targets, 
     return defines;
 }
 
+/// What all shaders that light read of the surfaces.
+void set_surfaces(ShaderInputs& values, const Frame& frame, const GBuffer& targets) {
+    set_camera_uniforms(values, frame);
+    values.set("u_normal", targets.normal);
+    values.set("u_material", targets.material);
+    values.set("u_depth_target", targets.depth);
+    if (targets.ambient_occlusion) values.set("u_ambient_occlusion", targets.ambient_occlusion);
+}
+
 void set_transmission(ShaderInputs& values, const Frame& frame, const TransmissionInputs& behind) {
     // Without volumes in the layer nobody asks for their backs.
     const auto or_depth = [&](const gl::Texture* texture) -> const gl::Texture& {
@@ -218,12 +227,8 @@ ShaderInputs LightingPass::surface_inputs(const Frame& frame, const GBuffer& tar
     const ShadingSettings& shading = frame.resolved->settings.shading;
     ShaderInputs values;
     values.define(defines_of(frame, targets, inputs));
-    set_camera_uniforms(values, frame);
+    set_surfaces(values, frame, targets);
     values.set("u_albedo", targets.albedo);
-    values.set("u_normal", targets.normal);
-    values.set("u_material", targets.material);
-    values.set("u_depth_target", targets.depth);
-    if (targets.ambient_occlusion) values.set("u_ambient_occlusion", targets.ambient_occlusion);
     set_dfg(values, shading.brdf, native);
     values.set("u_dielectric_f0", shading.dielectric_f0);
     values.set("u_first_block", inputs.block.first ? 1.0f : 0.0f);
@@ -266,11 +271,7 @@ void LightingPass::draw_caught(const Frame& frame, const GBuffer& targets, const
                                const gl::Framebuffer& light) {
     ShaderInputs values;
     values.define(light_defines(frame, targets, inputs));
-    set_camera_uniforms(values, frame);
-    values.set("u_normal", targets.normal);
-    values.set("u_material", targets.material);
-    values.set("u_depth_target", targets.depth);
-    if (targets.ambient_occlusion) values.set("u_ambient_occlusion", targets.ambient_occlusion);
+    set_surfaces(values, frame, targets);
     if (inputs.environment) set_environment(values, frame, inputs, false);
     set_lights(values, frame, inputs.block, false);
     light.bind();

@@ -100,8 +100,6 @@ class Renderer {
     /// the two.
     void allow_native_geometry(bool allow) { pipeline_.allow_native_geometry(allow); }
     void allow_native_shading(bool allow) { pipeline_.allow_native_shading(allow); }
-    /// Whether the last frame was lit natively.
-    bool was_native() const { return output_.picture().is_ahead(); }
 
     /// Passes of the program's own, each stage's in this order. They belong to pictures, not to layers.
     void set_passes(std::vector<CustomPass> passes) { custom_.set(std::move(passes)); }

@@ -30,7 +30,7 @@ class ShadowPass {
     void allow_native(bool allow) { native_ = allow; }
 
   private:
-    /// Rasterises what can be, and returns what is left of each kind.
+    /// Rasterises opaque casters natively; returns those that need the driver, by kind of primitive.
     std::vector<Casters> rasterise(const ShadowView& view, const DrawList& list, bool native,
                                    ShadowDepths& depths);
     void draw_rest(const ShadowView& view, int resolution, const std::vector<Casters>& left);
