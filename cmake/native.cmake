@@ -1,13 +1,18 @@
 # Native shaders: the text of shaders/ as C++, compiled for each instruction set into a namespace of its own.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 set(native_shaders lighting_surface background_environment display_output accumulate_sample antialias_fxaa
-                   occlusion_select occlusion_horizon occlusion_hemisphere occlusion_blur occlusion_magnify)
+                   occlusion_select occlusion_horizon occlusion_hemisphere occlusion_blur occlusion_magnify
+                   lighting_catcher ground_finish)
+set(native_surface_shaders mesh_resolve)
 set(native_folder ${PROJECT_BINARY_DIR}/generated/native)
+list(JOIN native_shaders ") X(" native_names)
+file(CONFIGURE OUTPUT ${native_folder}/shader_list.h CONTENT "#define EASYPBR_SHADERS(X) X(${native_names})\n")
 file(GLOB shader_texts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/shaders/*.glsl ${PROJECT_SOURCE_DIR}/shaders/*.frag)
 add_custom_command(
   OUTPUT ${native_folder}/shader_uniforms.h ${native_folder}/shaders.h
   COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/native_shaders.py ${PROJECT_SOURCE_DIR}/shaders
-          ${native_folder} --define DFG_SIZE=64 --define LIGHTS_PER_BLOCK=64 --define SHADOWS --without SHADOW_TINTS ${native_shaders}
+          ${native_folder} --define DFG_SIZE=64 --define LIGHTS_PER_BLOCK=64 --define SHADOWS --define UV_TRANSFORMS=7
+          --define NATIVE --without SHADOW_TINTS ${native_shaders} ${native_surface_shaders}
   DEPENDS ${shader_texts} ${PROJECT_SOURCE_DIR}/scripts/native_shaders.py
   COMMENT "Translating shaders" VERBATIM)
 add_custom_target(easypbr_native_texts DEPENDS ${native_folder}/shader_uniforms.h ${native_folder}/shaders.h)

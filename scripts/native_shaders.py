@@ -10,6 +10,7 @@ Types, functions and samplers are those of src/easypbr/native/simd. Macros are w
 - uniforms: plain values, which convert to lanes.
 - c ? a : b: select(c, a, b). An if whose condition differs between pixels does not compile: the shader has to
   use ?: there, any_lane() for the conditions of loops.
+- if (c) discard: the pixels for which c holds are written no more.
 - swizzles: member functions. Literals: floats.
 """
 
@@ -216,11 +217,18 @@ class Translator:
                 segment.append(item)
         return opening + "".join(out) + self.segment(segment) + closing
 
+    def discarding(self, items: list) -> str | None:
+        """`if (c) discard` of main(): nothing is left to do once no pixel is written."""
+        if len(items) != 3 or items[0] != "if" or items[2] != "discard":
+            return None
+        condition = self.expression(items[1][1])
+        return f"written = written && !({condition}); if (!any_lane(written)) return"
+
     def block(self, content: list) -> str:
         out, segment = ["{\n"], []
         for item in content:
             if item == ";":
-                out.append(self.segment(segment) + ";\n")
+                out.append((self.discarding(segment) or self.segment(segment)) + ";\n")
                 segment = []
             elif item == ",":
                 out.append(self.segment(segment) + ", ")
@@ -295,8 +303,8 @@ class Shader:
             )
             self.uniforms.append((kind, name, size[0]))
         elif items[0] == "uniform":
-            self.uniforms.append((items[1], items[2], ""))
-        elif items[0] == "out":
+            self.uniforms.append((items[1], items[2], items[3][1][0] if is_group(items[3], "[") else ""))
+        elif items[0] in ("in", "out"):
             self.members.append(f"{TYPES.get(items[1], items[1])} {items[2]};")
         elif items[0] == "const":
             self.members.append("static constexpr " + UNIFORM_TYPES[items[1]] + " " + self.constant(items[2:-1], translator) + ";")

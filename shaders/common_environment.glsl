@@ -4,7 +4,7 @@ uniform mat3 u_env_from_world;
 vec2 equirect_uv(vec3 direction) {
     const float inverse_pi = 0.31830988618379067;
     return vec2(atan(direction.x, -direction.z) * (0.5 * inverse_pi) + 0.5,
-                acos(clamp(direction.y, -1.0, 1.0)) * inverse_pi);
+                atan(length(direction.xz), direction.y) * inverse_pi);
 }
 
 // Mip level of the prefiltered environment for a roughness; the inverse stands in gpu/prefilter.cpp.

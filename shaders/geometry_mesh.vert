@@ -25,7 +25,7 @@ void main() {
     gl_Position = u_clip_from_mesh * vec4(a_position, 1.0);
     if (!is_flat) v_normal = u_normal_from_mesh * oct_decode(a_normal);
     if (has_own_shader) v_own_position = a_position;
-    if (needs_position) v_position = u_world_from_view * (u_view_from_mesh * vec4(a_position, 1.0)).xyz;
+    if (needs_position()) v_position = u_world_from_view * (u_view_from_mesh * vec4(a_position, 1.0)).xyz;
     if (has_vertex_colors) v_color = vec4(srgb_decode(a_color.rgb), a_color.a);
     if (has_uv) v_uv = a_uv;
     if (has_tangents) v_tangent = vec4(u_tangent_from_mesh * a_tangent.xyz, a_tangent.w);

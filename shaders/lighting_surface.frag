@@ -8,12 +8,14 @@
 
 #feature BEHIND sees_behind
 #feature AMBIENT_OCCLUSION has_ambient_occlusion
+#feature EMISSION has_emission  // natively; the driver adds light to the emission that stands in the target
 
 uniform sampler2D u_albedo;
 uniform sampler2D u_normal;
 uniform sampler2D u_material;
 uniform sampler2D u_depth_target;
 uniform sampler2D u_dfg;
+uniform sampler2D u_emission;
 uniform sampler2D u_ambient_occlusion;
 uniform float u_dielectric_f0;
 uniform float u_first_block;  // 1: of the first block of lights, which adds what lies behind and below all layers
@@ -119,7 +121,8 @@ void main() {
     s.alpha = light_roughness * light_roughness;
     for (int i = 0; i < u_plain_lights; ++i) radiance += direct(u_lights[i], s);
     if (has_shadows) add_shadowed(radiance, s, view_p);
-    o_radiance = vec4(is_lit(material.w) ? radiance : vec3(0.0), coverage);
+    vec3 emission = has_emission ? texelFetch(u_emission, ivec2(gl_FragCoord.xy), 0).rgb : vec3(0.0);
+    o_radiance = vec4((is_lit(material.w) ? radiance : vec3(0.0)) + emission, coverage);
 #ifdef EXTENDED  // As above.
     o_keep = vec4(is_lit(material.w) && u_first_block > 0.5 ? s.keep : 1.0);
 #endif

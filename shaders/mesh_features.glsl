@@ -6,4 +6,4 @@
 #feature FACE_NORMAL sees_by_faces   // the face, and not the winding, says which side is seen
 #feature SURFACE_SHADER has_own_shader
 
-const bool needs_position = sees_by_faces || has_own_shader;
+bool needs_position() { return sees_by_faces || has_own_shader; }

@@ -42,11 +42,35 @@ uniform vec4 u_opacity_channel;
 
 vec2 uv_of(int slot) { return image_uv(u_uv_transform[slot], v_uv); }
 
+#ifdef NATIVE
+in vec2 v_uv_dx;  // what v_uv changes by to the next pixel
+in vec2 v_uv_dy;
+in vec3 v_face;  // normal of the face on the side that is seen
+
+// What the transformed coordinates change by; rows of images run downwards.
+vec2 uv_change(int slot, vec2 change) {
+    vec2 to = (u_uv_transform[slot] * vec3(change, 0.0)).xy;
+    return vec2(to.x, -to.y);
+}
+vec4 texel_of(sampler2D source, int slot) {
+    return textureGrad(source, uv_of(slot), uv_change(slot, v_uv_dx), uv_change(slot, v_uv_dy), u_lod_bias);
+}
+vec3 seen_face() { return v_face; }
+#else
+vec4 texel_of(sampler2D source, int slot) { return texture(source, uv_of(slot), u_lod_bias); }
+
+// Derivatives know which side is seen whatever the winding says. Rows run downwards, so dFdy points down.
+vec3 seen_face() {
+    vec3 face = normalize(cross(dFdy(v_position), dFdx(v_position)));
+    return dot(face, v_position) > 0.0 ? -face : face;
+}
+#endif
+
 vec4 base_color() {
     vec4 color = u_base_color;
     if (has_vertex_colors) color *= v_color;
-    if (has_base_color_texture) color *= texture(u_base_color_texture, uv_of(0), u_lod_bias);
-    if (has_opacity_texture) color.a *= dot(texture(u_opacity_texture, uv_of(6), u_lod_bias), u_opacity_channel);
+    if (has_base_color_texture) color *= texel_of(u_base_color_texture, 0);
+    if (has_opacity_texture) color.a *= dot(texel_of(u_opacity_texture, 6), u_opacity_channel);
     return color;
 }
 
@@ -66,14 +90,10 @@ Normals read_normals() {
     Normals n;
     float side = 1.0;
     vec3 face = vec3(0.0);
-    if (sees_by_faces) {
-        // Derivatives know which side is seen whatever the winding says. Rows run downwards, so dFdy points down.
-        face = normalize(cross(dFdy(v_position), dFdx(v_position)));
-        if (dot(face, v_position) > 0.0) face = -face;
-    }
+    if (sees_by_faces) face = seen_face();
     n.geometric = is_flat ? face : normalize(v_normal);
-    if (!is_flat && sees_by_faces && dot(n.geometric, face) < 0.0) side = -1.0;
-    if (!is_flat && !sees_by_faces && is_two_sided && !gl_FrontFacing) side = -1.0;
+    if (!is_flat && sees_by_faces) side = dot(n.geometric, face) < 0.0 ? -1.0 : 1.0;
+    if (!is_flat && !sees_by_faces && is_two_sided) side = gl_FrontFacing ? 1.0 : -1.0;
     if (has_tangents) {
         vec3 t = v_tangent.xyz - n.geometric * dot(n.geometric, v_tangent.xyz);
         n.tangent = t * inversesqrt(max(dot(t, t), 1e-20));
@@ -89,13 +109,13 @@ Normals read_normals() {
     n.bitangent *= side;
     n.shading = n.geometric;
     if (has_normal_texture)
-        n.shading = mapped_normal(n, texture(u_normal_texture, uv_of(4), u_lod_bias).xyz, u_normal_scale);
+        n.shading = mapped_normal(n, texel_of(u_normal_texture, 4).xyz, u_normal_scale);
     return n;
 }
 
 vec3 emission_of(vec3 color) {
     vec3 emission = u_emissive.rgb;
-    if (has_emissive_texture) emission *= texture(u_emissive_texture, uv_of(5), u_lod_bias).rgb;
+    if (has_emissive_texture) emission *= texel_of(u_emissive_texture, 5).rgb;
     return u_emissive.w > 0.9 ? color : emission;
 }
 
@@ -103,13 +123,13 @@ vec3 emission_of(vec3 color) {
 vec3 read_parameters() {
     vec3 p = vec3(u_surface.xy, 1.0);
     if (has_metallic_texture) {
-        vec4 texel = texture(u_metallic_texture, uv_of(1), u_lod_bias);
+        vec4 texel = texel_of(u_metallic_texture, 1);
         p.x *= dot(texel, u_metallic_channel);
         if (has_roughness_in_metallic) p.y *= dot(texel, u_roughness_channel);
     }
     if (has_roughness_texture && !has_roughness_in_metallic)
-        p.y *= dot(texture(u_roughness_texture, uv_of(2), u_lod_bias), u_roughness_channel);
+        p.y *= dot(texel_of(u_roughness_texture, 2), u_roughness_channel);
     if (has_occlusion_texture)
-        p.z = mix(1.0, dot(texture(u_occlusion_texture, uv_of(3), u_lod_bias), u_occlusion_channel), u_surface.z);
+        p.z = mix(1.0, dot(texel_of(u_occlusion_texture, 3), u_occlusion_channel), u_surface.z);
     return p;
 }

@@ -29,10 +29,15 @@ class Viewer(WindowCallbacks):
         size: ArrayLike | None = None,
         settings: Mapping | str | os.PathLike | None = None,
         scene: Scene | None = None,
+        device: str = "auto",
     ) -> None:
-        """`settings`: a file that save_settings() wrote, or a dict of values; `size`: (width, height)."""
+        """`settings`: a file that save_settings() wrote, or a dict of values; `size`: (width, height).
+
+        `device`: "gl" draws by OpenGL, "cpu" natively, where OpenGL is loaded only for what it alone can draw; "auto"
+        is a GPU where there is one, else the CPU. The environment variable EASYPBR_DEVICE stands for "auto".
+        """
         self.scene = Scene.default() if scene is None else scene
-        self._handle = _easypbr.ViewerHandle(self.scene._handle)
+        self._handle = _easypbr.ViewerHandle(self.scene._handle, device)
         self.recorder = Recorder(self)
         self._settings = Settings(self._handle)
         self._thread: threading.Thread | None = None
@@ -43,6 +48,11 @@ class Viewer(WindowCallbacks):
             self.load_settings(settings)
         if size is not None:
             self._settings["image.size"] = size
+
+    @property
+    def device(self) -> str:
+        """What draws: "gl" or "cpu"."""
+        return self._handle.device
 
     @property
     def settings(self) -> Settings:

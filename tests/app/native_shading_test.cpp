@@ -70,11 +70,14 @@ class Generator {
         s.tonemap.tone_operator = ToneOperator(between(0, 4));
         s.camera.projection = chance(0.7) ? Projection::perspective : Projection::orthographic;
         s.rays.enabled = false;
+        s.ground.mode = GroundMode(chance(0.6) ? 0 : between(1, 2));
     }
 
   private:
     Environment sky() {
-        Image image(32, 16, 3, PixelType::f32);
+        // Coarse ones, and ones with more detail than the pictures show.
+        const int height = chance(0.5) ? 16 : 256;
+        Image image(2 * height, height, 3, PixelType::f32);
         for (float& value : image.pixels<float>()) value = number(0, 1.5f);
         return Environment(image);
     }
@@ -169,6 +172,29 @@ TEST(NativeShading, IsTheSameForAllInstructionSets) {
         }
     }
     native::use_instruction_set(before);
+}
+
+// Of what is native nothing needs the driver.
+TEST(NativeShading, LoadsNoDriver) {
+    for (unsigned seed = 0; seed < 20; ++seed) {
+        const Scene scene = Generator(seed).scene();
+        Generator generator(seed);
+        generator.scene();
+        app::Session session(scene);
+        session.use_device(DrawDevice::cpu);
+        generator.change(session.settings());
+        session.render();
+        session.render_layers({"depth", "object_id"});
+        EXPECT_TRUE(session.context_info().version.empty()) << "scene " << seed;
+    }
+}
+
+TEST(NativeShading, DevicesAreChosenBeforeTheFirstPicture) {
+    app::Session session;
+    session.use_device(DrawDevice::cpu);
+    EXPECT_EQ(session.context_info().device, DrawDevice::cpu);
+    session.use_device(DrawDevice::cpu);
+    EXPECT_THROW(session.use_device(DrawDevice::gl), ArgumentError);
 }
 
 TEST(NativeShading, NamesUnknownInstructionSets) {

@@ -101,13 +101,64 @@ def test_doctor_says_what_it_found(easypbr, environment):
 
 def test_without_a_driver_the_attempts_are_listed(environment, sphere, tmp_path):
     """An EGL without vendors stands for a machine without a driver."""
-    bare = {**environment, "__EGL_VENDOR_LIBRARY_FILENAMES": "/dev/null"}
+    bare = {**environment, "__EGL_VENDOR_LIBRARY_FILENAMES": "/dev/null", "EASYPBR_DEVICE": "gl"}
     for command in (["doctor"], ["render", str(sphere), "-o", "out.png"]):
         done = subprocess.run([str(BINARY), *command], capture_output=True, text=True, env=bare, cwd=tmp_path,
                               timeout=60)
         assert done.returncode == 1 and done.stderr.count("\n") == 1
         assert "easypbr: error: no OpenGL 4.5 context" in done.stderr and "Install" in done.stderr
     assert list(tmp_path.iterdir()) == []
+
+
+@pytest.fixture
+def without_opengl(environment, tmp_path_factory):
+    """Libraries that are no libraries stand for a machine without OpenGL."""
+    folder = tmp_path_factory.mktemp("libraries")
+    for name in ("libEGL.so.1", "libGL.so.1", "libOpenGL.so.0"):
+        (folder / name).touch()
+    environment = {**environment, "LD_LIBRARY_PATH": str(folder)}
+    environment.pop("EASYPBR_DEVICE", None)
+
+    def run(*command):
+        return subprocess.run([str(BINARY), *map(str, command)], capture_output=True, text=True, env=environment,
+                              timeout=300)
+
+    return run
+
+
+def test_without_opengl_the_cpu_draws(without_opengl, easypbr, sphere, box, tmp_path):
+    """A picture with everything that is native is the one that is drawn beside OpenGL, byte for byte."""
+    options = ("--size", "64x48", "--set", "ground.mode=shadow", "--set", "ssao.enabled=true", "--samples", 3)
+    done = without_opengl("render", sphere, box, "-o", tmp_path / "without.png", *options)
+    assert done.returncode == 0, done.stderr
+    easypbr("render", sphere, box, "-o", "with.png", *options)
+    assert (tmp_path / "without.png").read_bytes() == (tmp_path / "with.png").read_bytes()
+
+
+def test_without_opengl_errors_name_the_pass_and_what_to_install(without_opengl, sphere, tmp_path):
+    done = without_opengl("render", sphere, "-o", tmp_path / "out.png", "--set", "bloom.enabled=true")
+    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    assert "bloom: this needs OpenGL" in done.stderr and "Install" in done.stderr
+    assert not (tmp_path / "out.png").exists()
+    done = without_opengl("render", sphere, "-o", tmp_path / "out.png", "--device", "gl")
+    assert done.returncode == 1 and "libEGL.so.1 is not installed" in done.stderr
+
+
+def test_doctor_says_that_opengl_is_not_there(without_opengl):
+    done = without_opengl("doctor")
+    assert done.returncode == 0
+    assert "device      cpu" in done.stdout and "OpenGL      not there" in done.stdout
+
+
+def test_devices_are_chosen_by_name(easypbr, environment, sphere):
+    for place in (("--device", "cpu", "render"), ("render", "--device", "gl")):
+        easypbr(*place, sphere, "-o", "out.png", "--size", "16x16")
+    assert "expected auto, gl or cpu" in easypbr("render", sphere, "-o", "x.png", "--device", "cpuu", code=1).stderr
+    environment["EASYPBR_DEVICE"] = "fast"
+    try:
+        assert "expected auto, gl or cpu" in easypbr("render", sphere, "-o", "x.png", code=1).stderr
+    finally:
+        del environment["EASYPBR_DEVICE"]
 
 
 def test_view_says_when_there_is_no_display(easypbr, environment, tmp_path):

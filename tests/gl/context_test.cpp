@@ -23,6 +23,33 @@ TEST(Context, SaysWhatItIs) {
     EXPECT_EQ(context->info().attempts.back().error, "");
 }
 
+TEST(Context, OfTheCpuLoadsTheDriverWhenItIsNeeded) {
+    const auto context = Context::create(DrawDevice::cpu), other = Context::create();
+    EXPECT_EQ(context->info().device, DrawDevice::cpu);
+    EXPECT_TRUE(context->info().software);
+    EXPECT_TRUE(context->info().version.empty());
+    {
+        const ContextScope scope(*context);
+        EXPECT_FALSE(Context::has_driver());
+        {
+            const ContextScope within(*other);
+            EXPECT_TRUE(Context::has_driver());
+            const ContextScope again(*context);
+            EXPECT_FALSE(Context::has_driver());
+        }
+        EXPECT_FALSE(Context::has_driver());
+        const Texture texture(Format::rgba8, 4, 4);
+        EXPECT_TRUE(Context::has_driver());
+        EXPECT_NE(glGetString(GL_VERSION), nullptr);
+    }
+    EXPECT_EQ(context->info().version.substr(0, 2), "4.");
+    EXPECT_TRUE(context->info().software) << "native passes stay native";
+    EXPECT_FALSE(Context::has_driver());
+    const ContextScope scope(*context);
+    EXPECT_TRUE(Context::has_driver());
+    EXPECT_NE(glGetString(GL_VERSION), nullptr) << "current again";
+}
+
 TEST(Context, ScopesNestAndGiveBack) {
     const auto a = Context::create(), b = Context::create();
     EXPECT_EQ(Context::current_or_null(), nullptr);

@@ -9,6 +9,8 @@
 #include <bit>
 #include <cmath>
 #include <functional>
+#include <random>
+#include <utility>
 #include <vector>
 
 namespace easypbr::native::checked {
@@ -132,6 +134,117 @@ TEST_F(Pictures, FacesOfCubesAreOpenGLs) {
     const CubePlace place = cube_place({2.0f, 1.0f, -0.5f});
     EXPECT_FLOAT_EQ(place.s.v[0], 0.5f * (0.25f + 1));
     EXPECT_FLOAT_EQ(place.t.v[0], 0.5f * (-0.5f + 1));
+}
+
+/// An image with random levels: no level has to be the mean of the one before it.
+class Levels {
+  public:
+    Levels(int width, int height, Texture::Wrap u, Texture::Wrap v, bool is_16_bit) {
+        texture_.width = width;
+        texture_.height = height;
+        texture_.levels = std::bit_width(unsigned(std::max(width, height)));
+        texture_.wrap_u = u;
+        texture_.wrap_v = v;
+        texture_.is_16_bit = is_16_bit;
+        const size_t bytes = is_16_bit ? 2 : 1;
+        size_t texels = 0;
+        for (int l = 0; l < texture_.levels; ++l) {
+            texture_.offsets[l] = int(texels);
+            texels += size_t(width_of(l) + 1) * size_t(height_of(l));
+        }
+        data_.resize(4 * bytes * (texels + 1));
+        for (std::byte& byte : data_) byte = std::byte(random_() & 255);
+        for (int l = 0; l < texture_.levels; ++l)
+            for (int y = 0; y < height_of(l); ++y)
+                for (int c = 0; c < 4; ++c)
+                    set(l, width_of(l), y, c,
+                        code(l, u == Texture::Wrap::repeat ? 0 : width_of(l) - 1, y, c));
+        texture_.texels = data_.data();
+    }
+
+    const Texture& texture() const { return texture_; }
+
+    /// OpenGL 4.6, 8.14: equations 8.11 to 8.17, with the exact scale factor.
+    double expected(double u, double v, const double (&changes)[4], double bias, int channel) const {
+        const double w = texture_.width, h = texture_.height;
+        const double scale =
+            std::max(std::hypot(changes[0] * w, changes[1] * h), std::hypot(changes[2] * w, changes[3] * h));
+        const double level = std::clamp(std::log2(scale) + bias, 0.0, double(texture_.levels - 1));
+        const int fine = int(level), coarse = std::min(fine + 1, texture_.levels - 1);
+        const double part = level - fine;
+        return (1 - part) * bilinear(fine, u, v, channel) + part * bilinear(coarse, u, v, channel);
+    }
+
+  private:
+    int width_of(int l) const { return std::max(1, texture_.width >> l); }
+    int height_of(int l) const { return std::max(1, texture_.height >> l); }
+    size_t place(int l, int x, int y, int c) const {
+        return 4 * (size_t(texture_.offsets[l]) + size_t(y) * size_t(width_of(l) + 1) + size_t(x)) +
+               size_t(c);
+    }
+    unsigned code(int l, int x, int y, int c) const {
+        const size_t at = place(l, x, y, c);
+        if (!texture_.is_16_bit) return unsigned(data_[at]);
+        return unsigned(data_[2 * at]) | unsigned(data_[2 * at + 1]) << 8;
+    }
+    void set(int l, int x, int y, int c, unsigned code) {
+        const size_t at = place(l, x, y, c);
+        if (!texture_.is_16_bit) {
+            data_[at] = std::byte(code);
+            return;
+        }
+        data_[2 * at] = std::byte(code & 255);
+        data_[2 * at + 1] = std::byte(code >> 8);
+    }
+    static int wrapped(int i, int n, Texture::Wrap wrap) {
+        if (wrap == Texture::Wrap::clamp) return std::clamp(i, 0, n - 1);
+        if (wrap == Texture::Wrap::repeat) return ((i % n) + n) % n;
+        const int turn = ((i % (2 * n)) + 2 * n) % (2 * n);
+        return turn < n ? turn : 2 * n - 1 - turn;
+    }
+    double texel(int l, int x, int y, int c) const {
+        return code(l, wrapped(x, width_of(l), texture_.wrap_u), wrapped(y, height_of(l), texture_.wrap_v),
+                    c) /
+               (texture_.is_16_bit ? 65535.0 : 255.0);
+    }
+    double bilinear(int l, double u, double v, int c) const {
+        const double x = u * width_of(l) - 0.5, y = v * height_of(l) - 0.5;
+        const int i = int(std::floor(x)), j = int(std::floor(y));
+        const double a = x - i, b = y - j;
+        return (1 - a) * (1 - b) * texel(l, i, j, c) + a * (1 - b) * texel(l, i + 1, j, c) +
+               (1 - a) * b * texel(l, i, j + 1, c) + a * b * texel(l, i + 1, j + 1, c);
+    }
+
+    std::mt19937 random_{7};
+    Texture texture_;
+    std::vector<std::byte> data_;
+};
+
+// Rounding: coordinates of up to 2.5 times 37 texels in single precision, 1e-5 of a texel, between codes that
+// may be a whole range apart; the level errs by log2's 1e-6.
+TEST(Samplers, TexturesAreFilteredAsOpenGLSays) {
+    using enum Texture::Wrap;
+    std::mt19937 random(3);
+    std::uniform_real_distribution<double> place(-1.5, 2.5), exponent(-9, 1), turn(0, 6.28);
+    for (const auto& [u_wrap, v_wrap] : {std::pair(repeat, repeat), {mirror, clamp}, {clamp, mirror}})
+        for (const bool is_16_bit : {false, true}) {
+            const Levels levels(37, 20, u_wrap, v_wrap, is_16_bit);
+            for (int i = 0; i < 2000; ++i) {
+                // As single precision has them.
+                const auto u = float(place(random)), v = float(place(random));
+                const double size = std::exp2(exponent(random)), angle = turn(random);
+                const double changes[4] = {double(float(size * std::cos(angle))),
+                                           double(float(size * std::sin(angle))), double(float(size * 0.3)),
+                                           double(float(size * -0.2))};
+                const vec4 found =
+                    textureGrad(levels.texture(), {u, v}, {float(changes[0]), float(changes[1])},
+                                {float(changes[2]), float(changes[3])}, 0.25f);
+                const float channels[4] = {found.x.v[0], found.y.v[0], found.z.v[0], found.w.v[0]};
+                for (int c = 0; c < 4; ++c)
+                    ASSERT_NEAR(channels[c], levels.expected(double(u), double(v), changes, 0.25, c), 3e-5)
+                        << u << ' ' << v << ' ' << size;
+            }
+        }
 }
 
 }  // namespace

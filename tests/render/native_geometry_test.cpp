@@ -12,7 +12,8 @@ namespace {
 
 struct Comparison {
     bool software = false;
-    double covered = 0, one_sided = 0, depth_off = 0, normal_off = 0, albedo_off = 0;
+    double covered = 0, one_sided = 0, depth_off = 0, normal_off = 0, albedo_off = 0, material_off = 0;
+    double picture_off = 0;
 };
 
 /// Shares of pixels that differ, of all that either way covers.
@@ -24,11 +25,14 @@ Comparison compare_both(const Scene& scene, const Settings& settings, Vec2i size
     const ResolvedSettings resolved = resolve(snapshot, settings, size);
     Renderer renderer;
     std::map<Layer, Image> layers[2];
+    Image pictures[2];
     for (const bool native : {false, true}) {
         renderer.allow_native_geometry(native);
         renderer.draw(snapshot, resolved, {size, 1, Encoding::srgb8});
-        for (const Layer layer : {Layer::depth, Layer::normal_world, Layer::albedo})
+        for (const Layer layer : {Layer::depth, Layer::normal_world, Layer::albedo, Layer::metallic,
+                                  Layer::roughness, Layer::occlusion})
             layers[native][layer] = renderer.read_layer(layer);
+        pictures[native] = renderer.read_picture();
     }
     Comparison result;
     result.software = true;
@@ -51,8 +55,20 @@ Comparison compare_both(const Scene& scene, const Settings& settings, Vec2i size
             result.depth_off += std::abs(a / b - 1) > 1e-4;
             result.normal_off += n.dot(m) < std::cos(radians(1.0));
             result.albedo_off += (c - d).cwiseAbs().maxCoeff() > 0.01f;
+            const auto differs = [&](Layer layer) {
+                return std::abs(layers[0][layer].at<float>(x, y)[0] - layers[1][layer].at<float>(x, y)[0]) >
+                       0.01f;
+            };
+            result.material_off +=
+                differs(Layer::metallic) || differs(Layer::roughness) || differs(Layer::occlusion);
+            int most = 0;
+            for (int k = 0; k < 3; ++k)
+                most = std::max(most, std::abs(int(pictures[0].at<uint8_t>(x, y)[k]) -
+                                               int(pictures[1].at<uint8_t>(x, y)[k])));
+            result.picture_off += most > 8;
         }
-    for (double* share : {&result.one_sided, &result.depth_off, &result.normal_off, &result.albedo_off})
+    for (double* share : {&result.one_sided, &result.depth_off, &result.normal_off, &result.albedo_off,
+                          &result.material_off, &result.picture_off})
         *share /= result.covered;
     return result;
 }
@@ -68,6 +84,8 @@ void expect_agreement(const Scene& scene, const Settings& settings = {}) {
     EXPECT_LE(c.depth_off, 0.005);
     EXPECT_LE(c.normal_off, 0.01);
     EXPECT_LE(c.albedo_off, 0.01);
+    EXPECT_LE(c.material_off, 0.01);
+    EXPECT_LE(c.picture_off, 0.01);
 }
 
 Mesh fine_teapot() {
@@ -137,7 +155,168 @@ TEST(NativeGeometry, WrongWinding) {
     expect_agreement(scene);
 }
 
-// What reaches before the near plane is left to the driver; the picture must be whole either way.
+/// Waves, which no filter changes much.
+Texture waves(double phase, Wrap wrap = Wrap::repeat) {
+    auto image = std::make_shared<Image>(64, 48, 4, PixelType::u8);
+    for (int y = 0; y < image->height(); ++y)
+        for (int x = 0; x < image->width(); ++x)
+            for (int c = 0; c < 4; ++c) {
+                const double wave = std::sin(2 * pi * x / 64 + phase + c) * std::cos(2 * pi * y / 48 + c);
+                image->at<uint8_t>(x, y)[c] = uint8_t(std::lround(127.5 + 100 * wave));
+            }
+    Texture texture;
+    texture.image = image;
+    texture.wrap_u = texture.wrap_v = wrap;
+    texture.uv_transform << 2, 0.5f, 0.1f, -0.3f, 1.5f, 0.2f, 0, 0, 1;
+    return texture;
+}
+
+Texture normals() {
+    auto image = std::make_shared<Image>(64, 64, 3, PixelType::u8);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 64; ++x) {
+            const double slope_x = 0.4 * std::sin(2 * pi * x / 64), slope_y = 0.3 * std::cos(2 * pi * y / 64);
+            const Vec3d n = Vec3d(slope_x, slope_y, 1).normalized();
+            for (int c = 0; c < 3; ++c)
+                image->at<uint8_t>(x, y)[c] = uint8_t(std::lround((n[c] * 0.5 + 0.5) * 255));
+        }
+    Texture texture;
+    texture.image = image;
+    return texture;
+}
+
+Material with_all_maps() {
+    Material material;
+    material.base_color_texture = waves(0);
+    material.metallic_texture = material.roughness_texture = waves(1, Wrap::mirror);
+    material.metallic = material.roughness = 1;
+    material.metallic_texture.channel = 2;
+    material.roughness_texture.channel = 1;
+    material.occlusion_texture = waves(2, Wrap::clamp);
+    material.normal_texture = normals();
+    material.emissive_texture = waves(3);
+    material.emissive = Vec3(0.5f, 0.2f, 0.8f);
+    return material;
+}
+
+TEST(NativeGeometry, AllMaps) {
+    Mesh mesh = fine_teapot();
+    mesh.set_material(with_all_maps());
+    Scene scene;
+    scene.show(mesh, "teapot");
+    expect_agreement(scene);
+    Settings settings;
+    settings.style.flat = true;
+    expect_agreement(scene, settings);
+    settings.style.two_sided = false;
+    expect_agreement(scene, settings);
+    mesh.set_F(Array3i(Array3i::Dense(mesh.F().rowwise().reverse())));
+    Scene inside_out;
+    inside_out.show(mesh, "inside out");
+    expect_agreement(inside_out);
+}
+
+TEST(NativeGeometry, SeparateMapsWithoutFilter) {
+    Mesh mesh = fine_teapot();
+    Material material = with_all_maps();
+    material.roughness_texture = waves(5);
+    material.metallic_texture.filter = material.base_color_texture.filter = Filter::nearest;
+    mesh.set_material(material);
+    Scene scene;
+    scene.show(mesh, "teapot");
+    // Texels are of a few pixels: at their borders the sides may differ.
+    const Comparison c = compare_both(scene, {});
+    if (!c.software) GTEST_SKIP() << "this machine has a GPU: the native rasteriser is not used";
+    EXPECT_LE(c.normal_off, 0.01);
+    EXPECT_LE(c.albedo_off, 0.03);
+    EXPECT_LE(c.material_off, 0.03);
+}
+
+TEST(NativeGeometry, MasksAreCutOut) {
+    Mesh mesh = fine_teapot();
+    Material material = with_all_maps();
+    material.alpha_mode = AlphaMode::mask;
+    material.alpha_cutoff = 0.4f;
+    mesh.set_material(material);
+    Scene scene;
+    scene.show(mesh, "teapot");
+    // What is behind is seen through the holes.
+    Mesh ball = make_sphere(0.8f, 60);
+    scene.show(ball, "ball");
+    const Comparison c = compare_both(scene, {});
+    if (!c.software) GTEST_SKIP() << "this machine has a GPU: the native rasteriser is not used";
+    // The driver filters alpha in 8 bits: the borders of holes move by a part of a pixel.
+    EXPECT_LE(c.one_sided, 0.005);
+    EXPECT_LE(c.depth_off, 0.01);
+    EXPECT_LE(c.albedo_off, 0.02);
+    EXPECT_LE(c.picture_off, 0.02);
+}
+
+TEST(NativeGeometry, EmissionAndUnlit) {
+    Scene scene;
+    Mesh glowing = fine_teapot(), plain = make_sphere(0.8f, 60), unlit = make_box(Vec3(1, 1, 1));
+    Material material;
+    material.emissive = Vec3(1, 0.5f, 0.1f);
+    glowing.set_material(material);
+    material = Material();
+    material.unlit = true;
+    material.base_color = Vec3(0.1f, 0.8f, 0.3f);
+    unlit.set_material(material);
+    plain.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(2, 0, 0)));
+    unlit.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(-2, 0, 1)));
+    scene.show(glowing, "glowing");
+    scene.show(plain, "plain");
+    scene.show(unlit, "unlit");
+    expect_agreement(scene);
+    Settings with_ground;
+    with_ground.ground.mode = GroundMode::plane;
+    expect_agreement(scene, with_ground);
+}
+
+// Light of a native picture stays in host memory; what the driver lights next does not begin with it.
+TEST(NativeGeometry, LightOfThePictureBeforeIsForgotten) {
+    Scene scene;
+    scene.show(fine_teapot(), "teapot");
+    Settings settings;
+    settings.ground.mode = GroundMode::plane;
+    app::Session again(scene), fresh(scene);
+    app::PictureOptions options;
+    options.size = Vec2i(64, 48);
+    again.render(options);
+    again.settings() = settings;
+    fresh.settings() = settings;
+    EXPECT_TRUE(std::ranges::equal(again.render(options).bytes(), fresh.render(options).bytes()));
+}
+
+// What reaches before the near plane is clipped there, and what reaches far outside at a guard band.
+TEST(NativeGeometry, ClipsAtTheNearPlaneAndFarOutside) {
+    Mesh mesh = fine_teapot();
+    mesh.set_material(with_all_maps());
+    for (const Projection projection : {Projection::perspective, Projection::orthographic}) {
+        // Parallel depths have the precision of the farthest.
+        Mesh large = make_plane(projection == Projection::perspective ? 1e7f : 1e3f);
+        large.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(0, -1, 0)));
+        Scene scene;
+        scene.show(mesh, "teapot");
+        scene.show(large, "plane");
+        for (const double near : {0.01, 2.0, 2.8}) {
+            Settings settings;
+            settings.camera.projection = projection;
+            settings.camera.position = Vec3d(0.3, 1, 3);
+            settings.camera.target = Vec3d(0, 0, 0);
+            settings.camera.near = near;
+            const Comparison c = compare_both(scene, settings);
+            if (!c.software) GTEST_SKIP() << "this machine has a GPU: the native rasteriser is not used";
+            EXPECT_GT(c.covered, 5000) << near;
+            EXPECT_LE(c.one_sided, 0.002) << near << ", the driver cuts elsewhere by a part of a pixel";
+            EXPECT_LE(c.depth_off, 0.01) << near;
+            EXPECT_LE(c.normal_off, 0.01) << near;
+            EXPECT_LE(c.albedo_off, 0.02) << near;
+        }
+    }
+}
+
+// The picture is whole where the room reaches before the near plane.
 TEST(NativeGeometry, FromInside) {
     Scene scene;
     scene.show(make_sphere(1, 128), "room");

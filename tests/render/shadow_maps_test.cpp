@@ -132,7 +132,6 @@ TEST_F(ShadowCache, ALightThatReachesNothingDrawsNone) {
 
 // A cube's face that sees nothing is drawn once something is there to be seen.
 TEST_F(ShadowCache, TheGroundNeedsMore) {
-    session_.allow_native_shading(false);
     session_.render();
     change_light("lamp", [](Light& l) { l.position = Vec3(2.2f, 0.3f, 0.3f); });
     const uint64_t before = session_.shadow_maps_drawn();

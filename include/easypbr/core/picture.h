@@ -37,4 +37,16 @@ enum class Blend {
     replace  ///< what is there
 };
 
+/// What pictures are drawn by. The environment variable EASYPBR_DEVICE, "auto", "gl" or "cpu", stands for
+/// `automatic`.
+enum class DrawDevice {
+    automatic,  ///< a GPU where there is one, else the CPU
+    gl,         ///< OpenGL: a GPU, or a driver that draws on the CPU
+    cpu  ///< natively; OpenGL is loaded for what it alone can draw, and that is an error where it is missing
+};
+
+/// "auto", "gl", "cpu". Throws NameError with the nearest name.
+DrawDevice draw_device_named(const std::string& name);
+const std::vector<std::string>& draw_device_names();
+
 }  // namespace easypbr

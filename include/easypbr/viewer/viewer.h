@@ -49,11 +49,18 @@ class Viewer {
     /// Of the default scene.
     Viewer();
     explicit Viewer(const Scene& scene);
+    /// Of the default scene, or another one, drawn by a device. Its driver is asked for with the first
+    /// picture.
+    explicit Viewer(DrawDevice device);
+    Viewer(const Scene& scene, DrawDevice device);
     ~Viewer();
     Viewer(const Viewer&) = delete;
     Viewer& operator=(const Viewer&) = delete;
     /// Settings from a file that --save-settings wrote, and a picture size.
     explicit Viewer(Vec2i size, const std::filesystem::path& settings = {});
+
+    /// What draws, never `automatic`. Throws ContextError, as render() does.
+    DrawDevice device();
 
     app::Recorder recorder;
 

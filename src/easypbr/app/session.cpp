@@ -40,8 +40,17 @@ Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
 
 const gl::ContextInfo& Session::context_info() {
-    if (!device_->context) device_->context = gl::Context::create();
+    if (!device_->context) device_->context = gl::Context::create(asked_device_);
     return device_->context->info();
+}
+
+void Session::use_device(DrawDevice device) {
+    if (device_->context && device != DrawDevice::automatic && device != context_info().device)
+        throw ArgumentError(
+            fmt::format("device: pictures have been drawn by {} already; expected it to be set "
+                        "before the first one",
+                        draw_device_names()[size_t(context_info().device)]));
+    asked_device_ = device;
 }
 
 render::Renderer& Session::renderer() {

@@ -151,7 +151,10 @@ class Session {
     /// Forgets what was inferred, so that the next picture infers it anew.
     void refit();
 
-    /// What the GL context is; makes it when there is none yet.
+    /// Which device draws, from the first picture on. Throws ArgumentError when another one was drawn by
+    /// already.
+    void use_device(DrawDevice device);
+    /// What draws; made when there is nothing yet.
     const gl::ContextInfo& context_info();
 
     /// From which size on render() and render_layers() draw in tiles; without this what the context can draw.
@@ -194,6 +197,7 @@ class Session {
     std::vector<render::CustomPass> passes_;
     std::optional<render::TileLimits> tile_limits_;
     std::shared_ptr<Device> device_ = std::make_shared<Device>();
+    DrawDevice asked_device_ = DrawDevice::automatic;
 
     /// What refine() adds frames to; nothing: it has to begin.
     struct Refined;

@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <exception>
 #include <iostream>
@@ -13,6 +14,7 @@
 #include "easypbr/cli/console.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/picture.h"
 #include "easypbr/core/suggest.h"
 
 namespace easypbr::cli {
@@ -63,6 +65,15 @@ void reject_extras(const CLI::App& app) {
 void add_commands(CLI::App& app, Job& job) {
     app.name("easypbr");
     app.set_version_flag("--version", "easypbr " EASYPBR_VERSION, "Print the version and exit");
+    app.add_option_function<std::string>(
+           "--device",
+           [](const std::string& name) {
+               draw_device_named(name);
+               ::setenv("EASYPBR_DEVICE", name.c_str(), 1);
+           },
+           "What draws: gl, cpu, or auto for a GPU where there is one, else the CPU (EASYPBR_DEVICE)")
+        ->option_text("NAME");
+    app.fallthrough();
     app.require_subcommand(0, 1);
     app.allow_extras();
     add_render(app, job);

@@ -50,6 +50,8 @@ void print_formats() {
 }
 
 void print_context(const gl::ContextInfo& info) {
+    print("device",
+          info.device == DrawDevice::cpu ? "cpu: draws natively, by OpenGL what is not native yet" : "gl");
     for (const gl::Attempt& attempt : info.attempts)
         print("tried", fmt::format("{}: {}", attempt.what, attempt.error.empty() ? "works" : attempt.error));
     print("vendor", info.vendor);
@@ -68,7 +70,16 @@ int run_doctor(const DoctorOptions&) {
     print("CPU", fmt::format("shades with {} where there is no GPU (there are {})", native::instruction_set(),
                              fmt::join(native::instruction_sets(), ", ")));
     app::Session session;
-    print_context(session.context_info());
+    gl::Context& context = session.context();
+    try {
+        const gl::ContextScope scope(context);
+        gl::Context::with_driver();
+        print_context(context.info());
+    } catch (const ContextError& error) {
+        if (context.info().device == DrawDevice::gl) throw;
+        print("device", "cpu: draws natively");
+        print("OpenGL", std::string("not there: ") + error.what());
+    }
     return 0;
 }
 

@@ -22,4 +22,17 @@ Stage stage_named(const std::string& name) {
     return Stage(found - stage_names().begin());
 }
 
+const std::vector<std::string>& draw_device_names() {
+    static const std::vector<std::string> names = {"auto", "gl", "cpu"};
+    return names;
+}
+
+DrawDevice draw_device_named(const std::string& name) {
+    const auto found = std::ranges::find(draw_device_names(), name);
+    if (found == draw_device_names().end())
+        throw NameError(fmt::format("there is no device '{}'{}; expected auto, gl or cpu", name,
+                                    did_you_mean(name, draw_device_names())));
+    return DrawDevice(found - draw_device_names().begin());
+}
+
 }  // namespace easypbr

@@ -7,7 +7,9 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <cstring>
+#include <utility>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
@@ -140,38 +142,77 @@ std::string gl_string(GLenum name) {
     return text ? reinterpret_cast<const char*>(text) : "";
 }
 
+/// Largest side of what is drawn in one piece without the driver: as llvmpipe's.
+constexpr int native_limit = 1 << 14;
+
+/// Whether there may be a GPU: without a device file there is none, and nothing has to be loaded to know
+/// that.
+bool has_gpu_files() {
+    for (const char* file :
+         {"/dev/dri", "/dev/nvidiactl", "/dev/nvidia0", "/dev/dxg", "/dev/kfd", "/dev/mali0"})
+        if (::access(file, F_OK) == 0) return true;
+    return false;
+}
+
+DrawDevice device_by_environment() {
+    const char* name = std::getenv("EASYPBR_DEVICE");
+    return name ? draw_device_named(name) : DrawDevice::automatic;
+}
+
 }  // namespace
 
-std::unique_ptr<Context> Context::create() {
+std::unique_ptr<Context> Context::create(DrawDevice device) {
     // Drivers keep threads and locks of their own, which a forked child does not have.
     static const pid_t first_process = getpid();
     if (first_process != getpid())
         throw ContextError(
             "this process was forked from one that had already drawn: start workers with 'spawn' instead");
-    require_libraries();
+    if (device == DrawDevice::automatic) device = device_by_environment();
+    const bool asked = device != DrawDevice::automatic;
+    if (!asked) device = has_gpu_files() ? DrawDevice::gl : DrawDevice::cpu;
     std::unique_ptr<Context> made(new Context);
     made->deletions_ = std::make_shared<DeletionQueue>();
     made->process_ = getpid();
-    std::vector<Attempt>& attempts = made->info_.attempts;
+    made->info_.device = device;
+    if (device == DrawDevice::gl) {
+        try {
+            const ContextScope scope(*made);
+            made->load_driver();
+            if (!asked && made->info_.software) made->info_.device = DrawDevice::cpu;
+            return made;
+        } catch (const ContextError&) {
+            if (asked) throw;
+            made->info_.device = DrawDevice::cpu;
+        }
+    }
+    made->info_.software = true;
+    made->info_.max_texture_size = made->info_.max_viewport = native_limit;
+    return made;
+}
+
+void Context::load_driver() {
+    require_libraries();
+    std::vector<Attempt>& attempts = info_.attempts;
+    attempts.clear();
     for (const Candidate& candidate : candidates()) {
         attempts.push_back({candidate.what, {}});
-        made->context_ = try_display(candidate.display, attempts.back().error);
-        if (made->context_ == EGL_NO_CONTEXT) continue;
-        made->display_ = candidate.display;
-        made->info_.platform = candidate.what;
-        made->initialize();
-        return made;
+        context_ = try_display(candidate.display, attempts.back().error);
+        if (context_ == EGL_NO_CONTEXT) continue;
+        display_ = candidate.display;
+        info_.platform = candidate.what;
+        scope_->enter(*this);
+        initialize();
+        return;
     }
     fail_without_context(attempts);
 }
 
 void Context::initialize() {
-    const ContextScope scope(*this);
     info_.vendor = gl_string(GL_VENDOR);
     info_.renderer = gl_string(GL_RENDERER);
     info_.version = gl_string(GL_VERSION);
     for (const char* name : {"llvmpipe", "softpipe", "swrast", "SWR"})
-        info_.software |= info_.renderer.find(name) != std::string::npos;
+        info_.software |= info_.device == DrawDevice::cpu || info_.renderer.find(name) != std::string::npos;
     glGetIntegerv(GL_MAX_TEXTURE_SIZE, &info_.max_texture_size);
     GLint viewport[2] = {0, 0};
     glGetIntegerv(GL_MAX_VIEWPORT_DIMS, viewport);
@@ -201,12 +242,37 @@ Context& Context::current() {
     return *current_context;
 }
 
+Context& Context::with_driver() {
+    Context& context = current();
+    if (!context.context_) {
+        try {
+            context.load_driver();
+        } catch (const ContextError& error) {
+            throw ContextError(
+                fmt::format("this needs OpenGL, beyond what the CPU draws natively: {}", error.what()));
+        }
+    }
+    return context;
+}
+
+bool Context::has_driver() {
+    return current_context && current_context->context_;
+}
+
 ContextScope::ContextScope(Context& context) : previous_(current_context) {
     if (context.process_ != getpid())
         throw ContextError(
             "the viewer was made before this process was forked: start workers with 'spawn' instead");
     lock_ = std::unique_lock(context.mutex_);
     if (previous_ == &context) return;
+    if (context.context_) enter(context);
+    switched_ = true;
+    outer_ = std::exchange(context.scope_, this);
+    current_context = &context;
+    if (entered_) context.deletions_->flush();
+}
+
+void ContextScope::enter(Context& context) {
     old_display_ = eglGetCurrentDisplay();
     old_context_ = eglGetCurrentContext();
     old_draw_ = eglGetCurrentSurface(EGL_DRAW);
@@ -214,15 +280,15 @@ ContextScope::ContextScope(Context& context) : previous_(current_context) {
     eglBindAPI(EGL_OPENGL_API);
     if (!eglMakeCurrent(context.display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context.context_))
         throw ContextError(egl_error("eglMakeCurrent"));
-    switched_ = true;
-    current_context = &context;
-    context.deletions_->flush();
+    entered_ = true;
 }
 
 ContextScope::~ContextScope() {
     if (!switched_) return;
     Context& context = *current_context;
     current_context = previous_;
+    context.scope_ = outer_;
+    if (!entered_) return;
     if (old_context_ != EGL_NO_CONTEXT)
         eglMakeCurrent(old_display_, old_draw_, old_read_, old_context_);
     else

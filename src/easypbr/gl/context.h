@@ -1,4 +1,5 @@
-// OpenGL 4.5 contexts without a window: EGL device (a real GPU first), surfaceless, software.
+// OpenGL 4.5 contexts without a window: EGL device (a real GPU first), surfaceless, software. Where the CPU
+// draws natively, the driver is loaded when something needs it.
 #pragma once
 
 #include <memory>
@@ -6,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "easypbr/core/picture.h"
 #include "easypbr/gl/buffer.h"
 
 namespace easypbr::gl {
@@ -17,20 +19,23 @@ struct Attempt {
 };
 
 struct ContextInfo {
-    std::string vendor, renderer, version, platform;
-    bool software = false;  ///< a CPU rasteriser such as llvmpipe
+    DrawDevice device = DrawDevice::gl;               ///< never automatic
+    std::string vendor, renderer, version, platform;  ///< of the driver; empty until it is loaded
+    bool software = false;                            ///< the CPU draws, natively where it can
     int max_texture_size = 0;
     int max_viewport = 0;
     std::vector<Attempt> attempts;
 };
 
 class DeletionQueue;
+class ContextScope;
 
 /// One OpenGL 4.5 core context. May be used from any thread, by one at a time: through ContextScope.
 class Context {
   public:
-    /// Throws ContextError that lists what was tried, why each failed and what to install.
-    static std::unique_ptr<Context> create();
+    /// Throws ContextError that lists what was tried, why each failed and what to install; for the CPU only
+    /// in a forked process.
+    static std::unique_ptr<Context> create(DrawDevice device = DrawDevice::gl);
 
     ~Context();
     Context(const Context&) = delete;
@@ -43,6 +48,10 @@ class Context {
     static Context& current();
     /// The same, or null.
     static Context* current_or_null();
+    /// The same, with the driver loaded. Throws ContextError when that fails.
+    static Context& with_driver();
+    /// Whether OpenGL may be called: the driver of the current context is loaded.
+    static bool has_driver();
 
     /// GL objects that died while the context was not current wait here.
     const std::shared_ptr<DeletionQueue>& deletions() const { return deletions_; }
@@ -53,6 +62,7 @@ class Context {
   private:
     friend class ContextScope;
     Context() = default;
+    void load_driver();
     void initialize();
 
     void* display_ = nullptr;
@@ -60,6 +70,7 @@ class Context {
     long process_ = 0;
     ContextInfo info_;
     std::recursive_mutex mutex_;
+    ContextScope* scope_ = nullptr;  ///< that made it current
     std::shared_ptr<DeletionQueue> deletions_;
     VertexArray no_attributes_;
 };
@@ -74,9 +85,14 @@ class ContextScope {
     ContextScope& operator=(const ContextScope&) = delete;
 
   private:
+    friend class Context;
+    /// Makes the driver's context current.
+    void enter(Context& context);
+
     std::unique_lock<std::recursive_mutex> lock_;
     Context* previous_;
-    bool switched_ = false;
+    ContextScope* outer_ = nullptr;  ///< of the same context
+    bool switched_ = false, entered_ = false;
     void *old_display_ = nullptr, *old_context_ = nullptr, *old_draw_ = nullptr, *old_read_ = nullptr;
 };
 

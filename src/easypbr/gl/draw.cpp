@@ -115,6 +115,7 @@ void draw_triangles(const DrawState& state, const VertexArray& array, int64_t fi
 }
 
 void reset_state() {
+    if (!Context::has_driver()) return;
     for (const GLenum off :
          {GL_STENCIL_TEST, GL_POLYGON_OFFSET_FILL, GL_RASTERIZER_DISCARD, GL_SAMPLE_COVERAGE,
           GL_FRAMEBUFFER_SRGB, GL_COLOR_LOGIC_OP, GL_PRIMITIVE_RESTART, GL_DEPTH_CLAMP})
@@ -128,12 +129,16 @@ void reset_state() {
     for (unsigned unit = 0; unit < 16; ++unit) glBindSampler(unit, 0);
 }
 
+bool has_driver() {
+    return Context::has_driver();
+}
+
 void finish() {
-    glFinish();
+    if (Context::has_driver()) glFinish();
 }
 
 void flush() {
-    glFlush();
+    if (Context::has_driver()) glFlush();
 }
 
 }  // namespace easypbr::gl

@@ -69,6 +69,8 @@ void draw_triangles(const DrawState& state, const VertexArray& array, int64_t fi
 /// behind.
 void reset_state();
 
+/// Whether there is a context whose driver is loaded.
+bool has_driver();
 /// Waits until the driver has done everything.
 void finish();
 /// Lets the driver begin with everything.

@@ -84,7 +84,7 @@ void DeletionQueue::close() {
 }
 
 Object::Object(ObjectKind kind, uint32_t target)
-    : queue_(Context::current().deletions()), id_(create_name(kind, target)), kind_(kind) {}
+    : queue_(Context::with_driver().deletions()), id_(create_name(kind, target)), kind_(kind) {}
 
 void Object::reset() {
     if (!id_) return;

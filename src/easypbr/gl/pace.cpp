@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "easypbr/core/interrupt.h"
+#include "easypbr/gl/context.h"
 
 namespace easypbr::gl {
 namespace {
@@ -20,14 +21,14 @@ void wait_for(const Object& fence) {
 
 void Pace::step() {
     check_interrupt();
-    if (!can_be_interrupted()) return;
+    if (!can_be_interrupted() || !Context::has_driver()) return;
     const Object before = std::exchange(fence_, Object(ObjectKind::fence));
     if (before) wait_for(before);
 }
 
 void wait_for_driver() {
     check_interrupt();
-    if (can_be_interrupted()) wait_for(Object(ObjectKind::fence));
+    if (can_be_interrupted() && Context::has_driver()) wait_for(Object(ObjectKind::fence));
 }
 
 }  // namespace easypbr::gl

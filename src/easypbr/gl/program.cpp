@@ -13,6 +13,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/gl/context.h"
 
 namespace easypbr::gl {
 namespace {
@@ -187,6 +188,7 @@ GLuint compile(GLenum stage, const Expanded& source) {
     std::string text = "#version 450 core\n";
     for (const std::string& define : source.defines) text += "#define " + define + "\n";
     text += source.text;
+    Context::with_driver();
     const GLuint shader = glCreateShader(stage);
     const char* pointer = text.c_str();
     glShaderSource(shader, 1, &pointer, nullptr);

@@ -73,7 +73,7 @@ int full_levels(int width, int height) {
 
 Texture::Texture(Format format, int width, int height, int levels, TextureKind kind)
     : format_(format), kind_(kind), width_(width), height_(height) {
-    const int limit = Context::current().info().max_texture_size;
+    const int limit = Context::with_driver().info().max_texture_size;
     if (width < 1 || height < 1 || width > limit || height > limit)
         throw ContextError(fmt::format("a picture of {}x{} is beyond this driver's limit of {}x{}", width,
                                        height, limit, limit));
@@ -84,7 +84,7 @@ Texture::Texture(Format format, int width, int height, int levels, TextureKind k
 }
 
 Texture Texture::layered(Format format, int width, int height, int layers) {
-    const int limit = Context::current().info().max_texture_size;
+    const int limit = Context::with_driver().info().max_texture_size;
     GLint most_layers = 0;
     glGetIntegerv(GL_MAX_ARRAY_TEXTURE_LAYERS, &most_layers);
     if (std::min({width, height, layers}) < 1 || std::max(width, height) > limit || layers > most_layers)

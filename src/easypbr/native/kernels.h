@@ -4,6 +4,7 @@
 #include <cstddef>
 
 #include "easypbr/native/views.h"
+#include "native/shader_list.h"
 
 namespace easypbr::native {
 
@@ -11,7 +12,9 @@ namespace easypbr::native {
 enum class Store {
     replace,
     add_light,  ///< colours are added, alpha stays
-    add         ///< all channels are added
+    add,        ///< all channels are added
+    multiply,   ///< all channels are multiplied
+    under       ///< what the pixel holds is premultiplied, and lies over what is written
 };
 enum class Pixels {
     rgba8,   ///< rounded to 8 bits
@@ -22,7 +25,7 @@ enum class Pixels {
 /// The pixels that are shaded.
 enum class Where {
     everywhere,
-    covered,  ///< where `depth` is not 0; with Store::replace other pixels become 0
+    covered,  ///< where `depth` is not 0; with Store::replace other pixels and discarded ones become 0
     empty     ///< where it is 0
 };
 
@@ -41,6 +44,14 @@ struct Region {
 /// Shades rows [y0, y1) of a region; `uniforms` are those of the shader.
 using ShadeRows = void (*)(const void* uniforms, const Region& region, int y0, int y1);
 
+/// Values of the corners that a shader interpolates; null where it reads none.
+struct TriangleAttributes {
+    const float* uvs = nullptr;          ///< of vertices, u v
+    const float* colors = nullptr;       ///< of vertices, linear r g b a
+    const int16_t* tangents = nullptr;   ///< of corners, x y z w of 1/32767
+    float tangent_from_mesh[3][3] = {};  ///< to world space
+};
+
 /// Triangles whose nearest one is known for each pixel, and the targets that their surfaces are written to.
 struct VisibleTriangles {
     const float *V = nullptr, *N = nullptr;  ///< vertices and their normals, x y z
@@ -55,26 +66,44 @@ struct VisibleTriangles {
     double pixel_width = 0, pixel_height = 0;  ///< in normalised device coordinates
     uint64_t albedo = 0;                       ///< of all pixels, in the formats of the targets
     uint32_t material = 0, id = 0;
+    const void* shader = nullptr;   ///< uniforms of mesh_resolve; null: albedo and material are constants
+    TriangleAttributes attributes;  ///< for the shader
 
+    int x = 0, y = 0, width = 0;  ///< first pixel that the targets hold, and of how many columns
     uint64_t* albedos = nullptr;
     uint32_t *normals = nullptr, *materials = nullptr, *ids = nullptr, *elements = nullptr;
-    float* depths = nullptr;  ///< ids and elements: null where they are not asked for
+    float* depths = nullptr;    ///< ids and elements: null where they are not asked for
+    float* emission = nullptr;  ///< r g b a; null where nothing emits
 };
 
-/// A pixel that a triangle was found in.
+/// A pixel that a primitive, as a triangle, was found in.
 struct VisiblePixel {
-    int32_t x = 0;
+    int32_t x = 0, y = 0;
     uint32_t face = 0;
+    float depth = 0;  ///< of the visibility buffer
 };
 
-/// Writes the surfaces of pixels of row `y`, which stand in the targets from `row` on, less `first_x`.
-using ResolveTriangles = void (*)(const VisibleTriangles& triangles, const VisiblePixel* pixels, int count,
-                                  int y, size_t row, int first_x);
+/// Writes the surfaces of pixels.
+using ResolveTriangles = void (*)(const VisibleTriangles& triangles, const VisiblePixel* pixels, int count);
+/// The opacity of pixels by the triangles' shader.
+using AlphaOfTriangles = void (*)(const VisibleTriangles& triangles, const VisiblePixel* pixels, int count,
+                                  float* alpha);
+
+/// Shaders of pictures: those of cmake/native.cmake.
+enum class Shader {
+#define EASYPBR_NAME(name) name,
+    EASYPBR_SHADERS(EASYPBR_NAME)
+#undef EASYPBR_NAME
+};
+
+#define EASYPBR_ONE(name) +1
+inline constexpr int shader_count = EASYPBR_SHADERS(EASYPBR_ONE);
+#undef EASYPBR_ONE
 
 struct Kernels {
     ResolveTriangles resolve_triangles;
-    ShadeRows lighting_surface, background_environment, display_output, accumulate_sample, antialias_fxaa,
-        occlusion_select, occlusion_horizon, occlusion_hemisphere, occlusion_blur, occlusion_magnify;
+    AlphaOfTriangles alpha_of_triangles;
+    ShadeRows shade[shader_count];  ///< by Shader
 };
 
 }  // namespace easypbr::native

@@ -90,16 +90,28 @@ class Setter {
 
     template <class T>
     void operator()(std::string_view name, T& uniform) {
-        const auto at = std::ranges::find(inputs_.values, name, [](const auto& v) { return v.first; });
-        if (at == inputs_.values.end()) return;
-        const bool known = std::visit([&](const auto& value) { return assign(uniform, value); }, at->second);
-        if (!known) throw Error(fmt::format("the value of {} is not of the uniform's type", name));
+        set(name, uniform);
+    }
+    /// A block of bytes, or a value for each element, NAME[i].
+    template <class T, size_t size>
+    void operator()(std::string_view name, T (&uniforms)[size]) {
+        if (set(name, uniforms)) return;
+        for (size_t i = 0; i < size; ++i) set(fmt::format("{}[{}]", name, i), uniforms[i]);
     }
     void feature(std::string_view macro, bool& on) {
         on = on || std::ranges::find(inputs_.features, macro) != inputs_.features.end();
     }
 
   private:
+    /// Whether there is a value of this name.
+    template <class T>
+    bool set(std::string_view name, T& uniform) {
+        const auto at = std::ranges::find(inputs_.values, name, [](const auto& v) { return v.first; });
+        if (at == inputs_.values.end()) return false;
+        const bool known = std::visit([&](const auto& value) { return assign(uniform, value); }, at->second);
+        if (!known) throw Error(fmt::format("the value of {} is not of the uniform's type", name));
+        return true;
+    }
     template <class T, class Value>
     static bool assign(T& to, const Value& value) {
         if constexpr (std::is_base_of_v<View, T> && std::is_same_v<Value, View>) {
@@ -155,29 +167,28 @@ void use_instruction_set(std::string_view name) {
     chosen = &set_of(name);
 }
 
-void resolve_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels, int y,
-                       size_t row, int first_x) {
-    chosen_set().kernels->resolve_triangles(triangles, pixels.data(), int(pixels.size()), y, row, first_x);
+std::shared_ptr<const void> surface_uniforms(const Inputs& inputs) {
+    auto uniforms = std::make_shared<mesh_resolve_uniforms>();
+    uniforms->visit(Setter(inputs));
+    return uniforms;
+}
+
+void resolve_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels) {
+    chosen_set().kernels->resolve_triangles(triangles, pixels.data(), int(pixels.size()));
+}
+
+void alpha_of_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels,
+                        std::span<float> alpha) {
+    chosen_set().kernels->alpha_of_triangles(triangles, pixels.data(), int(pixels.size()), alpha.data());
 }
 
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1) {
     const Kernels& k = *chosen_set().kernels;
-#define EASYPBR_SHADER(name) \
-    case Shader::name:       \
-        return shade_with<name##_uniforms>(k.name, inputs, region, y0, y1);
-    switch (shader) {
-        EASYPBR_SHADER(lighting_surface)
-        EASYPBR_SHADER(background_environment)
-        EASYPBR_SHADER(display_output)
-        EASYPBR_SHADER(accumulate_sample)
-        EASYPBR_SHADER(antialias_fxaa)
-        EASYPBR_SHADER(occlusion_select)
-        EASYPBR_SHADER(occlusion_horizon)
-        EASYPBR_SHADER(occlusion_hemisphere)
-        EASYPBR_SHADER(occlusion_blur)
-        EASYPBR_SHADER(occlusion_magnify)
-    }
-#undef EASYPBR_SHADER
+#define EASYPBR_CASE(name) \
+    case Shader::name:     \
+        return shade_with<name##_uniforms>(k.shade[size_t(shader)], inputs, region, y0, y1);
+    switch (shader) { EASYPBR_SHADERS(EASYPBR_CASE) }
+#undef EASYPBR_CASE
 }
 
 }  // namespace easypbr::native

@@ -2,6 +2,7 @@
 // several instruction sets, of which the best that the processor has is chosen when the first one runs.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <string>
 #include <string_view>
@@ -13,19 +14,6 @@
 #include "easypbr/native/kernels.h"
 
 namespace easypbr::native {
-
-enum class Shader {
-    lighting_surface,
-    background_environment,
-    display_output,
-    accumulate_sample,
-    antialias_fxaa,
-    occlusion_select,
-    occlusion_horizon,
-    occlusion_hemisphere,
-    occlusion_blur,
-    occlusion_magnify
-};
 
 /// Names of the instruction sets that the library was built for and the processor has, the best first.
 /// `$EASYPBR_ISA` names the one that is used, "v2", "avx2" or "avx512".
@@ -39,7 +27,8 @@ void use_instruction_set(std::string_view name);
 /// given is 0. Pictures must live until the shader has run.
 struct Inputs {
     using Bytes = std::span<const std::byte>;
-    using Value = std::variant<int, float, Vec2, Vec3, Vec4, Mat3, View, Cube, Panorama, Layers, Bytes>;
+    using Value =
+        std::variant<int, float, Vec2, Vec3, Vec4, Mat3, View, Cube, Panorama, Layers, Texture, Bytes>;
 
     std::vector<std::string_view> features;
     std::vector<std::pair<std::string_view, Value>> values;
@@ -50,9 +39,15 @@ struct Inputs {
     }
 };
 
-/// Writes the surfaces of pixels of a row, see ResolveTriangles. On the calling thread.
-void resolve_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels, int y,
-                       size_t row, int first_x);
+/// The uniforms of mesh_resolve, for VisibleTriangles::shader. Throws Error when a value is not of the
+/// uniform's type.
+std::shared_ptr<const void> surface_uniforms(const Inputs& inputs);
+/// Writes the surfaces of pixels. On the calling thread.
+void resolve_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels);
+/// The opacity of pixels by the triangles' shader, before it is compared with a cutoff. On the calling
+/// thread.
+void alpha_of_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels,
+                        std::span<float> alpha);
 
 /// Shades rows [y0, y1) of a region, on all cores. Throws Error when a value is not of the uniform's type,
 /// Interrupted.

@@ -56,6 +56,22 @@ struct Layers {
     int size = 0;
 };
 
+/// An image of a material with all its mip levels, one after the other: four channels of 8 bits, or of 16
+/// bits for colours, which are linear then. Rows run from the top, each with a texel more, so that the one to
+/// the right of another is always beside it: the first once more where the image repeats, else the last. Each
+/// level is half as large as the one before it, down to one texel.
+struct Texture {
+    static constexpr int most_levels = 16;
+    enum class Wrap { repeat, mirror, clamp };
+
+    const std::byte* texels = nullptr;
+    bool is_16_bit = false;
+    int width = 0, height = 0, levels = 0;
+    int offsets[most_levels] = {};  ///< of levels, in texels
+    Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+    bool nearest = false;  ///< no filter, the largest level alone
+};
+
 /// The type of each sampler, by the name of the uniform.
 namespace samplers {
 using u_albedo = Rgba16;
@@ -63,8 +79,10 @@ using u_normal = Rg16;
 using u_material = Rgba8;
 using u_depth_target = R32f;
 using u_dfg = Rg16fLinear;
+using u_emission = Rgba32f;
 using u_ambient_occlusion = R16;
 using u_surface = Rgba32f;
+using u_light = Rgba32f;
 using u_visibility = R16;
 using u_shadow_maps = Layers;
 using u_tint_absorption = Layers;
@@ -81,6 +99,13 @@ using u_overlay = Rgba16f;
 using u_glow = Rgba16fLinear;
 using u_background_image = Rgba8Linear;
 using u_color = Rgba8Linear;
+using u_base_color_texture = Texture;
+using u_metallic_texture = Texture;
+using u_roughness_texture = Texture;
+using u_normal_texture = Texture;
+using u_occlusion_texture = Texture;
+using u_emissive_texture = Texture;
+using u_opacity_texture = Texture;
 }  // namespace samplers
 
 /// Values that are the same for all pixels, as GLSL names their types.
@@ -100,6 +125,7 @@ struct vec3 {
     EASYPBR_INLINE constexpr explicit vec3(float a) : x(a), y(a), z(a) {}
     EASYPBR_INLINE constexpr vec2 xy() const { return {x, y}; }
     EASYPBR_INLINE constexpr vec3 xyz() const { return *this; }
+    EASYPBR_INLINE constexpr vec3 yzx() const { return {y, z, x}; }
 };
 struct vec4 {
     float x, y, z, w;

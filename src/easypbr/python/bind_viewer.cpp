@@ -329,7 +329,18 @@ void bind_viewer_settings(ViewerClass& viewer) {
 
 void bind_viewer(nb::module_& module) {
     ViewerClass viewer(module, "ViewerHandle", "Settings and a renderer for one scene.");
-    viewer.def(nb::init<const Scene&>(), nb::arg("scene"))
+    viewer
+        .def(
+            "__init__",
+            [](SharedViewer* self, const Scene& scene, const std::string& device) {
+                new (self) SharedViewer(scene, draw_device_named(device));
+            },
+            nb::arg("scene"), nb::arg("device") = "auto")
+        .def_prop_ro("device",
+                     [](SharedViewer& self) {
+                         const DrawDevice device = self.run([](Viewer& viewer) { return viewer.device(); });
+                         return draw_device_names()[size_t(device)];
+                     })
         .def(
             "load_environment_map",
             [](SharedViewer& self, const fs::path& path) {

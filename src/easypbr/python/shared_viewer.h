@@ -95,7 +95,7 @@ class Turns {
 /// A viewer that threads take turns in.
 class SharedViewer {
   public:
-    explicit SharedViewer(const Scene& scene) : viewer_(scene) {}
+    SharedViewer(const Scene& scene, DrawDevice device) : viewer_(scene, device) {}
 
     template <class Work>
     auto run(Work&& work) {

@@ -214,6 +214,16 @@ Viewer::Viewer() : Viewer(default_scene()) {}
 Viewer::Viewer(const Scene& scene)
     : parts_(std::make_unique<Parts>(scene)), recorder(parts_->session, parts_->clock) {}
 
+Viewer::Viewer(const Scene& scene, DrawDevice device) : Viewer(scene) {
+    parts_->session.use_device(device);
+}
+
+Viewer::Viewer(DrawDevice device) : Viewer(default_scene(), device) {}
+
+DrawDevice Viewer::device() {
+    return parts_->session.context_info().device;
+}
+
 Scene& Viewer::scene() {
     return parts_->session.scene();
 }

@@ -13,10 +13,18 @@ namespace EASYPBR_ISA {
 struct Fragment {
     vec4 gl_FragCoord;
     vfloat gl_FragDepth;  ///< native passes ignore it
+    vbool gl_FrontFacing;
+    vbool written;  ///< false where the pixel was discarded
 };
 
 #include "native/shaders.h"
 
+}  // namespace EASYPBR_ISA
+}  // namespace easypbr::native
+
+#include "easypbr/native/simd/shade_triangles.h"
+
+namespace easypbr::native::EASYPBR_ISA {
 namespace {
 
 /// Four channels of all lanes, pixel by pixel.
@@ -46,7 +54,12 @@ INLINE void store_float(std::byte* to, const vec4& color, vbool active, bool all
         Floats4 value = pixels[k];
         if (store != Store::replace) {
             const auto before = load<Floats4>(p);
-            value += before;
+            if (store == Store::multiply)
+                value *= before;
+            else if (store == Store::under)
+                value = before + value * (1.0f - before[3]);
+            else
+                value += before;
             if (store == Store::add_light) value[3] = before[3];
         }
         std::memcpy(p, &value, sizeof value);
@@ -110,9 +123,18 @@ INLINE vfloat depth_at(const Region& region, vint x, int y) {
     return select(p.inside, as_float(gather(data, p.index * region.depth_channels).v), vfloat(0.0f));
 }
 
+/// Where there is room under what a picture of floats holds.
+INLINE vbool is_open(const Region& region, vint x, int y) {
+    const vint at =
+        (vint(y - region.y) * region.width + (clamp(x, region.x0, region.x1 - 1) - region.x)) * 4 + 3;
+    return vfloat(as_float(gather(reinterpret_cast<const int32_t*>(region.data), at).v)) < 1.0f;
+}
+
 template <class Shader>
 INLINE vec4 output_of(const Shader& s) {
-    if constexpr (requires { s.o_visibility; })
+    if constexpr (requires { s.o_light; })
+        return s.o_light;
+    else if constexpr (requires { s.o_visibility; })
         return {s.o_visibility, 0.0f, 0.0f, 1.0f};
     else if constexpr (requires { s.o_surface; })
         return s.o_surface;
@@ -139,16 +161,18 @@ __attribute__((flatten)) void shade_rows(const void* uniforms, const Region& reg
                 const vfloat depth = depth_at(region, column, y);
                 active = inside && (region.where == Where::covered ? depth != 0.0f : depth == 0.0f);
             }
+            if (region.store == Store::under) active = active && is_open(region, column, y);
             const bool any = any_lane(active);
+            s.written = active;
             if (any) {
                 s.gl_FragCoord = vec4(to_float(column) + 0.5f, float(y) + 0.5f, 0.0f, 1.0f);
                 s.main();
             }
             const vec4 nothing(vfloat(0.0f));
             if (zeros)
-                store_pixels(region, x, y, any ? select(active, output_of(s), nothing) : nothing, inside);
-            else if (any)
-                store_pixels(region, x, y, output_of(s), active);
+                store_pixels(region, x, y, any ? select(s.written, output_of(s), nothing) : nothing, inside);
+            else if (any && any_lane(s.written))
+                store_pixels(region, x, y, output_of(s), s.written);
         }
 }
 
@@ -156,17 +180,8 @@ __attribute__((flatten)) void shade_rows(const void* uniforms, const Region& reg
 
 // A constant is local to its file unless it is declared extern.
 extern const Kernels kernels;
-const Kernels kernels{resolve_triangles,
-                      shade_rows<lighting_surface, lighting_surface_uniforms>,
-                      shade_rows<background_environment, background_environment_uniforms>,
-                      shade_rows<display_output, display_output_uniforms>,
-                      shade_rows<accumulate_sample, accumulate_sample_uniforms>,
-                      shade_rows<antialias_fxaa, antialias_fxaa_uniforms>,
-                      shade_rows<occlusion_select, occlusion_select_uniforms>,
-                      shade_rows<occlusion_horizon, occlusion_horizon_uniforms>,
-                      shade_rows<occlusion_hemisphere, occlusion_hemisphere_uniforms>,
-                      shade_rows<occlusion_blur, occlusion_blur_uniforms>,
-                      shade_rows<occlusion_magnify, occlusion_magnify_uniforms>};
+#define EASYPBR_ROWS(name) shade_rows<name, name##_uniforms>,
+const Kernels kernels{resolve_triangles, alpha_of_triangles, {EASYPBR_SHADERS(EASYPBR_ROWS)}};
+#undef EASYPBR_ROWS
 
-}  // namespace EASYPBR_ISA
-}  // namespace easypbr::native
+}  // namespace easypbr::native::EASYPBR_ISA

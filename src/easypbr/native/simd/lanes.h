@@ -107,10 +107,11 @@ INLINE bool any_lane(vbool a) {
     INLINE vbool operator op(T a, T b) { \
         return Ints(a.v op b.v);         \
     }
-#define NUMBER(T)                                                                                           \
-    ARITHMETIC(T, +)                                                                                        \
-    ARITHMETIC(T, -) ARITHMETIC(T, *) COMPARISON(T, <) COMPARISON(T, >) COMPARISON(T, <=) COMPARISON(T, >=) \
-        COMPARISON(T, ==) COMPARISON(T, !=)
+#define NUMBER(T)    \
+    ARITHMETIC(T, +) \
+    ARITHMETIC(T, -) \
+    ARITHMETIC(T, *) \
+    COMPARISON(T, <) COMPARISON(T, >) COMPARISON(T, <=) COMPARISON(T, >=) COMPARISON(T, ==) COMPARISON(T, !=)
 #define BITS(T) ARITHMETIC(T, &) ARITHMETIC(T, |) ARITHMETIC(T, ^)
 NUMBER(vfloat)
 NUMBER(vint)
@@ -125,6 +126,9 @@ BITS(vuint)
 
 INLINE vint operator>>(vint a, int n) {
     return a.v >> n;
+}
+INLINE vint operator>>(vint a, vint n) {
+    return a.v >> n.v;
 }
 INLINE vint operator<<(vint a, int n) {
     return a.v << n;
@@ -307,8 +311,15 @@ INLINE vfloat fract(vfloat a) {
 INLINE vfloat mix(vfloat a, vfloat b, vfloat t) {
     return a + (b - a) * t;
 }
+INLINE vfloat mix(float a, vfloat b, float t) {
+    return mix(vfloat(a), b, vfloat(t));
+}
 INLINE vfloat mix(vfloat a, vfloat b, vbool t) {
     return select(t, b, a);
+}
+INLINE vfloat smoothstep(vfloat low, vfloat high, vfloat x) {
+    const vfloat t = clamp((x - low) / (high - low), 0.0f, 1.0f);
+    return t * t * (3.0f - 2.0f * t);
 }
 INLINE vfloat step(vfloat edge, vfloat x) {
     return select(x < edge, 0.0f, 1.0f);

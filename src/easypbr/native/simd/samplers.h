@@ -288,6 +288,87 @@ INLINE vec4 textureLod(const Panorama& s, const vec2& uv, float level) {
     return planar(pixels);
 }
 
+INLINE vfloat wrapped(vfloat u, Texture::Wrap wrap) {
+    if (wrap == Texture::Wrap::clamp) return u;
+    if (wrap == Texture::Wrap::repeat) return u - floor(u);
+    const vfloat half = u * 0.5f, turn = (half - floor(half)) * 2.0f;
+    return select(turn > 1.0f, 2.0f - turn, turn);
+}
+/// Between `count` texels: the one before a coordinate, and the weight of the next.
+struct Step {
+    vint first;
+    vfloat part;
+};
+INLINE Step step_of(vfloat u, vint count, Texture::Wrap wrap) {
+    const vint last = count - 1;
+    vfloat x = u * to_float(count) - 0.5f;
+    if (wrap == Texture::Wrap::repeat) {
+        const vfloat before = floor(x);
+        const vint first = to_int(before);
+        return {clamp(select(first < 0, last, first), 0, last), x - before};
+    }
+    // Mirrored, the neighbour beyond a border is the border's texel.
+    x = clamp(x, 0.0f, to_float(last));
+    const vfloat before = floor(x);
+    return {to_int(before), x - before};
+}
+/// Where the bilinear filter reads: the pairs of texels above and below.
+struct TexturePlace {
+    vint top, bottom;
+    vfloat right, below;
+};
+INLINE TexturePlace place_of(const Texture& s, vfloat u, vfloat v, vint level) {
+    const vint width = max(vint(s.width) >> level, 1), height = max(vint(s.height) >> level, 1);
+    const Step x = step_of(u, width, s.wrap_u), y = step_of(v, height, s.wrap_v);
+    const vint next = y.first + 1, beyond = s.wrap_v == Texture::Wrap::repeat ? vint(0) : height - 1;
+    const vint first = gather(s.offsets, level) + x.first, row = width + 1;
+    return {first + y.first * row, first + select(next < height, next, beyond) * row, x.part, y.part};
+}
+INLINE Floats8 from_shorts8(const std::byte* p) {
+    return __builtin_convertvector(__builtin_convertvector(load<Shorts8>(p), Ints8), Floats8);
+}
+template <class Load>
+INLINE Floats4 texel_of(const Texture& s, const TexturePlace& p, int k, size_t bytes, Load&& load_pair) {
+    return bilinear(load_pair(s.texels + bytes * size_t(p.top.v[k])),
+                    load_pair(s.texels + bytes * size_t(p.bottom.v[k])), p.right.v[k], p.below.v[k]);
+}
+template <class Load>
+INLINE vec4 texture_with(const Texture& s, vfloat u, vfloat v, vfloat level, size_t bytes, Load&& load_pair) {
+    const vfloat larger = floor(level), part = level - larger;
+    const vint first = to_int(larger);
+    Floats4 pixels[lanes];
+    const TexturePlace fine = place_of(s, u, v, first);
+    for (int k = 0; k < lanes; ++k) pixels[k] = texel_of(s, fine, k, bytes, load_pair);
+    if (any_lane(part > 0.0f)) {
+        const TexturePlace coarse = place_of(s, u, v, min(first + 1, s.levels - 1));
+        for (int k = 0; k < lanes; ++k)
+            pixels[k] += (texel_of(s, coarse, k, bytes, load_pair) - pixels[k]) * part.v[k];
+    }
+    return planar(pixels);
+}
+/// Of the largest level.
+INLINE vec4 nearest(const Texture& s, vfloat u, vfloat v) {
+    const vint x = clamp(to_int(floor(u * float(s.width))), 0, s.width - 1),
+               y = clamp(to_int(floor(v * float(s.height))), 0, s.height - 1);
+    const vint at = y * (s.width + 1) + x;
+    Floats4 pixels[lanes];
+    for (int k = 0; k < lanes; ++k)
+        pixels[k] = s.is_16_bit ? low_half(from_shorts8(s.texels + 8 * size_t(at.v[k])))
+                                : low_half(from_bytes8(s.texels + 4 * size_t(at.v[k])));
+    return planar(pixels) * (s.is_16_bit ? 1.0f / 65535.0f : 1.0f / 255.0f);
+}
+/// Trilinear. `dx` and `dy` are what uv changes by from pixel to pixel; the level is that of the larger.
+INLINE vec4 textureGrad(const Texture& s, const vec2& uv, const vec2& dx, const vec2& dy, float bias) {
+    const vfloat u = wrapped(uv.x, s.wrap_u), v = wrapped(uv.y, s.wrap_v);
+    if (s.nearest) return nearest(s, u, v);
+    const float width = float(s.width), height = float(s.height);
+    const vec2 across(dx.x * width, dx.y * height), down(dy.x * width, dy.y * height);
+    const vfloat texels = max(max(dot(across, across), dot(down, down)), 1e-12f);
+    const vfloat level = clamp(0.5f * log2(texels) + bias, 0.0f, float(s.levels - 1));
+    if (s.is_16_bit) return texture_with(s, u, v, level, 8, from_shorts8) * (1.0f / 65535.0f);
+    return texture_with(s, u, v, level, 4, from_bytes8) * (1.0f / 255.0f);
+}
+
 /// Nearest, clamped to the borders; z is the layer.
 INLINE vfloat layer_texel(const Layers& s, vint x, vint y, vint layer) {
     const vint index = (layer * s.size + clamp(y, 0, s.size - 1)) * s.size + clamp(x, 0, s.size - 1);

@@ -42,6 +42,7 @@ struct vec3 {
     INLINE vec2 xy() const { return {x, y}; }
     INLINE vec2 yx() const { return {y, x}; }
     INLINE vec2 yz() const { return {y, z}; }
+    INLINE vec2 xz() const { return {x, z}; }
     INLINE vec3 xyz() const { return *this; }
     INLINE vec3 yzx() const { return {y, z, x}; }
     INLINE vec3 zxy() const { return {z, x, y}; }
@@ -56,6 +57,7 @@ struct vec4 {
     vec4() = default;
     INLINE vec4(vfloat a, vfloat b, vfloat c, vfloat d) : x(a), y(b), z(c), w(d) {}
     INLINE vec4(const vec3& v, vfloat d) : x(v.x), y(v.y), z(v.z), w(d) {}
+    INLINE vec4(const vec2& v, vfloat c, vfloat d) : x(v.x), y(v.y), z(c), w(d) {}
     INLINE vec4(const vec2& a, const vec2& b) : x(a.x), y(a.y), z(b.x), w(b.y) {}
     INLINE vec4(vfloat a, const vec2& v, vfloat d) : x(a), y(v.x), z(v.y), w(d) {}
     INLINE explicit vec4(vfloat a) : x(a), y(a), z(a), w(a) {}
@@ -255,6 +257,9 @@ INLINE vfloat distance(const vec2& a, const vec2& b) {
 }
 INLINE vfloat length(const vec3& a) {
     return sqrt(dot(a, a));
+}
+INLINE vfloat distance(const vec3& a, const vec3& b) {
+    return length(a - b);
 }
 INLINE vec3 normalize(const vec3& a) {
     return a * inversesqrt(dot(a, a));

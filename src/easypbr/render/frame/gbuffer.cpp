@@ -10,7 +10,8 @@ GBuffer::GBuffer(Vec2i size)
       normal(gl::Format::rg16, size),
       material(gl::Format::rgba8, size),
       depth(gl::Format::r32f, size),
-      radiance(gl::Format::rgba32f, size) {}
+      radiance(gl::Format::rgba32f, size),
+      emission(gl::Format::rgba32f, size) {}
 
 void GBuffer::add_ids() {
     if (id) return;
@@ -98,8 +99,11 @@ void GBuffer::clear_layer() const {
     lit().clear_color(0, zero);
 }
 
-void GBuffer::write(const PixelRect& area, bool with_ids) const {
+void GBuffer::write(const PixelRect& area, bool with_ids, bool with_emission) const {
     for (const Target* target : {&albedo, &normal, &material, &depth}) target->write(area);
+    radiance.forget();
+    emission.forget();
+    if (with_emission) emission.write(area);
     if (!with_ids) return;
     id.write(area);
     element.write(area);
@@ -113,10 +117,12 @@ void GBuffer::upload(Transfers& transfers) const {
     cleared.clear_color(3, zero);
     cleared.clear_depth(0);
     framebuffer(lit_, {&radiance}).clear_color(0, zero);
-    if (radiance.is_ahead())
+    if (radiance.is_ahead()) {
         radiance.upload(transfers);
-    else
+    } else {
         radiance.drawn();
+        if (emission.is_ahead()) emission.copy_to(radiance.attachment(), transfers);
+    }
     if (ambient_occlusion && ambient_occlusion.is_ahead()) {
         const float open[4] = {1, 1, 1, 1};
         framebuffer(occluded_, {&ambient_occlusion}).clear_color(0, open);

@@ -21,6 +21,7 @@ struct GBuffer {
     Target material;  ///< RGBA8: metallic, roughness, ambient occlusion of the material, SurfaceKind
     Target depth;  ///< R32F: reversed depth of the pixel, near / z for perspective, 0 where there is nothing
     Target radiance;  ///< RGBA32F: linear radiance, premultiplied by a: coverage. Emission until it is lit
+    Target emission;  ///< RGBA32F, in host memory: of surfaces that were written there, until they are lit
 
     Target id;  ///< R32UI, when asked for: 1 + place of the object in the snapshot, 0 where there is nothing
     Target element;  ///< R32UI, with id: 1 + index of the face or, with point_element, the vertex
@@ -66,9 +67,9 @@ struct GBuffer {
     /// Depths of the depth test, as `depth` holds them.
     const gl::Texture& depth_test() const;
 
-    /// Begins to write surfaces in host memory, ids too where they are asked for: nothing but a rectangle,
-    /// whose pixels are undefined.
-    void write(const PixelRect& area, bool with_ids) const;
+    /// Begins to write surfaces in host memory, ids and emission too where they are asked for: nothing but a
+    /// rectangle, whose pixels are undefined.
+    void write(const PixelRect& area, bool with_ids, bool with_emission) const;
     /// Brings surfaces that were written in host memory, and their light where they are lit, to the textures.
     void upload(Transfers& transfers) const;
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "easypbr/core/error.h"
 #include "easypbr/gl/draw.h"
 
 namespace easypbr::render {
@@ -21,11 +22,17 @@ class PassTimer {
     /// Milliseconds of each pass since reset(), in the order of their first runs, summed.
     const std::vector<std::pair<std::string, double>>& times() const { return times_; }
 
-    /// Runs a pass and returns what it returns. What it runs within itself counts as its own.
+    /// Runs a pass and returns what it returns. What it runs within itself counts as its own. Where the
+    /// driver is missing, errors name the pass that needs it.
     template <class Pass>
     auto run(const std::string& name, Pass&& pass) {
         const Run run(*this, name);
-        return pass();
+        try {
+            return pass();
+        } catch (const ContextError& error) {
+            if (gl::has_driver()) throw;
+            throw ContextError(name + ": " + error.what());
+        }
     }
 
   private:

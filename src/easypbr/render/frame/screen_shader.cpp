@@ -35,23 +35,21 @@ native::View view_of(const Target& target) {
             .held_height = held.height};
 }
 
-void ScreenShader::draw(const ShaderInputs& inputs, const gl::DrawState& state) {
-    const gl::Program& program = programs_.get(inputs.defines_);
-    program.use();
-    int unit = 0;
-    const auto bind = [&](const std::string& name, const gl::Texture& texture) {
-        texture.bind(unsigned(unit));
-        program.set(name, unit++);
+unsigned ShaderInputs::bind(const gl::Program& program) const {
+    unsigned unit = 0;
+    const auto bind_texture = [&](const std::string& name, const gl::Texture& texture) {
+        texture.bind(unit);
+        program.set(name, int(unit++));
     };
-    for (const auto& [name, value] : inputs.values_) {
+    for (const auto& [name, value] : values_) {
         if (!program.has(name)) continue;
         std::visit(
             [&, &name = name](const auto& v) {
                 using T = std::remove_cvref_t<decltype(v)>;
                 if constexpr (std::is_same_v<T, const Target*>)
-                    bind(name, v->texture());
+                    bind_texture(name, v->texture());
                 else if constexpr (std::is_same_v<T, const gl::Texture*>)
-                    bind(name, *v);
+                    bind_texture(name, *v);
                 else if constexpr (requires { program.set(name, v); })
                     program.set(name, v);
                 else
@@ -59,6 +57,34 @@ void ScreenShader::draw(const ShaderInputs& inputs, const gl::DrawState& state) 
             },
             value);
     }
+    return unit;
+}
+
+native::Inputs ShaderInputs::native(Transfers& transfers) const {
+    native::Inputs inputs;
+    for (const std::string& macro : defines_)
+        if (macro.find(' ') == std::string::npos) inputs.features.emplace_back(macro);
+    for (const auto& [name, value] : values_)
+        std::visit(
+            [&, &name = name](const auto& v) {
+                using T = std::remove_cvref_t<decltype(v)>;
+                if constexpr (std::is_same_v<T, const Target*>) {
+                    v->download(v->whole(), transfers);
+                    inputs.set(name, view_of(*v));
+                } else if constexpr (std::is_same_v<T, const gl::Texture*>)
+                    throw Error("a texture is given to a native shader");
+                else
+                    inputs.set(name, v);
+            },
+            value);
+    for (const Block& block : blocks_) inputs.set(block.member, native::Inputs::Bytes(block.bytes));
+    return inputs;
+}
+
+void ScreenShader::draw(const ShaderInputs& inputs, const gl::DrawState& state) {
+    const gl::Program& program = programs_.get(inputs.defines_);
+    program.use();
+    inputs.bind(program);
     for (const ShaderInputs::Block& block : inputs.blocks_) {
         if (blocks_.size() <= block.binding) blocks_.resize(block.binding + 1);
         gl::Buffer& buffer = blocks_[block.binding];
@@ -70,25 +96,7 @@ void ScreenShader::draw(const ShaderInputs& inputs, const gl::DrawState& state) 
 }
 
 void ScreenShader::shade(const ShaderInputs& inputs, const NativeOutput& output, Transfers& transfers) {
-    native::Inputs values;
-    for (const std::string& macro : inputs.defines_)
-        if (macro.find(' ') == std::string::npos) values.features.emplace_back(macro);
-    for (const auto& [name, value] : inputs.values_)
-        std::visit(
-            [&, &name = name](const auto& v) {
-                using T = std::remove_cvref_t<decltype(v)>;
-                if constexpr (std::is_same_v<T, const Target*>) {
-                    v->download(v->whole(), transfers);
-                    values.set(name, view_of(*v));
-                } else if constexpr (std::is_same_v<T, const gl::Texture*>)
-                    throw Error("a texture is given to a native shader");
-                else
-                    values.set(name, v);
-            },
-            value);
-    for (const ShaderInputs::Block& block : inputs.blocks_)
-        values.set(block.member, native::Inputs::Bytes(block.bytes));
-
+    const native::Inputs values = inputs.native(transfers);
     const Target& target = *output.target;
     native::Region region{.data = target.pixels<std::byte>().data(),
                           .pixels = pixels_of(target.format()),

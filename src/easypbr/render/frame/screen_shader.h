@@ -26,7 +26,7 @@ class ShaderInputs {
     }
 
     using Value = std::variant<int, float, Vec2, Vec3, Vec4, Mat3, const Target*, const gl::Texture*,
-                               native::View, native::Cube, native::Panorama, native::Layers>;
+                               native::View, native::Cube, native::Panorama, native::Layers, native::Texture>;
     template <class T>
     void set(std::string name, const T& value) {
         values_.emplace_back(std::move(name), value);
@@ -39,6 +39,12 @@ class ShaderInputs {
     void set_block(unsigned binding, std::string member, std::span<const std::byte> bytes) {
         blocks_.push_back({binding, std::move(member), {bytes.begin(), bytes.end()}});
     }
+
+    /// Sets what a program reads, textures on units from 0 on; those of targets must be up to date. Returns
+    /// the first unit that is free. The program must be in use.
+    unsigned bind(const gl::Program& program) const;
+    /// For native shaders; lives as long as this. Targets are downloaded where they are not in host memory.
+    native::Inputs native(Transfers& transfers) const;
 
   private:
     friend class ScreenShader;

@@ -57,6 +57,8 @@ class Target {
 
     /// Begins to write a rectangle in host memory, whose pixels are undefined; the texture is out of date.
     void write(const PixelRect& area) const;
+    /// Whatever it holds is out of date.
+    void forget() const { newest_ = Newest::texture; }
     /// The rectangle in host memory.
     const PixelRect& area() const { return area_; }
     /// Its pixels, row by row: all channels as values of T.

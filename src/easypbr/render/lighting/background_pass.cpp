@@ -52,13 +52,15 @@ void BackgroundPass::draw(const Frame& frame, const GBuffer& targets, const gpu:
 }
 
 void BackgroundPass::shade(const Frame& frame, const GBuffer& targets, const gpu::EnvironmentMaps& maps,
-                           Transfers& transfers) {
-    shader_.shade(inputs_of(frame, maps, true),
-                  {.target = &targets.radiance,
-                   .area = targets.radiance.area(),
-                   .where = native::Where::empty,
-                   .depth = &targets.depth},
-                  transfers);
+                           bool under, Transfers& transfers) {
+    NativeOutput output{.target = &targets.radiance, .area = targets.radiance.area()};
+    if (under) {
+        output.store = native::Store::under;
+    } else {
+        output.where = native::Where::empty;
+        output.depth = &targets.depth;
+    }
+    shader_.shade(inputs_of(frame, maps, true), output, transfers);
 }
 
 }  // namespace easypbr::render

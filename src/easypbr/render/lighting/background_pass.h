@@ -14,8 +14,8 @@ class BackgroundPass {
     /// does not cover its pixel.
     void draw(const Frame& frame, const GBuffer& targets, const gpu::EnvironmentMaps& maps, bool under);
 
-    /// The same, without `under`, natively: the radiance target is in host memory.
-    void shade(const Frame& frame, const GBuffer& targets, const gpu::EnvironmentMaps& maps,
+    /// The same natively: the radiance target is in host memory.
+    void shade(const Frame& frame, const GBuffer& targets, const gpu::EnvironmentMaps& maps, bool under,
                Transfers& transfers);
 
   private:

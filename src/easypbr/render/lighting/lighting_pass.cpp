@@ -258,7 +258,12 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightI
 void LightingPass::shade(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
                          Transfers& transfers) {
     const bool first = inputs.block.first;
-    surface_.shade(surface_inputs(frame, targets, inputs, true),
+    ShaderInputs values = surface_inputs(frame, targets, inputs, true);
+    if (first && targets.emission.is_ahead()) {
+        values.define("EMISSION");
+        values.set("u_emission", targets.emission);
+    }
+    surface_.shade(values,
                    {.target = &targets.radiance,
                     .area = targets.depth.area(),
                     .store = first ? native::Store::replace : native::Store::add_light,
@@ -267,15 +272,37 @@ void LightingPass::shade(const Frame& frame, const GBuffer& targets, const Light
                    transfers);
 }
 
-void LightingPass::draw_caught(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
-                               const gl::Framebuffer& light) {
+namespace {
+
+ShaderInputs caught_inputs(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
+                           bool native) {
     ShaderInputs values;
     values.define(light_defines(frame, targets, inputs));
     set_surfaces(values, frame, targets);
-    if (inputs.environment) set_environment(values, frame, inputs, false);
-    set_lights(values, frame, inputs.block, false);
+    if (inputs.environment) set_environment(values, frame, inputs, native);
+    set_lights(values, frame, inputs.block, native);
+    return values;
+}
+
+}  // namespace
+
+void LightingPass::draw_caught(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
+                               const gl::Framebuffer& light) {
     light.bind();
-    catcher_.draw(values, targets.covered_state(gl::add));
+    catcher_.draw(caught_inputs(frame, targets, inputs, false), targets.covered_state(gl::add));
+}
+
+void LightingPass::shade_caught(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
+                                const Target& light, Transfers& transfers) {
+    const bool first = inputs.block.first;
+    if (first) light.write(frame.whole());
+    catcher_.shade(caught_inputs(frame, targets, inputs, true),
+                   {.target = &light,
+                    .area = frame.whole(),
+                    .store = first ? native::Store::replace : native::Store::add,
+                    .where = native::Where::covered,
+                    .depth = &targets.depth},
+                   transfers);
 }
 
 }  // namespace easypbr::render

@@ -47,6 +47,9 @@ class LightingPass {
     /// Lights natively: writes the radiance target in host memory, where the surfaces are. There must be no
     /// extensions, no transmission and no tinted shadows, and the shadow maps are in host memory.
     void shade(const Frame& frame, const GBuffer& targets, const LightInputs& inputs, Transfers& transfers);
+    /// draw_caught() natively: with the first block it writes all of `light`.
+    void shade_caught(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
+                      const Target& light, Transfers& transfers);
 
   private:
     ShaderInputs surface_inputs(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
@@ -55,7 +58,7 @@ class LightingPass {
     void set_extensions(ShaderInputs& values, const Frame& frame, const GBuffer& targets);
 
     ScreenShader surface_{"lighting_surface.frag", native::Shader::lighting_surface};
-    ScreenShader catcher_{"lighting_catcher.frag"};
+    ScreenShader catcher_{"lighting_catcher.frag", native::Shader::lighting_catcher};
     gl::Texture dfg_, sheen_albedo_;
     Brdf dfg_brdf_{};
 };

@@ -56,7 +56,9 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     const DrawList solid = has_layers ? list.without_layers() : DrawList();
     const DrawList& opaque = has_layers ? solid : list;
     const bool with_overlay = list.needs_overlay() || draws_overlay(frame, contents);
-    const SurfaceOutputs outputs{.ids = contents.ids, .extensions = contents.ids ? 0 : opaque.extensions()};
+    const SurfaceOutputs outputs{.ids = contents.ids,
+                                 .extensions = contents.ids ? 0 : opaque.extensions(),
+                                 .whole = contents.ground && native_shading_};
     if (with_overlay) targets_.add_overlay();
     if (outputs.extensions) targets_.add_extensions();
 
@@ -67,17 +69,18 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     const bool native = is_lit_natively(frame, list, contents);
     shadow_maps_.keep_in_host_memory(native);
     if (!native) targets_.upload(transfers_);
-    if (contents.ground) timer_.run("ground", [&] { ground_.draw(seen, targets_); });
+    if (contents.ground)
+        timer_.run("ground", [&] { native ? ground_.shade(seen, targets_) : ground_.draw(seen, targets_); });
     if (resolved.settings.ssao.enabled && !contents.traced) occlude(seen, native, with_overlay);
     if (contents.traced) timer_.run("rays", [&] { update_ray_scene(seen, casters, contents.ground); });
     const bool caught = contents.ground && GroundPass::is_shadow_catcher(resolved);
     light(seen, targets_, contents, {.native = native, .extensions = outputs.extensions}, caught);
     const bool shows_environment =
         !resolved.environment.empty() && resolved.settings.background.shows_environment();
-    if (native && shows_environment)
-        timer_.run("background", [&] { background_.shade(seen, targets_, environment_, transfers_); });
-    if (native && (with_overlay || !stays_in_host_memory(frame, list, contents))) targets_.upload(transfers_);
-    if (contents.ground) timer_.run("ground", [&] { ground_.finish(seen, targets_, bounds); });
+    if (native) shade_surroundings(seen, contents, shows_environment);
+    const bool stays = contents.layers || stays_in_host_memory(frame, list, contents);
+    if (native && (with_overlay || !stays)) targets_.upload(transfers_);
+    if (!native && contents.ground) timer_.run("ground", [&] { ground_.finish(seen, targets_, bounds); });
     if (with_overlay) timer_.run("display", [&] { display_.draw(seen, targets_); });
     if (!has_layers) timer_.run("overlays", [&] { draw_overlay_items(seen, list); });
     if (!native && shows_environment)
@@ -95,6 +98,16 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     return lit;
 }
 
+void Pipeline::shade_surroundings(const Frame& frame, const FrameContents& contents, bool environment) {
+    const bool ground = contents.ground;
+    if (ground)
+        timer_.run("ground",
+                   [&] { ground_.shade_finish(frame, targets_, bounds_of(*frame.scene), transfers_); });
+    if (environment)
+        timer_.run("background",
+                   [&] { background_.shade(frame, targets_, environment_, ground, transfers_); });
+}
+
 void Pipeline::occlude(const Frame& frame, bool native, bool with_points) {
     timer_.run("ambient occlusion", [&] {
         if (native)
@@ -109,8 +122,8 @@ bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list,
     const bool estimates_normals = frame.resolved->settings.ssao.enabled &&
                                    list.has([](const DrawItem& item) { return is_display(item.kind); });
     const bool has_tints = shadow_maps_.has_shadows() && shadow_maps_.has_tints();
-    return native_shading_ && targets_.depth.is_ahead() && !contents.ground && !contents.layers &&
-           !has_tints && !list.extensions() && !estimates_normals;
+    return native_shading_ && targets_.depth.is_ahead() && !has_tints && !list.extensions() &&
+           !estimates_normals;
 }
 
 bool Pipeline::stays_in_host_memory(const Frame& frame, const DrawList& list,
@@ -135,7 +148,7 @@ void Pipeline::light(const Frame& frame, const GBuffer& targets, const FrameCont
         if (!inputs.native) rays_.light().upload(transfers_);
         inputs.traced = &rays_.light();
     }
-    if (caught) ground_.begin_light(frame, targets);
+    if (caught && !inputs.native) ground_.begin_light(frame, targets);
     if (!frame.resolved->environment.empty()) inputs.environment = &environment_;
     if (inputs.native) {
         const bool whole = inputs.environment && frame.resolved->settings.background.shows_environment();
@@ -152,7 +165,12 @@ void Pipeline::light(const Frame& frame, const GBuffer& targets, const FrameCont
                 lighting_.draw(frame, targets, inputs);
         });
         if (caught)
-            timer_.run("ground", [&] { lighting_.draw_caught(frame, targets, inputs, ground_.light()); });
+            timer_.run("ground", [&] {
+                if (inputs.native)
+                    lighting_.shade_caught(frame, targets, inputs, ground_.caught_light(frame), transfers_);
+                else
+                    lighting_.draw_caught(frame, targets, inputs, ground_.light());
+            });
         inputs.environment = nullptr;
         first = false;
     } while (shadow_maps_.has_more());

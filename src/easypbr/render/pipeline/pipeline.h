@@ -100,6 +100,8 @@ class Pipeline {
     /// Whether a frame is lit natively: its surfaces are in host memory, and nothing of it needs the driver.
     bool is_lit_natively(const Frame& frame, const DrawList& list, const FrameContents& contents) const;
     void occlude(const Frame& frame, bool native, bool with_points);
+    /// What is around lit surfaces, natively: what the ground shows of itself, and the environment.
+    void shade_surroundings(const Frame& frame, const FrameContents& contents, bool environment);
     /// Whether no pass after the lighting needs the driver.
     bool stays_in_host_memory(const Frame& frame, const DrawList& list, const FrameContents& contents) const;
     bool draws_overlay(const Shot& shot, const FrameContents& contents) const;

@@ -67,8 +67,9 @@ PixelRect Surfaces::draw_groups(const Frame& frame, const DrawList& list, const 
     const PixelRect seen = visible_.empty() ? PixelRect{} : visible_.crop();
     const bool in_host_memory = native && groups.empty();
     if (in_host_memory) {
-        SurfaceWriter writer(targets, means.empty() ? seen : frame.whole(), outputs.ids);
-        if (!means.empty()) writer.clear();
+        const bool whole = outputs.whole || !means.empty();
+        SurfaceWriter writer(targets, whole ? frame.whole() : seen, outputs.ids, list.has(&DrawItem::emits));
+        if (whole) writer.clear();
         visible_.resolve(frame, writer);
         for (const Group& group : means)
             group.kind->add_mean(frame, group.items, targets.depth.pixels<float>(), writer);
@@ -76,7 +77,8 @@ PixelRect Surfaces::draw_groups(const Frame& frame, const DrawList& list, const 
         targets.clear(outputs.ids);
         for (const Group& group : groups) group.kind->draw(frame, group.items, targets, outputs);
         if (!visible_.empty()) {
-            SurfaceWriter writer(composite_.staging(frame, outputs), seen, outputs.ids);
+            SurfaceWriter writer(composite_.staging(frame, outputs), seen, outputs.ids,
+                                 list.has(&DrawItem::emits));
             visible_.resolve(frame, writer);
             composite_.draw(frame, targets, outputs, transfers_);
         }

@@ -11,13 +11,14 @@ const GBuffer& SurfaceComposite::staging(const Frame& frame, const SurfaceOutput
 void SurfaceComposite::draw(const Frame& frame, const GBuffer& targets, const SurfaceOutputs& outputs,
                             Transfers& transfers) {
     const PixelRect area = staging_.depth.area();
+    const bool emission = staging_.emission.is_ahead();
     staging_.upload(transfers);
-    copy(frame, staging_, area, targets, outputs, false);
+    copy(frame, staging_, area, targets, outputs, {.emission = emission});
 }
 
 void SurfaceComposite::draw_over(const Frame& frame, const GBuffer& source, const GBuffer& targets,
                                  const SurfaceOutputs& outputs) {
-    copy(frame, source, frame.whole(), targets, outputs, true);
+    copy(frame, source, frame.whole(), targets, outputs, {.always = true, .emission = true});
 }
 
 namespace {
@@ -38,13 +39,13 @@ void bind_surface(const gl::Program& program, const Frame& frame, const GBuffer&
 }  // namespace
 
 void SurfaceComposite::copy(const Frame& frame, const GBuffer& source, const PixelRect& r,
-                            const GBuffer& targets, const SurfaceOutputs& outputs, bool always) {
+                            const GBuffer& targets, const SurfaceOutputs& outputs, How how) {
     if (r.width == 0 || r.height == 0) return;
     std::vector<std::string> defines;
     if (outputs.ids) defines.emplace_back("OBJECT_ID");
-    if (always) defines.emplace_back("WITH_EMISSION");
+    if (how.emission) defines.emplace_back("WITH_EMISSION");
     // What was found natively has no extensions.
-    const bool extended = always && outputs.extensions;
+    const bool extended = how.always && outputs.extensions;
     if (extended) defines.emplace_back("WITH_EXTENSION");
     const gl::Program& program = programs_.get(defines);
     (outputs.ids ? targets.surface_ids()
@@ -58,7 +59,7 @@ void SurfaceComposite::copy(const Frame& frame, const GBuffer& source, const Pix
         program.set(i == 0 ? "u_extension0" : "u_extension1", int(7 + i));
     }
     gl::DrawState state = screen_state(r);
-    state.depth_test = always ? gl::DepthTest::always : gl::DepthTest::greater;
+    state.depth_test = how.always ? gl::DepthTest::always : gl::DepthTest::greater;
     state.write_depth = true;
     gl::draw_screen(state);
 }
@@ -77,7 +78,7 @@ void SurfaceComposite::fill_holes(const Frame& frame, const GBuffer& targets, co
         bind_surface(program, frame, targets, outputs.ids);
         program.set("u_depth", Vec3(float(frame.camera.near), float(frame.camera.far), 0));
         gl::draw_screen({.depth_test = gl::DepthTest::always, .write_depth = true});
-        copy(frame, staging_, frame.whole(), targets, outputs, false);
+        copy(frame, staging_, frame.whole(), targets, outputs, {});
     }
 }
 

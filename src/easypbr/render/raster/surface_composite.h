@@ -23,8 +23,12 @@ class SurfaceComposite {
     void fill_holes(const Frame& frame, const GBuffer& targets, const SurfaceOutputs& outputs, int times);
 
   private:
+    struct How {
+        bool always = false;    ///< whatever is in front
+        bool emission = false;  ///< the source's radiance counts
+    };
     void copy(const Frame& frame, const GBuffer& source, const PixelRect& area, const GBuffer& targets,
-              const SurfaceOutputs& outputs, bool always);
+              const SurfaceOutputs& outputs, How how);
 
     GBuffer staging_;
     ProgramVariants programs_{"screen_triangle.vert", "composite_surface.frag"};

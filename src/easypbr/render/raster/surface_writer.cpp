@@ -1,10 +1,12 @@
 #include "easypbr/render/raster/surface_writer.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
 
 #include "easypbr/core/octahedral.h"
+#include "easypbr/core/parallel.h"
 
 namespace easypbr::render {
 namespace {
@@ -16,53 +18,95 @@ uint8_t unorm8(float v) {
     return uint8_t(std::lrintf(std::clamp(v, 0.0f, 1.0f) * 255.0f));
 }
 
+// What a pixel holds of a surface, in the formats of the targets.
+uint64_t albedo_of(const SurfacePixel& p) {
+    const uint16_t albedo[4] = {unorm16(p.albedo[0]), unorm16(p.albedo[1]), unorm16(p.albedo[2]), 65535};
+    return std::bit_cast<uint64_t>(albedo);
+}
+uint32_t normal_of(const SurfacePixel& p) {
+    const Vec2 normal = oct_encode(p.normal) * 0.5f + Vec2(0.5f, 0.5f);
+    return unorm16(normal.x()) | uint32_t(unorm16(normal.y())) << 16;
+}
+uint32_t material_of(const SurfacePixel& p) {
+    const uint8_t material[4] = {unorm8(p.metallic), unorm8(p.roughness), 255, uint8_t(p.kind)};
+    return std::bit_cast<uint32_t>(material);
+}
+
 }  // namespace
 
-SurfaceWriter::SurfaceWriter(const GBuffer& targets, const PixelRect& area, bool with_ids) : area_(area) {
-    targets.write(area, with_ids);
-    albedo_ = targets.albedo.pixels<uint16_t>();
-    normal_ = targets.normal.pixels<uint16_t>();
-    material_ = targets.material.pixels<uint8_t>();
+SurfaceWriter::SurfaceWriter(const GBuffer& targets, const PixelRect& area, bool with_ids, bool with_emission)
+    : area_(area) {
+    targets.write(area, with_ids, with_emission);
+    albedo_ = targets.albedo.pixels<uint64_t>();
+    normal_ = targets.normal.pixels<uint32_t>();
+    material_ = targets.material.pixels<uint32_t>();
     depth_ = targets.depth.pixels<float>();
+    if (with_emission) emission_ = targets.emission.pixels<float>();
     if (!with_ids) return;
     id_ = targets.id.pixels<uint32_t>();
     element_ = targets.element.pixels<uint32_t>();
 }
 
 void SurfaceWriter::put(size_t i, const SurfacePixel& p) {
-    const Vec2 normal = oct_encode(p.normal) * 0.5f + Vec2(0.5f, 0.5f);
     depth_[i] = p.depth;
-    for (size_t c = 0; c < 3; ++c) albedo_[4 * i + c] = unorm16(p.albedo[Eigen::Index(c)]);
-    albedo_[4 * i + 3] = 65535;
-    normal_[2 * i] = unorm16(normal.x());
-    normal_[2 * i + 1] = unorm16(normal.y());
-    const uint8_t material[4] = {unorm8(p.metallic), unorm8(p.roughness), 255, uint8_t(p.kind)};
-    std::copy_n(material, 4, &material_[4 * i]);
+    albedo_[i] = albedo_of(p);
+    normal_[i] = normal_of(p);
+    material_[i] = material_of(p);
+    // What emits is written by its shader.
+    if (!emission_.empty()) std::copy_n(std::array{0.0f, 0.0f, 0.0f, 1.0f}.data(), 4, &emission_[4 * i]);
     if (id_.empty()) return;
     id_[i] = p.object + 1;
     element_[i] = (p.element + 1) | (p.is_point ? point_element : 0);
 }
 
-native::VisibleTriangles SurfaceWriter::target_of(const SurfacePixel& p) const {
-    native::VisibleTriangles to;
-    const uint16_t albedo[4] = {unorm16(p.albedo[0]), unorm16(p.albedo[1]), unorm16(p.albedo[2]), 65535};
-    const uint8_t material[4] = {unorm8(p.metallic), unorm8(p.roughness), 255, uint8_t(p.kind)};
-    std::memcpy(&to.albedo, albedo, sizeof albedo);
-    std::memcpy(&to.material, material, sizeof material);
+void SurfaceWriter::set_targets(native::VisibleTriangles& to, const SurfacePixel& p) const {
+    to.albedo = albedo_of(p);
+    to.material = material_of(p);
     to.id = p.object + 1;
-    to.albedos = reinterpret_cast<uint64_t*>(albedo_.data());
-    to.normals = reinterpret_cast<uint32_t*>(normal_.data());
-    to.materials = reinterpret_cast<uint32_t*>(material_.data());
+    to.x = area_.x;
+    to.y = area_.y;
+    to.width = area_.width;
+    to.albedos = albedo_.data();
+    to.normals = normal_.data();
+    to.materials = material_.data();
     to.depths = depth_.data();
     to.ids = id_.data();
     to.elements = element_.data();
-    return to;
+    to.emission = emission_.empty() ? nullptr : emission_.data();
 }
 
 void SurfaceWriter::clear() {
-    std::ranges::fill(depth_, 0.0f);
-    std::ranges::fill(id_, 0u);
-    std::ranges::fill(element_, 0u);
+    const auto fill = [](auto values) {
+        parallel_chunks(values.size(), size_t(1) << 18, [&](size_t begin, size_t end) {
+            std::ranges::fill(values.subspan(begin, end - begin), 0);
+        });
+    };
+    fill(depth_);
+    fill(id_);
+    fill(element_);
+    fill(emission_);
+}
+
+SurfaceFill::SurfaceFill(const GBuffer& targets, const SurfacePixel& surface)
+    : area_(targets.depth.area()),
+      albedo_(targets.albedo.pixels<uint64_t>()),
+      normal_(targets.normal.pixels<uint32_t>()),
+      material_(targets.material.pixels<uint32_t>()),
+      depth_(targets.depth.pixels<float>()),
+      own_albedo_(albedo_of(surface)),
+      own_normal_(normal_of(surface)),
+      own_material_(material_of(surface)) {
+    if (targets.emission.is_ahead()) emission_ = targets.emission.pixels<float>();
+}
+
+void SurfaceFill::put(int x, int y, float depth) {
+    const size_t i = size_t(y - area_.y) * size_t(area_.width) + size_t(x - area_.x);
+    if (!(depth > depth_[i])) return;
+    depth_[i] = depth;
+    albedo_[i] = own_albedo_;
+    normal_[i] = own_normal_;
+    material_[i] = own_material_;
+    if (!emission_.empty()) std::fill_n(&emission_[4 * i], 4, 0.0f);
 }
 
 }  // namespace easypbr::render

@@ -1,6 +1,7 @@
 // Writes surfaces that were found natively into a G-buffer in host memory.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 
@@ -27,7 +28,7 @@ struct SurfacePixel {
 class SurfaceWriter {
   public:
     /// Begins to write a rectangle (GBuffer::write()), whose pixels are undefined.
-    SurfaceWriter(const GBuffer& targets, const PixelRect& area, bool with_ids);
+    SurfaceWriter(const GBuffer& targets, const PixelRect& area, bool with_ids, bool with_emission = false);
 
     size_t index(int x, int y) const {
         return size_t(y - area_.y) * size_t(area_.width) + size_t(x - area_.x);
@@ -38,19 +39,40 @@ class SurfaceWriter {
     void put_nothing(size_t index) {
         depth_[index] = 0;
         if (!id_.empty()) id_[index] = element_[index] = 0;
+        if (!emission_.empty()) std::fill_n(&emission_[4 * index], 4, 0.0f);
     }
     /// Targets and constants for pixels of one surface: all that a pixel holds but its normal, depth and
-    /// element.
-    native::VisibleTriangles target_of(const SurfacePixel& surface) const;
+    /// element, and what a shader says.
+    void set_targets(native::VisibleTriangles& triangles, const SurfacePixel& surface) const;
     /// Nothing in all of the rectangle.
     void clear();
 
   private:
     PixelRect area_;
-    std::span<uint16_t> albedo_, normal_;
-    std::span<uint8_t> material_;
+    std::span<uint64_t> albedo_;
+    std::span<uint32_t> normal_, material_;
     std::span<float> depth_;
     std::span<uint32_t> id_, element_;  ///< empty where they are not asked for
+    std::span<float> emission_;         ///< the same
+};
+
+/// Adds one surface to targets in host memory, pixel by pixel, where it is nearer than what they hold.
+/// Different pixels may be written by different threads.
+class SurfaceFill {
+  public:
+    SurfaceFill(const GBuffer& targets, const SurfacePixel& surface);
+
+    /// The pixel must be inside of what the targets hold.
+    void put(int x, int y, float depth);
+
+  private:
+    PixelRect area_;
+    std::span<uint64_t> albedo_;
+    std::span<uint32_t> normal_, material_;
+    std::span<float> depth_;
+    std::span<float> emission_;  ///< empty where nothing emits
+    uint64_t own_albedo_;
+    uint32_t own_normal_, own_material_;
 };
 
 }  // namespace easypbr::render

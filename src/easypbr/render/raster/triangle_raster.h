@@ -2,9 +2,11 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "easypbr/core/math.h"
@@ -23,6 +25,7 @@ struct ScreenTriangles {
     /// Faces whose winding is clockwise on the screen are left out unless `both_sides`; `mirrored` swaps the
     /// two.
     bool both_sides = false, mirrored = false;
+    bool clips = false;  ///< what crosses the near plane is cut there; else nothing is drawn then
 };
 
 /// Rules as OpenGL's: 8 bits of sub-pixel precision, top-left.
@@ -37,9 +40,9 @@ class TriangleRaster {
     const PixelRect& area() const { return area_; }
 
     /// Calls put(pixel of the area, reversed depth in the plane of the snapped vertices, face from 0 on) for
-    /// each pixel of each triangle, on all cores in any order, also for one pixel at once. Returns false,
-    /// without any call, when a vertex is before the near plane or so far outside of the picture that
-    /// triangles would have to be clipped.
+    /// each pixel of each triangle, on all cores in any order, also for one pixel at once; every run of faces
+    /// has a copy of `put` of its own. Returns false, without any call, when a vertex is before the near
+    /// plane or so far outside of the picture that triangles would have to be clipped, and they do not.
     template <class Put>
     bool draw(const ScreenTriangles& triangles, const Put& put);
 
@@ -54,7 +57,7 @@ class TriangleRaster {
     /// A vertex on the screen, x to the right and y downwards.
     struct Vertex {
         int32_t x, y;  ///< 1/256 of a pixel
-        float depth;   ///< reversed, (0, 1]
+        float depth;   ///< reversed, (0, 1]; -1 where the vertex would have to be clipped
     };
 
     /// The edge function of a -> b, stepped from pixel to pixel; at least 0 inside. Pixel centres on an edge
@@ -96,6 +99,13 @@ class TriangleRaster {
     bool project(const ScreenTriangles& triangles);
     template <class Put>
     void draw_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Put& put);
+    /// Of triangles with vertices that project() has marked: cuts off what is before the near plane, beyond
+    /// the far one, or far outside.
+    template <class Put>
+    void draw_clipped(const ScreenTriangles& t, const int32_t* face, const Put& put);
+    template <class Put>
+    void draw_faced(const ScreenTriangles& t, const Vertex& a, const Vertex& b, const Vertex& c,
+                    const Put& put);
     template <class Put>
     void fill_tiny(const Vertex& a, const Vertex& b, const Vertex& c, int x0, int y0, unsigned kept,
                    const Put& put);
@@ -116,8 +126,10 @@ class TriangleRaster {
 
 template <class Put>
 bool TriangleRaster::draw(const ScreenTriangles& t, const Put& put) {
-    if (!project(t)) return false;
+    const bool inside = project(t);
+    if (!inside && !t.clips) return false;
     parallel_chunks(size_t(t.face_count), face_grain, [&](size_t begin, size_t end) {
+        Put own = put;
         for (size_t i = begin; i < end; ++i) {
             const int32_t* f = t.F.data() + 3 * (size_t(t.first_face) + i);
             // The vertices of large meshes are far apart in memory: they are asked for ahead of their turn.
@@ -125,18 +137,69 @@ bool TriangleRaster::draw(const ScreenTriangles& t, const Put& put) {
                 for (size_t k = 0; k < 3; ++k)
                     __builtin_prefetch(&screen_[size_t(f[3 * prefetch_distance + k])]);
             const Vertex &a = screen_[size_t(f[0])], &b = screen_[size_t(f[1])], &c = screen_[size_t(f[2])];
-            const int64_t area = int64_t(b.x - a.x) * (c.y - a.y) - int64_t(c.x - a.x) * (b.y - a.y);
-            // y runs downwards: a counter-clockwise triangle has a negative area. Neighbours face the same
-            // way, which processors foresee better than whether there is a pixel's centre within.
-            if (area == 0 || (!t.both_sides && (area < 0) == t.mirrored)) continue;
-            const auto to_pixel = [&](size_t pixel, float depth) { put(pixel, depth, uint32_t(i)); };
-            if (area > 0)
-                draw_triangle(a, b, c, to_pixel);
+            const auto to_pixel = [&](size_t pixel, float depth) { own(pixel, depth, uint32_t(i)); };
+            if (!inside && (a.depth < 0 || b.depth < 0 || c.depth < 0))
+                draw_clipped(t, f, to_pixel);
             else
-                draw_triangle(a, c, b, to_pixel);
+                draw_faced(t, a, b, c, to_pixel);
         }
     });
     return true;
+}
+
+template <class Put>
+inline void TriangleRaster::draw_faced(const ScreenTriangles& t, const Vertex& a, const Vertex& b,
+                                       const Vertex& c, const Put& put) {
+    const int64_t area = int64_t(b.x - a.x) * (c.y - a.y) - int64_t(c.x - a.x) * (b.y - a.y);
+    // y runs downwards: a counter-clockwise triangle has a negative area. Neighbours face the same way, which
+    // processors foresee better than whether there is a pixel's centre within.
+    if (area == 0 || (!t.both_sides && (area < 0) == t.mirrored)) return;
+    if (area > 0)
+        draw_triangle(a, b, c, put);
+    else
+        draw_triangle(a, c, b, put);
+}
+
+/// Sutherland and Hodgman (1974). Neighbours cut their common edge at the same point: from the end that is
+/// kept.
+template <class Put>
+void TriangleRaster::draw_clipped(const ScreenTriangles& t, const int32_t* face, const Put& put) {
+    using Corner = Eigen::Vector4d;
+    constexpr size_t most = 9;  // each of six planes adds a corner at most
+    std::array<Corner, most> polygon, kept;
+    size_t count = 3;
+    for (size_t k = 0; k < 3; ++k) {
+        const float* p = t.V.data() + 3 * size_t(face[k]);
+        polygon[k] = t.clip_from_mesh.cast<double>() * Corner(double(p[0]), double(p[1]), double(p[2]), 1);
+        if (!polygon[k].allFinite()) return;
+    }
+    const Vec2d half = 0.5 * size_.cast<double>();
+    const double x = (guard_band - 1) / half.x() - 1, y = (guard_band - 1) / half.y() - 1;
+    const Corner planes[] = {{0, 0, -1, 1}, {0, 0, 1, 0}, {1, 0, 0, x},
+                             {-1, 0, 0, x}, {0, 1, 0, y}, {0, -1, 0, y}};
+    for (const Corner& plane : planes) {
+        size_t left = 0;
+        for (size_t k = 0; k < count; ++k) {
+            const Corner &a = polygon[k], &b = polygon[(k + 1) % count];
+            const double from = plane.dot(a), to = plane.dot(b);
+            if (from >= 0) kept[left++] = a;
+            if ((from >= 0) == (to >= 0)) continue;
+            kept[left++] = from >= 0 ? Corner(a + (b - a) * (from / (from - to)))
+                                     : Corner(b + (a - b) * (to / (to - from)));
+        }
+        std::swap(polygon, kept);
+        count = left;
+        if (count < 3) return;
+    }
+    std::array<Vertex, most> screen;
+    for (size_t k = 0; k < count; ++k) {
+        const Corner& c = polygon[k];
+        if (!(c.w() > 0)) return;
+        screen[k] = {int32_t(std::lrint((c.x() / c.w() + 1) * half.x() * subpixel)),
+                     int32_t(std::lrint((1 - c.y() / c.w()) * half.y() * subpixel)),
+                     float(std::clamp(c.z() / c.w(), 1e-30, 1.0))};
+    }
+    for (size_t k = 1; k + 1 < count; ++k) draw_faced(t, screen[0], screen[k], screen[k + 1], put);
 }
 
 template <class Put>
@@ -208,9 +271,13 @@ inline bool TriangleRaster::project(const ScreenTriangles& t) {
             const float scale = 1.0f / clip.w();
             const float x = (clip.x() * scale + 1) * half.x(), y = (1 - clip.y() * scale) * half.y();
             const float depth = clip.z() * scale;
-            all_inside &= clip.w() > 0 && std::abs(x) < guard_band && std::abs(y) < guard_band && depth > 0 &&
-                          depth <= 1;
-            screen_[i] = {int32_t(std::lrintf(x * subpixel)), int32_t(std::lrintf(y * subpixel)), depth};
+            const bool is_inside = clip.w() > 0 && std::abs(x) < guard_band && std::abs(y) < guard_band &&
+                                   depth > 0 && depth <= 1;
+            all_inside &= is_inside;
+            if (is_inside)
+                screen_[i] = {int32_t(std::lrintf(x * subpixel)), int32_t(std::lrintf(y * subpixel)), depth};
+            else
+                screen_[i] = {0, 0, -1};
         }
         if (!all_inside) inside = false;
     });

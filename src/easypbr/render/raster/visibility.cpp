@@ -1,6 +1,7 @@
 #include "easypbr/render/raster/visibility.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <bit>
 #include <cmath>
@@ -37,6 +38,50 @@ void raise_point(uint64_t& pixel, uint64_t key, const std::function<uint64_t(uin
     }
 }
 
+/// Puts the pixels that pass a test, many at once.
+class TestedPixels {
+  public:
+    TestedPixels(const AlphaTest& test, std::vector<uint64_t>& pixels, const PixelRect& area,
+                 uint32_t first_id)
+        : test_(test), pixels_(pixels), area_(area), first_id_(first_id) {}
+    /// A copy begins with nothing.
+    TestedPixels(const TestedPixels& other)
+        : TestedPixels(other.test_, other.pixels_, other.area_, other.first_id_) {}
+    TestedPixels& operator=(const TestedPixels&) = delete;
+    ~TestedPixels() { flush(); }
+
+    void operator()(size_t pixel, float depth, uint32_t face) {
+        if (uint64_t(std::bit_cast<uint32_t>(depth)) <
+            std::atomic_ref(pixels_[pixel]).load(std::memory_order_relaxed) >> 32)
+            return;
+        const int row = int(pixel / size_t(area_.width)), column = int(pixel % size_t(area_.width));
+        waiting_[count_] = {area_.x + column, area_.y + row, face, depth};
+        places_[count_] = pixel;
+        if (++count_ == most) flush();
+    }
+
+  private:
+    static constexpr size_t most = 256;
+
+    void flush() {
+        std::array<float, most> alpha;
+        test_.alpha({waiting_.data(), count_}, {alpha.data(), count_});
+        for (size_t i = 0; i < count_; ++i)
+            if (alpha[i] >= test_.cutoff)
+                raise(pixels_[places_[i]], uint64_t(std::bit_cast<uint32_t>(waiting_[i].depth)) << 32 |
+                                               uint32_t(~(first_id_ + waiting_[i].face)));
+        count_ = 0;
+    }
+
+    const AlphaTest& test_;
+    std::vector<uint64_t>& pixels_;
+    const PixelRect& area_;
+    uint32_t first_id_;
+    std::array<native::VisiblePixel, most> waiting_;
+    std::array<size_t, most> places_;
+    size_t count_ = 0;
+};
+
 }  // namespace
 
 void VisibilityBuffer::clear(Vec2i size, const PixelRect& area) {
@@ -44,7 +89,8 @@ void VisibilityBuffer::clear(Vec2i size, const PixelRect& area) {
     pixels_.assign(size_t(area.width) * size_t(area.height), 0);
 }
 
-bool VisibilityBuffer::draw(const ScreenTriangles& triangles, uint32_t first_id) {
+bool VisibilityBuffer::draw(const ScreenTriangles& triangles, uint32_t first_id, const AlphaTest* test) {
+    if (test) return raster_.draw(triangles, TestedPixels(*test, pixels_, raster_.area(), first_id));
     return raster_.draw(triangles, [&](size_t pixel, float depth, uint32_t face) {
         raise(pixels_[pixel], uint64_t(std::bit_cast<uint32_t>(depth)) << 32 | uint32_t(~(first_id + face)));
     });

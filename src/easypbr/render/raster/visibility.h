@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "easypbr/core/math.h"
+#include "easypbr/native/kernels.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/raster/triangle_raster.h"
 #include "easypbr/scene/array.h"
@@ -25,6 +26,13 @@ struct PointSplats {
     bool round = true;
 };
 
+/// Triangles have holes: of their pixels those with a lower alpha than the cutoff are left out.
+struct AlphaTest {
+    /// The alphas of pixels, whose faces count from the first of the triangles.
+    std::function<void(std::span<const native::VisiblePixel> pixels, std::span<float> alpha)> alpha;
+    float cutoff = 0.5f;
+};
+
 /// The nearest triangle or point of each pixel of a rectangle. Rules as OpenGL's: 8 bits of sub-pixel
 /// precision, top-left. The result does not depend on the number of threads.
 class VisibilityBuffer {
@@ -34,7 +42,7 @@ class VisibilityBuffer {
 
     /// Draws triangles numbered from `first_id`. Returns false, with nothing drawn, where TriangleRaster
     /// does.
-    bool draw(const ScreenTriangles& triangles, uint32_t first_id);
+    bool draw(const ScreenTriangles& triangles, uint32_t first_id, const AlphaTest* test = nullptr);
 
     /// Draws points numbered from `first_id` as discs or squares that face the viewer; each covers at least
     /// the pixel that it lies in. Points before the near plane or outside of the picture are left out. Of

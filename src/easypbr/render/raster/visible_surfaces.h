@@ -17,14 +17,9 @@ namespace easypbr::render {
 class VisibleItem {
   public:
     virtual ~VisibleItem() = default;
-    /// Albedo, normal, depth and element of a primitive of the item at a point of the picture in normalised
-    /// device coordinates. `depth` is that in the visibility buffer.
-    virtual SurfacePixel at(uint32_t primitive, double ndc_x, double ndc_y, float depth) const = 0;
-    /// Writes the surfaces of some pixels of row `y` at once; false leaves them to at().
-    virtual bool resolve(const Frame&, const DrawItem&, std::span<const native::VisiblePixel>, int /*y*/,
-                         SurfaceWriter&) const {
-        return false;
-    }
+    /// Writes the surfaces of some pixels.
+    virtual void resolve(const Frame& frame, const DrawItem& item,
+                         std::span<const native::VisiblePixel> pixels, SurfaceWriter& writer) const = 0;
     /// Of points at the same depth the one with the larger content is seen.
     virtual uint64_t content(uint32_t) const { return 0; }
 };
@@ -54,11 +49,9 @@ class VisibleSurfaces {
         std::unique_ptr<VisibleItem> visible;
     };
     const Entry& entry_of(uint32_t id) const;
-    void resolve_row(const Frame& frame, int y, std::vector<native::VisiblePixel>& run,
-                     SurfaceWriter& writer) const;
-    /// Pixels of one item.
-    void resolve_run(const Frame& frame, const Entry& entry, std::span<const native::VisiblePixel> run, int y,
-                     SurfaceWriter& writer) const;
+    /// `run` is room to work in.
+    void resolve_block(const Frame& frame, const PixelRect& block, std::vector<native::VisiblePixel>& run,
+                       SurfaceWriter& writer) const;
 
     VisibilityBuffer buffer_;
     std::vector<Entry> items_;  ///< in the order of their ids

@@ -4,7 +4,9 @@
 #include <cmath>
 
 #include "easypbr/core/color.h"
+#include "easypbr/core/parallel.h"
 #include "easypbr/render/frame/surface_kind.h"
+#include "easypbr/render/raster/surface_writer.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
@@ -66,45 +68,89 @@ void GroundPass::draw(const Frame& frame, const GBuffer& targets) {
     gl::draw_screen({.depth_test = gl::DepthTest::greater, .write_depth = true});
 }
 
-void GroundPass::begin_light(const Frame& frame, const GBuffer& targets) {
-    if (!light_ || Vec2i(light_.width(), light_.height()) != frame.size) {
-        light_ = gl::Texture(gl::Format::rgba32f, frame.size.x(), frame.size.y());
+const Target& GroundPass::caught_light(const Frame& frame) {
+    if (light_.size() != frame.size) {
+        light_ = Target(gl::Format::rgba32f, frame.size);
         depth_id_ = 0;
     }
+    return light_;
+}
+
+void GroundPass::begin_light(const Frame& frame, const GBuffer& targets) {
+    const gl::Texture& texture = caught_light(frame).drawn();
     if (depth_id_ != targets.depth_test().id()) {
-        light_framebuffer_ = gl::Framebuffer({&light_}, &targets.depth_test());
+        light_framebuffer_ = gl::Framebuffer({&texture}, &targets.depth_test());
         depth_id_ = targets.depth_test().id();
     }
     const float zero[4] = {0, 0, 0, 0};
     light_framebuffer_.clear_color(0, zero);
 }
 
-void GroundPass::finish(const Frame& frame, const GBuffer& targets, const Box3d& bounds) {
+ShaderInputs GroundPass::finish_inputs(const Frame& frame, const GBuffer& targets,
+                                       const Box3d& bounds) const {
     const auto& ground = frame.resolved->settings.ground;
-    const bool shadow_catcher = ground.mode == GroundMode::shadow;
-    std::vector<std::string> defines = camera_defines(frame);
-    if (shadow_catcher) defines.emplace_back("CATCHER");
-    const gl::Program& program = finish_.get(defines);
-    targets.lit().bind();
-    program.use();
-    set_camera_uniforms(program, frame);
-    program.set("u_material", 0);
-    targets.material.bind(0);
-    if (shadow_catcher) {
-        program.set("u_light", 1);
-        light_.bind(1);
-        program.set("u_strength", ground.shadow_strength);
-    } else {
-        program.set("u_depth_target", 1);
-        targets.depth.bind(1);
-        const Plane plane = plane_of(frame.camera, *frame.resolved);
-        Vec3d middle = bounds.center() - frame.camera.position();
-        middle += plane.up * (plane.offset - plane.up.dot(middle));
-        const Vec3 m = middle.cast<float>();
-        program.set("u_middle", Vec4(m.x(), m.y(), m.z(), ground.radius));
+    ShaderInputs values;
+    values.define(camera_defines(frame));
+    set_camera_uniforms(values, frame);
+    values.set("u_material", targets.material);
+    if (ground.mode == GroundMode::shadow) {
+        values.define("CATCHER");
+        values.set("u_light", light_);
+        values.set("u_strength", ground.shadow_strength);
+        return values;
     }
+    values.set("u_depth_target", targets.depth);
+    const Plane plane = plane_of(frame.camera, *frame.resolved);
+    Vec3d middle = bounds.center() - frame.camera.position();
+    middle += plane.up * (plane.offset - plane.up.dot(middle));
+    const Vec3 m = middle.cast<float>();
+    values.set("u_middle", Vec4(m.x(), m.y(), m.z(), ground.radius));
+    return values;
+}
+
+void GroundPass::finish(const Frame& frame, const GBuffer& targets, const Box3d& bounds) {
     const gl::Blending multiply{.source = gl::Factor::zero, .target = gl::Factor::source_color};
-    gl::draw_screen(targets.covered_state(shadow_catcher ? gl::replace : multiply));
+    targets.lit().bind();
+    finish_.draw(finish_inputs(frame, targets, bounds),
+                 targets.covered_state(is_shadow_catcher(*frame.resolved) ? gl::replace : multiply));
+}
+
+void GroundPass::shade(const Frame& frame, const GBuffer& targets) {
+    const auto& ground = frame.resolved->settings.ground;
+    const Plane plane = plane_of(frame.camera, *frame.resolved);
+    const Vec3d forward = -frame.camera.T_world_cam.linear().col(2);
+    if (frame.orthographic() ? plane.up.dot(forward) >= 0 : plane.offset >= 0) return;  // seen from below
+    // Where the plane is in clip coordinates, the depth of its points follows from x and y.
+    const Mat4d clip_from_world = frame.clip_from_view * frame.camera.view();
+    const Eigen::Vector4d own(plane.up.x(), plane.up.y(), plane.up.z(), -ground.height);
+    const Eigen::Vector4d p = clip_from_world.inverse().transpose() * own;
+    const double step_x = 2.0 / frame.size.x(), step_y = 2.0 / frame.size.y();
+    const SurfaceKind kind =
+        ground.mode == GroundMode::shadow ? SurfaceKind::ground_catcher : SurfaceKind::ground_plane;
+    SurfaceFill fill(targets, {.albedo = linear_from_srgb(ground.plane_color),
+                               .normal = plane.up.cast<float>(),
+                               .roughness = ground.plane_roughness,
+                               .kind = kind});
+    parallel_chunks(size_t(frame.size.y()), 16, [&](size_t begin, size_t end) {
+        for (size_t y = begin; y < end; ++y) {
+            const double ndc_y = 1 - (double(y) + 0.5) * step_y;
+            for (int x = 0; x < frame.size.x(); ++x) {
+                const double ndc_x = (x + 0.5) * step_x - 1;
+                const auto depth = float(-(p[0] * ndc_x + p[1] * ndc_y + p[3]) / p[2]);
+                if (depth > 0 && depth <= 1) fill.put(x, int(y), depth);
+            }
+        }
+    });
+}
+
+void GroundPass::shade_finish(const Frame& frame, const GBuffer& targets, const Box3d& bounds,
+                              Transfers& transfers) {
+    const bool catches = is_shadow_catcher(*frame.resolved);
+    finish_.shade(finish_inputs(frame, targets, bounds),
+                  {.target = &targets.radiance,
+                   .area = frame.whole(),
+                   .store = catches ? native::Store::replace : native::Store::multiply},
+                  transfers);
 }
 
 }  // namespace easypbr::render

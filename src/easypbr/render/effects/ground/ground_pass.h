@@ -4,6 +4,7 @@
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/render/frame/programs.h"
+#include "easypbr/render/frame/screen_shader.h"
 
 namespace easypbr::render {
 
@@ -14,6 +15,8 @@ namespace easypbr::render {
 ///     draw(frame, targets);          // after the other opaque surfaces
 ///     begin_light(frame, targets);   // mode shadow: LightingPass::draw_caught() into light() for each block
 ///     finish(frame, targets, ...);   // once targets.radiance is lit
+///
+/// Natively: shade(), LightingPass::shade_caught() into caught_light(), shade_finish().
 class GroundPass {
   public:
     static bool is_on(const ResolvedSettings& resolved);
@@ -31,12 +34,20 @@ class GroundPass {
     /// `bounds`: of the content.
     void finish(const Frame& frame, const GBuffer& targets, const Box3d& bounds);
 
+    /// The same in host memory, where the targets hold the whole frame.
+    void shade(const Frame& frame, const GBuffer& targets);
+    /// RGBA32F: see light(). It has to be written before it is added to.
+    const Target& caught_light(const Frame& frame);
+    void shade_finish(const Frame& frame, const GBuffer& targets, const Box3d& bounds, Transfers& transfers);
+
   private:
-    gl::Texture light_;
+    ShaderInputs finish_inputs(const Frame& frame, const GBuffer& targets, const Box3d& bounds) const;
+
+    Target light_;
     gl::Framebuffer light_framebuffer_;
     uint32_t depth_id_ = 0;  ///< of the depth test that the framebuffer has
     ProgramVariants surface_{"screen_triangle.vert", "geometry_ground.frag"};
-    ProgramVariants finish_{"screen_triangle.vert", "ground_finish.frag"};
+    ScreenShader finish_{"ground_finish.frag", native::Shader::ground_finish};
 };
 
 }  // namespace easypbr::render

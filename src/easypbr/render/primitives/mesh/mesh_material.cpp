@@ -78,25 +78,31 @@ Vec3 log_transmittance(const Material& m, float thickness) {
     return (per_distance * (thickness / m.attenuation_distance)).cwiseMax(-80.0f);
 }
 
-void set_extension_uniforms(const gl::Program& program, const ResolvedSettings& resolved,
-                            const DrawItem& item) {
+void set_extensions(ShaderInputs& values, const ResolvedSettings& resolved, const DrawItem& item) {
     const Material& m = item.material;
-    program.set("u_coat", Vec3(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale));
-    program.set("u_sheen", with_w(m.sheen_color, m.sheen_roughness));
+    values.set("u_coat", Vec3(m.clearcoat, m.clearcoat_roughness, m.clearcoat_normal_scale));
+    values.set("u_sheen", with_w(m.sheen_color, m.sheen_roughness));
     const float f0 = m.dielectric_f0(resolved.settings.shading.dielectric_f0);
-    program.set("u_specular", with_w(m.specular_color * f0, m.specular));
-    program.set("u_film", Vec4(m.iridescence, m.iridescence_ior, m.iridescence_thickness_min,
-                               m.iridescence_thickness_max));
+    values.set("u_specular", with_w(m.specular_color * f0, m.specular));
+    values.set("u_film", Vec4(m.iridescence, m.iridescence_ior, m.iridescence_thickness_min,
+                              m.iridescence_thickness_max));
     const double angle = radians(double(m.anisotropy_rotation_deg));
-    program.set("u_anisotropy", Vec3(m.anisotropy, float(std::cos(angle)), float(std::sin(angle))));
+    values.set("u_anisotropy", Vec3(m.anisotropy, float(std::cos(angle)), float(std::sin(angle))));
     const float thickness = m.thickness * float(item.scale());
     // What reflects all does not refract.
-    program.set("u_volume", Vec3(m.transmission, thickness, m.ior > 0 ? m.ior : 1.0f));
-    program.set("u_attenuation", log_transmittance(m, thickness));
-    program.set("u_up", Vec3(parse_up(resolved.settings.camera.up).cast<float>()));
+    values.set("u_volume", Vec3(m.transmission, thickness, m.ior > 0 ? m.ior : 1.0f));
+    values.set("u_attenuation", log_transmittance(m, thickness));
+    values.set("u_up", Vec3(parse_up(resolved.settings.camera.up).cast<float>()));
 }
 
 }  // namespace
+
+void add_mesh_defines(const DrawItem& item, bool normals_agree, std::vector<std::string>& defines) {
+    if (item.with_colors) defines.emplace_back("VERTEX_COLOR");
+    if (item.style.flat || (item.two_sided && !normals_agree)) defines.emplace_back("FACE_NORMAL");
+    if (item.style.flat) defines.emplace_back("FLAT");
+    if (item.two_sided) defines.emplace_back("TWO_SIDED");
+}
 
 void add_material_defines(const MaterialContext& context, const DrawItem& item,
                           std::vector<std::string>& defines) {
@@ -112,28 +118,31 @@ void add_material_defines(const MaterialContext& context, const DrawItem& item,
         defines.emplace_back("ROUGHNESS_IN_METALLIC");
 }
 
-unsigned set_material(const gl::Program& program, const MaterialContext& context, const DrawItem& item,
-                      gpu::TextureCache& textures) {
+ShaderInputs material_inputs(const MaterialContext& context, const DrawItem& item,
+                             gpu::TextureCache& textures, bool native) {
     const Material& m = item.material;
     const SurfaceKind kind = m.unlit                      ? SurfaceKind::unlit
                              : is_extended(context, item) ? SurfaceKind::extended
                                                           : item.kind;
-    program.set("u_base_color", with_w(m.base_color, m.opacity));
-    program.set("u_surface", Vec4(m.metallic, m.roughness, m.occlusion_strength, m.alpha_cutoff));
-    program.set("u_emissive", with_w(m.emissive, code_of(kind)));
-    program.set("u_normal_scale", m.normal_scale);
+    ShaderInputs values;
+    values.set("u_base_color", with_w(m.base_color, m.opacity));
+    values.set("u_surface", Vec4(m.metallic, m.roughness, m.occlusion_strength, m.alpha_cutoff));
+    values.set("u_emissive", with_w(m.emissive, code_of(kind)));
+    values.set("u_normal_scale", m.normal_scale);
     // Jittered frames see finer detail together than one alone: a level less of blur from four samples on.
-    program.set("u_lod_bias", context.sample_count >= 4 ? -1.0f : 0.0f);
-    if (is_extended(context, item)) set_extension_uniforms(program, *context.resolved, item);
-    unsigned unit = 0;
+    values.set("u_lod_bias", context.sample_count >= 4 ? -1.0f : 0.0f);
+    if (is_extended(context, item)) set_extensions(values, *context.resolved, item);
     for_each_texture(context, item, [&](const TextureUse& use, size_t index) {
         const Texture& texture = m.*use.row.texture;
-        textures.get(texture, use.row.use == TexelUse::color).bind(unit);
-        program.set(use.sampler, int(unit++));
-        if (!use.channel.empty()) program.set(use.channel, channel_mask(texture.channel));
-        program.set("u_uv_transform[" + std::to_string(index) + "]", texture.uv_transform);
+        const bool color = use.row.use == TexelUse::color;
+        if (native)
+            values.set(use.sampler, textures.host(texture, color));
+        else
+            values.set(use.sampler, textures.get(texture, color));
+        if (!use.channel.empty()) values.set(use.channel, channel_mask(texture.channel));
+        values.set("u_uv_transform[" + std::to_string(index) + "]", texture.uv_transform);
     });
-    return unit;
+    return values;
 }
 
 }  // namespace easypbr::render

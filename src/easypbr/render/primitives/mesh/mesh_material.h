@@ -1,10 +1,10 @@
 // A mesh's material as shaders/geometry_mesh.frag takes it.
 #pragma once
 
-#include "easypbr/gl/program.h"
 #include "easypbr/gpu/texture_cache.h"
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/render/frame/frame.h"
+#include "easypbr/render/frame/screen_shader.h"
 
 namespace easypbr::render {
 
@@ -15,13 +15,16 @@ struct MaterialContext {
     const ResolvedSettings* resolved = nullptr;  ///< needed with extensions
 };
 
+/// Macros for what the vertices hold and on which side the surface is seen. `normals_agree`: the winding
+/// tells the side of the mesh's normals.
+void add_mesh_defines(const DrawItem& item, bool normals_agree, std::vector<std::string>& defines);
+
 /// Macros for the item's textures and extensions, those of the context only.
 void add_material_defines(const MaterialContext& context, const DrawItem& item,
                           std::vector<std::string>& defines);
 
-/// Sets the uniforms and binds the textures to units from 0 on, as many as the item has. Returns the first
-/// unit that is free.
-unsigned set_material(const gl::Program& program, const MaterialContext& context, const DrawItem& item,
-                      gpu::TextureCache& textures);
+/// The uniforms of the item's shader, natively or for the driver; textures live as long as in the cache.
+ShaderInputs material_inputs(const MaterialContext& context, const DrawItem& item,
+                             gpu::TextureCache& textures, bool native = false);
 
 }  // namespace easypbr::render

@@ -58,17 +58,13 @@ void MeshPass::draw(const Frame& frame, std::span<const DrawItem> items, const G
 
 void MeshPass::draw_item(const Frame& frame, const DrawItem& item, const MeshBuffers& buffers,
                          const SurfaceOutputs& outputs, bool emission) {
-    const bool face_normal = item.style.flat || (item.two_sided && !buffers.normals_agree);
     const Mat4d mesh_matrix = item.object->T_world_mesh.matrix();
     const Mat3d linear = mesh_matrix.topLeftCorner<3, 3>();
     const bool mirrored = linear.determinant() < 0;
 
     std::vector<std::string> defines;
-    if (item.with_colors) defines.emplace_back("VERTEX_COLOR");
-    if (face_normal) defines.emplace_back("FACE_NORMAL");
-    if (item.style.flat) defines.emplace_back("FLAT");
+    add_mesh_defines(item, buffers.normals_agree, defines);
     if (item.material.shader) defines.emplace_back("SURFACE_SHADER");
-    if (item.two_sided) defines.emplace_back("TWO_SIDED");
     if (emission) defines.emplace_back("EMISSION");
     if (outputs.ids) defines.emplace_back("OBJECT_ID");
     if (item.alpha == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
@@ -91,7 +87,7 @@ void MeshPass::draw_item(const Frame& frame, const DrawItem& item, const MeshBuf
     program.set("u_object_id", int(item.object - frame.scene->objects.data()) + 1);
     program.set("u_sample_index", float(frame.sample_index));
     set_noise_uniforms(program, frame);
-    const unsigned free_unit = set_material(program, context, item, textures_);
+    const unsigned free_unit = material_inputs(context, item, textures_).bind(program);
     if (outputs.peel) set_peel_uniforms(program, *outputs.peel, free_unit);
 
     gl::DrawState state = geometry_state(outputs);

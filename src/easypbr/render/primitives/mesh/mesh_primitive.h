@@ -11,7 +11,9 @@ namespace easypbr::render {
 class MeshPrimitive final : public Primitive {
   public:
     explicit MeshPrimitive(DataCaches& caches)
-        : pass_(buffers_, caches.textures), native_(caches.closed_meshes), shadows_(buffers_, caches) {}
+        : pass_(buffers_, caches.textures),
+          native_(caches.closed_meshes, caches.textures),
+          shadows_(buffers_, caches) {}
 
     DrawMode mode() const override { return DrawMode::mesh; }
     void draw(const Frame& frame, DrawItems items, const GBuffer& targets,

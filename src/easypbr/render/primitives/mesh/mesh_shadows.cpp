@@ -71,12 +71,16 @@ void MeshShadows::rasterise(const ShadowView& view, Casters& casters, ShadowDept
         const DrawItem& first = *parts.front();
         const MeshData& mesh = first.mesh();
         // What is closed casts with what faces the light: behind each of its back faces lies nothing nearer.
-        // A light within it is not drawn here, for some of its vertices are behind it.
+        // A light within it has some of its vertices behind it: then both sides cast.
         const bool both_sides = !closed_.is_known(mesh),
                    mirrored = first.object->T_world_mesh.linear().determinant() < 0;
         const auto rasterised = [&](const MeshPart& run) {
-            return depths.buffer().draw({mesh.V, mesh.F, run.first_face, run.face_count,
-                                         layer.clip_from_mesh(first), both_sides, mirrored});
+            ScreenTriangles triangles{
+                mesh.V,     mesh.F,   run.first_face, run.face_count, layer.clip_from_mesh(first),
+                both_sides, mirrored, both_sides};
+            if (depths.buffer().draw(triangles)) return true;
+            triangles.both_sides = triangles.clips = true;
+            return depths.buffer().draw(triangles);
         };
         if (!parts_suit_native(parts) || !std::ranges::all_of(runs_of(parts), rasterised))
             left.insert(left.end(), parts.begin(), parts.end());
@@ -172,7 +176,7 @@ void MeshShadows::use_own_shader(const ShadowLayer& layer, const DrawItem& item)
                 Vec4(float(-along.x()), float(-along.y()), float(-along.z()), view.perspective ? 0 : 1));
     program.set("u_through", light_through(item));
     program.set("u_root", item.is_volume() ? 0.5f : 1.0f);
-    const unsigned unit = set_material(program, core_model, item, textures_);
+    const unsigned unit = material_inputs(core_model, item, textures_).bind(program);
     if (varies) {
         textures_.get(m.transmission_texture, false).bind(unit);
         program.set("u_transmission_texture", int(unit));

@@ -1,6 +1,8 @@
 // The surface of a pixel that the native rasteriser found a triangle in.
 #pragma once
 
+#include <memory>
+
 #include "easypbr/render/raster/visible_surfaces.h"
 
 namespace easypbr::render {
@@ -16,28 +18,21 @@ struct MeshFacts {
 /// A mesh item with all that its pixels need.
 class MeshSurface final : public VisibleItem {
   public:
-    MeshSurface(const DrawItem& item, const MeshFacts& facts, const Mat4d& clip_from_mesh);
+    MeshSurface(const Frame& frame, const DrawItem& item, const MeshFacts& facts,
+                const Mat4d& clip_from_mesh);
 
-    /// Of the triangle `face` of the item's part; its depth is computed anew, from vertices that are not
-    /// snapped.
-    SurfacePixel at(uint32_t face, double ndc_x, double ndc_y, float depth) const override;
+    /// Surfaces vary by a shader (native::surface_uniforms()) that reads the attributes too.
+    void vary(std::shared_ptr<const void> shader, const native::TriangleAttributes& attributes);
 
-    bool resolve(const Frame& frame, const DrawItem& item, std::span<const native::VisiblePixel> pixels,
-                 int y, SurfaceWriter& writer) const override;
+    /// The opacity of pixels, for what varies.
+    void alpha(std::span<const native::VisiblePixel> pixels, std::span<float> alpha) const;
+
+    void resolve(const Frame& frame, const DrawItem& item, std::span<const native::VisiblePixel> pixels,
+                 SurfaceWriter& writer) const override;
 
   private:
-    struct Hit;
-    Hit intersect(const float* const (&corner)[3], double ndc_x, double ndc_y) const;
-    Vec3 face_normal(const int32_t* f) const;
-    Vec3 normal(const int32_t* f, const Hit& hit) const;
-    Vec3 albedo(const int32_t* f, const Hit& hit) const;
-    double clip(int row, const float* p) const;
-
-    const DrawItem* item_;
-    const MeshFacts* facts_;
-    double clip_[4][4];
-    Mat3 normal_from_mesh_;
-    bool mirrored_;
+    native::VisibleTriangles triangles_;  ///< without targets
+    std::shared_ptr<const void> shader_;
 };
 
 }  // namespace easypbr::render

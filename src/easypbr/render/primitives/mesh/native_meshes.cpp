@@ -1,8 +1,14 @@
 #include "easypbr/render/primitives/mesh/native_meshes.h"
 
 #include <algorithm>
+#include <string>
+#include <utility>
 
+#include "easypbr/core/color.h"
+#include "easypbr/core/parallel.h"
 #include "easypbr/gpu/facing.h"
+#include "easypbr/gpu/packing.h"
+#include "easypbr/render/primitives/mesh/mesh_material.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::render {
@@ -19,15 +25,40 @@ ScreenTriangles triangles_of(const Frame& frame, const DrawItem& item, const Mes
         item.two_sided && (item.style.flat || !known.closed_outward ||
                            !gpu::beyond_near_plane(frame.camera, item.object->T_world_mesh, known.box));
     const bool mirrored = item.object->T_world_mesh.linear().determinant() < 0;
-    return {mesh.V,     mesh.F,  item.part.first_face, item.part.face_count, clip_from_mesh.cast<float>(),
-            both_sides, mirrored};
+    return {mesh.V,
+            mesh.F,
+            item.part.first_face,
+            item.part.face_count,
+            clip_from_mesh.cast<float>(),
+            both_sides,
+            mirrored,
+            true};
+}
+
+std::vector<float> linear_colors(const ArrayXf& C) {
+    std::vector<float> colors(4 * size_t(C.rows()));
+    parallel_for(size_t(C.rows()), size_t(1) << 14, [&](size_t i) {
+        const auto row = Eigen::Index(i);
+        const Vec3 color = linear_from_srgb(Vec3(C.row(row).head<3>()));
+        std::copy_n(color.data(), 3, &colors[4 * i]);
+        colors[4 * i + 3] = C.cols() > 3 ? C(row, 3) : 1.0f;
+    });
+    return colors;
+}
+
+std::vector<int16_t> packed_tangents(const MeshData& mesh, const Array3f& N) {
+    const ArrayXf corners = corner_tangents(mesh.V, N, mesh.UV, mesh.F);
+    std::vector<int16_t> packed(size_t(corners.size()));
+    parallel_for(packed.size(), size_t(1) << 16,
+                 [&](size_t i) { packed[i] = gpu::snorm16(corners.data()[i]); });
+    return packed;
 }
 
 }  // namespace
 
 bool NativeMeshes::draws(DrawItems items) {
     return std::ranges::none_of(items, [](const DrawItem& item) {
-        return item.textured() || item.emits() || item.extensions() || item.alpha != AlphaMode::opaque;
+        return item.material.shader || item.extensions() || item.alpha == AlphaMode::blend;
     });
 }
 
@@ -43,16 +74,59 @@ const MeshFacts& NativeMeshes::facts_of(const MeshData& mesh) {
     return known;
 }
 
+native::TriangleAttributes NativeMeshes::attributes_of(const DrawItem& item, const MeshFacts& known) {
+    const MeshData& mesh = item.mesh();
+    native::TriangleAttributes attributes;
+    if (item.textured()) attributes.uvs = mesh.UV.data();
+    if (item.with_colors)
+        attributes.colors = colors_.get(mesh.C.revision(), [&] { return linear_colors(mesh.C); }).data();
+    if (item.needs_tangents())
+        attributes.tangents =
+            tangents_
+                .get({mesh.V.revision(), mesh.N.revision(), mesh.UV.revision(), mesh.F.revision()},
+                     [&] { return packed_tangents(mesh, known.N); })
+                .data();
+    return attributes;
+}
+
+std::unique_ptr<MeshSurface> NativeMeshes::surface_of(const Frame& frame, const DrawItem& item,
+                                                      const MeshFacts& known, const Mat4d& clip_from_mesh) {
+    auto surface = std::make_unique<MeshSurface>(frame, item, known, clip_from_mesh);
+    const bool is_plain =
+        !item.textured() && !item.with_colors && !item.emits() && item.alpha == AlphaMode::opaque;
+    if (is_plain) return surface;
+    const MaterialContext context{0, frame.sample_count, frame.resolved};
+    ShaderInputs values = material_inputs(context, item, textures_, true);
+    std::vector<std::string> defines;
+    add_mesh_defines(item, known.normals_agree, defines);
+    add_material_defines(context, item, defines);
+    values.define(defines);
+    Transfers none;
+    surface->vary(native::surface_uniforms(values.native(none)), attributes_of(item, known));
+    return surface;
+}
+
 bool NativeMeshes::rasterise(const Frame& frame, DrawItems items, VisibleSurfaces& surfaces) {
     for (const DrawItem& item : items) {
         if (!surfaces.has_room(item.part.face_count)) return false;
         const MeshFacts& known = facts_of(item.mesh());
         const Mat4d clip_from_mesh = clip_from(frame, item);
-        const uint32_t first = surfaces.add(item, uint32_t(item.part.face_count),
-                                            std::make_unique<MeshSurface>(item, known, clip_from_mesh));
-        if (!surfaces.buffer().draw(triangles_of(frame, item, known, clip_from_mesh), first)) return false;
+        std::unique_ptr<MeshSurface> surface = surface_of(frame, item, known, clip_from_mesh);
+        const AlphaTest test{[of = surface.get()](std::span<const native::VisiblePixel> pixels,
+                                                  std::span<float> alpha) { of->alpha(pixels, alpha); },
+                             item.material.alpha_cutoff};
+        const uint32_t first = surfaces.add(item, uint32_t(item.part.face_count), std::move(surface));
+        if (!surfaces.buffer().draw(triangles_of(frame, item, known, clip_from_mesh), first,
+                                    item.alpha == AlphaMode::mask ? &test : nullptr))
+            return false;
     }
     return true;
+}
+
+void NativeMeshes::evict_unused() {
+    facts_.evict_unused();
+    colors_.evict_unused();
+    tangents_.evict_unused();
 }
 
 bool NativeMeshes::cover(const Frame& frame, DrawItems items, std::span<uint8_t> covered) {

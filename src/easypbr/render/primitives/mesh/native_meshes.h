@@ -1,11 +1,14 @@
 // Triangles without the driver's rasteriser: for machines without a GPU.
 #pragma once
 
+#include <memory>
 #include <span>
 #include <tuple>
+#include <vector>
 
 #include "easypbr/core/revision_cache.h"
 #include "easypbr/gpu/closed_meshes.h"
+#include "easypbr/gpu/texture_cache.h"
 #include "easypbr/render/primitives/mesh/mesh_surface.h"
 #include "easypbr/render/primitives/primitive.h"
 
@@ -13,21 +16,31 @@ namespace easypbr::render {
 
 class NativeMeshes {
   public:
-    /// The cache is shared with others, must outlive this one, and is emptied by its owner.
-    explicit NativeMeshes(gpu::ClosedMeshes& closed) : closed_(closed) {}
+    /// The caches are shared with others, must outlive this one, and are emptied by their owner.
+    NativeMeshes(gpu::ClosedMeshes& closed, gpu::TextureCache& textures)
+        : closed_(closed), textures_(textures) {}
 
-    // See Primitive. Native are plain surfaces, without textures, emission or alpha.
+    // See Primitive. Native are surfaces of glTF's core model that are opaque or have a mask, without shaders
+    // of their own.
     static bool draws(DrawItems items);
     bool rasterise(const Frame& frame, DrawItems items, VisibleSurfaces& surfaces);
     bool cover(const Frame& frame, DrawItems items, std::span<uint8_t> covered);
 
-    void evict_unused() { facts_.evict_unused(); }
+    void evict_unused();
 
   private:
     const MeshFacts& facts_of(const MeshData& mesh);
+    native::TriangleAttributes attributes_of(const DrawItem& item, const MeshFacts& known);
+    std::unique_ptr<MeshSurface> surface_of(const Frame& frame, const DrawItem& item, const MeshFacts& known,
+                                            const Mat4d& clip_from_mesh);
 
     RevisionCache<std::tuple<uint64_t, uint64_t, uint64_t>, MeshFacts> facts_;
+    /// Of vertices, linear r g b a.
+    RevisionCache<uint64_t, std::vector<float>> colors_;
+    /// Of corners, x y z w of 1/32767.
+    RevisionCache<std::tuple<uint64_t, uint64_t, uint64_t, uint64_t>, std::vector<int16_t>> tangents_;
     gpu::ClosedMeshes& closed_;
+    gpu::TextureCache& textures_;
 };
 
 }  // namespace easypbr::render

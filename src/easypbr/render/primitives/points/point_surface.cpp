@@ -23,11 +23,23 @@ Vec3 PointSurface::color(uint32_t point) const {
     return item_->with_colors ? Vec3(item_->mesh().C.row(point).head<3>()) : Vec3(1, 1, 1);
 }
 
-SurfacePixel PointSurface::at(uint32_t point, double, double, float depth) const {
+void PointSurface::resolve(const Frame& frame, const DrawItem& item,
+                           std::span<const native::VisiblePixel> pixels, SurfaceWriter& writer) const {
+    for (const native::VisiblePixel& p : pixels) {
+        SurfacePixel pixel = at(p.face);
+        pixel.depth = p.depth;
+        pixel.metallic = item.material.metallic;
+        pixel.roughness = item.material.roughness;
+        pixel.kind = item.kind;
+        pixel.object = uint32_t(item.object - frame.scene->objects.data());
+        writer.put(writer.index(p.x, p.y), pixel);
+    }
+}
+
+SurfacePixel PointSurface::at(uint32_t point) const {
     const MeshData& mesh = item_->mesh();
     SurfacePixel pixel;
     pixel.albedo = linear_from_srgb(color(point)).cwiseProduct(item_->material.base_color);
-    pixel.depth = depth;
     pixel.element = point;
     pixel.is_point = true;
     const Vec3 p = mesh.V.row(point);

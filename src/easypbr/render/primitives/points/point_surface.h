@@ -11,12 +11,15 @@ class PointSurface final : public VisibleItem {
   public:
     PointSurface(const DrawItem& item, const Frame& frame);
 
-    SurfacePixel at(uint32_t point, double ndc_x, double ndc_y, float depth) const override;
+    void resolve(const Frame& frame, const DrawItem& item, std::span<const native::VisiblePixel> pixels,
+                 SurfaceWriter& writer) const override;
 
     /// Colour and normal as bits: what tells points apart in the picture.
     uint64_t content(uint32_t point) const override;
 
   private:
+    /// What the point looks like from the eye; its depth is left out.
+    SurfacePixel at(uint32_t point) const;
     Vec3 color(uint32_t point) const;
 
     const DrawItem* item_;

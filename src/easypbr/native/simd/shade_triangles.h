@@ -1,0 +1,128 @@
+// The surfaces of visible triangles by the shader mesh_resolve. Included after the shaders.
+#pragma once
+
+#include "easypbr/native/simd/resolve_triangles.h"
+
+namespace easypbr::native::EASYPBR_ISA {
+
+/// What the corners' weights change by, times `scale`, when the pixel moves by one of its coordinates: `from`
+/// are the corners' other coordinates.
+INLINE void weight_changes(const TriangleHit& hit, const vfloat (&from)[3], float step,
+                           vfloat (&changes)[3]) {
+    const vfloat(&w)[3] = hit.w;
+    const vfloat b[3] = {w[2] * from[1] - w[1] * from[2], w[0] * from[2] - w[2] * from[0],
+                         w[1] * from[0] - w[0] * from[1]};
+    const vfloat sum = b[0] + b[1] + b[2], scale = hit.scale * step;
+    for (int k = 0; k < 3; ++k) changes[k] = (b[k] - hit.weight[k] * sum) * scale;
+}
+
+INLINE void set_uv(mesh_resolve& s, const VisibleTriangles& t, const VisiblePixel* pixels,
+                   const VisibleLanes& seen) {
+    CornerValues<2> uv;
+    seen.each_corner(
+        t, pixels, [&](int k, int c, size_t, size_t vertex) __attribute__((always_inline)) {
+            uv.set(c, k, t.attributes.uvs + 2 * vertex);
+        });
+    const TriangleHit& hit = seen.hit;
+    s.v_uv = vec2(hit.mean(uv, 0), hit.mean(uv, 1));
+    const auto change = [&](const vfloat(&weights)[3]) __attribute__((always_inline)) {
+        const auto of = [&](int i) __attribute__((always_inline)) {
+            return weights[0] * uv.at(0, i) + weights[1] * uv.at(1, i) + weights[2] * uv.at(2, i);
+        };
+        return vec2(of(0), of(1));
+    };
+    vfloat weights[3];
+    weight_changes(hit, hit.y, float(t.pixel_width), weights);
+    s.v_uv_dx = change(weights);
+    weight_changes(hit, hit.x, float(t.pixel_height), weights);
+    s.v_uv_dy = change(weights);
+}
+
+INLINE void set_color(mesh_resolve& s, const VisibleTriangles& t, const VisiblePixel* pixels,
+                      const VisibleLanes& seen) {
+    CornerValues<4> color;
+    seen.each_corner(
+        t, pixels, [&](int k, int c, size_t, size_t vertex) __attribute__((always_inline)) {
+            color.set(c, k, t.attributes.colors + 4 * vertex);
+        });
+    s.v_color = vec4(seen.hit.mean(color, 0), seen.hit.mean(color, 1), seen.hit.mean(color, 2),
+                     seen.hit.mean(color, 3));
+}
+
+INLINE void set_tangent(mesh_resolve& s, const VisibleTriangles& t, const VisiblePixel* pixels,
+                        const VisibleLanes& seen) {
+    CornerValues<4> tangent;
+    seen.each_corner(
+        t, pixels, [&](int k, int c, size_t corner, size_t) __attribute__((always_inline)) {
+            for (int i = 0; i < 4; ++i)
+                tangent.value[c][i][k] =
+                    float(t.attributes.tangents[4 * corner + size_t(i)]) * (1.0f / 32767.0f);
+        });
+    const vec3 mean(seen.hit.mean(tangent, 0), seen.hit.mean(tangent, 1), seen.hit.mean(tangent, 2));
+    s.v_tangent = vec4(transformed(t.attributes.tangent_from_mesh, mean), seen.hit.mean(tangent, 3));
+}
+
+/// Everything that the shader interpolates.
+INLINE void set_inputs(mesh_resolve& s, const VisibleTriangles& t, const VisiblePixel* pixels,
+                       const VisibleLanes& seen) {
+    s.gl_FrontFacing = t.mirrored ? !seen.hit.front : seen.hit.front;
+    if (s.sees_by_faces) {
+        const vec3 face = normalize(transformed(t.normal_from_mesh, cross(seen.edge1, seen.edge2)));
+        s.v_face = select(s.gl_FrontFacing, face, -face);
+    }
+    if (!s.is_flat) s.v_normal = transformed(t.normal_from_mesh, seen.mean_normal(t, pixels));
+    if (s.has_uv) set_uv(s, t, pixels, seen);
+    if (s.has_vertex_colors) set_color(s, t, pixels, seen);
+    if (s.has_tangents) set_tangent(s, t, pixels, seen);
+}
+
+INLINE uint64_t shorts_of(const vec4& c, int k) {
+    const auto rounded = [](float v) __attribute__((always_inline)) {
+        return uint64_t((v > 0 ? v < 1 ? v : 1 : 0) * 65535.0f + 0.5f);
+    };
+    return rounded(c.x.v[k]) | rounded(c.y.v[k]) << 16 | rounded(c.z.v[k]) << 32 | rounded(c.w.v[k]) << 48;
+}
+
+inline void resolve_shaded(const VisibleTriangles& t, const VisiblePixel* pixels, int count) {
+    mesh_resolve s;
+    static_cast<mesh_resolve_uniforms&>(s) = *static_cast<const mesh_resolve_uniforms*>(t.shader);
+    for (int first = 0; first < count; first += lanes, pixels += lanes) {
+        const VisibleLanes seen(t, pixels, count - first);
+        set_inputs(s, t, pixels, seen);
+        s.main();
+        const auto bits = [](vfloat c, float most) __attribute__((always_inline)) {
+            return to_int(clamp(c, 0.0f, 1.0f) * most + 0.5f);
+        };
+        write_geometry(t, pixels, seen, bits(s.o_normal.x, 65535) | bits(s.o_normal.y, 65535) << 16);
+        const vint material = bits(s.o_material.x, 255) | bits(s.o_material.y, 255) << 8 |
+                              bits(s.o_material.z, 255) << 16 | bits(s.o_material.w, 255) << 24;
+        for (int k = 0; k < seen.used; ++k) {
+            const size_t at = size_t(pixels[k].y - t.y) * size_t(t.width) + size_t(pixels[k].x - t.x);
+            t.albedos[at] = shorts_of(s.o_albedo, k);
+            t.materials[at] = uint32_t(material.v[k]);
+        }
+        if (t.emission) write_emission(t, pixels, seen.used, s.o_emission);
+    }
+}
+
+inline void resolve_triangles(const VisibleTriangles& t, const VisiblePixel* pixels, int count) {
+    if (t.shader)
+        resolve_shaded(t, pixels, count);
+    else
+        resolve_plain(t, pixels, count);
+}
+
+inline void alpha_of_triangles(const VisibleTriangles& t, const VisiblePixel* pixels, int count,
+                               float* alpha) {
+    mesh_resolve s;
+    static_cast<mesh_resolve_uniforms&>(s) = *static_cast<const mesh_resolve_uniforms*>(t.shader);
+    for (int first = 0; first < count; first += lanes, pixels += lanes) {
+        const VisibleLanes seen(t, pixels, count - first);
+        if (s.has_uv) set_uv(s, t, pixels, seen);
+        if (s.has_vertex_colors) set_color(s, t, pixels, seen);
+        const vfloat found = s.base_color().w;
+        for (int k = 0; k < seen.used; ++k) alpha[first + k] = found.v[k];
+    }
+}
+
+}  // namespace easypbr::native::EASYPBR_ISA

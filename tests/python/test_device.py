@@ -1,0 +1,61 @@
+"""What pictures are drawn by."""
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+import easypbr
+from easypbr import Scene, Viewer, shapes
+
+
+@pytest.fixture
+def environment_without_opengl(tmp_path):
+    """Libraries that are no libraries stand for a machine without OpenGL."""
+    for name in ("libEGL.so.1", "libGL.so.1", "libOpenGL.so.0"):
+        (tmp_path / name).touch()
+    environment = {**os.environ, "LD_LIBRARY_PATH": str(tmp_path)}
+    environment.pop("EASYPBR_DEVICE", None)
+    return environment
+
+
+def drawn_by(device):
+    scene = Scene()
+    scene.show(shapes.sphere(), "sphere")
+    view = Viewer((64, 48), {"image": {"samples": 1}}, scene, device=device)
+    return view.device, np.asarray(view.render())
+
+
+def test_the_cpu_and_opengl_draw_the_same():
+    (device, native), (other, by_driver) = drawn_by("cpu"), drawn_by("gl")
+    assert (device, other) == ("cpu", "gl")
+    # Both round to 8 bits; at edges either may cover a pixel.
+    difference = np.abs(native.astype(int) - by_driver).max(axis=2)
+    assert (difference > 1).mean() < 0.01
+
+
+def test_an_unknown_device_names_the_known_ones():
+    with pytest.raises(easypbr.UnknownNameError, match="expected auto, gl or cpu"):
+        Viewer(device="cuda")
+
+
+def test_without_opengl_pictures_are_drawn_and_errors_say_what_needs_it(environment_without_opengl):
+    program = """
+import easypbr
+from easypbr import Scene, Viewer, shapes
+
+scene = Scene()
+scene.show(shapes.box(), "box")
+view = Viewer((32, 32), {"image": {"samples": 2}}, scene)
+assert view.device == "cpu" and view.render().shape == (32, 32, 4)
+view.settings.bloom.enabled = True
+try:
+    view.render()
+except easypbr.ContextError as error:
+    print(error)
+"""
+    done = subprocess.run([sys.executable, "-c", program], env=environment_without_opengl, capture_output=True, text=True,
+                          timeout=120)
+    assert done.returncode == 0, done.stderr
+    assert "bloom: this needs OpenGL" in done.stdout and "Install" in done.stdout
