@@ -10,7 +10,7 @@ namespace easypbr::native {
 
 namespace EASYPBR_ISA {
 
-struct Fragment {
+struct Fragment : TextureReader {
     vec4 gl_FragCoord;
     vfloat gl_FragDepth;  ///< native passes ignore it
     vbool gl_FrontFacing;

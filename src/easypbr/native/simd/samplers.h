@@ -332,18 +332,36 @@ INLINE Floats4 texel_of(const Texture& s, const TexturePlace& p, int k, size_t b
     return bilinear(load_pair(s.texels + bytes * size_t(p.top.v[k])),
                     load_pair(s.texels + bytes * size_t(p.bottom.v[k])), p.right.v[k], p.below.v[k]);
 }
-template <class Load>
-INLINE vec4 texture_with(const Texture& s, vfloat u, vfloat v, vfloat level, size_t bytes, Load&& load_pair) {
-    const vfloat larger = floor(level), part = level - larger;
+/// What the trilinear filter reads.
+struct TextureFootprint {
+    TexturePlace fine, coarse;
+    vfloat part;  ///< weight of the coarse level
+    bool is_between;
+};
+/// `dx` and `dy` are what uv changes by from pixel to pixel; the level is that of the larger.
+INLINE TextureFootprint footprint_of(const Texture& s, const vec2& uv, const vec2& dx, const vec2& dy,
+                                     float bias) {
+    const vfloat u = wrapped(uv.x, s.wrap_u), v = wrapped(uv.y, s.wrap_v);
+    const float width = float(s.width), height = float(s.height);
+    const vec2 across(dx.x * width, dx.y * height), down(dy.x * width, dy.y * height);
+    const vfloat texels = max(max(dot(across, across), dot(down, down)), 1e-12f);
+    const vfloat level = clamp(0.5f * log2(texels) + bias, 0.0f, float(s.levels - 1));
+    const vfloat larger = floor(level);
     const vint first = to_int(larger);
+    TextureFootprint f;
+    f.part = level - larger;
+    f.is_between = any_lane(f.part > 0.0f);
+    f.fine = place_of(s, u, v, first);
+    if (f.is_between) f.coarse = place_of(s, u, v, min(first + 1, s.levels - 1));
+    return f;
+}
+template <class Load>
+INLINE vec4 filtered(const Texture& s, const TextureFootprint& f, size_t bytes, Load&& load_pair) {
     Floats4 pixels[lanes];
-    const TexturePlace fine = place_of(s, u, v, first);
-    for (int k = 0; k < lanes; ++k) pixels[k] = texel_of(s, fine, k, bytes, load_pair);
-    if (any_lane(part > 0.0f)) {
-        const TexturePlace coarse = place_of(s, u, v, min(first + 1, s.levels - 1));
+    for (int k = 0; k < lanes; ++k) pixels[k] = texel_of(s, f.fine, k, bytes, load_pair);
+    if (f.is_between)
         for (int k = 0; k < lanes; ++k)
-            pixels[k] += (texel_of(s, coarse, k, bytes, load_pair) - pixels[k]) * part.v[k];
-    }
+            pixels[k] += (texel_of(s, f.coarse, k, bytes, load_pair) - pixels[k]) * f.part.v[k];
     return planar(pixels);
 }
 /// Of the largest level.
@@ -357,17 +375,34 @@ INLINE vec4 nearest(const Texture& s, vfloat u, vfloat v) {
                                 : low_half(from_bytes8(s.texels + 4 * size_t(at.v[k])));
     return planar(pixels) * (s.is_16_bit ? 1.0f / 65535.0f : 1.0f / 255.0f);
 }
-/// Trilinear. `dx` and `dy` are what uv changes by from pixel to pixel; the level is that of the larger.
-INLINE vec4 textureGrad(const Texture& s, const vec2& uv, const vec2& dx, const vec2& dy, float bias) {
-    const vfloat u = wrapped(uv.x, s.wrap_u), v = wrapped(uv.y, s.wrap_v);
-    if (s.nearest) return nearest(s, u, v);
-    const float width = float(s.width), height = float(s.height);
-    const vec2 across(dx.x * width, dx.y * height), down(dy.x * width, dy.y * height);
-    const vfloat texels = max(max(dot(across, across), dot(down, down)), 1e-12f);
-    const vfloat level = clamp(0.5f * log2(texels) + bias, 0.0f, float(s.levels - 1));
-    if (s.is_16_bit) return texture_with(s, u, v, level, 8, from_shorts8) * (1.0f / 65535.0f);
-    return texture_with(s, u, v, level, 4, from_bytes8) * (1.0f / 255.0f);
-}
+/// Reads textures, several with the same coordinates one after the other.
+class TextureReader {
+  public:
+    INLINE vec4 textureGrad(const Texture& s, const vec2& uv, const vec2& dx, const vec2& dy, float bias) {
+        if (s.nearest) return nearest(s, wrapped(uv.x, s.wrap_u), wrapped(uv.y, s.wrap_v));
+        if (!serves(s, uv, dx, dy)) {
+            footprint_ = footprint_of(s, uv, dx, dy, bias);
+            of_ = &s;
+            uv_ = uv;
+            dx_ = dx;
+            dy_ = dy;
+        }
+        if (s.is_16_bit) return filtered(s, footprint_, 8, from_shorts8) * (1.0f / 65535.0f);
+        return filtered(s, footprint_, 4, from_bytes8) * (1.0f / 255.0f);
+    }
+
+  private:
+    INLINE bool serves(const Texture& s, const vec2& uv, const vec2& dx, const vec2& dy) const {
+        if (!of_ || s.width != of_->width || s.height != of_->height || s.wrap_u != of_->wrap_u ||
+            s.wrap_v != of_->wrap_v)
+            return false;
+        return !any_lane(!(uv == uv_ && dx == dx_ && dy == dy_));
+    }
+
+    TextureFootprint footprint_;
+    const Texture* of_ = nullptr;
+    vec2 uv_, dx_, dy_;
+};
 
 /// Nearest, clamped to the borders; z is the layer.
 INLINE vfloat layer_texel(const Layers& s, vint x, vint y, vint layer) {

@@ -66,7 +66,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
     shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
-    const bool native = is_lit_natively(frame, list, contents);
+    const bool native = is_lit_natively(frame, list);
     shadow_maps_.keep_in_host_memory(native);
     if (!native) targets_.upload(transfers_);
     if (contents.ground)
@@ -117,8 +117,7 @@ void Pipeline::occlude(const Frame& frame, bool native, bool with_points) {
     });
 }
 
-bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list,
-                               const FrameContents& contents) const {
+bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list) const {
     const bool estimates_normals = frame.resolved->settings.ssao.enabled &&
                                    list.has([](const DrawItem& item) { return is_display(item.kind); });
     const bool has_tints = shadow_maps_.has_shadows() && shadow_maps_.has_tints();
