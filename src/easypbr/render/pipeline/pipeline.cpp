@@ -78,8 +78,8 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     const bool shows_environment =
         !resolved.environment.empty() && resolved.settings.background.shows_environment();
     if (native) shade_surroundings(seen, contents, shows_environment);
-    const bool stays = contents.layers || stays_in_host_memory(frame, list, contents);
-    if (native && (with_overlay || !stays)) targets_.upload(transfers_);
+    if (const std::string pass = first_by_driver(frame, list, contents); native && !pass.empty())
+        timer_.run(pass, [&] { targets_.upload(transfers_); });
     if (!native && contents.ground) timer_.run("ground", [&] { ground_.finish(seen, targets_, bounds); });
     if (with_overlay) timer_.run("display", [&] { display_.draw(seen, targets_); });
     if (!has_layers) timer_.run("overlays", [&] { draw_overlay_items(seen, list); });
@@ -125,11 +125,16 @@ bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list) const {
            !estimates_normals;
 }
 
-bool Pipeline::stays_in_host_memory(const Frame& frame, const DrawList& list,
-                                    const FrameContents& contents) const {
-    const auto is_on = [&](const auto& effect) { return effect->is_on(frame); };
-    return contents.in_host_memory && !list.has(is_layered) && std::ranges::none_of(effects_, is_on) &&
-           !(contents.custom && !contents.custom->empty());
+std::string Pipeline::first_by_driver(const Frame& frame, const DrawList& list,
+                                      const FrameContents& contents) const {
+    if (list.needs_overlay()) return "overlays";
+    for (const auto& effect : effects_)
+        if (!contents.layers && effect->is_on(frame)) return effect->name();
+    if (draws_overlay(frame, contents)) return "overlays";
+    if (contents.layers) return "";
+    if (list.has(is_layered)) return "transparency";
+    if (contents.custom && !contents.custom->empty()) return "custom passes";
+    return contents.in_host_memory ? "" : "output";
 }
 
 PixelRect Pipeline::draw_geometry(const Frame& frame, const DrawList& list, const GBuffer& targets,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "easypbr/gpu/environment_maps.h"
@@ -102,8 +103,9 @@ class Pipeline {
     void occlude(const Frame& frame, bool native, bool with_points);
     /// What is around lit surfaces, natively: what the ground shows of itself, and the environment.
     void shade_surroundings(const Frame& frame, const FrameContents& contents, bool environment);
-    /// Whether no pass after the lighting needs the driver.
-    bool stays_in_host_memory(const Frame& frame, const DrawList& list, const FrameContents& contents) const;
+    /// The first pass after the lighting that only the driver can do; empty where there is none.
+    std::string first_by_driver(const Frame& frame, const DrawList& list,
+                                const FrameContents& contents) const;
     bool draws_overlay(const Shot& shot, const FrameContents& contents) const;
     /// Of those that draw into the overlay, or of the others too.
     void draw_effects(const Frame& frame, const DrawList& opaque, bool overlay_only, LitPicture& lit);
