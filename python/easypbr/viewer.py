@@ -10,11 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _easypbr
+from .cameras import set_camera
+from .conversions.maker import Maker
 from .errors import ArgumentError
 from .lights import _STUDIO, Lights, SceneLight, StudioLight
 from .panels import WindowCallbacks
 from .recorder import Recorder, watch_recorder
-from .scene import Scene
+from .scene import Scene, scene_of
 from .settings import Settings
 from .shapes import camera_frustum
 from .tensors import as_numpy, check_device, converter, from_dlpack, layers_of_targets
@@ -85,12 +87,14 @@ class Viewer(WindowCallbacks):
 
     @property
     def camera(self) -> "_easypbr.Camera":
-        """A copy of the camera of the next image; assign a Camera to pin it."""
+        """A copy of the camera of the next image. Assigning pins it: a Camera, "front", "back", "left", "right", "top",
+        "bottom" or "iso", a dict of settings.camera, a 4 x 4 camera-to-world matrix with OpenGL axes, or (position, target,
+        up)."""
         return self._handle.camera
 
     @camera.setter
-    def camera(self, camera: "_easypbr.Camera") -> None:
-        self._handle.camera = camera
+    def camera(self, camera: Any) -> None:
+        set_camera(self._handle, camera)
 
     @property
     def time(self) -> float:
@@ -406,13 +410,16 @@ def show(
     size: ArrayLike = (1280, 720),
     settings: Mapping | str | os.PathLike | None = None,
 ) -> Viewer:
-    """Shows anything as_mesh() takes, a path or a Scene in a window, until it is closed; with block=False the window
+    """Shows anything as_mesh() takes or a Scene in a window, until it is closed; with block=False the window
     runs on its own thread. Returns its Viewer; `settings` as for Viewer."""
-    if isinstance(what, Scene):
-        scene = what
-    else:
-        scene = Scene()
-        scene.show(what, name)
+    scene, made = scene_of(what, name)
     view = Viewer(size, settings, scene=scene)
+    show_colorbar(view, made)
     view.show(block)
     return view
+
+
+def show_colorbar(view: Viewer, made: Maker | None) -> None:
+    """Shows a colour bar beside what its own library shows one for, unless the settings say whether there is one."""
+    if made is not None and made.has_colorbar and view.settings["annotation.colorbar"] == _easypbr.auto:
+        view.settings["annotation.colorbar"] = True

@@ -11,9 +11,11 @@
 
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/console.h"
+#include "easypbr/cli/render_options.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/scene/synonyms.h"
 
 namespace easypbr::cli {
 namespace {
@@ -45,6 +47,22 @@ std::vector<std::string> option_names(const CLI::App& command) {
                                  fmt::join(subcommand_names(app), ", ")));
 }
 
+/// The option of the command that sets this setting; --set does for all.
+std::string option_for(const CLI::App& command, std::string_view setting) {
+    const std::string shorthand = shorthand_option(setting);
+    if (!shorthand.empty() && command.get_option_no_throw(shorthand)) return shorthand;
+    return fmt::format("--set {}=VALUE", setting);
+}
+
+/// What an unknown option may mean: a word of another program, or a misspelt one.
+std::string option_hint(const CLI::App& command, const std::string& name) {
+    const std::string nearest = did_you_mean(name, option_names(command));
+    const Synonym* meant = synonym(name);
+    if (!meant || !nearest.empty()) return nearest;
+    if (meant->setting.empty()) return fmt::format(" ({})", meant->option);
+    return fmt::format(" (it is called {})", option_for(command, meant->setting));
+}
+
 /// Extras are allowed while parsing, so that a misspelt option is reported before what it left missing.
 void reject_extras(const CLI::App& app) {
     const std::vector<CLI::App*> commands = app.get_subcommands();
@@ -55,8 +73,8 @@ void reject_extras(const CLI::App& app) {
         if (!rest.front().starts_with("-"))
             throw UsageError(fmt::format("{}: unexpected argument '{}'", command.get_name(), rest.front()));
         const std::string name = rest.front().substr(0, rest.front().find('='));
-        throw UsageError(fmt::format("{}: unknown option '{}'{}", command.get_name(), name,
-                                     did_you_mean(name, option_names(command))));
+        throw UsageError(
+            fmt::format("{}: unknown option '{}'{}", command.get_name(), name, option_hint(command, name)));
     }
 }
 

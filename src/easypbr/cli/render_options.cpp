@@ -270,6 +270,24 @@ Vec2i parse_size(const std::string& text) {
             parse_side(std::string_view(text).substr(at + 1), text)};
 }
 
+std::string shorthand_option(std::string_view setting) {
+    // These are read before they become settings.
+    if (setting == "image.size") return "--size";
+    if (setting == "camera.pose") return "--camera-pose";
+    if (setting == "camera.projection" || setting == "camera.ortho_height") return "--ortho";
+    if (setting.starts_with("background.") && setting != "background.blur") return "--background";
+    if (setting.starts_with("material.") && setting.ends_with("_texture")) return "--texture";
+    if (setting == "annotation.colorbar") return "--colorbar";
+    if (setting == "annotation.legend") return "--legend";
+    if (setting == "style.flat") return "--flat";
+    for (const ShorthandOption& shorthand : shorthand_options)
+        if (setting == shorthand.setting) {
+            const std::string_view names = shorthand.names;
+            return std::string(names.substr(0, names.find(',')));
+        }
+    return {};
+}
+
 void declare_render_options(CLI::App& command, RenderOptions& options) {
     command.add_option("FILE", options.files,
                        "Meshes: PLY, OBJ, STL, OFF, glTF, GLB and more; - is standard input");

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -46,6 +47,9 @@ struct RenderOptions {
     /// Many frames instead of one picture.
     bool records() const { return turntable || !camera_path.empty(); }
 };
+
+/// The option of `render` whose value is this setting's, "--color" of material.color; empty: there is none.
+std::string shorthand_option(std::string_view setting);
 
 /// Ties the command's options to `options`, which must outlive the parsing.
 void declare_render_options(CLI::App& command, RenderOptions& options);

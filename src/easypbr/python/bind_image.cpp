@@ -83,6 +83,10 @@ void bind_image(nb::module_& module) {
         "compare_images", compare_images, nb::arg("a"), nb::arg("b"),
         "Differences of two images of the same size and type: max, mean, rmse, psnr, different (pixels).");
     module.def(
+        "_dlpack_of", [](const nb::ndarray<nb::ro, nb::device::cpu>& array) { return array; },
+        nb::arg("array"), nb::sig("def _dlpack_of(array: numpy.ndarray) -> typing.Any"),
+        "The array as an object with DLPack 1.0, whose flag says that it is read-only.");
+    module.def(
         "check_picture_path",
         [](const fs::path& path) {
             const bool linear = app::encoding_for(path) == app::Encoding::scene_linear;
