@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal, overload
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -14,9 +14,17 @@ from .scene import scene_of
 from .viewer import Viewer, show_colorbar
 
 if TYPE_CHECKING:
+    from typing import overload
+
     from typing_extensions import Unpack
 
     from .settings import RenderSettings
+else:
+
+    def overload(function):
+        """typing's keeps every overload, and with it this module, until after the interpreter has ended."""
+        return function
+
 
 #: Keywords for settings whose last part is not theirs alone, or is long.
 SHORT_NAMES = {

@@ -172,14 +172,10 @@ def _cpu(tensor: Any) -> Any:
     return tensor.cpu().numpy() if hasattr(tensor, "cpu") and hasattr(tensor, "numpy") else as_numpy(tensor)
 
 
-def _names(attributes: Any) -> list[str]:
-    return [str(name) for name in (attributes.keys() if hasattr(attributes, "keys") else attributes)]
-
-
 def _scalars(attributes: Any, known: tuple[str, ...], count: int, make: Maker) -> dict[str, np.ndarray]:
     """Attributes with a number per row; of others it is said that they are left out."""
     found, others = {}, []
-    for name in _names(attributes):
+    for name in list(attributes):  # Its keys are attributes, too: "keys" may be one of them.
         value = np.asarray(_cpu(attributes[name]))
         if name in known:
             continue

@@ -5,7 +5,6 @@ from typing import Any
 
 import numpy as np
 
-from ..._easypbr import ContextError
 from .constants import RenderFlags
 from .drawing import Drawing
 from .scene import Scene
@@ -65,6 +64,3 @@ class Viewer:
         self._drawing.view.close()
 
     close = close_external
-
-
-__all__ = ["ContextError", "Viewer"]
