@@ -1,7 +1,7 @@
 """Arrays of other libraries: torch, JAX, CuPy, any with DLPack. They are imported on demand."""
 
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
@@ -21,7 +21,7 @@ class SharedArray(np.ndarray):
     def __reduce__(self) -> Any:
         return _plain(self).__reduce__()
 
-    def __dlpack_device__(self) -> tuple[int, int]:
+    def __dlpack_device__(self) -> tuple[int, Literal[0]]:
         return (1, 0)  # The memory of the CPU.
 
     def __dlpack__(

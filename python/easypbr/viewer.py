@@ -3,6 +3,7 @@
 import atexit
 import os
 import threading
+import time
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -38,6 +39,7 @@ class Viewer(WindowCallbacks):
         self.recorder = Recorder(self)
         self._settings = Settings(self._handle)
         self._thread: threading.Thread | None = None
+        self._made_at = time.monotonic()
         self._init_callbacks()
         if isinstance(settings, Mapping):
             self._settings.update(settings)
@@ -98,12 +100,18 @@ class Viewer(WindowCallbacks):
 
     @property
     def time(self) -> float:
-        """Animation time in seconds, of the last frame of a window or a recording; assign to set it."""
+        """Animation time in seconds, of the last frame of a window, of a recording, or, without both, of render(); assign to
+        set it."""
         return self._handle.time
 
     @time.setter
     def time(self, seconds: float) -> None:
         self._handle.time = seconds
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds of real time since this viewer was made; can be asked at any point."""
+        return time.monotonic() - self._made_at
 
     @property
     def delta_time(self) -> float:

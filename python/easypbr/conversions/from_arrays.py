@@ -198,7 +198,7 @@ def _arrays(columns: dict[str, np.ndarray]) -> dict[str, Any]:
 
 def _incomplete(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Parts of colours and normals whose others are missing are scalars like any column."""
-    found = {}
+    found: dict[str, np.ndarray] = {}
     for group in (("r", "g", "b", "a"), ("nx", "ny", "nz")):
         if not all(name in columns for name in group[:3]):
             found.update({name: columns[name] for name in group if name in columns})

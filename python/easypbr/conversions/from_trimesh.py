@@ -16,8 +16,8 @@ def of_mesh(what: Any, make: Maker) -> Mesh:
     V, F, count = what.vertices, what.faces, len(what.vertices)
     kind = getattr(what.visual, "kind", None)
     if kind == "face":
-        corners, F, C = separate_corners(np.asarray(F), what.visual.face_colors)
-        return make.mesh(V=np.asarray(V)[corners], F=F, C=C)
+        corners, split, corner_colors = separate_corners(np.asarray(F), what.visual.face_colors)
+        return make.mesh(V=np.asarray(V)[corners], F=split, C=corner_colors)
     C = what.visual.vertex_colors if kind == "vertex" else None
     uv = getattr(what.visual, "uv", None) if kind == "texture" else None
     # Normals that trimesh has to compute are better computed here.

@@ -38,9 +38,10 @@ class Maker:
     def file(self, path: str | os.PathLike) -> Mesh:
         """The mesh of a file."""
         loaded = _easypbr.load_scene(path, strict=self.strict)
-        for found, kept in ((loaded.lights, self.lights), (loaded.cameras, self.cameras)):
-            for name, value in found.items():
-                kept[name if name not in kept else f"{loaded.mesh.name}/{name}"] = value
+        for name, light in loaded.lights.items():
+            self.lights[name if name not in self.lights else f"{loaded.mesh.name}/{name}"] = light
+        for name, camera in loaded.cameras.items():
+            self.cameras[name if name not in self.cameras else f"{loaded.mesh.name}/{name}"] = camera
         return loaded.mesh
 
     def any(self, what: Any) -> Mesh:

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
@@ -15,6 +16,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/scene/fields.h"
 #include "easypbr/scene/synonyms.h"
 
 namespace easypbr::cli {
@@ -54,13 +56,27 @@ std::string option_for(const CLI::App& command, std::string_view setting) {
     return fmt::format("--set {}=VALUE", setting);
 }
 
+/// The setting whose last part an option is written as, "--point-size"; empty: none, or several.
+std::string setting_like(std::string option) {
+    option.erase(0, option.find_first_not_of('-'));
+    std::ranges::replace(option, '-', '_');
+    std::string found;
+    for (const Field& field : fields())
+        if (field.name.ends_with("." + option)) {
+            if (!found.empty()) return {};
+            found = field.name;
+        }
+    return found;
+}
+
 /// What an unknown option may mean: a word of another program, or a misspelt one.
 std::string option_hint(const CLI::App& command, const std::string& name) {
-    const std::string nearest = did_you_mean(name, option_names(command));
+    if (const std::string nearest = did_you_mean(name, option_names(command)); !nearest.empty())
+        return nearest;
     const Synonym* meant = synonym(name);
-    if (!meant || !nearest.empty()) return nearest;
-    if (meant->setting.empty()) return fmt::format(" ({})", meant->option);
-    return fmt::format(" (it is called {})", option_for(command, meant->setting));
+    if (meant && meant->setting.empty()) return fmt::format(" ({})", meant->option);
+    const std::string setting = meant ? std::string(meant->setting) : setting_like(name);
+    return setting.empty() ? "" : fmt::format(" (it is called {})", option_for(command, setting));
 }
 
 /// Extras are allowed while parsing, so that a misspelt option is reported before what it left missing.
@@ -92,6 +108,8 @@ void add_commands(CLI::App& app, Job& job) {
     add_view(app, job);
     add_dataset(app, job);
     add_cache(app, job);
+    add_completion(app, job);
+    add_man(app, job);
 }
 
 /// A full disk shows when what is still buffered is written, which nobody looks at when the process ends.

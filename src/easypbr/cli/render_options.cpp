@@ -77,6 +77,7 @@ void declare_output(CLI::App& command, RenderOptions& options) {
         ->option_text("A,B");
     command.add_flag("--batch", options.batch,
                      "Draw one image per file; '{name}' in the output is replaced by the file's stem");
+    command.add_flag("--open", options.open, "Open the written file in the desktop's program for it");
     command.add_flag("--quiet", options.quiet, "Suppress warnings and progress");
     command.add_flag("--timing", options.timing, "Print the time of each stage to stderr");
 }
@@ -285,6 +286,14 @@ std::string shorthand_option(std::string_view setting) {
             const std::string_view names = shorthand.names;
             return std::string(names.substr(0, names.find(',')));
         }
+    return {};
+}
+
+std::string setting_of_shorthand(std::string_view option) {
+    for (const ShorthandOption& shorthand : shorthand_options) {
+        const std::string_view names = shorthand.names;
+        if (names.substr(0, names.find(',')) == option) return shorthand.setting;
+    }
     return {};
 }
 

@@ -100,7 +100,7 @@ class Drawing:
     def _style(self, part: "_easypbr.Mesh", flags: int, point_size: float) -> None:
         style = part.style
         is_cloud = len(part.F) == 0 and len(part.E) == 0
-        values = {
+        values: dict[str, Any] = {
             "two_sided": bool(flags & RenderFlags.SKIP_CULL_FACES) or part.material.double_sided,
             "show_wireframe": bool(flags & RenderFlags.ALL_WIREFRAME),
             "lit": not flags & RenderFlags.FLAT,

@@ -83,6 +83,6 @@ def _segments(object_id: np.ndarray, depth: np.ndarray, drawing: Drawing, colors
     """Height x width x 3 uint8: the colour of each pixel's node, black where there is none."""
     table = np.zeros((len(drawing.view.object_names()) + 1, 3), np.uint8)
     for place, name in enumerate(drawing.view.object_names(), 1):
-        color = colors.get(drawing.shown[name])
-        table[place] = np.full(3, color) if np.ndim(color) == 0 else np.asarray(color)[:3]
+        color = np.asarray(colors[drawing.shown[name]])
+        table[place] = color if color.ndim == 0 else color[:3]
     return table[np.where(depth > 0, object_id, 0).astype(int)]
