@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _easypbr
+from .arguments import samples_of
 from .cameras import set_camera
 from .conversions.maker import Maker
 from .errors import ArgumentError
@@ -166,7 +167,7 @@ class Viewer(WindowCallbacks):
 
     def render(self, size: ArrayLike | None = None, samples: int | None = None, hdr: bool = False) -> np.ndarray:
         """Renders an image, height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`."""
-        return self._handle.render(size, samples, "linear" if hdr else "srgb8")
+        return self._handle.render(size, samples_of(samples), "linear" if hdr else "srgb8")
 
     def layers(self, names: Sequence[str] | None = None, size: ArrayLike | None = None) -> dict[str, np.ndarray]:
         """Exact values through the pixels' centres, float32, by name: albedo, normal_world, depth, roughness, metallic,
@@ -201,6 +202,7 @@ class Viewer(WindowCallbacks):
         the rasteriser's rounding); what else is asked for is copied there."""
         if isinstance(names, str):
             names = [names]
+        samples = samples_of(samples)
         convert = converter(as_, device)
         if device != "cpu":
             return self._layers_on(device, names, size, samples, instances_by, classes, previous, next, amodal)
