@@ -282,7 +282,6 @@ constexpr Synonym synonym_table[] = {
     {"ssaa", "image.samples", {}, {}},
     {"ssao", "ssao.enabled", {}, {}},
     {"surface_color", "material.color", {}, {}},
-    {"surfel_blend_factor", "style.surfel_scale", {}, {}},
     {"texture", "material.base_color_texture", {}, {}},
     {"texture_base_color", "material.base_color_texture", {}, {}},
     {"texture_emissive", "material.emissive_texture", {}, {}},
