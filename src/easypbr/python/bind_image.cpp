@@ -62,7 +62,8 @@ nb::object dlpack_of(const nb::object& given) {
         shape.push_back(array.shape(i));
         strides.push_back(array.stride(i));
     }
-    return nb::cast(AnyArray(array.data(), array.ndim(), shape.data(), given, strides.data(), array.dtype()));
+    using Exported = nb::ndarray<nb::array_api, nb::ro, nb::device::cpu>;
+    return nb::cast(Exported(array.data(), array.ndim(), shape.data(), given, strides.data(), array.dtype()));
 }
 
 }  // namespace
