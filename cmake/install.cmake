@@ -16,3 +16,20 @@ configure_package_config_file(cmake/easypbrConfig.cmake.in ${PROJECT_BINARY_DIR}
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/easypbrConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/easypbrConfig.cmake ${PROJECT_BINARY_DIR}/easypbrConfigVersion.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/easypbr COMPONENT library)
+
+# Manual pages and completions, which the program writes from its own table of options.
+set(shell_pages ${PROJECT_BINARY_DIR}/share)
+add_custom_command(OUTPUT ${shell_pages}/man/easypbr.1 ${shell_pages}/easypbr ${shell_pages}/_easypbr ${shell_pages}/easypbr.fish
+                   COMMAND ${CMAKE_COMMAND} -E make_directory ${shell_pages}
+                   COMMAND easypbr_program man --output ${shell_pages}/man
+                   COMMAND easypbr_program completion bash > ${shell_pages}/easypbr
+                   COMMAND easypbr_program completion zsh > ${shell_pages}/_easypbr
+                   COMMAND easypbr_program completion fish > ${shell_pages}/easypbr.fish
+                   DEPENDS easypbr_program COMMENT "Writing manual pages and completions" VERBATIM)
+add_custom_target(easypbr_shell_pages ALL DEPENDS ${shell_pages}/man/easypbr.1)
+install(DIRECTORY ${shell_pages}/man/ DESTINATION ${CMAKE_INSTALL_MANDIR}/man1 COMPONENT library OPTIONAL)
+install(FILES ${shell_pages}/easypbr DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions COMPONENT library
+        OPTIONAL)
+install(FILES ${shell_pages}/_easypbr DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT library OPTIONAL)
+install(FILES ${shell_pages}/easypbr.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT library
+        OPTIONAL)

@@ -30,7 +30,9 @@ foreach(source IN LISTS package_sources)
   file(CREATE_LINK ${source} ${package}/${name} SYMBOLIC)
 endforeach()
 
-file(CREATE_LINK ${PROJECT_SOURCE_DIR}/python/easypbr/dataset ${package}/dataset SYMBOLIC)
+foreach(folder dataset conversions compat)
+  file(CREATE_LINK ${PROJECT_SOURCE_DIR}/python/easypbr/${folder} ${package}/${folder} SYMBOLIC)
+endforeach()
 
 nanobind_add_stub(easypbr_stub INCLUDE_PRIVATE MODULE easypbr._easypbr OUTPUT ${package}/_easypbr.pyi
                   PYTHON_PATH ${PROJECT_BINARY_DIR}/python DEPENDS _easypbr)

@@ -16,7 +16,7 @@ packages=(
 )
 requirements=(scripts/requirements.txt)
 if [ "${1:-}" = tests ]; then
-  packages+=(clang-format clang-tidy ffmpeg xvfb openbox xdotool wmctrl xclip python3-torch)
+  packages+=(clang-format clang-tidy ffmpeg xvfb openbox xdotool wmctrl xclip python3-torch groff-base zsh fish chromium)
   requirements+=(scripts/requirements-test.txt)
 fi
 missing=()

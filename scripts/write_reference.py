@@ -87,10 +87,16 @@ def definitions(package: pathlib.Path) -> dict:
     sources = sorted(package.glob("*.py"))
     for path in [*sources, package / "_easypbr.pyi"]:
         for node in ast.parse(path.read_text()).body:
+            if path.suffix == ".py" and is_overload(node):
+                continue  # The function itself says more.
             name = getattr(node, "name", None) or ast.unparse(getattr(node, "target", ast.Name("")))
             if name:
                 found.setdefault(name, []).append(node)
     return found
+
+
+def is_overload(node) -> bool:
+    return any(ast.unparse(decorator).endswith("overload") for decorator in getattr(node, "decorator_list", ()))
 
 
 class PlainAnnotations(ast.NodeTransformer):

@@ -9,12 +9,14 @@ import sys
 TYPES = {"boolean": "bool", "integer": "int", "number": "float", "text": "str"}
 HEADER = '''from collections.abc import Iterator, Mapping
 from os import PathLike
-from typing import Literal
+from typing import Literal, TypedDict
 
 from numpy.typing import ArrayLike
 
 from ._easypbr import Automatic, Follow
 '''
+#: Arguments of render() of the same name as a setting's last part.
+RENDER_ARGUMENTS = {"size", "samples"}
 BASE = '''
 class SettingsGroup:
     def __iter__(self) -> Iterator[tuple[str, object]]: ...
@@ -68,7 +70,16 @@ def group(path: tuple, tree: dict) -> list:
     return [*lines, "", f"class {class_name(path)}(SettingsGroup):", *methods, *members]
 
 
-def stub(fields) -> str:
+def render_settings(fields, short_names: dict) -> str:
+    """What render() takes beside its arguments: settings by their last part where it is theirs alone, or by a short name."""
+    last_parts = [field.name.rsplit(".")[-1] for field in fields]
+    keywords = {last: field for field, last in zip(fields, last_parts) if last_parts.count(last) == 1}
+    keywords |= {short: field for field in fields for short, full in short_names.items() if full == field.name}
+    rows = [f"    {name}: {write_type(keywords[name])}" for name in sorted(set(keywords) - RENDER_ARGUMENTS)]
+    return "\n".join(["", "class RenderSettings(TypedDict, total=False):", *rows, ""])
+
+
+def stub(fields, short_names: dict) -> str:
     tree: dict = {}
     for field in fields:
         *groups, name = field.name.split(".")
@@ -76,12 +87,12 @@ def stub(fields) -> str:
         for part in groups:
             place = place.setdefault(part, {})
         place[name] = field
-    return HEADER + BASE + "\n".join(group((), tree)) + "\n"
+    return HEADER + BASE + "\n".join(group((), tree)) + "\n" + render_settings(fields, short_names)
 
 
 if __name__ == "__main__":
     folder = pathlib.Path(sys.argv[1])
     sys.path.insert(0, str(folder))
-    from easypbr import _easypbr
+    from easypbr import _easypbr, rendering
 
-    (folder / "easypbr/settings.pyi").write_text(stub(_easypbr.fields()))
+    (folder / "easypbr/settings.pyi").write_text(stub(_easypbr.fields(), rendering.SHORT_NAMES))

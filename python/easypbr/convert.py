@@ -1,189 +1,135 @@
-"""Meshes from objects of other libraries, which are recognised by their attributes; none is imported."""
+"""Meshes of whatever people have: files, arrays, tables, and objects of other libraries."""
 
 import os
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
+from . import _easypbr
 from ._easypbr import Mesh
+from .conversions import from_arrays, from_open3d, from_trimesh, from_vtk
+from .conversions.maker import Maker
 from .errors import ArgumentError
+from .tensors import as_numpy
+
+ACCEPTED = (
+    "a path, an easypbr.Mesh, points (n x 3, or n x 6 with colours), (V, F), a dict or a table of arrays, "
+    "an object of trimesh, Open3D, PyVista or VTK, or a list of these"
+)
+#: Pairs of functions: whether an object is of a kind, and its mesh.
+_CONVERSIONS = [
+    *from_trimesh.CONVERSIONS,
+    *from_open3d.CONVERSIONS,
+    *from_vtk.CONVERSIONS,
+    *from_trimesh.LAST,
+    (from_arrays.is_table, from_arrays.of_table),
+]
 
 
-def as_mesh(what: Any) -> Mesh:
-    """A Mesh of a path, a Mesh, (V, F), a dict of arrays, or a trimesh, Open3D or PyVista object.
+def as_mesh(what: Any, strict: bool = False) -> Mesh:
+    """A Mesh of a path; a Mesh; points, n x 3 or with further columns as in a text file, n x 6 with colours; (V, F); a dict of
+    arrays (V, F, C, ..., or points, vertices, faces, colors, ...); a table with columns x, y and z; an object of trimesh,
+    Open3D, PyVista or VTK; or a list of these, whose meshes become children. Arrays may be any library's with DLPack.
 
-    A Mesh is returned as it is; arrays are copied once.
-    """
+    A Mesh is returned as it is, in a list a copy of it; arrays are copied once. Points without a finite position are left out with a warning, or
+    raise ArgumentError if `strict`, of a file FormatError. Raises ArgumentError for what cannot be drawn."""
+    return converted(what, strict)[0]
+
+
+def converted(what: Any, strict: bool = False) -> tuple[Mesh, Maker]:
+    """as_mesh(), and what came with it: lights and cameras of files, and whether it is coloured by values that its own
+    library shows with a colour bar."""
+    make = Maker(_any_mesh, strict)
+    return _any_mesh(what, make), make
+
+
+def _any_mesh(what: Any, make: Maker) -> Mesh:
     if isinstance(what, Mesh):
         return what
     if isinstance(what, (str, os.PathLike)):
-        return Mesh(what)
-    if isinstance(what, dict):
-        return _from_arrays(**what)
-    if isinstance(what, (tuple, list)) and len(what) == 2:
-        return _from_arrays(V=what[0], F=what[1])
+        return make.file(what)
+    if isinstance(what, Mapping):
+        return from_arrays.of_dict(what, make)
+    if isinstance(what, (tuple, list)):
+        return _of_sequence(what, make)
     for recognises, convert in _CONVERSIONS:
         if recognises(what):
-            return convert(what)
-    raise ArgumentError(
-        f"cannot show a {type(what).__module__}.{type(what).__qualname__}: expected a path, an easypbr.Mesh, "
-        "(V, F), a dict of arrays, or a trimesh, Open3D or PyVista object"
-    )
+            return _checked(convert, what, make)
+    if _is_array(what):
+        return from_arrays.of_points(what, make)
+    raise ArgumentError(f"cannot show a {type(what).__module__}.{type(what).__qualname__}: expected {ACCEPTED}")
 
 
-def _from_arrays(name: str = "", **arrays: Any) -> Mesh:
-    mesh = Mesh()
-    mesh.assign(**arrays)
-    mesh.name = name
-    return mesh
-
-
-def _rows(array: Any, count: int) -> np.ndarray | None:
-    """The array if it has `count` rows, else None."""
-    array = None if array is None else np.asarray(array)
-    return array if array is not None and count and len(array) == count else None
-
-
-# trimesh: https://trimesh.org/trimesh.base.html
-
-
-def _is_trimesh(what: Any) -> bool:
-    return all(hasattr(what, name) for name in ("vertices", "faces", "visual"))
-
-
-def _from_trimesh(what: Any) -> Mesh:
-    V, F, count = what.vertices, what.faces, len(what.vertices)
-    kind = getattr(what.visual, "kind", None)
-    if kind == "face":
-        return _with_face_colors(V, F, what.visual.face_colors)
-    colors = what.visual.vertex_colors if kind == "vertex" else None
-    uv = getattr(what.visual, "uv", None) if kind == "texture" else None
-    # Normals that trimesh has to compute are better computed here.
-    cached = getattr(what, "_cache", {})
-    normals = what.vertex_normals if "vertex_normals" in cached else None
-    mesh = _from_arrays(V=V, F=F, N=_rows(normals, count), C=_rows(colors, count), UV=_rows(uv, count))
-    if kind == "texture" and getattr(what.visual, "material", None) is not None:
-        _take_trimesh_material(mesh.material, what.visual.material)
-    return mesh
-
-
-def _with_face_colors(V: Any, F: Any, colors: Any) -> Mesh:
-    """Splits the mesh into separate corners, so that each face has its own colour."""
-    F = np.asarray(F)
-    return _from_arrays(
-        V=np.asarray(V)[F.ravel()], F=np.arange(F.size).reshape(-1, 3), C=np.repeat(np.asarray(colors), 3, axis=0)
-    )
-
-
-def _take_trimesh_material(material: Any, given: Any) -> None:
-    """https://trimesh.org/trimesh.visual.material.html: PBRMaterial has glTF's fields, SimpleMaterial diffuse and image."""
-    image = getattr(given, "baseColorTexture", None) or getattr(given, "image", None)
-    if image is not None:
-        material.base_color_texture = np.asarray(image.convert("RGBA"))
-    if hasattr(given, "baseColorFactor"):
-        factor = given.baseColorFactor
-        material.base_color = (1, 1, 1) if factor is None else np.asarray(factor)[:3] / 255
-        material.metallic = 1 if given.metallicFactor is None else given.metallicFactor
-        material.roughness = 1 if given.roughnessFactor is None else given.roughnessFactor
-    elif getattr(given, "diffuse", None) is not None:
-        red, green, blue = np.asarray(given.diffuse)[:3]
-        material.base_color = f"#{red:02x}{green:02x}{blue:02x}"
-
-
-def _is_trimesh_scene(what: Any) -> bool:
-    return hasattr(what, "geometry") and hasattr(what, "graph") and hasattr(what.graph, "nodes_geometry")
-
-
-def _from_trimesh_scene(what: Any) -> Mesh:
-    root = Mesh()
-    for node in what.graph.nodes_geometry:
-        T_world_mesh, geometry = what.graph[node]
-        child = as_mesh(what.geometry[geometry])
-        child.name = str(node)
-        child.T_parent_mesh = T_world_mesh
-        root.add_child(child)
-    return root
-
-
-def _is_trimesh_cloud(what: Any) -> bool:
-    return hasattr(what, "vertices") and hasattr(what, "colors") and not hasattr(what, "faces")
-
-
-def _from_trimesh_cloud(what: Any) -> Mesh:
-    return _from_arrays(V=what.vertices, C=_rows(what.colors, len(what.vertices)))
-
-
-# Open3D: http://www.open3d.org/docs/release/python_api/open3d.geometry.TriangleMesh.html
-
-
-def _is_open3d_mesh(what: Any) -> bool:
-    return all(hasattr(what, name) for name in ("vertices", "triangles", "vertex_normals"))
-
-
-def _from_open3d_mesh(what: Any) -> Mesh:
-    V, F = np.asarray(what.vertices), np.asarray(what.triangles)
-    N, C = np.asarray(what.vertex_normals), np.asarray(what.vertex_colors)
-    corner_uv = np.asarray(getattr(what, "triangle_uvs", ()))
-    if len(corner_uv) and len(corner_uv) == 3 * len(F):
-        # One uv per corner: every corner becomes a vertex.
-        corners = F.ravel()
-        V, N, C = V[corners], N[corners] if len(N) else N, C[corners] if len(C) else C
-        F = np.arange(len(corners)).reshape(-1, 3)
-    count = len(V)
-    return _from_arrays(V=V, F=F, N=_rows(N, count), C=_rows(C, count), UV=_rows(corner_uv, count))
-
-
-def _is_open3d_cloud(what: Any) -> bool:
-    return all(hasattr(what, name) for name in ("points", "colors", "normals", "has_colors"))
-
-
-def _from_open3d_cloud(what: Any) -> Mesh:
-    count = len(what.points)
-    return _from_arrays(V=np.asarray(what.points), N=_rows(what.normals, count), C=_rows(what.colors, count))
-
-
-# PyVista: https://docs.pyvista.org/api/core/_autosummary/pyvista.PolyData.html
-
-
-def _is_pyvista(what: Any) -> bool:
-    return hasattr(what, "points") and hasattr(what, "point_data") and hasattr(what, "n_points")
-
-
-def _from_pyvista(what: Any) -> Mesh:
-    # Only surfaces can tell whether they are made of triangles.
-    if not hasattr(what, "is_all_triangles"):
-        what = _surface(what)
-    if len(what.faces) and not _called(what.is_all_triangles):
-        what = what.triangulate()
-    faces = np.asarray(what.faces)
-    data, count = what.point_data, what.n_points
-    return _from_arrays(
-        V=what.points,
-        F=faces.reshape(-1, 4)[:, 1:] if len(faces) else None,
-        N=_rows(data["Normals"] if "Normals" in data else None, count),
-        C=_rows(data["RGB"] if "RGB" in data else None, count),
-        UV=_rows(getattr(what, "active_texture_coordinates", None), count),
-    )
-
-
-def _surface(grid: Any) -> Any:
+def _checked(convert: Callable[[Any, Maker], Mesh], what: Any, make: Maker) -> Mesh:
+    """What goes wrong inside an object of another library names that object."""
     try:
-        return grid.extract_surface(algorithm=None)
-    except TypeError:
-        # Older versions have nothing to choose.
-        return grid.extract_surface()
+        return convert(what, make)
+    except (AttributeError, IndexError, TypeError) as error:
+        kind = f"{type(what).__module__}.{type(what).__qualname__}"
+        raise ArgumentError(f"cannot show a {kind}, which has not the expected form: {error}") from error
 
 
-def _called(flag: Any) -> Any:
-    # A property in newer versions, a method in older ones.
-    return flag() if callable(flag) else flag
+def _is_array(what: Any) -> bool:
+    return isinstance(what, np.ndarray) or any(
+        hasattr(what, name) for name in ("__array__", "__array_interface__", "__dlpack__", "__cuda_array_interface__")
+    )
 
 
-_CONVERSIONS = [
-    (_is_trimesh_scene, _from_trimesh_scene),
-    (_is_trimesh, _from_trimesh),
-    (_is_open3d_mesh, _from_open3d_mesh),
-    (_is_open3d_cloud, _from_open3d_cloud),
-    (_is_pyvista, _from_pyvista),
-    (_is_trimesh_cloud, _from_trimesh_cloud),
-]
+def _of_sequence(what: "tuple | list", make: Maker) -> Mesh:
+    """Rows of numbers, (V,), (V, F), or a list of what can be drawn."""
+    if len(what) == 0:
+        raise ArgumentError(f"an empty {type(what).__name__}: there is nothing to show; expected {ACCEPTED}")
+    if _is_rows(what):
+        return from_arrays.of_points(np.asarray([np.asarray(as_numpy(row)) for row in what]), make)
+    if len(what) == 2 and _is_matrix(what[0]) and _is_faces(what[1], may_be_floats=isinstance(what, tuple)):
+        return from_arrays.of_vertices_and_faces(what[0], what[1], make)
+    if len(what) > 2 and _is_matrix(what[0]) and _is_faces(what[1], may_be_floats=False) and _dtype(what[0]) == "f":
+        raise ArgumentError(
+            f"({', '.join(_described(part) for part in what)}): expected (V, F); give further arrays in a dict: "
+            "{'V': V, 'F': F, 'C': C}"
+        )
+    # A mesh has one parent: those that are given stay as they are.
+    children = [part.clone() if isinstance(part, Mesh) and len(what) > 1 else make.any(part) for part in what]
+    return make.parts(children)
+
+
+def _described(part: Any) -> str:
+    shape = getattr(part, "shape", None)
+    return type(part).__name__ if shape is None else " x ".join(map(str, shape))
+
+
+def _is_rows(what: "tuple | list") -> bool:
+    """Whether this is the rows of an array, each of three or more numbers."""
+    first = what[0]
+    if isinstance(first, (str, os.PathLike, Mapping, Mesh)):
+        return False
+    if isinstance(first, (tuple, list)):
+        return len(first) >= 3 and all(isinstance(x, (int, float, np.number)) for x in first)
+    return _is_array(first) and not hasattr(first, "vertices") and len(getattr(first, "shape", ())) == 1
+
+
+def _dtype(array: Any) -> str:
+    return np.asarray(as_numpy(array)).dtype.kind
+
+
+def _is_matrix(what: Any) -> bool:
+    """Whether this is an array of numbers with rows."""
+    if isinstance(what, (tuple, list)):
+        return len(what) > 0 and _is_rows(what)
+    return _is_array(what) and len(getattr(what, "shape", ())) == 2
+
+
+def _is_faces(what: Any, may_be_floats: bool) -> bool:
+    """Whether this may be the second of (V, F)."""
+    if what is None:
+        return True
+    if isinstance(what, (tuple, list)):
+        is_corners = all(isinstance(face, (tuple, list, np.ndarray)) for face in what)
+        return is_corners and all(isinstance(i, (int, np.integer)) for face in what for i in face)
+    if not _is_array(what) or len(getattr(what, "shape", ())) != 2:
+        return False
+    array = np.asarray(as_numpy(what))
+    if array.dtype.kind in "iu":
+        return True
+    return may_be_floats and array.dtype.kind == "f" and (array.size == 0 or bool((array == np.floor(array)).all()))

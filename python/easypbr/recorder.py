@@ -9,6 +9,7 @@ from pathlib import Path
 from numpy.typing import ArrayLike
 
 from . import _easypbr
+from .arguments import samples_of
 from .errors import ArgumentError
 from .panels import WindowCallbacks
 
@@ -36,7 +37,7 @@ class Recorder:
     def record(self, path: str | os.PathLike, size: ArrayLike | None = None, samples: int | None = None, deep: bool = False) -> Path:
         """Writes one image, complete when the call returns: PNG (16 bits with `deep`), JPEG, HDR or EXR, by the
         extension."""
-        return self._handle.record(path, size, samples, deep)
+        return self._handle.record(path, size, samples_of(samples), deep)
 
     def start(
         self,
@@ -50,7 +51,7 @@ class Recorder:
         """Starts a recording: a video (MP4, MOV, MKV, WebM, GIF) or numbered images ("out/frame_%04d.png", or a
         folder), by the name. `with view.recorder.start("out.mp4"):` stops it at the end of the block. `codec` is
         FFmpeg's name of an encoder. While recording, view.time advances by 1 / fps per frame."""
-        self._handle.start_recording(path, fps, size, samples, codec, deep)
+        self._handle.start_recording(path, fps, size, samples_of(samples), codec, deep)
         _started.add(self)
         return self
 

@@ -2,17 +2,32 @@
 
 import os
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _easypbr
+from .cameras import set_camera
 from .errors import ArgumentError, UnknownNameError
-from .scene import Scene
-from .viewer import Viewer
+from .scene import scene_of
+from .viewer import Viewer, show_colorbar
 
-_SHORT_NAMES = {
+if TYPE_CHECKING:
+    from typing import overload
+
+    from typing_extensions import Unpack
+
+    from .settings import RenderSettings
+else:
+
+    def overload(function):
+        """typing's keeps every overload, and with it this module, until after the interpreter has ended."""
+        return function
+
+
+#: Keywords for settings whose last part is not theirs alone, or is long.
+SHORT_NAMES = {
     "color": "material.color",
     "tonemap": "tonemap.operator",
     "flat": "style.flat",
@@ -20,6 +35,66 @@ _SHORT_NAMES = {
     "environment_rotation_deg": "environment.rotation_deg",
     "environment_intensity": "environment.intensity",
 }
+#: Settings that render() has an argument of its own for.
+_ARGUMENTS = {
+    "image.size": "size=(800, 600)",
+    "image.samples": "samples=16",
+    "environment.file": "environment='map.hdr'",
+    "background.color": "background='#ffffff'",
+    "background.mode": "background='transparent'",
+    "background.image": "background='photo.jpg'",
+    "camera.position": "camera={'position': (3, 2, 5), 'target': (0, 0, 0)}",
+    "camera.pose": "camera=T_world_cam",
+}
+
+
+@overload
+def render(
+    what: Any,
+    out: str | os.PathLike[str] | None = None,
+    size: ArrayLike | None = None,
+    samples: int | None = None,
+    environment: Any = None,
+    hdr: Literal[False] = False,
+    camera: Any = None,
+    background: Any = None,
+    settings: Mapping | str | os.PathLike[str] | None = None,
+    strict: bool = False,
+    **values: "Unpack[RenderSettings]",
+) -> NDArray[np.uint8]: ...
+
+
+@overload
+def render(
+    what: Any,
+    out: str | os.PathLike[str] | None = None,
+    size: ArrayLike | None = None,
+    samples: int | None = None,
+    environment: Any = None,
+    *,
+    hdr: Literal[True],
+    camera: Any = None,
+    background: Any = None,
+    settings: Mapping | str | os.PathLike[str] | None = None,
+    strict: bool = False,
+    **values: "Unpack[RenderSettings]",
+) -> NDArray[np.float32]: ...
+
+
+@overload
+def render(
+    what: Any,
+    out: str | os.PathLike[str] | None = None,
+    size: ArrayLike | None = None,
+    samples: int | None = None,
+    environment: Any = None,
+    hdr: bool = False,
+    camera: Any = None,
+    background: Any = None,
+    settings: Mapping | str | os.PathLike[str] | None = None,
+    strict: bool = False,
+    **values: "Unpack[RenderSettings]",
+) -> NDArray[Any]: ...
 
 
 def render(
@@ -29,28 +104,34 @@ def render(
     samples: int | None = None,
     environment: Any = None,
     hdr: bool = False,
-    camera: "_easypbr.Camera | None" = None,
+    camera: Any = None,
     background: Any = None,
     settings: Mapping | str | os.PathLike | None = None,
+    strict: bool = False,
     **values: Any,
 ) -> np.ndarray:
-    """Renders `what`: a path, a Mesh, a Scene, (V, F), a dict of arrays, or a trimesh, Open3D or PyVista object.
+    """Renders `what`: a Scene, or anything as_mesh() takes: a path, a Mesh, points (n x 3, n x 6 with colours), (V, F), a dict
+    or a table of arrays, an object of trimesh, Open3D, PyVista or VTK, or a list of these.
 
     Returns height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`. `size` is (800, 600) and
     `samples` 16 by default. `out` writes the image to a file too. `environment`: environment map, a path, an array or
-    an Environment. `background`: a colour, an image file, "environment", "blur" or "transparent". Other keywords are
-    settings by the last part of their name (roughness=0.3, exposure=2); `settings` is a dict or a file of
-    settings."""
-    linear_file = out is not None and _easypbr.check_picture_path(out)
-    view = Viewer(size, settings, scene=_scene_of(what))
+    an Environment. `background`: a colour, an image file, "environment", "blur" or "transparent". `camera`: "front", "back",
+    "left", "right", "top", "bottom", "iso", the name of a camera of the file, a Camera, a dict of settings.camera, a 4 x 4
+    camera-to-world matrix with OpenGL axes, or (position, target, up). Points without a finite position are left out with a
+    warning, or raise if `strict`. Values that PyVista and VTK colour by get a colour bar. Other keywords are settings by the
+    last part of their name (roughness=0.3, exposure=2); `settings` is a dict or a file of settings."""
+    linear_file = out is not None and _check_path(out)
+    scene, made = scene_of(what, strict=strict)
+    view = Viewer(size, settings, scene=scene)
     if environment is not None:
         _set_environment(view, environment)
     if background is not None:
         _set_background(view, background)
     for name, value in values.items():
         view.settings[_full_name(name)] = value
+    show_colorbar(view, made)
     if camera is not None:
-        view.camera = camera
+        set_camera(view._handle, camera, None if made is None else made.cameras)
     picture = view.render(samples=samples, hdr=hdr)
     if out is not None:
         _easypbr.save_image(picture if hdr == linear_file else view.render(samples=samples, hdr=linear_file), out)
@@ -62,12 +143,13 @@ def render_png(what: Any) -> bytes:
     return _easypbr.encode_png(render(what))
 
 
-def _scene_of(what: Any) -> Scene:
-    if isinstance(what, Scene):
-        return what
-    scene = Scene()
-    scene.show(what)
-    return scene
+def _check_path(out: Any) -> bool:
+    """Whether the file is linear. Raises ArgumentError for what is no path, such as the faces of render(V, F)."""
+    if not isinstance(out, (str, os.PathLike)):
+        shape = getattr(out, "shape", None)
+        kind = type(out).__name__ if shape is None else f"{' x '.join(map(str, shape))} array"
+        raise ArgumentError(f"render(): out: expected a path, got a {kind}; vertices and faces are one argument: render((V, F))")
+    return _easypbr.check_picture_path(out)
 
 
 def _set_environment(view: Viewer, environment: Any) -> None:
@@ -89,14 +171,34 @@ def _set_background(view: Viewer, background: Any) -> None:
 
 def _full_name(name: str) -> str:
     """The full name of a setting that is given by its last part."""
-    if name in _SHORT_NAMES:
-        return _SHORT_NAMES[name]
+    if name in SHORT_NAMES:
+        return SHORT_NAMES[name]
     found = [field.name for field in _easypbr.fields() if name in (field.name, field.name.rsplit(".")[-1])]
     if len(found) == 1:
         return found[0]
     if found:
         raise ArgumentError(f"render(): '{name}' may be {' or '.join(found)}: give it as settings={{'{found[0]}': ...}}")
-    try:
-        return _easypbr.field(name).name
-    except UnknownNameError as error:
-        raise TypeError(f"render(): {error}") from None
+    raise TypeError(f"render(): {_unknown(name)}") from None
+
+
+def _unknown(name: str) -> str:
+    """What a wrong keyword is called here."""
+    meant = _easypbr.synonym(name)
+    if meant is None:
+        try:
+            return _easypbr.field(name).name
+        except UnknownNameError as error:
+            return str(error)
+    if meant.advice and not meant.setting:
+        return f"there is no '{name}': {meant.advice}"
+    return f"there is no '{name}': it is called {keyword_of(meant.setting)}"
+
+
+def keyword_of(setting: str) -> str:
+    """How render() takes a setting."""
+    if setting in _ARGUMENTS:
+        return _ARGUMENTS[setting]
+    short = [keyword for keyword, full in SHORT_NAMES.items() if full == setting]
+    last = setting.rsplit(".")[-1]
+    is_unique = sum(field.name.rsplit(".")[-1] == last for field in _easypbr.fields()) == 1
+    return f"{short[0]}=..." if short else f"{last}=..." if is_unique else f"settings={{'{setting}': ...}}"

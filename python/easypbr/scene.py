@@ -1,6 +1,5 @@
 """Scene: named meshes, lights and an environment map."""
 
-import os
 import types
 from collections.abc import Callable
 from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
@@ -9,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _easypbr
-from .convert import as_mesh
+from .conversions.maker import Maker
+from .convert import converted
 
 Arguments = ParamSpec("Arguments")
 Result = TypeVar("Result")
@@ -50,19 +50,10 @@ class Scene:
         return cls._of(_easypbr.demo_scene())
 
     @_OnDefaultScene
-    def show(self, what: Any, name: str | None = None) -> "_easypbr.Mesh":
+    def show(self, what: Any, name: str | None = None, strict: bool = False) -> "_easypbr.Mesh":
         """Shows a mesh (or whatever as_mesh() takes) under a name; the same name again replaces it. For a path, the
-        lights of the file are added too, as "name/light"."""
-        lights = {}
-        if isinstance(what, (str, os.PathLike)):
-            loaded = _easypbr.load_scene(what)
-            what, lights = loaded.mesh, loaded.lights
-        mesh = as_mesh(what)
-        name = mesh.name or "mesh" if name is None else name
-        self._handle.show(mesh, name)
-        for light_name, light in lights.items():
-            self._handle.set_light(f"{name}/{light_name}", light)
-        return mesh
+        lights of the file are added too, as "name/light". `strict` as for as_mesh()."""
+        return _show(self, what, name, strict)[0]
 
     @_OnDefaultScene
     def get(self, name: str) -> "_easypbr.Mesh":
@@ -141,3 +132,21 @@ class Scene:
 
     def __repr__(self) -> str:
         return f"<easypbr.Scene: {', '.join(self._handle.names()) or 'empty'}>"
+
+
+def _show(scene: Scene, what: Any, name: str | None, strict: bool) -> "tuple[_easypbr.Mesh, Maker]":
+    """Scene.show(), and what came with the mesh."""
+    mesh, make = converted(what, strict)
+    name = mesh.name or "mesh" if name is None else name
+    scene._handle.show(mesh, name)
+    for light_name, light in make.lights.items():
+        scene._handle.set_light(f"{name}/{light_name}", light)
+    return mesh, make
+
+
+def scene_of(what: Any, name: str | None = None, strict: bool = False) -> "tuple[Scene, Maker | None]":
+    """A scene of whatever can be shown, and what came with it; a Scene is returned as it is."""
+    if isinstance(what, Scene):
+        return what, None
+    scene = Scene()
+    return scene, _show(scene, what, name, strict)[1]

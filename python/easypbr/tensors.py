@@ -1,11 +1,46 @@
 """Arrays of other libraries: torch, JAX, CuPy, any with DLPack. They are imported on demand."""
 
 from collections.abc import Callable, Iterable
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
+from . import _easypbr
 from .errors import ArgumentError, ContextError
+
+
+class SharedArray(np.ndarray):
+    """A read-only array that a mesh owns, such as mesh.V. Other libraries take it by DLPack: without a copy if they know
+    DLPack 1.0, whose flag says that it is read-only, else a copy. What is computed from it is a plain numpy array."""
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, out: Any = None, **options: Any) -> Any:
+        if out is not None:
+            options["out"] = tuple(_plain(array) for array in out)
+        return getattr(ufunc, method)(*(_plain(array) for array in inputs), **options)
+
+    def __reduce__(self) -> Any:
+        return _plain(self).__reduce__()
+
+    def __dlpack_device__(self) -> tuple[int, Literal[0]]:
+        return (1, 0)  # The memory of the CPU.
+
+    def __dlpack__(
+        self, *, stream: Any = None, max_version: Any = None, dl_device: Any = None, copy: bool | None = None
+    ) -> Any:
+        if dl_device is not None and tuple(dl_device) != self.__dlpack_device__():
+            raise BufferError(f"a mesh's array is in the memory of the CPU, device (1, 0): got device {tuple(dl_device)}")
+        knows_readonly = max_version is not None and max_version[0] >= 1
+        if self.flags.writeable:
+            return _plain(self).__dlpack__(stream=stream)
+        if knows_readonly and not copy:
+            return _easypbr._dlpack_of(_plain(self)).__dlpack__(max_version=max_version)
+        if copy is False:
+            raise BufferError("a mesh's array is read-only, which DLPack before 1.0 cannot say: expected copy=None or True")
+        return _plain(self).copy().__dlpack__(stream=stream)
+
+
+def _plain(array: Any) -> Any:
+    return array.view(np.ndarray) if isinstance(array, SharedArray) else array
 
 
 def converter(name: str, device: str = "cpu") -> Callable:

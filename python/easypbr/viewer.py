@@ -3,6 +3,7 @@
 import atexit
 import os
 import threading
+import time
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -10,11 +11,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _easypbr
+from .arguments import samples_of
+from .cameras import set_camera
+from .conversions.maker import Maker
 from .errors import ArgumentError
 from .lights import _STUDIO, Lights, SceneLight, StudioLight
 from .panels import WindowCallbacks
 from .recorder import Recorder, watch_recorder
-from .scene import Scene
+from .scene import Scene, scene_of
 from .settings import Settings
 from .shapes import camera_frustum
 from .tensors import as_numpy, check_device, converter, from_dlpack, layers_of_targets
@@ -41,6 +45,7 @@ class Viewer(WindowCallbacks):
         self.recorder = Recorder(self)
         self._settings = Settings(self._handle)
         self._thread: threading.Thread | None = None
+        self._made_at = time.monotonic()
         self._init_callbacks()
         if isinstance(settings, Mapping):
             self._settings.update(settings)
@@ -95,21 +100,29 @@ class Viewer(WindowCallbacks):
 
     @property
     def camera(self) -> "_easypbr.Camera":
-        """A copy of the camera of the next image; assign a Camera to pin it."""
+        """A copy of the camera of the next image. Assigning pins it: a Camera, "front", "back", "left", "right", "top",
+        "bottom" or "iso", a dict of settings.camera, a 4 x 4 camera-to-world matrix with OpenGL axes, or (position, target,
+        up)."""
         return self._handle.camera
 
     @camera.setter
-    def camera(self, camera: "_easypbr.Camera") -> None:
-        self._handle.camera = camera
+    def camera(self, camera: Any) -> None:
+        set_camera(self._handle, camera)
 
     @property
     def time(self) -> float:
-        """Animation time in seconds, of the last frame of a window or a recording; assign to set it."""
+        """Animation time in seconds, of the last frame of a window, of a recording, or, without both, of render(); assign to
+        set it."""
         return self._handle.time
 
     @time.setter
     def time(self, seconds: float) -> None:
         self._handle.time = seconds
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds of real time since this viewer was made; can be asked at any point."""
+        return time.monotonic() - self._made_at
 
     @property
     def delta_time(self) -> float:
@@ -164,7 +177,7 @@ class Viewer(WindowCallbacks):
 
     def render(self, size: ArrayLike | None = None, samples: int | None = None, hdr: bool = False) -> np.ndarray:
         """Renders an image, height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`."""
-        return self._handle.render(size, samples, "linear" if hdr else "srgb8")
+        return self._handle.render(size, samples_of(samples), "linear" if hdr else "srgb8")
 
     def layers(self, names: Sequence[str] | None = None, size: ArrayLike | None = None) -> dict[str, np.ndarray]:
         """Exact values through the pixels' centres, float32, by name: albedo, normal_world, depth, roughness, metallic,
@@ -199,6 +212,7 @@ class Viewer(WindowCallbacks):
         the rasteriser's rounding); what else is asked for is copied there."""
         if isinstance(names, str):
             names = [names]
+        samples = samples_of(samples)
         convert = converter(as_, device)
         if device != "cpu":
             return self._layers_on(device, names, size, samples, instances_by, classes, previous, next, amodal)
@@ -416,13 +430,16 @@ def show(
     size: ArrayLike = (1280, 720),
     settings: Mapping | str | os.PathLike | None = None,
 ) -> Viewer:
-    """Shows anything as_mesh() takes, a path or a Scene in a window, until it is closed; with block=False the window
+    """Shows anything as_mesh() takes or a Scene in a window, until it is closed; with block=False the window
     runs on its own thread. Returns its Viewer; `settings` as for Viewer."""
-    if isinstance(what, Scene):
-        scene = what
-    else:
-        scene = Scene()
-        scene.show(what, name)
+    scene, made = scene_of(what, name)
     view = Viewer(size, settings, scene=scene)
+    show_colorbar(view, made)
     view.show(block)
     return view
+
+
+def show_colorbar(view: Viewer, made: Maker | None) -> None:
+    """Shows a colour bar beside what its own library shows one for, unless the settings say whether there is one."""
+    if made is not None and made.has_colorbar and view.settings["annotation.colorbar"] == _easypbr.auto:
+        view.settings["annotation.colorbar"] = True

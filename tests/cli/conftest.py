@@ -11,8 +11,9 @@ from binary import BINARY
 
 @pytest.fixture(scope="session")
 def environment(tmp_path_factory):
-    """A cache of our own, so that runs neither use nor fill the user's."""
-    return {**os.environ, "EASYPBR_CACHE_DIR": str(tmp_path_factory.mktemp("cache"))}
+    """A cache and a configuration of our own, so that runs neither use nor fill the user's."""
+    folders = {name: str(tmp_path_factory.mktemp(name)) for name in ("EASYPBR_CACHE_DIR", "XDG_CONFIG_HOME")}
+    return {**os.environ, **folders}
 
 
 @pytest.fixture

@@ -1,6 +1,7 @@
 """The progress bar of long loads: on a terminal only, and never with --quiet."""
 import os
 import pty
+import re
 import subprocess
 
 import pytest
@@ -44,3 +45,23 @@ def test_no_bar_when_quiet_or_not_on_a_terminal(environment, easypbr, large, tmp
     arguments = ("render", large, "-o", tmp_path / "a.png", "--size", "8x8", "--samples", "1")
     assert said_on_a_terminal(environment, *arguments, "--quiet") == ""
     assert easypbr(*arguments).stderr == ""
+
+
+@pytest.fixture
+def small(tmp_path):
+    path = tmp_path / "small.obj"
+    path.write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
+    return path
+
+
+def test_a_still_of_more_than_two_seconds_shows_the_time_left(environment, small, tmp_path):
+    said = said_on_a_terminal(environment, "render", small, "-o", tmp_path / "a.png", "--size", "1600x1200", "--samples", "48")
+    found = re.findall(r"picture: sample (\d+) of 48, (\d+):(\d\d) left", said)
+    assert found and said.endswith("\r\033[K")
+    samples = [int(sample) for sample, _, _ in found]
+    assert samples == sorted(samples) and samples[-1] < 48
+
+
+def test_a_quick_still_says_nothing(environment, easypbr, small, tmp_path):
+    arguments = ("render", small, "-o", tmp_path / "a.png", "--size", "16x16", "--samples", "1")
+    assert said_on_a_terminal(environment, *arguments) == ""

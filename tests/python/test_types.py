@@ -1,6 +1,7 @@
 """What editors and type checkers read: the package and its generated stubs are clean under mypy and pyright."""
 
 import json
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -27,6 +28,14 @@ fov: float = view.settings.camera.fov_y_deg
 names: list[str] = view.scene.names()
 statistics: dict = generate(DatasetSpec(objects=[ObjectSpec("drone.ply")]), "out", workers=2)
 version: str = easypbr.__version__
+cloud: Mesh = easypbr.as_mesh(np.zeros((3, 3)), strict=True)
+image: np.ndarray = easypbr.render([mesh, np.zeros((3, 3))], camera="front", roughness=0.3, color="red", tonemap="agx")
+shared: np.ndarray = mesh.V
+easypbr.render(mesh, roughnes=0.3)  # WRONG
+easypbr.render(mesh, roughness="rough")  # WRONG
+easypbr.render(mesh, samples="4")  # WRONG
+easypbr.render(mesh, tonemap="filmic")  # WRONG
+linear: str = easypbr.render(mesh, hdr=True)  # WRONG
 view.render(samples="many")  # WRONG
 view.focus_at(1)  # WRONG
 view.settings.camera.fov = 3  # WRONG
@@ -54,7 +63,7 @@ def test_mypy(tmp_path):
 
 
 def pyright(folder: Path, include: list[str], **settings):
-    """Its complaints about files, as (file name, line from 1 on, text)."""
+    """Its complaints about files, as (file name, line from 1 on, text), and the number of files."""
     config = {"include": include, "pythonVersion": "3.11", "typeCheckingMode": "basic", "extraPaths": [str(PACKAGE.parent)],
               "reportMissingImports": "none", **settings}
     (folder / "pyrightconfig.json").write_text(json.dumps(config))
@@ -62,19 +71,21 @@ def pyright(folder: Path, include: list[str], **settings):
     if done.returncode not in (0, 1):  # It needs Node.js: of the machine, or of PyPI's pyright[nodejs].
         pytest.skip(f"pyright does not run here: {done.stderr or done.stdout}")
     report = json.loads(done.stdout)
-    assert report["summary"]["filesAnalyzed"] > 0
+    files = report["summary"]["filesAnalyzed"]
+    assert files > 0
     return [(Path(entry["file"]).name, entry["range"]["start"]["line"] + 1, entry["message"])
-            for entry in report["generalDiagnostics"] if entry["severity"] == "error"]
+            for entry in report["generalDiagnostics"] if entry["severity"] == "error"], files
 
 
 def test_pyright(tmp_path):
     pytest.importorskip("pyright")
-    # What settings.py holds is told by settings.pyi, which is made of the table of settings.
-    (tmp_path / "easypbr").symlink_to(PACKAGE)  # It looks at what lies below its project alone.
-    found = pyright(tmp_path, ["easypbr"], ignore=["**/settings.py", "**/_easypbr.pyi"])
+    # It looks at what lies below its project alone, and not behind links to folders, as the sub-packages are when built.
+    shutil.copytree(PACKAGE, tmp_path / "easypbr", ignore=shutil.ignore_patterns("*.so*", "__pycache__", "easypbr_read_assimp"))
+    found, files = pyright(tmp_path, ["easypbr"])
     assert not found, "\n".join(map(str, found))
+    assert files >= len(list((tmp_path / "easypbr").rglob("*.py")))
     program = tmp_path / "program"
     program.mkdir()
     (program / "program.py").write_text(PROGRAM)
-    found = pyright(program, ["program.py"])
+    found, _ = pyright(program, ["program.py"])
     assert sorted({line for _, line, _ in found}) == wrong_lines(), found

@@ -69,7 +69,8 @@ class Viewer {
     /// What draws; its header is the library's own.
     app::Session& session();
 
-    /// The time of animations; see Clock. Frames that the recorder adds let it go on.
+    /// The time of animations; see Clock. Frames of the window and those that the recorder adds let it go on;
+    /// without both, images of render() do.
     app::Clock& clock();
     double time() const;
     double delta_time() const;

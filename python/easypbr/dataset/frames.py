@@ -251,7 +251,7 @@ def sensor(picture: np.ndarray, given: SensorSpec, random: np.random.Generator) 
             padded = np.pad(values, [(reach, reach) if a == axis else (0, 0) for a in range(3)], mode="edge")
             count = values.shape[axis]
             cuts = [padded[k : k + count] if axis == 0 else padded[:, k : k + count] for k in range(len(kernel))]
-            values = sum(weight * cut for weight, cut in zip(kernel, cuts))
+            values = np.asarray(sum((weight * cut for weight, cut in zip(kernel, cuts)), np.float32(0)))
     if noise > 0:
         values = values + random.standard_normal(values.shape, dtype=np.float32) * np.float32(255 * noise)
     picture = np.clip(np.rint(values), 0, 255).astype(np.uint8)

@@ -11,6 +11,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
+#include "easypbr/core/step_progress.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
@@ -27,31 +28,6 @@ class KeptCamera {
   private:
     Session& session_;
     CameraSettings camera_;
-};
-
-/// Reports how far a recording is, a few times per second.
-class FrameProgress {
-  public:
-    FrameProgress(const std::filesystem::path& path, int count)
-        : name_(path.filename().string()), count_(count) {}
-    ~FrameProgress() { report_progress(name_, 1); }
-
-    void report(int frame) {
-        const auto now = Steady::now();
-        if (frame == 0 || now - last_ < std::chrono::milliseconds(200)) return;
-        last_ = now;
-        const double passed = std::chrono::duration<double>(now - start_).count();
-        const long left = std::lround(passed / frame * (count_ - frame));
-        report_progress(
-            fmt::format("{}: frame {} of {}, {}:{:02} left", name_, frame, count_, left / 60, left % 60),
-            std::min(0.999, double(frame) / count_));
-    }
-
-  private:
-    using Steady = std::chrono::steady_clock;
-    std::string name_;
-    int count_;
-    Steady::time_point start_ = Steady::now(), last_ = start_;
 };
 
 }  // namespace
@@ -190,13 +166,13 @@ int Recorder::record_path(const CameraPath& path, const fs::path& file, const Re
     const KeptCamera kept(session_);
     const Camera camera = session_.resolve(options.size).camera;
     start(file, options);
-    FrameProgress progress(file, int(times.size()));
+    StepProgress progress(file.filename().string(), "frame", int(times.size()), 0.2);
     // A closed path was on its way before the first frame; on an open one the camera rests until then.
     const double step = times.size() > 1 ? times[1] - times[0] : 1 / options.fps;
     session_.begin_motion(path.camera(times[0] - step, camera));
     try {
         for (size_t i = 0; i < times.size(); ++i) {
-            progress.report(int(i));
+            progress.done(int(i));
             if (before_frame) before_frame(int(i), int(times.size()), times[i]);
             session_.set_camera(path.camera(times[i], camera));
             add_frame();

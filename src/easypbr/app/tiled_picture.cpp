@@ -2,9 +2,10 @@
 
 #include <algorithm>
 
+#include "easypbr/core/step_progress.h"
+
 namespace easypbr::app {
 namespace {
-
 
 using render::Tile;
 
@@ -49,8 +50,11 @@ void TiledPicture::draw_tile(render::Renderer& renderer, const Tile& tile) const
 
 Image TiledPicture::draw(render::Renderer& renderer) const {
     Image picture;
+    StepProgress progress("picture", "tile", int(tiles.size()));
+    int drawn_tiles = 0;
     for (const Tile& tile : tiles) {
         draw_tile(renderer, tile);
+        progress.done(++drawn_tiles);
         const Vec2i corner = corner_of(tile);
         const Image drawn =
             renderer.read_picture({corner.x(), corner.y(), tile.inner.width, tile.inner.height});

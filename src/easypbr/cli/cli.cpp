@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstdlib>
@@ -12,10 +13,13 @@
 
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/console.h"
+#include "easypbr/cli/render_options.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/picture.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/scene/fields.h"
+#include "easypbr/scene/synonyms.h"
 
 namespace easypbr::cli {
 namespace {
@@ -47,6 +51,36 @@ std::vector<std::string> option_names(const CLI::App& command) {
                                  fmt::join(subcommand_names(app), ", ")));
 }
 
+/// The option of the command that sets this setting; --set does for all.
+std::string option_for(const CLI::App& command, std::string_view setting) {
+    const std::string shorthand = shorthand_option(setting);
+    if (!shorthand.empty() && command.get_option_no_throw(shorthand)) return shorthand;
+    return fmt::format("--set {}=VALUE", setting);
+}
+
+/// The setting whose last part an option is written as, "--point-size"; empty: none, or several.
+std::string setting_like(std::string option) {
+    option.erase(0, option.find_first_not_of('-'));
+    std::ranges::replace(option, '-', '_');
+    std::string found;
+    for (const Field& field : fields())
+        if (field.name.ends_with("." + option)) {
+            if (!found.empty()) return {};
+            found = field.name;
+        }
+    return found;
+}
+
+/// What an unknown option may mean: a word of another program, or a misspelt one.
+std::string option_hint(const CLI::App& command, const std::string& name) {
+    if (const std::string nearest = did_you_mean(name, option_names(command)); !nearest.empty())
+        return nearest;
+    const Synonym* meant = synonym(name);
+    if (meant && meant->setting.empty()) return fmt::format(" ({})", meant->option);
+    const std::string setting = meant ? std::string(meant->setting) : setting_like(name);
+    return setting.empty() ? "" : fmt::format(" (it is called {})", option_for(command, setting));
+}
+
 /// Extras are allowed while parsing, so that a misspelt option is reported before what it left missing.
 void reject_extras(const CLI::App& app) {
     const std::vector<CLI::App*> commands = app.get_subcommands();
@@ -57,8 +91,8 @@ void reject_extras(const CLI::App& app) {
         if (!rest.front().starts_with("-"))
             throw UsageError(fmt::format("{}: unexpected argument '{}'", command.get_name(), rest.front()));
         const std::string name = rest.front().substr(0, rest.front().find('='));
-        throw UsageError(fmt::format("{}: unknown option '{}'{}", command.get_name(), name,
-                                     did_you_mean(name, option_names(command))));
+        throw UsageError(
+            fmt::format("{}: unknown option '{}'{}", command.get_name(), name, option_hint(command, name)));
     }
 }
 
@@ -85,6 +119,8 @@ void add_commands(CLI::App& app, Job& job) {
     add_view(app, job);
     add_dataset(app, job);
     add_cache(app, job);
+    add_completion(app, job);
+    add_man(app, job);
 }
 
 /// A full disk shows when what is still buffered is written, which nobody looks at when the process ends.

@@ -33,6 +33,8 @@ void add_view(CLI::App& app, Job& job);
 void add_demo(CLI::App& app, Job& job);
 void add_dataset(CLI::App& app, Job& job);
 void add_cache(CLI::App& app, Job& job);
+void add_completion(CLI::App& app, Job& job);
+void add_man(CLI::App& app, Job& job);
 
 /// Makes `command` set `job` to run(options) when it is parsed; Options is a struct that `declare` ties to
 /// the command's options.

@@ -14,9 +14,11 @@
 #include "easypbr/cli/console.h"
 #include "easypbr/cli/drawable.h"
 #include "easypbr/cli/object_styles.h"
+#include "easypbr/cli/open_file.h"
 #include "easypbr/cli/render_options.h"
 #include "easypbr/cli/stage_times.h"
 #include "easypbr/cli/truth_layers.h"
+#include "easypbr/cli/user_config.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/image/image_io.h"
@@ -60,8 +62,10 @@ std::vector<Picture> pictures_of(const RenderOptions& options) {
     return pictures;
 }
 
-Look look_of(const RenderOptions& options) {
+/// Of a picture of these files: the user's defaults, a settings file, options, each before the next.
+Look look_of(const RenderOptions& options, const std::vector<std::string>& files) {
     app::Session session;
+    apply_user_config(files, session.settings());
     if (!options.settings.empty()) app::load_settings(session, options.settings);
     apply(options, session.settings());
     Look look{session.settings(), {}};
@@ -109,7 +113,8 @@ class RenderJob {
   public:
     explicit RenderJob(const RenderOptions& options)
         : options_(options),
-          look_(look_of(options)),
+          look_(look_of(options, options.files)),
+          opener_(options.open ? opening_program() : ""),
           styles_(parse_styles(options.styles, unique_names(options.files))),
           label_map_(options.label_map.empty() ? nullptr : io::find_label_map(options.label_map)) {
         add_passes(options.passes, session_);
@@ -132,6 +137,7 @@ class RenderJob {
     /// One file that cannot be drawn must not keep the others from it.
     int try_to_make(const Picture& picture) {
         try {
+            look_ = look_of(options_, picture.files);
             check_files(picture, look_.settings, options_);
             make(picture);
             return 0;
@@ -150,6 +156,7 @@ class RenderJob {
             record(picture);
             times.lap("record");
             save_settings(picture);
+            open(picture);
             if (options_.timing) fmt::print(stderr, "easypbr: timing: {}\n", times.summary());
             return;
         }
@@ -162,7 +169,12 @@ class RenderJob {
         times.restart();
         write(picture, image);
         times.lap("write");
+        open(picture);
         if (options_.timing) fmt::print(stderr, "easypbr: timing: {}\n", times.summary());
+    }
+
+    void open(const Picture& picture) const {
+        if (!opener_.empty()) open_with(opener_, picture.output);
     }
 
     void record(const Picture& picture) {
@@ -235,8 +247,9 @@ class RenderJob {
 
     void load_environment() {
         const std::string& file = look_.settings.environment.file;
-        if (!environment_is_loaded_ && !file.empty()) session_.load_environment(file);
-        environment_is_loaded_ = true;
+        if (loaded_environment_ == file) return;
+        if (!file.empty()) session_.load_environment(file);
+        loaded_environment_ = file;
     }
 
     app::Encoding encoding_of(const Picture& picture) const {
@@ -269,17 +282,19 @@ class RenderJob {
 
     const RenderOptions& options_;
     Look look_;
+    std::string opener_;  ///< program of --open
     std::vector<StyleOption> styles_;
     std::shared_ptr<const LabelMap> label_map_;
     std::optional<CameraPath> camera_path_;
     std::optional<std::pair<Animations, size_t>> animation_;
     app::Session session_;
-    bool environment_is_loaded_ = false;
+    std::string loaded_environment_;
 };
 
 int run_render(const RenderOptions& options) {
     check_usage(options);
     if (options.quiet) be_quiet();
+    if (options.open && options.output == "-") throw UsageError("render: --open needs a file: -o FILE");
     if (options.output == "-" && ::isatty(STDOUT_FILENO))
         throw UsageError("render: standard output is a terminal; redirect it or name a file");
     return RenderJob(options).run();

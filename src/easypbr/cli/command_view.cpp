@@ -7,6 +7,7 @@
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/drawable.h"
 #include "easypbr/cli/render_options.h"
+#include "easypbr/cli/user_config.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/gui/live_view.h"
@@ -82,6 +83,7 @@ void play(Viewer& view, const std::vector<std::string>& names, const std::string
 int run_view(const ViewOptions& options) {
     check_input("view", options.files);
     Viewer view{Scene()};
+    apply_user_config(options.files, view.settings());
     if (!options.settings.empty()) app::load_settings(view.session(), options.settings);
     apply(look_of_view(options), view.settings());
     add_passes(options.passes, view.session());

@@ -77,6 +77,7 @@ void declare_output(CLI::App& command, RenderOptions& options) {
         ->option_text("A,B");
     command.add_flag("--batch", options.batch,
                      "Draw one image per file; '{name}' in the output is replaced by the file's stem");
+    command.add_flag("--open", options.open, "Open the written file in the desktop's program for it");
     command.add_flag("--quiet", options.quiet, "Suppress warnings and progress");
     command.add_flag("--timing", options.timing, "Print the time of each stage to stderr");
 }
@@ -268,6 +269,32 @@ Vec2i parse_size(const std::string& text) {
     if (at == text.npos) throw UsageError(fmt::format("--size: expected WIDTHxHEIGHT, got '{}'", text));
     return {parse_side(std::string_view(text).substr(0, at), text),
             parse_side(std::string_view(text).substr(at + 1), text)};
+}
+
+std::string shorthand_option(std::string_view setting) {
+    // These are read before they become settings.
+    if (setting == "image.size") return "--size";
+    if (setting == "camera.pose") return "--camera-pose";
+    if (setting == "camera.projection" || setting == "camera.ortho_height") return "--ortho";
+    if (setting.starts_with("background.") && setting != "background.blur") return "--background";
+    if (setting.starts_with("material.") && setting.ends_with("_texture")) return "--texture";
+    if (setting == "annotation.colorbar") return "--colorbar";
+    if (setting == "annotation.legend") return "--legend";
+    if (setting == "style.flat") return "--flat";
+    for (const ShorthandOption& shorthand : shorthand_options)
+        if (setting == shorthand.setting) {
+            const std::string_view names = shorthand.names;
+            return std::string(names.substr(0, names.find(',')));
+        }
+    return {};
+}
+
+std::string setting_of_shorthand(std::string_view option) {
+    for (const ShorthandOption& shorthand : shorthand_options) {
+        const std::string_view names = shorthand.names;
+        if (names.substr(0, names.find(',')) == option) return shorthand.setting;
+    }
+    return {};
 }
 
 void declare_render_options(CLI::App& command, RenderOptions& options) {

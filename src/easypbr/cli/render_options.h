@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -17,7 +18,7 @@ struct RenderOptions {
     std::string output, format;
     bool batch = false, quiet = false, timing = false;
     bool smooth = false, flat = false;
-    bool legend = false, colorbar = false;
+    bool legend = false, colorbar = false, open = false;
     int bit_depth = 8;
     std::string size, background, ortho;
     std::string camera;  ///< name or number of a camera in the files
@@ -46,6 +47,12 @@ struct RenderOptions {
     /// Many frames instead of one picture.
     bool records() const { return turntable || !camera_path.empty(); }
 };
+
+/// The option of `render` whose value is this setting's, "--color" of material.color; empty: there is none.
+std::string shorthand_option(std::string_view setting);
+
+/// The setting that an option of `render` stands for, material.color for "--color"; empty: none.
+std::string setting_of_shorthand(std::string_view option);
 
 /// Ties the command's options to `options`, which must outlive the parsing.
 void declare_render_options(CLI::App& command, RenderOptions& options);

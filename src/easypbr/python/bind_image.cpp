@@ -53,6 +53,19 @@ nb::dict compare_images(const ArrayLike& a, const ArrayLike& b) {
     return result;
 }
 
+/// An array of its own that keeps the given one alive: numpy's older ones know DLPack before 1.0 only.
+nb::object dlpack_of(const nb::object& given) {
+    const AnyArray array = nb::cast<AnyArray>(given);
+    std::vector<size_t> shape;
+    std::vector<int64_t> strides;
+    for (size_t i = 0; i < array.ndim(); ++i) {
+        shape.push_back(array.shape(i));
+        strides.push_back(array.stride(i));
+    }
+    using Exported = nb::ndarray<nb::array_api, nb::ro, nb::device::cpu>;
+    return nb::cast(Exported(array.data(), array.ndim(), shape.data(), given, strides.data(), array.dtype()));
+}
+
 }  // namespace
 
 void bind_image(nb::module_& module) {
@@ -82,6 +95,9 @@ void bind_image(nb::module_& module) {
     module.def(
         "compare_images", compare_images, nb::arg("a"), nb::arg("b"),
         "Differences of two images of the same size and type: max, mean, rmse, psnr, different (pixels).");
+    module.def("_dlpack_of", dlpack_of, nb::arg("array"),
+               nb::sig("def _dlpack_of(array: numpy.ndarray) -> typing.Any"),
+               "The array as an object with DLPack 1.0, whose flag says that it is read-only.");
     module.def(
         "check_picture_path",
         [](const fs::path& path) {

@@ -133,8 +133,17 @@ void assign(Mesh& mesh, const nb::kwargs& values) {
     });
 }
 
-void construct_from_arrays(Mesh* self, const ArrayLike& V, const ArrayLike& F) {
-    const auto set_V = prepare_V(V), set_F = prepare_F(F);
+/// The points of a cloud that have a finite position; those of a mesh are counted by its faces.
+nb::object finite_points(const ArrayLike& V, const ArrayLike& F, bool strict) {
+    if (V.is_none() || !(F.is_none() || nb::len(F) == 0)) return nb::borrow(V);
+    const nb::object array = numeric_object(V, "mesh array V");
+    const nb::object kept =
+        nb::module_::import_("easypbr.conversions.maker").attr("finite_rows")(array, strict);
+    return kept.is_none() ? array : nb::object(array[kept]);
+}
+
+void construct_from_arrays(Mesh* self, const ArrayLike& V, const ArrayLike& F, bool strict) {
+    const auto set_V = prepare_V(finite_points(V, F, strict)), set_F = prepare_F(F);
     released([&] {
         MeshData data;
         set_V(data);
@@ -248,7 +257,10 @@ void bind_mesh(nb::module_& module) {
             "what "
             "assimp reads, in a process of its own.")
         .def("__init__", construct_from_arrays, nb::arg("V"), nb::arg("F").none() = nb::none(),
-             "n x 3 positions and m x 3 vertex indices, of any numeric type; a cloud without faces.");
+             nb::arg("strict") = false,
+             "n x 3 positions and m x 3 vertex indices, of any numeric type; a cloud without faces, whose "
+             "points "
+             "without a finite position are left out with a warning, or raise ArgumentError if strict.");
     bind_arrays(mesh);
     bind_mesh_fields(mesh);
     bind_look(mesh);

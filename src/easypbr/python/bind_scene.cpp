@@ -50,13 +50,14 @@ void bind_scene(nb::module_& module) {
                 "Animations of the mesh and its children (glTF).");
     module.def(
         "load_scene",
-        [](const std::filesystem::path& path, double memory_gb) {
-            return released([&] { return io::load_scene(path, {.memory_gb = memory_gb}); });
+        [](const std::filesystem::path& path, double memory_gb, bool strict) {
+            return released([&] { return io::load_scene(path, {.memory_gb = memory_gb, .strict = strict}); });
         },
-        nb::arg("path"), nb::arg("memory_gb") = 0.0,
+        nb::arg("path"), nb::arg("memory_gb") = 0.0, nb::arg("strict") = false,
         "Reads a file with its cameras, lights and animations; Mesh(path) reads the mesh alone. Its arrays "
         "and images "
-        "may take at most memory_gb; 0: three quarters of what is available.");
+        "may take at most memory_gb; 0: three quarters of what is available. With strict, points of a cloud "
+        "without a finite position raise FormatError; else they are left out with a warning.");
     module.def(
         "default_scene", [] { return default_scene(); }, "The default scene.");
     module.def("demo_scene", [] { return released([] { return make_demo_scene(); }); });

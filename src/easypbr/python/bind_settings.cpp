@@ -7,6 +7,7 @@
 #include "easypbr/python/convert.h"
 #include "easypbr/python/settings_value.h"
 #include "easypbr/python/text.h"
+#include "easypbr/scene/synonyms.h"
 
 namespace easypbr::python {
 namespace {
@@ -125,6 +126,29 @@ void bind_settings(nb::module_& module) {
         .def_ro("whole", &Field::whole)
         .def_prop_ro("default",
                      [](const Field& field) { return value_to_python(field, field.get(Settings())); });
+    nb::class_<Synonym>(module, "Synonym", "What other programs call a setting.")
+        .def_prop_ro("word", [](const Synonym& s) { return std::string(s.word); })
+        .def_prop_ro(
+            "setting", [](const Synonym& s) { return std::string(s.setting); },
+            "What it is called here; empty: it is no setting.")
+        .def_prop_ro(
+            "advice", [](const Synonym& s) { return std::string(s.advice); },
+            "What to do instead in Python, where it is no setting.");
+    module.def(
+        "synonyms",
+        [] {
+            const auto all = synonyms();
+            return std::vector<Synonym>(all.begin(), all.end());
+        },
+        "All words of other programs that are known.");
+    module.def(
+        "synonym",
+        [](const std::string& word) {
+            const Synonym* found = synonym(word);
+            return found ? nb::cast(*found) : nb::none();
+        },
+        nb::arg("word"), nb::sig("def synonym(word: str) -> Synonym | None"),
+        "What a word of another program means here; None: nothing.");
     module.def(
         "fields", [] { return fields(); }, "All settings in the order of the reference.");
     module.def(

@@ -224,6 +224,10 @@ Vec3 to_linear_color(nb::handle object, const char* what) {
     return color.cast<float>();
 }
 
+nb::object shareable(const nb::object& array) {
+    return array.attr("view")(nb::module_::import_("easypbr.tensors").attr("SharedArray"));
+}
+
 nb::object matrix_to_numpy(const Eigen::MatrixXd& matrix) {
     auto* rows = new Matrix<double>(matrix);
     nb::capsule owner(rows, [](void* p) noexcept { delete static_cast<Matrix<double>*>(p); });

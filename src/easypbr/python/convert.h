@@ -79,6 +79,9 @@ typename Array<Scalar, Cols>::Dense to_array(nb::handle object, const ArrayShape
 /// float32 would lose what matters (scene/offset.h); the offset is what was subtracted. Throws as to_array().
 LocalPositions to_positions(nb::handle object, const ArrayShape& shape);
 
+/// The read-only numpy array as one that other libraries take by DLPack too (easypbr.tensors.SharedArray).
+nb::object shareable(const nb::object& array);
+
 /// A read-only numpy view that keeps the data alive; one column gives one dimension.
 template <class Scalar, int Cols>
 nb::object view_of(const Array<Scalar, Cols>& array) {
@@ -86,8 +89,8 @@ nb::object view_of(const Array<Scalar, Cols>& array) {
     auto* owner = new std::shared_ptr<const void>(array.owner());
     nb::capsule capsule(owner, [](void* p) noexcept { delete static_cast<std::shared_ptr<const void>*>(p); });
     const size_t shape[2] = {size_t(array.rows()), size_t(array.cols())};
-    return nb::cast(nb::ndarray<nb::numpy, const Scalar>(array.empty() ? &nothing : array.data(),
-                                                         Cols == 1 ? 1 : 2, shape, capsule));
+    return shareable(nb::cast(nb::ndarray<nb::numpy, const Scalar>(array.empty() ? &nothing : array.data(),
+                                                                   Cols == 1 ? 1 : 2, shape, capsule)));
 }
 
 /// A numpy array that owns the numbers moved into it: rows x cols, or one dimension of a vector.

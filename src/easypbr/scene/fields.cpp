@@ -12,6 +12,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/scene/settings.h"
+#include "easypbr/scene/synonyms.h"
 
 namespace easypbr {
 namespace {
@@ -31,6 +32,8 @@ std::string names_ending_in(std::string_view last) {
 /// Names that begin with what was written, then names that are nearly it, then names whose last part nearly
 /// is.
 std::string hint_for(std::string_view wrong) {
+    if (const Synonym* meant = synonym(last_part(wrong)); meant && !meant->setting.empty())
+        return fmt::format(" (it is called '{}')", meant->setting);
     std::vector<std::string> names, last_parts;
     for (const Field& field : fields()) {
         if (wrong.size() >= 4 && field.name.starts_with(wrong) && wrong.find('.') != wrong.npos)

@@ -257,6 +257,8 @@ void Viewer::pause() {
 }
 
 Image Viewer::render(const app::PictureOptions& options) {
+    // Without a window and a recording, which have frames of their own, each image is a frame.
+    if (!is_open() && !recorder.is_recording()) parts_->clock.tick();
     return parts_->session.render(options);
 }
 

@@ -31,6 +31,7 @@ struct LoadOptions {
     double memory_gb = 0;  ///< most that the arrays and images of the file may take; 0: three quarters of
                            ///< what the machine has left
     std::string format = {};  ///< extension of the format that a file is in; empty: its own extension
+    bool strict = false;      ///< points without a finite position are an error: FormatError
 };
 
 /// Reads PLY, OBJ (+ MTL), STL, OFF, glTF, GLB, the point clouds PCD, XYZ, PTS, CSV (also txt, asc), NPY,

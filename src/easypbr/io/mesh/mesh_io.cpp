@@ -79,6 +79,12 @@ LoadedScene decode(const FileBytes& bytes, const fs::path& path, const std::stri
     if (is_gltf(format)) return decode_gltf(bytes.bytes(), path);
     MeshData data = readers().at(format)(Source(bytes, path), options);
     bytes.check();
+    // Of a cloud these are the points that were kept.
+    const bool lost = data.F.empty() && data.E.empty() && !data.source_vertex.empty();
+    if (options.strict && lost)
+        throw FormatError(
+            fmt::format("{}: there are points without a finite position; without strict they are left out",
+                        path.string()));
     data.name = path.stem().string();
     data.source = path;
     return {Mesh(std::move(data)), {}, {}};

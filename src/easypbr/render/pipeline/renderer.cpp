@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/step_progress.h"
 #include "easypbr/gl/pace.h"
 #include "easypbr/render/pipeline/kept_surfaces.h"
 #include "easypbr/scene/resolve.h"
@@ -71,7 +72,11 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
                     const SettingsImages& images) {
     begin(scene, resolved, options, images);
     gl::Pace pace;
-    while (add_sample() < options.samples) pace.step();
+    StepProgress progress("picture", "sample", options.samples);
+    for (int samples = add_sample(); samples < options.samples; samples = add_sample()) {
+        pace.step();
+        progress.done(samples);
+    }
     finish();
 }
 

@@ -197,9 +197,17 @@ class PlyReader {
         mesh_.source_face = {};
     }
 
+    /// VCGLib writes "<this>" for the file's own name without its extension.
+    std::string without_placeholder(std::string name) const {
+        const std::string_view placeholder = "<this>";
+        if (name.starts_with(placeholder)) name.replace(0, placeholder.size(), source_.path.stem().string());
+        return name;
+    }
+
     void add_materials() {
         TextureLoader loader(source_.path);
-        for (const std::string& name : header_.textures) {
+        for (const std::string& written : header_.textures) {
+            const std::string name = without_placeholder(written);
             Material material;
             material.name = fs::path(name).stem().string();
             material.base_color_texture = loader.load(name);

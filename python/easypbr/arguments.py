@@ -1,0 +1,21 @@
+"""Arguments that several functions take, checked with a message of ours instead of the binding's."""
+
+import operator
+from typing import Any
+
+from . import _easypbr
+from .errors import ArgumentError
+
+
+def samples_of(samples: Any) -> int | None:
+    """A number of samples; None: that of the settings."""
+    if samples is None:
+        return None
+    field = _easypbr.field("image.samples")
+    try:
+        number = operator.index(samples)
+    except TypeError:
+        number = 0
+    if isinstance(samples, bool) or not field.min <= number <= field.max:
+        raise ArgumentError(f"samples: expected a whole number from {field.min:g} to {field.max:g}, got {samples!r}")
+    return number

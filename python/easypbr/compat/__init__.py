@@ -1,0 +1,1 @@
+"""Other libraries' interfaces, drawn by EasyPBR: pyrender's, in easypbr.compat.pyrender."""

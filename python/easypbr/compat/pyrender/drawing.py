@@ -1,0 +1,161 @@
+"""A pyrender scene as EasyPBR's: kept from image to image, so that only what changed is made again."""
+
+from collections.abc import Container
+from typing import Any
+
+import numpy as np
+
+from ... import _easypbr
+from ...errors import ArgumentError
+from ...scene import Scene as OwnScene
+from ...viewer import Viewer as OwnViewer
+from .cameras import Camera, OrthographicCamera
+from .constants import RenderFlags
+from .lights import DirectionalLight, PointLight, SpotLight
+from .mesh import Mesh, Primitive
+from .node import Node
+from .scene import Scene
+
+_STUDIO = ("key", "fill", "rim")
+_SHADOWS = ((DirectionalLight, RenderFlags.SHADOWS_DIRECTIONAL), (PointLight, RenderFlags.SHADOWS_POINT), (SpotLight, RenderFlags.SHADOWS_SPOT))
+#: pyrender draws with four samples per pixel, too.
+_SAMPLES = 4
+
+
+def _state(primitive: Primitive) -> tuple[list[Any], tuple]:
+    """What a primitive was made from: objects that are compared by identity, and values."""
+    p, material = primitive, primitive.material
+    objects = [p.positions, p.normals, p.indices, p.color_0, p.texcoord_0, p.poses, material, *material.textures()]
+    color, metallic, roughness = material._color_and_numbers()
+    values = (tuple(color), metallic, roughness, tuple(material.emissiveFactor), material.alphaMode, material.doubleSided,
+              material.smooth, p.mode)  # fmt: skip
+    return objects, values
+
+
+def _is_same(a: tuple[list[Any], tuple], b: tuple[list[Any], tuple]) -> bool:
+    return a[1] == b[1] and len(a[0]) == len(b[0]) and all(x is y for x, y in zip(a[0], b[0]))
+
+
+class Drawing:
+    """Draws a pyrender scene with a viewer of its own."""
+
+    def __init__(self) -> None:
+        self.view = OwnViewer(scene=OwnScene())
+        #: Names of objects: the nodes that they show.
+        self.shown: dict[str, Node] = {}
+        self._primitives: dict[Primitive, tuple[tuple[list[Any], tuple], _easypbr.Mesh]] = {}
+        self._nodes: dict[Node, tuple[str, list[_easypbr.Mesh], _easypbr.Mesh]] = {}
+        self._ambient: tuple[float, ...] | None = None
+        self._count = 0
+        self.view.settings.update({
+            "ground.mode": "none", "image.samples": _SAMPLES, "annotation.legend": False, "annotation.colorbar": False,
+        })  # fmt: skip
+
+    def update(self, scene: Scene, flags: int, only: "Container[Node] | None" = None, point_size: float = 1.0) -> None:
+        """Takes over nodes, lights and the background. `only`: nodes that are drawn, None: all."""
+        used: set[Node] = set()
+        prototypes: set[Primitive] = set()
+        self.shown = {}
+        lights = []
+        for node, _, pose in scene.walk():
+            if node.light is not None:
+                lights.append((node.light, pose))
+            mesh = node.mesh
+            if mesh is None or not mesh.is_visible or not mesh.primitives or (only is not None and node not in only):
+                continue
+            used.add(node)
+            prototypes.update(mesh.primitives)
+            self._show(node, mesh, pose, flags, point_size)
+        for node in [known for known in self._nodes if known not in used]:
+            self.view.scene.remove(self._nodes.pop(node)[0])
+        for primitive in [known for known in self._primitives if known not in prototypes]:
+            del self._primitives[primitive]
+        self._light(scene, lights, flags)
+
+    def _show(self, node: Node, mesh: Mesh, pose: np.ndarray, flags: int, point_size: float) -> None:
+        made = [self._made(primitive) for primitive in mesh.primitives]
+        name, parts, root = self._nodes.get(node, ("", [], None))
+        if root is None or len(parts) != len(made) or any(a is not b for a, b in zip(parts, made)):
+            if root is None:
+                self._count += 1
+                name = f"node {self._count}"
+            children = [prototype.clone() for prototype in made]
+            root = children[0] if len(children) == 1 and mesh.primitives[0].poses is None else _easypbr.Mesh()
+            for child in children if root is not children[0] else ():
+                root.add_child(child)
+            self.view.scene.show(root, name)
+            self._nodes[node] = name, made, root
+        root.T_parent_mesh = pose
+        for part in _all_parts(root):
+            self._style(part, flags, point_size)
+        self.shown[name] = node
+
+    def _made(self, primitive: Primitive) -> "_easypbr.Mesh":
+        state = _state(primitive)
+        known = self._primitives.get(primitive)
+        if known is None or not _is_same(known[0], state):
+            known = self._primitives[primitive] = state, primitive.made()
+        return known[1]
+
+    def _style(self, part: "_easypbr.Mesh", flags: int, point_size: float) -> None:
+        style = part.style
+        is_cloud = len(part.F) == 0 and len(part.E) == 0
+        values: dict[str, Any] = {
+            "two_sided": bool(flags & RenderFlags.SKIP_CULL_FACES) or part.material.double_sided,
+            "show_wireframe": bool(flags & RenderFlags.ALL_WIREFRAME),
+            "lit": not flags & RenderFlags.FLAT,
+        }
+        if is_cloud:
+            values["point_size"] = max(float(point_size), 1.0)
+        for name, value in values.items():
+            if getattr(style, name) != value:
+                setattr(style, name, value)
+
+    def _light(self, scene: Scene, lights: list, flags: int) -> None:
+        own, settings = self.view.scene, self.view.settings
+        for name in own.light_names():
+            own.remove_light(name)
+        for number, (light, pose) in enumerate(lights):
+            casts = any(isinstance(light, kind) and flags & flag for kind, flag in _SHADOWS)
+            own.set_light(f"light {number}", light.made(pose, bool(casts)))
+        ambient = tuple(float(part) for part in scene.ambient_light)
+        is_given = bool(lights) or any(ambient)
+        if self._ambient != (ambient if is_given else None):
+            self._ambient = ambient if is_given else None
+            own.environment = np.full((8, 16, 3), ambient, np.float32) if any(ambient) else _easypbr.Environment()
+        # pyrender's numbers are what is seen; a scene without any light, which it draws black, is lit automatically.
+        chosen: dict[str, Any] = {"tonemap.operator": "none", "tonemap.exposure": 1.0, "environment.intensity": 1.0}
+        automatic: dict[str, Any] = {name: _easypbr.field(name).default for name in chosen}
+        values = chosen if is_given else automatic
+        values["environment.enabled"] = any(ambient) or not is_given
+        values.update({f"lights.{name}.enabled": _easypbr.auto if not is_given else False for name in _STUDIO})
+        for name, value in values.items():
+            settings[name] = value
+
+    def set_camera(self, camera: Camera, pose: np.ndarray, width: int, height: int) -> None:
+        """Draws from a camera with this pose."""
+        intrinsics = camera.intrinsics(width, height)
+        if intrinsics is None:
+            if not isinstance(camera, OrthographicCamera):
+                raise ArgumentError(f"a {type(camera).__name__}: expected a camera with intrinsics")
+            own = _easypbr.Camera.from_opengl(pose)
+            own.projection, own.ortho_height = "orthographic", 2 * camera.ymag
+        else:
+            fx, fy, cx, cy = intrinsics
+            K = np.array([[fx, 0, cx], [0, fy, cy], [0, 0, 1]])
+            own = _easypbr.Camera.from_opencv(K, pose, (width, height), axes="opengl")
+        own.near = camera.znear
+        self.view.camera = own
+        self.view.settings["camera.near"] = camera.znear
+
+    def close(self) -> None:
+        """Forgets everything, the context too."""
+        self.shown, self._primitives, self._nodes = {}, {}, {}
+        self.view = OwnViewer(scene=OwnScene())
+
+
+def _all_parts(mesh: "_easypbr.Mesh") -> "list[_easypbr.Mesh]":
+    parts = [mesh]
+    for child in mesh.children:
+        parts += _all_parts(child)
+    return [part for part in parts if len(part.V)]

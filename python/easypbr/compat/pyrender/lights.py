@@ -1,0 +1,85 @@
+"""Lights: they shine along -z of their node."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ... import _easypbr
+
+
+class Light:
+    """What all lights have: a linear colour, and an intensity in lux (directional) or candela."""
+
+    _type = "point"
+
+    def __init__(self, color: ArrayLike | None = None, intensity: float | None = None, name: str | None = None) -> None:
+        self.name = name
+        self.color = color
+        self.intensity = 1.0 if intensity is None else float(intensity)
+
+    @property
+    def color(self) -> np.ndarray:
+        return self._color
+
+    @color.setter
+    def color(self, color: ArrayLike | None) -> None:
+        values = np.ones(3) if color is None else np.asarray(color, dtype=np.float64)
+        self._color = np.full(3, values) if values.ndim == 0 else values[:3]
+
+    def made(self, pose: np.ndarray, casts_shadows: bool) -> "_easypbr.Light":
+        """The light of a node with this pose."""
+        values: dict[str, Any] = {"color": self.color, "intensity": self.intensity, "casts_shadows": casts_shadows}
+        return _easypbr.Light(self._type, **values, **self._placed(pose))
+
+    def _placed(self, pose: np.ndarray) -> dict[str, Any]:
+        return {"position": pose[:3, 3]}
+
+
+class DirectionalLight(Light):
+    """A light from far away."""
+
+    _type = "directional"
+
+    def _placed(self, pose: np.ndarray) -> dict[str, Any]:
+        return {"direction": -pose[:3, 2]}
+
+
+class PointLight(Light):
+    """A light at a point; `range`: distance in metres at which nothing is left of it, None: none."""
+
+    def __init__(
+        self,
+        color: ArrayLike | None = None,
+        intensity: float | None = None,
+        range: float | None = None,
+        name: str | None = None,
+    ) -> None:
+        super().__init__(color, intensity, name)
+        self.range = range
+
+    def _placed(self, pose: np.ndarray) -> dict[str, Any]:
+        return {"position": pose[:3, 3], "range": self.range or 0}
+
+
+class SpotLight(Light):
+    """A light at a point with a cone; its half angles are in radians."""
+
+    _type = "spot"
+
+    def __init__(
+        self,
+        color: ArrayLike | None = None,
+        intensity: float | None = None,
+        range: float | None = None,
+        innerConeAngle: float = 0.0,
+        outerConeAngle: float = np.pi / 4,
+        name: str | None = None,
+    ) -> None:
+        super().__init__(color, intensity, name)
+        self.range = range
+        self.innerConeAngle, self.outerConeAngle = float(innerConeAngle), float(outerConeAngle)
+
+    def _placed(self, pose: np.ndarray) -> dict[str, Any]:
+        cone = {"inner_cone_deg": np.degrees(self.innerConeAngle), "outer_cone_deg": np.degrees(self.outerConeAngle)}
+        return {"position": pose[:3, 3], "direction": -pose[:3, 2], "range": self.range or 0, **cone}

@@ -1,0 +1,201 @@
+"""Materials and textures, as glTF has them."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ... import _easypbr
+
+
+class Sampler:
+    """How a texture is sampled; EasyPBR filters and repeats all of them."""
+
+    def __init__(
+        self,
+        name: str | None = None,
+        magFilter: int | None = None,
+        minFilter: int | None = None,
+        wrapS: int = 10497,
+        wrapT: int = 10497,
+    ) -> None:
+        self.name, self.magFilter, self.minFilter, self.wrapS, self.wrapT = name, magFilter, minFilter, wrapS, wrapT
+
+
+class Texture:
+    """An image: an array, or an image of Pillow. `source_channels` says which channels it has: "R", "RG", "RGB", "RGBA"."""
+
+    def __init__(
+        self,
+        name: str | None = None,
+        sampler: Sampler | None = None,
+        source: Any = None,
+        source_channels: str | None = None,
+        width: int | None = None,
+        height: int | None = None,
+        **_: Any,
+    ) -> None:
+        self.name, self.sampler, self.source_channels = name, sampler, source_channels
+        self.width, self.height = width, height
+        self.source = source
+
+    @property
+    def pixels(self) -> np.ndarray | None:
+        """Height x width x channels, uint8; None: there is no image."""
+        if self.source is None:
+            return None
+        array = np.asarray(self.source)
+        if array.dtype.kind == "f":
+            array = np.clip(array * 255 + 0.5, 0, 255)
+        return array.astype(np.uint8)
+
+
+def texture_of(given: Any, channels: str) -> Texture | None:
+    """A Texture of a Texture, an array or an image."""
+    if given is None or isinstance(given, Texture):
+        return given
+    return Texture(source=given, source_channels=channels)
+
+
+def _color(given: Any, length: int, default: Any) -> np.ndarray:
+    values = np.asarray(default if given is None else given, dtype=np.float64)
+    values = np.full(length, values) if values.ndim == 0 else values
+    return np.append(values, 1.0) if length == 4 and len(values) == 3 else values[:length]
+
+
+class Material:
+    """What all materials have."""
+
+    def __init__(
+        self,
+        name: str | None = None,
+        normalTexture: Any = None,
+        occlusionTexture: Any = None,
+        emissiveTexture: Any = None,
+        emissiveFactor: ArrayLike | None = None,
+        alphaMode: str | None = None,
+        alphaCutoff: float | None = None,
+        doubleSided: bool = False,
+        smooth: bool = True,
+        wireframe: bool = False,
+    ) -> None:
+        self.name = name
+        self.normalTexture = texture_of(normalTexture, "RGB")
+        self.occlusionTexture = texture_of(occlusionTexture, "R")
+        self.emissiveTexture = texture_of(emissiveTexture, "RGB")
+        self.emissiveFactor = _color(emissiveFactor, 3, (0, 0, 0))
+        self.alphaMode = "OPAQUE" if alphaMode is None else alphaMode
+        self.alphaCutoff = 0.5 if alphaCutoff is None else float(alphaCutoff)
+        self.doubleSided, self.smooth, self.wireframe = doubleSided, smooth, wireframe
+
+    def _color_and_numbers(self) -> tuple[np.ndarray, float, float]:
+        """Linear base colour with alpha, metallic, roughness."""
+        return np.ones(4), 0.0, 1.0
+
+    def put(self, material: "_easypbr.Material") -> None:
+        """Sets EasyPBR's material to this one."""
+        color, metallic, roughness = self._color_and_numbers()
+        material.base_color = color[:3]
+        material.metallic, material.roughness = metallic, roughness
+        material.emissive = self.emissiveFactor
+        # pyrender sorts nothing that is opaque in fact.
+        is_clear = color[3] < 1 and self.alphaMode != "OPAQUE"
+        material.opacity = float(color[3]) if is_clear else 1.0
+        material.alpha_mode = {"OPAQUE": "opaque", "MASK": "mask"}.get(self.alphaMode, "auto")
+        material.double_sided = self.doubleSided
+
+    def put_textures(self, material: "_easypbr.Material") -> None:
+        """Sets the images, which takes longer."""
+        for name, texture in (("normal", self.normalTexture), ("occlusion", self.occlusionTexture), ("emissive", self.emissiveTexture)):
+            if texture is not None and texture.pixels is not None:
+                setattr(material, f"{name}_texture", texture.pixels)
+
+    def textures(self) -> tuple[Any, ...]:
+        """What decides whether the images are still the same."""
+        return self.normalTexture, self.occlusionTexture, self.emissiveTexture
+
+
+class MetallicRoughnessMaterial(Material):
+    """glTF's metallic-roughness material; `baseColorFactor` is linear."""
+
+    def __init__(
+        self,
+        name: str | None = None,
+        normalTexture: Any = None,
+        occlusionTexture: Any = None,
+        emissiveTexture: Any = None,
+        emissiveFactor: ArrayLike | None = None,
+        alphaMode: str | None = None,
+        alphaCutoff: float | None = None,
+        doubleSided: bool = False,
+        smooth: bool = True,
+        wireframe: bool = False,
+        baseColorFactor: ArrayLike | None = None,
+        baseColorTexture: Any = None,
+        metallicFactor: float = 1.0,
+        roughnessFactor: float = 1.0,
+        metallicRoughnessTexture: Any = None,
+    ) -> None:
+        super().__init__(name, normalTexture, occlusionTexture, emissiveTexture, emissiveFactor, alphaMode, alphaCutoff,
+                         doubleSided, smooth, wireframe)  # fmt: skip
+        self.baseColorFactor = _color(baseColorFactor, 4, (1, 1, 1, 1))
+        self.baseColorTexture = texture_of(baseColorTexture, "RGB")
+        self.metallicFactor = 1.0 if metallicFactor is None else float(metallicFactor)
+        self.roughnessFactor = 1.0 if roughnessFactor is None else float(roughnessFactor)
+        self.metallicRoughnessTexture = texture_of(metallicRoughnessTexture, "GB")
+
+    def _color_and_numbers(self) -> tuple[np.ndarray, float, float]:
+        color = _color(self.baseColorFactor, 4, (1, 1, 1, 1))
+        return color, float(np.clip(self.metallicFactor, 0, 1)), float(np.clip(self.roughnessFactor, 0, 1))
+
+    def textures(self) -> tuple[Any, ...]:
+        return (*super().textures(), self.baseColorTexture, self.metallicRoughnessTexture)
+
+    def put_textures(self, material: "_easypbr.Material") -> None:
+        super().put_textures(material)
+        if self.baseColorTexture is not None and self.baseColorTexture.pixels is not None:
+            material.base_color_texture = self.baseColorTexture.pixels
+        both = None if self.metallicRoughnessTexture is None else self.metallicRoughnessTexture.pixels
+        if both is not None and both.ndim == 3 and both.shape[2] >= 3:  # glTF: roughness in green, metallic in blue.
+            material.roughness_texture, material.metallic_texture = both[:, :, 1].copy(), both[:, :, 2].copy()
+
+
+class SpecularGlossinessMaterial(Material):
+    """The older material of glTF: its diffuse colour, and roughness 1 - glossiness."""
+
+    def __init__(
+        self,
+        name: str | None = None,
+        normalTexture: Any = None,
+        occlusionTexture: Any = None,
+        emissiveTexture: Any = None,
+        emissiveFactor: ArrayLike | None = None,
+        alphaMode: str | None = None,
+        alphaCutoff: float | None = None,
+        doubleSided: bool = False,
+        smooth: bool = True,
+        wireframe: bool = False,
+        diffuseFactor: ArrayLike | None = None,
+        diffuseTexture: Any = None,
+        specularFactor: ArrayLike | None = None,
+        glossinessFactor: float = 1.0,
+        specularGlossinessTexture: Any = None,
+    ) -> None:
+        super().__init__(name, normalTexture, occlusionTexture, emissiveTexture, emissiveFactor, alphaMode, alphaCutoff,
+                         doubleSided, smooth, wireframe)  # fmt: skip
+        self.diffuseFactor = _color(diffuseFactor, 4, (1, 1, 1, 1))
+        self.diffuseTexture = texture_of(diffuseTexture, "RGBA")
+        self.specularFactor = _color(specularFactor, 3, (1, 1, 1))
+        self.glossinessFactor = float(glossinessFactor)
+        self.specularGlossinessTexture = texture_of(specularGlossinessTexture, "RGBA")
+
+    def _color_and_numbers(self) -> tuple[np.ndarray, float, float]:
+        return _color(self.diffuseFactor, 4, (1, 1, 1, 1)), 0.0, float(np.clip(1 - self.glossinessFactor, 0, 1))
+
+    def textures(self) -> tuple[Any, ...]:
+        return (*super().textures(), self.diffuseTexture)
+
+    def put_textures(self, material: "_easypbr.Material") -> None:
+        super().put_textures(material)
+        if self.diffuseTexture is not None and self.diffuseTexture.pixels is not None:
+            material.base_color_texture = self.diffuseTexture.pixels

@@ -1,0 +1,222 @@
+"""Meshes: primitives of arrays, each with a material."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ... import _easypbr
+from ...conversions.maker import colors
+from ...errors import ArgumentError
+from .constants import GLTF
+from .materials import Material, MetallicRoughnessMaterial
+
+
+def _floats(array: ArrayLike | None) -> np.ndarray | None:
+    return None if array is None else np.ascontiguousarray(array, dtype=np.float32)
+
+
+class Primitive:
+    """Arrays that are drawn at once. `indices` are m x 3 of triangles, or flat; `mode` is glTF's; `poses` (k x 4 x 4) draws
+    it k times."""
+
+    def __init__(
+        self,
+        positions: ArrayLike,
+        normals: ArrayLike | None = None,
+        tangents: ArrayLike | None = None,
+        texcoord_0: ArrayLike | None = None,
+        texcoord_1: ArrayLike | None = None,
+        color_0: ArrayLike | None = None,
+        joints_0: ArrayLike | None = None,
+        weights_0: ArrayLike | None = None,
+        indices: ArrayLike | None = None,
+        material: Material | None = None,
+        mode: int | None = None,
+        targets: Any = None,
+        poses: ArrayLike | None = None,
+    ) -> None:
+        self.positions = np.asarray(positions, dtype=np.float64)
+        self.normals, self.tangents = _floats(normals), _floats(tangents)
+        self.texcoord_0, self.texcoord_1 = _floats(texcoord_0), _floats(texcoord_1)
+        self.color_0 = None if color_0 is None else colors(color_0, len(self.positions))
+        self.joints_0, self.weights_0, self.targets = joints_0, weights_0, targets
+        self.indices = None if indices is None else np.asarray(indices)
+        self.material = MetallicRoughnessMaterial() if material is None else material
+        self.mode = GLTF.TRIANGLES if mode is None else int(mode)
+        self.poses = None if poses is None else np.asarray(poses, dtype=np.float64).reshape(-1, 4, 4)
+
+    @property
+    def bounds(self) -> np.ndarray:
+        """Lower and upper corner, 2 x 3."""
+        if len(self.positions) == 0:
+            return np.zeros((2, 3))
+        corners = np.array([self.positions.min(axis=0), self.positions.max(axis=0)])
+        if self.poses is None:
+            return corners
+        places = self.poses[:, :3, 3]
+        return np.array([(corners[0] + places).min(axis=0), (corners[1] + places).max(axis=0)])
+
+    @property
+    def is_transparent(self) -> bool:
+        return self.material.alphaMode != "OPAQUE"
+
+    def _order(self) -> np.ndarray:
+        return np.arange(len(self.positions)) if self.indices is None else self.indices.ravel()
+
+    def elements(self) -> tuple[str, np.ndarray | None]:
+        """ "F", "E" or "V", and the indices of triangles or lines."""
+        order = self._order()
+        if self.mode == GLTF.TRIANGLES:
+            return "F", order.reshape(-1, 3)
+        if self.mode == GLTF.TRIANGLE_STRIP:
+            F = np.stack([order[:-2], order[1:-1], order[2:]], axis=1)
+            F[1::2, :2] = F[1::2, 1::-1]
+            return "F", F
+        if self.mode == GLTF.TRIANGLE_FAN:
+            return "F", np.stack([np.full(len(order) - 2, order[0]), order[1:-1], order[2:]], axis=1)
+        if self.mode == GLTF.LINES:
+            return "E", order.reshape(-1, 2)
+        if self.mode in (GLTF.LINE_STRIP, GLTF.LINE_LOOP):
+            E = np.stack([order[:-1], order[1:]], axis=1)
+            return "E", np.vstack([E, [order[-1], order[0]]]) if self.mode == GLTF.LINE_LOOP else E
+        if self.mode == GLTF.POINTS:
+            return "V", None
+        raise ArgumentError(f"a Primitive: expected a mode from 0 (points) to 6 (triangle fan), got {self.mode}")
+
+    def made(self) -> "_easypbr.Mesh":
+        """The mesh that is drawn: of its own without poses, else with a child for each."""
+        kind, elements = self.elements()
+        arrays: dict[str, Any] = {"V": self.positions, "C": self.color_0, "UV": self.texcoord_0}
+        if self.normals is not None and len(self.normals) == len(self.positions):
+            arrays["N"] = self.normals
+        if elements is not None:
+            arrays[kind] = elements
+        mesh = _easypbr.Mesh()
+        mesh.assign(**{name: array for name, array in arrays.items() if array is not None})
+        self.material.put(mesh.material)
+        self.material.put_textures(mesh.material)
+        mesh.style.flat = kind == "F" and not self.material.smooth
+        if kind == "V":
+            mesh.style.mode = "points"
+        if self.poses is None:
+            return mesh
+        root = _easypbr.Mesh()
+        for pose in self.poses:
+            child = mesh.clone()
+            child.T_parent_mesh = pose
+            root.add_child(child)
+        return root
+
+
+class Mesh:
+    """Primitives under one name."""
+
+    def __init__(
+        self, primitives: Sequence[Primitive], name: str | None = None, weights: ArrayLike | None = None, is_visible: bool = True
+    ) -> None:
+        self.primitives = list(primitives)
+        self.name, self.weights, self.is_visible = name, weights, is_visible
+
+    @property
+    def bounds(self) -> np.ndarray:
+        """Lower and upper corner, 2 x 3."""
+        if not self.primitives:
+            return np.zeros((2, 3))
+        corners = np.array([primitive.bounds for primitive in self.primitives])
+        return np.array([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])
+
+    @property
+    def centroid(self) -> np.ndarray:
+        """Middle of the bounds."""
+        return self.bounds.mean(axis=0)
+
+    @property
+    def extents(self) -> np.ndarray:
+        """Sides of the bounds."""
+        return np.diff(self.bounds, axis=0).reshape(-1)
+
+    @property
+    def scale(self) -> float:
+        """Diagonal of the bounds."""
+        return float(np.linalg.norm(self.extents))
+
+    @property
+    def is_transparent(self) -> bool:
+        return any(primitive.is_transparent for primitive in self.primitives)
+
+    @staticmethod
+    def from_points(
+        points: ArrayLike,
+        colors: ArrayLike | None = None,
+        normals: ArrayLike | None = None,
+        is_visible: bool = True,
+        poses: ArrayLike | None = None,
+    ) -> "Mesh":
+        """A cloud of n x 3 points."""
+        return Mesh([Primitive(points, normals=normals, color_0=colors, mode=GLTF.POINTS, poses=poses)], is_visible=is_visible)
+
+    @staticmethod
+    def from_trimesh(
+        mesh: Any,
+        material: Material | None = None,
+        is_visible: bool = True,
+        poses: ArrayLike | None = None,
+        wireframe: bool = False,
+        smooth: bool = True,
+    ) -> "Mesh":
+        """A mesh of a trimesh.Trimesh, or of a list of them. Without `material` it has that of the trimesh."""
+        parts = list(mesh) if isinstance(mesh, (list, tuple, set, np.ndarray)) else [mesh]
+        primitives = []
+        for part in parts:
+            if not all(hasattr(part, name) for name in ("vertices", "faces", "visual")):
+                raise ArgumentError(f"from_trimesh: expected a trimesh.Trimesh or a list of them, got a {type(part).__name__}")
+            primitives.append(_primitive_of(part, material, poses, wireframe, smooth))
+        return Mesh(primitives, is_visible=is_visible)
+
+
+def _primitive_of(mesh: Any, material: Material | None, poses: Any, wireframe: bool, smooth: bool) -> Primitive:
+    V, F = np.asarray(mesh.vertices, dtype=np.float64), np.asarray(mesh.faces)
+    kind = getattr(mesh.visual, "kind", None)
+    color, uv, normals = None, None, np.asarray(mesh.vertex_normals)
+    if kind == "vertex":
+        color = np.asarray(mesh.visual.vertex_colors)
+    elif kind == "texture" and getattr(mesh.visual, "uv", None) is not None:
+        uv = np.asarray(mesh.visual.uv)
+    elif kind == "face":
+        color = np.repeat(np.asarray(mesh.visual.face_colors), 3, axis=0)
+    if kind == "face" or not smooth:
+        corners = F.ravel()
+        normals = np.repeat(np.asarray(mesh.face_normals), 3, axis=0) if not smooth else normals[corners]
+        if kind != "face":
+            color, uv = (None if array is None else array[corners] for array in (color, uv))
+        V, F = V[corners], np.arange(len(corners)).reshape(-1, 3)
+    own = material or _material_of(mesh, kind)
+    own.smooth, own.wireframe = smooth, wireframe
+    return Primitive(V, normals=normals, color_0=color, texcoord_0=uv, indices=F, material=own, poses=poses)
+
+
+def _material_of(mesh: Any, kind: str | None) -> Material:
+    """That of a textured trimesh; else a grey one, as pyrender has it."""
+    given = getattr(mesh.visual, "material", None) if kind == "texture" else None
+    if given is None:
+        is_colored = kind in ("vertex", "face")
+        grey = (1.0, 1.0, 1.0, 1.0) if is_colored else (0.3, 0.3, 0.3, 1.0)
+        return MetallicRoughnessMaterial(alphaMode="BLEND", baseColorFactor=grey, metallicFactor=0.2, roughnessFactor=0.8)
+    image = getattr(given, "baseColorTexture", None) or getattr(given, "image", None)
+    factor: Any = (1, 1, 1, 1)
+    metallic, roughness = 0.2, 0.8
+    if hasattr(given, "baseColorFactor"):
+        factor = (255, 255, 255, 255) if given.baseColorFactor is None else given.baseColorFactor
+        factor = np.asarray(factor) / 255
+        metallic = 1.0 if given.metallicFactor is None else given.metallicFactor
+        roughness = 1.0 if given.roughnessFactor is None else given.roughnessFactor
+    elif image is None and getattr(given, "diffuse", None) is not None:
+        factor = np.asarray(given.diffuse) / 255
+    pixels = None if image is None else np.asarray(image.convert("RGBA"))
+    return MetallicRoughnessMaterial(
+        alphaMode="BLEND", baseColorFactor=factor, baseColorTexture=pixels, metallicFactor=metallic, roughnessFactor=roughness,
+        normalTexture=getattr(given, "normalTexture", None), emissiveTexture=getattr(given, "emissiveTexture", None),
+        metallicRoughnessTexture=getattr(given, "metallicRoughnessTexture", None),
+    )  # fmt: skip

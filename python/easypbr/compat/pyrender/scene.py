@@ -1,0 +1,228 @@
+"""Scenes: trees of nodes."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...errors import ArgumentError
+from .cameras import Camera
+from .lights import DirectionalLight, Light, PointLight, SpotLight
+from .mesh import Mesh
+from .node import Node
+
+
+class Scene:
+    """Nodes, a background colour (sRGB, alpha counts with RenderFlags.RGBA) and ambient light (linear)."""
+
+    def __init__(
+        self,
+        nodes: Sequence[Node] | None = None,
+        bg_color: ArrayLike | None = None,
+        ambient_light: ArrayLike | None = None,
+        name: str | None = None,
+    ) -> None:
+        self.name = name
+        self.bg_color, self.ambient_light = bg_color, ambient_light
+        self._roots: list[Node] = []
+        self._main_camera_node: Node | None = None
+        inner = {id(child) for node in nodes or () for child in node.children}
+        for node in nodes or ():
+            if id(node) not in inner:
+                self.add_node(node)
+
+    @property
+    def bg_color(self) -> np.ndarray:
+        return self._bg_color
+
+    @bg_color.setter
+    def bg_color(self, value: ArrayLike | None) -> None:
+        color = np.ones(4) if value is None else np.asarray(value, dtype=np.float64)
+        color = np.full(3, color) if color.ndim == 0 else color
+        self._bg_color = np.append(color, 1.0) if len(color) == 3 else color[:4]
+
+    @property
+    def ambient_light(self) -> np.ndarray:
+        return self._ambient_light
+
+    @ambient_light.setter
+    def ambient_light(self, value: ArrayLike | None) -> None:
+        color = np.zeros(3) if value is None else np.asarray(value, dtype=np.float64)
+        self._ambient_light = np.full(3, color) if color.ndim == 0 else color[:3]
+
+    def walk(self) -> Iterator[tuple[Node, Node | None, np.ndarray]]:
+        """Each node with its parent and its 4 x 4 pose in the world, parents first."""
+        waiting: list[tuple[Node, Node | None, np.ndarray]] = [(node, None, np.eye(4)) for node in reversed(self._roots)]
+        while waiting:
+            node, parent, above = waiting.pop()
+            pose = above @ node.matrix
+            yield node, parent, pose
+            waiting.extend((child, node, pose) for child in reversed(node.children))
+
+    @property
+    def nodes(self) -> set[Node]:
+        return {node for node, _, _ in self.walk()}
+
+    def _ordered(self, attribute: str, kind: type = object) -> list[Node]:
+        return [node for node, _, _ in self.walk() if isinstance(getattr(node, attribute), kind) and getattr(node, attribute) is not None]
+
+    @property
+    def mesh_nodes(self) -> set[Node]:
+        return set(self._ordered("mesh"))
+
+    @property
+    def camera_nodes(self) -> set[Node]:
+        return set(self._ordered("camera"))
+
+    @property
+    def light_nodes(self) -> set[Node]:
+        return set(self._ordered("light"))
+
+    @property
+    def point_light_nodes(self) -> set[Node]:
+        return set(self._ordered("light", PointLight))
+
+    @property
+    def spot_light_nodes(self) -> set[Node]:
+        return set(self._ordered("light", SpotLight))
+
+    @property
+    def directional_light_nodes(self) -> set[Node]:
+        return set(self._ordered("light", DirectionalLight))
+
+    @property
+    def meshes(self) -> set[Mesh]:
+        return {node.mesh for node in self._ordered("mesh") if node.mesh is not None}
+
+    @property
+    def cameras(self) -> set[Camera]:
+        return {node.camera for node in self._ordered("camera") if node.camera is not None}
+
+    @property
+    def lights(self) -> set[Light]:
+        return {node.light for node in self._ordered("light") if node.light is not None}
+
+    @property
+    def main_camera_node(self) -> Node | None:
+        """The node whose camera is drawn from: the first that was added, unless another one is assigned."""
+        known = self._ordered("camera")
+        if self._main_camera_node not in known:
+            self._main_camera_node = known[0] if known else None
+        return self._main_camera_node
+
+    @main_camera_node.setter
+    def main_camera_node(self, node: Node) -> None:
+        if node not in self.camera_nodes:
+            raise ArgumentError("main_camera_node: expected a node of this scene that has a camera")
+        self._main_camera_node = node
+
+    @property
+    def bounds(self) -> np.ndarray:
+        """Lower and upper corner of all meshes in the world, 2 x 3."""
+        corners = []
+        for node, _, pose in self.walk():
+            if node.mesh is None:
+                continue
+            low, high = node.mesh.bounds
+            box = np.array([[x, y, z] for x in (low[0], high[0]) for y in (low[1], high[1]) for z in (low[2], high[2])])
+            corners.append(box @ pose[:3, :3].T + pose[:3, 3])
+        if not corners:
+            return np.zeros((2, 3))
+        points = np.concatenate(corners)
+        return np.array([points.min(axis=0), points.max(axis=0)])
+
+    @property
+    def centroid(self) -> np.ndarray:
+        return self.bounds.mean(axis=0)
+
+    @property
+    def extents(self) -> np.ndarray:
+        return np.diff(self.bounds, axis=0).reshape(-1)
+
+    @property
+    def scale(self) -> float:
+        return float(np.linalg.norm(self.extents))
+
+    def add(
+        self,
+        obj: Mesh | Light | Camera,
+        name: str | None = None,
+        pose: ArrayLike | None = None,
+        parent_node: Node | None = None,
+        parent_name: str | None = None,
+    ) -> Node:
+        """Adds a mesh, a light or a camera with a pose, and returns its node."""
+        kinds = {"mesh": Mesh, "light": Light, "camera": Camera}
+        found = [attribute for attribute, kind in kinds.items() if isinstance(obj, kind)]
+        if not found:
+            raise TypeError(f"Scene.add: expected a Mesh, a Light or a Camera, got a {type(obj).__name__}")
+        node = Node(name=name, matrix=pose)
+        setattr(node, found[0], obj)
+        if parent_name is not None and parent_node is None:
+            named = self.get_nodes(name=parent_name)
+            if len(named) != 1:
+                raise ValueError(f"Scene.add: expected one node with the name '{parent_name}', got {len(named)}")
+            parent_node = next(iter(named))
+        self.add_node(node, parent_node)
+        return node
+
+    def add_node(self, node: Node, parent_node: Node | None = None) -> None:
+        """Adds a node with its children."""
+        known = self.nodes
+        if node in known:
+            raise ValueError("Scene.add_node: the node is in the scene already")
+        if parent_node is not None and parent_node not in known:
+            raise ValueError("Scene.add_node: the parent is not in the scene")
+        (self._roots if parent_node is None else parent_node.children).append(node)
+
+    def has_node(self, node: Node) -> bool:
+        return node in self.nodes
+
+    def remove_node(self, node: Node) -> None:
+        """Removes a node with its children."""
+        for found, parent, _ in self.walk():
+            if found is node:
+                (self._roots if parent is None else parent.children).remove(node)
+                return
+        raise ValueError("Scene.remove_node: the node is not in the scene")
+
+    def clear(self) -> None:
+        """Removes all nodes."""
+        self._roots.clear()
+
+    def get_nodes(
+        self, node: Node | None = None, name: str | None = None, obj: Any = None, obj_name: str | None = None
+    ) -> set[Node]:
+        """The nodes that all given conditions hold for."""
+        found = set()
+        for known in self.nodes:
+            held = [thing for thing in (known.mesh, known.camera, known.light) if thing is not None]
+            fits = (node is None or known is node) and (name is None or known.name == name)
+            fits = fits and (obj is None or any(thing is obj for thing in held))
+            if fits and (obj_name is None or any(thing.name == obj_name for thing in held)):
+                found.add(known)
+        return found
+
+    def get_pose(self, node: Node) -> np.ndarray:
+        """The node's 4 x 4 pose in the world."""
+        for known, _, pose in self.walk():
+            if known is node:
+                return pose
+        raise ValueError("Scene.get_pose: the node is not in the scene")
+
+    def set_pose(self, node: Node, pose: ArrayLike) -> None:
+        """Sets the node's pose, 4 x 4, in its parent's frame."""
+        if not self.has_node(node):
+            raise ValueError("Scene.set_pose: the node is not in the scene")
+        node.matrix = np.asarray(pose)
+
+    @staticmethod
+    def from_trimesh_scene(trimesh_scene: Any, bg_color: ArrayLike | None = None, ambient_light: ArrayLike | None = None) -> "Scene":
+        """A scene of a trimesh.Scene."""
+        scene = Scene(bg_color=bg_color, ambient_light=ambient_light)
+        meshes = {name: Mesh.from_trimesh(geometry) for name, geometry in trimesh_scene.geometry.items()}
+        for name in trimesh_scene.graph.nodes_geometry:
+            pose, geometry = trimesh_scene.graph[name]
+            scene.add(meshes[geometry], name=name, pose=pose)
+        return scene

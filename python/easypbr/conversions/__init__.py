@@ -1,0 +1,1 @@
+"""What other libraries draw, as meshes. Objects are recognised by their attributes; none of the libraries is imported."""

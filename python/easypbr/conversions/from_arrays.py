@@ -1,0 +1,205 @@
+"""Arrays by themselves, in dicts and in tables."""
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from .._easypbr import Mesh
+from ..errors import ArgumentError, UnknownNameError
+from ..tensors import as_numpy
+from .maker import Maker, colors, fan, triangles
+
+#: What arrays of a mesh are called: here, in NPZ files, in pandas and in Polyscope. The first is Mesh's own name.
+NAMES = {
+    "V": ("V", "v", "points", "xyz", "vertices", "verts", "positions", "position", "pos", "coords", "coordinates", "nodes"),
+    "F": ("F", "f", "faces", "triangles", "tris", "simplices"),
+    "N": ("N", "normals", "normal", "vertex_normals"),
+    "C": ("C", "colors", "colours", "color", "rgb", "rgba", "vertex_colors"),
+    "UV": ("UV", "uv", "uvs", "texcoords", "texture_coordinates"),
+    "T": ("T", "tangents"),
+    "B": ("B", "bitangents"),
+    "E": ("E", "edges", "lines"),
+    "L": ("L", "labels", "label", "semantic", "segmentation"),
+    "I": ("I", "intensity", "intensities", "remission", "reflectance"),
+}
+_CALLED = {word: name for name, words in NAMES.items() for word in words}
+#: What a dict may hold beside arrays.
+_OTHERS = ("name", "label_map", "scalars", "offset")
+_COLUMNS = {
+    "x": "x", "y": "y", "z": "z",
+    "nx": "nx", "ny": "ny", "nz": "nz", "normal_x": "nx", "normal_y": "ny", "normal_z": "nz",
+    "r": "r", "g": "g", "b": "b", "a": "a", "red": "r", "green": "g", "blue": "b", "alpha": "a",
+    **{word: "I" for word in NAMES["I"]},
+    **{word: "L" for word in (*NAMES["L"], "class", "classification")},
+}  # fmt: skip
+#: Points that decide what the columns of an array hold.
+_SAMPLES = 1000
+
+
+def of_dict(arrays: Mapping[str, Any], make: Maker) -> Mesh:
+    """A mesh of arrays by their names. Other arrays with a value for each vertex or face are scalars."""
+    given: dict[str, Any] = {}
+    others: dict[str, Any] = {}
+    for word, value in arrays.items():
+        value = as_numpy(value)
+        name = _CALLED.get(str(word))
+        if name in given:
+            raise ArgumentError(f"a dict of arrays: '{word}' is {name}, which is given already: expected one of them")
+        if name is not None:
+            given[name] = value
+        else:
+            others[str(word)] = value
+    F, face_of = fan(given.get("F"))
+    given["F"] = F
+    if "E" in given:
+        given["E"] = edges(given["E"], len(given.get("V", ())))
+    count = len(given["V"]) if given.get("V") is not None else 0
+    if given.get("C") is not None:
+        found = colors(given["C"], count)
+        given["C"] = given["C"] if found is None else found
+    named = {name: others.pop(name) for name in _OTHERS if name in others}
+    faces = len(F) if F is not None and face_of is None else -1 if face_of is None else int(face_of[-1]) + 1
+    scalars = dict(named.pop("scalars", None) or {})
+    scalars.update({word: _scalar(word, value, count, faces) for word, value in others.items()})
+    if face_of is not None:
+        scalars = {key: _spread(value, count, face_of) for key, value in scalars.items()}
+        given["L"] = _spread(given.get("L"), count, face_of)
+    return make.mesh(scalars=scalars, **given, **named)
+
+
+def _spread(values: Any, count: int, face_of: np.ndarray) -> Any:
+    """Values per polygon as values per triangle."""
+    if values is None or len(values) == count:
+        return values
+    return np.asarray(as_numpy(values))[face_of]
+
+
+def _scalar(word: str, value: Any, count: int, faces: int) -> np.ndarray:
+    array = np.asarray(as_numpy(value)) if not isinstance(value, str) else np.empty(0, str)
+    if array.dtype.kind in "biuf" and array.ndim == 1 and len(array) in (count, faces) and len(array):
+        return array.astype(np.float32) if array.dtype.kind == "b" else array
+    raise UnknownNameError(
+        f"a mesh has no array '{word}'; a dict may hold {', '.join(NAMES)} (points, vertices, faces, normals, colors, ...), "
+        f"{', '.join(_OTHERS)}, and scalars: arrays with a number for each vertex or face"
+    )
+
+
+def edges(given: Any, count: int) -> Any:
+    """k x 2 vertex indices; "line", "loop" and "segments" as Polyscope has them for its curve networks."""
+    if not isinstance(given, str):
+        return given
+    first = np.arange(count)
+    if given == "line":
+        return np.stack([first[:-1], first[1:]], axis=1)
+    if given == "loop":
+        return np.stack([first, np.roll(first, -1)], axis=1)
+    if given == "segments":
+        return first[: count // 2 * 2].reshape(-1, 2)
+    raise ArgumentError(f"edges: expected k x 2 vertex indices, 'line', 'loop' or 'segments', got '{given}'")
+
+
+def of_points(array: Any, make: Maker) -> Mesh:
+    """A cloud of n x 3 positions; further columns are recognised as those of a text file without names are."""
+    points = np.asarray(as_numpy(array))
+    if points.dtype.kind not in "fiu":
+        raise ArgumentError(f"points: expected numbers, got {points.dtype}")
+    if points.ndim != 2 or points.shape[1] < 3:
+        raise ArgumentError(
+            f"points: expected n x 3 positions, or n x 6 with colours, got {' x '.join(map(str, points.shape)) or 'a number'}"
+        )
+    found: dict[str, Any] = {"V": points[:, :3]}
+    scalars: dict[str, np.ndarray] = {}
+    at, lost = 3, False
+    while at < points.shape[1]:
+        block = points[:, at : at + 3]
+        left = points.shape[1] - at
+        if "N" not in found and _is_normal(block):
+            found["N"], at = block, at + 3
+        elif "C" not in found and _is_color(block, alone=points.shape[1] == 6):
+            found["C"], at = colors(block, len(block)), at + 3
+        elif not lost and left == 1 and at > 3 and _is_whole(block):
+            found["L"], at = block[:, 0], at + 1
+        elif not lost and "I" not in found and (left == 1 or left >= 4):
+            found["I"], at = block[:, 0], at + 1
+        else:
+            scalars[f"column_{at + 1}"], at, lost = block[:, 0], at + 1, True
+    return make.mesh(scalars=scalars, **found)
+
+
+def _sample(block: np.ndarray) -> np.ndarray:
+    step = max(1, len(block) // _SAMPLES)
+    sample = np.asarray(block[::step], dtype=np.float64)
+    return sample[np.isfinite(sample).all(axis=1)]
+
+
+def _is_normal(block: np.ndarray) -> bool:
+    """Whether three columns are unit vectors, or zero for points without a normal."""
+    if block.shape[1] != 3 or block.dtype.kind != "f":
+        return False
+    length = np.linalg.norm(_sample(block), axis=1)
+    return bool(length.any() and ((length == 0) | (np.abs(length - 1) < 0.02)).all())
+
+
+def _is_color(block: np.ndarray, alone: bool) -> bool:
+    """Whether three columns are 0 to 1, or whole numbers from 0 to 255; where there are no others any numbers up to 255."""
+    sample = _sample(block)
+    if block.shape[1] != 3 or not ((sample >= 0) & (sample <= 255)).all():
+        return False
+    return alone or bool((sample <= 1).all() or (sample == np.floor(sample)).all())
+
+
+def _is_whole(block: np.ndarray) -> bool:
+    sample = _sample(block)
+    return bool(((sample == np.floor(sample)) & (np.abs(sample) < 1e6)).all())
+
+
+def of_vertices_and_faces(V: Any, F: Any, make: Maker) -> Mesh:
+    """A mesh of (V, F)."""
+    return make.mesh(V=as_numpy(V), F=triangles(F))
+
+
+def is_table(what: Any) -> bool:
+    """A pandas or Polars frame, or another table with columns by name."""
+    return hasattr(what, "columns") and hasattr(what, "__getitem__") and hasattr(what, "shape")
+
+
+def of_table(what: Any, make: Maker) -> Mesh:
+    """A cloud of a table's columns x, y and z; r, g, b (0 to 1 or 0 to 255), nx, ny, nz, intensity and label by their names;
+    other columns of numbers are scalars."""
+    columns: dict[str, np.ndarray] = {}
+    scalars: dict[str, np.ndarray] = {}
+    words = []
+    for word in what.columns:
+        values = np.asarray(what[word])
+        name = _COLUMNS.get(str(word).strip().lower())
+        if values.dtype.kind not in "biuf":
+            words.append(str(word))
+        elif name is not None and name not in columns:
+            columns[name] = values
+        else:
+            scalars[str(word)] = values.astype(np.float32) if values.dtype.kind == "b" else values
+    if not {"x", "y", "z"} <= set(columns):
+        raise ArgumentError(f"a table: expected columns x, y and z, got {', '.join(map(str, what.columns)) or 'none'}")
+    if words:
+        make.leave_out(f"columns that hold no numbers: {', '.join(words)}")
+    return make.mesh(scalars=scalars | _incomplete(columns), **_arrays(columns))
+
+
+def _arrays(columns: dict[str, np.ndarray]) -> dict[str, Any]:
+    arrays: dict[str, Any] = {"V": np.stack([columns[axis] for axis in "xyz"], axis=1)}
+    if all(name in columns for name in ("nx", "ny", "nz")):
+        arrays["N"] = np.stack([columns[name] for name in ("nx", "ny", "nz")], axis=1)
+    if all(name in columns for name in "rgb"):
+        parts = [columns[name] for name in "rgba" if name in columns]
+        arrays["C"] = colors(np.stack(parts, axis=1), len(parts[0]))
+    return arrays | {name: columns[name] for name in "IL" if name in columns}
+
+
+def _incomplete(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Parts of colours and normals whose others are missing are scalars like any column."""
+    found: dict[str, np.ndarray] = {}
+    for group in (("r", "g", "b", "a"), ("nx", "ny", "nz")):
+        if not all(name in columns for name in group[:3]):
+            found.update({name: columns[name] for name in group if name in columns})
+    return found

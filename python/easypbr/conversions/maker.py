@@ -1,0 +1,186 @@
+"""Maker: what a conversion makes its mesh with."""
+
+import logging
+import os
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from .. import _easypbr
+from .._easypbr import Mesh
+from ..errors import ArgumentError
+from ..tensors import as_numpy
+
+_log = logging.getLogger("easypbr")
+
+#: Arrays of a mesh with a row per vertex.
+PER_VERTEX = ("V", "N", "C", "UV", "T", "B", "I")
+
+
+def warn(message: str) -> None:
+    """What is left out is said: a warning of the logger "easypbr", as the library's own ones."""
+    _log.warning(message)
+
+
+class Maker:
+    """Makes meshes from arrays. `any_mesh` converts what an object holds, such as the meshes of a scene."""
+
+    def __init__(self, any_mesh: "Callable[[Any, Maker], Mesh]", strict: bool = False) -> None:
+        self._any_mesh = any_mesh
+        self.strict = strict
+        #: Whether something is coloured by values that the other library shows with a colour bar.
+        self.has_colorbar = False
+        #: Lights and cameras of files, by their names there.
+        self.lights: dict[str, _easypbr.Light] = {}
+        self.cameras: dict[str, _easypbr.Camera] = {}
+
+    def file(self, path: str | os.PathLike) -> Mesh:
+        """The mesh of a file."""
+        loaded = _easypbr.load_scene(path, strict=self.strict)
+        for name, light in loaded.lights.items():
+            self.lights[name if name not in self.lights else f"{loaded.mesh.name}/{name}"] = light
+        for name, camera in loaded.cameras.items():
+            self.cameras[name if name not in self.cameras else f"{loaded.mesh.name}/{name}"] = camera
+        return loaded.mesh
+
+    def any(self, what: Any) -> Mesh:
+        """A mesh of anything that can be drawn."""
+        return self._any_mesh(what, self)
+
+    def mesh(self, name: str = "", scalars: dict[str, Any] | None = None, **arrays: Any) -> Mesh:
+        """A mesh of arrays by their names in Mesh. Points of a cloud without a finite position are left out with a warning,
+        or raise ArgumentError if `strict`."""
+        given = {key: as_numpy(value) for key, value in arrays.items() if value is not None}
+        given, scalars = self._finite(given, dict(scalars or {}))
+        mesh = Mesh()
+        mesh.assign(**given, **({"scalars": scalars} if scalars else {}))
+        mesh.name = name
+        return mesh
+
+    def _finite(self, arrays: dict[str, Any], scalars: dict[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+        """The rows of a cloud whose positions are finite; a mesh keeps all of its vertices, for its faces count them."""
+        kept = None if _has(arrays, "F") or _has(arrays, "E") else finite_rows(arrays.get("V"), self.strict)
+        if kept is None:
+            return arrays, scalars
+        per_point = (*PER_VERTEX, "L")
+        arrays = {key: np.asarray(as_numpy(value))[kept] if key in per_point and _counts(value, kept) else value
+                  for key, value in arrays.items()}
+        return arrays, {key: np.asarray(as_numpy(value))[kept] if _counts(value, kept) else value
+                        for key, value in scalars.items()}
+
+    def leave_out(self, what: str) -> None:
+        """Says what has no place in a mesh."""
+        warn(f"left out: {what}")
+
+    def parts(self, children: list[Mesh], name: str = "") -> Mesh:
+        """A mesh with these children; a single one stands for itself."""
+        if len(children) == 1 and not name:
+            return children[0]
+        root = Mesh()
+        root.name = name
+        for child in children:
+            root.add_child(child)
+        return root
+
+    def show_scalars(self, mesh: Mesh, name: str, limits: Any = None) -> None:
+        """Colours the mesh by this scalar field, as the library does that it comes from."""
+        mesh.style.color_by = "scalar"
+        mesh.style.scalar = name
+        if limits is not None:
+            mesh.style.color_min, mesh.style.color_max = (float(limit) for limit in limits)
+        self.has_colorbar = True
+
+
+def _has(arrays: dict[str, Any], name: str) -> bool:
+    return name in arrays and len(arrays[name]) > 0
+
+
+def _counts(value: Any, kept: np.ndarray) -> bool:
+    return hasattr(value, "__len__") and len(value) == len(kept)
+
+
+def finite_rows(points: Any, strict: bool = False) -> np.ndarray | None:
+    """Which rows of n x 3 positions are finite, with a warning that counts the others; None: all of them, or the array is of
+    another kind. Raises ArgumentError if none is, or if not all are and `strict` is set."""
+    points = None if points is None else np.asarray(as_numpy(points))
+    if points is None or points.dtype.kind != "f" or points.ndim != 2 or len(points) == 0:
+        return None
+    kept: np.ndarray = np.isfinite(points).all(axis=1)
+    lost = int(len(kept) - np.count_nonzero(kept))
+    if lost == 0:
+        return None
+    if lost == len(kept):
+        raise ArgumentError(f"points: none of {len(kept)} has a finite position")
+    if strict:
+        row = int(np.argmin(kept))
+        raise ArgumentError(
+            f"points: expected finite positions, got ({', '.join(f'{x:g}' for x in points[row])}) in row {row} of "
+            f"{len(kept)}; without strict=True the {lost} that have none are left out"
+        )
+    warn(f"{lost} of {len(kept)} points have no finite position and are left out")
+    return kept
+
+
+def rows(array: Any, count: int) -> np.ndarray | None:
+    """The array if it has `count` rows, else None."""
+    array = None if array is None else np.asarray(as_numpy(array))
+    return array if array is not None and count and array.ndim > 0 and len(array) == count else None
+
+
+def colors(array: Any, count: int) -> np.ndarray | None:
+    """Colours of `count` rows as a mesh takes them: uint8 and uint16 as they are, floats 0 to 1; other integers and floats
+    above 1 are 0 to 255. None: the array has another number of rows. Raises ArgumentError for other values."""
+    found = rows(array, count)
+    if found is None:
+        return None
+    if found.ndim == 1 or found.shape[1] not in (3, 4):
+        raise ArgumentError(f"colours: expected n x 3 or n x 4, got {' x '.join(map(str, found.shape))}")
+    if found.dtype in (np.uint8, np.uint16):
+        return found
+    if found.dtype.kind not in "fiu":
+        raise ArgumentError(f"colours: expected numbers, got {found.dtype}")
+    low, high = (np.nanmin(found), np.nanmax(found)) if np.isfinite(found).any() else (0.0, 0.0)
+    if not (low >= 0 and high <= 255):
+        raise ArgumentError(f"colours: expected 0 to 1 or 0 to 255, got {low:g} to {high:g}")
+    is_bytes = found.dtype.kind in "iu" or high > 1
+    if is_bytes and found.shape[1] == 4 and found.dtype.kind == "f" and found[:, :3].max() <= 1:
+        raise ArgumentError(f"colours: expected 0 to 1 or 0 to 255 in all columns, got an alpha of up to {high:g}")
+    return found / 255.0 if is_bytes else found
+
+
+def triangles(faces: Any) -> np.ndarray | None:
+    """m x 3 vertex indices of faces: m x k, or a sequence of polygons of any number of corners, as fans."""
+    triangle_of, _ = fan(faces)
+    return triangle_of
+
+
+def fan(faces: Any) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """Triangles of polygons, and the polygon that each belongs to; None: each is a triangle already."""
+    if faces is None:
+        return None, None
+    faces = as_numpy(faces)
+    if not isinstance(faces, np.ndarray):
+        faces = [np.asarray(as_numpy(face)) for face in faces]
+        if len({len(np.atleast_1d(face)) for face in faces}) > 1:
+            return _fan_of_lists(faces)
+    array = np.asarray(faces)
+    if array.ndim != 2 or array.shape[1] <= 3:
+        return (array if len(array) else None), None
+    corners = array.shape[1]
+    split = [array[:, [0, i, i + 1]] for i in range(1, corners - 1)]
+    return np.stack(split, axis=1).reshape(-1, 3), np.repeat(np.arange(len(array)), corners - 2)
+
+
+def _fan_of_lists(faces: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    if any(face.ndim != 1 or len(face) < 3 for face in faces):
+        raise ArgumentError("faces: expected m x 3 vertex indices, or polygons of at least 3 corners each")
+    found = [(face[0], face[i], face[i + 1]) for face in faces for i in range(1, len(face) - 1)]
+    owner = [number for number, face in enumerate(faces) for _ in range(len(face) - 2)]
+    return np.array(found), np.array(owner)
+
+
+def separate_corners(faces: np.ndarray, values: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of values per face: the vertex of each corner, faces of separate corners, and a value per corner."""
+    count = faces.shape[1]
+    return faces.ravel(), np.arange(faces.size).reshape(-1, count), np.repeat(np.asarray(values), count, axis=0)

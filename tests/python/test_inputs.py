@@ -1,0 +1,587 @@
+"""What people have at hand: arrays, lists, tables, dicts, and objects of other libraries, as one mesh."""
+
+import sys
+import types
+
+import numpy as np
+import pytest
+
+import easypbr
+from easypbr import Mesh, Scene, as_mesh, render, shapes
+
+POINTS = np.random.default_rng(0).random((40, 3))
+COLORS = np.random.default_rng(1).integers(0, 256, (40, 3))
+SMALL = {"size": (48, 36), "samples": 1}
+
+
+def drawn(what, **settings) -> np.ndarray:
+    return render(what, **SMALL, **settings)
+
+
+# Arrays of points.
+
+
+@pytest.mark.parametrize("points", [
+    POINTS,
+    POINTS.astype(np.float32),
+    POINTS.tolist(),
+    [tuple(row) for row in POINTS],
+    list(POINTS),
+    (POINTS,),
+    [POINTS],
+    (POINTS, None),
+    {"points": POINTS},
+    {"xyz": POINTS},
+    {"vertices": POINTS},
+    {"V": POINTS},
+], ids=["f8", "f4", "lists", "tuples", "rows", "(V,)", "[V]", "(V, None)", "points", "xyz", "vertices", "V"])  # fmt: skip
+def test_points_are_a_cloud(points):
+    mesh = as_mesh(points)
+    np.testing.assert_allclose(mesh.V, POINTS, atol=1e-7)
+    assert len(mesh.F) == 0 and not mesh.children
+
+
+def test_an_array_of_points_is_drawn():
+    np.testing.assert_array_equal(drawn(POINTS), drawn(Mesh(POINTS)))
+
+
+@pytest.mark.parametrize("color", [
+    COLORS / 255,
+    COLORS.astype(float),
+    COLORS.astype(np.uint8),
+    COLORS.astype(np.int64),
+], ids=["0 to 1", "0 to 255", "uint8", "int64"])  # fmt: skip
+def test_colors_of_every_range(color):
+    for mesh in (as_mesh(np.hstack([POINTS, color])), as_mesh({"points": POINTS, "colors": color})):
+        np.testing.assert_allclose(mesh.C, COLORS / 255, atol=1e-6)
+
+
+def test_further_columns_are_those_of_a_text_file(tmp_path):
+    normals = POINTS / np.linalg.norm(POINTS, axis=1, keepdims=True)
+    heat, label = np.linspace(0.5, 3.7, 40)[:, None], np.arange(40.0)[:, None] % 4
+    for columns in ([heat], [COLORS], [normals, COLORS], [heat, COLORS], [COLORS, label], [heat, 5 - heat], [label, COLORS, heat]):
+        array = np.hstack([POINTS, *columns])
+        np.savetxt(tmp_path / "points.xyz", array)
+        read, made = Mesh(tmp_path / "points.xyz"), as_mesh(array)
+        for name in ("V", "N", "C", "L", "I"):
+            np.testing.assert_allclose(getattr(made, name), getattr(read, name), atol=1e-6, err_msg=name)
+        assert list(made.scalars) == list(read.scalars)
+
+
+@pytest.mark.parametrize("what, message", [
+    (POINTS[:, :2], "points: expected n x 3 positions, or n x 6 with colours, got 40 x 2"),
+    (POINTS[0], "points: expected n x 3 positions"),
+    (np.zeros((2, 3, 4)), "got 2 x 3 x 4"),
+    (np.array([["a", "b", "c"]]), "points: expected numbers, got <U1"),
+    ([], "an empty list: there is nothing to show; expected a path"),
+    (3, "cannot show a builtins.int: expected a path, an easypbr.Mesh, points"),
+    (None, "cannot show a builtins.NoneType"),
+    ((POINTS, [[0, 1, 2]], POINTS), r"expected \(V, F\); give further arrays in a dict"),
+    ({"points": POINTS, "colors": POINTS * 300}, "colours: expected 0 to 1 or 0 to 255, got"),
+    ({"points": POINTS, "colors": -POINTS}, "colours: expected 0 to 1 or 0 to 255, got"),
+    ({"points": POINTS, "V": POINTS}, "'V' is V, which is given already"),
+    ({"points": POINTS, "heat": POINTS[:7, 0]}, "no array 'heat'; a dict may hold V, F"),
+    ([shapes.box(), 7], "cannot show a builtins.int"),
+])  # fmt: skip
+def test_errors_name_what_is_accepted(what, message):
+    with pytest.raises(easypbr.Error, match=message):
+        as_mesh(what)
+
+
+def test_faces_beside_vertices_are_no_path(square):
+    V, F = square
+    with pytest.raises(easypbr.ArgumentError, match=r"out: expected a path, got a 2 x 3 array.*render\(\(V, F\)\)"):
+        render(V, F)
+
+
+# Lists.
+
+
+def test_lists_of_anything_drawable(square, tmp_path):
+    ball, box = shapes.sphere(0.5, 8), shapes.box()
+    ball.save(tmp_path / "a.ply")
+    box.save(tmp_path / "b.ply")
+    for what, count in (
+        ([ball, box], 2),
+        ((str(tmp_path / "a.ply"), tmp_path / "b.ply"), 2),
+        ([ball, POINTS, square, {"points": POINTS}], 4),
+        ([POINTS, POINTS + 1, POINTS + 2], 3),
+        ([POINTS, POINTS + 0.5], 2),
+        ([[ball, box], POINTS], 2),
+    ):
+        mesh = as_mesh(what)
+        assert len(mesh.children) == count
+        assert drawn(what).shape == (36, 48, 4)
+    assert [child.name for child in as_mesh([tmp_path / "a.ply", tmp_path / "b.ply"]).children] == ["a", "b"]
+    apart = [ball, box.clone()]
+    apart[1].T_parent_mesh = [[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]
+    scene = Scene()
+    scene.show(apart[0], "ball")
+    scene.show(apart[1], "box")
+    np.testing.assert_array_equal(drawn(apart), drawn(scene))
+
+
+def test_two_arrays_are_vertices_and_faces_only_if_the_second_may_be_faces(square):
+    V, F = square
+    for what in ((V, F), [V, F], (V, F.tolist()), (V, F.astype(float)), (V.tolist(), F.tolist())):
+        np.testing.assert_array_equal(as_mesh(what).F, F)
+    assert len(as_mesh([POINTS, POINTS]).children) == 2
+
+
+@pytest.mark.parametrize("faces", [np.array([[0, 1, 2, 3]]), [[0, 1, 2, 3]]])
+def test_polygons_are_fans(square, faces):
+    V, _ = square
+    np.testing.assert_array_equal(as_mesh((V, faces)).F, [[0, 1, 2], [0, 2, 3]])
+    mixed = as_mesh({"vertices": np.vstack([V, [[2, 0, 0]]]), "faces": [[0, 1, 2, 3], [1, 4, 2]], "area": [1.0, 0.5]})
+    np.testing.assert_array_equal(mixed.F, [[0, 1, 2], [0, 2, 3], [1, 4, 2]])
+    np.testing.assert_array_equal(mixed.scalars["area"], [1, 1, 0.5])
+
+
+# Dicts and tables.
+
+
+def test_dicts_as_polyscope_and_npz_have_them(square):
+    V, F = square
+    mesh = as_mesh({"vertices": V, "faces": F, "normals": V, "heat": V[:, 0], "labels": [0, 1, 2, 3], "name": "square"})
+    np.testing.assert_array_equal(mesh.N, V)
+    np.testing.assert_array_equal(mesh.scalars["heat"], V[:, 0])
+    np.testing.assert_array_equal(mesh.L, range(4))
+    assert mesh.name == "square"
+    curve = as_mesh({"nodes": V, "edges": "loop"})
+    np.testing.assert_array_equal(curve.E, [[0, 1], [1, 2], [2, 3], [3, 0]])
+    np.testing.assert_array_equal(as_mesh({"nodes": V, "edges": "line"}).E, [[0, 1], [1, 2], [2, 3]])
+    np.testing.assert_array_equal(as_mesh({"nodes": V, "edges": "segments"}).E, [[0, 1], [2, 3]])
+    with pytest.raises(easypbr.ArgumentError, match="'line', 'loop' or 'segments', got 'circle'"):
+        as_mesh({"nodes": V, "edges": "circle"})
+
+
+class Frame:
+    """What of a pandas frame is used: columns by name, each an array; a shape."""
+
+    def __init__(self, columns):
+        self._columns = columns
+        self.columns = list(columns)
+        self.shape = (len(next(iter(columns.values()))), len(columns))
+
+    def __getitem__(self, name):
+        return self._columns[name]
+
+    def __array__(self, *_):
+        raise AssertionError("a table is read by its columns")
+
+
+def frame(columns):
+    """pandas' own where it is installed."""
+    try:
+        import pandas
+    except ImportError:
+        return Frame(columns)
+    return pandas.DataFrame(columns)
+
+
+def test_tables_with_x_y_z(caplog):
+    columns = {"id": np.arange(40), "x": POINTS[:, 0], "Y": POINTS[:, 1], "z": POINTS[:, 2]}
+    columns |= {"red": COLORS[:, 0], "green": COLORS[:, 1], "blue": COLORS[:, 2], "intensity": POINTS[:, 0]}
+    columns |= {"label": np.arange(40) % 3, "note": np.array(["a"] * 40, dtype=object)}
+    mesh = as_mesh(frame(columns))
+    np.testing.assert_allclose(mesh.V, POINTS, atol=1e-7)
+    np.testing.assert_allclose(mesh.C, COLORS / 255, atol=1e-6)
+    np.testing.assert_allclose(mesh.I, POINTS[:, 0], atol=1e-7)
+    np.testing.assert_array_equal(mesh.L, np.arange(40) % 3)
+    assert list(mesh.scalars) == ["id"]
+    assert "columns that hold no numbers: note" in caplog.text
+    with pytest.raises(easypbr.ArgumentError, match="expected columns x, y and z, got a, b"):
+        as_mesh(frame({"a": POINTS[:, 0], "b": POINTS[:, 1]}))
+
+
+# Arrays of other libraries.
+
+
+class OfCuda:
+    """An array in the memory of a GPU, as CuPy has them."""
+
+    def __init__(self, array):
+        self._array = array
+        self.shape = array.shape
+
+    def __dlpack_device__(self):
+        return (2, 0)
+
+    def __dlpack__(self, **_):
+        raise BufferError("numpy cannot take what lies on a GPU")
+
+    def get(self):
+        return self._array
+
+
+class OfJax:
+    """An array on the CPU that speaks DLPack alone."""
+
+    def __init__(self, array):
+        self._array = array
+        self.shape = array.shape
+
+    def __dlpack_device__(self):
+        return (1, 0)
+
+    def __dlpack__(self, **_):
+        return self._array.__dlpack__()
+
+
+@pytest.mark.parametrize("kind", [OfCuda, OfJax])
+def test_arrays_by_dlpack(square, kind):
+    V, F = square
+    points = as_mesh(kind(POINTS))
+    np.testing.assert_allclose(points.V, POINTS, atol=1e-7)
+    np.testing.assert_array_equal(as_mesh((kind(V), kind(F))).F, F)
+    np.testing.assert_allclose(as_mesh({"points": kind(POINTS), "colors": kind(COLORS)}).C, COLORS / 255, atol=1e-6)
+    assert len(as_mesh([kind(POINTS), kind(POINTS)]).children) == 2
+
+
+def test_tensors(square):
+    torch = pytest.importorskip("torch")
+    V, F = square
+    cloud = torch.tensor(POINTS, requires_grad=True)
+    np.testing.assert_allclose(as_mesh(cloud).V, POINTS, atol=1e-7)
+    np.testing.assert_array_equal(as_mesh((torch.tensor(V), torch.tensor(F))).F, F)
+    assert len(as_mesh([cloud, cloud]).children) == 2
+
+
+# Points that are not finite.
+
+
+def with_holes():
+    points = POINTS.copy()
+    points[[3, 17]] = np.nan
+    points[21, 1] = np.inf
+    return points, np.delete(np.arange(40), [3, 17, 21])
+
+
+def test_points_without_a_position_are_left_out_of_arrays_as_of_files(caplog, tmp_path):
+    points, kept = with_holes()
+    for what in (points, {"points": points, "colors": COLORS, "heat": POINTS[:, 0]}, (points, None), Frame(dict(zip("xyz", points.T)))):
+        caplog.clear()
+        mesh = as_mesh(what)
+        np.testing.assert_allclose(mesh.V, POINTS[kept], atol=1e-7)
+        assert "3 of 40 points have no finite position and are left out" in caplog.text
+        with pytest.raises(easypbr.ArgumentError, match=r"expected finite positions, got .* in row 3 of 40"):
+            as_mesh(what, strict=True)
+    both = as_mesh({"points": points, "colors": COLORS, "heat": POINTS[:, 0], "labels": np.arange(40)})
+    np.testing.assert_allclose(both.C, COLORS[kept] / 255, atol=1e-6)
+    np.testing.assert_allclose(both.scalars["heat"], POINTS[kept, 0], atol=1e-7)
+    np.testing.assert_array_equal(both.L, kept)
+    np.testing.assert_allclose(Mesh(points).V, POINTS[kept], atol=1e-7)
+    np.testing.assert_allclose(Mesh(points, None).V, POINTS[kept], atol=1e-7)
+    with pytest.raises(easypbr.ArgumentError, match="row 3 of 40"):
+        Mesh(points, strict=True)
+    np.save(tmp_path / "points.npy", points)
+    caplog.clear()
+    np.testing.assert_allclose(as_mesh(tmp_path / "points.npy").V, POINTS[kept], atol=1e-7)
+    assert "3 of 40 points have no finite position and are left out" in caplog.text
+    for fails in (lambda: as_mesh(tmp_path / "points.npy", strict=True), lambda: render(tmp_path / "points.npy", strict=True, **SMALL)):
+        with pytest.raises(easypbr.FormatError, match="points without a finite position"):
+            fails()
+    with pytest.raises(easypbr.ArgumentError, match="row 3 of 40"):
+        render(points, strict=True, **SMALL)
+
+
+def test_a_cloud_without_any_position_is_an_error():
+    with pytest.raises(easypbr.ArgumentError, match="none of 5 has a finite position"):
+        as_mesh(np.full((5, 3), np.nan))
+
+
+def test_vertices_of_faces_must_be_finite_as_in_files(square):
+    V, F = square
+    V[1, 2] = np.nan
+    with pytest.raises(easypbr.ArgumentError, match="array V: expected finite positions.* in row 1 of 4"):
+        as_mesh((V, F))
+
+
+def test_strict_takes_what_is_whole(tmp_path, square):
+    mesh = as_mesh(POINTS, strict=True)
+    assert len(mesh.V) == 40
+    mesh.save(tmp_path / "cloud.ply")
+    assert len(as_mesh(tmp_path / "cloud.ply", strict=True).V) == 40
+    shapes.sphere(1, 8).save(tmp_path / "ball.obj")
+    assert len(as_mesh(tmp_path / "ball.obj", strict=True).F) > 0
+
+
+# Open3D: stand-ins with the attributes of its classes, and the real ones where it is installed.
+
+
+def open3d_mesh(V, F, **more):
+    return types.SimpleNamespace(vertices=V, triangles=F, vertex_normals=[], vertex_colors=[], **more)
+
+
+def test_open3d_lines_have_a_color_each(square):
+    V, _ = square
+    lines = types.SimpleNamespace(points=V, lines=np.array([[0, 1], [1, 2]]), colors=np.eye(3)[:2], has_lines=lambda: True)
+    mesh = as_mesh(lines)
+    np.testing.assert_array_equal(mesh.E, [[0, 1], [2, 3]])
+    np.testing.assert_array_equal(mesh.V, V[[0, 1, 1, 2]])
+    np.testing.assert_array_equal(mesh.C, np.eye(3)[[0, 0, 1, 1]])
+    lines.colors = []
+    np.testing.assert_array_equal(as_mesh(lines).E, [[0, 1], [1, 2]])
+
+
+def test_open3d_voxels():
+    voxel = lambda index, color: types.SimpleNamespace(grid_index=np.array(index), color=np.array(color))  # noqa: E731
+    grid = types.SimpleNamespace(
+        get_voxels=lambda: [voxel([0, 0, 0], [1.0, 0, 0]), voxel([2, 0, 1], [0, 0, 1.0])],
+        voxel_size=0.5, origin=np.array([10.0, 0, 0]), has_colors=lambda: True,
+    )  # fmt: skip
+    mesh = as_mesh(grid)
+    np.testing.assert_allclose(mesh.V, [[0.25, 0.25, 0.25], [1.25, 0.25, 0.75]])
+    np.testing.assert_array_equal(mesh.T_parent_mesh[:3, 3], [10, 0, 0])
+    np.testing.assert_array_equal(mesh.C, [[1, 0, 0], [0, 0, 1]])
+    assert (mesh.style.mode, mesh.style.voxel_size) == ("voxels", 0.5)
+    grid.get_voxels = list
+    with pytest.raises(easypbr.ArgumentError, match="expected voxels, got none"):
+        as_mesh(grid)
+
+
+def test_open3d_models_have_meshes_with_materials(square):
+    record = types.SimpleNamespace(base_color=np.array([1, 0.5, 0, 1]), base_metallic=0.75, base_roughness=0.25,
+                                   albedo_img=np.full((2, 2, 3), 9, dtype=np.uint8))  # fmt: skip
+    info = types.SimpleNamespace(mesh=open3d_mesh(*square), mesh_name="wing", material_idx=0)
+    other = types.SimpleNamespace(mesh=open3d_mesh(*square), mesh_name="tail", material_idx=-1)
+    model = types.SimpleNamespace(meshes=[info, other], materials=[record])
+    wing, tail = as_mesh(model).children
+    assert (wing.name, tail.name) == ("wing", "tail")
+    assert wing.material.base_color == pytest.approx((1, 0.5, 0))
+    assert (wing.material.metallic, wing.material.roughness) == pytest.approx((0.75, 0.25))
+    assert (wing.material.base_color_texture == 9).all()
+
+
+class Tensor:
+    """What Open3D's tensors have."""
+
+    def __init__(self, array):
+        self._array = np.asarray(array)
+
+    def cpu(self):
+        return self
+
+    def numpy(self):
+        return self._array
+
+
+def test_open3d_tensor_geometry(square, caplog):
+    V, F = square
+    vertex = {"positions": Tensor(V), "colors": Tensor(np.full((4, 3), 51, dtype=np.uint8)), "heat": Tensor(V[:, :1])}
+    mesh = types.SimpleNamespace(vertex=vertex, triangle={"indices": Tensor(F)}, to_legacy=lambda: None)
+    made = as_mesh(mesh)
+    np.testing.assert_array_equal(made.F, F)
+    np.testing.assert_allclose(made.C, 0.2)
+    np.testing.assert_array_equal(made.scalars["heat"], V[:, 0])
+    mesh.triangle["texture_uvs"] = Tensor(np.arange(12.0).reshape(2, 3, 2))
+    split = as_mesh(mesh)
+    np.testing.assert_array_equal(split.V, V[F.ravel()])
+    np.testing.assert_array_equal(split.UV, np.arange(12.0).reshape(6, 2))
+    np.testing.assert_array_equal(split.scalars["heat"], V[F.ravel(), 0])
+    point = {"positions": Tensor(V), "labels": Tensor(np.arange(4)[:, None]), "flow": Tensor(V)}
+    cloud = types.SimpleNamespace(point=point, to_legacy=lambda: None)
+    np.testing.assert_array_equal(as_mesh(cloud).L, range(4))
+    assert "attributes of an Open3D tensor geometry: flow" in caplog.text
+    lines = types.SimpleNamespace(point={"positions": Tensor(V)}, line={"indices": Tensor([[0, 1], [2, 3]])}, to_legacy=lambda: None)
+    np.testing.assert_array_equal(as_mesh(lines).E, [[0, 1], [2, 3]])
+    with pytest.raises(easypbr.ArgumentError, match="expected point.positions"):
+        as_mesh(types.SimpleNamespace(point={}, to_legacy=lambda: None))
+
+
+def test_open3d_boxes_are_edges():
+    corners = np.array([[0, 0, 0], [4, 0, 0], [0, 2, 0], [0, 0, 1], [4, 2, 1], [0, 2, 1], [4, 0, 1], [4, 2, 0]], dtype=float)
+    angle = 0.3
+    turn = np.array([[np.cos(angle), -np.sin(angle), 0], [np.sin(angle), np.cos(angle), 0], [0, 0, 1]])
+    for turned in (corners, corners @ turn.T + 5):
+        mesh = as_mesh(types.SimpleNamespace(get_box_points=lambda points=turned: points, color=(1, 0, 0)))
+        lengths = np.linalg.norm(mesh.V[mesh.E[:, 0]] - mesh.V[mesh.E[:, 1]], axis=1)
+        np.testing.assert_allclose(sorted(lengths), [1] * 4 + [2] * 4 + [4] * 4, atol=1e-5)
+
+
+def test_real_open3d(square):
+    open3d = pytest.importorskip("open3d")
+    V, F = square
+    vector = open3d.utility.Vector3dVector
+    mesh = open3d.geometry.TriangleMesh(vector(V), open3d.utility.Vector3iVector(F))
+    np.testing.assert_array_equal(as_mesh(mesh).F, F)
+    tensor_mesh = open3d.t.geometry.TriangleMesh.from_legacy(mesh)
+    np.testing.assert_array_equal(as_mesh(tensor_mesh).F, F)
+    cloud = open3d.geometry.PointCloud(vector(POINTS))
+    cloud.colors = vector(COLORS / 255)
+    np.testing.assert_allclose(as_mesh(cloud).C, COLORS / 255, atol=1e-6)
+    np.testing.assert_allclose(as_mesh(open3d.t.geometry.PointCloud.from_legacy(cloud)).C, COLORS / 255, atol=1e-6)
+    lines = open3d.geometry.LineSet(vector(V), open3d.utility.Vector2iVector([[0, 1], [1, 2]]))
+    lines.colors = vector(np.eye(3)[:2])
+    for kind in (lines, open3d.t.geometry.LineSet.from_legacy(lines)):
+        np.testing.assert_array_equal(as_mesh(kind).V, V[[0, 1, 1, 2]])
+    grid = open3d.geometry.VoxelGrid.create_from_point_cloud(cloud, voxel_size=0.25)
+    voxels = as_mesh(grid)
+    assert len(voxels.V) == len(grid.get_voxels())
+    np.testing.assert_allclose(voxels.V[0] + voxels.T_parent_mesh[:3, 3],
+                               grid.get_voxel_center_coordinate(grid.get_voxels()[0].grid_index), atol=1e-6)
+    for box in (cloud.get_axis_aligned_bounding_box(), cloud.get_oriented_bounding_box()):
+        assert as_mesh(box).E.shape == (12, 2)
+    assert len(as_mesh([cloud, mesh, lines]).children) == 3
+
+
+# PyVista and VTK.
+
+
+@pytest.fixture(scope="module")
+def pyvista():
+    return pytest.importorskip("pyvista")
+
+
+def test_active_scalars_are_drawn_with_a_color_bar(pyvista):
+    ball = pyvista.Sphere()
+    ball["height"] = ball.points[:, 2]
+    ball.cell_data["number"] = np.arange(ball.n_cells)
+    ball.set_active_scalars("height")
+    mesh = as_mesh(ball)
+    assert (mesh.style.color_by, mesh.style.scalar) == ("scalar", "height")
+    np.testing.assert_allclose(mesh.scalars["height"], ball.points[:, 2])
+    np.testing.assert_array_equal(mesh.scalars["number"], np.arange(ball.n_cells))
+    with_bar = drawn(ball)
+    np.testing.assert_array_equal(with_bar, drawn(mesh, colorbar=True))
+    np.testing.assert_array_equal(drawn(ball, colorbar=False), drawn(mesh))
+    assert (with_bar != drawn(ball, colorbar=False)).any()
+    ball.set_active_scalars("number")
+    assert as_mesh(ball).style.scalar == "number"
+
+
+def test_colors_of_points_and_cells(pyvista):
+    box = pyvista.Cube().triangulate()
+    colors = np.random.default_rng(0).integers(0, 256, (box.n_cells, 3)).astype(np.uint8)
+    box.cell_data["paint"] = colors
+    box.set_active_scalars("paint")
+    mesh = as_mesh(box)
+    np.testing.assert_allclose(mesh.C[0::3], colors / 255, atol=1e-6)
+    np.testing.assert_allclose(mesh.C[2::3], colors / 255, atol=1e-6)
+    assert mesh.style.color_by != "scalar"
+
+
+def test_as_many_cells_as_points_keep_their_values(pyvista):
+    """Four points, four triangles: values of the triangles must not become those of the points."""
+    tetrahedron = pyvista.PolyData(np.vstack([np.zeros(3), np.eye(3)]), [3, 0, 2, 1, 3, 0, 1, 3, 3, 0, 3, 2, 3, 1, 2, 3])
+    tetrahedron.cell_data["number"] = np.arange(4.0)
+    mesh = as_mesh(tetrahedron)
+    np.testing.assert_array_equal(mesh.scalars["number"], np.repeat(np.arange(4.0), 3))
+    assert len(mesh.V) == 12
+
+
+def test_vectors_are_scalars_and_what_is_lost_is_said(pyvista, caplog):
+    ball = pyvista.Sphere()
+    ball["wind"] = ball.points * 2
+    ball["wide"] = np.zeros((ball.n_points, 30))
+    ball.set_active_scalars("wind")
+    mesh = as_mesh(ball)
+    np.testing.assert_allclose(mesh.scalars["wind_1"], ball.points[:, 1] * 2, rtol=1e-6)
+    np.testing.assert_allclose(mesh.scalars["wind"], np.linalg.norm(ball.points * 2, axis=1), rtol=1e-5)
+    assert "the array 'wide' of 30 values, more than 16" in caplog.text
+
+
+def test_lines_points_and_faces_of_one_polydata(pyvista):
+    V = np.random.default_rng(0).random((6, 3))
+    data = pyvista.PolyData(V, faces=[3, 0, 1, 2], lines=[3, 2, 3, 4], verts=[1, 5])
+    data.cell_data["number"] = [10.0, 20.0, 30.0]  # of the point, the line and the face, in VTK's order
+    face, line, point = as_mesh(data).children
+    np.testing.assert_array_equal(face.F, [[0, 1, 2]])
+    assert face.scalars["number"][0] == 30
+    np.testing.assert_allclose(line.V[line.E.ravel()], V[[2, 3, 3, 4]], rtol=1e-6)
+    assert set(line.scalars["number"]) == {20}
+    np.testing.assert_allclose(point.V, V[[5]], rtol=1e-6)
+    np.testing.assert_array_equal(point.scalars["number"], [10])
+
+
+def test_a_volume_is_three_slices_of_its_values(pyvista):
+    volume = pyvista.ImageData(dimensions=(9, 7, 5))
+    volume["heat"] = volume.points[:, 0] + 10 * volume.points[:, 1]
+    mesh = as_mesh(volume)
+    low, high = mesh.V.min(axis=0), mesh.V.max(axis=0)
+    np.testing.assert_array_equal([low, high], [[0, 0, 0], [8, 6, 4]])
+    middle = np.isclose(mesh.V, [4, 3, 2])
+    assert middle.any(axis=1).all()
+    np.testing.assert_allclose(mesh.scalars["heat"], mesh.V[:, 0] + 10 * mesh.V[:, 1], atol=1e-4)
+    picture = drawn(volume, colorbar=False)
+    assert np.ptp(picture[:, :, :3].astype(int), axis=2).max() > 60, "not a grey box"
+
+
+def test_a_flat_image_is_a_plane_and_cells_keep_their_values(pyvista):
+    image = pyvista.ImageData(dimensions=(4, 3, 1))
+    image.cell_data["heat"] = np.arange(6.0)
+    mesh = as_mesh(image)
+    assert set(mesh.scalars["heat"]) == set(range(6))
+    assert (mesh.V[:, 2] == 0).all()
+
+
+def test_a_volume_without_values_says_that_its_surface_is_drawn(pyvista, caplog):
+    assert as_mesh(pyvista.ImageData(dimensions=(2, 2, 2))).F.shape == (12, 3)
+    assert "it has no values, its surface is drawn" in caplog.text
+
+
+def test_unstructured_and_structured_grids_are_their_surface(pyvista):
+    cells = pyvista.ImageData(dimensions=(4, 4, 4)).cast_to_unstructured_grid()
+    cells["height"] = cells.points[:, 2]
+    mesh = as_mesh(cells)
+    assert len(mesh.F) == 6 * 9 * 2
+    np.testing.assert_allclose(mesh.scalars["height"], mesh.V[:, 2])
+    x, y = np.meshgrid(np.arange(4.0), np.arange(3.0))
+    assert as_mesh(pyvista.StructuredGrid(x, y, x * 0)).F.shape == (12, 3)
+
+
+def test_blocks_are_children_with_names(pyvista, caplog):
+    blocks = pyvista.MultiBlock({"ball": pyvista.Sphere(), "nothing": None, "inner": pyvista.MultiBlock([pyvista.Cube()])})
+    mesh = as_mesh(blocks)
+    assert [child.name for child in mesh.children] == ["ball", "inner"]
+    assert "1 blocks without points of a" in caplog.text
+    with pytest.raises(easypbr.ArgumentError, match="expected points, got none"):
+        as_mesh(pyvista.MultiBlock())
+
+
+def test_plain_vtk(pyvista):
+    vtk = pytest.importorskip("vtkmodules.vtkFiltersSources")
+    source = vtk.vtkSphereSource()
+    source.Update()
+    data = source.GetOutput()
+    mesh = as_mesh(data)
+    assert (len(mesh.V), len(mesh.F)) == (data.GetNumberOfPoints(), data.GetNumberOfPolys())
+    assert len(mesh.N) == len(mesh.V)
+    from vtkmodules.vtkCommonDataModel import vtkTable
+
+    with pytest.raises(easypbr.ArgumentError, match="vtkTable: expected a data set with points"):
+        as_mesh(vtkTable())
+
+
+def test_vtk_points_without_cells(pyvista):
+    cloud = pyvista.PolyData(POINTS)
+    cloud["heat"] = POINTS[:, 0]
+    for data in (cloud, pyvista.PointSet(POINTS)):
+        mesh = as_mesh(data)
+        np.testing.assert_allclose(mesh.V, POINTS, rtol=1e-6)
+        assert len(mesh.F) == 0
+
+
+# trimesh.
+
+
+def test_trimesh_paths_are_lines():
+    trimesh = pytest.importorskip("trimesh")
+    path = trimesh.load_path(np.array([[[0, 0, 0], [1, 0, 0]], [[1, 0, 0], [1, 1, 0]]], dtype=float))
+    mesh = as_mesh(path)
+    ends = mesh.V[mesh.E].reshape(-1, 6)
+    assert {tuple(row) for row in ends.round(6).tolist()} == {(0, 0, 0, 1, 0, 0), (1, 0, 0, 1, 1, 0)}
+
+
+def test_an_object_of_an_unexpected_form_is_named():
+    odd = types.SimpleNamespace(points=POINTS, lines=3, colors=None, has_lines=True)
+    with pytest.raises(easypbr.ArgumentError, match="cannot show a types.SimpleNamespace, which has not the expected form"):
+        as_mesh(odd)
+
+
+def test_no_library_is_imported_for_arrays():
+    import subprocess
+
+    code = "import easypbr, sys, numpy as np; easypbr.as_mesh(np.zeros((3, 3)));" \
+           "print([name for name in ('torch', 'vtkmodules', 'pyvista', 'trimesh', 'open3d', 'pandas') if name in sys.modules])"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout.strip() == "[]"
