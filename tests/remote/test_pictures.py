@@ -26,6 +26,7 @@ def test_at_rest_the_picture_is_the_rendered_one_bit_for_bit(view, connect, tmp_
 
 
 def test_after_a_drag_too(view, connect, tmp_path):
+    view.render((200, 120))  # Lights are placed by the first camera.
     client = connect(size=(200, 120))
     before = client.until_exact()
     client.drag((100, 60), (150, 40))
@@ -63,10 +64,10 @@ def test_a_setting_changes_the_picture_and_is_told(view, connect, tmp_path):
 def test_what_the_program_changes_is_seen_without_reloading(view, connect, tmp_path):
     client = connect()
     first = client.until_exact()
-    view.scene.show(easypbr.shapes.box(), "box")
+    view.scene.show(easypbr.shapes.sphere(1.3, 8), "larger")
     second = client.until_exact(first.number)
     assert not np.array_equal(first.image(tmp_path), second.image(tmp_path))
-    client.until_told("scene", lambda scene: [node["path"] for node in scene["nodes"]] == ["ball", "box"])
+    client.until_told("scene", lambda scene: [node["path"] for node in scene["nodes"]] == ["ball", "larger"])
     view.settings["background.color"] = (0, 0, 1)
     third = client.until_exact(second.number)
     assert tuple(third.image(tmp_path)[0, 0]) == (0, 0, 255, 255)
@@ -109,7 +110,7 @@ def test_objects_are_hidden_and_shown(view, connect, tmp_path):
 
 def test_picking_says_what_is_there(view, connect):
     scalars = np.arange(len(view.scene.get("ball").F), dtype=np.float32)
-    view.scene.get("ball").add_scalars("error", scalars)
+    view.scene.get("ball").scalars["error"] = scalars
     client = connect()
     client.until_exact()
     client.send("pick", id=5, x=80.5, y=60.5)
