@@ -16,7 +16,9 @@ packages=(
 )
 requirements=(scripts/requirements.txt)
 if [ "${1:-}" = tests ]; then
-  packages+=(clang-format clang-tidy ffmpeg xvfb openbox xdotool wmctrl xclip python3-torch)
+  packages+=(clang-format clang-tidy ffmpeg xvfb openbox xdotool wmctrl xclip python3-torch chromium)
+  # The page is built again by a test; Node may come from elsewhere.
+  command -v npm >/dev/null || packages+=(nodejs npm)
   requirements+=(scripts/requirements-test.txt)
 fi
 missing=()

@@ -121,6 +121,11 @@ class Client:
                 return message
         raise AssertionError("it never came")
 
+    def until_known(self, kind, wanted):
+        """What it is told of this kind, now or later."""
+        known = self.texts.get(kind)
+        return known if known and wanted(known) else self.until_told(kind, wanted)
+
     def until_told(self, kind, wanted=lambda message: True):
         return self.until(lambda message: isinstance(message, dict) and message["kind"] == kind and wanted(message))
 

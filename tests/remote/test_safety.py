@@ -312,7 +312,7 @@ def test_html_in_names_stays_text(view, connect):
     name = "<img src=x onerror=alert(1)>"
     view.scene.show(easypbr.shapes.sphere(2, 8), name)
     client = connect()
-    client.until_told("scene", lambda scene: name in [node["path"] for node in scene["nodes"]])
+    client.until_known("scene", lambda scene: name in [node["path"] for node in scene["nodes"]])
 
 
 def test_connections_leave_nothing_behind(server, connect):

@@ -5,6 +5,7 @@ import type { Field } from "./protocol";
 interface Props {
   field: Field;
   id: string;
+  label: string;
   value: string;
   disabled: boolean;
   set: (text: string) => void;
@@ -24,7 +25,7 @@ function useDraft(value: string): [string, (text: string) => void, (editing: boo
   return [draft, setDraft, edit];
 }
 
-function TextControl({ field, id, value, disabled, set }: Props) {
+function TextControl({ field, id, label, value, disabled, set }: Props) {
   const [draft, setDraft, edit] = useDraft(value);
   const commit = () => {
     if (draft !== value) set(draft);
@@ -33,6 +34,7 @@ function TextControl({ field, id, value, disabled, set }: Props) {
   return (
     <input
       id={id}
+      aria-label={label}
       type="text"
       inputMode={field.type === "number" || field.type === "integer" ? "decimal" : "text"}
       class={field.type === "vector" ? "wide" : ""}

@@ -23,7 +23,7 @@ function Row({ field, connection }: { field: Field; connection: Connection }) {
         {field.unit && <span class="unit"> {field.unit}</span>}
       </label>
       <div class="control">
-        <Control field={field} id={id} value={shown} disabled={!controls} set={set} />
+        <Control field={field} id={id} label={label} value={shown} disabled={!controls} set={set} />
         {field.auto ? (
           <button
             type="button"

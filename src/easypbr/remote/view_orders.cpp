@@ -125,6 +125,11 @@ void View::obey(ClientId from, const Shot& message) {
 }
 
 void View::obey(ClientId, const SetCamera& message) {
+    // What is inferred follows from the first view, not from where a link looks.
+    if (!own_->has_drawn) {
+        own_->live.begin_frame(own_->size, 0);
+        draw();
+    }
     app::apply_camera_text(message.text, own_->session.settings());
     own_->last_change_s = now_seconds();
 }
@@ -147,7 +152,9 @@ void View::obey(ClientId, const Act& message) {
     if (message.what == What::fit) own.live.navigation().ask_fit();
     if (message.what == What::undo) own.live.edits().undo();
     if (message.what == What::redo) own.live.edits().redo();
-    if (message.what == What::reset) own.session.replace_settings(own.first);
+    if (message.what != What::reset) return;
+    own.session.replace_settings(own.first);
+    own.has_drawn = false;
 }
 
 }  // namespace easypbr::remote
