@@ -142,7 +142,7 @@ TEST(Inbox, MergesMovesAndNothingElse) {
     const std::vector<Order> orders = inbox.take();
     ASSERT_EQ(orders.size(), 4u);
     EXPECT_EQ(std::get<Input>(orders[0].message).id, 2u);
-    EXPECT_EQ(orders[0].arrived_s, 1);
+    EXPECT_EQ(orders[0].arrived_s, 2);
     EXPECT_FALSE(inbox.has_orders());
 }
 

@@ -83,6 +83,14 @@ class Page:
             }""")
         return np.frombuffer(base64.b64decode(data), np.uint8).reshape(height, width, 4)
 
+    def until_shows(self, pixels):
+        """Waits until the canvas holds exactly these."""
+        for _ in range(PATIENCE_MS // 200):
+            if np.array_equal(self.pixels(), pixels):
+                return
+            self.page.wait_for_timeout(200)
+        raise AssertionError("another picture stays")
+
     def centre(self):
         box = self.canvas.bounding_box()
         return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2

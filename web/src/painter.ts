@@ -99,8 +99,11 @@ export class Painter {
     update({ exact });
     const sent = this.inputs.get(header.input);
     if (sent === undefined) return;
-    this.latencies.push(performance.now() - sent);
+    const latency = performance.now() - sent;
+    this.latencies.push(latency);
     if (this.latencies.length > 60) this.latencies.shift();
+    // Without what the server waited and drew: on the way there, encoding, on the way here, decoding.
+    if (this.canvas) this.canvas.dataset.latency = `${latency} ${latency - header.waitUs / 1000} ${header.encodeUs / 1000}`;
     for (const id of [...this.inputs.keys()]) if (id <= header.input) this.inputs.delete(id);
   }
 

@@ -21,8 +21,6 @@ void Inbox::add(Order order) {
         const std::lock_guard lock(mutex_);
         const bool merges = !orders_.empty() && move_of(order) && move_of(orders_.back()) &&
                             orders_.back().from == order.from;
-        // The older move's time stays: the wait for a picture began then.
-        if (merges) order.arrived_s = orders_.back().arrived_s;
         if (merges) orders_.pop_back();
         orders_.push_back(std::move(order));
         if (orders_.size() > most_orders) orders_.pop_front();

@@ -83,7 +83,7 @@ class Members {
     std::set<std::string> known_;
 };
 
-Vec2i size_of(Members& members, int most) {
+Vec2i picture_size(Members& members, int most) {
     const int width = members.side("width", most), height = members.side("height", most);
     return {width, height};
 }
@@ -108,7 +108,7 @@ int key_of(Members& members) {
 
 ClientMessage hello_of(Members& members) {
     const std::string token = members.text("token", 128);
-    return Hello{token, size_of(members, most_live_side)};
+    return Hello{token, picture_size(members, most_live_side)};
 }
 
 ClientMessage ack_of(Members& members) {
@@ -157,7 +157,7 @@ ClientMessage turn_of(Members& members) {
 }
 
 ClientMessage resize_of(Members& members) {
-    return Resize{size_of(members, most_live_side)};
+    return Resize{picture_size(members, most_live_side)};
 }
 
 ClientMessage pause_of(Members& members) {
@@ -189,7 +189,7 @@ ClientMessage channel_of(Members& members) {
 
 ClientMessage shot_of(Members& members) {
     const uint32_t id = members.count("id");
-    const Vec2i size = size_of(members, most_shot_side);
+    const Vec2i size = picture_size(members, most_shot_side);
     if (int64_t(size.x()) * size.y() > most_shot_pixels)
         throw ProtocolError(fmt::format("a still: expected {} pixels at most", most_shot_pixels));
     return Shot{id, size};

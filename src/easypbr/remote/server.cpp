@@ -14,7 +14,7 @@
 namespace easypbr::remote {
 namespace {
 
-NetworkOptions checked(const ServeOptions& options) {
+NetworkOptions network_options(const ServeOptions& options) {
     if (options.port < 0 || options.port > 65535)
         throw ArgumentError(fmt::format("port: expected 0 to 65535, got {}", options.port));
     if (options.max_clients < 1 || options.max_clients > 1000)
@@ -40,7 +40,7 @@ struct Server::Parts {
     Parts(const Scene& scene, const Settings& settings, const ServeOptions& given)
         : options(given),
           tokens(load_tokens(given.token_file)),
-          network(checked(given)),
+          network(network_options(given)),
           clients(network, inbox, tokens, size_t(given.max_clients)),
           view(scene, settings, inbox, clients) {
         const std::string session = random_token().substr(0, 16);

@@ -80,8 +80,7 @@ void View::act(const std::vector<Order>& orders) {
 }
 
 void View::obey(const Order& order) {
-    const bool is_first = own_->waits_since_s == 0;
-    if (is_first) own_->waits_since_s = order.arrived_s;
+    own_->waits_since_s = order.arrived_s;
     std::visit([&](const auto& message) { obey(order.from, message); }, order.message);
 }
 
