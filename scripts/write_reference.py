@@ -13,7 +13,8 @@ from easypbr import _easypbr
 
 #: Groups in the order of the page; every public name of the package is in one of them.
 PYTHON_GROUPS = {
-    "Drawing": ["render", "Viewer", "Scene", "Settings", "auto", "follow", "Automatic", "Follow"],
+    "Drawing": ["render", "Viewer", "Scene", "Settings", "auto", "follow", "Automatic", "Follow",
+                "Server", "ServerClient"],
     "Content": ["Mesh", "LabelMap", "load_scene", "as_mesh", "Material", "Style", "Light", "Environment", "Camera", "CameraPath"],
     "Geometry": ["KdTree"],
     "Ground truth and tensors": ["Instance", "Moment", "MeshLoader", "eigen2tensor", "tensor2eigen"],

@@ -22,6 +22,7 @@ from ._easypbr import (
     Mesh,
     Moment,
     Pick,
+    ServerClient,
     Style,
     auto,
     colormap,
@@ -35,6 +36,7 @@ from .convert import as_mesh
 from .errors import ArgumentError, ContextError, Error, FileError, FormatError, ShaderError, UnknownNameError
 from .loader import MeshLoader
 from .panels import Panel
+from .remote import Server
 from .rendering import render
 from .scene import Scene
 from .settings import Settings
@@ -66,6 +68,8 @@ __all__ = [
     "Panel",
     "Pick",
     "Scene",
+    "Server",
+    "ServerClient",
     "Settings",
     "Style",
     "UnknownNameError",

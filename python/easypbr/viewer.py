@@ -18,6 +18,7 @@ from .errors import ArgumentError
 from .lights import _STUDIO, Lights, SceneLight, StudioLight
 from .panels import WindowCallbacks
 from .recorder import Recorder, watch_recorder
+from .remote import Server
 from .scene import Scene, scene_of
 from .settings import Settings
 from .shapes import camera_frustum
@@ -299,6 +300,29 @@ class Viewer(WindowCallbacks):
         self._thread = threading.Thread(target=self._live, name="easypbr window", daemon=True)
         self._thread.start()
         atexit.register(self.close)  # A thread within the library must not outlive the interpreter.
+
+    def serve(
+        self,
+        port: int = 0,
+        *,
+        bind: str = "127.0.0.1",
+        socket: str | os.PathLike = "",
+        token_file: str | os.PathLike = "",
+        host_names: Sequence[str] = (),
+        origins: Sequence[str] = (),
+        max_clients: int = 16,
+        block: bool = False,
+    ) -> Server:
+        """Shows the scene in browsers: print(view.serve().url). Returns at once, unless `block`: then when it is closed, by
+        Ctrl-C too. `port`: 0 takes any that is free; `socket`: path of a Unix socket to use in its place; `bind`: others
+        than loopback are seen by the network; `token_file`: secrets to use, a line to control, a line to watch;
+        `host_names`: other names that the server is reached by; `origins`: pages of other sites that may connect."""
+        handle = self._handle.serve(port, bind, socket, token_file, list(host_names), list(origins), max_clients)
+        server = Server(handle)
+        if block:
+            print(server.url, flush=True)
+            server.wait()
+        return server
 
     def show_image(
         self, name: str, image: Any, range: tuple[float, float] | None = None, colormap: str | None = None

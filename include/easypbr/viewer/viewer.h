@@ -16,6 +16,7 @@
 #include "easypbr/app/picture.h"
 #include "easypbr/app/recorder.h"
 #include "easypbr/core/image.h"
+#include "easypbr/remote/server.h"
 #include "easypbr/scene/scene.h"
 
 namespace easypbr {
@@ -163,6 +164,14 @@ class Viewer {
     /// The GUI behind window and screenshots.
     gui::LiveView& live();
 
+    /// Shows the scene in browsers from now on, beside what the program does: what it changes in the scene is
+    /// seen, and what it changes in settings() once tell_servers() or update() is called. Clients move a
+    /// camera and change settings of their own; what they hide is hidden in the scene. The server ends with
+    /// its last handle. Custom passes and panels are not shown. Throws as remote::Server does.
+    std::shared_ptr<remote::Server> serve(const remote::ServeOptions& options = {});
+    /// Changes for the clients of servers what has changed in settings().
+    void tell_servers();
+
     /// Draws a custom pass in every picture from now on; one of the same name is replaced. See
     /// app/custom_pass.h. Throws ArgumentError for none.
     void add_pass(const std::string& name, app::Stage stage, std::shared_ptr<app::Pass> pass);
@@ -177,6 +186,7 @@ class Viewer {
   private:
     bool update_window();
 
+    std::vector<std::weak_ptr<remote::Server>> servers_;
     struct Window;
     Window& window();
     static void shut(Window& window);

@@ -143,7 +143,7 @@ bool LiveDrawing::is_busy() const {
 }
 
 LiveShot LiveDrawing::shot(const LiveNeeds& needs) {
-    LiveShot shot{size_, channel, is_moving(needs), needs.pass_times, needs.surfaces};
+    LiveShot shot{size_, channel, is_moving(needs), needs.resolution, needs.pass_times, needs.surfaces};
     shot.motion = [this](const Camera& now) { return shown_motion(now); };
     shot.motion_key = {player_.speed(), form_.fps};
     return shot;

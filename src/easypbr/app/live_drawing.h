@@ -59,6 +59,7 @@ struct LiveNeeds {
     bool moving = false;      ///< a panel changes something from frame to frame: pictures should come quickly
     bool pass_times = false;  ///< see LiveShot
     bool surfaces = false;    ///< see LiveShot
+    double resolution = 1;    ///< see LiveShot
 };
 
 /// What a client shows, panels and all: for recordings with panels. A client without panels has none.
@@ -108,6 +109,8 @@ class LiveDrawing {
     /// Of the last frame.
     Vec2i size() const { return size_; }
     const LivePicture& picture() const { return picture_; }
+    /// What is seen in a pixel of the last frame's size. Throws as Session::pick_buffer().
+    std::optional<Pick> pick(Vec2d pixel) { return picture_.surfaces(size_).at(pixel); }
     /// What is shown: "picture", "slices", or a layer's name.
     std::string channel = "picture";
 

@@ -60,8 +60,8 @@ bool LivePicture::draw(const LiveShot& shot) {
 bool LivePicture::step(const LiveShot& shot, uint64_t version) {
     if (is_stale(shot, version)) {
         const bool reduces = shot.moving && session_.context_info().software;
-        shown_ = {version, shot.channel, reduces ? reduced(shot.size, reduction_) : shot.size,
-                  shot.motion_key};
+        const double share = std::min(reduces ? reduction_ : 1.0, shot.moving ? shot.resolution : 1.0);
+        shown_ = {version, shot.channel, share < 1 ? reduced(shot.size, share) : shot.size, shot.motion_key};
         failure_.reset();
         draw_quickly(shot, reduces);
         return true;

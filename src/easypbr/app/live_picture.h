@@ -28,6 +28,7 @@ struct LiveShot {
     Vec2i size{1, 1};
     std::string channel = "picture";  ///< this, "slices", or a layer's name
     bool moving = false;              ///< frames should come quickly
+    double resolution = 1;            ///< share of `size` that moving pictures have at most
     bool pass_times = false;          ///< measure LiveStatistics::passes
     bool surfaces = false;            ///< known_surfaces() is asked for at rest
     /// What motion_blur.enabled shows: asked with the camera of each new picture. Another `motion_key` is

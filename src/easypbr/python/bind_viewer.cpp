@@ -358,6 +358,7 @@ void bind_viewer(nb::module_& module) {
     bind_recorder(module, viewer);
     bind_window(viewer);
     bind_gui(module, viewer);
+    bind_server(module, viewer);
     nb::class_<app::Pick>(module, "Pick", "The surface at a pixel.")
         .def_ro("object", &app::Pick::object, "Name in the scene; 'car/wheel' for a child.")
         .def_ro("part", &app::Pick::part, "Name of the part of the mesh; empty without parts.")

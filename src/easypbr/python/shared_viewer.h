@@ -11,6 +11,7 @@
 #include <optional>
 #include <set>
 #include <thread>
+#include <type_traits>
 
 #include "easypbr/app/session.h"
 #include "easypbr/core/error.h"
@@ -102,7 +103,14 @@ class SharedViewer {
         return released([&] {
             require_same_process();
             const std::lock_guard lock(mutex_);
-            return work(viewer_);
+            if constexpr (std::is_void_v<decltype(work(viewer_))>) {
+                work(viewer_);
+                viewer_.tell_servers();
+            } else {
+                auto result = work(viewer_);
+                viewer_.tell_servers();
+                return result;
+            }
         });
     }
 
@@ -132,6 +140,7 @@ inline std::optional<Vec2i> optional_size(const nb::object& size) {
 
 void bind_recorder(nb::module_& module, nb::class_<SharedViewer>& viewer);
 void bind_gui(nb::module_& module, nb::class_<SharedViewer>& viewer);
+void bind_server(nb::module_& module, nb::class_<SharedViewer>& viewer);
 
 /// Viewer::update(); then raise_kept().
 bool update_window(SharedViewer& self);

@@ -100,6 +100,18 @@ gui::LiveView& Viewer::live() {
     return window().live;
 }
 
+std::shared_ptr<remote::Server> Viewer::serve(const remote::ServeOptions& options) {
+    const auto server = std::make_shared<remote::Server>(scene(), settings(), options);
+    servers_.push_back(server);
+    return server;
+}
+
+void Viewer::tell_servers() {
+    std::erase_if(servers_, [](const auto& server) { return server.expired(); });
+    for (const auto& each : servers_)
+        if (const auto server = each.lock()) server->take_settings(settings());
+}
+
 bool Viewer::update() try { return update_window(); } catch (const Error&) {
     if (!gui::display_is_lost()) throw;
     close();
@@ -128,6 +140,7 @@ bool Viewer::update_window() {
     w.call(w.before);
     const bool changed = w.live.update(events, w.window->size(), w.window->scale(), seconds);
     w.call(w.after);
+    tell_servers();
     if (w.window->should_close() || w.live.wants_to_close()) {
         shut(w);
         return false;

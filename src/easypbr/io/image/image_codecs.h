@@ -24,6 +24,8 @@ Image decode_exr(Bytes bytes, const std::string& name);
 inline constexpr int jpeg_quality = 95;
 /// Quality 1 to 100, no chroma subsampling; alpha is dropped. u8 only.
 std::vector<std::byte> encode_jpeg(const Image& image, int quality = jpeg_quality);
+/// Of pictures that are seen for a moment: half the chroma in each direction, quicker transforms. RGBA u8.
+std::vector<std::byte> encode_jpeg_quickly(const Image& image, int quality);
 /// Run-length encoded RGBE; alpha is dropped, negative and NaN become 0. f32 only.
 std::vector<std::byte> encode_hdr(const Image& image);
 /// float32 channels, ZIP-compressed scanlines. f32 only.

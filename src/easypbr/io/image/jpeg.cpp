@@ -60,6 +60,26 @@ void check_decoded(int result, const Handle& handle, const std::string& name) {
     if (!harmless) fail_image(name, fmt::format("damaged JPEG: {}", message));
 }
 
+struct JpegForm {
+    int pixels, subsampling, flags;
+};
+
+std::vector<std::byte> compress(const Image& image, const JpegForm& form, int quality) {
+    if (image.width() > max_jpeg_side || image.height() > max_jpeg_side)
+        throw ArgumentError(fmt::format("cannot encode JPEG: {}x{} pixels, the format holds at most {}",
+                                        image.width(), image.height(), max_jpeg_side));
+    const Handle handle(tjInitCompress());
+    unsigned char* buffer = nullptr;
+    unsigned long size = 0;
+    const int result =
+        tjCompress2(handle.get(), image.pixels<uint8_t>().data(), image.width(), 0, image.height(),
+                    form.pixels, &buffer, &size, form.subsampling, quality, form.flags);
+    const std::unique_ptr<unsigned char, decltype(&tjFree)> owner(buffer, tjFree);
+    if (result) throw ArgumentError(fmt::format("cannot encode JPEG: {}", tjGetErrorStr2(handle.get())));
+    const auto* begin = reinterpret_cast<const std::byte*>(buffer);
+    return {begin, begin + size};
+}
+
 }  // namespace
 
 Image decode_jpeg(Bytes bytes, const std::string& name) {
@@ -84,21 +104,15 @@ Image decode_jpeg(Bytes bytes, const std::string& name) {
 }
 
 std::vector<std::byte> encode_jpeg(const Image& image, int quality) {
-    if (image.width() > max_jpeg_side || image.height() > max_jpeg_side)
-        throw ArgumentError(fmt::format("cannot encode JPEG: {}x{} pixels, the format holds at most {}",
-                                        image.width(), image.height(), max_jpeg_side));
     const bool grey = image.channels() <= 2;
     const Image plain = with_channels(image, grey ? 1 : 3);
-    const Handle handle(tjInitCompress());
-    unsigned char* buffer = nullptr;
-    unsigned long size = 0;
-    const int result = tjCompress2(handle.get(), plain.pixels<uint8_t>().data(), plain.width(), 0,
-                                   plain.height(), grey ? TJPF_GRAY : TJPF_RGB, &buffer, &size,
-                                   grey ? TJSAMP_GRAY : TJSAMP_444, quality, TJFLAG_ACCURATEDCT);
-    const std::unique_ptr<unsigned char, decltype(&tjFree)> owner(buffer, tjFree);
-    if (result) throw ArgumentError(fmt::format("cannot encode JPEG: {}", tjGetErrorStr2(handle.get())));
-    const auto* begin = reinterpret_cast<const std::byte*>(buffer);
-    return {begin, begin + size};
+    return compress(plain, {grey ? TJPF_GRAY : TJPF_RGB, grey ? TJSAMP_GRAY : TJSAMP_444, TJFLAG_ACCURATEDCT},
+                    quality);
+}
+
+std::vector<std::byte> encode_jpeg_quickly(const Image& image, int quality) {
+    if (image.channels() != 4) throw ArgumentError("cannot encode JPEG quickly: expected RGBA");
+    return compress(image, {TJPF_RGBA, TJSAMP_420, TJFLAG_FASTDCT}, quality);
 }
 
 }  // namespace easypbr::io

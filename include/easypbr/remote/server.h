@@ -1,0 +1,76 @@
+// Server: a scene's picture in the browsers of other machines.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace easypbr {
+
+class Animations;
+class Scene;
+struct Settings;
+
+namespace remote {
+
+struct ServeOptions {
+    int port = 0;  ///< 0 to 65535; 0: any that is free
+    std::string bind =
+        "127.0.0.1";  ///< the address that is listened on; others than loopback are seen by the network
+    std::filesystem::path socket;  ///< a Unix socket of mode 0600 in place of address and port
+    std::filesystem::path
+        token_file;  ///< secrets to use: a line to control, a line to watch; empty: random ones
+    std::vector<std::string> host_names;  ///< names that the server is reached by beside loopback and `bind`
+    std::vector<std::string>
+        origins;           ///< pages of other sites that may connect or show it: "https://hub.org"
+    int max_clients = 16;  ///< 1 to 1000
+};
+
+struct ServerClient {
+    uint64_t id = 0;
+    bool controls = false;
+    bool watches_only = false;
+    double latency_s = 0;  ///< from sending a picture to its being drawn; 0 before the first
+};
+
+/// Answers on a thread of its own, and draws on another one, in a context of its own: the program goes on,
+/// and what it changes in the scene is seen. Members may be called from any thread.
+class Server {
+  public:
+    /// Shows the scene with these settings. Throws ArgumentError for options out of range, FileError and
+    /// FormatError for the token file and the socket, Error when the port is taken.
+    Server(const Scene& scene, const Settings& settings, const ServeOptions& options = {});
+    /// Closes.
+    ~Server();
+    Server(const Server&) = delete;
+    Server& operator=(const Server&) = delete;
+
+    /// With the secret that lets a client in: "http://127.0.0.1:8123/#token=...". Of a Unix socket the name
+    /// is "localhost", for the port that it is forwarded to.
+    std::string url() const;
+    /// Lets a client watch and nothing else.
+    std::string watch_url() const;
+    /// The command that makes a remote server's port, or socket, reachable on one's own machine.
+    std::string forward_command(const std::string& host) const;
+    int port() const;
+
+    std::vector<ServerClient> clients() const;
+
+    /// Changes for the clients what has changed in the settings since the last call, and nothing else.
+    void take_settings(const Settings& settings);
+    /// Lets clients play a file's animations. They then move the meshes of the scene.
+    void add_animations(const std::string& name, const Animations& animations);
+
+    /// Says goodbye to all clients and frees the port. Nothing happens the second time.
+    void close();
+    bool is_open() const;
+
+  private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
+
+}  // namespace remote
+}  // namespace easypbr

@@ -1,0 +1,150 @@
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <thread>
+
+#include "easypbr/app/output.h"
+#include "easypbr/app/session.h"
+#include "easypbr/app/settings_files.h"
+#include "easypbr/cli/command.h"
+#include "easypbr/cli/drawable.h"
+#include "easypbr/cli/render_options.h"
+#include "easypbr/core/error.h"
+#include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/remote/server.h"
+#include "easypbr/scene/animation.h"
+#include "easypbr/scene/fields.h"
+#include "easypbr/scene/settings.h"
+
+namespace easypbr::cli {
+namespace {
+
+struct ServeCommand {
+    std::vector<std::string> files, values;
+    std::string environment, settings, format, socket, token_file;
+    remote::ServeOptions server;
+};
+
+void declare_serve(CLI::App& command, ServeCommand& options) {
+    command.add_option("FILE", options.files,
+                       "Meshes: PLY, OBJ, STL, OFF, glTF, GLB and more; - is standard input");
+    declare_format(command, options.format);
+    command.add_option("--env,--hdri-file", options.environment, field("environment.file").doc)
+        ->option_text("FILE");
+    command.add_option("--settings", options.settings, "Start from a file that --save-settings wrote")
+        ->option_text("FILE");
+    command.add_option("--set", options.values, "Any setting, for example tonemap.exposure=2")
+        ->allow_extra_args(false)
+        ->option_text("KEY=VALUE");
+    command.add_option("--port", options.server.port, "Port to listen on; 0 takes any that is free")
+        ->option_text("N");
+    command
+        .add_option("--bind", options.server.bind,
+                    "Address to listen on; others than 127.0.0.1 are seen by the network")
+        ->option_text("ADDRESS");
+    command
+        .add_option("--socket", options.socket,
+                    "Listen on a Unix socket that no other user can open, in place of a port")
+        ->option_text("PATH");
+    command
+        .add_option("--token-file", options.token_file,
+                    "Secrets to use: a line to control, a line to watch; by default random ones")
+        ->option_text("FILE");
+    command
+        .add_option("--host-name", options.server.host_names,
+                    "Another name that the server is reached by; may be repeated")
+        ->allow_extra_args(false)
+        ->option_text("NAME");
+    command
+        .add_option("--origin", options.server.origins,
+                    "Page of another site that may connect, such as https://hub.example.org; may be repeated")
+        ->allow_extra_args(false)
+        ->option_text("URL");
+    command.add_option("--max-clients", options.server.max_clients, "Clients at a time")->option_text("N");
+}
+
+volatile std::sig_atomic_t stopped = 0;
+
+/// While it lives, Ctrl-C and the like are noted.
+class Signals {
+  public:
+    Signals() {
+        stopped = 0;
+        for (size_t i = 0; i < numbers.size(); ++i)
+            before_[i] = std::signal(numbers[i], [](int) { stopped = 1; });
+    }
+    ~Signals() {
+        for (size_t i = 0; i < numbers.size(); ++i) std::signal(numbers[i], before_[i]);
+    }
+    Signals(const Signals&) = delete;
+    Signals& operator=(const Signals&) = delete;
+
+  private:
+    static constexpr std::array<int, 3> numbers = {SIGINT, SIGTERM, SIGHUP};
+    std::array<void (*)(int), 3> before_{};
+};
+
+/// This machine's address as the ssh session reached it: the third word of SSH_CONNECTION.
+std::string ssh_host() {
+    const char* const connection = std::getenv("SSH_CONNECTION");
+    if (!connection) return {};
+    const std::string words = connection;
+    const size_t first = words.find(' '), second = words.find(' ', first + 1);
+    const size_t third = words.find(' ', second + 1);
+    if (first == words.npos || second == words.npos || third == words.npos) return {};
+    return words.substr(second + 1, third - second - 1);
+}
+
+void tell_urls(const remote::Server& server) {
+    fmt::print("control: {}\nwatch:   {}\n", server.url(), server.watch_url());
+    if (const std::string host = ssh_host(); !host.empty())
+        fmt::print("on your own machine first: {}\n", server.forward_command(host));
+    fmt::print("Ctrl-C ends\n");
+    std::fflush(stdout);
+}
+
+int run_serve(const ServeCommand& options) {
+    check_input("serve", options.files);
+    require(!options.files.empty(), "serve", "at least one FILE");
+    app::Session session;
+    if (!options.settings.empty()) app::load_settings(session, options.settings);
+    RenderOptions look;
+    look.values = options.values;
+    if (!options.environment.empty())
+        look.shorthands.push_back({"--env", "environment.file", options.environment});
+    apply(look, session.settings());
+    std::vector<std::pair<std::string, Animations>> animations;
+    const std::vector<std::string> names = unique_names(options.files);
+    for (size_t i = 0; i < names.size(); ++i) {
+        const io::LoadOptions load{.crease_angle_deg = session.settings().load.crease_deg,
+                                   .memory_gb = session.settings().limits.memory,
+                                   .format = options.format};
+        const io::LoadedScene loaded = load_drawable(options.files[i], load);
+        show(session.scene(), loaded, names[i]);
+        if (!loaded.animations.empty()) animations.emplace_back(names[i], loaded.animations);
+    }
+    remote::ServeOptions server_options = options.server;
+    server_options.socket = options.socket;
+    server_options.token_file = options.token_file;
+    const Signals signals;
+    remote::Server server(session.scene(), session.settings(), server_options);
+    for (const auto& [name, each] : animations) server.add_animations(name, each);
+    tell_urls(server);
+    while (!stopped) std::this_thread::sleep_for(std::chrono::milliseconds(100));
+    server.close();
+    return 0;
+}
+
+}  // namespace
+
+void add_serve(CLI::App& app, Job& job) {
+    set_job<ServeCommand>(*app.add_subcommand("serve", "Show mesh files in the browsers of other machines"),
+                          job, declare_serve, run_serve);
+}
+
+}  // namespace easypbr::cli

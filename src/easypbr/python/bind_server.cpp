@@ -1,0 +1,51 @@
+// Server, as the Python class of the same name uses it.
+#include <nanobind/stl/filesystem.h>
+#include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/vector.h>
+
+#include "easypbr/python/shared_viewer.h"
+#include "easypbr/python/text.h"
+#include "easypbr/remote/server.h"
+
+namespace easypbr::python {
+namespace {
+
+using remote::Server;
+using remote::ServerClient;
+
+std::shared_ptr<Server> serve(SharedViewer& self, int port, const std::string& bind, const fs::path& socket,
+                              const fs::path& token_file, const std::vector<std::string>& host_names,
+                              const std::vector<std::string>& origins, int max_clients) {
+    const remote::ServeOptions options{port, bind, socket, token_file, host_names, origins, max_clients};
+    return self.run([&](Viewer& viewer) { return viewer.serve(options); });
+}
+
+}  // namespace
+
+void bind_server(nb::module_& module, nb::class_<SharedViewer>& viewer) {
+    nb::class_<ServerClient>(module, "ServerClient", "A browser that looks at a served view.")
+        .def_ro("id", &ServerClient::id, "Number of the connection.")
+        .def_ro("controls", &ServerClient::controls, "Whether it moves the camera.")
+        .def_ro("watches_only", &ServerClient::watches_only, "Whether it came by watch_url.")
+        .def_ro("latency_s", &ServerClient::latency_s,
+                "Seconds from sending an image to its being drawn; 0 before the first.")
+        .def("__repr__", [](const ServerClient& client) {
+            return "<ServerClient " + std::to_string(client.id) + (client.controls ? ", controls>" : ">");
+        });
+    nb::class_<Server>(module, "ServerHandle", "A view in the browsers of other machines.")
+        .def_prop_ro("url", &Server::url)
+        .def_prop_ro("watch_url", &Server::watch_url)
+        .def_prop_ro("port", &Server::port)
+        .def_prop_ro("is_open", &Server::is_open)
+        .def("forward_command", &Server::forward_command, nb::arg("host"))
+        .def("clients", [](const Server& self) { return released([&] { return self.clients(); }); })
+        .def("add_animations",
+             [](Server& self, const std::string& name, const Animations& animations) {
+                 released([&] { self.add_animations(name, animations); });
+             })
+        .def("close", [](Server& self) { released([&] { self.close(); }); });
+    viewer.def("serve", serve, nb::arg("port"), nb::arg("bind"), nb::arg("socket"), nb::arg("token_file"),
+               nb::arg("host_names"), nb::arg("origins"), nb::arg("max_clients"));
+}
+
+}  // namespace easypbr::python

@@ -1,0 +1,229 @@
+#include "easypbr/remote/describe.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "easypbr/app/edits.h"
+#include "easypbr/core/error.h"
+#include "easypbr/render/pipeline/layers.h"
+#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/scene.h"
+#include "easypbr/scene/settings.h"
+
+namespace easypbr::remote {
+namespace {
+
+using nlohmann::json;
+
+/// Nodes that a scene's tree shows at most: a page with more could not be used.
+constexpr size_t most_nodes = 5000;
+
+std::string written(const json& message) {
+    return message.dump(-1, ' ', false, json::error_handler_t::replace);
+}
+
+const char* type_name(FieldType type) {
+    switch (type) {
+        case FieldType::boolean:
+            return "boolean";
+        case FieldType::integer:
+            return "integer";
+        case FieldType::number:
+            return "number";
+        case FieldType::color:
+            return "color";
+        case FieldType::vector:
+            return "vector";
+        case FieldType::text:
+            return "text";
+        case FieldType::choice:
+            return "choice";
+    }
+    return "text";
+}
+
+/// JSON has no infinity: a range without an end has no member.
+json description_of(const Field& field) {
+    json row = {{"name", field.name}, {"doc", field.doc}, {"type", type_name(field.type)}};
+    if (!field.unit.empty()) row["unit"] = field.unit;
+    if (field.can_be_automatic) row["auto"] = true;
+    if (std::isfinite(field.min)) row["min"] = field.min;
+    if (std::isfinite(field.max)) row["max"] = field.max;
+    if (!field.choices.empty()) row["choices"] = field.choices;
+    if (!field.sizes.empty()) row["sizes"] = field.sizes;
+    if (field.whole) row["whole"] = true;
+    if (field.name == "image.samples") row["max"] = most_client_samples;
+    return row;
+}
+
+FieldText text_of(const Field& field, const Value& value) {
+    if (value.state == Value::State::given) return {to_text(field, value), {}};
+    FieldText text{value.state == Value::State::follow ? "follow" : "auto", {}};
+    if (value.latched) {
+        Value latched = value;
+        latched.state = Value::State::given;
+        text.latched = to_text(field, latched);
+    }
+    return text;
+}
+
+json node_of(const Mesh& mesh, const std::string& path, size_t& left) {
+    const auto data = mesh.snapshot();
+    json node = {{"path", path},
+                 {"visible", data->style.visible.value_or(true)},
+                 {"vertices", data->V.rows()},
+                 {"faces", data->F.rows()}};
+    json children = json::array();
+    for (const Mesh& child : data->children) {
+        if (left == 0) break;
+        --left;
+        children.push_back(node_of(child, path + "/" + child.name(), left));
+    }
+    if (!children.empty()) node["children"] = std::move(children);
+    return node;
+}
+
+/// What a face's or vertex's own arrays say.
+json values_at(const MeshData& data, const app::Pick& pick) {
+    const PerElement wanted = pick.is_face ? PerElement::face : PerElement::vertex;
+    const auto row = Eigen::Index(pick.element);
+    const auto holds = [&](Eigen::Index rows) {
+        return row >= 0 && row < rows && element_of(data, rows) == wanted;
+    };
+    json values = json::object();
+    if (holds(data.L.rows())) {
+        const int32_t label = data.L(row);
+        values["label"] = label;
+        const LabelClass* known = data.label_map ? data.label_map->find(label) : nullptr;
+        if (known) values["class"] = known->name;
+    }
+    for (const ScalarArray& scalar : data.scalars)
+        if (holds(scalar.values.rows()) && std::isfinite(scalar.values(row)))
+            values["scalars"][scalar.name] = scalar.values(row);
+    return values;
+}
+
+}  // namespace
+
+bool is_open(const FieldInfo& field) {
+    static const std::set<std::string> texts = {"style.scalar", "annotation.title"};
+    if (field.name.starts_with("limits.") || field.name.starts_with("load.") || field.name == "image.size")
+        return false;
+    return field.type != FieldType::text || !field.choices.empty() || texts.contains(field.name);
+}
+
+void check_client_value(const FieldInfo& field, const Value& value) {
+    const auto* number = std::get_if<double>(&value.data);
+    if (field.name == "image.samples" && number && *number > most_client_samples)
+        throw ArgumentError(fmt::format("image.samples: a server draws at most {}", most_client_samples));
+}
+
+FieldTexts texts_of(const Settings& settings) {
+    FieldTexts texts;
+    for (const Field& field : fields())
+        if (is_open(field)) texts[field.name] = text_of(field, field.get(settings));
+    return texts;
+}
+
+FieldTexts changed(const FieldTexts& before, const FieldTexts& now) {
+    FieldTexts changed;
+    for (const auto& [name, text] : now) {
+        const auto known = before.find(name);
+        if (known == before.end() || known->second != text) changed[name] = text;
+    }
+    return changed;
+}
+
+std::string welcome_text(const std::string& session, bool watches_only) {
+    json rows = json::array();
+    for (const Field& field : fields())
+        if (is_open(field)) rows.push_back(description_of(field));
+    json channels = {"picture", "slices"};
+    for (const std::string& name : render::layer_names()) channels.push_back(name);
+    return written({{"kind", "welcome"},
+                    {"session", session},
+                    {"watches", watches_only},
+                    {"channels", channels},
+                    {"fields", rows}});
+}
+
+std::string settings_text(const FieldTexts& changed) {
+    json values = json::object();
+    for (const auto& [name, text] : changed) {
+        values[name] = {{"value", text.given}};
+        if (!text.latched.empty()) values[name]["latched"] = text.latched;
+    }
+    return written({{"kind", "settings"}, {"values", values}});
+}
+
+std::string camera_message(const std::string& camera) {
+    return written({{"kind", "camera"}, {"text", camera}});
+}
+
+std::string scene_text(const Scene& scene, const std::string& selected, const std::string& channel) {
+    json nodes = json::array();
+    size_t left = most_nodes;
+    for (const std::string& name : scene.names()) {
+        if (left == 0) break;
+        --left;
+        nodes.push_back(node_of(scene.get(name), name, left));
+    }
+    return written({{"kind", "scene"}, {"nodes", nodes}, {"selected", selected}, {"channel", channel}});
+}
+
+std::string control_text(bool controls, bool taken, bool may_control, size_t clients) {
+    return written({{"kind", "control"},
+                    {"controls", controls},
+                    {"taken", taken},
+                    {"may", may_control},
+                    {"clients", clients}});
+}
+
+std::string notice_text(const std::string& text, bool is_error) {
+    return written({{"kind", "notice"}, {"text", text}, {"error", is_error}});
+}
+
+std::string pick_text(uint32_t id, const std::optional<app::Pick>& pick, const Scene& scene) {
+    json message = {{"kind", "pick"}, {"id", id}, {"hit", pick.has_value()}};
+    if (pick) {
+        message["object"] = pick->object;
+        message["part"] = pick->part;
+        message["face"] = pick->is_face;
+        message["element"] = pick->element;
+        message["position"] = {pick->position.x(), pick->position.y(), pick->position.z()};
+        message["depth"] = pick->depth;
+        if (const auto node = app::node_named(scene, pick->object))
+            message["values"] = values_at(*node->snapshot(), *pick);
+    }
+    return written(message);
+}
+
+std::string animation_text(const std::vector<std::string>& names, size_t current, bool plays, double time_s,
+                           double duration_s, double speed) {
+    return written({{"kind", "animation"},
+                    {"names", names},
+                    {"current", current},
+                    {"plays", plays},
+                    {"time", time_s},
+                    {"duration", duration_s},
+                    {"speed", speed}});
+}
+
+std::string statistics_text(const StatisticsReport& report) {
+    return written({{"kind", "statistics"},
+                    {"frame_ms", report.drawing.frame_seconds * 1000},
+                    {"frames", report.drawing.frames},
+                    {"total", report.drawing.total},
+                    {"width", report.drawing.size.x()},
+                    {"height", report.drawing.size.y()},
+                    {"pictures", report.drawing.pictures},
+                    {"share", report.share},
+                    {"latency_ms", report.latency_s * 1000},
+                    {"software", report.software}});
+}
+
+}  // namespace easypbr::remote

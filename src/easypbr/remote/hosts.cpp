@@ -1,0 +1,96 @@
+#include "easypbr/remote/hosts.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "easypbr/core/error.h"
+
+namespace easypbr::remote {
+namespace {
+
+constexpr size_t longest_name = 253;
+
+std::string lower(std::string_view text) {
+    std::string out(text);
+    std::ranges::transform(out, out.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return out;
+}
+
+bool is_port(std::string_view text) {
+    return !text.empty() && text.size() <= 5 &&
+           std::ranges::all_of(text, [](unsigned char c) { return std::isdigit(c) != 0; });
+}
+
+/// "name" of "name", "name:port", "[::1]" and "[::1]:port"; empty for what is none of these.
+std::string name_of(std::string_view host) {
+    if (host.size() > longest_name + 8) return {};
+    if (host.starts_with('[')) {
+        const size_t end = host.find(']');
+        if (end == host.npos) return {};
+        const std::string_view rest = host.substr(end + 1);
+        if (!rest.empty() && !(rest[0] == ':' && is_port(rest.substr(1)))) return {};
+        return lower(host.substr(1, end - 1));
+    }
+    const size_t colon = host.find(':');
+    if (colon == host.npos) return lower(host);
+    return is_port(host.substr(colon + 1)) ? lower(host.substr(0, colon)) : std::string();
+}
+
+bool is_name(std::string_view name) {
+    const auto fits = [](unsigned char c) {
+        return std::isalnum(c) || c == '-' || c == '.' || c == ':' || c == '_';
+    };
+    return !name.empty() && name.size() <= longest_name && std::ranges::all_of(name, fits);
+}
+
+/// The host of "http://host" or "https://host", port included; empty for other texts.
+std::string_view host_of(std::string_view origin) {
+    for (const std::string_view scheme : {"http://", "https://"})
+        if (origin.starts_with(scheme)) return origin.substr(scheme.size());
+    return {};
+}
+
+std::string checked_origin(std::string origin) {
+    origin = lower(origin);
+    if (!is_name(name_of(host_of(origin))))
+        throw ArgumentError(
+            fmt::format("origin '{}': expected such as https://hub.example.org, without a path", origin));
+    return origin;
+}
+
+}  // namespace
+
+bool is_loopback(std::string_view name) {
+    const auto digits_and_dots = [](unsigned char c) { return std::isdigit(c) || c == '.'; };
+    return name == "localhost" || name == "::1" ||
+           (name.starts_with("127.") && std::ranges::count(name, '.') == 3 &&
+            std::ranges::all_of(name, digits_and_dots));
+}
+
+HostRules::HostRules(const std::string& bind, const std::vector<std::string>& names,
+                     const std::vector<std::string>& origins) {
+    if (!bind.empty()) names_.push_back(lower(bind));
+    for (const std::string& name : names) {
+        if (!is_name(name) || name_of(name.find(':') == name.npos ? name : "[" + name + "]").empty())
+            throw ArgumentError(fmt::format("host name '{}': expected a name without a port", name));
+        names_.push_back(lower(name));
+    }
+    for (const std::string& origin : origins) origins_.push_back(checked_origin(origin));
+}
+
+bool HostRules::allows_host(std::string_view host) const {
+    const std::string name = name_of(host);
+    return is_name(name) && (is_loopback(name) || std::ranges::find(names_, name) != names_.end());
+}
+
+bool HostRules::allows_origin(std::string_view origin, std::string_view host) const {
+    if (origin.empty()) return true;
+    const std::string given = lower(origin);
+    if (std::ranges::find(origins_, given) != origins_.end()) return true;
+    const std::string_view own = host_of(given);
+    return allows_host(own) && own == lower(host);
+}
+
+}  // namespace easypbr::remote

@@ -1,0 +1,15 @@
+// The files of the page, embedded when the library is built; see web/ and cmake/embed.cmake.
+#pragma once
+
+#include <string_view>
+
+namespace easypbr::remote {
+
+struct PageFile {
+    std::string_view name, type, content;
+};
+
+/// Null when there is none of this name.
+const PageFile* page_file(std::string_view name);
+
+}  // namespace easypbr::remote

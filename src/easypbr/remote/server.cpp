@@ -1,0 +1,131 @@
+#include "easypbr/remote/server.h"
+
+#include <fmt/format.h>
+
+#include <atomic>
+#include <mutex>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
+#include "easypbr/remote/view.h"
+#include "easypbr/scene/scene.h"
+#include "easypbr/scene/settings.h"
+
+namespace easypbr::remote {
+namespace {
+
+NetworkOptions network_options(const ServeOptions& options) {
+    if (options.port < 0 || options.port > 65535)
+        throw ArgumentError(fmt::format("port: expected 0 to 65535, got {}", options.port));
+    if (options.max_clients < 1 || options.max_clients > 1000)
+        throw ArgumentError(fmt::format("max_clients: expected 1 to 1000, got {}", options.max_clients));
+    NetworkOptions network;
+    network.bind = options.bind;
+    network.port = options.port;
+    network.socket = options.socket;
+    network.hosts = HostRules(options.bind, options.host_names, options.origins);
+    return network;
+}
+
+void warn_of_strangers(const ServeOptions& options) {
+    if (options.socket.empty() && !is_loopback(options.bind))
+        log_warning(fmt::format(
+            "the address {} is seen by the network, and nothing is encrypted: ssh -L needs no such address",
+            options.bind));
+}
+
+}  // namespace
+
+struct Server::Parts {
+    Parts(const Scene& scene, const Settings& settings, const ServeOptions& given)
+        : options(given),
+          tokens(load_tokens(given.token_file)),
+          network(network_options(given)),
+          clients(network, inbox, tokens, size_t(given.max_clients)),
+          view(scene, settings, inbox, clients) {
+        const std::string session = random_token().substr(0, 16);
+        clients.set_welcome(welcome_text(session, false), welcome_text(session, true));
+        view.start();
+        network.start(clients);
+    }
+
+    std::string url(const std::string& token) const {
+        const bool is_v6 = options.bind.find(':') != std::string::npos;
+        std::string host = options.socket.empty() ? options.bind : "localhost";
+        if (options.socket.empty() && is_v6) host = "[" + host + "]";
+        if (options.socket.empty() && (options.bind == "0.0.0.0" || options.bind == "::"))
+            host = options.host_names.empty() ? "localhost" : options.host_names.front();
+        const int port = options.socket.empty() ? network.port() : socket_port;
+        return fmt::format("http://{}:{}/#token={}", host, port, token);
+    }
+
+    /// What a Unix socket is forwarded to.
+    static constexpr int socket_port = 8123;
+
+    const ServeOptions options;
+    const Tokens tokens;
+    Inbox inbox;
+    Network network;
+    Clients clients;
+    View view;
+    std::mutex closing;
+    std::atomic<bool> open = true;
+};
+
+Server::Server(const Scene& scene, const Settings& settings, const ServeOptions& options)
+    : parts_(std::make_unique<Parts>(scene, settings, options)) {
+    warn_of_strangers(options);
+}
+
+Server::~Server() {
+    close();
+}
+
+std::string Server::url() const {
+    return parts_->url(parts_->tokens.control);
+}
+
+std::string Server::watch_url() const {
+    return parts_->url(parts_->tokens.watch);
+}
+
+std::string Server::forward_command(const std::string& host) const {
+    const ServeOptions& options = parts_->options;
+    if (!options.socket.empty())
+        return fmt::format("ssh -N -L {}:{} {}", Parts::socket_port,
+                           std::filesystem::absolute(options.socket).string(), host);
+    return fmt::format("ssh -N -L {0}:127.0.0.1:{0} {1}", port(), host);
+}
+
+int Server::port() const {
+    return parts_->network.port();
+}
+
+std::vector<ServerClient> Server::clients() const {
+    std::vector<ServerClient> clients;
+    if (!is_open()) return clients;
+    for (const ClientState& state : parts_->clients.states())
+        clients.push_back({state.id, state.controls, state.watches_only, state.latency_s});
+    return clients;
+}
+
+void Server::take_settings(const Settings& settings) {
+    if (is_open()) parts_->view.take_settings(settings);
+}
+
+void Server::add_animations(const std::string& name, const Animations& animations) {
+    if (is_open()) parts_->view.add_animations(name, animations);
+}
+
+void Server::close() {
+    const std::lock_guard lock(parts_->closing);
+    if (!parts_->open.exchange(false)) return;
+    parts_->network.stop();
+    parts_->view.stop();
+}
+
+bool Server::is_open() const {
+    return parts_->open;
+}
+
+}  // namespace easypbr::remote

@@ -1,0 +1,213 @@
+#include "easypbr/remote/view.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "easypbr/app/camera_text.h"
+#include "easypbr/core/error.h"
+#include "easypbr/core/interrupt.h"
+#include "easypbr/core/log.h"
+#include "easypbr/remote/view_state.h"
+#include "easypbr/scene/animation.h"
+
+namespace easypbr::remote {
+
+View::View(const Scene& scene, const Settings& settings, Inbox& inbox, Clients& clients)
+    : inbox_(inbox), clients_(clients), own_(std::make_unique<Own>(scene, settings, clients)) {}
+
+View::~View() {
+    stop();
+}
+
+void View::start() {
+    thread_ = std::thread([this] { run(); });
+}
+
+void View::stop() {
+    inbox_.close();
+    if (thread_.joinable()) thread_.join();
+}
+
+void View::run() {
+    // What is drawn when the server ends is given up.
+    const InterruptScope scope([this] { return inbox_.is_closed(); });
+    while (!inbox_.is_closed()) try {
+            step();
+        } catch (const Interrupted&) {
+            continue;
+        } catch (const std::exception& error) {
+            log_warning(std::string("served view: ") + error.what());
+            inbox_.wait(1);
+        }
+}
+
+bool View::waits_for_clients() const {
+    return (inbox_.has_orders() || is_moving()) && !clients_.has_room();
+}
+
+void View::step() {
+    for (const auto& task : inbox_.take_tasks()) task();
+    if (!clients_.anybody()) return inbox_.wait(60);
+    if (!clients_.anybody_looks()) {
+        act(inbox_.take());
+        tell_changes();
+        return inbox_.wait(60);
+    }
+    // What the line holds back is drawn later, with the newest camera.
+    if (waits_for_clients()) return inbox_.wait(0.1);
+    act(inbox_.take());
+    draw();
+    tell_changes();
+    Own& own = *own_;
+    const bool waits = is_moving() || own.owes_still;
+    if (!own.live.is_busy() && !inbox_.has_orders()) inbox_.wait(waits ? 0.01 : look_s);
+}
+
+bool View::is_moving() const {
+    return now_seconds() - own_->last_change_s < rest_s || own_->player.is_playing();
+}
+
+void View::act(const std::vector<Order>& orders) {
+    Own& own = *own_;
+    const double now = now_seconds();
+    own.live.begin_frame(own.size, std::min(now - std::exchange(own.last_frame_s, now), 0.1));
+    for (const Order& order : orders) try {
+            obey(order);
+        } catch (const Error& error) {
+            clients_.tell(order.from, notice_text(error.what(), true));
+            own.told.clear();  // What was not taken is shown as it is.
+        }
+}
+
+void View::obey(const Order& order) {
+    own_->waits_since_s = order.arrived_s;
+    std::visit([&](const auto& message) { obey(order.from, message); }, order.message);
+}
+
+void View::draw() {
+    Own& own = *own_;
+    own.clock.tick();
+    const bool moving = is_moving();
+    app::LiveNeeds needs;
+    needs.moving = moving;
+    needs.resolution = clients_.quality().resolution();
+    const uint64_t pictures = own.live.picture().statistics().pictures;
+    const bool drew = own.live.draw(needs);
+    own.live.end_frame(needs);
+    // Of a scene that goes on changing the next pictures shall come quickly.
+    const bool is_new = own.live.picture().statistics().pictures != pictures;
+    if (is_new && !moving && own.has_drawn) own.last_change_s = now_seconds();
+    own.has_drawn |= is_new;
+    send_picture(drew);
+    tell_notices();
+}
+
+void View::send_picture(bool drew) {
+    Own& own = *own_;
+    const app::LivePicture& picture = own.live.picture();
+    if (picture.has_failed() || !picture.texture()) return;
+    if (drew && picture.statistics().frames <= 1) own.owes_still = true;
+    if (is_moving() || own.live.navigation().is_moving()) {
+        if (drew) send_moving();
+        return;
+    }
+    if (picture.is_complete()) {
+        if (own.owes_still) send_still(true);
+        return;
+    }
+    const int frames = picture.statistics().frames;
+    const bool is_step = (frames & (frames - 1)) == 0;
+    const bool in_time = now_seconds() - own.last_still_s >= rest_s;
+    if (drew && is_step && in_time && !own.stills.is_busy() && clients_.has_delivered()) send_still(false);
+}
+
+FrameHeader View::header(FrameKind kind, Codec codec) {
+    Own& own = *own_;
+    const app::LiveStatistics& statistics = own.live.picture().statistics();
+    const double now = now_seconds();
+    FrameHeader header;
+    header.kind = kind;
+    header.codec = codec;
+    header.frame = ++own.frame;
+    header.input = own.input;
+    header.refined = uint16_t(std::min(statistics.frames, 65535));
+    header.total = uint16_t(std::min(statistics.total, 65535));
+    header.draw_us = uint32_t(statistics.frame_seconds * 1e6);
+    const double since = std::exchange(own.waits_since_s, 0);
+    header.wait_us = since > 0 ? uint32_t(std::min(now - since, 4000.0) * 1e6) : 0;
+    return header;
+}
+
+void View::send_moving() {
+    const int quality = clients_.quality().jpeg_quality();
+    own_->moving.add({own_->live.picture().image(), header(FrameKind::moving, Codec::jpeg), quality});
+}
+
+void View::send_still(bool exact) {
+    Own& own = *own_;
+    own.last_still_s = now_seconds();
+    FrameHeader head = header(FrameKind::still, exact ? Codec::png : Codec::jpeg);
+    if (exact) head.flags |= FrameHeader::exact;
+    own.owes_still = !exact;
+    own.stills.add({own.live.picture().image(), head, 95});
+}
+
+void View::tell_notices() {
+    Own& own = *own_;
+    const app::Notifications& notices = own.live.notifications();
+    if (std::exchange(own.notices, notices.revision()) == notices.revision()) return;
+    for (const app::Notification& notice : notices.list()) {
+        // Their time left goes down: one that is as new as can be was not told yet.
+        const double whole = notice.is_error ? 12.0 : 5.0;
+        if (notice.seconds_left >= whole) clients_.broadcast(notice_text(notice.text, notice.is_error));
+    }
+}
+
+void View::tell_changes() {
+    Own& own = *own_;
+    const double now = now_seconds();
+    if (now - own.told_s < 0.1 && !own.told.empty()) return;
+    own.told_s = now;
+    const FieldTexts texts = texts_of(own.session.settings());
+    if (const FieldTexts news = changed(own.told, texts); !news.empty())
+        clients_.broadcast(settings_text(news));
+    own.told = texts;
+    const auto tell = [&](std::string& last, std::string text) {
+        if (last == text) return;
+        last = std::move(text);
+        clients_.broadcast(last);
+    };
+    tell(own.told_camera, own.camera_message());
+    tell(own.told_scene, own.scene_message());
+    tell(own.told_animation, own.animation_message());
+    tell(own.told_statistics, own.statistics_message(clients_));
+}
+
+void View::tell_everything(ClientId client) {
+    Own& own = *own_;
+    clients_.tell(client, settings_text(texts_of(own.session.settings())));
+    for (const std::string& text : {own.camera_message(), own.scene_message(), own.animation_message(),
+                                    own.statistics_message(clients_)})
+        clients_.tell(client, text);
+}
+
+void View::take_settings(const Settings& settings) {
+    inbox_.add([this, given = std::make_shared<const Settings>(settings)] { take_now(*given); });
+}
+
+void View::take_now(const Settings& settings) {
+    Own& own = *own_;
+    for (const Field& field : fields()) {
+        const Value now = field.get(settings), before = field.get(own.given);
+        const bool same =
+            now.state == before.state && (now.state != Value::State::given || now.data == before.data);
+        if (!same) set(own.session.settings(), field.name, now);
+    }
+    own.given = settings;
+}
+
+void View::add_animations(const std::string& name, const Animations& animations) {
+    inbox_.add([this, name, animations] { own_->player.add(name, animations); });
+}
+
+}  // namespace easypbr::remote

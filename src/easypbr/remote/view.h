@@ -1,0 +1,88 @@
+// View: the thread that draws what clients see.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <thread>
+
+#include "easypbr/app/live_drawing.h"
+#include "easypbr/remote/clients.h"
+#include "easypbr/remote/describe.h"
+#include "easypbr/remote/encoder.h"
+#include "easypbr/remote/inbox.h"
+
+namespace easypbr {
+class Animations;
+}
+
+namespace easypbr::remote {
+
+/// Pictures of a scene that a program may change meanwhile, with settings of its own. While something moves
+/// they are drawn quickly and sent as JPEG; at rest as JPEG of quality 95 while they are refined, and at the
+/// end as PNG, Session::render()'s picture bit for bit.
+class View {
+  public:
+    /// Both must outlive it.
+    View(const Scene& scene, const Settings& settings, Inbox& inbox, Clients& clients);
+    /// Gives up what is drawn.
+    ~View();
+    View(const View&) = delete;
+    View& operator=(const View&) = delete;
+
+    void start();
+    /// Ends the thread. Nothing is published afterwards.
+    void stop();
+
+    /// Any thread: what the program has changed since the last call is changed here; what clients have
+    /// changed stays.
+    void take_settings(const Settings& settings);
+    /// Any thread.
+    void add_animations(const std::string& name, const Animations& animations);
+
+    /// Moving pictures are asked for until so long after the last input or change.
+    static constexpr double rest_s = 0.15;
+    /// How often an idle view looks whether the scene is another one.
+    static constexpr double look_s = 0.05;
+
+  private:
+    struct Own;
+    void run();
+    void step();
+    bool waits_for_clients() const;
+    void act(const std::vector<Order>& orders);
+    void obey(const Order& order);
+    void obey(ClientId from, const Hello& message);
+    void obey(ClientId from, const Input& message);
+    void obey(ClientId from, const Turn& message);
+    void obey(ClientId from, const Resize& message);
+    void obey(ClientId from, const SetField& message);
+    void obey(ClientId from, const ShowObject& message);
+    void obey(ClientId from, const Select& message);
+    void obey(ClientId from, const PickAt& message);
+    void obey(ClientId from, const SetChannel& message);
+    void obey(ClientId from, const Shot& message);
+    void obey(ClientId from, const SetCamera& message);
+    void obey(ClientId from, const Animate& message);
+    void obey(ClientId from, const Act& message);
+    // What the network's side has taken already.
+    void obey(ClientId, const Ack&) {}
+    void obey(ClientId, const Pause&) {}
+
+    void draw();
+    void send_picture(bool drew);
+    void send_moving();
+    void send_still(bool exact);
+    FrameHeader header(FrameKind kind, Codec codec);
+    void tell_changes();
+    void tell_everything(ClientId client);
+    void tell_notices();
+    bool is_moving() const;
+    void take_now(const Settings& settings);
+
+    Inbox& inbox_;
+    Clients& clients_;
+    std::unique_ptr<Own> own_;
+    std::thread thread_;
+};
+
+}  // namespace easypbr::remote

@@ -1,0 +1,160 @@
+// What a view does for its clients, message by message.
+#include <fmt/format.h>
+
+#include "easypbr/app/camera_text.h"
+#include "easypbr/core/error.h"
+#include "easypbr/remote/view_state.h"
+#include "easypbr/render/pipeline/layers.h"
+#include "easypbr/scene/mesh.h"
+#include "easypbr/scene/resolve.h"
+
+namespace easypbr::remote {
+
+View::Own::Own(const Scene& scene, const Settings& settings, Clients& clients)
+    : session(scene),
+      first(settings),
+      given(settings),
+      moving([&clients](Picture picture) { clients.publish(std::move(picture)); }),
+      stills([&clients](Picture picture) { clients.publish(std::move(picture)); }) {
+    session.replace_settings(settings);
+    clock.on_tick = [this] { player.update(); };
+}
+
+std::string View::Own::camera_message() {
+    if (session.scene().names().empty()) return remote::camera_message({});
+    return remote::camera_message(app::camera_text(session, size));
+}
+
+std::string View::Own::scene_message() {
+    return scene_text(session.scene(), live.selection().object, live.channel);
+}
+
+std::string View::Own::animation_message() const {
+    if (player.empty()) return animation_text({}, 0, false, 0, 0, 1);
+    return animation_text(player.names(), player.current(), player.is_playing(), player.time(),
+                          player.duration_s(), player.speed());
+}
+
+std::string View::Own::statistics_message(const Clients& clients) {
+    StatisticsReport report;
+    report.drawing = live.picture().statistics();
+    report.share = clients.quality().share();
+    report.software = session.context_info().software;
+    for (const ClientState& client : clients.states())
+        if (client.controls) report.latency_s = client.latency_s;
+    return statistics_text(report);
+}
+
+void View::obey(ClientId from, const Hello& message) {
+    const auto states = clients_.states();
+    for (const ClientState& client : states)
+        if (client.id == from && client.controls) own_->size = message.size;
+    tell_everything(from);
+}
+
+void View::obey(ClientId, const Input& message) {
+    Own& own = *own_;
+    using Kind = app::InputEvent::Kind;
+    const Kind kind = message.event.kind;
+    if (kind != Kind::focus_lost || message.id != 0) own.input = message.id;
+    // A pointer that only passes over the picture moves nothing.
+    const bool moves = kind == Kind::scroll || (kind == Kind::move && own.live.navigation().is_active());
+    if (moves) own.last_change_s = now_seconds();
+    if (!own.live.offer(message.event)) own.live.handle(message.event);
+}
+
+void View::obey(ClientId, const Turn& message) {
+    Own& own = *own_;
+    own.input = message.id;
+    own.last_change_s = now_seconds();
+    if (own.session.scene().names().empty()) return;
+    const app::ViewPoint view = own.session.view_point(own.size);
+    const Vec3d up = parse_up(own.session.settings().camera.up);
+    own.session.set_view_point(app::orbited(view, up, message.right_deg, message.up_deg));
+}
+
+void View::obey(ClientId, const Resize& message) {
+    own_->size = message.size;
+}
+
+void View::obey(ClientId, const SetField& message) {
+    Own& own = *own_;
+    const Field& field = easypbr::field(message.name);
+    if (!is_open(field)) throw ArgumentError(fmt::format("{}: only the program may set this", field.name));
+    const Value value = parse_value(field, message.value);
+    check_client_value(field, value);
+    set(own.session.settings(), field.name, value);
+    own.last_change_s = now_seconds();
+}
+
+void View::obey(ClientId, const ShowObject& message) {
+    Own& own = *own_;
+    if (!app::node_named(own.session.scene(), message.object))
+        throw NameError(fmt::format("there is no object '{}'", message.object));
+    own.live.edits().change_look(message.object, "visible", [visible = message.visible](MeshData& data) {
+        data.style.visible = visible;
+    });
+}
+
+void View::obey(ClientId, const Select& message) {
+    own_->live.selection().object = message.object;
+}
+
+void View::obey(ClientId from, const PickAt& message) {
+    Own& own = *own_;
+    const auto pick = own.live.pick(message.pixel);
+    own.live.selection() = {pick ? pick->object : "", "", pick};
+    clients_.tell(from, pick_text(message.id, pick, own.session.scene()));
+}
+
+void View::obey(ClientId, const SetChannel& message) {
+    if (message.name != "picture" && message.name != "slices") render::layer_named(message.name);
+    own_->live.channel = message.name;
+}
+
+void View::obey(ClientId from, const Shot& message) {
+    Own& own = *own_;
+    FrameHeader header;
+    header.kind = FrameKind::shot;
+    header.codec = Codec::png;
+    header.flags = FrameHeader::exact;
+    header.frame = ++own.frame;
+    header.input = message.id;
+    const Image image = own.session.render({message.size, own.session.settings().image.samples});
+    clients_.send_shot(from, encode({image, header, 95}));
+}
+
+void View::obey(ClientId, const SetCamera& message) {
+    // What is inferred follows from the first view, not from where a link looks.
+    if (!own_->has_drawn) {
+        own_->live.begin_frame(own_->size, 0);
+        draw();
+    }
+    app::apply_camera_text(message.text, own_->session.settings());
+    own_->last_change_s = now_seconds();
+}
+
+void View::obey(ClientId, const Animate& message) {
+    app::AnimationPlayer& player = own_->player;
+    if (player.empty()) throw ArgumentError("there is no animation");
+    if (message.number != player.current()) player.play(size_t(message.number));
+    player.set_speed(message.speed);
+    player.seek(message.time_s);
+    if (message.plays)
+        player.resume();
+    else
+        player.pause();
+}
+
+void View::obey(ClientId, const Act& message) {
+    using What = Act::What;
+    Own& own = *own_;
+    if (message.what == What::fit) own.live.navigation().ask_fit();
+    if (message.what == What::undo) own.live.edits().undo();
+    if (message.what == What::redo) own.live.edits().redo();
+    if (message.what != What::reset) return;
+    own.session.replace_settings(own.first);
+    own.has_drawn = false;
+}
+
+}  // namespace easypbr::remote

@@ -1,0 +1,42 @@
+// What a View's thread keeps; see view.cpp and view_orders.cpp.
+#pragma once
+
+#include <string>
+
+#include "easypbr/remote/view.h"
+#include "easypbr/scene/settings.h"
+
+namespace easypbr::remote {
+
+struct View::Own {
+    Own(const Scene& scene, const Settings& settings, Clients& clients);
+
+    std::string camera_message();
+    std::string scene_message();
+    std::string animation_message() const;
+    std::string statistics_message(const Clients& clients);
+
+    app::Session session;
+    app::Clock clock;
+    app::Recorder recorder{session, clock};
+    app::AnimationPlayer player{clock};
+    app::LiveDrawing live{session, recorder, player};
+    const Settings first;  ///< what a reset returns to
+    Settings given;        ///< of the program, at its last take_settings()
+    Vec2i size{1280, 720};
+
+    uint32_t frame = 0, input = 0;
+    double last_frame_s = now_seconds(), last_change_s = -1, last_still_s = -1, waits_since_s = 0;
+    bool has_drawn = false;
+    bool owes_still = false;  ///< what is shown at rest has not been sent exactly
+
+    FieldTexts told;
+    std::string told_camera, told_scene, told_animation, told_statistics;
+    double told_s = -1;
+    uint64_t notices = 0;
+
+    // Last, so that they end first.
+    Encoder moving, stills;
+};
+
+}  // namespace easypbr::remote

@@ -1,0 +1,156 @@
+// How much is sent: windows by answers, quality by delays, headers bit for bit.
+#include "easypbr/remote/flow.h"
+
+#include <gtest/gtest.h>
+
+#include "easypbr/remote/frame_header.h"
+#include "easypbr/remote/inbox.h"
+
+namespace easypbr::remote {
+namespace {
+
+TEST(FlowControl, AFewPicturesAreOnTheirWayAtATime) {
+    FlowControl flow;
+    EXPECT_TRUE(flow.has_room());
+    flow.sent(1, 0, 1000, 0);
+    flow.sent(2, 0, 1000, 0.03);
+    EXPECT_EQ(flow.count(), 2u);
+    EXPECT_FALSE(flow.has_room());
+    EXPECT_DOUBLE_EQ(flow.waits_s(1), 1);
+    flow.drawn(1, 0, 0.04);
+    EXPECT_TRUE(flow.has_room());
+    EXPECT_DOUBLE_EQ(flow.latency_s(), 0.04);
+    flow.drawn(7, 0, 0.05);  // Never sent.
+    EXPECT_EQ(flow.count(), 1u);
+}
+
+TEST(FlowControl, AnAnswerCountsForAllBefore) {
+    FlowControl flow;
+    for (uint32_t frame = 1; frame < 5; ++frame) flow.sent(frame, 0, 10, 0);
+    flow.drawn(3, 0, 1);
+    EXPECT_EQ(flow.count(), 1u);
+}
+
+/// 150 ms there and back at 30 pictures a second: with two on their way there would be 13 a second.
+TEST(FlowControl, TheWindowGrowsWithTheLine) {
+    FlowControl flow;
+    double now = 0;
+    for (uint32_t frame = 1; frame < 100; ++frame) {
+        flow.sent(frame, 0, 10, now);
+        flow.drawn(frame, 0, now + 0.15);
+        now += 1.0 / 30;
+    }
+    EXPECT_GE(flow.window(), 5u);
+    EXPECT_LE(flow.window(), FlowControl::most_window);
+}
+
+TEST(FlowControl, AMegabyteIsEnough) {
+    FlowControl flow;
+    flow.sent(1, 0, size_t(2) << 20, 0);
+    EXPECT_FALSE(flow.has_room());
+    flow.drawn(1, 0, 1);
+    EXPECT_TRUE(flow.has_room());
+}
+
+TEST(FlowControl, ChunksGetFewerOnALineThatQueues) {
+    FlowControl flow;
+    uint16_t chunk = 0;
+    flow.sent(1, chunk, 10, 0);
+    flow.drawn(1, chunk++, 0.01);
+    for (int i = 0; i < 8; ++i, ++chunk) {
+        flow.sent(1, chunk, 10, 1);
+        flow.drawn(1, chunk, 1.5);
+    }
+    EXPECT_TRUE(flow.has_chunk_room());
+    flow.sent(1, chunk, 10, 2);
+    EXPECT_FALSE(flow.has_chunk_room());
+}
+
+TEST(WireQuality, GoesDownWhereTheLineQueuesAndUpAgain) {
+    WireQuality quality;
+    EXPECT_EQ(quality.jpeg_quality(), 80);
+    EXPECT_EQ(quality.resolution(), 1);
+    double now = 0;
+    const auto pass = [&](double latency, double seconds) {
+        for (const double end = now + seconds; now < end; now += 0.1) quality.drawn(latency, 0.1, now);
+    };
+    pass(0.4, 2.6);
+    EXPECT_LT(quality.jpeg_quality(), 80);
+    EXPECT_EQ(quality.resolution(), 1);  // The quality goes first.
+    pass(0.4, 20);
+    EXPECT_EQ(quality.jpeg_quality(), 40);
+    EXPECT_LT(quality.resolution(), 0.5);
+    EXPECT_GE(quality.resolution(), 0.25);
+    pass(0.13, 5);  // Between the two thresholds it stays.
+    const double kept = quality.share();
+    pass(0.13, 5);
+    EXPECT_EQ(quality.share(), kept);
+    pass(0.105, 60);
+    EXPECT_EQ(quality.jpeg_quality(), 80);
+    EXPECT_EQ(quality.resolution(), 1);
+}
+
+TEST(FrameHeader, IsLittleEndian) {
+    FrameHeader header;
+    header.kind = FrameKind::still;
+    header.codec = Codec::png;
+    header.flags = 0x0102;
+    header.frame = 0x03040506;
+    header.input = 7;
+    header.width = 0x0809;
+    header.height = 10;
+    header.refined = 11;
+    header.total = 12;
+    header.chunk = 13;
+    header.bytes = 14;
+    header.wait_us = 0x15161718;
+    const auto bytes = header.encoded();
+    const auto at = [&](size_t i) { return int(bytes[i]); };
+    EXPECT_EQ(at(0), 2);
+    EXPECT_EQ(at(1), 2);
+    EXPECT_EQ(at(2), 2);
+    EXPECT_EQ(at(3), 1);
+    EXPECT_EQ(at(4), 6);
+    EXPECT_EQ(at(7), 3);
+    EXPECT_EQ(at(8), 7);
+    EXPECT_EQ(at(14), 9);
+    EXPECT_EQ(at(15), 8);
+    EXPECT_EQ(at(16), 10);
+    EXPECT_EQ(at(18), 11);
+    EXPECT_EQ(at(20), 12);
+    EXPECT_EQ(at(22), 13);
+    EXPECT_EQ(at(24), 14);
+    EXPECT_EQ(at(36), 0x18);
+    EXPECT_EQ(at(39), 0x15);
+}
+
+Order pointer_order(ClientId from, app::InputEvent::Kind kind, uint32_t id, double arrived) {
+    Input input;
+    input.id = id;
+    input.event.kind = kind;
+    return {from, input, arrived};
+}
+
+TEST(Inbox, MergesMovesAndNothingElse) {
+    using Kind = app::InputEvent::Kind;
+    Inbox inbox;
+    inbox.add(pointer_order(1, Kind::move, 1, 1));
+    inbox.add(pointer_order(1, Kind::move, 2, 2));
+    inbox.add(pointer_order(1, Kind::press, 3, 3));
+    inbox.add(pointer_order(1, Kind::move, 4, 4));
+    inbox.add(pointer_order(2, Kind::move, 5, 5));
+    const std::vector<Order> orders = inbox.take();
+    ASSERT_EQ(orders.size(), 4u);
+    EXPECT_EQ(std::get<Input>(orders[0].message).id, 2u);
+    EXPECT_EQ(orders[0].arrived_s, 2);
+    EXPECT_FALSE(inbox.has_orders());
+}
+
+TEST(Inbox, IsBounded) {
+    Inbox inbox;
+    for (uint32_t i = 0; i < 5000; ++i) inbox.add(pointer_order(1, app::InputEvent::Kind::press, i, 0));
+    EXPECT_EQ(inbox.take().size(), Inbox::most_orders);
+}
+
+}  // namespace
+}  // namespace easypbr::remote

@@ -1,0 +1,131 @@
+// Pictures onto the canvas: in order, the newest only, each answered when it is drawn.
+import { FLAG_EXACT, FLAG_LAST, FRAME_MOVING, FRAME_SHOT, HEADER_BYTES, mimeOf, readHeader, type FrameHeader } from "./protocol";
+import { update } from "./store";
+
+export interface PainterHooks {
+  ack(frame: number, chunk: number): void;
+  shot(id: number, picture: Blob): void;
+}
+
+/** Chunks of one picture. */
+interface Parts {
+  frame: number;
+  chunks: ArrayBuffer[];
+}
+
+export class Painter {
+  /** When each input was sent, until a picture shows it. */
+  private inputs = new Map<number, number>();
+  private latencies: number[] = [];
+  private arrivals: { time: number; bytes: number; draws: boolean }[] = [];
+  private still: Parts = { frame: 0, chunks: [] };
+  private shot: Parts = { frame: 0, chunks: [] };
+  private drawn = 0;
+  private canvas: HTMLCanvasElement | null = null;
+  /** Of the picture on the canvas. */
+  last: FrameHeader | null = null;
+
+  constructor(private hooks: PainterHooks) {
+    setInterval(() => this.tellRates(), 500);
+  }
+
+  attach(canvas: HTMLCanvasElement | null): void {
+    this.canvas = canvas;
+  }
+
+  /** Another connection: its pictures are numbered anew. */
+  restart(): void {
+    this.drawn = 0;
+    this.still = { frame: 0, chunks: [] };
+    this.shot = { frame: 0, chunks: [] };
+    this.inputs.clear();
+  }
+
+  sentInput(id: number): void {
+    this.inputs.set(id, performance.now());
+    if (this.inputs.size > 200) this.inputs.delete(this.inputs.keys().next().value as number);
+  }
+
+  async take(data: ArrayBuffer): Promise<void> {
+    const header = readHeader(data);
+    const draws = header.kind !== FRAME_SHOT;
+    this.arrivals.push({ time: performance.now(), bytes: data.byteLength, draws: draws && (header.flags & FLAG_LAST) !== 0 });
+    try {
+      if (header.kind === FRAME_MOVING) await this.paint(header, [data]);
+      else await this.collect(header, data);
+    } finally {
+      this.hooks.ack(header.frame, header.chunk);
+    }
+  }
+
+  private async collect(header: FrameHeader, data: ArrayBuffer): Promise<void> {
+    const parts = header.kind === FRAME_SHOT ? this.shot : this.still;
+    if (header.chunk === 0) {
+      parts.frame = header.frame;
+      parts.chunks = [];
+    }
+    if (parts.frame !== header.frame || parts.chunks.length !== header.chunk) return;
+    parts.chunks.push(data);
+    if (!(header.flags & FLAG_LAST)) return;
+    const chunks = parts.chunks;
+    parts.chunks = [];
+    if (header.kind === FRAME_SHOT) this.hooks.shot(header.input, blobOf(header, chunks));
+    else await this.paint(header, chunks);
+  }
+
+  private async paint(header: FrameHeader, chunks: ArrayBuffer[]): Promise<void> {
+    const options: ImageBitmapOptions = { colorSpaceConversion: "none", premultiplyAlpha: "none" };
+    const bitmap = await createImageBitmap(blobOf(header, chunks), options);
+    const canvas = this.canvas;
+    const context = canvas?.getContext("2d");
+    if (canvas && context && header.frame > this.drawn) {
+      this.drawn = header.frame;
+      this.last = header;
+      fit(canvas, bitmap, header);
+      if (header.kind !== FRAME_MOVING) context.clearRect(0, 0, canvas.width, canvas.height);
+      context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
+      this.measure(header);
+    }
+    bitmap.close();
+  }
+
+  private measure(header: FrameHeader): void {
+    const exact = (header.flags & FLAG_EXACT) !== 0;
+    if (this.canvas) {
+      this.canvas.dataset.frame = String(header.frame);
+      this.canvas.dataset.input = String(header.input);
+      this.canvas.dataset.exact = String(exact);
+    }
+    update({ exact });
+    const sent = this.inputs.get(header.input);
+    if (sent === undefined) return;
+    const latency = performance.now() - sent;
+    this.latencies.push(latency);
+    if (this.latencies.length > 60) this.latencies.shift();
+    // Without what the server waited and drew: on the way there, encoding, on the way here, decoding.
+    if (this.canvas) this.canvas.dataset.latency = `${latency} ${latency - header.waitUs / 1000} ${header.encodeUs / 1000}`;
+    for (const id of [...this.inputs.keys()]) if (id <= header.input) this.inputs.delete(id);
+  }
+
+  private tellRates(): void {
+    const now = performance.now();
+    this.arrivals = this.arrivals.filter((arrival) => now - arrival.time < 2000);
+    const bytes = this.arrivals.reduce((sum, arrival) => sum + arrival.bytes, 0);
+    const pictures = this.arrivals.filter((arrival) => arrival.draws).length;
+    const sorted = [...this.latencies].sort((a, b) => a - b);
+    update({ rate: { fps: pictures / 2, kbytes: bytes / 2000, inputMs: sorted[sorted.length >> 1] ?? 0 } });
+  }
+}
+
+function blobOf(header: FrameHeader, chunks: ArrayBuffer[]): Blob {
+  return new Blob(chunks.map((chunk) => new Uint8Array(chunk, HEADER_BYTES)), { type: mimeOf(header) });
+}
+
+/** Pictures at rest have a pixel of the canvas for each of theirs; smaller ones that move are stretched over it. */
+function fit(canvas: HTMLCanvasElement, bitmap: ImageBitmap, header: FrameHeader): void {
+  const sameShape = Math.abs(canvas.width / canvas.height - bitmap.width / bitmap.height) < 0.02;
+  if (header.kind === FRAME_MOVING && sameShape && canvas.width >= bitmap.width) return;
+  if (canvas.width === bitmap.width && canvas.height === bitmap.height) return;
+  canvas.width = bitmap.width;
+  canvas.height = bitmap.height;
+}

@@ -1,0 +1,130 @@
+// What goes over the wire: see src/easypbr/remote/messages.h and frame_header.h.
+
+export interface Field {
+  name: string;
+  doc: string;
+  type: "boolean" | "integer" | "number" | "color" | "vector" | "text" | "choice";
+  unit?: string;
+  auto?: boolean;
+  min?: number;
+  max?: number;
+  choices?: string[];
+  sizes?: number[];
+  whole?: boolean;
+}
+
+/** A setting: as it was given ("auto" and "follow" too), and what is in force. */
+export interface FieldValue {
+  value: string;
+  latched?: string;
+}
+
+export interface SceneNode {
+  path: string;
+  visible: boolean;
+  vertices: number;
+  faces: number;
+  children?: SceneNode[];
+}
+
+export interface Statistics {
+  frame_ms: number;
+  frames: number;
+  total: number;
+  width: number;
+  height: number;
+  pictures: number;
+  share: number;
+  latency_ms: number;
+  software: boolean;
+}
+
+export interface Pick {
+  id: number;
+  hit: boolean;
+  object?: string;
+  part?: string;
+  face?: boolean;
+  element?: number;
+  position?: [number, number, number];
+  depth?: number;
+  values?: { label?: number; class?: string; scalars?: Record<string, number> };
+}
+
+export interface Animation {
+  names: string[];
+  current: number;
+  plays: boolean;
+  time: number;
+  duration: number;
+  speed: number;
+}
+
+export interface Control {
+  controls: boolean;
+  taken: boolean;
+  may: boolean;
+  clients: number;
+}
+
+export type ServerMessage =
+  | { kind: "welcome"; session: string; watches: boolean; channels: string[]; fields: Field[] }
+  | { kind: "settings"; values: Record<string, FieldValue> }
+  | { kind: "camera"; text: string }
+  | { kind: "scene"; nodes: SceneNode[]; selected: string; channel: string }
+  | ({ kind: "control" } & Control)
+  | { kind: "notice"; text: string; error: boolean }
+  | ({ kind: "pick" } & Pick)
+  | ({ kind: "animation" } & Animation)
+  | ({ kind: "statistics" } & Statistics);
+
+export type ClientMessage = { kind: string } & Record<string, string | number | boolean>;
+
+export const FRAME_MOVING = 1;
+export const FRAME_STILL = 2;
+export const FRAME_SHOT = 3;
+export const FLAG_LAST = 1;
+export const FLAG_EXACT = 2;
+
+export interface FrameHeader {
+  kind: number;
+  codec: number;
+  flags: number;
+  frame: number;
+  input: number;
+  width: number;
+  height: number;
+  refined: number;
+  total: number;
+  chunk: number;
+  bytes: number;
+  drawUs: number;
+  encodeUs: number;
+  waitUs: number;
+}
+
+export const HEADER_BYTES = 40;
+
+export function readHeader(data: ArrayBuffer): FrameHeader {
+  const view = new DataView(data);
+  const short = (at: number) => view.getUint16(at, true);
+  const long = (at: number) => view.getUint32(at, true);
+  return {
+    kind: view.getUint8(0),
+    codec: view.getUint8(1),
+    flags: short(2),
+    frame: long(4),
+    input: long(8),
+    width: short(14),
+    height: short(16),
+    refined: short(18),
+    total: short(20),
+    chunk: short(22),
+    bytes: long(24),
+    drawUs: long(28),
+    encodeUs: long(32),
+    waitUs: long(36),
+  };
+}
+
+export const mimeOf = (header: FrameHeader): string => (header.codec === 2 ? "image/png" : "image/jpeg");

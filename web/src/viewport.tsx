@@ -1,0 +1,54 @@
+import { useEffect, useRef } from "preact/hooks";
+import type { Connection } from "./connection";
+import { Gestures } from "./gestures";
+import { useStore } from "./store";
+
+const RESIZE_MS = 100;
+const LARGEST_SIDE = 4096;
+const MOST_RATIO = 2;
+
+let pickId = 0;
+
+/** Pixels of the picture for each of the page. */
+function ratio(): number {
+  return Math.min(MOST_RATIO, window.devicePixelRatio || 1);
+}
+
+function sizeOf(element: HTMLElement): [number, number] {
+  const side = (length: number) => Math.max(1, Math.min(LARGEST_SIDE, Math.round(length * ratio())));
+  return [side(element.clientWidth), side(element.clientHeight)];
+}
+
+export function Viewport({ connection }: { connection: Connection }) {
+  const canvas = useRef<HTMLCanvasElement>(null);
+  const phase = useStore((state) => state.phase);
+  const controls = useStore((state) => state.control.controls);
+  useEffect(() => {
+    const element = canvas.current as HTMLCanvasElement;
+    connection.painter.attach(element);
+    new Gestures(element, connection, {
+      scale: ratio,
+      clicked: (at) => connection.isLive && connection.send({ kind: "pick", id: ++pickId, x: at.x, y: at.y }),
+    });
+    let timer = 0;
+    const measure = () => connection.resize(...sizeOf(element));
+    const observer = new ResizeObserver(() => {
+      clearTimeout(timer);
+      timer = window.setTimeout(measure, RESIZE_MS);
+    });
+    measure();
+    observer.observe(element);
+    return () => observer.disconnect();
+  }, []);
+  const help = "Drag to turn, right drag or two fingers to move, wheel or pinch to zoom, double click to focus. " +
+    "Arrow keys turn, plus and minus zoom, W A S D Q E fly, F fits.";
+  return (
+    <canvas
+      ref={canvas}
+      class={phase === "live" ? "picture" : "picture stale"}
+      tabIndex={0}
+      role="application"
+      aria-label={controls ? `Rendered view. ${help}` : "Rendered view, watching only"}
+    />
+  );
+}
