@@ -215,7 +215,7 @@ TEST(Fields, SuggestNames) {
     EXPECT_EQ(message_of("camra.fov_y_deg", "1"),
               "there is no setting 'camra.fov_y_deg' (did you mean 'camera.fov_y_deg'?)");
     EXPECT_EQ(message_of("camera.fov", "1"),
-              "there is no setting 'camera.fov' (did you mean 'camera.fov_y_deg'?)");
+              "there is no setting 'camera.fov' (it is called 'camera.fov_y_deg')");
     EXPECT_EQ(message_of("rougness", "1"),
               "there is no setting 'rougness' (did you mean 'material.roughness'?)");
     EXPECT_EQ(message_of("render.azimuth_deg", "1"),
