@@ -13,6 +13,9 @@ class SharedArray(np.ndarray):
     """A read-only array that a mesh owns, such as mesh.V. Other libraries take it by DLPack: without a copy if they know
     DLPack 1.0, whose flag says that it is read-only, else a copy. What is computed from it is a plain numpy array."""
 
+    # Bindings made with nanobind, such as libigl's, convert only arrays of a class of numpy's to another type of number.
+    __module__ = "numpy"
+
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, out: Any = None, **options: Any) -> Any:
         if out is not None:
             options["out"] = tuple(_plain(array) for array in out)

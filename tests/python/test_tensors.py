@@ -1,5 +1,7 @@
 """Arrays of torch and of whatever has DLPack; the parallel loader."""
 
+import pickle
+
 import numpy as np
 import pytest
 import torch
@@ -109,3 +111,10 @@ def test_loader_reads_semantic_kitti(tmp_path):
     (sample,) = MeshLoader([tmp_path / "velodyne/000000.bin"])
     np.testing.assert_array_equal(sample["V"].numpy(), points[:, :3])
     assert (sample["L"] == 40).all()
+
+
+def test_bindings_take_a_meshs_array_for_numpys():
+    """nanobind looks at the module of an array's class before it converts numbers (ndarray_import())."""
+    V = shapes.box().V
+    assert type(V).__module__ == "numpy"
+    assert type(pickle.loads(pickle.dumps(V))) is np.ndarray

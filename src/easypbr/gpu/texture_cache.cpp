@@ -92,7 +92,7 @@ void append_level(const std::vector<T>& pixels, int width, Wrap wrap, std::vecto
 
 /// Every 2x2 pixels averaged.
 template <class T>
-std::vector<T> half_size(const std::vector<T>& pixels, int width, int height) {
+std::vector<T> smaller_level(const std::vector<T>& pixels, int width, int height) {
     const int w = std::max(1, width / 2), h = std::max(1, height / 2);
     std::vector<T> out(4 * size_t(w) * size_t(h));
     parallel_for(size_t(h), 32, [&](size_t row) {
@@ -119,7 +119,7 @@ std::vector<std::byte> all_levels(std::vector<T> pixels, Wrap wrap, native::Text
     for (int i = 0; i < to.levels; ++i) {
         to.offsets[i] = int(texels.size() / (4 * sizeof(T)));
         append_level(pixels, width, wrap, texels);
-        if (i + 1 < to.levels) pixels = half_size(pixels, width, height);
+        if (i + 1 < to.levels) pixels = smaller_level(pixels, width, height);
         width = std::max(1, width / 2);
         height = std::max(1, height / 2);
     }

@@ -19,15 +19,15 @@ uint8_t unorm8(float v) {
 }
 
 // What a pixel holds of a surface, in the formats of the targets.
-uint64_t albedo_of(const SurfacePixel& p) {
+uint64_t packed_albedo(const SurfacePixel& p) {
     const uint16_t albedo[4] = {unorm16(p.albedo[0]), unorm16(p.albedo[1]), unorm16(p.albedo[2]), 65535};
     return std::bit_cast<uint64_t>(albedo);
 }
-uint32_t normal_of(const SurfacePixel& p) {
+uint32_t packed_normal(const SurfacePixel& p) {
     const Vec2 normal = oct_encode(p.normal) * 0.5f + Vec2(0.5f, 0.5f);
     return unorm16(normal.x()) | uint32_t(unorm16(normal.y())) << 16;
 }
-uint32_t material_of(const SurfacePixel& p) {
+uint32_t packed_material(const SurfacePixel& p) {
     const uint8_t material[4] = {unorm8(p.metallic), unorm8(p.roughness), 255, uint8_t(p.kind)};
     return std::bit_cast<uint32_t>(material);
 }
@@ -49,9 +49,9 @@ SurfaceWriter::SurfaceWriter(const GBuffer& targets, const PixelRect& area, bool
 
 void SurfaceWriter::put(size_t i, const SurfacePixel& p) {
     depth_[i] = p.depth;
-    albedo_[i] = albedo_of(p);
-    normal_[i] = normal_of(p);
-    material_[i] = material_of(p);
+    albedo_[i] = packed_albedo(p);
+    normal_[i] = packed_normal(p);
+    material_[i] = packed_material(p);
     // What emits is written by its shader.
     if (!emission_.empty()) std::copy_n(std::array{0.0f, 0.0f, 0.0f, 1.0f}.data(), 4, &emission_[4 * i]);
     if (id_.empty()) return;
@@ -60,8 +60,8 @@ void SurfaceWriter::put(size_t i, const SurfacePixel& p) {
 }
 
 void SurfaceWriter::set_targets(native::VisibleTriangles& to, const SurfacePixel& p) const {
-    to.albedo = albedo_of(p);
-    to.material = material_of(p);
+    to.albedo = packed_albedo(p);
+    to.material = packed_material(p);
     to.id = p.object + 1;
     to.x = area_.x;
     to.y = area_.y;
@@ -93,9 +93,9 @@ SurfaceFill::SurfaceFill(const GBuffer& targets, const SurfacePixel& surface)
       normal_(targets.normal.pixels<uint32_t>()),
       material_(targets.material.pixels<uint32_t>()),
       depth_(targets.depth.pixels<float>()),
-      own_albedo_(albedo_of(surface)),
-      own_normal_(normal_of(surface)),
-      own_material_(material_of(surface)) {
+      own_albedo_(packed_albedo(surface)),
+      own_normal_(packed_normal(surface)),
+      own_material_(packed_material(surface)) {
     if (targets.emission.is_ahead()) emission_ = targets.emission.pixels<float>();
 }
 
