@@ -42,7 +42,7 @@ uniform vec4 u_opacity_channel;
 
 vec2 uv_of(int slot) { return image_uv(u_uv_transform[slot], v_uv); }
 
-#ifdef NATIVE
+#ifdef NATIVE  // There derivatives are inputs; the driver computes them between neighbours.
 in vec2 v_uv_dx;  // what v_uv changes by to the next pixel
 in vec2 v_uv_dy;
 in vec3 v_face;  // normal of the face on the side that is seen

@@ -147,7 +147,7 @@ struct VisibleLanes {
     template <class Visit>
     INLINE void each_corner(const VisibleTriangles& t, const VisiblePixel* pixels, Visit&& visit) const {
         for (int k = 0; k < lanes; ++k) {
-            const size_t face = size_t(t.first_face + pixels[k < used ? k : used - 1].face);
+            const size_t face = size_t(t.first_face) + pixels[k < used ? k : used - 1].face;
             for (int c = 0; c < 3; ++c) visit(k, c, 3 * face + size_t(c), size_t(t.F[3 * face + size_t(c)]));
         }
     }

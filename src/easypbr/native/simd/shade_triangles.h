@@ -76,11 +76,8 @@ INLINE void set_inputs(mesh_resolve& s, const VisibleTriangles& t, const Visible
     if (s.has_tangents) set_tangent(s, t, pixels, seen);
 }
 
-INLINE uint64_t shorts_of(const vec4& c, int k) {
-    const auto rounded = [](float v) __attribute__((always_inline)) {
-        return uint64_t((v > 0 ? v < 1 ? v : 1 : 0) * 65535.0f + 0.5f);
-    };
-    return rounded(c.x.v[k]) | rounded(c.y.v[k]) << 16 | rounded(c.z.v[k]) << 32 | rounded(c.w.v[k]) << 48;
+INLINE vint rounded_bits(vfloat c, float most) {
+    return to_int(clamp(c, 0.0f, 1.0f) * most + 0.5f);
 }
 
 inline void resolve_shaded(const VisibleTriangles& t, const VisiblePixel* pixels, int count) {
@@ -90,15 +87,16 @@ inline void resolve_shaded(const VisibleTriangles& t, const VisiblePixel* pixels
         const VisibleLanes seen(t, pixels, count - first);
         set_inputs(s, t, pixels, seen);
         s.main();
-        const auto bits = [](vfloat c, float most) __attribute__((always_inline)) {
-            return to_int(clamp(c, 0.0f, 1.0f) * most + 0.5f);
-        };
-        write_geometry(t, pixels, seen, bits(s.o_normal.x, 65535) | bits(s.o_normal.y, 65535) << 16);
-        const vint material = bits(s.o_material.x, 255) | bits(s.o_material.y, 255) << 8 |
-                              bits(s.o_material.z, 255) << 16 | bits(s.o_material.w, 255) << 24;
+        const vec4 &c = s.o_albedo, &m = s.o_material;
+        write_geometry(t, pixels, seen,
+                       rounded_bits(s.o_normal.x, 65535) | rounded_bits(s.o_normal.y, 65535) << 16);
+        const vint red_green = rounded_bits(c.x, 65535) | rounded_bits(c.y, 65535) << 16,
+                   blue_alpha = rounded_bits(c.z, 65535) | rounded_bits(c.w, 65535) << 16;
+        const vint material = rounded_bits(m.x, 255) | rounded_bits(m.y, 255) << 8 |
+                              rounded_bits(m.z, 255) << 16 | rounded_bits(m.w, 255) << 24;
         for (int k = 0; k < seen.used; ++k) {
             const size_t at = size_t(pixels[k].y - t.y) * size_t(t.width) + size_t(pixels[k].x - t.x);
-            t.albedos[at] = shorts_of(s.o_albedo, k);
+            t.albedos[at] = uint32_t(red_green.v[k]) | uint64_t(uint32_t(blue_alpha.v[k])) << 32;
             t.materials[at] = uint32_t(material.v[k]);
         }
         if (t.emission) write_emission(t, pixels, seen.used, s.o_emission);
