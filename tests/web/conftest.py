@@ -83,10 +83,11 @@ class Page:
             }""")
         return np.frombuffer(base64.b64decode(data), np.uint8).reshape(height, width, 4)
 
-    def until_shows(self, pixels):
-        """Waits until the canvas holds exactly these."""
+    def until_shows(self, pixels, tolerance=0):
+        """Waits until the canvas holds these; channels may differ by the tolerance."""
         for _ in range(PATIENCE_MS // 200):
-            if np.array_equal(self.pixels(), pixels):
+            shown = self.pixels()
+            if shown.shape == pixels.shape and np.abs(shown.astype(int) - pixels).max() <= tolerance:
                 return
             self.page.wait_for_timeout(200)
         raise AssertionError("another picture stays")

@@ -218,7 +218,8 @@ def test_a_link_holds_camera_and_settings(server, open_page):
     page.page.wait_for_function("value => document.querySelector('input[type=color]').value !== value", arg="#0000ff")
     page.page.context.close()
     again = open_page(link, width=1100)
-    again.until_shows(kept)
+    # A link has a camera's numbers as text, and its near plane is not inferred: single values round the other way.
+    again.until_shows(kept, tolerance=1)
 
 
 def test_it_comes_back_by_itself(view, open_page, tmp_path):

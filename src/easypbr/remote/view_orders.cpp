@@ -131,7 +131,6 @@ void View::obey(ClientId, const SetCamera& message) {
         draw();
     }
     app::apply_camera_text(message.text, own_->session.settings());
-    own_->session.settings().camera.near.release();  // As after a drag: inferred anew.
     own_->last_change_s = now_seconds();
 }
 
