@@ -5,8 +5,6 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 .venv/bin/python bench/cloud_updates.py
-# The page of the browser view, in Chromium.
-.venv/bin/python -m pytest -q tests/web
 .venv/bin/python -m pytest -q -s tests/long
 EASYPBR_TEST_SCENES=200 build/tests/test_app --gtest_filter='NativeShading.*'
 cmake --preset asan
