@@ -4,19 +4,26 @@ set(native_shaders lighting_surface background_environment display_output accumu
                    occlusion_select occlusion_horizon occlusion_hemisphere occlusion_blur occlusion_magnify
                    lighting_catcher ground_finish)
 set(native_surface_shaders mesh_resolve)
+set(native_stream_shaders path_lamps path_scatter)
 set(native_folder ${PROJECT_BINARY_DIR}/generated/native)
 list(JOIN native_shaders ") X(" native_names)
-file(CONFIGURE OUTPUT ${native_folder}/shader_list.h CONTENT "#define EASYPBR_SHADERS(X) X(${native_names})\n")
+list(JOIN native_stream_shaders ") X(" native_stream_names)
+file(CONFIGURE OUTPUT ${native_folder}/shader_list.h
+     CONTENT "#define EASYPBR_SHADERS(X) X(${native_names})\n#define EASYPBR_STREAMS(X) X(${native_stream_names})\n")
+list(TRANSFORM native_stream_shaders PREPEND "--stream=" OUTPUT_VARIABLE native_stream_options)
 file(GLOB shader_texts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/shaders/*.glsl ${PROJECT_SOURCE_DIR}/shaders/*.frag)
 add_custom_command(
-  OUTPUT ${native_folder}/shader_uniforms.h ${native_folder}/shaders.h
+  OUTPUT ${native_folder}/shader_uniforms.h ${native_folder}/shaders.h ${native_folder}/shader_streams.h
   COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/native_shaders.py ${PROJECT_SOURCE_DIR}/shaders
           ${native_folder} --define DFG_SIZE=64 --define LIGHTS_PER_BLOCK=64 --define SHADOWS --define UV_TRANSFORMS=7
-          --define NATIVE --without SHADOW_TINTS ${native_shaders} ${native_surface_shaders}
+          --define NATIVE --without SHADOW_TINTS ${native_shaders} ${native_surface_shaders} ${native_stream_options}
   DEPENDS ${shader_texts} ${PROJECT_SOURCE_DIR}/scripts/native_shaders.py
   COMMENT "Translating shaders" VERBATIM)
-add_custom_target(easypbr_native_texts DEPENDS ${native_folder}/shader_uniforms.h ${native_folder}/shaders.h)
-add_dependencies(easypbr_native easypbr_native_texts)
+add_custom_target(easypbr_native_texts DEPENDS ${native_folder}/shader_uniforms.h ${native_folder}/shaders.h
+                                               ${native_folder}/shader_streams.h)
+foreach(room IN ITEMS native gpu render app gui dataset remote viewer)
+  add_dependencies(easypbr_${room} easypbr_native_texts)
+endforeach()
 target_sources(easypbr_native PRIVATE ${native_folder}/shader_uniforms.h)
 
 # No contraction: all instruction sets compute the same bits.

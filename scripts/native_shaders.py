@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Translates fragment shaders to C++ that shades several pixels at once.
 
-Writes shader_uniforms.h, plain structs of the uniforms, and shaders.h, structs whose main() is that of a shader.
+Writes shader_uniforms.h, plain structs of the uniforms, shaders.h, structs whose main() is that of a shader, and
+shader_streams.h: of the shaders that read and write arrays, with an element for each lane, their arrays.
 Types, functions and samplers are those of src/easypbr/native/simd. Macros are what #ifdef sees; features
 (#feature) become members of the uniforms. What changes:
 
@@ -270,6 +271,7 @@ class Shader:
         self.uniforms: list[tuple[str, str, str]] = []  # type, name, array size or ""
         self.uniform_structs: list[str] = []
         self.members: list[str] = []
+        self.streams: list[tuple[str, str, bool]] = []  # type, name, whether it is written
         self.functions: list[tuple[str, set[str], str]] = []  # name, what it names, text
         tree = tree_of(tokens_of(text.read(name)))
         self.features = text.features
@@ -306,6 +308,7 @@ class Shader:
             self.uniforms.append((items[1], items[2], items[3][1][0] if is_group(items[3], "[") else ""))
         elif items[0] in ("in", "out"):
             self.members.append(f"{TYPES.get(items[1], items[1])} {items[2]};")
+            self.streams.append((items[1], items[2], items[0] == "out"))
         elif items[0] == "const":
             self.members.append("static constexpr " + UNIFORM_TYPES[items[1]] + " " + self.constant(items[2:-1], translator) + ";")
         else:
@@ -345,8 +348,39 @@ def write(path: Path, text: str) -> None:
         path.write_text(text)
 
 
-def translate(name: str, folder: Path, macros: dict[str, str], without: list[str]) -> tuple[str, str]:
-    """The struct of a shader's uniforms, and that of the shader."""
+def components_of(kind: str) -> list[str]:
+    """What a member of a stream consists of, each an array of its own."""
+    if kind == "float":
+        return [""]
+    if re.fullmatch(r"vec[234]", kind):
+        return [f".{c}" for c in "xyzw"[: int(kind[3])]]
+    raise ShaderError(f"a stream of {kind}")
+
+
+def stream_of(name: str, shader: Shader) -> tuple[str, list[str]]:
+    """The struct of a shader's arrays, and the members that move lanes from and to them."""
+    arrays, loads, stores = [], [], []
+    for kind, member, written in shader.streams:
+        components = components_of(kind)
+        many = len(components) > 1
+        arrays.append(f"{'' if written else 'const '}float* {member}{f'[{len(components)}]' if many else ''} = {{}};")
+        for i, component in enumerate(components):
+            array = f"arrays.{member}{f'[{i}]' if many else ''}"
+            if written:
+                stores.append(f"store_lanes({array}, at, {member}{component});")
+            else:
+                loads.append(f"{member}{component} = load_lanes({array}, at);")
+    members = [
+        f"INLINE void load(const {name}_stream& arrays, size_t at) {{", *loads, "}",
+        f"INLINE void store(const {name}_stream& arrays, size_t at) const {{", *stores, "}",
+    ]  # fmt: skip
+    return "\n".join([f"struct {name}_stream {{", *arrays, "};"]), members
+
+
+def translate(
+    name: str, folder: Path, macros: dict[str, str], without: list[str], is_stream: bool
+) -> tuple[str, str, str]:
+    """The struct of a shader's uniforms, that of the shader, and that of its arrays."""
     text = Text(folder, macros, without)
     shader = Shader(text, f"{name}.frag")
     kinds = [
@@ -359,8 +393,9 @@ def translate(name: str, folder: Path, macros: dict[str, str], without: list[str
     visits += [f'visit.feature("{macro}", {constant});' for macro, constant in text.features]
     uniforms = [f"struct {name}_uniforms {{", *shader.uniform_structs, *declared]
     uniforms += ["template <class Visitor>", "void visit(Visitor&& visit) {", *visits, "}", "};"]
-    body = [f"struct {name} : {name}_uniforms, Fragment {{", *shader.members, *shader.called(), "};"]
-    return "\n".join(uniforms), "\n".join(body)
+    stream, moves = stream_of(name, shader) if is_stream else ("", [])
+    body = [f"struct {name} : {name}_uniforms, Fragment {{", *shader.members, *shader.called(), *moves, "};"]
+    return "\n".join(uniforms), "\n".join(body), stream
 
 
 def main() -> None:
@@ -370,20 +405,25 @@ def main() -> None:
     parser.add_argument("names", nargs="+", help="fragment shaders, without .frag")
     parser.add_argument("--define", action="append", default=[], metavar="NAME[=VALUE]", help="a macro")
     parser.add_argument("--without", action="append", default=[], metavar="NAME", help="a feature that is left out")
+    parser.add_argument("--stream", action="append", default=[], metavar="NAME", help="one more, that shades arrays")
     arguments = parser.parse_args()
     macros = dict((*macro.split("=", 1), "")[:2] for macro in arguments.define)
-    uniforms, shaders = [], []
-    for name in arguments.names:
+    uniforms, shaders, streams = [], [], []
+    for name in arguments.names + arguments.stream:
+        is_stream = name in arguments.stream
         try:
-            parts = translate(name, arguments.folder, macros, arguments.without)
+            parts = translate(name, arguments.folder, macros, arguments.without, is_stream)
         except ShaderError as error:
             sys.exit(f"{name}: {error}")
         uniforms.append(parts[0])
         shaders.append(parts[1])
+        if is_stream:
+            streams.append(parts[2])
     arguments.output.mkdir(parents=True, exist_ok=True)
     head = "// Made by scripts/native_shaders.py.\n"
     write(arguments.output / "shader_uniforms.h", head + "\n\n".join(uniforms) + "\n")
     write(arguments.output / "shaders.h", head + "\n\n".join(shaders) + "\n")
+    write(arguments.output / "shader_streams.h", head + "\n\n".join(streams) + "\n")
 
 
 if __name__ == "__main__":

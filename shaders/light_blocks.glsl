@@ -1,5 +1,5 @@
 // What the uniform blocks of lights and of shadow maps hold for each. C++ includes this file too, in
-// render/lighting/light_uniforms.h: all members are of the type vec4, which std140 and C++ lay out alike.
+// render/frame/shading_inputs.h: all members are of the type vec4, which std140 and C++ lay out alike.
 
 struct Light {
     vec4 position;   // relative to the camera; w: 0 directional, 1 point, 2 spot

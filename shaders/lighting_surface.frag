@@ -14,10 +14,8 @@ uniform sampler2D u_albedo;
 uniform sampler2D u_normal;
 uniform sampler2D u_material;
 uniform sampler2D u_depth_target;
-uniform sampler2D u_dfg;
 uniform sampler2D u_emission;
 uniform sampler2D u_ambient_occlusion;
-uniform float u_dielectric_f0;
 uniform float u_first_block;  // 1: of the first block of lights, which adds what lies behind and below all layers
 uniform float u_tap_offset;   // in [0, 1), another one in each frame
 uniform float u_tap_gap;      // between the offsets of all frames
@@ -29,22 +27,7 @@ layout(location = 0, index = 1) out vec4 o_keep;  // of the emission that stands
 layout(location = 0) out vec4 o_radiance;
 #endif
 
-struct Surface {
-    vec3 position, normal, view, diffuse, f0;
-    float n_dot_v, roughness, alpha;
-    Energy energy;
-    // With extensions:
-    Extension extension;
-    vec3 f90, film, through;
-    float keep;  // of what is below all layers
-    float sheen_albedo, sheen_keep, coat_albedo, coat_n_dot_v;
-};
-
-vec2 dfg_at(float n_dot_v, float roughness) {
-    const float nodes = float(DFG_SIZE);
-    return textureLod(u_dfg, (vec2(sqrt(min(n_dot_v, 1.0)), roughness) * (nodes - 1.0) + 0.5) / nodes, 0.0).rg;
-}
-
+#include "common_surface.glsl"
 #include "common_face_normal.glsl"
 #include "lighting_sky.glsl"
 

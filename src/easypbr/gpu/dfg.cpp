@@ -20,6 +20,14 @@ std::span<const uint16_t> dfg_table(Brdf brdf) {
     }
 }
 
+native::View host_dfg(Brdf brdf) {
+    return {.data = std::as_bytes(dfg_table(brdf)).data(),
+            .width = dfg_size,
+            .height = dfg_size,
+            .held_width = dfg_size,
+            .held_height = dfg_size};
+}
+
 std::span<const uint16_t> sheen_albedo_table() {
     return sheen_albedo;
 }

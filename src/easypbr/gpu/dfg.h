@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <span>
 
+#include "easypbr/native/views.h"
+
 namespace easypbr {
 enum class Brdf;
 }
@@ -15,6 +17,8 @@ inline constexpr int dfg_size = 64;
 
 /// A and B of one node's geometry term as halves: 2 dfg_size^2 values, computed when the library was built.
 std::span<const uint16_t> dfg_table(Brdf brdf);
+/// The same for native shaders.
+native::View host_dfg(Brdf brdf);
 
 /// What the sheen of KHR_materials_sheen with colour 1 reflects of a uniform environment (Estevez and Kulla
 /// 2017), at the same nodes, as halves.

@@ -8,6 +8,13 @@
 
 namespace easypbr::native {
 
+// Arrays of the shaders that shade one element after the other, by the names of what they read and write. Of
+// vectors each component is an array.
+#include "native/shader_streams.h"
+
+/// What all arrays of streams have room for is a multiple of this many elements.
+inline constexpr int stream_alignment = 16;
+
 /// What becomes of a pixel.
 enum class Store {
     replace,
@@ -89,6 +96,37 @@ using ResolveTriangles = void (*)(const VisibleTriangles& triangles, const Visib
 using AlphaOfTriangles = void (*)(const VisibleTriangles& triangles, const VisiblePixel* pixels, int count,
                                   float* alpha);
 
+/// A place on a face or another element of a mesh that a ray has met.
+struct ElementHit {
+    uint32_t element = 0;  ///< face or vertex
+    float u = 0, v = 0;    ///< weights of a face's second and third corner
+    float normal[3] = {};  ///< unit, of the element itself, towards where the ray comes from; world space
+    float footprint = 0;   ///< width of the part of the surface that the ray stands for, world units
+};
+
+/// Surfaces that rays have met; an array for each component.
+struct HitSurfaces {
+    float* normal[3] = {};  ///< world, interpolated and mapped, on the side that the ray comes from
+    float* face[3] = {};    ///< world, of the element itself, likewise
+    float* albedo[3] = {};
+    float* parameters[2] = {};  ///< metallic, roughness
+    float* emission[3] = {};    ///< radiance
+    float* kind = nullptr;      ///< code of the surface's
+};
+
+/// Evaluates the triangles' shader where rays have met them.
+using ShadeHits = void (*)(const VisibleTriangles& triangles, const ElementHit* hits, int count,
+                           const HitSurfaces& surfaces);
+/// Shades elements [0, count) of a stream and at most stream_alignment - 1 more.
+using ShadeStream = void (*)(const void* uniforms, const void* stream, int count);
+
+/// Shaders of streams: those of cmake/native.cmake.
+enum class Stream {
+#define EASYPBR_NAME(name) name,
+    EASYPBR_STREAMS(EASYPBR_NAME)
+#undef EASYPBR_NAME
+};
+
 /// Shaders of pictures: those of cmake/native.cmake.
 enum class Shader {
 #define EASYPBR_NAME(name) name,
@@ -98,12 +136,15 @@ enum class Shader {
 
 #define EASYPBR_ONE(name) +1
 inline constexpr int shader_count = EASYPBR_SHADERS(EASYPBR_ONE);
+inline constexpr int stream_count = EASYPBR_STREAMS(EASYPBR_ONE);
 #undef EASYPBR_ONE
 
 struct Kernels {
     ResolveTriangles resolve_triangles;
     AlphaOfTriangles alpha_of_triangles;
-    ShadeRows shade[shader_count];  ///< by Shader
+    ShadeHits shade_hits;
+    ShadeRows shade[shader_count];     ///< by Shader
+    ShadeStream stream[stream_count];  ///< by Stream
 };
 
 }  // namespace easypbr::native

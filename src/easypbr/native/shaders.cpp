@@ -150,6 +150,13 @@ void shade_with(ShadeRows kernel, const Inputs& inputs, const Region& region, in
     });
 }
 
+template <class Uniforms>
+std::shared_ptr<const void> filled(const Inputs& inputs) {
+    auto uniforms = std::make_shared<Uniforms>();
+    uniforms->visit(Setter(inputs));
+    return uniforms;
+}
+
 }  // namespace
 
 std::vector<std::string_view> instruction_sets() {
@@ -168,9 +175,7 @@ void use_instruction_set(std::string_view name) {
 }
 
 std::shared_ptr<const void> surface_uniforms(const Inputs& inputs) {
-    auto uniforms = std::make_shared<mesh_resolve_uniforms>();
-    uniforms->visit(Setter(inputs));
-    return uniforms;
+    return filled<mesh_resolve_uniforms>(inputs);
 }
 
 void resolve_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels) {
@@ -181,6 +186,27 @@ void alpha_of_triangles(const VisibleTriangles& triangles, std::span<const Visib
                         std::span<float> alpha) {
     chosen_set().kernels->alpha_of_triangles(triangles, pixels.data(), int(pixels.size()), alpha.data());
 }
+
+void shade_hits(const VisibleTriangles& triangles, std::span<const ElementHit> hits,
+                const HitSurfaces& surfaces) {
+    chosen_set().kernels->shade_hits(triangles, hits.data(), int(hits.size()), surfaces);
+}
+
+std::shared_ptr<const void> stream_uniforms(Stream shader, const Inputs& inputs) {
+#define EASYPBR_CASE(name) \
+    case Stream::name:     \
+        return filled<name##_uniforms>(inputs);
+    switch (shader) { EASYPBR_STREAMS(EASYPBR_CASE) }
+#undef EASYPBR_CASE
+    return nullptr;
+}
+
+#define EASYPBR_RUN(name)                                                             \
+    void run(const void* uniforms, const name##_stream& stream, int count) {          \
+        chosen_set().kernels->stream[size_t(Stream::name)](uniforms, &stream, count); \
+    }
+EASYPBR_STREAMS(EASYPBR_RUN)
+#undef EASYPBR_RUN
 
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1) {
     const Kernels& k = *chosen_set().kernels;

@@ -49,6 +49,18 @@ void resolve_triangles(const VisibleTriangles& triangles, std::span<const Visibl
 void alpha_of_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels,
                         std::span<float> alpha);
 
+/// Evaluates the triangles' shader where rays have met them. The arrays have room for a multiple of
+/// stream_alignment hits. On the calling thread.
+void shade_hits(const VisibleTriangles& triangles, std::span<const ElementHit> hits,
+                const HitSurfaces& surfaces);
+
+/// The uniforms of a stream's shader. Throws Error when a value is not of the uniform's type.
+std::shared_ptr<const void> stream_uniforms(Stream shader, const Inputs& inputs);
+// Shade a stream by the shader of its name. On the calling thread.
+#define EASYPBR_RUN(name) void run(const void* uniforms, const name##_stream& stream, int count);
+EASYPBR_STREAMS(EASYPBR_RUN)
+#undef EASYPBR_RUN
+
 /// Shades rows [y0, y1) of a region, on all cores. Throws Error when a value is not of the uniform's type,
 /// Interrupted.
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1);

@@ -9,6 +9,7 @@
 #include "easypbr/scene/effects/ground.h"
 #include "easypbr/scene/effects/motion_blur.h"
 #include "easypbr/scene/effects/outline.h"
+#include "easypbr/scene/effects/path_tracing.h"
 #include "easypbr/scene/effects/ray_tracing.h"
 
 /// EFFECT(member of BasicSettings, its type there), in the order of the table of settings.
@@ -16,6 +17,7 @@
     EFFECT(ground, BasicGroundSettings<MaybeAuto>)               \
     EFFECT(ssao, BasicSsaoSettings<MaybeAuto>)                   \
     EFFECT(rays, BasicRaySettings<MaybeAuto>)                    \
+    EFFECT(path, BasicPathSettings<MaybeAuto>)                   \
     EFFECT(bloom, BasicBloomSettings<MaybeAuto>)                 \
     EFFECT(depth_of_field, BasicDepthOfFieldSettings<MaybeAuto>) \
     EFFECT(motion_blur, MotionBlurSettings)                      \

@@ -10,6 +10,13 @@ namespace easypbr::native {
 
 namespace EASYPBR_ISA {
 
+INLINE vfloat load_lanes(const float* from, size_t at) {
+    return vfloat(load<Floats>(from + at));
+}
+INLINE void store_lanes(float* to, size_t at, vfloat value) {
+    std::memcpy(to + at, &value.v, sizeof value.v);
+}
+
 struct Fragment : TextureReader {
     vec4 gl_FragCoord;
     vfloat gl_FragDepth;  ///< native passes ignore it
@@ -22,7 +29,7 @@ struct Fragment : TextureReader {
 }  // namespace EASYPBR_ISA
 }  // namespace easypbr::native
 
-#include "easypbr/native/simd/shade_triangles.h"
+#include "easypbr/native/simd/shade_hits.h"
 
 namespace easypbr::native::EASYPBR_ISA {
 namespace {
@@ -176,12 +183,31 @@ __attribute__((flatten)) void shade_rows(const void* uniforms, const Region& reg
         }
 }
 
+template <class Shader, class Uniforms, class Arrays>
+__attribute__((flatten)) void shade_stream(const void* uniforms, const void* stream, int count) {
+    static_assert(stream_alignment % lanes == 0);
+    Shader s;
+    static_cast<Uniforms&>(s) = *static_cast<const Uniforms*>(uniforms);
+    const Arrays& arrays = *static_cast<const Arrays*>(stream);
+    for (size_t at = 0; at < size_t(count); at += lanes) {
+        s.load(arrays, at);
+        s.main();
+        s.store(arrays, at);
+    }
+}
+
 }  // namespace
 
 // A constant is local to its file unless it is declared extern.
 extern const Kernels kernels;
 #define EASYPBR_ROWS(name) shade_rows<name, name##_uniforms>,
-const Kernels kernels{resolve_triangles, alpha_of_triangles, {EASYPBR_SHADERS(EASYPBR_ROWS)}};
+#define EASYPBR_ARRAYS(name) shade_stream<name, name##_uniforms, name##_stream>,
+const Kernels kernels{resolve_triangles,
+                      alpha_of_triangles,
+                      shade_hits,
+                      {EASYPBR_SHADERS(EASYPBR_ROWS)},
+                      {EASYPBR_STREAMS(EASYPBR_ARRAYS)}};
+#undef EASYPBR_ARRAYS
 #undef EASYPBR_ROWS
 
 }  // namespace easypbr::native::EASYPBR_ISA

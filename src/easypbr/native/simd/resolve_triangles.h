@@ -38,7 +38,7 @@ INLINE vfloat single(Doubles v) {
 }
 
 /// A pixel on a triangle: weights of the corners, right under perspective, and the depth.
-struct TriangleHit {
+struct PixelOnTriangle {
     vfloat weight[3], depth;
     vbool front;
     vfloat x[3], y[3], w[3];  ///< of the corners, from the pixel, in clip coordinates
@@ -52,8 +52,8 @@ struct TriangleHit {
 
 /// Weights solve sum b_i (x_i - X w_i, y_i - Y w_i) = 0 for the pixel (X, Y) (Olano and Greer 1997). In
 /// double precision: occlusion on a plane notices depths that err by more than their rounding.
-INLINE TriangleHit intersect(const double (&clip)[4][4], const Corners& position, Doubles ndc_x,
-                             Doubles ndc_y) {
+INLINE PixelOnTriangle intersect(const double (&clip)[4][4], const Corners& position, Doubles ndc_x,
+                                 Doubles ndc_y) {
     Doubles x[3], y[3], z[3], w[3];
     for (int k = 0; k < 3; ++k) {
         const vec3 p = position.corner(k);
@@ -67,7 +67,7 @@ INLINE TriangleHit intersect(const double (&clip)[4][4], const Corners& position
     const auto flat = sum == 0.0;
     for (Doubles& part : b) part = flat ? one / 3.0 : part;
     const Doubles scale = 1.0 / (flat ? one : sum);
-    TriangleHit hit;
+    PixelOnTriangle hit;
     for (int k = 0; k < 3; ++k) {
         hit.weight[k] = single(b[k] * scale);
         hit.x[k] = single(x[k]);
@@ -122,7 +122,7 @@ INLINE void write_emission(const VisibleTriangles& t, const VisiblePixel* pixels
 struct VisibleLanes {
     Corners position;
     int used;  ///< lanes beyond repeat the last pixel
-    TriangleHit hit;
+    PixelOnTriangle hit;
     vec3 edge1, edge2;
 
     INLINE VisibleLanes(const VisibleTriangles& t, const VisiblePixel* pixels, int left)

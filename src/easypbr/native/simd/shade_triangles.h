@@ -7,7 +7,7 @@ namespace easypbr::native::EASYPBR_ISA {
 
 /// What the corners' weights change by, times `scale`, when the pixel moves by one of its coordinates: `from`
 /// are the corners' other coordinates.
-INLINE void weight_changes(const TriangleHit& hit, const vfloat (&from)[3], float step,
+INLINE void weight_changes(const PixelOnTriangle& hit, const vfloat (&from)[3], float step,
                            vfloat (&changes)[3]) {
     const vfloat(&w)[3] = hit.w;
     const vfloat b[3] = {w[2] * from[1] - w[1] * from[2], w[0] * from[2] - w[2] * from[0],
@@ -23,7 +23,7 @@ INLINE void set_uv(mesh_resolve& s, const VisibleTriangles& t, const VisiblePixe
         t, pixels, [&](int k, int c, size_t, size_t vertex) __attribute__((always_inline)) {
             uv.set(c, k, t.attributes.uvs + 2 * vertex);
         });
-    const TriangleHit& hit = seen.hit;
+    const PixelOnTriangle& hit = seen.hit;
     s.v_uv = vec2(hit.mean(uv, 0), hit.mean(uv, 1));
     const auto change = [&](const vfloat(&weights)[3]) __attribute__((always_inline)) {
         const auto of = [&](int i) __attribute__((always_inline)) {
@@ -38,22 +38,23 @@ INLINE void set_uv(mesh_resolve& s, const VisibleTriangles& t, const VisiblePixe
     s.v_uv_dy = change(weights);
 }
 
-INLINE void set_color(mesh_resolve& s, const VisibleTriangles& t, const VisiblePixel* pixels,
-                      const VisibleLanes& seen) {
+/// `places` is what the lanes stand for: pixels, or hits of rays.
+template <class Place, class Lanes>
+INLINE void set_color(mesh_resolve& s, const VisibleTriangles& t, const Place* places, const Lanes& seen) {
     CornerValues<4> color;
     seen.each_corner(
-        t, pixels, [&](int k, int c, size_t, size_t vertex) __attribute__((always_inline)) {
+        t, places, [&](int k, int c, size_t, size_t vertex) __attribute__((always_inline)) {
             color.set(c, k, t.attributes.colors + 4 * vertex);
         });
     s.v_color = vec4(seen.hit.mean(color, 0), seen.hit.mean(color, 1), seen.hit.mean(color, 2),
                      seen.hit.mean(color, 3));
 }
 
-INLINE void set_tangent(mesh_resolve& s, const VisibleTriangles& t, const VisiblePixel* pixels,
-                        const VisibleLanes& seen) {
+template <class Place, class Lanes>
+INLINE void set_tangent(mesh_resolve& s, const VisibleTriangles& t, const Place* places, const Lanes& seen) {
     CornerValues<4> tangent;
     seen.each_corner(
-        t, pixels, [&](int k, int c, size_t corner, size_t) __attribute__((always_inline)) {
+        t, places, [&](int k, int c, size_t corner, size_t) __attribute__((always_inline)) {
             for (int i = 0; i < 4; ++i)
                 tangent.value[c][i][k] =
                     float(t.attributes.tangents[4 * corner + size_t(i)]) * (1.0f / 32767.0f);

@@ -8,37 +8,14 @@
 #include <cmath>
 
 #include "easypbr/gpu/dfg.h"
+#include "easypbr/render/frame/shading_inputs.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {
 
-/// What the uniform blocks hold is stated once, in the text that the shaders include.
-namespace blocks {
-using vec4 = Vec4;
-#include "light_blocks.glsl"
-// std140 rounds the size of an element up to that of a vec4.
-static_assert(sizeof(Light) == 4 * sizeof(vec4) && sizeof(ShadowMap) == 6 * sizeof(vec4));
-static_assert(sizeof(vec4) == 16 && alignof(vec4) <= 16);
-}  // namespace blocks
-
 using LightUniforms = std::array<blocks::Light, lights_per_block>;
 using ShadowUniforms = std::array<blocks::ShadowMap, lights_per_block>;
-
-void write_light(const LightSource& light, const Vec3d& camera, LightUniforms& uniforms, size_t index) {
-    blocks::Light& to = uniforms[index];
-    const float kind = light.type == LightType::directional ? 0.0f
-                       : light.type == LightType::point     ? 1.0f
-                                                            : 2.0f;
-    to.position << (light.position.cast<double>() - camera).cast<float>(), kind;
-    to.color << light.color * light.intensity, light.range > 0 ? 1 / (light.range * light.range) : 0.0f;
-    to.direction << light.direction.normalized(), 0;
-    // KHR_lights_punctual: the cone fades from 1 at the inner to 0 at the outer angle.
-    const float inner = float(std::cos(radians(light.inner_cone_deg))),
-                outer = float(std::cos(radians(light.outer_cone_deg)));
-    const float scale = 1 / std::max(1e-3f, inner - outer);
-    to.cone << scale, -outer * scale, 0, 0;
-}
 
 Vec4 vec4(double x, double y, double z, double w) {
     return Eigen::Vector4d(x, y, z, w).cast<float>();
@@ -103,15 +80,11 @@ std::vector<std::string> light_defines(const Frame& frame, const GBuffer& target
 
 std::vector<std::string> defines_of(const Frame& frame, const GBuffer& targets, const LightInputs& inputs) {
     const bool with_environment = inputs.environment != nullptr;
-    const ShadingSettings& shading = frame.resolved->settings.shading;
     std::vector<std::string> defines = light_defines(frame, targets, inputs);
     defines.push_back(fmt::format("DFG_SIZE {}", gpu::dfg_size));
     if (with_environment && frame.sample_count > 1) defines.emplace_back("LOBE_SAMPLES");
     if (with_environment && targets.ambient_occlusion && frame.resolved->settings.ssao.multi_bounce)
         defines.emplace_back("MULTI_BOUNCE");
-    if (shading.multiple_scattering) defines.emplace_back("MULTIPLE_SCATTERING");
-    if (shading.brdf == Brdf::ue4) defines.emplace_back("BRDF_UE4");
-    if (shading.brdf == Brdf::separable) defines.emplace_back("BRDF_SEPARABLE");
     add_extension_defines(inputs.extensions, defines);
     if (inputs.transmission) defines.emplace_back("BEHIND");
     return defines;
@@ -164,7 +137,7 @@ void set_environment(ShaderInputs& values, const Frame& frame, const LightInputs
 void set_lights(ShaderInputs& values, const Frame& frame, const LightBlock& block, bool native) {
     LightUniforms lights{};
     for (size_t i = 0; i < block.lights.size(); ++i)
-        write_light(*block.lights[i], frame.camera.position(), lights, i);
+        lights[i] = light_uniform(*block.lights[i], frame.camera.position());
     values.set_block(0, "u_lights", gl::bytes_of(lights));
     values.set("u_plain_lights", int(block.plain()));
     if (block.shadows.empty()) return;
@@ -193,11 +166,7 @@ void set_lights(ShaderInputs& values, const Frame& frame, const LightBlock& bloc
 void LightingPass::set_dfg(ShaderInputs& values, Brdf brdf, bool native) {
     static_assert(gpu::dfg_size == 64 && lights_per_block == 64, "cmake/native.cmake says so too");
     if (native) {
-        values.set("u_dfg", native::View{.data = std::as_bytes(gpu::dfg_table(brdf)).data(),
-                                         .width = gpu::dfg_size,
-                                         .height = gpu::dfg_size,
-                                         .held_width = gpu::dfg_size,
-                                         .held_height = gpu::dfg_size});
+        values.set("u_dfg", gpu::host_dfg(brdf));
         return;
     }
     if (!dfg_ || dfg_brdf_ != brdf) {
@@ -230,7 +199,7 @@ ShaderInputs LightingPass::surface_inputs(const Frame& frame, const GBuffer& tar
     set_surfaces(values, frame, targets);
     values.set("u_albedo", targets.albedo);
     set_dfg(values, shading.brdf, native);
-    values.set("u_dielectric_f0", shading.dielectric_f0);
+    set_brdf(values, shading);
     values.set("u_first_block", inputs.block.first ? 1.0f : 0.0f);
     if (inputs.extensions) set_extensions(values, frame, targets);
     if (inputs.transmission) set_transmission(values, frame, *inputs.transmission);

@@ -1,6 +1,7 @@
 #include "easypbr/render/output/output_pass.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/parallel.h"
@@ -27,7 +28,10 @@ std::vector<std::string> curve_defines(const Frame& frame, Encoding encoding) {
 
 std::vector<std::string> tone_defines(const Frame& frame, const LitPicture& lit, Encoding encoding) {
     std::vector<std::string> defines = curve_defines(frame, encoding);
-    if (lit.partly_covered) defines.emplace_back("PARTLY_COVERED");
+    if (lit.partly_covered)
+        defines.emplace_back("PARTLY_COVERED");
+    else if (frame.averages_radiance)
+        defines.emplace_back("COVERED_AT_EDGES");
     return defines;
 }
 
@@ -123,6 +127,12 @@ void fill_around(const Target& picture, const PixelRect& area, const Vec4& code)
         fill_around<Eigen::Vector4<uint8_t>>(picture, area, (c * 255.0f).array().round().cast<uint8_t>());
 }
 
+/// A single frame is anti-aliased by what it shows.
+bool is_blurred(const Shot& shot, Encoding encoding) {
+    return shot.sample_count == 1 && encoding != Encoding::scene_linear &&
+           shot.resolved->settings.image.antialias == Antialias::fxaa;
+}
+
 /// Light may have reached all pixels.
 bool is_whole(const Frame& frame, const LitPicture& lit) {
     return frame.resolved->settings.background.shows_environment() || lit.spreads;
@@ -166,13 +176,20 @@ const gl::Texture& OutputPass::texture() const {
     return picture_.texture();
 }
 
-void OutputPass::accumulate(const Frame& frame, const LitPicture& lit) {
+void OutputPass::accumulate(const Frame& frame, const LitPicture& lit_frame) {
     const bool first = frame.sample_index == 0;
+    LitPicture lit = lit_frame;
     drawn_ = first ? lit.covered : united(drawn_, lit.covered);
+    // The mean of noisy light comes before the tone curve, and what covers it after.
+    if (frame.averages_radiance) {
+        add_overlay(frame, std::exchange(lit.overlay, nullptr));
+        lit.partly_covered = true;
+    }
+    const Encoding summed = frame.averages_radiance ? Encoding::scene_linear : encoding_;
     ShaderInputs values;
-    values.define(tone_defines(frame, lit, encoding_));
+    values.define(tone_defines(frame, lit, summed));
     values.set("u_size", Vec2(frame.size.cast<float>()));
-    values.set("u_exposure", exposure_of(frame, encoding_));
+    values.set("u_exposure", exposure_of(frame, summed));
     add_lit(lit, "u_radiance", values);
     if (lit.radiance->is_ahead() && (first || sum_.is_ahead())) return add_natively(frame, lit, values);
 
@@ -198,9 +215,50 @@ void OutputPass::add_natively(const Frame& frame, const LitPicture& lit, const S
                       transfers_);
 }
 
-void OutputPass::finish(const Frame& frame, const LitPicture& lit, const gl::Texture* background_image,
+void OutputPass::add_overlay(const Frame& frame, const Target* overlay) {
+    if (frame.sample_index == 0) overlay_sum_.clear();
+    if (!overlay) return;
+    overlay->download(frame.whole(), transfers_);
+    overlay_sum_.resize(size_t(frame.size.prod()), Vec4::Zero());
+    const auto pixels = overlay->pixels<Eigen::Vector4<Eigen::half>>();
+    const PixelRect& area = overlay->area();
+    parallel_for(size_t(area.height), 16, [&](size_t y) {
+        const size_t from = y * size_t(area.width),
+                     to = (y + size_t(area.y)) * size_t(frame.size.x()) + size_t(area.x);
+        for (size_t x = 0; x < size_t(area.width); ++x)
+            overlay_sum_[to + x] += pixels[from + x].cast<float>();
+    });
+}
+
+LitPicture OutputPass::mean_of(const Frame& frame, const LitPicture& lit) {
+    LitPicture mean = lit;
+    const float scale = 1 / float(frame.sample_index + 1);
+    sum_.download(frame.whole(), transfers_);
+    if (mean_.size() != frame.size) {
+        mean_ = Target(gl::Format::rgba32f, frame.size);
+        overlay_mean_ = Target(gl::Format::rgba16f, frame.size);
+    }
+    mean_.write(frame.whole());
+    const auto from = sum_.pixels<Vec4>(), to = mean_.pixels<Vec4>();
+    parallel_for(to.size(), size_t(1) << 14, [&](size_t i) { to[i] = from[i] * scale; });
+    mean.radiance = &mean_;
+    mean.glow = nullptr;
+    mean.overlay = nullptr;
+    mean.covered = drawn_;
+    if (overlay_sum_.empty()) return mean;
+    overlay_mean_.write(frame.whole());
+    const auto over = overlay_mean_.pixels<Eigen::Vector4<Eigen::half>>();
+    parallel_for(over.size(), size_t(1) << 14,
+                 [&](size_t i) { over[i] = (overlay_sum_[i] * scale).cast<Eigen::half>(); });
+    mean.overlay = &overlay_mean_;
+    return mean;
+}
+
+void OutputPass::finish(const Frame& frame, const LitPicture& lit_frame, const gl::Texture* background_image,
                         const GBuffer* exact) {
-    const Target* sum = frame.sample_count > 1 ? &sum_ : nullptr;
+    const bool averages_radiance = frame.averages_radiance;
+    const LitPicture lit = averages_radiance ? mean_of(frame, lit_frame) : lit_frame;
+    const Target* sum = frame.sample_count > 1 && !averages_radiance ? &sum_ : nullptr;
     const Target& source = sum ? *sum : *lit.radiance;
     if (source.is_ahead() && is_native(frame, background_image, exact)) return finish_natively(frame, lit);
 
@@ -220,21 +278,17 @@ void OutputPass::finish(const Frame& frame, const LitPicture& lit, const gl::Tex
         state = limited_to(sum ? drawn_ : lit.covered, frame, lit);
     }
     display_.draw(values, state);
-    const bool single = !sum && encoding_ != Encoding::scene_linear;
-    if (single && frame.resolved->settings.image.antialias == Antialias::fxaa)
-        blur_edges(frame, lit.covered, exact);
+    if (is_blurred(frame, encoding_)) blur_edges(frame, lit.covered, exact);
 }
 
 void OutputPass::finish_natively(const Frame& frame, const LitPicture& lit) {
-    const Target* sum = frame.sample_count > 1 ? &sum_ : nullptr;
+    const Target* sum = frame.sample_count > 1 && !frame.averages_radiance ? &sum_ : nullptr;
     const PixelRect area = is_whole(frame, lit) ? frame.whole() : sum ? drawn_ : lit.covered;
     picture_.write(picture_.whole());
     fill_around(picture_, area, background_code(frame, encoding_));
     display_.shade(display_inputs(frame, lit, encoding_, sum), {.target = &picture_, .area = area},
                    transfers_);
-    const bool single = !sum && encoding_ != Encoding::scene_linear;
-    if (single && frame.resolved->settings.image.antialias == Antialias::fxaa)
-        blur_edges_natively(frame, lit.covered);
+    if (is_blurred(frame, encoding_)) blur_edges_natively(frame, lit.covered);
 }
 
 void OutputPass::write_exact(const Frame& frame, const LitPicture& lit, const GBuffer& targets, bool layers) {

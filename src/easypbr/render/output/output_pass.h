@@ -44,12 +44,18 @@ class OutputPass {
     void blur_edges(const Frame& frame, const PixelRect& area, const GBuffer* exact);
     void finish_natively(const Frame& frame, const LitPicture& lit);
     void blur_edges_natively(const Frame& frame, const PixelRect& area);
+    /// Adds a frame's overlay to the sum of overlays, in host memory.
+    void add_overlay(const Frame& frame, const Target* overlay);
+    /// The mean of the frames so far, as if it were the only one.
+    LitPicture mean_of(const Frame& frame, const LitPicture& lit);
     void add_natively(const Frame& frame, const LitPicture& lit, const ShaderInputs& values);
 
     Transfers& transfers_;
     PixelRect drawn_;  ///< what the frames of the sum cover together
     Encoding encoding_ = Encoding::srgb8;
     Target sum_, picture_, aliased_;
+    std::vector<Vec4> overlay_sum_;  ///< of frames whose radiance is averaged
+    Target mean_, overlay_mean_;     ///< likewise
     gl::Framebuffer sum_framebuffer_;
     mutable gl::Framebuffer picture_framebuffer_;
     ScreenShader accumulate_{"accumulate_sample.frag", native::Shader::accumulate_sample};

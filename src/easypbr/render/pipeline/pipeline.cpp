@@ -66,15 +66,13 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
     shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
-    const bool native = is_lit_natively(frame, list);
+    const bool native = is_lit_natively(frame, list, contents);
     shadow_maps_.keep_in_host_memory(native);
     if (!native) targets_.upload(transfers_);
     if (contents.ground)
         timer_.run("ground", [&] { native ? ground_.shade(seen, targets_) : ground_.draw(seen, targets_); });
-    if (resolved.settings.ssao.enabled && !contents.traced) occlude(seen, native, with_overlay);
-    if (contents.traced) timer_.run("rays", [&] { update_ray_scene(seen, casters, contents.ground); });
-    const bool caught = contents.ground && GroundPass::is_shadow_catcher(resolved);
-    light(seen, targets_, contents, {.native = native, .extensions = outputs.extensions}, caught);
+    light_surfaces(seen, casters, contents, {.native = native, .extensions = outputs.extensions},
+                   with_overlay);
     const bool shows_environment =
         !resolved.environment.empty() && resolved.settings.background.shows_environment();
     if (native) shade_surroundings(seen, contents, shows_environment);
@@ -98,6 +96,27 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     return lit;
 }
 
+void Pipeline::light_surfaces(const Frame& frame, const DrawList& casters, const FrameContents& contents,
+                              const LightInputs& inputs, bool with_points) {
+    const ResolvedSettings& resolved = *frame.resolved;
+    const bool caught = contents.ground && GroundPass::is_shadow_catcher(resolved);
+    if (contents.traced || contents.paths)
+        timer_.run("rays", [&] { update_ray_scene(frame, casters, contents.ground); });
+    if (contents.paths) return trace_paths(frame, inputs.native, caught);
+    if (resolved.settings.ssao.enabled && !contents.traced) occlude(frame, inputs.native, with_points);
+    light(frame, targets_, contents, inputs, caught);
+}
+
+void Pipeline::trace_paths(const Frame& frame, bool native, bool caught) {
+    timer_.run("paths", [&] {
+        if (frame.sample_index == 0 || frame.motion) ray_scene_.make_surfaces(*frame.resolved);
+        paths_.draw(frame, targets_, ray_scene_, caught ? &ground_.caught_light(frame) : nullptr, transfers_);
+        if (native) return;
+        targets_.radiance.upload(transfers_);
+        if (caught) ground_.caught_light(frame).upload(transfers_);
+    });
+}
+
 void Pipeline::shade_surroundings(const Frame& frame, const FrameContents& contents, bool environment) {
     const bool ground = contents.ground;
     if (ground)
@@ -117,7 +136,9 @@ void Pipeline::occlude(const Frame& frame, bool native, bool with_points) {
     });
 }
 
-bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list) const {
+bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list,
+                               const FrameContents& contents) const {
+    if (contents.paths) return native_shading_ && targets_.depth.is_ahead();
     const bool estimates_normals = frame.resolved->settings.ssao.enabled &&
                                    list.has([](const DrawItem& item) { return is_display(item.kind); });
     const bool has_tints = shadow_maps_.has_shadows() && shadow_maps_.has_tints();

@@ -18,6 +18,7 @@
 #include "easypbr/render/pipeline/custom_passes.h"
 #include "easypbr/render/primitives/overlays.h"
 #include "easypbr/render/primitives/surfaces.h"
+#include "easypbr/render/raytrace/path_pass.h"
 #include "easypbr/render/raytrace/ray_pass.h"
 #include "easypbr/render/shadow/shadow_maps.h"
 #include "easypbr/render/transparency/transparency_pass.h"
@@ -29,6 +30,7 @@ struct FrameContents {
     bool ids = false;                ///< the id targets are filled; surfaces are of the core model
     bool ground = false;             ///< a plane under the content belongs to the picture
     bool traced = false;             ///< rays look for the environment's light, in place of ambient occlusion
+    bool paths = false;              ///< opaque surfaces are lit by path tracing
     bool layers = false;             ///< targets are read, no picture: nothing follows the lit surfaces
     CustomPasses* custom = nullptr;  ///< a program's own passes, where it is a picture
     bool in_host_memory = false;     ///< whatever follows can take the radiance from host memory
@@ -84,6 +86,10 @@ class Pipeline {
     /// shadow catcher.
     void light(const Frame& frame, const GBuffer& targets, const FrameContents& contents, LightInputs inputs,
                bool caught);
+    /// Finds the light of all surfaces that are not layers, by the way that the contents ask for.
+    void light_surfaces(const Frame& frame, const DrawList& casters, const FrameContents& contents,
+                        const LightInputs& inputs, bool with_points);
+    void trace_paths(const Frame& frame, bool native, bool caught);
     void update_ray_scene(const Frame& frame, const DrawList& casters, bool ground);
     /// Depth that hides overlays and layers: of what is drawn over everything else too.
     const gl::Texture& hiding_depth(const Frame& frame, const DrawList& list);
@@ -99,7 +105,7 @@ class Pipeline {
     /// The eye-dome lighting of the layers' points; nothing where there are none.
     const gl::Texture* shade_points(const Frame& frame, const DrawList& layers, const gl::Texture& opaque);
     /// Whether a frame is lit natively: its surfaces are in host memory, and nothing of it needs the driver.
-    bool is_lit_natively(const Frame& frame, const DrawList& list) const;
+    bool is_lit_natively(const Frame& frame, const DrawList& list, const FrameContents& contents) const;
     void occlude(const Frame& frame, bool native, bool with_points);
     /// What is around lit surfaces, natively: what the ground shows of itself, and the environment.
     void shade_surroundings(const Frame& frame, const FrameContents& contents, bool environment);
@@ -121,6 +127,7 @@ class Pipeline {
     AmbientOcclusionPass ambient_occlusion_;
     RayScene ray_scene_;
     RayPass rays_;
+    PathPass paths_;
     LightingPass lighting_;
     GroundPass ground_;
     DisplayPass display_;

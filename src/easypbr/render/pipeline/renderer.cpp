@@ -126,9 +126,11 @@ void Renderer::prepare(Picture& picture) {
     picture.contents = {.ids = options.ids || picture.holds_surfaces,
                         // Layers are of the content, and are not lit.
                         .ground = GroundPass::is_on(resolved) && is_picture,
-                        .traced = resolved.traces_rays && !options.layers,
+                        .traced = (resolved.traces_rays || resolved.traces_paths) && !options.layers,
+                        .paths = resolved.traces_paths && is_picture && !picture.list.extensions(),
                         .layers = options.layers,
                         .custom = is_picture ? &custom_ : nullptr};
+    picture.shot.averages_radiance = picture.contents.paths && options.samples > 1;
     picture.with_exact = picture.list.has(
         [](const DrawItem& item) { return item.kind == SurfaceKind::exact && !item.layered; });
     const bool has_image =

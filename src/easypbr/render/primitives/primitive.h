@@ -9,6 +9,7 @@
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/render/primitives/caches.h"
+#include "easypbr/render/primitives/hit_surface.h"
 #include "easypbr/render/primitives/ray_geometry.h"
 #include "easypbr/render/primitives/shadow_layer.h"
 #include "easypbr/render/raster/surface_writer.h"
@@ -68,6 +69,8 @@ class Primitive {
     virtual void rasterise_shadows(const ShadowView&, Casters&, ShadowDepths&) {}
     virtual void draw_shadows(const ShadowLayer&, const Casters&) {}
     virtual void add_to(RayGeometry&, const DrawItem&) {}
+    /// What rays find that meet an item that add_to() has added. The item must outlive it.
+    virtual std::unique_ptr<HitSurface> hit_surface(const ResolvedSettings& resolved, const DrawItem& item);
 
     // Overlays, which lie between the layers, each where it is: begin_overlay() once, then
     // draw_overlay_behind() for each layer from the farthest on, draw_overlay_rest() and draw_overlay_over().

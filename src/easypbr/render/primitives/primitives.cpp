@@ -2,8 +2,13 @@
 #include "easypbr/render/primitives/mesh/mesh_primitive.h"
 #include "easypbr/render/primitives/points/point_primitive.h"
 #include "easypbr/render/primitives/surfels/surfel_primitive.h"
+#include "easypbr/render/primitives/vertex_hits.h"
 
 namespace easypbr::render {
+
+std::unique_ptr<HitSurface> Primitive::hit_surface(const ResolvedSettings&, const DrawItem& item) {
+    return std::make_unique<VertexHits>(item);
+}
 
 Primitives make_primitives(DataCaches& caches) {
     Primitives primitives;

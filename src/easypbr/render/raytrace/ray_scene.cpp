@@ -178,6 +178,8 @@ struct RayScene::Scene final : RayGeometry {
     RTCDevice device;
     RTCScene scene = nullptr;
     std::vector<std::unique_ptr<Element>> elements;
+    std::vector<Primitive*> kinds;                      ///< of the elements
+    std::vector<std::unique_ptr<HitSurface>> surfaces;  ///< likewise, once they are made
     std::map<const SceneSnapshot::Object*, std::vector<Vec3>> vertices;
 };
 
@@ -205,8 +207,20 @@ void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t gen
     for (const auto& [kind, item] : items) {
         if (item->kind == SurfaceKind::lit) reach_ = std::max(reach_, float(kind->reach(*item) / unit_));
         kind->add_to(*scene_, *item);
+        scene_->kinds.resize(scene_->elements.size(), kind);
     }
     rtcCommitScene(scene_->scene);
+}
+
+void RayScene::make_surfaces(const ResolvedSettings& resolved) {
+    if (!scene_) return;
+    scene_->surfaces.clear();
+    for (size_t i = 0; i < scene_->elements.size(); ++i)
+        scene_->surfaces.push_back(scene_->kinds[i]->hit_surface(resolved, *scene_->elements[i]->item));
+}
+
+const HitSurface& RayScene::surface(int index) const {
+    return *scene_->surfaces[size_t(index)];
 }
 
 float RayScene::ground_distance(const Vec3& from, const Vec3& direction) const {
@@ -227,7 +241,7 @@ std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction) c
     found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
-    rtcIntersect1(scene_->scene, &context, &found);
+    if (scene_) rtcIntersect1(scene_->scene, &context, &found);
     RayHit hit;
     hit.distance = found.ray.tfar;
     hit.position = from + direction * found.ray.tfar;
@@ -238,6 +252,7 @@ std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction) c
     }
     const Element& element = *scene_->elements[found.hit.geomID];
     hit.item = element.item;
+    hit.surface = int(found.hit.geomID);
     hit.element = element.of(found.hit.primID);
     hit.u = found.hit.u;
     hit.v = found.hit.v;
@@ -247,6 +262,7 @@ std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction) c
 }
 
 bool RayScene::blocked(const Vec3& from, const Vec3& direction, float distance) const {
+    if (!scene_) return false;
     RTCRay ray = ray_of(from, direction, distance);
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);

@@ -23,6 +23,7 @@ struct RayGround {
 /// Where a ray ends.
 struct RayHit {
     const DrawItem* item = nullptr;  ///< null: the ground
+    int surface = -1;                ///< for RayScene::surface(); -1: the ground
     int element = 0;                 ///< face or vertex of the mesh
     float u = 0, v = 0;              ///< barycentric coordinates of the face's second and third vertex
     Vec3 position;                   ///< world, relative to RayScene::centre(), in RayScene::unit()
@@ -42,6 +43,10 @@ class RayScene {
     /// `generation` is another one (ShadowMaps::casters_generation()). `bounds` are those of all casters.
     void update(const DrawList& casters, const Box3d& bounds, uint64_t generation,
                 const Primitives& primitives, const std::optional<RayGround>& ground);
+
+    /// Makes the surfaces of what update() was given; they live as long as its casters.
+    void make_surfaces(const ResolvedSettings& resolved);
+    const HitSurface& surface(int index) const;
 
     bool empty() const { return scene_ == nullptr; }
     const Vec3d& centre() const { return centre_; }

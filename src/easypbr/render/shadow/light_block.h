@@ -27,7 +27,7 @@ struct ShadowTints {
     explicit operator bool() const { return bool(absorption); }
 };
 
-/// As the blocks in shaders/lighting_surface.frag.
+/// As the blocks in shaders/common_arriving.glsl.
 inline constexpr size_t lights_per_block = 64;
 
 struct LightBlock {

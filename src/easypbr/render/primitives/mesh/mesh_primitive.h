@@ -39,6 +39,9 @@ class MeshPrimitive final : public Primitive {
         shadows_.draw(layer, casters);
     }
     void add_to(RayGeometry& geometry, const DrawItem& item) override { geometry.add_faces(item); }
+    std::unique_ptr<HitSurface> hit_surface(const ResolvedSettings& resolved, const DrawItem& item) override {
+        return native_.hit_surface(resolved, item);
+    }
     void evict_unused() override {
         buffers_.evict_unused();
         native_.evict_unused();

@@ -4,20 +4,15 @@
 
 namespace easypbr::render {
 
-MeshSurface::MeshSurface(const Frame& frame, const DrawItem& item, const MeshFacts& facts,
-                         const Mat4d& clip_from_mesh) {
+native::VisibleTriangles shading_triangles(const DrawItem& item, const MeshFacts& facts) {
     const MeshData& mesh = item.mesh();
     const Mat3d linear = item.object->T_world_mesh.linear();
     const Mat3 normal_from_mesh = linear.inverse().transpose().cast<float>();
-    native::VisibleTriangles& t = triangles_;
+    native::VisibleTriangles t;
     t.V = mesh.V.data();
     t.N = facts.N.data();
     t.F = mesh.F.data();
     t.first_face = uint32_t(item.part.first_face);
-    // In double precision: not the snapped coordinates that decide visibility.
-    for (int row = 0; row < 4; ++row)
-        for (int column = 0; column < 4; ++column)
-            t.clip_from_mesh[row][column] = clip_from_mesh(row, column);
     for (int row = 0; row < 3; ++row)
         for (int column = 0; column < 3; ++column) {
             t.normal_from_mesh[row][column] = normal_from_mesh(row, column);
@@ -27,16 +22,36 @@ MeshSurface::MeshSurface(const Frame& frame, const DrawItem& item, const MeshFac
     t.two_sided = item.two_sided;
     t.normals_agree = facts.normals_agree;
     t.mirrored = linear.determinant() < 0;
-    t.pixel_width = 2.0 / frame.size.x();
-    t.pixel_height = 2.0 / frame.size.y();
+    return t;
+}
+
+namespace {
+
+/// See MeshSurface::vary().
+void set_shader(native::VisibleTriangles& triangles, const void* shader,
+                const native::TriangleAttributes& attributes) {
+    triangles.shader = shader;
+    triangles.attributes.uvs = attributes.uvs;
+    triangles.attributes.colors = attributes.colors;
+    triangles.attributes.tangents = attributes.tangents;
+}
+
+}  // namespace
+
+MeshSurface::MeshSurface(const Frame& frame, const DrawItem& item, const MeshFacts& facts,
+                         const Mat4d& clip_from_mesh)
+    : triangles_(shading_triangles(item, facts)) {
+    // In double precision: not the snapped coordinates that decide visibility.
+    for (int row = 0; row < 4; ++row)
+        for (int column = 0; column < 4; ++column)
+            triangles_.clip_from_mesh[row][column] = clip_from_mesh(row, column);
+    triangles_.pixel_width = 2.0 / frame.size.x();
+    triangles_.pixel_height = 2.0 / frame.size.y();
 }
 
 void MeshSurface::vary(std::shared_ptr<const void> shader, const native::TriangleAttributes& attributes) {
     shader_ = std::move(shader);
-    triangles_.shader = shader_.get();
-    triangles_.attributes.uvs = attributes.uvs;
-    triangles_.attributes.colors = attributes.colors;
-    triangles_.attributes.tangents = attributes.tangents;
+    set_shader(triangles_, shader_.get(), attributes);
 }
 
 void MeshSurface::alpha(std::span<const native::VisiblePixel> pixels, std::span<float> alpha) const {
@@ -52,6 +67,16 @@ void MeshSurface::resolve(const Frame& frame, const DrawItem& item,
                                    .kind = item.kind,
                                    .object = uint32_t(item.object - frame.scene->objects.data())});
     native::resolve_triangles(triangles, pixels);
+}
+
+MeshHits::MeshHits(const DrawItem& item, const MeshFacts& facts, std::shared_ptr<const void> shader,
+                   const native::TriangleAttributes& attributes)
+    : triangles_(shading_triangles(item, facts)), shader_(std::move(shader)) {
+    set_shader(triangles_, shader_.get(), attributes);
+}
+
+void MeshHits::shade(std::span<const native::ElementHit> hits, const native::HitSurfaces& surfaces) const {
+    native::shade_hits(triangles_, hits, surfaces);
 }
 
 }  // namespace easypbr::render

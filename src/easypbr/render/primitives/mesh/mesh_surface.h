@@ -3,6 +3,7 @@
 
 #include <memory>
 
+#include "easypbr/render/primitives/hit_surface.h"
 #include "easypbr/render/raster/visible_surfaces.h"
 
 namespace easypbr::render {
@@ -14,6 +15,9 @@ struct MeshFacts {
     bool closed_outward = false;  ///< from outside, back faces need not be drawn
     Box3d box;                    ///< of the vertices, when it is closed
 };
+
+/// What shaders read of an item's triangles, whatever sees them.
+native::VisibleTriangles shading_triangles(const DrawItem& item, const MeshFacts& facts);
 
 /// A mesh item with all that its pixels need.
 class MeshSurface final : public VisibleItem {
@@ -32,6 +36,19 @@ class MeshSurface final : public VisibleItem {
 
   private:
     native::VisibleTriangles triangles_;  ///< without targets
+    std::shared_ptr<const void> shader_;
+};
+
+/// The same for rays.
+class MeshHits final : public HitSurface {
+  public:
+    /// See MeshSurface::vary().
+    MeshHits(const DrawItem& item, const MeshFacts& facts, std::shared_ptr<const void> shader,
+             const native::TriangleAttributes& attributes);
+    void shade(std::span<const native::ElementHit> hits, const native::HitSurfaces& surfaces) const override;
+
+  private:
+    native::VisibleTriangles triangles_;
     std::shared_ptr<const void> shader_;
 };
 

@@ -89,20 +89,33 @@ native::TriangleAttributes NativeMeshes::attributes_of(const DrawItem& item, con
     return attributes;
 }
 
-std::unique_ptr<MeshSurface> NativeMeshes::surface_of(const Frame& frame, const DrawItem& item,
-                                                      const MeshFacts& known, const Mat4d& clip_from_mesh) {
-    auto surface = std::make_unique<MeshSurface>(frame, item, known, clip_from_mesh);
-    const bool is_plain =
-        !item.textured() && !item.with_colors && !item.emits() && item.alpha == AlphaMode::opaque;
-    if (is_plain) return surface;
-    const MaterialContext context{0, frame.sample_count, frame.resolved};
+std::shared_ptr<const void> NativeMeshes::shader_of(const ResolvedSettings& resolved, int samples,
+                                                    const DrawItem& item, const MeshFacts& known) {
+    const MaterialContext context{0, samples, &resolved};
     ShaderInputs values = material_inputs(context, item, textures_, true);
     std::vector<std::string> defines;
     add_mesh_defines(item, known.normals_agree, defines);
     add_material_defines(context, item, defines);
     values.define(defines);
     Transfers none;
-    surface->vary(native::surface_uniforms(values.native(none)), attributes_of(item, known));
+    return native::surface_uniforms(values.native(none));
+}
+
+std::unique_ptr<HitSurface> NativeMeshes::hit_surface(const ResolvedSettings& resolved,
+                                                      const DrawItem& item) {
+    const MeshFacts& known = facts_of(item.mesh());
+    // What the footprint of a ray blurs is not blurred less for being jittered.
+    return std::make_unique<MeshHits>(item, known, shader_of(resolved, 1, item, known),
+                                      attributes_of(item, known));
+}
+
+std::unique_ptr<MeshSurface> NativeMeshes::surface_of(const Frame& frame, const DrawItem& item,
+                                                      const MeshFacts& known, const Mat4d& clip_from_mesh) {
+    auto surface = std::make_unique<MeshSurface>(frame, item, known, clip_from_mesh);
+    const bool is_plain =
+        !item.textured() && !item.with_colors && !item.emits() && item.alpha == AlphaMode::opaque;
+    if (is_plain) return surface;
+    surface->vary(shader_of(*frame.resolved, frame.sample_count, item, known), attributes_of(item, known));
     return surface;
 }
 

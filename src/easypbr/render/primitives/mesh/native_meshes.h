@@ -26,10 +26,16 @@ class NativeMeshes {
     bool rasterise(const Frame& frame, DrawItems items, VisibleSurfaces& surfaces);
     bool cover(const Frame& frame, DrawItems items, std::span<uint8_t> covered);
 
+    /// Of the core model, whatever the material; without its own shader.
+    std::unique_ptr<HitSurface> hit_surface(const ResolvedSettings& resolved, const DrawItem& item);
+
     void evict_unused();
 
   private:
     const MeshFacts& facts_of(const MeshData& mesh);
+    /// Uniforms of mesh_resolve.
+    std::shared_ptr<const void> shader_of(const ResolvedSettings& resolved, int samples, const DrawItem& item,
+                                          const MeshFacts& known);
     native::TriangleAttributes attributes_of(const DrawItem& item, const MeshFacts& known);
     std::unique_ptr<MeshSurface> surface_of(const Frame& frame, const DrawItem& item, const MeshFacts& known,
                                             const Mat4d& clip_from_mesh);

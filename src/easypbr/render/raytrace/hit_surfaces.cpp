@@ -1,0 +1,60 @@
+#include "easypbr/render/raytrace/hit_surfaces.h"
+
+#include "easypbr/render/frame/surface_kind.h"
+
+namespace easypbr::render {
+namespace {
+
+void put_ground(const RayGround& ground, const native::ElementHit& hit, size_t at, HitSurfaces& to) {
+    const Vec3 normal = Eigen::Map<const Vec3>(hit.normal);
+    to.normal.set(at, normal);
+    to.face.set(at, normal);
+    to.albedo.set(at, ground.color);
+    to.emission.set(at, Vec3::Zero());
+    to.parameters.set(at, Vec2(0, ground.roughness));
+    to.kind[at] = code_of(SurfaceKind::lit);
+}
+
+}  // namespace
+
+HitSurfaces::HitSurfaces(size_t count)
+    : normal(PathBatch::rounded_up(count) + native::stream_alignment),
+      face(normal.component[0].size()),
+      albedo(face.component[0].size()),
+      emission(face.component[0].size()),
+      parameters(face.component[0].size()),
+      kind(face.component[0].size()) {}
+
+native::HitSurfaces HitSurfaces::from(size_t first) {
+    native::HitSurfaces to;
+    const auto point = [first](auto& vectors, auto& arrays) {
+        vectors.written_by(arrays);
+        for (float*& array : arrays) array += first;
+    };
+    point(normal, to.normal);
+    point(face, to.face);
+    point(albedo, to.albedo);
+    point(emission, to.emission);
+    point(parameters, to.parameters);
+    to.kind = kind.data() + first;
+    return to;
+}
+
+HitSurfaces evaluate(const RayScene& scene, std::span<const native::ElementHit> hits,
+                     std::span<const int> surfaces) {
+    HitSurfaces found(hits.size());
+    // In this order: what a surface is padded with, the next one overwrites.
+    for (size_t first = 0; first < hits.size();) {
+        const int surface = surfaces[first];
+        size_t end = first + 1;
+        while (end < hits.size() && surfaces[end] == surface) ++end;
+        if (surface < 0)
+            for (size_t i = first; i < end; ++i) put_ground(*scene.ground(), hits[i], i, found);
+        else
+            scene.surface(surface).shade(hits.subspan(first, end - first), found.from(first));
+        first = end;
+    }
+    return found;
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,26 @@
+// Surfaces that rays have met, with an array for each number.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "easypbr/render/raytrace/path_batch.h"
+#include "easypbr/render/raytrace/ray_scene.h"
+
+namespace easypbr::render {
+
+struct HitSurfaces {
+    explicit HitSurfaces(size_t count);
+    /// The arrays from one of them on.
+    native::HitSurfaces from(size_t first);
+
+    PathVectors<3> normal, face, albedo, emission;
+    PathVectors<2> parameters;  ///< metallic, roughness
+    std::vector<float> kind;    ///< code of the surface's
+};
+
+/// Evaluates the surfaces of hits, which are sorted by RayHit::surface; `surfaces` holds that of each.
+HitSurfaces evaluate(const RayScene& scene, std::span<const native::ElementHit> hits,
+                     std::span<const int> surfaces);
+
+}  // namespace easypbr::render

@@ -1,0 +1,121 @@
+#include "easypbr/render/raytrace/path_lights.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "easypbr/gpu/dfg.h"
+#include "easypbr/render/frame/shading_inputs.h"
+#include "easypbr/render/shadow/light_block.h"
+#include "easypbr/scene/resolve.h"
+
+namespace easypbr::render {
+namespace {
+
+using Uniforms = std::array<blocks::Light, lights_per_block>;
+
+/// What path_lamps has found for each path.
+struct Found {
+    explicit Found(size_t room) : choice(room), light(room), sum(room), number(room) {}
+
+    std::vector<float> choice;
+    PathVectors<3> light;
+    std::vector<float> sum, number;
+};
+
+native::path_lamps_stream stream_of(const PathBatch& batch, Found& found) {
+    native::path_lamps_stream stream;
+    batch.position.read_by(stream.v_position);
+    batch.normal.read_by(stream.v_normal);
+    batch.face.read_by(stream.v_face);
+    batch.view.read_by(stream.v_view);
+    batch.albedo.read_by(stream.v_albedo);
+    batch.parameters.read_by(stream.v_parameters);
+    stream.v_choice = found.choice.data();
+    found.light.written_by(stream.o_light);
+    stream.o_sum = found.sum.data();
+    stream.o_chosen = found.number.data();
+    return stream;
+}
+
+}  // namespace
+
+ShaderInputs path_inputs(const ResolvedSettings& resolved, bool caught) {
+    const ShadingSettings& shading = resolved.settings.shading;
+    ShaderInputs values;
+    set_brdf(values, shading);
+    values.set("u_dfg", gpu::host_dfg(shading.brdf));
+    if (caught) values.define("SHADOW_CATCHER");
+    return values;
+}
+
+void PathLights::prepare(const ResolvedSettings& resolved, const RayScene& scene) {
+    resolved_ = &resolved;
+    blocks_.clear();
+    const auto& lights = resolved.lights;
+    for (size_t first = 0; first < lights.size(); first += lights_per_block) {
+        const size_t count = std::min(lights.size() - first, lights_per_block);
+        Uniforms uniforms{};
+        for (size_t i = 0; i < count; ++i)
+            uniforms[i] = light_uniform(lights[first + i], scene.centre(), scene.unit());
+        const auto with = [&](bool caught) {
+            ShaderInputs values = path_inputs(resolved, caught);
+            values.set_block(0, "u_lights", gl::bytes_of(uniforms));
+            values.set("u_light_count", int(count));
+            Transfers none;
+            return native::stream_uniforms(native::Stream::path_lamps, values.native(none));
+        };
+        blocks_.push_back({uint32_t(first), with(false), with(true)});
+    }
+}
+
+void PathLights::choose(const PathBatch& batch, uint32_t depth, bool caught,
+                        std::vector<ChosenLight>& chosen) const {
+    chosen.assign(batch.count, {});
+    if (blocks_.empty()) return;
+    Found found(PathBatch::rounded_up(batch.count));
+    for (size_t i = 0; i < batch.count; ++i) found.choice[i] = batch.samplers[i].pair(depth, 1).x();
+    const native::path_lamps_stream stream = stream_of(batch, found);
+    for (const Block& block : blocks_) {
+        const void* uniforms = (caught ? block.of_catcher : block.uniforms).get();
+        native::run(uniforms, stream, int(batch.count));
+        for (size_t i = 0; i < batch.count; ++i) {
+            ChosenLight& so_far = chosen[i];
+            const float sum = found.sum[i];
+            if (!(sum > 0)) continue;
+            const float all = so_far.all + sum, part = sum / all;
+            // Of the blocks one is chosen as lights are within a block.
+            const bool taken = found.choice[i] < part;
+            const float left = taken ? found.choice[i] / part : (found.choice[i] - part) / (1 - part);
+            so_far.light =
+                taken ? Vec3(found.light.at(i) * (all / sum)) : Vec3(so_far.light * (all / so_far.all));
+            if (taken) so_far.index = block.first + uint32_t(found.number[i]);
+            so_far.all = all;
+            found.choice[i] = std::min(left, 1 - 0x1p-24f);
+        }
+    }
+}
+
+bool PathLights::reaches(uint32_t index, const Vec3& from, const Vec3& place, const Vec2& u,
+                         const RayScene& scene) const {
+    const ResolvedLight& light = resolved_->lights[index];
+    if (!light.casts_shadows || !resolved_->settings.shadows.enabled) return true;
+    const bool parallel = light.type == LightType::directional;
+    const double unit = scene.unit();
+    const Vec3 middle =
+        parallel ? Vec3(-light.direction.normalized())
+                 : Vec3(((light.position.cast<double>() - scene.centre()) / unit).cast<float>() - place);
+    const float distance = middle.norm();
+    if (!(distance > 0)) return true;
+    // A point of the disc that the emitter is seen as.
+    const float radius = parallel ? std::tan(radians(light.angular_radius_deg)) : light.radius / float(unit);
+    const RayFrame frame(middle / distance);
+    const float r = radius * std::sqrt(u.x()), phi = float(2 * pi) * u.y();
+    const Vec3 towards = middle + (frame.t * std::cos(phi) + frame.b * std::sin(phi)) * r;
+    const float reach = towards.norm();
+    return !scene.blocked(from, towards / reach,
+                          parallel ? std::numeric_limits<float>::infinity() : reach * (1 - 1e-4f));
+}
+
+}  // namespace easypbr::render

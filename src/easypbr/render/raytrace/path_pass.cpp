@@ -1,0 +1,187 @@
+#include "easypbr/render/raytrace/path_pass.h"
+
+#include <algorithm>
+#include <span>
+
+#include "easypbr/core/octahedral.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/render/frame/surface_kind.h"
+#include "easypbr/scene/resolve.h"
+
+namespace easypbr::render {
+namespace {
+
+/// Pixels whose paths are traced together.
+constexpr int block_width = 64, block_height = 16;
+
+bool is_lit(uint8_t kind) {
+    return kind < uint8_t(SurfaceKind::display);
+}
+bool is_catcher(uint8_t kind) {
+    return kind == uint8_t(SurfaceKind::ground_catcher);
+}
+
+/// A target in host memory: the pixel at a place, nothing beyond what is held.
+template <class Pixel>
+class Held {
+  public:
+    explicit Held(const Target& target) : area_(target.area()), pixels_(target.pixels<Pixel>()) {}
+
+    Pixel* at(int x, int y) const {
+        if (x < area_.x || y < area_.y || x >= area_.x + area_.width || y >= area_.y + area_.height)
+            return nullptr;
+        return &pixels_[size_t(y - area_.y) * size_t(area_.width) + size_t(x - area_.x)];
+    }
+
+  private:
+    PixelRect area_;
+    std::span<Pixel> pixels_;
+};
+
+}  // namespace
+
+/// The targets in host memory, and how pixels become places.
+struct PathPass::Pixels {
+    Pixels(const Frame& frame_, const GBuffer& targets, const Target& emission_, const RayScene& scene_)
+        : frame(frame_),
+          scene(scene_),
+          albedo(targets.albedo),
+          normal(targets.normal),
+          material(targets.material),
+          depth(targets.depth),
+          emission(emission_),
+          radiance(targets.radiance),
+          world_from_view(frame.camera.T_world_cam.linear()),
+          eye(frame.camera.position() - scene.centre()) {}
+
+    /// View space; `d` > 0.
+    Vec3d view_position(int x, int y, double d) const {
+        const Vec2d ndc((x + 0.5) / frame.size.x() * 2 - 1, 1 - (y + 0.5) / frame.size.y() * 2);
+        const Mat4d& p = frame.clip_from_view;
+        if (frame.orthographic()) {
+            const double z = frame.camera.far + (frame.camera.near - frame.camera.far) * d;
+            return {(ndc.x() - p(0, 3)) / p(0, 0), (ndc.y() - p(1, 3)) / p(1, 1), -z};
+        }
+        const double z = frame.camera.near / d;
+        return {(ndc.x() + p(0, 2)) / p(0, 0) * z, (ndc.y() + p(1, 2)) / p(1, 1) * z, -z};
+    }
+
+    /// Adds the path of a pixel to a batch; `index` is that of its radiance.
+    void add(int x, int y, uint32_t index, PathBatch& batch) const;
+
+    const Frame& frame;
+    const RayScene& scene;
+    Held<std::array<uint16_t, 4>> albedo;
+    Held<std::array<uint16_t, 2>> normal;
+    Held<std::array<uint8_t, 4>> material;
+    Held<float> depth;
+    Held<Vec4> emission, radiance;
+    Mat3d world_from_view;
+    Vec3d eye;  ///< relative to the scene's centre
+};
+
+namespace {
+
+/// Normal of the element itself that is seen at a place: interpolated ones lie above it or below.
+Vec3 face_at(const Vec3& place, const Vec3& normal, const Vec3& view, const RayScene& scene) {
+    const float near = 1e-4f * std::max(1.0f, place.norm());
+    const auto hit = scene.trace(place + near * view, -view);
+    const bool found = hit && hit->distance < 2 * near && hit->normal.dot(normal) > 0.3f;
+    return found ? hit->normal : normal;
+}
+
+}  // namespace
+
+void PathPass::Pixels::add(int x, int y, uint32_t index, PathBatch& batch) const {
+    const std::array<uint8_t, 4>& m = *material.at(x, y);
+    const Vec3d position = view_position(x, y, *depth.at(x, y));
+    const Vec3d towards = frame.orthographic() ? Vec3d(0, 0, 1) : Vec3d(-position.normalized());
+    const Vec3 view = (world_from_view * towards).cast<float>();
+    const Vec3 place = ((world_from_view * position + eye) / scene.unit()).cast<float>();
+    const std::array<uint16_t, 2>& n = *normal.at(x, y);
+    const Vec3 mapped = oct_decode(Vec2(n[0], n[1]) / 32767.5f - Vec2(1, 1));
+    const std::array<uint16_t, 4>& color = *albedo.at(x, y);
+    const Vec2i pixel = frame.origin + Vec2i(x, y);
+    const size_t i = batch.count++;
+    batch.position.set(i, place);
+    batch.normal.set(i, mapped);
+    batch.face.set(i, is_catcher(m[3]) ? mapped : face_at(place, mapped, view, scene));
+    batch.view.set(i, view);
+    batch.albedo.set(i, Vec3(color[0], color[1], color[2]) / 65535.0f);
+    batch.parameters.set(i, Vec2(m[0], m[1]) / 255.0f);
+    batch.samplers[i] = PathSampler(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(frame.sample_index));
+    batch.index[i] = index;
+}
+
+void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
+    const auto count = size_t(block.width) * size_t(block.height);
+    PathBatch lit(count), caught(count);
+    std::vector<Vec3> radiance(count, Vec3::Zero());
+    std::vector<CaughtLight> light(count);
+    const auto each = [&](auto&& visit) {
+        for (int y = block.y; y < block.y + block.height; ++y)
+            for (int x = block.x; x < block.x + block.width; ++x)
+                visit(x, y, uint32_t((y - block.y) * block.width + x - block.x));
+    };
+    each([&](int x, int y, uint32_t index) {
+        const float* depth = pixels.depth.at(x, y);
+        if (!depth || *depth <= 0) return;
+        const uint8_t kind = (*pixels.material.at(x, y))[3];
+        if (is_catcher(kind))
+            pixels.add(x, y, index, caught);
+        else if (is_lit(kind))
+            pixels.add(x, y, index, lit);
+    });
+    tracer_.trace(lit, radiance);
+    tracer_.trace_caught(caught, light);
+    each([&](int x, int y, uint32_t index) {
+        const float* depth = pixels.depth.at(x, y);
+        Vec4* to = pixels.radiance.at(x, y);
+        if (!to || !depth || *depth <= 0) return;
+        const Vec4* emission = pixels.emission.at(x, y);
+        to->head<3>() = radiance[index] + (emission ? Vec3(emission->head<3>()) : Vec3(Vec3::Zero()));
+        to->w() = 1;
+        if (caught_.empty()) return;
+        CaughtLight& sum = caught_[size_t(y) * size_t(pixels.frame.size.x()) + size_t(x)];
+        sum.arrives += light[index].arrives;
+        sum.all += light[index].all;
+    });
+}
+
+void PathPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Target* caught,
+                    Transfers& transfers) {
+    // The driver keeps emission where light is added to it.
+    Target of_driver;
+    if (!targets.depth.is_ahead()) {
+        for (const Target* target : {&targets.albedo, &targets.normal, &targets.material, &targets.depth})
+            target->download(frame.whole(), transfers);
+        of_driver = Target(gl::Format::rgba32f, frame.size);
+        of_driver.write(frame.whole());
+        const auto emission = targets.radiance.read<Vec4>(transfers);
+        std::ranges::copy(emission, of_driver.pixels<Vec4>().begin());
+    }
+    const bool emits = of_driver || targets.emission.is_ahead();
+    const Target nothing(gl::Format::rgba32f, frame.size);
+    const Target& emission = of_driver ? of_driver : emits ? targets.emission : nothing;
+    targets.radiance.write(frame.whole());
+    std::ranges::fill(targets.radiance.pixels<Vec4>(), Vec4::Zero());
+    if (caught && (frame.sample_index == 0 || caught_.size() != size_t(frame.size.prod())))
+        caught_.assign(size_t(frame.size.prod()), {});
+    if (!caught) caught_.clear();
+    tracer_.prepare(*frame.resolved, scene);
+    const Pixels pixels(frame, targets, emission, scene);
+    const PixelRect& area = frame.covered;
+    const int columns = (area.width + block_width - 1) / block_width,
+              rows = (area.height + block_height - 1) / block_height;
+    parallel_for(size_t(std::max(0, columns * rows)), 1, [&](size_t i) {
+        const int x = area.x + int(i) % columns * block_width, y = area.y + int(i) / columns * block_height;
+        trace_block(pixels, {x, y, std::min(block_width, area.x + area.width - x),
+                             std::min(block_height, area.y + area.height - y)});
+    });
+    if (!caught) return;
+    caught->write(frame.whole());
+    const auto light = caught->pixels<Vec4>();
+    for (size_t i = 0; i < light.size(); ++i) light[i] = Vec4(caught_[i].arrives, caught_[i].all, 0, 0);
+}
+
+}  // namespace easypbr::render

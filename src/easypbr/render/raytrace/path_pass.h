@@ -1,0 +1,29 @@
+// The light of what is seen, by path tracing on the CPU.
+#pragma once
+
+#include <vector>
+
+#include "easypbr/render/frame/frame.h"
+#include "easypbr/render/frame/gbuffer.h"
+#include "easypbr/render/raytrace/path_tracer.h"
+
+namespace easypbr::render {
+
+/// In place of occlusion, shadow maps and lighting: one path from each pixel of the G-buffer and frame.
+class PathPass {
+  public:
+    /// Writes the radiance of all that the G-buffer holds, in host memory: emission and what paths bring.
+    /// `caught`, unless it is null: of a ground that catches shadows, see GroundPass::caught_light().
+    void draw(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Target* caught,
+              Transfers& transfers);
+
+  private:
+    struct Pixels;
+    struct Block;
+    void trace_block(const Pixels& pixels, const PixelRect& block);
+
+    PathTracer tracer_;
+    std::vector<CaughtLight> caught_;  ///< for each pixel, summed over the frames so far
+};
+
+}  // namespace easypbr::render

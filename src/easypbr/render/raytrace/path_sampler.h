@@ -1,0 +1,68 @@
+// Random numbers of paths: points of Sobol's sequence, scrambled by hashes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "easypbr/render/raytrace/ray_random.h"
+
+namespace easypbr::render {
+
+inline uint32_t reversed_bits(uint32_t x) {
+    x = __builtin_bswap32(x);
+    x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
+    x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
+    return (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
+}
+
+/// Owen's scrambling of a number whose bits are reversed (Burley 2020, "Practical Hash-based Owen
+/// Scrambling"; the hash is that of Laine and Karras 2011 with Vegdahl's constants).
+inline uint32_t scrambled_reversed(uint32_t x, uint32_t seed) {
+    x ^= x * 0x3d20adeau;
+    x += seed;
+    x *= (seed >> 16) | 1u;
+    x ^= x * 0x05526c56u;
+    return x ^ x * 0x53a22864u;
+}
+
+inline uint32_t owen_scrambled(uint32_t x, uint32_t seed) {
+    return reversed_bits(scrambled_reversed(reversed_bits(x), seed));
+}
+
+/// Second dimension of Sobol's sequence: a linear function of the bits of the index, for each byte of it.
+inline const std::array<std::array<uint32_t, 256>, 4>& sobol_table() {
+    static const auto table = [] {
+        std::array<std::array<uint32_t, 256>, 4> values{};
+        uint32_t direction = 1u << 31;
+        for (unsigned bit = 0; bit < 32; ++bit, direction ^= direction >> 1)
+            for (unsigned byte = 0; byte < 256; ++byte)
+                if (byte >> (bit % 8) & 1u) values[bit / 8][byte] ^= direction;
+        return values;
+    }();
+    return table;
+}
+
+/// Numbers for the paths of a pixel. Each pair of dimensions is a (0, 2)-sequence over the pixel's samples,
+/// whose order and digits are scrambled anew for each pair, pixel and depth.
+class PathSampler {
+  public:
+    /// `pixel` is in the whole picture.
+    PathSampler(uint32_t x, uint32_t y, uint32_t sample)
+        : seed_(pcg_hash(x + pcg_hash(y))), sample_(sample) {}
+
+    /// In [0, 1)^2, of dimension `pair` of the vertex `depth`.
+    Vec2 pair(uint32_t depth, uint32_t pair) const {
+        const uint32_t seed = pcg_hash(seed_ ^ (depth * 16 + pair) * 0x9e3779b9u);
+        const uint32_t index = owen_scrambled(sample_, seed);
+        const auto& table = sobol_table();
+        const uint32_t y = table[0][index & 255] ^ table[1][index >> 8 & 255] ^ table[2][index >> 16 & 255] ^
+                           table[3][index >> 24];
+        return {unit_number(reversed_bits(scrambled_reversed(index, pcg_hash(seed + 1)))),
+                unit_number(owen_scrambled(y, pcg_hash(seed + 2)))};
+    }
+
+  private:
+    uint32_t seed_, sample_;
+};
+
+}  // namespace easypbr::render

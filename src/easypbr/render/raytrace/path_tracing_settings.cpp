@@ -1,0 +1,27 @@
+// The rows of the table for path tracing, and what is inferred.
+#include "easypbr/scene/effect_settings.h"
+#include "easypbr/scene/field_builder.h"
+
+namespace easypbr::detail {
+
+void add_path(Table& table) {
+    table.push_back(not_kept(make(
+        "path.enabled", EASYPBR_AT(path.enabled),
+        "Enables path tracing on the CPU of accumulated images, in place of shadow maps, ambient occlusion "
+        "and the split sum; automatic: off.")));
+    table.push_back(make("path.bounces", EASYPBR_AT(path.bounces),
+                         "Surfaces that a path meets after the one that is seen.", "", {0, 64}));
+    table.push_back(
+        make("path.clamp", EASYPBR_AT(path.clamp),
+             "Most luminance that a path adds beyond direct light, against bright single pixels; 0 is "
+             "unlimited and unbiased.",
+             "", {0, unlimited}));
+}
+
+void infer(PathSettings& path, const EffectContext& context) {
+    const bool single = path.enabled.value_or(false);
+    fill(path.enabled, false);
+    context.resolved.traces_paths = *path.enabled && (single || context.samples > 1);
+}
+
+}  // namespace easypbr::detail

@@ -1,0 +1,218 @@
+// Path tracing against closed forms.
+#include <cmath>
+
+#include "render_test.h"
+
+namespace easypbr {
+namespace {
+
+/// Of paths that never end before their light is below what is measured.
+app::Session path_session(const Scene& scene, int size = 32) {
+    app::Session session = plain_session(scene, size);
+    Settings& s = session.settings();
+    s.path.enabled = true;
+    s.path.clamp = 0;
+    s.path.bounces = 64;
+    s.shadows.enabled = true;
+    return session;
+}
+
+/// The same under an even sky of radiance 1.
+app::Session path_session_under_sky(Scene& scene, int size = 32) {
+    scene.set_environment(constant_environment(1));
+    app::Session session = path_session(scene, size);
+    session.settings().environment.enabled = true;
+    return session;
+}
+
+Material surface(float color, float metallic, float roughness) {
+    Material m;
+    m.base_color = Vec3::Constant(color);
+    m.metallic = metallic;
+    m.roughness = roughness;
+    return m;
+}
+
+Mesh ball(const Material& material) {
+    Mesh mesh = make_sphere(1, 64);
+    mesh.set_material(material);
+    return mesh;
+}
+
+/// Mean over the pixels that are covered.
+Vec3 mean_of(const Image& image) {
+    Eigen::Vector4d sum = Eigen::Vector4d::Zero();
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width(); ++x)
+            sum += Eigen::Map<const Vec4>(image.at<float>(x, y)).cast<double>();
+    return (sum.head<3>() / sum.w()).cast<float>();
+}
+
+// What reflects all of an even sky shows it. 0.005: roundings of the table of directional albedos, and of the
+// roughness to 8 bits; without noise, for all directions that a path may take bring as much.
+TEST(Paths, WhiteFurnace) {
+    for (const float metallic : {0.0f, 1.0f})
+        for (const float roughness : {0.1f, 0.3f, 0.6f, 1.0f}) {
+            Scene scene;
+            scene.show(ball(surface(1, metallic, roughness)), "ball");
+            app::Session session = path_session_under_sky(scene);
+            look_from(session, Vec3d(0, 0, 5), 20);
+            EXPECT_NEAR(mean_of(render_linear(session, 64)).x(), 1, 0.005)
+                << "metallic " << metallic << ", roughness " << roughness;
+        }
+}
+
+// The same where the normals are bent by 45 degrees: what they send below the surface is not lost.
+TEST(Paths, WhiteFurnaceOfBentNormals) {
+    Image normals(2, 2, 3, PixelType::u8);
+    for (int i = 0; i < 4; ++i) {
+        uint8_t* texel = normals.at<uint8_t>(i % 2, i / 2);
+        texel[0] = 217;  // 0.707
+        texel[1] = 128;
+        texel[2] = 217;
+    }
+    for (const float metallic : {0.0f, 1.0f})
+        for (const float roughness : {0.2f, 1.0f}) {
+            Material m = surface(1, metallic, roughness);
+            m.normal_texture.image = std::make_shared<Image>(normals);
+            Scene scene;
+            scene.show(facing_square(1, m), "square");
+            app::Session session = path_session_under_sky(scene);
+            look_from(session, Vec3d(0, 1, 4), 20);
+            EXPECT_NEAR(mean_of(render_linear(session, 256)).x(), 1, 0.005)
+                << "metallic " << metallic << ", roughness " << roughness;
+        }
+}
+
+// Radiance within a closed sphere that emits 1 and reflects a part p of all: 1 / (1 - p). 0.015: the Fresnel
+// reflection at grazing angles adds 0.5 % to the albedo.
+TEST(Paths, LightBouncesInASphere) {
+    Material m = surface(0.5f, 0, 1);
+    m.emissive = Vec3::Ones();
+    Scene scene;
+    scene.show(ball(m), "ball");
+    app::Session session = path_session(scene);
+    session.settings().shading.dielectric_f0 = 0;
+    look_from(session, Vec3d(0.2, 0.1, 0.3), 60);
+    EXPECT_NEAR(mean_of(render_linear(session, 64)).x(), 2, 2 * 0.015);
+}
+
+// Not a photon enters a closed room.
+TEST(Paths, ClosedRoomsAreDark) {
+    Mesh room = make_box(Vec3(2, 2, 2));
+    room.set_material(surface(0.8f, 0, 1));
+    Scene scene;
+    scene.show(room, "room");
+    app::Session session = path_session_under_sky(scene);
+    look_from(session, Vec3d(0.7, 0.5, 0.8), 80);
+    EXPECT_EQ(mean_of(render_linear(session, 16)), Vec3(Vec3::Zero()));
+}
+
+// Lambert: albedo I cos / (pi d^2), of one light without noise.
+TEST(Paths, PointLight) {
+    Scene scene;
+    scene.show(facing_square(1, surface(0.5f, 0, 1)), "square");
+    Light light;
+    light.position = Vec3(0, 0, 2);
+    light.intensity = 7;
+    light.radius = 0;
+    scene.set_light("point", light);
+    app::Session session = path_session(scene, 65);
+    session.settings().shading.dielectric_f0 = 0;
+    look_from(session, Vec3d(0, 0, 5), 20);
+    const Image image = render_linear(session, 4);
+    EXPECT_NEAR(image.at<float>(32, 32)[0] / (0.5 * 7 / (4 * pi)), 1, 0.005);
+}
+
+// Of many lights one is chosen for each path, as likely as it is bright: their sum has no noise where all of
+// them arrive. More than one block of them.
+TEST(Paths, ManyLights) {
+    Scene scene;
+    scene.show(facing_square(1, surface(0.5f, 0, 1)), "square");
+    double expected = 0;
+    for (int i = 0; i < 100; ++i) {
+        Light light;
+        light.type = LightType::directional;
+        light.direction = Vec3(0.01f * float(i - 50), 0, -1);
+        light.intensity = 0.01f * float(i + 1);
+        light.angular_radius_deg = 0;
+        scene.set_light("light " + std::to_string(i), light);
+        expected += 0.5 / pi * light.intensity / light.direction.norm();
+    }
+    app::Session session = path_session(scene, 65);
+    session.settings().shading.dielectric_f0 = 0;
+    look_from(session, Vec3d(0, 0, 5), 20);
+    EXPECT_NEAR(render_linear(session, 4).at<float>(32, 32)[0] / expected, 1, 0.01);
+}
+
+// A half of an even sky lies below a wall's horizon: on a floor beside a wall without end the other half
+// arrives. A wall of albedo 0. 0.02: 1024 samples of one pixel are even within 0.015.
+TEST(Paths, SkyBesideAWall) {
+    Scene scene;
+    Mesh floor = facing_square(1, surface(1, 0, 1));
+    Mesh wall = facing_square(400, surface(0, 0, 1));
+    scene.show(floor, "floor");
+    Eigen::Affine3d pose = Eigen::Affine3d::Identity();
+    pose.linear() = Eigen::AngleAxisd(pi / 2, Vec3d::UnitY()).toRotationMatrix();
+    pose.translation() = Vec3d(-0.005, 0, 400);
+    wall.set_T_world_mesh(pose);
+    scene.show(wall, "wall");
+    app::Session session = path_session_under_sky(scene, 3);
+    session.settings().shading.dielectric_f0 = 0;
+    look_from(session, Vec3d(0, 0, 5), 0.02f * 57);
+    EXPECT_NEAR(render_linear(session, 1024).at<float>(1, 1)[0], 0.5, 0.02);
+}
+
+// Under the middle of a disc of radius r at height h the part h^2 / (h^2 + r^2) of an even sky arrives. 0.02:
+// the noise of 256 samples of nine pixels.
+TEST(Paths, CaughtShadowOfADisc) {
+    Scene scene;
+    scene.show(make_cylinder(1, 0.001f, 128), "disc");
+    app::Session session = path_session_under_sky(scene, 33);
+    Settings& s = session.settings();
+    s.ground.mode = GroundMode::shadow;
+    s.ground.height = -1.0;
+    s.camera.position = Vec3d(4, -0.5, 0);
+    s.camera.target = Vec3d(0, -1, 0);
+    s.camera.fov_y_deg = 5;
+    const Image image = render_linear(session, 256);
+    double alpha = 0;
+    for (int y = 15; y < 18; ++y)
+        for (int x = 15; x < 18; ++x) alpha += image.at<float>(x, y)[3] / 9.0;
+    EXPECT_NEAR(alpha, 0.5, 0.02);
+}
+
+// Twice the same, byte for byte.
+TEST(Paths, AreDeterministic) {
+    Scene scene;
+    scene.show(ball(surface(0.7f, 0.5f, 0.4f)), "ball");
+    app::Session session = path_session(scene);
+    session.settings().environment.enabled = true;
+    session.settings().ground.mode = GroundMode::plane;
+    look_from(session, Vec3d(3, 2, 5), 30);
+    const Image first = render_linear(session, 4), second = render_linear(session, 4);
+    EXPECT_TRUE(std::ranges::equal(first.pixels<float>(), second.pixels<float>()));
+}
+
+// The error falls with the square root of the number of samples: by 4 for 16 times as many, or more, as
+// the samples of a pixel are evenly spread.
+TEST(Paths, ErrorsFallWithSamples) {
+    Scene scene;
+    scene.show(ball(surface(0.7f, 0, 0.4f)), "ball");
+    app::Session session = path_session(scene);
+    session.settings().environment.enabled = true;  // the studio
+    session.settings().ground.mode = GroundMode::plane;
+    look_from(session, Vec3d(3, 2, 5), 30);
+    const Image reference = render_linear(session, 4096);
+    const auto error_of = [&](int samples) {
+        const Image image = render_linear(session, samples);
+        double sum = 0;
+        for (size_t i = 0; i < image.pixels<float>().size(); ++i)
+            sum += std::pow(double(image.pixels<float>()[i]) - reference.pixels<float>()[i], 2);
+        return std::sqrt(sum);
+    };
+    EXPECT_GT(error_of(4) / error_of(64), 3.5);
+}
+
+}  // namespace
+}  // namespace easypbr
