@@ -12,6 +12,7 @@ Types, functions and samplers are those of src/easypbr/native/simd. Macros are w
   use ?: there, any_lane() for the conditions of loops.
 - if (c) discard: the pixels for which c holds are written no more.
 - swizzles: member functions. Literals: floats.
+- outputs: members, and outputs() lists them by location as four channels each.
 """
 
 import argparse
@@ -27,6 +28,7 @@ ASSIGNMENTS = {"=", "+=", "-=", "*=", "/=", "&=", "|=", "^=", "<<=", ">>="}
 CLOSING = {"(": ")", "[": "]", "{": "}"}
 COMPONENTS = {"r": "x", "g": "y", "b": "z", "a": "w"}
 TYPES = {"float": "vfloat", "uint": "vuint", "bool": "vbool"}
+INTERPOLATIONS = {"flat", "smooth", "noperspective"}
 UNIFORM_TYPES = {"float": "float", "int": "int", "bool": "bool", "mat3": "mat3",
                  "vec2": "uni::vec2", "vec3": "uni::vec3", "vec4": "uni::vec4"}  # fmt: skip
 
@@ -270,6 +272,7 @@ class Shader:
         self.uniforms: list[tuple[str, str, str]] = []  # type, name, array size or ""
         self.uniform_structs: list[str] = []
         self.members: list[str] = []
+        self.outputs: dict[int, str] = {}  # by location
         self.functions: list[tuple[str, set[str], str]] = []  # name, what it names, text
         tree = tree_of(tokens_of(text.read(name)))
         self.features = text.features
@@ -289,8 +292,13 @@ class Shader:
             raise ShaderError(f"{name}: a declaration without its end")
 
     def declaration(self, items: list, structs: dict, translator: Translator) -> None:
+        location = 0
         if items[0] == "layout":
+            words = items[1][1]
+            location = int(words[words.index("location") + 2]) if "location" in words else 0
             items = items[2:]
+        if items[0] in INTERPOLATIONS:
+            items = items[1:]
         if items[0] == "struct":
             structs[items[1]] = items[2][1]
             self.members.append(f"struct {items[1]} {translator.block(items[2][1])};")
@@ -305,7 +313,10 @@ class Shader:
         elif items[0] == "uniform":
             self.uniforms.append((items[1], items[2], items[3][1][0] if is_group(items[3], "[") else ""))
         elif items[0] in ("in", "out"):
-            self.members.append(f"{TYPES.get(items[1], items[1])} {items[2]};")
+            names = [item for item in items[2:-1] if item != ","]
+            self.members.append(f"{TYPES.get(items[1], items[1])} {', '.join(names)};")
+            if items[0] == "out":
+                self.outputs[location] = items[2]
         elif items[0] == "const":
             self.members.append("static constexpr " + UNIFORM_TYPES[items[1]] + " " + self.constant(items[2:-1], translator) + ";")
         else:
@@ -323,8 +334,22 @@ class Shader:
                 return [text for name, _, text in self.functions if name in needed]
             needed = more
 
+    def output_list(self) -> str:
+        """The members that are outputs, for whoever writes the pixels; integers are none of them."""
+        channels = ", ".join(f"channels_of({name})" for _, name in sorted(self.outputs.items()))
+        count = len(self.outputs)
+        return (
+            f"static constexpr int output_count = {count}; "
+            f"INLINE void outputs(vec4 (&pixel)[{count}]) const {{ const vec4 all[] = {{{channels}}}; "
+            f"for (int i = 0; i < {count}; ++i) pixel[i] = all[i]; }}"
+        )
+
     @staticmethod
     def constant(items: list, translator: Translator) -> str:
+        """`ring[2] = vec2[](...)` too: a list of values."""
+        if len(items) > 5 and is_group(items[1], "[") and is_group(items[4], "["):
+            name, size, values = items[0], translator.group(items[1]), translator.group(items[5])
+            return re.sub(r"\bvec([234])\b", r"uni::vec\1", f"{name}{size} = {{{values[1:-1]}}}")
         return re.sub(r"\bvec([234])\b", r"uni::vec\1", translator.plain(items))
 
     @staticmethod
@@ -359,7 +384,8 @@ def translate(name: str, folder: Path, macros: dict[str, str], without: list[str
     visits += [f'visit.feature("{macro}", {constant});' for macro, constant in text.features]
     uniforms = [f"struct {name}_uniforms {{", *shader.uniform_structs, *declared]
     uniforms += ["template <class Visitor>", "void visit(Visitor&& visit) {", *visits, "}", "};"]
-    body = [f"struct {name} : {name}_uniforms, Fragment {{", *shader.members, *shader.called(), "};"]
+    body = [f"struct {name} : {name}_uniforms, Fragment {{", *shader.members, *shader.called()]
+    body += [shader.output_list(), "};"] if shader.outputs else ["};"]
     return "\n".join(uniforms), "\n".join(body)
 
 

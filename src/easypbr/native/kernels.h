@@ -14,14 +14,12 @@ enum class Store {
     add_light,  ///< colours are added, alpha stays
     add,        ///< all channels are added
     multiply,   ///< all channels are multiplied
-    under       ///< what the pixel holds is premultiplied, and lies over what is written
+    under,      ///< what the pixel holds is premultiplied, and lies over what is written
+    over,       ///< what is written is premultiplied, and lies over what the pixel holds
+    mix         ///< between what is written and, by Region::kept, what the pixel holds
 };
-enum class Pixels {
-    rgba8,   ///< rounded to 8 bits
-    rgba16,  ///< rounded to 16 bits
-    rgba32f,
-    r16  ///< rounded to 16 bits
-};
+/// Of a format with 8 or 16 bits a channel values are rounded; only floats can be blended.
+enum class Pixels { rgba8, rgba16, rgba16f, rgba32f, rg8, rg16, r16, r16f, r32f };
 /// The pixels that are shaded.
 enum class Where {
     everywhere,
@@ -29,12 +27,19 @@ enum class Where {
     empty     ///< where it is 0
 };
 
+/// Pixels of one output of a shader, row by row.
+struct Output {
+    std::byte* data = nullptr;  ///< null: this output is not written
+    Pixels pixels = Pixels::rgba32f;
+};
+inline constexpr int most_outputs = 4;
+
 /// Pixels that are written, and which of them.
 struct Region {
-    std::byte* data = nullptr;  ///< row by row
-    Pixels pixels = Pixels::rgba32f;
-    int x = 0, y = 0, width = 0;  ///< first pixel that the data holds, and of how many columns
+    Output outputs[most_outputs];  ///< by the location of the shader's outputs; all hold the same rectangle
+    int x = 0, y = 0, width = 0;   ///< first pixel that they hold, and of how many columns
     Store store = Store::replace;
+    float kept = 0;  ///< for Store::mix
     Where where = Where::everywhere;
     R32f depth = {};
     int depth_channels = 1;  ///< of the pixels of `depth`, which is the first

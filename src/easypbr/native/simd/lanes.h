@@ -338,6 +338,9 @@ INLINE vfloat exp2(vfloat x) {
     p = p * f + 1.0f;
     return p * as_float((__builtin_convertvector(whole.v, Ints) + 127) << 23);
 }
+INLINE vfloat exp(vfloat x) {
+    return exp2(x * 1.44269504f);
+}
 /// Of positive numbers, from the mantissa in [1/sqrt 2, sqrt 2) by the series of artanh. Absolute error below
 /// 1e-6.
 INLINE vfloat log2(vfloat x) {

@@ -63,6 +63,12 @@ INLINE vec4 planar(const Floats4* pixels) {
 #endif
 }
 
+INLINE uint32_t bits_of(float v) {
+    return load<uint32_t>(&v);
+}
+INLINE float as_scalar(uint32_t bits) {
+    return load<float>(&bits);
+}
 // Halves that are numbers: exact.
 INLINE Floats8 from_halves(Shorts8 h) {
 #if defined(__F16C__)
@@ -72,9 +78,29 @@ INLINE Floats8 from_halves(Shorts8 h) {
     return Floats8((bits & 0x7fff) << 13 | (bits & 0x8000) << 16) * 0x1p112f;
 #endif
 }
+INLINE uint16_t to_half(float v) {
+    const uint32_t bits = bits_of(v), sign = bits >> 16 & 0x8000u;
+    uint32_t size = bits & 0x7fffffffu;
+    if (size > 0x7f800000u) return uint16_t(sign | 0x7e00u | (size >> 13 & 0x3ffu));
+    if (size >= 0x477ff000u) return uint16_t(sign | 0x7c00u);
+    // Adding a half shifts a denormal one's bits to the end of the mantissa, and rounds.
+    if (size < 0x38800000u) return uint16_t(sign | (bits_of(as_scalar(size) + 0.5f) - 0x3f000000u));
+    size += 0xc8000fffu + (size >> 13 & 1u);
+    return uint16_t(sign | size >> 13);
+}
 INLINE Floats4 from_halves(Shorts4 h) {
     const Ints4 bits = __builtin_convertvector(h, Ints4);
     return Floats4((bits & 0x7fff) << 13 | (bits & 0x8000) << 16) * 0x1p112f;
+}
+/// Rounded to the nearest; those beyond the largest half are infinite.
+INLINE Shorts4 to_halves(Floats4 v) {
+#if defined(__F16C__)
+    return __builtin_shufflevector(Shorts8(_mm_cvtps_ph(__m128(v), 0)), Shorts8{}, 0, 1, 2, 3);
+#else
+    Shorts4 halves;
+    for (int i = 0; i < 4; ++i) halves[i] = to_half(v[i]);
+    return halves;
+#endif
 }
 INLINE Floats4 low_half(Floats8 v) {
     return Floats4{v[0], v[1], v[2], v[3]};

@@ -76,6 +76,20 @@ struct vec4 {
     }
 };
 
+/// As a pixel of four channels.
+INLINE vec4 channels_of(const vec4& v) {
+    return v;
+}
+INLINE vec4 channels_of(const vec3& v) {
+    return {v, 1.0f};
+}
+INLINE vec4 channels_of(const vec2& v) {
+    return {v, 0.0f, 1.0f};
+}
+INLINE vec4 channels_of(vfloat v) {
+    return {v, 0.0f, 0.0f, 1.0f};
+}
+
 struct ivec2 {
     vint x, y;
     INLINE ivec2(vint a, vint b) : x(a), y(b) {}

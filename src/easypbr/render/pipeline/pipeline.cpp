@@ -66,7 +66,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
     shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
-    const bool native = is_lit_natively(frame, list);
+    const bool native = is_lit_natively(list);
     shadow_maps_.keep_in_host_memory(native);
     if (!native) targets_.upload(transfers_);
     if (contents.ground)
@@ -78,10 +78,11 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     const bool shows_environment =
         !resolved.environment.empty() && resolved.settings.background.shows_environment();
     if (native) shade_surroundings(seen, contents, shows_environment);
-    if (const std::string pass = first_by_driver(frame, list, contents); native && !pass.empty())
-        timer_.run(pass, [&] { targets_.upload(transfers_); });
+    const std::string pass = first_by_driver(frame, list, contents);
+    const bool wholly_native = native && pass.empty();
+    if (native && !wholly_native) timer_.run(pass, [&] { targets_.upload(transfers_); });
     if (!native && contents.ground) timer_.run("ground", [&] { ground_.finish(seen, targets_, bounds); });
-    if (with_overlay) timer_.run("display", [&] { display_.draw(seen, targets_); });
+    if (with_overlay) timer_.run("display", [&] { begin_overlay(seen, wholly_native); });
     if (!has_layers) timer_.run("overlays", [&] { draw_overlay_items(seen, list); });
     if (!native && shows_environment)
         timer_.run("background", [&] { background_.draw(seen, targets_, environment_, contents.ground); });
@@ -98,6 +99,13 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     return lit;
 }
 
+void Pipeline::begin_overlay(const Frame& frame, bool native) {
+    if (native)
+        display_.shade_overlay(frame, targets_, frame.covered, transfers_);
+    else
+        display_.draw(frame, targets_);
+}
+
 void Pipeline::shade_surroundings(const Frame& frame, const FrameContents& contents, bool environment) {
     const bool ground = contents.ground;
     if (ground)
@@ -111,23 +119,20 @@ void Pipeline::shade_surroundings(const Frame& frame, const FrameContents& conte
 void Pipeline::occlude(const Frame& frame, bool native, bool with_points) {
     timer_.run("ambient occlusion", [&] {
         if (native)
-            ambient_occlusion_.shade(frame, targets_, transfers_);
+            ambient_occlusion_.shade(frame, targets_, with_points, transfers_);
         else
             ambient_occlusion_.draw(frame, targets_, with_points);
     });
 }
 
-bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list) const {
-    const bool estimates_normals = frame.resolved->settings.ssao.enabled &&
-                                   list.has([](const DrawItem& item) { return is_display(item.kind); });
+bool Pipeline::is_lit_natively(const DrawList& list) const {
     const bool has_tints = shadow_maps_.has_shadows() && shadow_maps_.has_tints();
-    return native_shading_ && targets_.depth.is_ahead() && !has_tints && !list.extensions() &&
-           !estimates_normals;
+    return native_shading_ && targets_.depth.is_ahead() && !has_tints && !list.extensions();
 }
 
 std::string Pipeline::first_by_driver(const Frame& frame, const DrawList& list,
                                       const FrameContents& contents) const {
-    if (list.needs_overlay()) return "overlays";
+    if (!list.overlays.empty()) return "overlays";
     for (const auto& effect : effects_)
         if (!contents.layers && effect->is_on(frame)) return effect->name();
     if (draws_overlay(frame, contents)) return "overlays";

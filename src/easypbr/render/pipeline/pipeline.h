@@ -99,10 +99,12 @@ class Pipeline {
     /// The eye-dome lighting of the layers' points; nothing where there are none.
     const gl::Texture* shade_points(const Frame& frame, const DrawList& layers, const gl::Texture& opaque);
     /// Whether a frame is lit natively: its surfaces are in host memory, and nothing of it needs the driver.
-    bool is_lit_natively(const Frame& frame, const DrawList& list) const;
+    bool is_lit_natively(const DrawList& list) const;
     void occlude(const Frame& frame, bool native, bool with_points);
     /// What is around lit surfaces, natively: what the ground shows of itself, and the environment.
     void shade_surroundings(const Frame& frame, const FrameContents& contents, bool environment);
+    /// Empties the overlay, and draws the surfaces that are shown past light.
+    void begin_overlay(const Frame& frame, bool native);
     /// The first pass after the lighting that only the driver can do; empty where there is none.
     std::string first_by_driver(const Frame& frame, const DrawList& list,
                                 const FrameContents& contents) const;
