@@ -2,7 +2,9 @@
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 set(native_shaders lighting_surface background_environment display_output accumulate_sample antialias_fxaa
                    occlusion_select occlusion_horizon occlusion_hemisphere occlusion_blur occlusion_magnify
-                   lighting_catcher ground_finish occlusion_normals display_surface exact_surface)
+                   lighting_catcher ground_finish occlusion_normals display_surface exact_surface
+                   bloom_blocks bloom_gather bloom_resample focus_halve focus_gather focus_compose
+                   outline_edges outline_lines)
 set(native_surface_shaders mesh_resolve)
 set(native_folder ${PROJECT_BINARY_DIR}/generated/native)
 list(JOIN native_shaders ") X(" native_names)

@@ -375,7 +375,7 @@ def translate(name: str, folder: Path, macros: dict[str, str], without: list[str
     text = Text(folder, macros, without)
     shader = Shader(text, f"{name}.frag")
     kinds = [
-        (f"samplers::{uniform}" if kind.startswith("sampler") else UNIFORM_TYPES.get(kind, kind), uniform, size)
+        (f"samplers::{uniform}" if kind.startswith(("sampler", "usampler")) else UNIFORM_TYPES.get(kind, kind), uniform, size)
         for kind, uniform, size in shader.uniforms
     ]
     declared = [f"{kind} {uniform}{f'[{size}]' if size else ''} = {{}};" for kind, uniform, size in kinds]

@@ -29,6 +29,7 @@ class Generator {
         const int count = between(1, 3);
         for (int i = 0; i < count; ++i) {
             Mesh mesh = chance(0.5) ? make_teapot(1, between(2, 12)) : make_sphere(1, between(8, 60));
+            if (chance(0.3)) mesh = cloud_of(mesh);
             Material material;
             material.base_color = color();
             material.roughness = chance(0.2) ? 0.0f : number(0, 1);
@@ -38,6 +39,7 @@ class Generator {
             pose.translate(Vec3d(1.5 * i, number(-1, 1), number(-1, 1)));
             pose.scale(double(number(0.5f, 1.5f)));
             mesh.set_T_world_mesh(pose);
+            if (chance(0.3)) color(mesh);
             scene.show(mesh, "mesh" + std::to_string(i));
         }
         const int lights = between(0, 3);
@@ -71,9 +73,43 @@ class Generator {
         s.camera.projection = chance(0.7) ? Projection::perspective : Projection::orthographic;
         s.rays.enabled = false;
         s.ground.mode = GroundMode(chance(0.6) ? 0 : between(1, 2));
+        s.edl.strength = number(0, 2);
+        s.edl.radius = number(0.5f, 30);
+        change_effects(s);
     }
 
   private:
+    void change_effects(Settings& s) {
+        s.bloom.enabled = chance(0.3);
+        s.bloom.intensity = number(0, 1);
+        s.bloom.threshold = chance(0.5) ? 0.0f : number(0.1f, 2);
+        s.depth_of_field.enabled = chance(0.3);
+        s.depth_of_field.f_number = number(0.2f, 4);
+        s.outline.enabled = chance(0.3);
+        s.outline.width = number(0.5f, 6);
+        s.outline.color = color();
+        s.outline.silhouettes = chance(0.7);
+        s.outline.creases = chance(0.7);
+        s.outline.objects = chance(0.7);
+    }
+    /// Points without normals: shaded by eye-dome lighting.
+    Mesh cloud_of(const Mesh& mesh) {
+        MeshData data;
+        data.V = mesh.V();
+        data.style.mode = DrawMode::points;
+        data.style.point_size = number(1, 9);
+        return Mesh(data);
+    }
+    /// Colours of labels and of heights, lit or as they are.
+    void color(Mesh& mesh) {
+        mesh.edit([&](MeshData& data) {
+            Array1i::Dense labels(data.V.rows());
+            for (Eigen::Index i = 0; i < labels.size(); ++i) labels[i] = int32_t(i / 40 % 5);
+            data.L = Array1i(labels);
+            data.style.lit = chance(0.3);
+            data.style.color_by = std::array{ColorBy::label, ColorBy::height, ColorBy::solid}[size_t(between(0, 2))];
+        });
+    }
     Environment sky() {
         // Coarse ones, and ones with more detail than the pictures show.
         const int height = chance(0.5) ? 16 : 256;

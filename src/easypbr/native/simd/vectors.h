@@ -122,8 +122,20 @@ INLINE ivec2 operator+(const ivec2& a, vint b) {
 INLINE ivec2 operator-(const ivec2& a, vint b) {
     return {a.x - b, a.y - b};
 }
+INLINE ivec2 operator-(vint a, const ivec2& b) {
+    return {a - b.x, a - b.y};
+}
+INLINE ivec2 operator*(vint a, const ivec2& b) {
+    return {a * b.x, a * b.y};
+}
 INLINE ivec2 operator&(const ivec2& a, vint b) {
     return {a.x & b, a.y & b};
+}
+INLINE ivec2 min(const ivec2& a, const ivec2& b) {
+    return {min(a.x, b.x), min(a.y, b.y)};
+}
+INLINE ivec2 max(const ivec2& a, const ivec2& b) {
+    return {max(a.x, b.x), max(a.y, b.y)};
 }
 INLINE ivec2 clamp(const ivec2& v, const ivec2& low, const ivec2& high) {
     return {clamp(v.x, low.x, high.x), clamp(v.y, low.y, high.y)};

@@ -78,11 +78,12 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     const bool shows_environment =
         !resolved.environment.empty() && resolved.settings.background.shows_environment();
     if (native) shade_surroundings(seen, contents, shows_environment);
-    const std::string pass = first_by_driver(frame, list, contents);
+    const std::string pass = first_by_driver(list, contents);
     const bool wholly_native = native && pass.empty();
     if (native && !wholly_native) timer_.run(pass, [&] { targets_.upload(transfers_); });
     if (!native && contents.ground) timer_.run("ground", [&] { ground_.finish(seen, targets_, bounds); });
-    if (with_overlay) timer_.run("display", [&] { begin_overlay(seen, wholly_native); });
+    const PixelRect overlaid = draws_overlay(frame, contents) ? frame.whole() : seen.covered;
+    if (with_overlay) timer_.run("display", [&] { begin_overlay(seen, overlaid, wholly_native); });
     if (!has_layers) timer_.run("overlays", [&] { draw_overlay_items(seen, list); });
     if (!native && shows_environment)
         timer_.run("background", [&] { background_.draw(seen, targets_, environment_, contents.ground); });
@@ -95,13 +96,13 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         lit.partly_covered |=
             timer_.run("transparency", [&] { return draw_transparent(frame, list, contents, with_overlay); });
     if (contents.custom) contents.custom->draw_in_frame(frame, targets_, timer_, lit);
-    if (!contents.layers) draw_effects(frame, opaque, false, lit);
+    if (!contents.layers) draw_effects(frame, opaque, {.native = wholly_native}, lit);
     return lit;
 }
 
-void Pipeline::begin_overlay(const Frame& frame, bool native) {
+void Pipeline::begin_overlay(const Frame& frame, const PixelRect& area, bool native) {
     if (native)
-        display_.shade_overlay(frame, targets_, frame.covered, transfers_);
+        display_.shade_overlay(frame, targets_, area, transfers_);
     else
         display_.draw(frame, targets_);
 }
@@ -130,23 +131,12 @@ bool Pipeline::is_lit_natively(const DrawList& list) const {
     return native_shading_ && targets_.depth.is_ahead() && !has_tints && !list.extensions();
 }
 
-std::string Pipeline::first_by_driver(const Frame& frame, const DrawList& list,
-                                      const FrameContents& contents) const {
+std::string Pipeline::first_by_driver(const DrawList& list, const FrameContents& contents) const {
     if (!list.overlays.empty()) return "overlays";
-    for (const auto& effect : effects_)
-        if (!contents.layers && effect->is_on(frame)) return effect->name();
-    if (draws_overlay(frame, contents)) return "overlays";
     if (contents.layers) return "";
     if (list.has(is_layered)) return "transparency";
     if (contents.custom && !contents.custom->empty()) return "custom passes";
     return contents.in_host_memory ? "" : "output";
-}
-
-PixelRect Pipeline::draw_geometry(const Frame& frame, const DrawList& list, const GBuffer& targets,
-                                  const SurfaceOutputs& outputs) {
-    const PixelRect drawn = surfaces_.draw(frame, list, targets, outputs);
-    targets.upload(transfers_);
-    return drawn;
 }
 
 void Pipeline::light(const Frame& frame, const GBuffer& targets, const FrameContents& contents,
@@ -199,22 +189,24 @@ bool Pipeline::draws_overlay(const Shot& shot, const FrameContents& contents) co
     });
 }
 
-void Pipeline::draw_effects(const Frame& frame, const DrawList& opaque, bool overlay_only, LitPicture& lit) {
+void Pipeline::draw_effects(const Frame& frame, const DrawList& opaque, EffectKinds kinds, LitPicture& lit) {
     bool has_ids = false;
     const auto with_ids = [&]() -> const GBuffer& {
         if (std::exchange(has_ids, true)) return with_ids_;
         if (with_ids_.size() != frame.size) with_ids_ = GBuffer(frame.size);
         with_ids_.add_ids();
-        draw_geometry(frame, opaque, with_ids_, {.ids = true});
+        surfaces_.draw(frame, opaque, with_ids_, {.ids = true});
+        if (!kinds.native) with_ids_.upload(transfers_);
         return with_ids_;
     };
     // The frames of an accumulated picture look through different places of the lens.
     lit.spreads |= frame.through_lens;
     for (const auto& effect : effects_) {
-        if (!effect->is_on(frame) || (overlay_only && !effect->draws_overlay())) continue;
+        if (!effect->is_on(frame) || (kinds.overlay_only && !effect->draws_overlay())) continue;
         const Frame seen = frame.covering(lit.covered);
+        const EffectInputs inputs{seen, targets_, bounds_of(*frame.scene), with_ids};
         timer_.run(effect->name(), [&] {
-            effect->draw({seen, targets_, bounds_of(*frame.scene), with_ids}, lit);
+            kinds.native ? effect->shade(inputs, lit, transfers_) : effect->draw(inputs, lit);
         });
     }
 }
@@ -225,15 +217,20 @@ void Pipeline::draw_surfaces(const Frame& frame, const DrawList& list, const Sur
 }
 
 const Target* Pipeline::draw_overlay(const Frame& frame, const DrawList& list,
-                                     const FrameContents& contents) {
+                                     const FrameContents& contents, bool native) {
     if (list.overlays.empty() && !draws_overlay(frame, contents)) return nullptr;
     targets_.add_overlay();
-    const float nothing[4] = {0, 0, 0, 0};
-    targets_.display().clear_color(0, nothing);
-    draw_overlay_items(frame, list);
+    if (native) {
+        targets_.overlay.write(frame.whole());
+        std::ranges::fill(targets_.overlay.pixels<std::byte>(), std::byte{0});
+    } else {
+        const float nothing[4] = {0, 0, 0, 0};
+        targets_.display().clear_color(0, nothing);
+        draw_overlay_items(frame, list);
+    }
     LitPicture lit{.overlay = &targets_.overlay, .covered = frame.covered};
-    draw_effects(frame, list, true, lit);
-    if (contents.custom)
+    draw_effects(frame, list, {.native = native, .overlay_only = true}, lit);
+    if (contents.custom && !native)
         contents.custom->draw(Stage::overlay, frame, targets_, targets_.overlay.drawn(), timer_);
     return &targets_.overlay;
 }

@@ -207,7 +207,9 @@ void Renderer::draw_exact() {
         pipeline_.draw_surfaces(frame, picture.list, {.ids = picture.contents.ids});
         if (!output_.is_finished_natively()) pipeline_.targets().upload(pipeline_.transfers());
     }
-    if (!has_layers) lit.overlay = pipeline_.draw_overlay(frame, picture.list, picture.contents);
+    if (!has_layers)
+        lit.overlay = pipeline_.draw_overlay(frame, picture.list, picture.contents,
+                                             output_.is_finished_natively());
     output_.write_exact(frame, lit, pipeline_.targets(), has_layers);
 }
 
