@@ -6,6 +6,7 @@ set(native_shaders lighting_surface background_environment display_output accumu
                    bloom_blocks bloom_gather bloom_resample focus_halve focus_gather focus_compose
                    outline_edges outline_lines)
 set(native_surface_shaders mesh_resolve)
+set(native_line_shaders overlay_lines)
 set(native_folder ${PROJECT_BINARY_DIR}/generated/native)
 list(JOIN native_shaders ") X(" native_names)
 file(CONFIGURE OUTPUT ${native_folder}/shader_list.h CONTENT "#define EASYPBR_SHADERS(X) X(${native_names})\n")
@@ -14,7 +15,8 @@ add_custom_command(
   OUTPUT ${native_folder}/shader_uniforms.h ${native_folder}/shaders.h
   COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/native_shaders.py ${PROJECT_SOURCE_DIR}/shaders
           ${native_folder} --define DFG_SIZE=64 --define LIGHTS_PER_BLOCK=64 --define SHADOWS --define UV_TRANSFORMS=7
-          --define NATIVE --without SHADOW_TINTS ${native_shaders} ${native_surface_shaders}
+          --define NATIVE --define DEPTH_ONLY --without SHADOW_TINTS ${native_shaders} ${native_surface_shaders}
+          ${native_line_shaders}
   DEPENDS ${shader_texts} ${PROJECT_SOURCE_DIR}/scripts/native_shaders.py
   COMMENT "Translating shaders" VERBATIM)
 add_custom_target(easypbr_native_texts DEPENDS ${native_folder}/shader_uniforms.h ${native_folder}/shaders.h)

@@ -12,15 +12,19 @@ const vec2 eye_dome_ring[8] = vec2[](vec2(1.0, 0.0), vec2(0.70710678, 0.70710678
 // How much nearer the reversed depth at a place is than `here`: as a ratio of distances, or orthographic, a difference.
 float nearer_at(vec2 uv, float here) {
     float near = depth_at(uv);
-    return is_orthographic ? max(near - here, 0.0) : clamp(near / here, 1.0, 1e9);
+    return is_orthographic ? max(near - here, 0.0) : clamp(near / here, 1.0, 1e4);
 }
 
-// How far, in doublings of the distance, four places lie before `here` together. A ratio of depths is the same at any scale
-// of the scene; the logarithm of a product is the sum.
-float before(vec2 uv, vec2 radius, int first, float here) {
-    float a = nearer_at(uv + eye_dome_ring[first] * radius, here), b = nearer_at(uv + eye_dome_ring[first + 1] * radius, here),
-          c = nearer_at(uv + eye_dome_ring[first + 2] * radius, here), d = nearer_at(uv + eye_dome_ring[first + 3] * radius, here);
-    return is_orthographic ? (a + b + c + d) * u_depth_scale.x : log2(a * b * c * d);
+// How far, in doublings of the distance, the places of a ring lie before `here` together. A ratio of depths is the same at
+// any scale of the scene; the logarithm of a product is the sum.
+float before(vec2 uv, vec2 radius, float here) {
+    float sum = 0.0, product = 1.0;
+    for (int i = 0; i < 8; ++i) {
+        float near = nearer_at(uv + eye_dome_ring[i] * radius, here);
+        sum += near;
+        product *= near;
+    }
+    return is_orthographic ? sum * u_depth_scale.x : log2(product);
 }
 
 float eye_dome(vec2 uv, float here) {
@@ -28,8 +32,7 @@ float eye_dome(vec2 uv, float here) {
     float shade = 0.0;
     for (int k = 0; k < 3; ++k) {
         vec2 radius = u_eye_dome.y * exp2(float(k)) / u_size;
-        float sum = before(uv, radius, 0, here) + before(uv, radius, 4, here);
-        shade += exp(-300.0 * u_eye_dome.x * sum / 8.0);
+        shade += exp(-300.0 * u_eye_dome.x * before(uv, radius, here) / 8.0);
     }
     return shade / 3.0;
 }

@@ -40,6 +40,7 @@ class Generator {
             pose.scale(double(number(0.5f, 1.5f)));
             mesh.set_T_world_mesh(pose);
             if (chance(0.3)) color(mesh);
+            if (chance(0.3)) draw_lines(mesh);
             scene.show(mesh, "mesh" + std::to_string(i));
         }
         const int lights = between(0, 3);
@@ -100,6 +101,15 @@ class Generator {
         data.style.point_size = number(1, 9);
         return Mesh(data);
     }
+    void draw_lines(Mesh& mesh) {
+        mesh.edit([&](MeshData& data) {
+            data.style.show_wireframe = chance(0.5);
+            data.style.show_normals = chance(0.5) && !data.N.empty();
+            data.style.line_width = number(0.3f, 6);
+            data.style.line_dash = chance(0.7) ? 0.0f : number(1, 9);
+            data.style.line_color = color();
+        });
+    }
     /// Colours of labels and of heights, lit or as they are.
     void color(Mesh& mesh) {
         mesh.edit([&](MeshData& data) {
@@ -107,7 +117,8 @@ class Generator {
             for (Eigen::Index i = 0; i < labels.size(); ++i) labels[i] = int32_t(i / 40 % 5);
             data.L = Array1i(labels);
             data.style.lit = chance(0.3);
-            data.style.color_by = std::array{ColorBy::label, ColorBy::height, ColorBy::solid}[size_t(between(0, 2))];
+            data.style.color_by =
+                std::array{ColorBy::label, ColorBy::height, ColorBy::solid}[size_t(between(0, 2))];
         });
     }
     Environment sky() {
@@ -142,14 +153,18 @@ struct Difference {
     int most = 0;
 };
 
+/// A channel, colours as much as they cover: where nothing is to be seen they mean nothing.
+int seen(const Image& picture, size_t pixel, size_t channel) {
+    const uint8_t* p = picture.pixels<uint8_t>().data() + 4 * pixel;
+    return channel == 3 ? p[3] : (p[channel] * p[3] + 127) / 255;
+}
+
 Difference difference(const Image& a, const Image& b) {
     Difference d;
     d.pixels = a.pixel_count();
     for (size_t i = 0; i < a.pixel_count(); ++i) {
         int most = 0;
-        for (size_t c = 0; c < 4; ++c)
-            most = std::max(
-                most, std::abs(int(a.pixels<uint8_t>()[4 * i + c]) - int(b.pixels<uint8_t>()[4 * i + c])));
+        for (size_t c = 0; c < 4; ++c) most = std::max(most, std::abs(seen(a, i, c) - seen(b, i, c)));
         d.by_one += most == 1;
         d.by_more += most > 1;
         d.most = std::max(d.most, most);
@@ -173,10 +188,19 @@ Image drawn(const Scene& scene, unsigned seed, bool native, const std::string& i
     return session.render();
 }
 
+/// Whether FXAA follows: in a cloud every pixel is an edge to it.
+bool is_blurred(unsigned seed) {
+    Generator generator(seed);
+    generator.scene();
+    Settings settings;
+    generator.change(settings);
+    return settings.image.antialias == Antialias::fxaa && settings.image.samples == 1;
+}
+
 // Both round the same values to 8 bits, in another order of operations: they differ by 1 where a value lies
 // beside the middle of two. A texel of a shadow map that lies in the plane of a surface, to the last bit, is
-// before it for one and behind it for the other, and FXAA chooses between two blurs: few pixels differ by
-// more.
+// before it for one and behind it for the other, a normal's angle or a step of depth is beside the least of
+// an outline, and FXAA chooses between two blurs: few pixels differ by more.
 TEST(NativeShading, IsTheDrivers) {
     if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
     Difference all;
@@ -187,7 +211,8 @@ TEST(NativeShading, IsTheDrivers) {
         all.by_one += d.by_one;
         all.by_more += d.by_more;
         all.most = std::max(all.most, d.most);
-        EXPECT_LE(d.by_more, 2 + d.pixels / 500) << "scene " << seed << ", largest " << d.most;
+        const size_t part = is_blurred(seed) ? 100 : 500;
+        EXPECT_LE(d.by_more, 2 + d.pixels / part) << "scene " << seed << ", largest " << d.most;
     }
     EXPECT_LE(all.by_more, all.pixels / 1000);
     RecordProperty("largest", all.most);

@@ -135,12 +135,14 @@ def test_without_opengl_the_cpu_draws(without_opengl, easypbr, sphere, box, tmp_
     assert (tmp_path / "without.png").read_bytes() == (tmp_path / "with.png").read_bytes()
 
 
-def test_without_opengl_clouds_colour_bars_and_effects_are_drawn(without_opengl, easypbr, sphere, tmp_path):
+def test_without_opengl_clouds_colour_bars_effects_and_lines_are_drawn(without_opengl, easypbr, sphere, tmp_path):
     cloud = tmp_path / "cloud.xyz"
     cloud.write_text("".join(f"{i % 20} {i // 20} {i % 7}\n" for i in range(400)))
     effects = [f"{name}.enabled=true" for name in ("bloom", "outline", "depth_of_field")]
     heights = ["style.color_by=height", "annotation.colorbar=true"]
-    for files, settings in (([cloud], []), ([cloud], heights), ([cloud], ["ssao.enabled=true"]), ([sphere], effects)):
+    occlusion, lines = ["ssao.enabled=true"], ["style.show_wireframe=true", "style.line_dash=3"]
+    pictures = ([cloud], []), ([cloud], heights), ([cloud], occlusion), ([sphere], effects), ([sphere], lines)
+    for files, settings in pictures:
         options = ["--size", "64x48", *(word for setting in settings for word in ("--set", setting))]
         done = without_opengl("render", *files, "-o", tmp_path / "without.png", *options)
         assert done.returncode == 0, done.stderr

@@ -94,6 +94,19 @@ using ResolveTriangles = void (*)(const VisibleTriangles& triangles, const Visib
 using AlphaOfTriangles = void (*)(const VisibleTriangles& triangles, const VisiblePixel* pixels, int count,
                                   float* alpha);
 
+/// A line segment on the screen, in pixels; row 0 is the top.
+struct ScreenLine {
+    float start[2] = {}, along[2] = {1, 0};  ///< unit direction
+    float length = 0;
+    float depths[2] = {};                          ///< reversed, of its ends
+    float start_color[4] = {}, end_color[4] = {};  ///< linear r g b a
+};
+
+/// Draws lines by overlay_lines over rows [y0, y1) of a region, `chosen` of them, in this order. With
+/// is_depth_only the region is of r32f, and keeps the nearest depth.
+using DrawLines = void (*)(const void* uniforms, const Region& region, const ScreenLine* lines,
+                           const uint32_t* chosen, int count, int y0, int y1);
+
 /// Shaders of pictures: those of cmake/native.cmake.
 enum class Shader {
 #define EASYPBR_NAME(name) name,
@@ -108,6 +121,7 @@ inline constexpr int shader_count = EASYPBR_SHADERS(EASYPBR_ONE);
 struct Kernels {
     ResolveTriangles resolve_triangles;
     AlphaOfTriangles alpha_of_triangles;
+    DrawLines draw_lines;
     ShadeRows shade[shader_count];  ///< by Shader
 };
 

@@ -49,6 +49,10 @@ void resolve_triangles(const VisibleTriangles& triangles, std::span<const Visibl
 void alpha_of_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels,
                         std::span<float> alpha);
 
+/// Draws lines by overlay_lines over a region, which holds rows up to y1, in their order; on all cores.
+/// Throws Error when a value is not of the uniform's type, Interrupted.
+void draw_lines(const Inputs& inputs, const Region& region, std::span<const ScreenLine> lines, int y1);
+
 /// Shades rows [y0, y1) of a region, on all cores. Throws Error when a value is not of the uniform's type,
 /// Interrupted.
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1);

@@ -12,7 +12,7 @@ namespace EASYPBR_ISA {
 
 struct Fragment : TextureReader {
     vec4 gl_FragCoord;
-    vfloat gl_FragDepth;  ///< native passes ignore it
+    vfloat gl_FragDepth;  ///< of lines; other native passes ignore it
     vbool gl_FrontFacing;
     vbool written;  ///< false where the pixel was discarded
 };
@@ -216,12 +216,85 @@ __attribute__((flatten)) void shade_rows(const void* uniforms, const Region& reg
         }
 }
 
+/// The pixels of a row that a line may cover.
+struct Span {
+    float low, high;
+
+    /// Leaves those where slope * x + value lies between two numbers.
+    INLINE void narrow(float slope, float value, float least, float most) {
+        if (slope < 1e-6f && slope > -1e-6f) {
+            if (value < least || value > most) high = low - 1;
+            return;
+        }
+        const float a = (least - value) / slope, b = (most - value) / slope;
+        low = low > (a < b ? a : b) ? low : (a < b ? a : b);
+        high = high < (a < b ? b : a) ? high : (a < b ? b : a);
+    }
+};
+
+INLINE Span span_of(const ScreenLine& l, float reach, int y, const Region& region) {
+    Span span{float(region.x0), float(region.x1 - 1)};
+    const float dx = 0.5f - l.start[0], dy = float(y) + 0.5f - l.start[1];
+    span.narrow(-l.along[1], dy * l.along[0] - dx * l.along[1], -reach, reach);
+    span.narrow(l.along[0], dx * l.along[0] + dy * l.along[1], -reach, l.length + reach);
+    return span;
+}
+
+INLINE void keep_nearest(const Region& region, int x, int y, vfloat depth, vbool written) {
+    const size_t at = size_t(y - region.y) * size_t(region.width) + size_t(x - region.x);
+    for (int k = 0; k < lanes; ++k) {
+        std::byte* p = region.outputs[0].data + 4 * (at + size_t(k));
+        const float nearest = depth.v[k];
+        if (written.v[k] && nearest > load<float>(p)) std::memcpy(p, &nearest, sizeof nearest);
+    }
+}
+
+INLINE void draw_row(overlay_lines& s, const ScreenLine& l, const Region& region, int y) {
+    const Span span = span_of(l, s.u_half_width + 1.0f, y, region);
+    if (span.high < span.low) return;
+    const int last = int(__builtin_ceilf(span.high));
+    for (int x = int(span.low); x <= last; x += lanes) {
+        const vint column = lane_numbers() + x;
+        s.written = column <= last && column < region.x1;
+        s.gl_FragCoord = vec4(to_float(column) + 0.5f, float(y) + 0.5f, 0.0f, 1.0f);
+        const vfloat dx = s.gl_FragCoord.x - l.start[0], dy = s.gl_FragCoord.y - l.start[1];
+        s.v_place = vec2(dx * l.along[0] + dy * l.along[1], dy * l.along[0] - dx * l.along[1]);
+        s.main();
+        if (!any_lane(s.written)) continue;
+        if (s.is_depth_only)
+            keep_nearest(region, x, y, s.gl_FragDepth, s.written);
+        else
+            store_outputs(s, region, x, y, s.written, true, nullptr);
+    }
+}
+
+__attribute__((flatten)) void draw_lines(const void* uniforms, const Region& region, const ScreenLine* lines,
+                                         const uint32_t* chosen, int count, int y0, int y1) {
+    overlay_lines s;
+    static_cast<overlay_lines_uniforms&>(s) = *static_cast<const overlay_lines_uniforms*>(uniforms);
+    const float reach = s.u_half_width + 1.0f;
+    for (int i = 0; i < count; ++i) {
+        const ScreenLine& l = lines[chosen[i]];
+        const float *a = l.start_color, *b = l.end_color;
+        s.v_length = l.length;
+        s.v_depths = vec2(l.depths[0], l.depths[1]);
+        s.v_start_color = vec4(a[0], a[1], a[2], a[3]);
+        s.v_end_color = vec4(b[0], b[1], b[2], b[3]);
+        const float end = l.start[1] + l.along[1] * l.length;
+        const float top = (l.start[1] < end ? l.start[1] : end) - reach,
+                    bottom = (l.start[1] < end ? end : l.start[1]) + reach;
+        const int first = top > float(y0) ? int(top) : y0,
+                  past = bottom < float(y1 - 1) ? int(bottom) + 1 : y1;
+        for (int y = first; y < past; ++y) draw_row(s, l, region, y);
+    }
+}
+
 }  // namespace
 
 // A constant is local to its file unless it is declared extern.
 extern const Kernels kernels;
 #define EASYPBR_ROWS(name) shade_rows<name, name##_uniforms>,
-const Kernels kernels{resolve_triangles, alpha_of_triangles, {EASYPBR_SHADERS(EASYPBR_ROWS)}};
+const Kernels kernels{resolve_triangles, alpha_of_triangles, draw_lines, {EASYPBR_SHADERS(EASYPBR_ROWS)}};
 #undef EASYPBR_ROWS
 
 }  // namespace easypbr::native::EASYPBR_ISA

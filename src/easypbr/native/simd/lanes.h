@@ -243,6 +243,9 @@ INLINE vfloat max(vfloat a, vfloat b) {
     return a.v > b.v ? a.v : b.v;
 #endif
 }
+INLINE float min(float a, float b) {
+    return a < b ? a : b;
+}
 INLINE vint min(vint a, vint b) {
     return a.v < b.v ? a.v : b.v;
 }

@@ -109,8 +109,7 @@ void ScreenShader::draw(const ShaderInputs& inputs, const gl::DrawState& state) 
     gl::draw_screen(state);
 }
 
-void ScreenShader::shade(const ShaderInputs& inputs, const NativeOutput& output, Transfers& transfers) {
-    const native::Inputs values = inputs.native(transfers);
+native::Region region_of(const NativeOutput& output, Transfers& transfers) {
     const Target& target = *output.target;
     native::Region region{.outputs = {},
                           .x = target.area().x,
@@ -130,7 +129,13 @@ void ScreenShader::shade(const ShaderInputs& inputs, const NativeOutput& output,
         static_cast<native::View&>(region.depth) = view_of(*output.depth);
         region.depth_channels = output.depth->format() == gl::Format::rgba32f ? 4 : 1;
     }
-    native::shade(native_.value(), values, region, output.area.y, output.area.y + output.area.height);
+    return region;
+}
+
+void ScreenShader::shade(const ShaderInputs& inputs, const NativeOutput& output, Transfers& transfers) {
+    const native::Inputs values = inputs.native(transfers);
+    native::shade(native_.value(), values, region_of(output, transfers), output.area.y,
+                  output.area.y + output.area.height);
 }
 
 }  // namespace easypbr::render

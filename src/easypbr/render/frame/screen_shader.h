@@ -87,6 +87,9 @@ class ScreenShader {
     std::vector<gl::Buffer> blocks_;  ///< by binding
 };
 
+/// What a native shader writes; the depth is downloaded where it is not in host memory.
+native::Region region_of(const NativeOutput& output, Transfers& transfers);
+
 /// The host memory of a target, for native shaders.
 native::View view_of(const Target& target);
 

@@ -14,7 +14,8 @@ class DisplayPass {
     /// Clears the overlay and draws into it what the G-buffer holds of such kinds.
     void draw(const Frame& frame, const GBuffer& targets);
     /// The same natively: the overlay holds `area` in host memory then.
-    void shade_overlay(const Frame& frame, const GBuffer& targets, const PixelRect& area, Transfers& transfers);
+    void shade_overlay(const Frame& frame, const GBuffer& targets, const PixelRect& area,
+                       Transfers& transfers);
 
     /// The eye-dome lighting of points that light passes, R16: a factor by where the nearest of them are and
     /// where the opaque surfaces (both R32F, reversed depth). Until the next call.

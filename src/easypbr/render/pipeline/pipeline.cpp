@@ -82,9 +82,8 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     const bool wholly_native = native && pass.empty();
     if (native && !wholly_native) timer_.run(pass, [&] { targets_.upload(transfers_); });
     if (!native && contents.ground) timer_.run("ground", [&] { ground_.finish(seen, targets_, bounds); });
-    const PixelRect overlaid = draws_overlay(frame, contents) ? frame.whole() : seen.covered;
-    if (with_overlay) timer_.run("display", [&] { begin_overlay(seen, overlaid, wholly_native); });
-    if (!has_layers) timer_.run("overlays", [&] { draw_overlay_items(seen, list); });
+    if (with_overlay) timer_.run("display", [&] { begin_overlay(seen, contents, wholly_native); });
+    if (!has_layers) timer_.run("overlays", [&] { draw_overlay_items(seen, list, wholly_native); });
     if (!native && shows_environment)
         timer_.run("background", [&] { background_.draw(seen, targets_, environment_, contents.ground); });
 
@@ -100,7 +99,8 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     return lit;
 }
 
-void Pipeline::begin_overlay(const Frame& frame, const PixelRect& area, bool native) {
+void Pipeline::begin_overlay(const Frame& frame, const FrameContents& contents, bool native) {
+    const PixelRect area = draws_overlay(frame, contents) ? frame.whole() : frame.covered;
     if (native)
         display_.shade_overlay(frame, targets_, area, transfers_);
     else
@@ -132,7 +132,6 @@ bool Pipeline::is_lit_natively(const DrawList& list) const {
 }
 
 std::string Pipeline::first_by_driver(const DrawList& list, const FrameContents& contents) const {
-    if (!list.overlays.empty()) return "overlays";
     if (contents.layers) return "";
     if (list.has(is_layered)) return "transparency";
     if (contents.custom && !contents.custom->empty()) return "custom passes";
@@ -216,8 +215,8 @@ void Pipeline::draw_surfaces(const Frame& frame, const DrawList& list, const Sur
     surfaces_.draw(frame, list, targets_, outputs);
 }
 
-const Target* Pipeline::draw_overlay(const Frame& frame, const DrawList& list,
-                                     const FrameContents& contents, bool native) {
+const Target* Pipeline::draw_overlay(const Frame& frame, const DrawList& list, const FrameContents& contents,
+                                     bool native) {
     if (list.overlays.empty() && !draws_overlay(frame, contents)) return nullptr;
     targets_.add_overlay();
     if (native) {
@@ -226,8 +225,8 @@ const Target* Pipeline::draw_overlay(const Frame& frame, const DrawList& list,
     } else {
         const float nothing[4] = {0, 0, 0, 0};
         targets_.display().clear_color(0, nothing);
-        draw_overlay_items(frame, list);
     }
+    draw_overlay_items(frame, list, native);
     LitPicture lit{.overlay = &targets_.overlay, .covered = frame.covered};
     draw_effects(frame, list, {.native = native, .overlay_only = true}, lit);
     if (contents.custom && !native)

@@ -87,7 +87,7 @@ class Pipeline {
     /// Depth that hides overlays and layers: of what is drawn over everything else too.
     const gl::Texture& hiding_depth(const Frame& frame, const DrawList& list);
     /// Draws the overlays of primitives where there are no layers.
-    void draw_overlay_items(const Frame& frame, const DrawList& list);
+    void draw_overlay_items(const Frame& frame, const DrawList& list, bool native);
     /// Draws the layered items over the picture, before and behind each other and the overlays; whether
     /// there were any.
     bool draw_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
@@ -103,7 +103,7 @@ class Pipeline {
     /// What is around lit surfaces, natively: what the ground shows of itself, and the environment.
     void shade_surroundings(const Frame& frame, const FrameContents& contents, bool environment);
     /// Empties the overlay, and draws the surfaces that are shown past light.
-    void begin_overlay(const Frame& frame, const PixelRect& area, bool native);
+    void begin_overlay(const Frame& frame, const FrameContents& contents, bool native);
     /// The first pass after the lighting that only the driver can do; empty where there is none.
     std::string first_by_driver(const DrawList& list, const FrameContents& contents) const;
     bool draws_overlay(const Shot& shot, const FrameContents& contents) const;

@@ -208,8 +208,8 @@ void Renderer::draw_exact() {
         if (!output_.is_finished_natively()) pipeline_.targets().upload(pipeline_.transfers());
     }
     if (!has_layers)
-        lit.overlay = pipeline_.draw_overlay(frame, picture.list, picture.contents,
-                                             output_.is_finished_natively());
+        lit.overlay =
+            pipeline_.draw_overlay(frame, picture.list, picture.contents, output_.is_finished_natively());
     output_.write_exact(frame, lit, pipeline_.targets(), has_layers);
 }
 

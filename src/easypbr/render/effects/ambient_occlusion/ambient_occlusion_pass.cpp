@@ -116,7 +116,7 @@ void AmbientOcclusionPass::shade(const Frame& frame, GBuffer& targets, bool with
     const auto shade_to = [&](ScreenShader& shader, const Target& to, const PixelRect& pixels,
                               const Target* visibility = nullptr, Vec2 axis = {0, 0}) {
         to.write(pixels);
-        const bool of_half = plan.half && (&to == &sampled_ || &to == &blurred_);
+        const bool of_half = plan.half && &to != &targets.ambient_occlusion && &to != &surface_;
         const ShaderInputs inputs = inputs_of(frame, targets, plan.defines, visibility, axis);
         shader.shade(inputs,
                      {.target = &to,
@@ -127,7 +127,11 @@ void AmbientOcclusionPass::shade(const Frame& frame, GBuffer& targets, bool with
     };
     if (with_points) {
         make_normals(frame.size);
-        shade_to(estimating_, normal_, held);
+        normal_.write(held);
+        estimating_.shade(
+            surface_inputs(frame, targets, plan.defines),
+            {.target = &normal_, .area = held, .where = native::Where::covered, .depth = &targets.depth},
+            transfers);
         estimated_ = true;
     }
     if (!plan.smooth) return shade_to(*plan.sampling, targets.ambient_occlusion, held);
@@ -157,23 +161,29 @@ double AmbientOcclusionPass::reach(const Frame& whole, const Box3d& bounds) {
     return std::ceil(ssao.radius * whole.clip_from_view(1, 1) * whole.picture_size.y() / 2 / depth);
 }
 
+ShaderInputs AmbientOcclusionPass::surface_inputs(const Frame& frame, const GBuffer& targets,
+                                                  const std::vector<std::string>& defines) const {
+    ShaderInputs values;
+    values.define(defines);
+    set_camera_uniforms(values, frame);
+    values.set("u_radius", frame.resolved->settings.ssao.radius);
+    values.set("u_depth_target", targets.depth);
+    values.set("u_normal", estimated_ ? normal_ : targets.normal);
+    values.set("u_material", targets.material);
+    return values;
+}
+
 ShaderInputs AmbientOcclusionPass::inputs_of(const Frame& frame, const GBuffer& targets,
                                              const std::vector<std::string>& defines,
                                              const Target* visibility, Vec2 axis) const {
     const auto& ssao = frame.resolved->settings.ssao;
-    ShaderInputs values;
-    values.define(defines);
-    set_camera_uniforms(values, frame);
-    values.set("u_radius", ssao.radius);
+    ShaderInputs values = surface_inputs(frame, targets, defines);
     values.set("u_inverse_falloff", 1 / ssao.falloff);
     values.set("u_power", ssao.power);
     values.set("u_directions", ssao.directions);
     values.set("u_steps", ssao.steps);
     values.set("u_frame", frame.sample_index);
     values.set("u_axis", axis);
-    values.set("u_depth_target", targets.depth);
-    values.set("u_normal", estimated_ ? normal_ : targets.normal);
-    values.set("u_material", targets.material);
     if (half_ && surface_) {
         values.set("u_surface", surface_);
         values.set("u_surface_size", Vec2(surface_.size().cast<float>()));

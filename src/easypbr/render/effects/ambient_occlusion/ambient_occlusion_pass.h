@@ -35,6 +35,8 @@ class AmbientOcclusionPass {
     void make_framebuffers();
     void make_normals(Vec2i size);
     void estimate_normals(const Frame& frame, const GBuffer& targets);
+    ShaderInputs surface_inputs(const Frame& frame, const GBuffer& targets,
+                                const std::vector<std::string>& defines) const;
     ShaderInputs inputs_of(const Frame& frame, const GBuffer& targets,
                            const std::vector<std::string>& defines, const Target* visibility,
                            Vec2 axis) const;

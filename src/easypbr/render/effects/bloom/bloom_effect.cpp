@@ -58,8 +58,8 @@ void BloomEffect::make_levels(Vec2i size, int count) {
 void BloomEffect::make_framebuffers() {
     for (const Target& sum : sums_) sum.drawn();
     if (summed_) return;
-    summed_ = gl::Framebuffer({&sums_[0].attachment(), &sums_[1].attachment(), &sums_[2].attachment(),
-                               &sums_[3].attachment()});
+    summed_ = gl::Framebuffer(
+        {&sums_[0].attachment(), &sums_[1].attachment(), &sums_[2].attachment(), &sums_[3].attachment()});
     for (Level& level : levels_)
         for (Picture* picture : {&level.light, &level.glow}) {
             picture->target.attachment().sampling(gl::Filtering::linear);
@@ -99,9 +99,8 @@ void BloomEffect::draw(const EffectInputs& inputs, LitPicture& lit) {
     spread([](ScreenShader& shader, const ShaderInputs& values, Picture& to, float kept) {
         to.target.drawn();
         to.framebuffer.bind();
-        const gl::Blending mix{.source = gl::Factor::one_minus_constant,
-                               .target = gl::Factor::constant,
-                               .constant = kept};
+        const gl::Blending mix{
+            .source = gl::Factor::one_minus_constant, .target = gl::Factor::constant, .constant = kept};
         shader.draw(values, {.blending = kept > 0 ? mix : gl::replace});
     });
     finish(lit);

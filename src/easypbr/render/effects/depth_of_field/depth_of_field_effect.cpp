@@ -127,8 +127,8 @@ void DepthOfFieldEffect::shade(const EffectInputs& inputs, LitPicture& lit, Tran
     const PixelRect half = light_.whole();
     halve_.shade(halve_inputs(inputs), {.target = &light_, .area = half, .further = {&confusion_}},
                  transfers);
-    gather_.shade(gather_inputs(inputs),
-                  {.target = &behind_, .area = half, .further = {&before_, &hidden_}}, transfers);
+    gather_.shade(gather_inputs(inputs), {.target = &behind_, .area = half, .further = {&before_, &hidden_}},
+                  transfers);
     compose_.shade(compose_inputs(inputs), {.target = &radiance_, .area = radiance_.whole()}, transfers);
     finish(lit);
 }
