@@ -250,6 +250,22 @@ TEST(NativeShading, LoadsNoDriver) {
     }
 }
 
+TEST(NativeShading, LoadsNoDriverForMotionBlur) {
+    Mesh mesh = make_sphere(1, 20);
+    Scene scene;
+    scene.show(mesh, "ball");
+    app::Session session(scene);
+    session.use_device(DrawDevice::cpu);
+    session.settings().image.size = Vec2i(48, 32);
+    session.settings().image.samples = 4;
+    session.settings().motion_blur.enabled = true;
+    const Image still = session.render();
+    mesh.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0.3, 0, 0)));
+    const Image moving = session.render();
+    EXPECT_GT(difference(still, moving).by_more, 50u);
+    EXPECT_TRUE(session.context_info().version.empty());
+}
+
 TEST(NativeShading, DevicesAreChosenBeforeTheFirstPicture) {
     app::Session session;
     session.use_device(DrawDevice::cpu);

@@ -20,6 +20,12 @@ ShadowMaps::Receivers receivers_of(const DrawList& list, const FrameContents& co
     return beyond ? ShadowMaps::Receivers::anywhere : ShadowMaps::Receivers::within;
 }
 
+/// What a frame of native surfaces needs the driver for where it is not lit natively.
+std::string lit_by_driver(const DrawList& list, bool native_shading) {
+    if (!native_shading) return "lighting";
+    return list.extensions() ? "materials" : "shadows";
+}
+
 RayGround ray_ground(const ResolvedSettings& resolved) {
     const auto& ground = resolved.settings.ground;
     return {.up = parse_up(resolved.settings.camera.up),
@@ -68,7 +74,8 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
     const bool native = is_lit_natively(list);
     shadow_maps_.keep_in_host_memory(native);
-    if (!native) targets_.upload(transfers_);
+    const std::string pass = native ? first_by_driver(list, contents) : lit_by_driver(list, native_shading_);
+    if (!native && targets_.depth.is_ahead()) timer_.run(pass, [&] { targets_.upload(transfers_); });
     if (contents.ground)
         timer_.run("ground", [&] { native ? ground_.shade(seen, targets_) : ground_.draw(seen, targets_); });
     if (resolved.settings.ssao.enabled && !contents.traced) occlude(seen, native, with_overlay);
@@ -78,12 +85,10 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     const bool shows_environment =
         !resolved.environment.empty() && resolved.settings.background.shows_environment();
     if (native) shade_surroundings(seen, contents, shows_environment);
-    const std::string pass = first_by_driver(list, contents);
-    const bool wholly_native = native && pass.empty();
-    if (native && !wholly_native) timer_.run(pass, [&] { targets_.upload(transfers_); });
+    if (native && !pass.empty()) timer_.run(pass, [&] { targets_.upload(transfers_); });
     if (!native && contents.ground) timer_.run("ground", [&] { ground_.finish(seen, targets_, bounds); });
-    if (with_overlay) timer_.run("display", [&] { begin_overlay(seen, contents, wholly_native); });
-    if (!has_layers) timer_.run("overlays", [&] { draw_overlay_items(seen, list, wholly_native); });
+    if (with_overlay) timer_.run("display", [&] { begin_overlay(seen, contents, pass.empty()); });
+    if (!has_layers) timer_.run("overlays", [&] { draw_overlay_items(seen, list, pass.empty()); });
     if (!native && shows_environment)
         timer_.run("background", [&] { background_.draw(seen, targets_, environment_, contents.ground); });
 
@@ -95,7 +100,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         lit.partly_covered |=
             timer_.run("transparency", [&] { return draw_transparent(frame, list, contents, with_overlay); });
     if (contents.custom) contents.custom->draw_in_frame(frame, targets_, timer_, lit);
-    if (!contents.layers) draw_effects(frame, opaque, {.native = wholly_native}, lit);
+    if (!contents.layers) draw_effects(frame, opaque, {.native = pass.empty()}, lit);
     return lit;
 }
 
