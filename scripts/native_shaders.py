@@ -13,6 +13,7 @@ Types, functions and samplers are those of src/easypbr/native/simd. Macros are w
   use ?: there, any_lane() for the conditions of loops.
 - if (c) discard: the pixels for which c holds are written no more.
 - swizzles: member functions. Literals: floats.
+- outputs: members, and outputs() lists them by location as four channels each.
 """
 
 import argparse
@@ -28,6 +29,7 @@ ASSIGNMENTS = {"=", "+=", "-=", "*=", "/=", "&=", "|=", "^=", "<<=", ">>="}
 CLOSING = {"(": ")", "[": "]", "{": "}"}
 COMPONENTS = {"r": "x", "g": "y", "b": "z", "a": "w"}
 TYPES = {"float": "vfloat", "uint": "vuint", "bool": "vbool"}
+INTERPOLATIONS = {"flat", "smooth", "noperspective"}
 UNIFORM_TYPES = {"float": "float", "int": "int", "bool": "bool", "mat3": "mat3",
                  "vec2": "uni::vec2", "vec3": "uni::vec3", "vec4": "uni::vec4"}  # fmt: skip
 
@@ -272,6 +274,7 @@ class Shader:
         self.uniform_structs: list[str] = []
         self.members: list[str] = []
         self.streams: list[tuple[str, str, bool]] = []  # type, name, whether it is written
+        self.outputs: dict[int, str] = {}  # by location
         self.functions: list[tuple[str, set[str], str]] = []  # name, what it names, text
         tree = tree_of(tokens_of(text.read(name)))
         self.features = text.features
@@ -291,8 +294,13 @@ class Shader:
             raise ShaderError(f"{name}: a declaration without its end")
 
     def declaration(self, items: list, structs: dict, translator: Translator) -> None:
+        location = 0
         if items[0] == "layout":
+            words = items[1][1]
+            location = int(words[words.index("location") + 2]) if "location" in words else 0
             items = items[2:]
+        if items[0] in INTERPOLATIONS:
+            items = items[1:]
         if items[0] == "struct":
             structs[items[1]] = items[2][1]
             self.members.append(f"struct {items[1]} {translator.block(items[2][1])};")
@@ -307,7 +315,10 @@ class Shader:
         elif items[0] == "uniform":
             self.uniforms.append((items[1], items[2], items[3][1][0] if is_group(items[3], "[") else ""))
         elif items[0] in ("in", "out"):
-            self.members.append(f"{TYPES.get(items[1], items[1])} {items[2]};")
+            names = [item for item in items[2:-1] if item != ","]
+            self.members.append(f"{TYPES.get(items[1], items[1])} {', '.join(names)};")
+            if items[0] == "out":
+                self.outputs[location] = items[2]
             self.streams.append((items[1], items[2], items[0] == "out"))
         elif items[0] == "const":
             self.members.append("static constexpr " + UNIFORM_TYPES[items[1]] + " " + self.constant(items[2:-1], translator) + ";")
@@ -326,8 +337,22 @@ class Shader:
                 return [text for name, _, text in self.functions if name in needed]
             needed = more
 
+    def output_list(self) -> str:
+        """The members that are outputs, for whoever writes the pixels; integers are none of them."""
+        channels = ", ".join(f"channels_of({name})" for _, name in sorted(self.outputs.items()))
+        count = len(self.outputs)
+        return (
+            f"static constexpr int output_count = {count}; "
+            f"INLINE void outputs(vec4 (&pixel)[{count}]) const {{ const vec4 all[] = {{{channels}}}; "
+            f"for (int i = 0; i < {count}; ++i) pixel[i] = all[i]; }}"
+        )
+
     @staticmethod
     def constant(items: list, translator: Translator) -> str:
+        """`ring[2] = vec2[](...)` too: a list of values."""
+        if len(items) > 5 and is_group(items[1], "[") and is_group(items[4], "["):
+            name, size, values = items[0], translator.group(items[1]), translator.group(items[5])
+            return re.sub(r"\bvec([234])\b", r"uni::vec\1", f"{name}{size} = {{{values[1:-1]}}}")
         return re.sub(r"\bvec([234])\b", r"uni::vec\1", translator.plain(items))
 
     @staticmethod
@@ -384,7 +409,7 @@ def translate(
     text = Text(folder, macros, without)
     shader = Shader(text, f"{name}.frag")
     kinds = [
-        (f"samplers::{uniform}" if kind.startswith("sampler") else UNIFORM_TYPES.get(kind, kind), uniform, size)
+        (f"samplers::{uniform}" if kind.startswith(("sampler", "usampler")) else UNIFORM_TYPES.get(kind, kind), uniform, size)
         for kind, uniform, size in shader.uniforms
     ]
     declared = [f"{kind} {uniform}{f'[{size}]' if size else ''} = {{}};" for kind, uniform, size in kinds]
@@ -394,7 +419,8 @@ def translate(
     uniforms = [f"struct {name}_uniforms {{", *shader.uniform_structs, *declared]
     uniforms += ["template <class Visitor>", "void visit(Visitor&& visit) {", *visits, "}", "};"]
     stream, moves = stream_of(name, shader) if is_stream else ("", [])
-    body = [f"struct {name} : {name}_uniforms, Fragment {{", *shader.members, *shader.called(), *moves, "};"]
+    body = [f"struct {name} : {name}_uniforms, Fragment {{", *shader.members, *shader.called(), *moves]
+    body += [shader.output_list(), "};"] if shader.outputs and not is_stream else ["};"]
     return "\n".join(uniforms), "\n".join(body), stream
 
 

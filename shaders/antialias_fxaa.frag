@@ -7,6 +7,7 @@
 uniform sampler2D u_color;  // sRGB-encoded, linear filtering
 uniform vec2 u_size;
 uniform sampler2D u_material;
+uniform sampler2D u_depth_target;
 
 layout(location = 0) out vec4 o_color;
 
@@ -21,8 +22,9 @@ float luma_of(vec4 c) { return dot(c.rgb, luma_weights) * c.a; }
 vec4 premultiplied(vec4 c) { return vec4(c.rgb * c.a, c.a); }
 
 bool touches_exact(vec2 uv) {
-    vec4 kinds = textureGather(u_material, uv, 3);
-    return is_exact(kinds.x) || is_exact(kinds.y) || is_exact(kinds.z) || is_exact(kinds.w);
+    vec4 kinds = textureGather(u_material, uv, 3), depths = textureGather(u_depth_target, uv, 0);
+    return (is_exact(kinds.x) && depths.x > 0.0) || (is_exact(kinds.y) && depths.y > 0.0) ||
+           (is_exact(kinds.z) && depths.z > 0.0) || (is_exact(kinds.w) && depths.w > 0.0);
 }
 
 /// What is blurred: the pixel itself in place of a table's colours, which nothing may mix with.

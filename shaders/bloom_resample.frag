@@ -3,16 +3,16 @@
 #feature DOWN is_downwards
 #feature UP is_upwards
 
-uniform sampler2D u_source;
-uniform vec2 u_source_size;  // of the texture, texels
-uniform vec2 u_extent;       // of the picture, texels of the source
+uniform sampler2D u_level;
+uniform vec2 u_level_size;  // of the level that is read, texels
+uniform vec2 u_extent;       // of the picture, texels of that level
 
 layout(location = 0) out vec4 o_light;
 
 vec3 light_at(vec2 texel) {
     texel = abs(texel);
     texel = clamp(u_extent - abs(u_extent - texel), vec2(0.0), u_extent);
-    return textureLod(u_source, texel / u_source_size, 0.0).rgb;
+    return textureLod(u_level, texel / u_level_size, 0.0).rgb;
 }
 
 // 13 taps between texels: boxes of 4 x 4, one of 1/2 in the middle, four of 1/8 around it.

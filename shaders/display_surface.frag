@@ -1,4 +1,5 @@
 // Surfaces whose colour is shown as it is, into the overlay; those of points without normals shaded by eye-dome lighting.
+#include "common_lanes.glsl"
 #include "common_surface_kind.glsl"
 
 #feature AMBIENT_OCCLUSION has_ambient_occlusion
@@ -19,9 +20,11 @@ void main() {
     float code = textureLod(u_material, uv, 0.0).w;
     if (!is_display(code)) discard;
     vec3 color = textureLod(u_albedo, uv, 0.0).rgb;
-    if (is_eye_dome(code)) {
-        color *= eye_dome(uv, textureLod(u_depth_target, uv, 0.0).r);
-        if (has_ambient_occlusion) color *= textureLod(u_ambient_occlusion, uv, 0.0).r;
+    bool shaded = is_eye_dome(code);
+    if (any_lane(shaded)) {
+        float light = eye_dome(uv, textureLod(u_depth_target, uv, 0.0).r);
+        if (has_ambient_occlusion) light *= textureLod(u_ambient_occlusion, uv, 0.0).r;
+        color *= shaded ? light : 1.0;
     }
     o_color = vec4(color, 1.0);
 }

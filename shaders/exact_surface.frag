@@ -9,6 +9,7 @@
 
 uniform sampler2D u_albedo;
 uniform sampler2D u_material;
+uniform sampler2D u_depth_target;
 uniform vec2 u_size;
 uniform sampler2D u_overlay;  // linear display light, premultiplied: lines; with layers: the colours and all over them
 uniform sampler2D u_radiance;
@@ -20,13 +21,15 @@ layout(location = 0) out vec4 o_color;
 vec3 under_layers(vec3 color, vec4 over, vec2 uv) {
     vec4 light = displayed(textureLod(u_radiance, uv, 0.0), u_exposure);
     // The overlay holds halves: where nothing came over the colour, the colour itself is finer.
-    bool same = all(lessThanEqual(abs(over.rgb - color), color / 1024.0 + 1e-7));
+    vec3 apart = abs(over.rgb - color) - color / 1024.0;
+    bool same = max(apart.r, max(apart.g, apart.b)) <= 1e-7;
     return !same || light.a > 0.0 ? light.rgb * (1.0 - over.a) + over.rgb : color;
 }
 
 void main() {
     vec2 uv = gl_FragCoord.xy / u_size;
-    if (!is_exact(textureLod(u_material, uv, 0.0).w)) discard;
+    bool seen = textureLod(u_depth_target, uv, 0.0).r > 0.0 && is_exact(textureLod(u_material, uv, 0.0).w);
+    if (!seen) discard;
     vec3 color = textureLod(u_albedo, uv, 0.0).rgb;
     if (has_overlay) {
         vec4 over = textureLod(u_overlay, uv, 0.0);

@@ -1,17 +1,17 @@
 // Depth of field of a single frame at half resolution: each pixel gathers from those whose circles of confusion reach it
 // (scatter as gather; Jimenez 2014). What is nearer than the pixel hides it by as much of its circle as it covers; the rest
 // is the mean of what is as far away.
-uniform sampler2D u_light;
+uniform sampler2D u_half_light;
 uniform sampler2D u_confusion;
 uniform vec2 u_half_size;
 uniform float u_reach;  // largest radius, pixels of half resolution
+// Places around a pixel: x, y, their distance, and the area that each stands for. They are denser near the centre, where
+// small circles are.
+uniform vec4 u_taps[72];
 
 layout(location = 0) out vec4 o_behind;  // of what is no nearer than the pixel: its mean, with the mean coverage
 layout(location = 1) out vec4 o_before;  // of what is nearer, premultiplied by the part of the pixel that it hides
 layout(location = 2) out float o_hidden;
-
-const int taps = 72;
-const float golden_angle = 2.39996323;
 
 // Part of a circle's light that a place at a distance from its centre gets, with an edge a pixel wide.
 float reaching(float radius, float distance) {
@@ -26,14 +26,12 @@ void main() {
     float own = radius_at(here / u_half_size);
     vec4 behind = vec4(0.0), before = vec4(0.0);
     float behind_weight = 0.0, hidden = 0.0;
-    for (int k = 0; k < taps; ++k) {
-        // Places are denser near the centre, where small circles are; each counts by the area it stands for.
-        float u = (float(k) + 0.5) / float(taps);
-        float distance = (u_reach + 0.5) * pow(u, 0.75), angle = float(k) * golden_angle;
-        float area = 4.71238898 * (u_reach + 0.5) * (u_reach + 0.5) * sqrt(u) / float(taps);
-        vec2 uv = (here + distance * vec2(cos(angle), sin(angle))) / u_half_size;
+    for (int k = 0; k < 72; ++k) {
+        vec4 tap = u_taps[k];
+        float distance = tap.z, area = tap.w;
+        vec2 uv = (here + tap.xy) / u_half_size;
         float radius = radius_at(uv);
-        vec4 light = textureLod(u_light, uv, 0.0);
+        vec4 light = textureLod(u_half_light, uv, 0.0);
         // Nearer than what is here, or before the plane in focus, where the pixel's own surface is one of many that hide
         // what is behind.
         float near = max(step(radius, own - 0.5), step(radius, -0.25));
@@ -48,7 +46,7 @@ void main() {
         behind += far * light;
         behind_weight += far;
     }
-    vec4 light = textureLod(u_light, here / u_half_size, 0.0);
+    vec4 light = textureLod(u_half_light, here / u_half_size, 0.0);
     o_behind = behind_weight > 0.0 ? behind / behind_weight : light;
     o_before = hidden > 1.0 ? before / hidden : before;
     o_hidden = min(hidden, 1.0);

@@ -1,4 +1,5 @@
-// Normals of points that have none, from the depths in a part of the occlusion's radius around them.
+// Normals: of points that have none, from the depths in a part of the occlusion's radius around them; others as they are.
+#include "common_lanes.glsl"
 #include "common_occlusion.glsl"
 #include "common_surface_kind.glsl"
 
@@ -11,16 +12,15 @@ layout(location = 0) out vec2 o_normal;
 vec4 neighbor(Surface s, vec2 offset) {
     vec2 pixel = floor(s.pixel + offset) + 0.5, uv = pixel / u_size;
     float depth = textureLod(u_depth_target, uv, 0.0).r;
-    if (depth <= 0.0 || uv != clamp(uv, 0.0, 1.0)) return vec4(0.0);
     vec3 delta = view_position(pixel, depth) - s.position;
     float far = dot(delta, delta) / (u_radius * u_radius);
-    return vec4(delta, 1.0 / (1.0 + 16.0 * far * far));
+    bool seen = depth > 0.0 && uv == clamp(uv, 0.0, 1.0);
+    return seen ? vec4(delta, 1.0 / (1.0 + 16.0 * far * far)) : vec4(0.0);
 }
 
-void main() {
-    if (!is_eye_dome(textureLod(u_material, gl_FragCoord.xy / u_size, 0.0).w)) discard;
+vec2 estimated_normal(vec2 at) {
     float depth;
-    Surface s = full_surface(gl_FragCoord.xy, depth);
+    Surface s = full_surface(at, depth);
     float reach = min(u_radius / pixel_size(s.position), u_reach);
     vec3 sum = vec3(0.0);
     // Of all triangles with two neighbours side by side: on a plane each has its normal.
@@ -38,5 +38,12 @@ void main() {
     float size = length(sum);
     vec3 normal = size > 0.0 ? sum / size : view;
     normal = dot(normal, view) < 0.0 ? -normal : normal;
-    o_normal = oct_encode(u_world_from_view * normal) * 0.5 + 0.5;
+    return oct_encode(u_world_from_view * normal) * 0.5 + 0.5;
+}
+
+void main() {
+    vec2 uv = gl_FragCoord.xy / u_size;
+    bool estimated = is_eye_dome(textureLod(u_material, uv, 0.0).w);
+    o_normal = textureLod(u_normal, uv, 0.0).rg;
+    if (any_lane(estimated)) o_normal = estimated ? estimated_normal(gl_FragCoord.xy) : o_normal;
 }

@@ -18,7 +18,10 @@ uniform float u_least_cosine;  // of the normals of neighbours that no crease li
 
 layout(location = 0) out vec2 o_edges;
 
-bool is_inside(ivec2 p) { return all(greaterThanEqual(p, ivec2(0))) && all(lessThan(p, ivec2(u_size))); }
+bool is_inside(ivec2 p) {
+    ivec2 size = ivec2(u_size);
+    return p.x >= 0 && p.y >= 0 && p.x < size.x && p.y < size.y;
+}
 
 // Reversed depth of the content; 0 where there is nothing, or the ground.
 float content_depth(ivec2 p) {
@@ -29,21 +32,19 @@ float content_depth(ivec2 p) {
 // How far `there` is from where the surface through `before` and `here` would be, in world units: reversed depth is linear
 // over planes. Infinite without a surface that could go on.
 float step_from(float before, float here, float there) {
-    if (before <= 0.0) return 1e30;
     float expected = 2.0 * here - before;
-    return expected > 0.0 ? abs(axial_distance(expected) - axial_distance(there)) : 1e30;
+    return before > 0.0 && expected > 0.0 ? abs(axial_distance(expected) - axial_distance(there)) : 1e30;
 }
 
 bool is_silhouette(ivec2 p, ivec2 q) {
     float here = content_depth(p), there = content_depth(q);
-    if (here <= 0.0 && there <= 0.0) return false;
-    if (here <= 0.0 || there <= 0.0) return true;
     // A surface that is continued by either side has no step.
-    ivec2 before = 2 * p - q, after = 2 * q - p;
+    ivec2 before = p + p - q, after = q + q - p;
     float forwards = is_inside(before) ? step_from(content_depth(before), here, there) : 1e30,
           backwards = is_inside(after) ? step_from(content_depth(after), there, here) : 1e30;
     float direct = abs(axial_distance(here) - axial_distance(there));
-    return min(direct, min(forwards, backwards)) > u_depth_step;
+    bool both = here > 0.0 && there > 0.0, either = here > 0.0 || there > 0.0;
+    return both ? min(direct, min(forwards, backwards)) > u_depth_step : either;
 }
 
 vec3 normal_at(ivec2 p) { return oct_decode(texelFetch(u_normal, p, 0).rg * 2.0 - 1.0); }
@@ -58,11 +59,10 @@ bool is_crease(ivec2 p, ivec2 q) {
 uint object_at(ivec2 p) { return texelFetch(u_id_depth, p, 0).r > 0.0 ? texelFetch(u_id, p, 0).r : 0u; }
 
 float edge(ivec2 p, ivec2 q) {
-    if (!is_inside(q)) return 0.0;
-    bool found = has_silhouettes && is_silhouette(p, q);
-    if (has_creases && !found) found = is_crease(p, q);
-    if (has_objects && !found) found = object_at(p) != object_at(q);
-    return found ? 1.0 : 0.0;
+    bool silhouette = has_silhouettes ? is_silhouette(p, q) : false;
+    bool crease = has_creases ? is_crease(p, q) : false;
+    bool border = has_objects ? object_at(p) != object_at(q) : false;
+    return is_inside(q) && (silhouette || crease || border) ? 1.0 : 0.0;
 }
 
 void main() {

@@ -1,5 +1,6 @@
 // Lines over the tone-mapped picture, hidden by the surfaces in the G-buffer. After a layer, before a layer: those only
 // that lie before one layer of surfaces that light passes, and behind the next.
+#include "common_lanes.glsl"
 #include "common_encoding.glsl"
 #include "common_camera.glsl"
 
@@ -27,7 +28,7 @@ layout(location = 0) out vec4 o_color;
 
 // How much the surface's distance changes over a pixel, by its plane: a line on it must not be cut by its slope.
 float change_per_pixel(vec2 pixel, float z, vec2 normal) {
-    vec3 n = transpose(u_world_from_view) * oct_decode(normal * 2.0 - 1.0);
+    vec3 n = oct_decode(normal * 2.0 - 1.0) * u_world_from_view;
     vec2 scale = u_unproject.xy * 2.0 / u_size;
     float change = abs(n.x) * scale.x + abs(n.y) * scale.y;
     if (is_orthographic) return change / max(abs(n.z), 0.05);
@@ -36,10 +37,9 @@ float change_per_pixel(vec2 pixel, float z, vec2 normal) {
 }
 
 bool is_behind(float surface, vec2 normal, vec2 pixel, float depth) {
-    if (surface <= 0.0) return false;
     float z = axial_distance(surface);
     float tolerance = change_per_pixel(pixel, z, normal) * (u_half_width + 1.0) + 1e-5 * z;
-    return axial_distance(depth) > z + tolerance;
+    return surface > 0.0 && axial_distance(depth) > z + tolerance;
 }
 
 bool is_hidden(vec2 pixel, float depth) {
@@ -48,28 +48,29 @@ bool is_hidden(vec2 pixel, float depth) {
     return is_behind(textureLod(u_depth_target, uv, 0.0).r, textureLod(u_normal, uv, 0.0).rg, pixel, depth);
 }
 
-// Drawn with another layer, before or after.
-bool is_elsewhere(vec2 pixel, float depth) {
+// Before the layer behind: what is not is drawn with another one.
+bool is_after(vec2 pixel, float depth) {
+    if (!is_after_layer) return true;
     vec2 uv = pixel / u_size;
-    if (is_after_layer) {
-        float last = textureLod(u_last_depth, uv, 0.0).r;
-        if (last <= 0.0 || is_behind(last, textureLod(u_last_normal, uv, 0.0).rg, pixel, depth)) return true;
-    }
-    if (is_before_layer) {
-        float next = textureLod(u_next_depth, uv, 0.0).r;
-        if (next > 0.0 && !is_behind(next, textureLod(u_next_normal, uv, 0.0).rg, pixel, depth)) return true;
-    }
-    return false;
+    float last = textureLod(u_last_depth, uv, 0.0).r;
+    return last > 0.0 && !is_behind(last, textureLod(u_last_normal, uv, 0.0).rg, pixel, depth);
+}
+
+// Behind the layer before.
+bool is_before(vec2 pixel, float depth) {
+    if (!is_before_layer) return true;
+    vec2 uv = pixel / u_size;
+    float next = textureLod(u_next_depth, uv, 0.0).r;
+    return next <= 0.0 || is_behind(next, textureLod(u_next_normal, uv, 0.0).rg, pixel, depth);
 }
 
 // A line is as deep as half its width: what lies no further behind the nearest one is not hidden, so that the
 // segments of a curve do not cut notches into each other.
 bool is_behind_line(vec2 pixel, float depth) {
     float nearest = textureLod(u_nearest_line, pixel / u_size, 0.0).r;
-    if (nearest <= 0.0) return false;
     float z = axial_distance(nearest), thickness = (u_half_width + 1.0) * 2.0 * u_unproject.y / u_size.y;
     if (!is_orthographic) thickness *= z;
-    return axial_distance(depth) > z + thickness;
+    return nearest > 0.0 && axial_distance(depth) > z + thickness;
 }
 
 void main() {
@@ -87,12 +88,16 @@ void main() {
 #ifdef DEPTH_ONLY  // A shader that assigns gl_FragDepth anywhere has no early depth test.
     gl_FragDepth = depth;
 #endif
-    if ((is_depth_only ? coverage < 0.5 : coverage <= 0.0) || is_hidden(gl_FragCoord.xy, depth)) discard;
+    bool covered = is_depth_only ? coverage >= 0.5 : coverage > 0.0;
+    if (!covered) discard;
+    if (is_hidden(gl_FragCoord.xy, depth)) discard;
     if (is_depth_only) {
         o_color = vec4(0.0);
         return;
     }
-    if (is_behind_line(gl_FragCoord.xy, depth) || is_elsewhere(gl_FragCoord.xy, depth)) discard;
+    if (is_behind_line(gl_FragCoord.xy, depth)) discard;
+    bool between = is_after(gl_FragCoord.xy, depth) && is_before(gl_FragCoord.xy, depth);
+    if (!between) discard;
     vec4 color = mix(v_start_color, v_end_color, place);
     float alpha = coverage * color.a;
     o_color = vec4(color.rgb * alpha, alpha);

@@ -135,10 +135,29 @@ def test_without_opengl_the_cpu_draws(without_opengl, easypbr, sphere, box, tmp_
     assert (tmp_path / "without.png").read_bytes() == (tmp_path / "with.png").read_bytes()
 
 
+def test_without_opengl_clouds_colour_bars_effects_and_lines_are_drawn(without_opengl, easypbr, sphere, tmp_path):
+    cloud = tmp_path / "cloud.xyz"
+    cloud.write_text("".join(f"{i % 20} {i // 20} {i % 7}\n" for i in range(400)))
+    effects = [f"{name}.enabled=true" for name in ("bloom", "outline", "depth_of_field")]
+    heights = ["style.color_by=height", "annotation.colorbar=true"]
+    occlusion, lines = ["ssao.enabled=true"], ["style.show_wireframe=true", "style.line_dash=3"]
+    pictures = ([cloud], []), ([cloud], heights), ([cloud], occlusion), ([sphere], effects), ([sphere], lines)
+    for files, settings in pictures:
+        options = ["--size", "64x48", *(word for setting in settings for word in ("--set", setting))]
+        done = without_opengl("render", *files, "-o", tmp_path / "without.png", *options)
+        assert done.returncode == 0, done.stderr
+        easypbr("render", *files, "-o", "with.png", *options)
+        assert (tmp_path / "without.png").read_bytes() == (tmp_path / "with.png").read_bytes()
+
+
 def test_without_opengl_errors_name_the_pass_and_what_to_install(without_opengl, sphere, tmp_path):
-    done = without_opengl("render", sphere, "-o", tmp_path / "out.png", "--set", "bloom.enabled=true")
-    assert done.returncode == 1 and done.stderr.count("\n") == 1
-    assert "bloom: this needs OpenGL" in done.stderr and "Install" in done.stderr
+    glass = ("--set", "material.opacity=0.5")
+    for name, settings in {"shadows": glass, "transparency": (*glass, "--set", "shadows.enabled=false"),
+                           "materials": ("--set", "material.transmission=1"),
+                           "geometry": ("--set", "material.clearcoat=1")}.items():
+        done = without_opengl("render", sphere, "-o", tmp_path / "out.png", *settings)
+        assert done.returncode == 1 and done.stderr.count("\n") == 1
+        assert f"{name}: this needs OpenGL" in done.stderr and "Install" in done.stderr
     assert not (tmp_path / "out.png").exists()
     done = without_opengl("render", sphere, "-o", tmp_path / "out.png", "--device", "gl")
     assert done.returncode == 1 and "libEGL.so.1 is not installed" in done.stderr

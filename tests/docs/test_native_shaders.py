@@ -28,7 +28,7 @@ def shader(folder: Path) -> str:
 def test_the_page_lists_what_is_built() -> None:
     listed = set(re.findall(r"^\| `(\w+)` \| natively", (ROOT / "docs/design/native.md").read_text(), re.MULTILINE))
     cmake = (ROOT / "cmake/native.cmake").read_text()
-    built = " ".join(re.findall(r"set\(native_(?:surface_)?shaders ([\w\s]+)\)", cmake)).split()
+    built = " ".join(re.findall(r"set\(native_(?:surface_|line_)?shaders ([\w\s]+)\)", cmake)).split()
     assert built and listed == set(built)
 
 
@@ -57,6 +57,24 @@ def test_functions_that_nobody_calls_are_left_out(tmp_path: Path) -> None:
     text = "out vec4 o;\nfloat unused() { return 1.0; }\nfloat used() { return 2.0; }\nvoid main() { o = vec4(used()); }\n"
     assert translate(tmp_path, text).returncode == 0
     assert "used()" in shader(tmp_path) and "unused" not in shader(tmp_path)
+
+
+def test_outputs_are_listed_by_location(tmp_path: Path) -> None:
+    text = "layout(location = 1) out float b;\nlayout(location = 0) out vec2 a;\nvoid main() { a = vec2(1.0); b = 2.0; }\n"
+    assert translate(tmp_path, text).returncode == 0
+    assert "output_count = 2" in shader(tmp_path) and "{channels_of(a), channels_of(b)}" in shader(tmp_path)
+
+
+def test_values_that_are_interpolated_are_members(tmp_path: Path) -> None:
+    text = "flat in vec4 a, b;\nnoperspective in vec2 c;\nout vec4 o;\nvoid main() { o = a + b * c.x; }\n"
+    assert translate(tmp_path, text).returncode == 0
+    assert "vec4 a, b;" in shader(tmp_path) and "vec2 c;" in shader(tmp_path)
+
+
+def test_arrays_of_constants_are_plain_values(tmp_path: Path) -> None:
+    text = "const vec2 way[2] = vec2[](vec2(1.0, 0.0), vec2(0.0, -1.0));\nout vec4 o;\nvoid main() { o = vec4(way[1], 0.0, 1.0); }\n"
+    assert translate(tmp_path, text).returncode == 0
+    assert "uni::vec2 way[2] = {uni::vec2 (1.0f, 0.0f), uni::vec2 (0.0f, - 1.0f)};" in shader(tmp_path)
 
 
 @pytest.mark.parametrize("text", ["#pragma once\nvoid main() {}\n", "void main() { x = $; }\n"])

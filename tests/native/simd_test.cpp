@@ -9,6 +9,7 @@
 #include <bit>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <random>
 #include <utility>
 #include <vector>
@@ -36,6 +37,25 @@ TEST(Lanes, ExponentialAndLogarithm) {
     EXPECT_LT(error_of(exp2, std::exp2, -20, 20), 4e-7);
     EXPECT_LT(error_of(log2, std::log2, 1e-6, 1e-3), 1e-6);
     EXPECT_LT(error_of(log2, std::log2, 1e-3, 100), 1e-6);
+}
+
+TEST(Lanes, HalvesAreRoundedAsTheirStandardSays) {
+    const auto half_of = [](float v) { return to_halves(Floats4{v, 0, 0, 0})[0]; };
+    const auto check = [&](float v) {
+        EXPECT_EQ(half_of(v), Eigen::half(v).x) << v;
+        EXPECT_EQ(half_of(-v), Eigen::half(-v).x) << v;
+    };
+    // All halves, and what lies in the middle of two or beside it.
+    const auto value_of = [](uint16_t bits) { return float(Eigen::numext::bit_cast<Eigen::half>(bits)); };
+    for (uint16_t bits = 0; bits < 0x7bff; ++bits) {
+        const float v = value_of(bits), middle = 0.5f * (v + value_of(uint16_t(bits + 1)));
+        check(v);
+        check(middle);
+        check(std::nextafter(middle, 0.0f));
+        check(std::nextafter(middle, 1e30f));
+    }
+    for (const float v : {65519.9f, 65520.0f, 1e9f, std::numeric_limits<float>::infinity(), 1e-40f}) check(v);
+    EXPECT_GT(half_of(std::nanf("")) & 0x7fff, 0x7c00);
 }
 
 TEST(Lanes, Angles) {

@@ -49,7 +49,7 @@ scene = Scene()
 scene.show(shapes.box(), "box")
 view = Viewer((32, 32), {"image": {"samples": 2}}, scene)
 assert view.device == "cpu" and view.render().shape == (32, 32, 4)
-view.settings.bloom.enabled = True
+view.settings.material.opacity = 0.5
 try:
     view.render()
 except easypbr.ContextError as error:
@@ -58,4 +58,4 @@ except easypbr.ContextError as error:
     done = subprocess.run([sys.executable, "-c", program], env=environment_without_opengl, capture_output=True, text=True,
                           timeout=120)
     assert done.returncode == 0, done.stderr
-    assert "bloom: this needs OpenGL" in done.stdout and "Install" in done.stdout
+    assert "shadows: this needs OpenGL" in done.stdout and "Install" in done.stdout

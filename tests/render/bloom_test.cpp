@@ -41,7 +41,8 @@ struct LightField {
     }
 };
 
-class BloomTest : public ::testing::Test {
+/// By the driver, or natively.
+class BloomTest : public ::testing::TestWithParam<bool> {
   protected:
     BloomTest() : context_(gl::Context::create()) {
         resolved_.settings.bloom.enabled = true;
@@ -66,11 +67,12 @@ class BloomTest : public ::testing::Test {
             for (size_t c = 0; c < 4; ++c)
                 radiance.pixels<float>()[4 * i + c] = c < 3 ? light.values[i] : 1.0f;
         render::Transfers transfers;
-        radiance.upload(transfers);
+        if (!GetParam()) radiance.upload(transfers);
         render::BloomEffect bloom;
         render::LitPicture lit{.radiance = &radiance, .covered = frame.covered, .partly_covered = true};
         const render::GBuffer targets;
-        bloom.draw({frame, targets, Box3d(), {}}, lit);
+        const render::EffectInputs inputs{frame, targets, Box3d(), {}};
+        GetParam() ? bloom.shade(inputs, lit, transfers) : bloom.draw(inputs, lit);
         render::OutputPass output(transfers);
         output.begin(size, render::Encoding::scene_linear);
         output.finish(frame, lit, nullptr, nullptr);
@@ -85,7 +87,7 @@ class BloomTest : public ::testing::Test {
 };
 
 // Halves of 16 bits round by 0.05 %; the rest is left for the borders, which give back what they mirror.
-TEST_F(BloomTest, KeepsTheEnergyAtAnySizeAndPlace) {
+TEST_P(BloomTest, KeepsTheEnergyAtAnySizeAndPlace) {
     for (const Vec2i& size : {Vec2i(333, 217), Vec2i(320, 180), Vec2i(1919, 1079), Vec2i(256, 128)})
         for (const Vec2d& part : {Vec2d(0.5, 0.5), Vec2d(0.37, 0.61), Vec2d(0.7, 0.3)})
             for (int levels : {1, 2, 3, 4, 5, 6}) {
@@ -100,7 +102,7 @@ TEST_F(BloomTest, KeepsTheEnergyAtAnySizeAndPlace) {
 
 // Light in the outermost pixels, in pictures smaller than a texel too. Where the border does not lie on the
 // grid of the texels, its mirror image is only as exact as they are.
-TEST_F(BloomTest, NeitherLosesNorMakesMuchLightAtTheBorders) {
+TEST_P(BloomTest, NeitherLosesNorMakesMuchLightAtTheBorders) {
     for (const Vec2i& size : {Vec2i(333, 217), Vec2i(17, 3), Vec2i(1, 1), Vec2i(255, 64)})
         for (const Vec2d& part : {Vec2d(0, 0), Vec2d(0.999, 0), Vec2d(0, 0.999), Vec2d(0.999, 0.999)})
             for (int levels : {1, 3, 6}) {
@@ -111,7 +113,7 @@ TEST_F(BloomTest, NeitherLosesNorMakesMuchLightAtTheBorders) {
             }
 }
 
-TEST_F(BloomTest, LeavesAnEvenPictureAsItIs) {
+TEST_P(BloomTest, LeavesAnEvenPictureAsItIs) {
     for (const Vec2i& size : {Vec2i(333, 217), Vec2i(1, 1), Vec2i(17, 3), Vec2i(64, 64)}) {
         LightField light(size.x(), size.y());
         for (float& v : light.values) v = 0.75f;
@@ -120,7 +122,7 @@ TEST_F(BloomTest, LeavesAnEvenPictureAsItIs) {
 }
 
 // Far enough from the borders that all of the glow is in the picture: 3 levels reach 60 pixels.
-TEST_F(BloomTest, StaysWhereItIs) {
+TEST_P(BloomTest, StaysWhereItIs) {
     for (int shift = 0; shift < 16; ++shift) {
         LightField light(333, 217);
         light.at(160 + shift, 101 + shift / 2) = 1000;
@@ -129,7 +131,7 @@ TEST_F(BloomTest, StaysWhereItIs) {
     }
 }
 
-TEST_F(BloomTest, IsRound) {
+TEST_P(BloomTest, IsRound) {
     LightField light(401, 401);
     light.at(200, 200) = 1e5f;
     const LightField glow = glow_of(light, 4);
@@ -151,7 +153,7 @@ TEST_F(BloomTest, IsRound) {
 // Rings are even, too, wherever the source lies in its texel. They are measured at their radius exactly: the
 // nearest pixels differ by how much the light falls within one, 6 % at the smallest. Nearer than four of the
 // smallest texels their bilinear interpolation shows, by 7 % at 12 pixels.
-TEST_F(BloomTest, HasEvenRings) {
+TEST_P(BloomTest, HasEvenRings) {
     for (const int shift : {0, 1, 2, 3}) {
         LightField light(401, 401);
         light.at(200 + shift, 200 + shift / 2) = 1e5f;
@@ -170,7 +172,7 @@ TEST_F(BloomTest, HasEvenRings) {
     }
 }
 
-TEST_F(BloomTest, DoesNotFlickerWhenASourceMoves) {
+TEST_P(BloomTest, DoesNotFlickerWhenASourceMoves) {
     resolved_.settings.bloom.threshold = 1;
     std::vector<double> sums, peaks;
     for (int step = 0; step < 32; ++step) {
@@ -191,7 +193,7 @@ TEST_F(BloomTest, DoesNotFlickerWhenASourceMoves) {
     for (size_t i = 1; i < peaks.size(); ++i) EXPECT_NEAR(peaks[i], peaks[i - 1], 0.05 * peaks[i]);
 }
 
-TEST_F(BloomTest, ContainsWhatIsNoNumber) {
+TEST_P(BloomTest, ContainsWhatIsNoNumber) {
     const float broken[] = {std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity(),
                             -std::numeric_limits<float>::infinity()};
     LightField light(160, 90);
@@ -204,7 +206,7 @@ TEST_F(BloomTest, ContainsWhatIsNoNumber) {
     }
 }
 
-TEST_F(BloomTest, SuppressesFireflies) {
+TEST_P(BloomTest, SuppressesFireflies) {
     LightField light(160, 90);
     for (float& v : light.values) v = 0.2f;
     light.at(77, 40) = 1e4f;
@@ -220,7 +222,7 @@ TEST_F(BloomTest, SuppressesFireflies) {
 }
 
 // The soft knee: (l - t + k)^2 / 4k within k of the threshold t.
-TEST_F(BloomTest, SpreadsWhatExceedsTheThreshold) {
+TEST_P(BloomTest, SpreadsWhatExceedsTheThreshold) {
     LightField half(64, 64);
     for (int y = 0; y < 64; ++y)
         for (int x = 0; x < 32; ++x) half.at(x, y) = 1;
@@ -243,6 +245,9 @@ TEST_F(BloomTest, SpreadsWhatExceedsTheThreshold) {
         EXPECT_NEAR(glow.sum(), light.sum(), 0.01 * light.sum());
     }
 }
+
+INSTANTIATE_TEST_SUITE_P(Devices, BloomTest, ::testing::Bool(),
+                         [](const auto& tested) { return tested.param ? "natively" : "by_driver"; });
 
 TEST(Bloom, HoldsTheFurnaceAndAddsNothingToLayers) {
     Material white;

@@ -80,6 +80,31 @@ TEST(Colors, OfLabelsLeaveTheBackgroundAlone) {
     }
 }
 
+// What a picture before held where now there is nothing is not drawn again.
+TEST(Colors, OfLabelsLeaveNoTraceWhereTheyWere) {
+    Mesh mesh = facing_square(0.5f);
+    mesh.edit([](MeshData& d) {
+        d.L = Array1i(Array1i::Dense::Constant(d.F.rows(), 1));
+        d.style.lit = false;
+    });
+    Scene scene;
+    scene.show(mesh, "square");
+    for (const bool native : {true, false}) {
+        app::Session session = plain_session(scene, 64);
+        session.allow_native_geometry(native);
+        session.allow_native_shading(native);
+        const auto alpha_at = [&](double x, int column) {
+            session.settings().camera.position = Vec3d(x, 0, 8);
+            session.settings().camera.target = Vec3d(x, 0, 0);
+            const Image picture = session.render({std::nullopt, 1, app::Encoding::srgb8});
+            return int(picture.at<uint8_t>(column, 32)[3]);
+        };
+        EXPECT_EQ(alpha_at(1, 17), 255);
+        EXPECT_EQ(alpha_at(-1, 17), 0) << native;
+        EXPECT_EQ(alpha_at(-1, 46), 255);
+    }
+}
+
 // Unlit scalars on a coarse mesh: the value is interpolated, then mapped, so that a pixel shows the colour of
 // its own value.
 TEST(Colors, OfValuesAreThoseOfTheTable) {

@@ -105,12 +105,31 @@ TEST(Transfers, ANativeFrameStaysInHostMemory) {
     }
 }
 
-// Bloom is drawn by the driver.
+TEST(Transfers, OverlaysAndEffectsStayInHostMemory) {
+    Settings settings;
+    settings.bloom.enabled = settings.outline.enabled = settings.depth_of_field.enabled = true;
+    settings.style.show_wireframe = true;
+    MeshData cloud;
+    cloud.V = make_teapot(1, 20).V();
+    for (const Scene& scene : {scene_of(make_teapot(1, 20)), scene_of(Mesh(cloud))}) {
+        const auto transfers = transfers_of(scene, settings);
+        if (!transfers) GTEST_SKIP() << "this machine has a GPU: nothing is drawn natively";
+        EXPECT_EQ(*transfers, Transfers());
+    }
+}
+
+// Layers are drawn by the driver.
 TEST(Transfers, SurfacesAreUploadedOnceForPassesOfTheDriver) {
     Settings settings;
-    settings.bloom.enabled = true;
     settings.ssao.enabled = false;
-    const auto transfers = transfers_of(scene_of(make_teapot(1, 20)), settings);
+    Scene scene = scene_of(make_teapot(1, 20));
+    Material glass;
+    glass.opacity = 0.5f;
+    glass.alpha_mode = AlphaMode::blend;
+    Mesh pane = make_sphere(1.5f, 20);
+    pane.set_material(glass);
+    scene.show(pane, "pane");
+    const auto transfers = transfers_of(scene, settings);
     if (!transfers) GTEST_SKIP() << "this machine has a GPU: nothing is drawn natively";
     EXPECT_EQ(transfers->uploads, gbuffer_uploads + 1);  // and the light
     EXPECT_EQ(transfers->downloads, 0);

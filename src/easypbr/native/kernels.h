@@ -21,14 +21,12 @@ enum class Store {
     add_light,  ///< colours are added, alpha stays
     add,        ///< all channels are added
     multiply,   ///< all channels are multiplied
-    under       ///< what the pixel holds is premultiplied, and lies over what is written
+    under,      ///< what the pixel holds is premultiplied, and lies over what is written
+    over,       ///< what is written is premultiplied, and lies over what the pixel holds
+    mix         ///< between what is written and, by Region::kept, what the pixel holds
 };
-enum class Pixels {
-    rgba8,   ///< rounded to 8 bits
-    rgba16,  ///< rounded to 16 bits
-    rgba32f,
-    r16  ///< rounded to 16 bits
-};
+/// Of a format with 8 or 16 bits a channel values are rounded; only floats can be blended.
+enum class Pixels { rgba8, rgba16, rgba16f, rgba32f, rg8, rg16, r16, r16f, r32f };
 /// The pixels that are shaded.
 enum class Where {
     everywhere,
@@ -36,12 +34,19 @@ enum class Where {
     empty     ///< where it is 0
 };
 
+/// Pixels of one output of a shader, row by row.
+struct Output {
+    std::byte* data = nullptr;  ///< null: this output is not written
+    Pixels pixels = Pixels::rgba32f;
+};
+inline constexpr int most_outputs = 4;
+
 /// Pixels that are written, and which of them.
 struct Region {
-    std::byte* data = nullptr;  ///< row by row
-    Pixels pixels = Pixels::rgba32f;
-    int x = 0, y = 0, width = 0;  ///< first pixel that the data holds, and of how many columns
+    Output outputs[most_outputs];  ///< by the location of the shader's outputs; all hold the same rectangle
+    int x = 0, y = 0, width = 0;   ///< first pixel that they hold, and of how many columns
     Store store = Store::replace;
+    float kept = 0;  ///< for Store::mix
     Where where = Where::everywhere;
     R32f depth = {};
     int depth_channels = 1;  ///< of the pixels of `depth`, which is the first
@@ -127,6 +132,19 @@ enum class Stream {
 #undef EASYPBR_NAME
 };
 
+/// A line segment on the screen, in pixels; row 0 is the top.
+struct ScreenLine {
+    float start[2] = {}, along[2] = {1, 0};  ///< unit direction
+    float length = 0;
+    float depths[2] = {};                          ///< reversed, of its ends
+    float start_color[4] = {}, end_color[4] = {};  ///< linear r g b a
+};
+
+/// Draws lines by overlay_lines over rows [y0, y1) of a region, `chosen` of them, in this order. With
+/// is_depth_only the region is of r32f, and keeps the nearest depth.
+using DrawLines = void (*)(const void* uniforms, const Region& region, const ScreenLine* lines,
+                           const uint32_t* chosen, int count, int y0, int y1);
+
 /// Shaders of pictures: those of cmake/native.cmake.
 enum class Shader {
 #define EASYPBR_NAME(name) name,
@@ -143,6 +161,7 @@ struct Kernels {
     ResolveTriangles resolve_triangles;
     AlphaOfTriangles alpha_of_triangles;
     ShadeHits shade_hits;
+    DrawLines draw_lines;
     ShadeRows shade[shader_count];     ///< by Shader
     ShadeStream stream[stream_count];  ///< by Stream
 };

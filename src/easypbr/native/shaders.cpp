@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <numeric>
 #include <type_traits>
 
 #include "easypbr/core/error.h"
@@ -157,6 +159,32 @@ std::shared_ptr<const void> filled(const Inputs& inputs) {
     return uniforms;
 }
 
+/// Lines by the bands of rows that they may touch.
+struct Bands {
+    static constexpr int rows = 16;
+    std::vector<uint32_t> first;   ///< of each band's lines, and past the last
+    std::vector<uint32_t> chosen;  ///< lines, in their order
+
+    Bands(std::span<const ScreenLine> lines, float reach, int y0, int y1) {
+        const int count = (y1 - y0 + rows - 1) / rows;
+        const auto each_band = [&](const ScreenLine& line, const auto& visit) {
+            const float a = line.start[1], b = a + line.along[1] * line.length;
+            const auto band = [&](float y) {
+                return int(std::floor((std::clamp(y, float(y0) - 1, float(y1) + 1) - float(y0)) / rows));
+            };
+            const int last = std::min(band(std::max(a, b) + reach), count - 1);
+            for (int i = std::max(band(std::min(a, b) - reach), 0); i <= last; ++i) visit(size_t(i));
+        };
+        first.assign(size_t(count) + 1, 0);
+        for (const ScreenLine& line : lines) each_band(line, [&](size_t band) { ++first[band + 1]; });
+        std::partial_sum(first.begin(), first.end(), first.begin());
+        chosen.resize(first.back());
+        std::vector<uint32_t> next(first.begin(), first.end() - 1);
+        for (size_t i = 0; i < lines.size(); ++i)
+            each_band(lines[i], [&](size_t band) { chosen[next[band]++] = uint32_t(i); });
+    }
+};
+
 }  // namespace
 
 std::vector<std::string_view> instruction_sets() {
@@ -207,6 +235,19 @@ std::shared_ptr<const void> stream_uniforms(Stream shader, const Inputs& inputs)
     }
 EASYPBR_STREAMS(EASYPBR_RUN)
 #undef EASYPBR_RUN
+
+void draw_lines(const Inputs& inputs, const Region& region, std::span<const ScreenLine> lines, int y1) {
+    overlay_lines_uniforms uniforms;
+    uniforms.visit(Setter(inputs));
+    const Bands bands(lines, uniforms.u_half_width + 1, region.y, y1);
+    const DrawLines kernel = chosen_set().kernels->draw_lines;
+    parallel_for(bands.first.size() - 1, 1, [&](size_t band) {
+        const uint32_t begin = bands.first[band], count = bands.first[band + 1] - begin;
+        const int top = region.y + int(band) * Bands::rows;
+        kernel(&uniforms, region, lines.data(), bands.chosen.data() + begin, int(count), top,
+               std::min(top + Bands::rows, y1));
+    });
+}
 
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1) {
     const Kernels& k = *chosen_set().kernels;

@@ -61,6 +61,10 @@ std::shared_ptr<const void> stream_uniforms(Stream shader, const Inputs& inputs)
 EASYPBR_STREAMS(EASYPBR_RUN)
 #undef EASYPBR_RUN
 
+/// Draws lines by overlay_lines over a region, which holds rows up to y1, in their order; on all cores.
+/// Throws Error when a value is not of the uniform's type, Interrupted.
+void draw_lines(const Inputs& inputs, const Region& region, std::span<const ScreenLine> lines, int y1);
+
 /// Shades rows [y0, y1) of a region, on all cores. Throws Error when a value is not of the uniform's type,
 /// Interrupted.
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1);

@@ -17,13 +17,16 @@ struct View {
 
 // How a sampler reads: by the format, then by the filter. Nearest unless the name says more.
 struct R32f : View {};
+struct R32ui : View {};
+struct Rg8 : View {};
 struct R16 : View {};
 struct Rg16 : View {};
 struct Rgba8 : View {};
 struct Rgba16 : View {};
 struct Rgba16f : View {};
 struct Rgba32f : View {};
-// Held whole, at least 2x2.
+// Held whole.
+struct R16fLinear : View {};
 struct Rgba8Linear : View {};
 struct Rg16fLinear : View {};
 struct Rgba16fLinear : View {};
@@ -94,6 +97,24 @@ using u_indirect_diffuse = Rgba16f;
 using u_indirect_specular = Rgba16f;
 using u_equirect = Panorama;
 using u_source = Rgba32f;
+using u_level = Rgba16fLinear;
+using u_rise_rise = Rgba32f;
+using u_fall_rise = Rgba32f;
+using u_rise_fall = Rgba32f;
+using u_fall_fall = Rgba32f;
+using u_half_light = Rgba16f;
+using u_confusion = R32f;
+using u_behind = Rgba16fLinear;
+using u_before = Rgba16fLinear;
+using u_hidden = R16fLinear;
+using u_edges = Rg8;
+using u_last_depth = R32f;
+using u_last_normal = Rg16;
+using u_next_depth = R32f;
+using u_next_normal = Rg16;
+using u_nearest_line = R32f;
+using u_id = R32ui;
+using u_id_depth = R32f;
 using u_radiance = Rgba32f;
 using u_overlay = Rgba16f;
 using u_glow = Rgba16fLinear;

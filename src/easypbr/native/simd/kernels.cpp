@@ -19,7 +19,7 @@ INLINE void store_lanes(float* to, size_t at, vfloat value) {
 
 struct Fragment : TextureReader {
     vec4 gl_FragCoord;
-    vfloat gl_FragDepth;  ///< native passes ignore it
+    vfloat gl_FragDepth;  ///< of lines; other native passes ignore it
     vbool gl_FrontFacing;
     vbool written;  ///< false where the pixel was discarded
 };
@@ -52,24 +52,48 @@ INLINE void interleave(const vec4& c, Floats4* pixels) {
 #endif
 }
 
-INLINE void store_float(std::byte* to, const vec4& color, vbool active, bool all_active, Store store) {
+/// What a pixel becomes.
+INLINE Floats4 blended(Floats4 value, Floats4 before, const Region& region) {
+    switch (region.store) {
+        case Store::multiply:
+            return value * before;
+        case Store::under:
+            return before + value * (1.0f - before[3]);
+        case Store::over:
+            return value + before * (1.0f - value[3]);
+        case Store::mix:
+            return value * (1.0f - region.kept) + before * region.kept;
+        case Store::add_light:
+            return Floats4{value[0] + before[0], value[1] + before[1], value[2] + before[2], before[3]};
+        default:
+            return value + before;
+    }
+}
+
+struct FloatPixel {
+    static constexpr size_t bytes = 16;
+    static INLINE Floats4 read(const std::byte* p) { return load<Floats4>(p); }
+    static INLINE void write(std::byte* p, Floats4 value) { std::memcpy(p, &value, bytes); }
+};
+struct HalfPixel {
+    static constexpr size_t bytes = 8;
+    static INLINE Floats4 read(const std::byte* p) { return from_halves(load<Shorts4>(p)); }
+    static INLINE void write(std::byte* p, Floats4 value) {
+        const Shorts4 halves = to_halves(value);
+        std::memcpy(p, &halves, bytes);
+    }
+};
+
+template <class Pixel>
+INLINE void store_blended(std::byte* to, const vec4& color, vbool active, bool all_active,
+                          const Region& region) {
     Floats4 pixels[lanes];
     interleave(color, pixels);
     for (int k = 0; k < lanes; ++k) {
         if (!all_active && !active.v[k]) continue;
-        std::byte* p = to + 16 * k;
-        Floats4 value = pixels[k];
-        if (store != Store::replace) {
-            const auto before = load<Floats4>(p);
-            if (store == Store::multiply)
-                value *= before;
-            else if (store == Store::under)
-                value = before + value * (1.0f - before[3]);
-            else
-                value += before;
-            if (store == Store::add_light) value[3] = before[3];
-        }
-        std::memcpy(p, &value, sizeof value);
+        std::byte* p = to + Pixel::bytes * size_t(k);
+        const bool replaces = region.store == Store::replace;
+        Pixel::write(p, replaces ? pixels[k] : blended(pixels[k], Pixel::read(p), region));
     }
 }
 
@@ -77,17 +101,21 @@ INLINE vint rounded(vfloat c, float most) {
     return to_int(clamp(c, 0.0f, 1.0f) * most + 0.5f);
 }
 
-INLINE void store_bytes(std::byte* to, const vec4& color, vbool active, bool all_active) {
-    const vint bits = rounded(color.x, 255) | rounded(color.y, 255) << 8 | rounded(color.z, 255) << 16 |
-                      rounded(color.w, 255) << 24;
-    if (all_active) {
+/// A value of each lane, in the low bits.
+template <class T>
+INLINE void store_bits(std::byte* to, vint bits, vbool active, bool all_active) {
+    if (sizeof(T) == sizeof(int32_t) && all_active) {
         std::memcpy(to, &bits.v, sizeof bits.v);
         return;
     }
     for (int k = 0; k < lanes; ++k) {
-        const int32_t pixel = bits.v[k];
-        if (active.v[k]) std::memcpy(to + 4 * k, &pixel, sizeof pixel);
+        const T pixel = T(bits.v[k]);
+        if (active.v[k]) std::memcpy(to + sizeof(T) * size_t(k), &pixel, sizeof pixel);
     }
+}
+
+INLINE vint bytes_of(const vec4& c) {
+    return rounded(c.x, 255) | rounded(c.y, 255) << 8 | rounded(c.z, 255) << 16 | rounded(c.w, 255) << 24;
 }
 
 INLINE void store_shorts(std::byte* to, const vec4& color, vbool active) {
@@ -101,25 +129,38 @@ INLINE void store_shorts(std::byte* to, const vec4& color, vbool active) {
     }
 }
 
-INLINE void store_short(std::byte* to, vfloat value, vbool active) {
-    const vint bits = rounded(value, 65535);
+INLINE void store_halves(std::byte* to, vfloat value, vbool active) {
     for (int k = 0; k < lanes; ++k) {
-        const auto pixel = uint16_t(bits.v[k]);
+        const uint16_t pixel = to_halves(Floats4{value.v[k], 0, 0, 0})[0];
         if (active.v[k]) std::memcpy(to + 2 * k, &pixel, sizeof pixel);
     }
 }
 
-INLINE void store_pixels(const Region& region, int x, int y, const vec4& color, vbool active) {
-    const size_t at = size_t(y - region.y) * size_t(region.width) + size_t(x - region.x);
-    const bool all_active = !any_lane(!active);
-    if (region.pixels == Pixels::rgba32f)
-        store_float(region.data + 16 * at, color, active, all_active, region.store);
-    else if (region.pixels == Pixels::rgba8)
-        store_bytes(region.data + 4 * at, color, active, all_active);
-    else if (region.pixels == Pixels::r16)
-        store_short(region.data + 2 * at, color.x, active);
-    else
-        store_shorts(region.data + 8 * at, color, active);
+INLINE void store_pixels(const Output& output, size_t at, const vec4& c, vbool active, const Region& region) {
+    const bool all = !any_lane(!active);
+    std::byte* data = output.data;
+    switch (output.pixels) {
+        case Pixels::rgba32f:
+            return store_blended<FloatPixel>(data + 16 * at, c, active, all, region);
+        case Pixels::rgba16f:
+            return store_blended<HalfPixel>(data + 8 * at, c, active, all, region);
+        case Pixels::rgba8:
+            return store_bits<int32_t>(data + 4 * at, bytes_of(c), active, all);
+        case Pixels::rg8:
+            return store_bits<uint16_t>(data + 2 * at, rounded(c.x, 255) | rounded(c.y, 255) << 8, active,
+                                        all);
+        case Pixels::rg16:
+            return store_bits<int32_t>(data + 4 * at, rounded(c.x, 65535) | rounded(c.y, 65535) << 16, active,
+                                       all);
+        case Pixels::r16:
+            return store_bits<uint16_t>(data + 2 * at, rounded(c.x, 65535), active, all);
+        case Pixels::r32f:
+            return store_bits<int32_t>(data + 4 * at, Ints(c.x.v), active, all);
+        case Pixels::r16f:
+            return store_halves(data + 2 * at, c.x, active);
+        case Pixels::rgba16:
+            return store_shorts(data + 8 * at, c, active);
+    }
 }
 
 INLINE vfloat depth_at(const Region& region, vint x, int y) {
@@ -134,23 +175,25 @@ INLINE vfloat depth_at(const Region& region, vint x, int y) {
 INLINE vbool is_open(const Region& region, vint x, int y) {
     const vint at =
         (vint(y - region.y) * region.width + (clamp(x, region.x0, region.x1 - 1) - region.x)) * 4 + 3;
-    return vfloat(as_float(gather(reinterpret_cast<const int32_t*>(region.data), at).v)) < 1.0f;
+    return vfloat(as_float(gather(reinterpret_cast<const int32_t*>(region.outputs[0].data), at).v)) < 1.0f;
 }
 
+/// Writes the outputs of a shader where `written`; elsewhere nothing, or with `zeros` zeros.
 template <class Shader>
-INLINE vec4 output_of(const Shader& s) {
-    if constexpr (requires { s.o_light; })
-        return s.o_light;
-    else if constexpr (requires { s.o_visibility; })
-        return {s.o_visibility, 0.0f, 0.0f, 1.0f};
-    else if constexpr (requires { s.o_surface; })
-        return s.o_surface;
-    else if constexpr (requires { s.o_radiance; })
-        return s.o_radiance;
-    else if constexpr (requires { s.o_sum; })
-        return s.o_sum;
-    else
-        return s.o_color;
+INLINE void store_outputs(const Shader& s, const Region& region, int x, int y, vbool written, bool any,
+                          const vbool* zeros) {
+    const size_t at = size_t(y - region.y) * size_t(region.width) + size_t(x - region.x);
+    const vec4 nothing(vfloat(0.0f));
+    vec4 pixels[Shader::output_count];
+    if (any) s.outputs(pixels);
+    for (int i = 0; i < Shader::output_count; ++i) {
+        if (!region.outputs[i].data) continue;
+        if (zeros)
+            store_pixels(region.outputs[i], at, any ? select(written, pixels[i], nothing) : nothing, *zeros,
+                         region);
+        else
+            store_pixels(region.outputs[i], at, pixels[i], written, region);
+    }
 }
 
 template <class Shader, class Uniforms>
@@ -175,11 +218,8 @@ __attribute__((flatten)) void shade_rows(const void* uniforms, const Region& reg
                 s.gl_FragCoord = vec4(to_float(column) + 0.5f, float(y) + 0.5f, 0.0f, 1.0f);
                 s.main();
             }
-            const vec4 nothing(vfloat(0.0f));
-            if (zeros)
-                store_pixels(region, x, y, any ? select(s.written, output_of(s), nothing) : nothing, inside);
-            else if (any && any_lane(s.written))
-                store_pixels(region, x, y, output_of(s), s.written);
+            if (zeros || (any && any_lane(s.written)))
+                store_outputs(s, region, x, y, s.written, any, zeros ? &inside : nullptr);
         }
 }
 
@@ -196,6 +236,79 @@ __attribute__((flatten)) void shade_stream(const void* uniforms, const void* str
     }
 }
 
+/// The pixels of a row that a line may cover.
+struct Span {
+    float low, high;
+
+    /// Leaves those where slope * x + value lies between two numbers.
+    INLINE void narrow(float slope, float value, float least, float most) {
+        if (slope < 1e-6f && slope > -1e-6f) {
+            if (value < least || value > most) high = low - 1;
+            return;
+        }
+        const float a = (least - value) / slope, b = (most - value) / slope;
+        low = low > (a < b ? a : b) ? low : (a < b ? a : b);
+        high = high < (a < b ? b : a) ? high : (a < b ? b : a);
+    }
+};
+
+INLINE Span span_of(const ScreenLine& l, float reach, int y, const Region& region) {
+    Span span{float(region.x0), float(region.x1 - 1)};
+    const float dx = 0.5f - l.start[0], dy = float(y) + 0.5f - l.start[1];
+    span.narrow(-l.along[1], dy * l.along[0] - dx * l.along[1], -reach, reach);
+    span.narrow(l.along[0], dx * l.along[0] + dy * l.along[1], -reach, l.length + reach);
+    return span;
+}
+
+INLINE void keep_nearest(const Region& region, int x, int y, vfloat depth, vbool written) {
+    const size_t at = size_t(y - region.y) * size_t(region.width) + size_t(x - region.x);
+    for (int k = 0; k < lanes; ++k) {
+        std::byte* p = region.outputs[0].data + 4 * (at + size_t(k));
+        const float nearest = depth.v[k];
+        if (written.v[k] && nearest > load<float>(p)) std::memcpy(p, &nearest, sizeof nearest);
+    }
+}
+
+INLINE void draw_row(overlay_lines& s, const ScreenLine& l, const Region& region, int y) {
+    const Span span = span_of(l, s.u_half_width + 1.0f, y, region);
+    if (span.high < span.low) return;
+    const int last = int(__builtin_ceilf(span.high));
+    for (int x = int(span.low); x <= last; x += lanes) {
+        const vint column = lane_numbers() + x;
+        s.written = column <= last && column < region.x1;
+        s.gl_FragCoord = vec4(to_float(column) + 0.5f, float(y) + 0.5f, 0.0f, 1.0f);
+        const vfloat dx = s.gl_FragCoord.x - l.start[0], dy = s.gl_FragCoord.y - l.start[1];
+        s.v_place = vec2(dx * l.along[0] + dy * l.along[1], dy * l.along[0] - dx * l.along[1]);
+        s.main();
+        if (!any_lane(s.written)) continue;
+        if (s.is_depth_only)
+            keep_nearest(region, x, y, s.gl_FragDepth, s.written);
+        else
+            store_outputs(s, region, x, y, s.written, true, nullptr);
+    }
+}
+
+__attribute__((flatten)) void draw_lines(const void* uniforms, const Region& region, const ScreenLine* lines,
+                                         const uint32_t* chosen, int count, int y0, int y1) {
+    overlay_lines s;
+    static_cast<overlay_lines_uniforms&>(s) = *static_cast<const overlay_lines_uniforms*>(uniforms);
+    const float reach = s.u_half_width + 1.0f;
+    for (int i = 0; i < count; ++i) {
+        const ScreenLine& l = lines[chosen[i]];
+        const float *a = l.start_color, *b = l.end_color;
+        s.v_length = l.length;
+        s.v_depths = vec2(l.depths[0], l.depths[1]);
+        s.v_start_color = vec4(a[0], a[1], a[2], a[3]);
+        s.v_end_color = vec4(b[0], b[1], b[2], b[3]);
+        const float end = l.start[1] + l.along[1] * l.length;
+        const float top = (l.start[1] < end ? l.start[1] : end) - reach,
+                    bottom = (l.start[1] < end ? end : l.start[1]) + reach;
+        const int first = top > float(y0) ? int(top) : y0,
+                  past = bottom < float(y1 - 1) ? int(bottom) + 1 : y1;
+        for (int y = first; y < past; ++y) draw_row(s, l, region, y);
+    }
+}
+
 }  // namespace
 
 // A constant is local to its file unless it is declared extern.
@@ -205,6 +318,7 @@ extern const Kernels kernels;
 const Kernels kernels{resolve_triangles,
                       alpha_of_triangles,
                       shade_hits,
+                      draw_lines,
                       {EASYPBR_SHADERS(EASYPBR_ROWS)},
                       {EASYPBR_STREAMS(EASYPBR_ARRAYS)}};
 #undef EASYPBR_ARRAYS

@@ -243,6 +243,9 @@ INLINE vfloat max(vfloat a, vfloat b) {
     return a.v > b.v ? a.v : b.v;
 #endif
 }
+INLINE float min(float a, float b) {
+    return a < b ? a : b;
+}
 INLINE vint min(vint a, vint b) {
     return a.v < b.v ? a.v : b.v;
 }
@@ -337,6 +340,9 @@ INLINE vfloat exp2(vfloat x) {
     p = p * f + 0.69314718f;
     p = p * f + 1.0f;
     return p * as_float((__builtin_convertvector(whole.v, Ints) + 127) << 23);
+}
+INLINE vfloat exp(vfloat x) {
+    return exp2(x * 1.44269504f);
 }
 /// Of positive numbers, from the mantissa in [1/sqrt 2, sqrt 2) by the series of artanh. Absolute error below
 /// 1e-6.

@@ -63,6 +63,12 @@ INLINE vec4 planar(const Floats4* pixels) {
 #endif
 }
 
+INLINE uint32_t bits_of(float v) {
+    return load<uint32_t>(&v);
+}
+INLINE float as_scalar(uint32_t bits) {
+    return load<float>(&bits);
+}
 // Halves that are numbers: exact.
 INLINE Floats8 from_halves(Shorts8 h) {
 #if defined(__F16C__)
@@ -72,9 +78,29 @@ INLINE Floats8 from_halves(Shorts8 h) {
     return Floats8((bits & 0x7fff) << 13 | (bits & 0x8000) << 16) * 0x1p112f;
 #endif
 }
+INLINE uint16_t to_half(float v) {
+    const uint32_t bits = bits_of(v), sign = bits >> 16 & 0x8000u;
+    uint32_t size = bits & 0x7fffffffu;
+    if (size > 0x7f800000u) return uint16_t(sign | 0x7e00u | (size >> 13 & 0x3ffu));
+    if (size >= 0x477ff000u) return uint16_t(sign | 0x7c00u);
+    // Adding a half shifts a denormal one's bits to the end of the mantissa, and rounds.
+    if (size < 0x38800000u) return uint16_t(sign | (bits_of(as_scalar(size) + 0.5f) - 0x3f000000u));
+    size += 0xc8000fffu + (size >> 13 & 1u);
+    return uint16_t(sign | size >> 13);
+}
 INLINE Floats4 from_halves(Shorts4 h) {
     const Ints4 bits = __builtin_convertvector(h, Ints4);
     return Floats4((bits & 0x7fff) << 13 | (bits & 0x8000) << 16) * 0x1p112f;
+}
+/// Rounded to the nearest; those beyond the largest half are infinite.
+INLINE Shorts4 to_halves(Floats4 v) {
+#if defined(__F16C__)
+    return __builtin_shufflevector(Shorts8(_mm_cvtps_ph(__m128(v), 0)), Shorts8{}, 0, 1, 2, 3);
+#else
+    Shorts4 halves;
+    for (int i = 0; i < 4; ++i) halves[i] = to_half(v[i]);
+    return halves;
+#endif
 }
 INLINE Floats4 low_half(Floats8 v) {
     return Floats4{v[0], v[1], v[2], v[3]};
@@ -140,6 +166,21 @@ INLINE vec4 fetch(const Rg16& s, vint x, vint y) {
     return {to_float(bits & 0xffff) * (1.0f / 65535.0f), to_float(vuint(bits) >> 16) * (1.0f / 65535.0f),
             0.0f, 1.0f};
 }
+/// Integers have one channel.
+struct upixel {
+    vuint x;
+};
+INLINE upixel texelFetch(const R32ui& s, const ivec2& p, int) {
+    return {vuint(fetch_bits(s, p.x, p.y))};
+}
+INLINE vec4 fetch(const Rg8& s, vint x, vint y) {
+    const Place p = place_of(s, x, y);
+    if (!any_lane(p.inside)) return vec4(0.0f, 0.0f, 0.0f, 1.0f);
+    Ints r;
+    for (int k = 0; k < lanes; ++k) r[k] = load<uint16_t>(s.data + 2 * size_t(p.index.v[k]));
+    const vint bits = select(p.inside, vint(r), vint(0));
+    return {to_float(bits & 255) * (1.0f / 255.0f), to_float(bits >> 8) * (1.0f / 255.0f), 0.0f, 1.0f};
+}
 INLINE vec4 from_bytes(vint bits) {
     constexpr float scale = 1.0f / 255.0f;
     return {to_float(bits & 255) * scale, to_float(bits >> 8 & 255) * scale,
@@ -164,6 +205,18 @@ INLINE vec4 fetch(const Rgba16f& s, vint x, vint y) {
         s, x, y, [&](int i) __attribute__((always_inline)) {
             return from_halves(load<Shorts4>(s.data + 8 * size_t(i)));
         });
+}
+INLINE vec4 fetch(const Rgba16fLinear& s, vint x, vint y) {
+    return fetch(Rgba16f(s), x, y);
+}
+INLINE vec4 fetch(const R16fLinear& s, vint x, vint y) {
+    const Place p = place_of(s, x, y);
+    Floats4 pixels[lanes];
+    for (int k = 0; k < lanes; ++k) {
+        const auto half = load<uint16_t>(s.data + 2 * size_t(p.index.v[k]));
+        pixels[k] = from_halves(Shorts4{half, 0, 0, 0});
+    }
+    return planar(pixels);
 }
 INLINE vec4 fetch(const Rgba32f& s, vint x, vint y) {
     return fetch_pixels(
@@ -225,9 +278,23 @@ INLINE Floats4 bilinear(Floats8 top, Floats8 bottom, float right, float below) {
 INLINE Floats8 from_bytes8(const std::byte* p) {
     return __builtin_convertvector(__builtin_convertvector(load<Bytes8>(p), Ints8), Floats8);
 }
+/// Texel by texel: of any picture.
+template <class Sampler>
+INLINE vec4 linear_by_texels(const Sampler& s, const vec2& uv) {
+    const vfloat x = uv.x * float(s.width) - 0.5f, y = uv.y * float(s.height) - 0.5f;
+    const vfloat left = floor(x), top = floor(y);
+    const vint column = to_int(left), row = to_int(top);
+    const vec4 above = mix(fetch(s, column, row), fetch(s, column + 1, row), x - left),
+               below = mix(fetch(s, column, row + 1), fetch(s, column + 1, row + 1), x - left);
+    return mix(above, below, y - top);
+}
+INLINE vec4 textureLod(const R16fLinear& s, const vec2& uv, float) {
+    return linear_by_texels(s, uv);
+}
 /// `load_pair` loads two pixels side by side.
-template <class Load>
-INLINE vec4 linear(const View& s, const vec2& uv, size_t pixel_bytes, Load&& load_pair) {
+template <class Sampler, class Load>
+INLINE vec4 linear(const Sampler& s, const vec2& uv, size_t pixel_bytes, Load&& load_pair) {
+    if (s.width < 2 || s.height < 2) return linear_by_texels(s, uv);
     const Footprint f = footprint(s.width, s.height, uv);
     const vint at = f.y * s.width + f.x;
     Floats4 pixels[lanes];

@@ -76,6 +76,20 @@ struct vec4 {
     }
 };
 
+/// As a pixel of four channels.
+INLINE vec4 channels_of(const vec4& v) {
+    return v;
+}
+INLINE vec4 channels_of(const vec3& v) {
+    return {v, 1.0f};
+}
+INLINE vec4 channels_of(const vec2& v) {
+    return {v, 0.0f, 1.0f};
+}
+INLINE vec4 channels_of(vfloat v) {
+    return {v, 0.0f, 0.0f, 1.0f};
+}
+
 struct ivec2 {
     vint x, y;
     INLINE ivec2(vint a, vint b) : x(a), y(b) {}
@@ -108,8 +122,20 @@ INLINE ivec2 operator+(const ivec2& a, vint b) {
 INLINE ivec2 operator-(const ivec2& a, vint b) {
     return {a.x - b, a.y - b};
 }
+INLINE ivec2 operator-(vint a, const ivec2& b) {
+    return {a - b.x, a - b.y};
+}
+INLINE ivec2 operator*(vint a, const ivec2& b) {
+    return {a * b.x, a * b.y};
+}
 INLINE ivec2 operator&(const ivec2& a, vint b) {
     return {a.x & b, a.y & b};
+}
+INLINE ivec2 min(const ivec2& a, const ivec2& b) {
+    return {min(a.x, b.x), min(a.y, b.y)};
+}
+INLINE ivec2 max(const ivec2& a, const ivec2& b) {
+    return {max(a.x, b.x), max(a.y, b.y)};
 }
 INLINE ivec2 clamp(const ivec2& v, const ivec2& low, const ivec2& high) {
     return {clamp(v.x, low.x, high.x), clamp(v.y, low.y, high.y)};

@@ -26,7 +26,8 @@ struct EffectInputs {
     const Frame& frame;
     const GBuffer& targets;  ///< of the opaque surfaces
     const Box3d& bounds;     ///< of all content
-    /// The same surfaces in a G-buffer with ids; they are drawn when this is first called.
+    /// The same surfaces in a G-buffer with ids, in the same memory; they are drawn when this is first
+    /// called.
     std::function<const GBuffer&()> with_ids;
 };
 
@@ -44,8 +45,11 @@ class Effect {
     /// How far a pixel of the picture sees beyond itself, in pixels; 0 where the effect is off. `whole` is a
     /// frame of the whole picture: tiles are drawn with a guard band of this width.
     virtual int reach(const Frame& whole, const Box3d& bounds) const = 0;
-    /// Draws on from what the frame shows so far. With the context current.
+    /// Draws on from what the frame shows so far, by the driver: from and to textures. With the context
+    /// current.
     virtual void draw(const EffectInputs& inputs, LitPicture& lit) = 0;
+    /// The same natively: from and to host memory. An overlay that it draws into holds the whole frame.
+    virtual void shade(const EffectInputs& inputs, LitPicture& lit, Transfers& transfers) = 0;
 };
 
 /// All effects on lit frames, in pipeline order. No context is needed to make them.

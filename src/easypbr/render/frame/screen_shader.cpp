@@ -15,11 +15,25 @@ native::Pixels pixels_of(gl::Format format) {
             return native::Pixels::rgba16;
         case gl::Format::rgba32f:
             return native::Pixels::rgba32f;
+        case gl::Format::rgba16f:
+            return native::Pixels::rgba16f;
+        case gl::Format::rg8:
+            return native::Pixels::rg8;
+        case gl::Format::rg16:
+            return native::Pixels::rg16;
         case gl::Format::r16:
             return native::Pixels::r16;
+        case gl::Format::r16f:
+            return native::Pixels::r16f;
+        case gl::Format::r32f:
+            return native::Pixels::r32f;
         default:
             throw Error("native shaders do not write this format");
     }
+}
+
+native::Output output_of(const Target& target) {
+    return {target.pixels<std::byte>().data(), pixels_of(target.format())};
 }
 
 }  // namespace
@@ -95,24 +109,33 @@ void ScreenShader::draw(const ShaderInputs& inputs, const gl::DrawState& state) 
     gl::draw_screen(state);
 }
 
-void ScreenShader::shade(const ShaderInputs& inputs, const NativeOutput& output, Transfers& transfers) {
-    const native::Inputs values = inputs.native(transfers);
+native::Region region_of(const NativeOutput& output, Transfers& transfers) {
     const Target& target = *output.target;
-    native::Region region{.data = target.pixels<std::byte>().data(),
-                          .pixels = pixels_of(target.format()),
+    native::Region region{.outputs = {},
                           .x = target.area().x,
                           .y = target.area().y,
                           .width = target.area().width,
                           .store = output.store,
+                          .kept = output.kept,
                           .where = output.where,
                           .x0 = output.area.x,
                           .x1 = output.area.x + output.area.width};
+    native::Output* next = region.outputs;
+    *next++ = output_of(target);
+    for (const Target* further : output.further)
+        if (further) *next++ = output_of(*further);
     if (output.depth) {
         output.depth->download(output.depth->whole(), transfers);
         static_cast<native::View&>(region.depth) = view_of(*output.depth);
         region.depth_channels = output.depth->format() == gl::Format::rgba32f ? 4 : 1;
     }
-    native::shade(native_.value(), values, region, output.area.y, output.area.y + output.area.height);
+    return region;
+}
+
+void ScreenShader::shade(const ShaderInputs& inputs, const NativeOutput& output, Transfers& transfers) {
+    const native::Inputs values = inputs.native(transfers);
+    native::shade(native_.value(), values, region_of(output, transfers), output.area.y,
+                  output.area.y + output.area.height);
 }
 
 }  // namespace easypbr::render

@@ -1,6 +1,7 @@
 // Shaders that shade each pixel of a picture: by the driver, or natively from and to host memory.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 #include <string>
@@ -63,8 +64,10 @@ struct NativeOutput {
     const Target* target = nullptr;  ///< held in host memory: Target::write() has been called
     PixelRect area = {};             ///< inside of what it holds
     native::Store store = native::Store::replace;
+    float kept = 0;  ///< for Store::mix
     native::Where where = native::Where::everywhere;
     const Target* depth = nullptr;  ///< its first channel, of floats; not needed everywhere
+    std::array<const Target*, native::most_outputs - 1> further = {};  ///< other outputs; they hold the same
 };
 
 class ScreenShader {
@@ -83,6 +86,9 @@ class ScreenShader {
     std::optional<native::Shader> native_;
     std::vector<gl::Buffer> blocks_;  ///< by binding
 };
+
+/// What a native shader writes; the depth is downloaded where it is not in host memory.
+native::Region region_of(const NativeOutput& output, Transfers& transfers);
 
 /// The host memory of a target, for native shaders.
 native::View view_of(const Target& target);

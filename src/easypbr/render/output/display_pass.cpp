@@ -20,11 +20,25 @@ float radius_of(const Frame& frame) {
     return std::max(1.0f, frame.resolved->settings.edl.radius * float(frame.picture_size.y()) / 1080);
 }
 
-void set_eye_dome_uniforms(const gl::Program& program, const Frame& frame) {
+template <class To>
+void set_eye_dome_uniforms(To& to, const Frame& frame) {
     const EdlSettings& eye_dome = frame.resolved->settings.edl;
-    program.set("u_size", Vec2(frame.size.cast<float>()));
-    program.set("u_eye_dome", Vec2(eye_dome.strength, radius_of(frame)));
-    program.set("u_depth_scale", Vec2(float(doublings_per_depth(frame.camera)), 0));
+    to.set("u_size", Vec2(frame.size.cast<float>()));
+    to.set("u_eye_dome", Vec2(eye_dome.strength, radius_of(frame)));
+    to.set("u_depth_scale", Vec2(float(doublings_per_depth(frame.camera)), 0));
+}
+
+ShaderInputs inputs_of(const Frame& frame, const GBuffer& targets) {
+    ShaderInputs values;
+    values.define(camera_defines(frame));
+    set_eye_dome_uniforms(values, frame);
+    values.set("u_albedo", targets.albedo);
+    values.set("u_material", targets.material);
+    values.set("u_depth_target", targets.depth);
+    if (!targets.ambient_occlusion) return values;
+    values.define("AMBIENT_OCCLUSION");
+    values.set("u_ambient_occlusion", targets.ambient_occlusion);
+    return values;
 }
 
 }  // namespace
@@ -38,22 +52,19 @@ void DisplayPass::draw(const Frame& frame, const GBuffer& targets) {
     const float zero[4] = {0, 0, 0, 0};
     targets.display().clear_color(0, zero);
     targets.display().bind();
-    std::vector<std::string> defines = camera_defines(frame);
-    if (targets.ambient_occlusion) defines.emplace_back("AMBIENT_OCCLUSION");
-    const gl::Program& program = programs_.get(defines);
-    program.use();
-    set_eye_dome_uniforms(program, frame);
-    const Target* sources[] = {&targets.albedo, &targets.material, &targets.depth};
-    const char* samplers[] = {"u_albedo", "u_material", "u_depth_target"};
-    for (unsigned unit = 0; unit < 3; ++unit) {
-        sources[unit]->bind(unit);
-        program.set(samplers[unit], int(unit));
-    }
-    if (targets.ambient_occlusion) targets.ambient_occlusion.bind(3);
-    program.set("u_ambient_occlusion", 3);
     gl::DrawState state = screen_state(frame.covered);
     state.depth_test = gl::DepthTest::less;
-    gl::draw_screen(state);
+    surfaces_.draw(inputs_of(frame, targets), state);
+}
+
+void DisplayPass::shade_overlay(const Frame& frame, const GBuffer& targets, const PixelRect& area,
+                                Transfers& transfers) {
+    targets.overlay.write(area);
+    // With zeros where nothing is shown.
+    surfaces_.shade(
+        inputs_of(frame, targets),
+        {.target = &targets.overlay, .area = area, .where = native::Where::covered, .depth = &targets.depth},
+        transfers);
 }
 
 const gl::Texture& DisplayPass::shade(const Frame& frame, const gl::Texture& nearest,

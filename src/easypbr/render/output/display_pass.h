@@ -5,6 +5,7 @@
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/render/frame/programs.h"
+#include "easypbr/render/frame/screen_shader.h"
 
 namespace easypbr::render {
 
@@ -12,6 +13,9 @@ class DisplayPass {
   public:
     /// Clears the overlay and draws into it what the G-buffer holds of such kinds.
     void draw(const Frame& frame, const GBuffer& targets);
+    /// The same natively: the overlay holds `area` in host memory then.
+    void shade_overlay(const Frame& frame, const GBuffer& targets, const PixelRect& area,
+                       Transfers& transfers);
 
     /// The eye-dome lighting of points that light passes, R16: a factor by where the nearest of them are and
     /// where the opaque surfaces (both R32F, reversed depth). Until the next call.
@@ -21,7 +25,7 @@ class DisplayPass {
     static int reach(const Frame& whole);
 
   private:
-    ProgramVariants programs_{"screen_triangle.vert", "display_surface.frag"};
+    ScreenShader surfaces_{"display_surface.frag", native::Shader::display_surface};
     ProgramVariants shades_{"screen_triangle.vert", "eye_dome_layers.frag"};
     gl::Texture shade_;
     gl::Framebuffer shaded_;

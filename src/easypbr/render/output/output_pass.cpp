@@ -159,9 +159,9 @@ void OutputPass::begin(Vec2i size, Encoding encoding) {
     encoding_ = encoding;
 }
 
-bool OutputPass::is_native(const Shot& shot, bool background_image, bool exact) const {
+bool OutputPass::is_native(const Shot& shot, bool background_image) const {
     const bool blurs = shot.sample_count == 1 && shot.resolved->settings.image.antialias == Antialias::fxaa;
-    return !background_image && !exact && (!blurs || encoding_ != Encoding::srgb16);
+    return !background_image && (!blurs || encoding_ != Encoding::srgb16);
 }
 
 const gl::Framebuffer& OutputPass::framebuffer() const {
@@ -260,7 +260,7 @@ void OutputPass::finish(const Frame& frame, const LitPicture& lit_frame, const g
     const LitPicture lit = averages_radiance ? mean_of(frame, lit_frame) : lit_frame;
     const Target* sum = frame.sample_count > 1 && !averages_radiance ? &sum_ : nullptr;
     const Target& source = sum ? *sum : *lit.radiance;
-    if (source.is_ahead() && is_native(frame, background_image, exact)) return finish_natively(frame, lit);
+    if (source.is_ahead() && is_native(frame, background_image)) return finish_natively(frame, lit, exact);
 
     source.upload(transfers_);
     ShaderInputs values = display_inputs(frame, lit, encoding_, sum);
@@ -281,14 +281,14 @@ void OutputPass::finish(const Frame& frame, const LitPicture& lit_frame, const g
     if (is_blurred(frame, encoding_)) blur_edges(frame, lit.covered, exact);
 }
 
-void OutputPass::finish_natively(const Frame& frame, const LitPicture& lit) {
+void OutputPass::finish_natively(const Frame& frame, const LitPicture& lit, const GBuffer* exact) {
     const Target* sum = frame.sample_count > 1 && !frame.averages_radiance ? &sum_ : nullptr;
     const PixelRect area = is_whole(frame, lit) ? frame.whole() : sum ? drawn_ : lit.covered;
     picture_.write(picture_.whole());
     fill_around(picture_, area, background_code(frame, encoding_));
     display_.shade(display_inputs(frame, lit, encoding_, sum), {.target = &picture_, .area = area},
                    transfers_);
-    if (is_blurred(frame, encoding_)) blur_edges_natively(frame, lit.covered);
+    if (is_blurred(frame, encoding_)) blur_edges_natively(frame, lit.covered, exact);
 }
 
 void OutputPass::write_exact(const Frame& frame, const LitPicture& lit, const GBuffer& targets, bool layers) {
@@ -300,13 +300,29 @@ void OutputPass::write_exact(const Frame& frame, const LitPicture& lit, const GB
     values.set("u_size", Vec2(frame.size.cast<float>()));
     values.set("u_albedo", targets.albedo);
     values.set("u_material", targets.material);
+    values.set("u_depth_target", targets.depth);
     if (lit.overlay) values.set("u_overlay", *lit.overlay);
     if (layers) {
         values.set("u_radiance", targets.radiance);
         values.set("u_exposure", exposure_of(frame, encoding_));
     }
+    if (is_finished_natively()) {
+        const PixelRect area = targets.depth.is_ahead() ? targets.depth.area() : frame.whole();
+        return exact_.shade(values, {.target = &picture_, .area = area}, transfers_);
+    }
     framebuffer().bind();
     exact_.draw(values, {});
+}
+
+ShaderInputs OutputPass::edge_inputs(const Frame& frame, const GBuffer* exact) const {
+    ShaderInputs values;
+    values.set("u_size", Vec2(frame.size.cast<float>()));
+    values.set("u_color", aliased_);
+    if (!exact) return values;
+    values.define("EXACT");
+    values.set("u_material", exact->material);
+    values.set("u_depth_target", exact->depth);
+    return values;
 }
 
 void OutputPass::blur_edges(const Frame& frame, const PixelRect& area, const GBuffer* exact) {
@@ -314,19 +330,12 @@ void OutputPass::blur_edges(const Frame& frame, const PixelRect& area, const GBu
     const gl::Texture& aliased = aliased_.drawn();
     aliased_.attachment().sampling(gl::Filtering::linear);
     gl::copy(picture_.texture(), aliased);
-    ShaderInputs values;
-    if (exact) {
-        values.define("EXACT");
-        values.set("u_material", exact->material);
-    }
-    values.set("u_size", Vec2(frame.size.cast<float>()));
-    values.set("u_color", aliased_);
     framebuffer().bind();
     // Edges are where geometry is; the environment behind it is smooth.
-    fxaa_.draw(values, screen_state(area));
+    fxaa_.draw(edge_inputs(frame, exact), screen_state(area));
 }
 
-void OutputPass::blur_edges_natively(const Frame& frame, const PixelRect& area) {
+void OutputPass::blur_edges_natively(const Frame& frame, const PixelRect& area, const GBuffer* exact) {
     if (area.width == 0 || area.height == 0) return;
     // As far as FXAA looks: half its span, and the filter.
     constexpr int reach = 6;
@@ -339,10 +348,7 @@ void OutputPass::blur_edges_natively(const Frame& frame, const PixelRect& area) 
         const size_t at = (size_t(first) + i) * row;
         std::copy_n(from.data() + at, row, to.data() + at);
     });
-    ShaderInputs values;
-    values.set("u_size", Vec2(frame.size.cast<float>()));
-    values.set("u_color", aliased_);
-    fxaa_.shade(values, {.target = &picture_, .area = area}, transfers_);
+    fxaa_.shade(edge_inputs(frame, exact), {.target = &picture_, .area = area}, transfers_);
 }
 
 }  // namespace easypbr::render

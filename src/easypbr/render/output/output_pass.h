@@ -22,7 +22,9 @@ class OutputPass {
     /// Forgets the sum and makes targets for this size and encoding.
     void begin(Vec2i size, Encoding encoding);
     /// Whether frames of a shot can be finished natively: there is nothing but radiance.
-    bool is_native(const Shot& shot, bool background_image, bool exact) const;
+    bool is_native(const Shot& shot, bool background_image) const;
+    /// Whether the picture is in host memory alone: write_exact() leaves it there.
+    bool is_finished_natively() const { return picture_.is_ahead(); }
     /// Adds a frame's radiance to the sum. Not needed for a picture of one sample.
     void accumulate(const Frame& frame, const LitPicture& lit);
     /// Writes the picture from the sum of the frames so far, or from the radiance of the only one.
@@ -42,8 +44,9 @@ class OutputPass {
 
   private:
     void blur_edges(const Frame& frame, const PixelRect& area, const GBuffer* exact);
-    void finish_natively(const Frame& frame, const LitPicture& lit);
-    void blur_edges_natively(const Frame& frame, const PixelRect& area);
+    void finish_natively(const Frame& frame, const LitPicture& lit, const GBuffer* exact);
+    void blur_edges_natively(const Frame& frame, const PixelRect& area, const GBuffer* exact);
+    ShaderInputs edge_inputs(const Frame& frame, const GBuffer* exact) const;
     /// Adds a frame's overlay to the sum of overlays, in host memory.
     void add_overlay(const Frame& frame, const Target* overlay);
     /// The mean of the frames so far, as if it were the only one.
@@ -60,7 +63,7 @@ class OutputPass {
     mutable gl::Framebuffer picture_framebuffer_;
     ScreenShader accumulate_{"accumulate_sample.frag", native::Shader::accumulate_sample};
     ScreenShader display_{"display_output.frag", native::Shader::display_output};
-    ScreenShader exact_{"exact_surface.frag"};
+    ScreenShader exact_{"exact_surface.frag", native::Shader::exact_surface};
     ScreenShader fxaa_{"antialias_fxaa.frag", native::Shader::antialias_fxaa};
 };
 

@@ -20,6 +20,12 @@ ShadowMaps::Receivers receivers_of(const DrawList& list, const FrameContents& co
     return beyond ? ShadowMaps::Receivers::anywhere : ShadowMaps::Receivers::within;
 }
 
+/// What a frame of native surfaces needs the driver for where it is not lit natively.
+std::string lit_by_driver(const DrawList& list, bool native_shading) {
+    if (!native_shading) return "lighting";
+    return list.extensions() ? "materials" : "shadows";
+}
+
 RayGround ray_ground(const ResolvedSettings& resolved) {
     const auto& ground = resolved.settings.ground;
     return {.up = parse_up(resolved.settings.camera.up),
@@ -66,9 +72,10 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
     shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
-    const bool native = is_lit_natively(frame, list, contents);
+    const bool native = is_lit_natively(list, contents);
     shadow_maps_.keep_in_host_memory(native);
-    if (!native) targets_.upload(transfers_);
+    const std::string pass = native ? first_by_driver(list, contents) : lit_by_driver(list, native_shading_);
+    if (!native && targets_.depth.is_ahead()) timer_.run(pass, [&] { targets_.upload(transfers_); });
     if (contents.ground)
         timer_.run("ground", [&] { native ? ground_.shade(seen, targets_) : ground_.draw(seen, targets_); });
     light_surfaces(seen, casters, contents, {.native = native, .extensions = outputs.extensions},
@@ -76,11 +83,10 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     const bool shows_environment =
         !resolved.environment.empty() && resolved.settings.background.shows_environment();
     if (native) shade_surroundings(seen, contents, shows_environment);
-    if (const std::string pass = first_by_driver(frame, list, contents); native && !pass.empty())
-        timer_.run(pass, [&] { targets_.upload(transfers_); });
+    if (native && !pass.empty()) timer_.run(pass, [&] { targets_.upload(transfers_); });
     if (!native && contents.ground) timer_.run("ground", [&] { ground_.finish(seen, targets_, bounds); });
-    if (with_overlay) timer_.run("display", [&] { display_.draw(seen, targets_); });
-    if (!has_layers) timer_.run("overlays", [&] { draw_overlay_items(seen, list); });
+    if (with_overlay) timer_.run("display", [&] { begin_overlay(seen, contents, pass.empty()); });
+    if (!has_layers) timer_.run("overlays", [&] { draw_overlay_items(seen, list, pass.empty()); });
     if (!native && shows_environment)
         timer_.run("background", [&] { background_.draw(seen, targets_, environment_, contents.ground); });
 
@@ -92,7 +98,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         lit.partly_covered |=
             timer_.run("transparency", [&] { return draw_transparent(frame, list, contents, with_overlay); });
     if (contents.custom) contents.custom->draw_in_frame(frame, targets_, timer_, lit);
-    if (!contents.layers) draw_effects(frame, opaque, false, lit);
+    if (!contents.layers) draw_effects(frame, opaque, {.native = pass.empty()}, lit);
     return lit;
 }
 
@@ -117,6 +123,14 @@ void Pipeline::trace_paths(const Frame& frame, bool native, bool caught) {
     });
 }
 
+void Pipeline::begin_overlay(const Frame& frame, const FrameContents& contents, bool native) {
+    const PixelRect area = draws_overlay(frame, contents) ? frame.whole() : frame.covered;
+    if (native)
+        display_.shade_overlay(frame, targets_, area, transfers_);
+    else
+        display_.draw(frame, targets_);
+}
+
 void Pipeline::shade_surroundings(const Frame& frame, const FrameContents& contents, bool environment) {
     const bool ground = contents.ground;
     if (ground)
@@ -130,39 +144,23 @@ void Pipeline::shade_surroundings(const Frame& frame, const FrameContents& conte
 void Pipeline::occlude(const Frame& frame, bool native, bool with_points) {
     timer_.run("ambient occlusion", [&] {
         if (native)
-            ambient_occlusion_.shade(frame, targets_, transfers_);
+            ambient_occlusion_.shade(frame, targets_, with_points, transfers_);
         else
             ambient_occlusion_.draw(frame, targets_, with_points);
     });
 }
 
-bool Pipeline::is_lit_natively(const Frame& frame, const DrawList& list,
-                               const FrameContents& contents) const {
+bool Pipeline::is_lit_natively(const DrawList& list, const FrameContents& contents) const {
     if (contents.paths) return native_shading_ && targets_.depth.is_ahead();
-    const bool estimates_normals = frame.resolved->settings.ssao.enabled &&
-                                   list.has([](const DrawItem& item) { return is_display(item.kind); });
     const bool has_tints = shadow_maps_.has_shadows() && shadow_maps_.has_tints();
-    return native_shading_ && targets_.depth.is_ahead() && !has_tints && !list.extensions() &&
-           !estimates_normals;
+    return native_shading_ && targets_.depth.is_ahead() && !has_tints && !list.extensions();
 }
 
-std::string Pipeline::first_by_driver(const Frame& frame, const DrawList& list,
-                                      const FrameContents& contents) const {
-    if (list.needs_overlay()) return "overlays";
-    for (const auto& effect : effects_)
-        if (!contents.layers && effect->is_on(frame)) return effect->name();
-    if (draws_overlay(frame, contents)) return "overlays";
+std::string Pipeline::first_by_driver(const DrawList& list, const FrameContents& contents) const {
     if (contents.layers) return "";
     if (list.has(is_layered)) return "transparency";
     if (contents.custom && !contents.custom->empty()) return "custom passes";
     return contents.in_host_memory ? "" : "output";
-}
-
-PixelRect Pipeline::draw_geometry(const Frame& frame, const DrawList& list, const GBuffer& targets,
-                                  const SurfaceOutputs& outputs) {
-    const PixelRect drawn = surfaces_.draw(frame, list, targets, outputs);
-    targets.upload(transfers_);
-    return drawn;
 }
 
 void Pipeline::light(const Frame& frame, const GBuffer& targets, const FrameContents& contents,
@@ -215,22 +213,24 @@ bool Pipeline::draws_overlay(const Shot& shot, const FrameContents& contents) co
     });
 }
 
-void Pipeline::draw_effects(const Frame& frame, const DrawList& opaque, bool overlay_only, LitPicture& lit) {
+void Pipeline::draw_effects(const Frame& frame, const DrawList& opaque, EffectKinds kinds, LitPicture& lit) {
     bool has_ids = false;
     const auto with_ids = [&]() -> const GBuffer& {
         if (std::exchange(has_ids, true)) return with_ids_;
         if (with_ids_.size() != frame.size) with_ids_ = GBuffer(frame.size);
         with_ids_.add_ids();
-        draw_geometry(frame, opaque, with_ids_, {.ids = true});
+        surfaces_.draw(frame, opaque, with_ids_, {.ids = true});
+        if (!kinds.native) with_ids_.upload(transfers_);
         return with_ids_;
     };
     // The frames of an accumulated picture look through different places of the lens.
     lit.spreads |= frame.through_lens;
     for (const auto& effect : effects_) {
-        if (!effect->is_on(frame) || (overlay_only && !effect->draws_overlay())) continue;
+        if (!effect->is_on(frame) || (kinds.overlay_only && !effect->draws_overlay())) continue;
         const Frame seen = frame.covering(lit.covered);
+        const EffectInputs inputs{seen, targets_, bounds_of(*frame.scene), with_ids};
         timer_.run(effect->name(), [&] {
-            effect->draw({seen, targets_, bounds_of(*frame.scene), with_ids}, lit);
+            kinds.native ? effect->shade(inputs, lit, transfers_) : effect->draw(inputs, lit);
         });
     }
 }
@@ -240,16 +240,21 @@ void Pipeline::draw_surfaces(const Frame& frame, const DrawList& list, const Sur
     surfaces_.draw(frame, list, targets_, outputs);
 }
 
-const Target* Pipeline::draw_overlay(const Frame& frame, const DrawList& list,
-                                     const FrameContents& contents) {
+const Target* Pipeline::draw_overlay(const Frame& frame, const DrawList& list, const FrameContents& contents,
+                                     bool native) {
     if (list.overlays.empty() && !draws_overlay(frame, contents)) return nullptr;
     targets_.add_overlay();
-    const float nothing[4] = {0, 0, 0, 0};
-    targets_.display().clear_color(0, nothing);
-    draw_overlay_items(frame, list);
+    if (native) {
+        targets_.overlay.write(frame.whole());
+        std::ranges::fill(targets_.overlay.pixels<std::byte>(), std::byte{0});
+    } else {
+        const float nothing[4] = {0, 0, 0, 0};
+        targets_.display().clear_color(0, nothing);
+    }
+    draw_overlay_items(frame, list, native);
     LitPicture lit{.overlay = &targets_.overlay, .covered = frame.covered};
-    draw_effects(frame, list, true, lit);
-    if (contents.custom)
+    draw_effects(frame, list, {.native = native, .overlay_only = true}, lit);
+    if (contents.custom && !native)
         contents.custom->draw(Stage::overlay, frame, targets_, targets_.overlay.drawn(), timer_);
     return &targets_.overlay;
 }

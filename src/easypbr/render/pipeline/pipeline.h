@@ -57,8 +57,10 @@ class Pipeline {
     /// Fills the G-buffer alone, in whichever memory that is done.
     void draw_surfaces(const Frame& frame, const DrawList& list, const SurfaceOutputs& outputs);
     /// Clears the overlay and draws what is in it beside surfaces: overlays of primitives, effects, and a
-    /// program's own passes.
-    const Target* draw_overlay(const Frame& frame, const DrawList& list, const FrameContents& contents);
+    /// program's own passes. `native`: from and to host memory, which holds a frame that was drawn wholly
+    /// natively.
+    const Target* draw_overlay(const Frame& frame, const DrawList& list, const FrameContents& contents,
+                               bool native);
 
     GBuffer& targets() { return targets_; }
     const GBuffer& targets() const { return targets_; }
@@ -79,9 +81,6 @@ class Pipeline {
     void evict_unused();
 
   private:
-    /// Fills the textures of a G-buffer.
-    PixelRect draw_geometry(const Frame& frame, const DrawList& list, const GBuffer& targets,
-                            const SurfaceOutputs& outputs);
     /// Lights a G-buffer, block by block of lights with their shadow maps; `caught`: with the light of the
     /// shadow catcher.
     void light(const Frame& frame, const GBuffer& targets, const FrameContents& contents, LightInputs inputs,
@@ -94,7 +93,7 @@ class Pipeline {
     /// Depth that hides overlays and layers: of what is drawn over everything else too.
     const gl::Texture& hiding_depth(const Frame& frame, const DrawList& list);
     /// Draws the overlays of primitives where there are no layers.
-    void draw_overlay_items(const Frame& frame, const DrawList& list);
+    void draw_overlay_items(const Frame& frame, const DrawList& list, bool native);
     /// Draws the layered items over the picture, before and behind each other and the overlays; whether
     /// there were any.
     bool draw_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
@@ -105,16 +104,20 @@ class Pipeline {
     /// The eye-dome lighting of the layers' points; nothing where there are none.
     const gl::Texture* shade_points(const Frame& frame, const DrawList& layers, const gl::Texture& opaque);
     /// Whether a frame is lit natively: its surfaces are in host memory, and nothing of it needs the driver.
-    bool is_lit_natively(const Frame& frame, const DrawList& list, const FrameContents& contents) const;
+    bool is_lit_natively(const DrawList& list, const FrameContents& contents) const;
     void occlude(const Frame& frame, bool native, bool with_points);
     /// What is around lit surfaces, natively: what the ground shows of itself, and the environment.
     void shade_surroundings(const Frame& frame, const FrameContents& contents, bool environment);
+    /// Empties the overlay, and draws the surfaces that are shown past light.
+    void begin_overlay(const Frame& frame, const FrameContents& contents, bool native);
     /// The first pass after the lighting that only the driver can do; empty where there is none.
-    std::string first_by_driver(const Frame& frame, const DrawList& list,
-                                const FrameContents& contents) const;
+    std::string first_by_driver(const DrawList& list, const FrameContents& contents) const;
     bool draws_overlay(const Shot& shot, const FrameContents& contents) const;
-    /// Of those that draw into the overlay, or of the others too.
-    void draw_effects(const Frame& frame, const DrawList& opaque, bool overlay_only, LitPicture& lit);
+    struct EffectKinds {
+        bool native = false;        ///< from and to host memory
+        bool overlay_only = false;  ///< only those that draw into the overlay
+    };
+    void draw_effects(const Frame& frame, const DrawList& opaque, EffectKinds kinds, LitPicture& lit);
 
     GBuffer targets_;
     mutable Transfers transfers_;  ///< reading targets counts too

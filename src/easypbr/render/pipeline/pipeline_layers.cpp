@@ -29,8 +29,9 @@ const gl::Texture& Pipeline::hiding_depth(const Frame& frame, const DrawList& li
     return hiding_depth_;
 }
 
-void Pipeline::draw_overlay_items(const Frame& frame, const DrawList& list) {
+void Pipeline::draw_overlay_items(const Frame& frame, const DrawList& list, bool native) {
     if (list.overlays.empty()) return;
+    if (native) return overlays_.shade(frame, list.overlays, targets_, transfers_);
     overlays_.begin(frame, list.overlays, targets_, hiding_depth(frame, list));
     overlays_.draw_rest(frame, list.overlays, targets_);
     overlays_.draw_over(frame, list.overlays, targets_);

@@ -135,8 +135,7 @@ void Renderer::prepare(Picture& picture) {
         [](const DrawItem& item) { return item.kind == SurfaceKind::exact && !item.layered; });
     const bool has_image =
         resolved.settings.background.mode == BackgroundMode::image && picture.images.background;
-    picture.contents.in_host_memory =
-        is_picture && output_.is_native(picture.shot, has_image, picture.with_exact);
+    picture.contents.in_host_memory = is_picture && output_.is_native(picture.shot, has_image);
     // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
     const bool apart = options.samples > 1 && picture.with_exact;
     picture.averaged = apart ? picture.list.without_exact() : picture.list;
@@ -208,9 +207,11 @@ void Renderer::draw_exact() {
     }
     if (averaged && !has_layers) {
         pipeline_.draw_surfaces(frame, picture.list, {.ids = picture.contents.ids});
-        pipeline_.targets().upload(pipeline_.transfers());
+        if (!output_.is_finished_natively()) pipeline_.targets().upload(pipeline_.transfers());
     }
-    if (!has_layers) lit.overlay = pipeline_.draw_overlay(frame, picture.list, picture.contents);
+    if (!has_layers)
+        lit.overlay =
+            pipeline_.draw_overlay(frame, picture.list, picture.contents, output_.is_finished_natively());
     output_.write_exact(frame, lit, pipeline_.targets(), has_layers);
 }
 

@@ -39,4 +39,11 @@ void Overlays::draw_over(const Frame& frame, const ItemsByKind& items, const GBu
     });
 }
 
+void Overlays::shade(const Frame& frame, const ItemsByKind& items, const GBuffer& targets,
+                     Transfers& transfers) {
+    for_each_kind(primitives_, items, [&](Primitive& kind, DrawItems of_kind) {
+        kind.shade_overlay(frame, of_kind, targets, transfers);
+    });
+}
+
 }  // namespace easypbr::render

@@ -17,6 +17,7 @@ class Overlays {
                      const GBuffer& layer);
     void draw_rest(const Frame& frame, const ItemsByKind& items, const GBuffer& targets);
     void draw_over(const Frame& frame, const ItemsByKind& items, const GBuffer& targets);
+    void shade(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, Transfers& transfers);
 
   private:
     const Primitives& primitives_;

@@ -84,6 +84,8 @@ class Primitive {
     virtual void draw_overlay_rest(const Frame&, DrawItems, const GBuffer&) {}
     /// Adds the items that are drawn over everything else (is_over()).
     virtual void draw_overlay_over(const Frame&, DrawItems, const GBuffer&) {}
+    /// All steps at once where there are no layers, natively: from and to host memory.
+    virtual void shade_overlay(const Frame&, DrawItems, const GBuffer&, Transfers&) {}
 
     // Bounds.
 

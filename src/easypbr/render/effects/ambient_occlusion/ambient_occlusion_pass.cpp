@@ -84,8 +84,9 @@ void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets, bool with_
     targets.add_ambient_occlusion();
     const float open[4] = {1, 1, 1, 1};
     targets.occluded().clear_color(0, open);
+    estimated_ = false;
+    if (with_points) estimate_normals(frame, targets);
     estimated_ = with_points;
-    if (estimated_) estimate_normals(frame, targets);
     const PixelRect area = in_texels(frame.covered, plan.half ? 2 : 1);
     if (!plan.smooth) return run(frame, targets, {*plan.sampling, plan.defines, targets.occluded(), area});
     make_targets(frame.size, plan.half);
@@ -105,7 +106,8 @@ void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets, bool with_
         run(frame, targets, {magnifying_, plan.defines, targets.occluded(), frame.covered, &sampled_});
 }
 
-void AmbientOcclusionPass::shade(const Frame& frame, GBuffer& targets, Transfers& transfers) {
+void AmbientOcclusionPass::shade(const Frame& frame, GBuffer& targets, bool with_points,
+                                 Transfers& transfers) {
     const Plan plan = plan_of(frame);
     targets.add_ambient_occlusion();
     estimated_ = false;
@@ -123,6 +125,15 @@ void AmbientOcclusionPass::shade(const Frame& frame, GBuffer& targets, Transfers
                       .depth = of_half ? &surface_ : &targets.depth},
                      transfers);
     };
+    if (with_points) {
+        make_normals(frame.size);
+        normal_.write(held);
+        estimating_.shade(
+            surface_inputs(frame, targets, plan.defines),
+            {.target = &normal_, .area = held, .where = native::Where::covered, .depth = &targets.depth},
+            transfers);
+        estimated_ = true;
+    }
     if (!plan.smooth) return shade_to(*plan.sampling, targets.ambient_occlusion, held);
     if (plan.half) shade_to(selecting_, surface_, area);
     shade_to(*plan.sampling, sampled_, area);
@@ -131,11 +142,15 @@ void AmbientOcclusionPass::shade(const Frame& frame, GBuffer& targets, Transfers
     if (plan.half) shade_to(magnifying_, targets.ambient_occlusion, held, &sampled_);
 }
 
+void AmbientOcclusionPass::make_normals(Vec2i size) {
+    if (normal_.size() == size) return;
+    normal_ = Target(gl::Format::rg16, size);
+    estimate_ = gl::Framebuffer();
+}
+
 void AmbientOcclusionPass::estimate_normals(const Frame& frame, const GBuffer& targets) {
-    if (!normal_ || normal_.width() != frame.size.x() || normal_.height() != frame.size.y())
-        normal_ = gl::Texture(gl::Format::rg16, frame.size.x(), frame.size.y());
-    gl::copy(targets.normal.texture(), normal_);
-    estimate_ = gl::Framebuffer({&normal_}, &targets.depth_test());
+    make_normals(frame.size);
+    estimate_ = gl::Framebuffer({&normal_.drawn()}, &targets.depth_test());
     run(frame, targets, {estimating_, camera_defines(frame), estimate_, frame.covered});
 }
 
@@ -146,26 +161,29 @@ double AmbientOcclusionPass::reach(const Frame& whole, const Box3d& bounds) {
     return std::ceil(ssao.radius * whole.clip_from_view(1, 1) * whole.picture_size.y() / 2 / depth);
 }
 
+ShaderInputs AmbientOcclusionPass::surface_inputs(const Frame& frame, const GBuffer& targets,
+                                                  const std::vector<std::string>& defines) const {
+    ShaderInputs values;
+    values.define(defines);
+    set_camera_uniforms(values, frame);
+    values.set("u_radius", frame.resolved->settings.ssao.radius);
+    values.set("u_depth_target", targets.depth);
+    values.set("u_normal", estimated_ ? normal_ : targets.normal);
+    values.set("u_material", targets.material);
+    return values;
+}
+
 ShaderInputs AmbientOcclusionPass::inputs_of(const Frame& frame, const GBuffer& targets,
                                              const std::vector<std::string>& defines,
                                              const Target* visibility, Vec2 axis) const {
     const auto& ssao = frame.resolved->settings.ssao;
-    ShaderInputs values;
-    values.define(defines);
-    set_camera_uniforms(values, frame);
-    values.set("u_radius", ssao.radius);
+    ShaderInputs values = surface_inputs(frame, targets, defines);
     values.set("u_inverse_falloff", 1 / ssao.falloff);
     values.set("u_power", ssao.power);
     values.set("u_directions", ssao.directions);
     values.set("u_steps", ssao.steps);
     values.set("u_frame", frame.sample_index);
     values.set("u_axis", axis);
-    values.set("u_depth_target", targets.depth);
-    if (estimated_)
-        values.set("u_normal", normal_);
-    else
-        values.set("u_normal", targets.normal);
-    values.set("u_material", targets.material);
     if (half_ && surface_) {
         values.set("u_surface", surface_);
         values.set("u_surface_size", Vec2(surface_.size().cast<float>()));

@@ -20,8 +20,8 @@ class AmbientOcclusionPass {
     /// How far occluders are looked for, in pixels of a frame of the whole picture; 0 where it is off.
     static double reach(const Frame& whole, const Box3d& bounds);
 
-    /// The same, without points, natively: from and to host memory.
-    void shade(const Frame& frame, GBuffer& targets, Transfers& transfers);
+    /// The same natively: from and to host memory.
+    void shade(const Frame& frame, GBuffer& targets, bool with_points, Transfers& transfers);
 
   private:
     struct Step;
@@ -33,7 +33,10 @@ class AmbientOcclusionPass {
     Plan plan_of(const Frame& frame);
     void make_targets(Vec2i size, bool half);
     void make_framebuffers();
+    void make_normals(Vec2i size);
     void estimate_normals(const Frame& frame, const GBuffer& targets);
+    ShaderInputs surface_inputs(const Frame& frame, const GBuffer& targets,
+                                const std::vector<std::string>& defines) const;
     ShaderInputs inputs_of(const Frame& frame, const GBuffer& targets,
                            const std::vector<std::string>& defines, const Target* visibility,
                            Vec2 axis) const;
@@ -45,10 +48,10 @@ class AmbientOcclusionPass {
     Target sampled_, blurred_;
     gl::Texture depth_;
     gl::Framebuffer select_, sample_, blur_;
-    gl::Texture normal_;  ///< the G-buffer's and estimated ones
+    Target normal_;  ///< the G-buffer's and estimated ones
     gl::Framebuffer estimate_;
     bool estimated_ = false;
-    ScreenShader estimating_{"occlusion_normals.frag"};
+    ScreenShader estimating_{"occlusion_normals.frag", native::Shader::occlusion_normals};
     ScreenShader selecting_{"occlusion_select.frag", native::Shader::occlusion_select};
     ScreenShader horizon_{"occlusion_horizon.frag", native::Shader::occlusion_horizon};
     ScreenShader hemisphere_{"occlusion_hemisphere.frag", native::Shader::occlusion_hemisphere};

@@ -11,13 +11,28 @@ namespace {
 constexpr int visible_texels = 6;
 
 /// Texels of the first level that content gives light to.
-PixelRect lit_texels(const Frame& frame, const gl::Texture& level) {
-    if (frame.resolved->settings.background.shows_environment()) return {0, 0, level.width(), level.height()};
+PixelRect lit_texels(const Frame& frame, const Target& level) {
+    if (frame.resolved->settings.background.shows_environment()) return level.whole();
     const PixelRect& r = frame.covered;
     const int x0 = std::max(r.x / glow_texel - 1, 0), y0 = std::max(r.y / glow_texel - 1, 0);
     const int x1 = std::min((r.x + r.width) / glow_texel + 2, level.width()),
               y1 = std::min((r.y + r.height) / glow_texel + 2, level.height());
     return {x0, y0, x1 - x0, y1 - y0};
+}
+
+/// A texel lies between the block of its own index and the next.
+PixelRect blocks_of(const PixelRect& texels) {
+    return {texels.x, texels.y, texels.width + 1, texels.height + 1};
+}
+
+/// What a target of this extent holds, for another level, by "DOWN", "UP", or nullptr: of the same size.
+ShaderInputs resample_inputs(const Target& from, const Vec2& extent, const char* step) {
+    ShaderInputs values;
+    if (step) values.define(step);
+    values.set("u_level", from);
+    values.set("u_level_size", Vec2(from.size().cast<float>()));
+    values.set("u_extent", extent);
+    return values;
 }
 
 }  // namespace
@@ -28,21 +43,28 @@ void BloomEffect::make_levels(Vec2i size, int count) {
     levels_.clear();
     for (int i = 0; i < count; ++i) {
         const int texel = glow_texel << i;
+        const Vec2i own((size.x() + texel - 1) / texel, (size.y() + texel - 1) / texel);
         Level level;
-        const int width = (size.x() + texel - 1) / texel, height = (size.y() + texel - 1) / texel;
-        for (gl::Texture* texture : {&level.light, &level.glow}) {
-            *texture = gl::Texture(gl::Format::rgba16f, width, height);
-            texture->sampling(gl::Filtering::linear);
-        }
-        level.lit = gl::Framebuffer({&level.light});
-        level.glowing = gl::Framebuffer({&level.glow});
+        level.light.target = Target(gl::Format::rgba16f, own);
+        level.glow.target = Target(gl::Format::rgba16f, own);
         level.extent = size.cast<float>() / float(texel);
         levels_.push_back(std::move(level));
     }
-    const gl::Texture& first = levels_.front().light;
-    for (gl::Texture& sum : sums_)
-        sum = gl::Texture(gl::Format::rgba32f, first.width() + 1, first.height() + 1);
-    summed_ = gl::Framebuffer({&sums_[0], &sums_[1], &sums_[2], &sums_[3]});
+    const Vec2i blocks = levels_.front().light.target.size() + Vec2i(1, 1);
+    for (Target& sum : sums_) sum = Target(gl::Format::rgba32f, blocks);
+    summed_ = gl::Framebuffer();
+}
+
+void BloomEffect::make_framebuffers() {
+    for (const Target& sum : sums_) sum.drawn();
+    if (summed_) return;
+    summed_ = gl::Framebuffer(
+        {&sums_[0].attachment(), &sums_[1].attachment(), &sums_[2].attachment(), &sums_[3].attachment()});
+    for (Level& level : levels_)
+        for (Picture* picture : {&level.light, &level.glow}) {
+            picture->target.attachment().sampling(gl::Filtering::linear);
+            picture->framebuffer = gl::Framebuffer({&picture->target.attachment()});
+        }
 }
 
 bool BloomEffect::is_on(const Shot& shot) const {
@@ -53,68 +75,98 @@ int BloomEffect::reach(const Frame& whole, const Box3d& /*bounds*/) const {
     return is_on(whole) ? visible_texels * (glow_texel << (whole.resolved->settings.bloom.levels - 1)) : 0;
 }
 
-void BloomEffect::draw(const EffectInputs& inputs, LitPicture& lit) {
-    const Frame& frame = inputs.frame;
-    make_levels(frame.size, frame.resolved->settings.bloom.levels);
+void BloomEffect::begin(const Frame& frame) {
     const auto& bloom = frame.resolved->settings.bloom;
-    glow_.light = &levels_.front().glow;
+    make_levels(frame.size, bloom.levels);
+    glow_.light = &levels_.front().glow.target;
     glow_.parameters = {bloom.intensity, frame.resolved->exposure, bloom.threshold,
                         bloom.knee * bloom.threshold};
-    gather(frame, lit.radiance->texture());
-    const size_t count = levels_.size();
-    for (size_t i = 1; i < count; ++i)
-        resample(levels_[i - 1].light, levels_[i - 1].extent, levels_[i].lit, {"DOWN"}, gl::replace);
-    // Upwards each level becomes the mean of itself and the levels below, all counting alike.
-    for (size_t i = count; i-- > 0;) {
-        resample(levels_[i].light, levels_[i].extent, levels_[i].glowing, {}, gl::replace);
-        if (i + 1 == count) continue;
-        const gl::Blending mean{.source = gl::Factor::one_minus_constant,
-                                .target = gl::Factor::constant,
-                                .constant = 1 / float(count - i)};
-        resample(levels_[i + 1].glow, levels_[i + 1].extent, levels_[i].glowing, {"UP"}, mean);
-    }
+}
+
+void BloomEffect::draw(const EffectInputs& inputs, LitPicture& lit) {
+    const Frame& frame = inputs.frame;
+    begin(frame);
+    make_framebuffers();
+    const Picture& first = levels_.front().light;
+    const PixelRect area = lit_texels(frame, first.target);
+    summed_.bind();
+    blocks_.draw(block_inputs(frame, *lit.radiance), screen_state(blocks_of(area)));
+    const float black[4] = {0, 0, 0, 0};
+    first.target.drawn();
+    first.framebuffer.clear_color(0, black);
+    first.framebuffer.bind();
+    gather_.draw(gather_inputs(), screen_state(area));
+    spread([](ScreenShader& shader, const ShaderInputs& values, Picture& to, float kept) {
+        to.target.drawn();
+        to.framebuffer.bind();
+        const gl::Blending mix{
+            .source = gl::Factor::one_minus_constant, .target = gl::Factor::constant, .constant = kept};
+        shader.draw(values, {.blending = kept > 0 ? mix : gl::replace});
+    });
+    finish(lit);
+}
+
+void BloomEffect::shade(const EffectInputs& inputs, LitPicture& lit, Transfers& transfers) {
+    const Frame& frame = inputs.frame;
+    begin(frame);
+    const Target& first = levels_.front().light.target;
+    const PixelRect area = lit_texels(frame, first), blocks = blocks_of(area);
+    for (const Target& sum : sums_) sum.write(blocks);
+    blocks_.shade(block_inputs(frame, *lit.radiance),
+                  {.target = &sums_[0], .area = blocks, .further = {&sums_[1], &sums_[2], &sums_[3]}},
+                  transfers);
+    first.write(first.whole());
+    std::ranges::fill(first.pixels<std::byte>(), std::byte{0});
+    gather_.shade(gather_inputs(), {.target = &first, .area = area}, transfers);
+    spread([&](ScreenShader& shader, const ShaderInputs& values, Picture& to, float kept) {
+        if (kept <= 0) to.target.write(to.target.whole());
+        shader.shade(values,
+                     {.target = &to.target,
+                      .area = to.target.whole(),
+                      .store = kept > 0 ? native::Store::mix : native::Store::replace,
+                      .kept = kept},
+                     transfers);
+    });
+    finish(lit);
+}
+
+void BloomEffect::finish(LitPicture& lit) {
     lit.glow = &glow_;
     // Light falls where nothing is.
     lit.partly_covered = lit.spreads = true;
 }
 
-void BloomEffect::gather(const Frame& frame, const gl::Texture& radiance) {
-    const Level& first = levels_.front();
-    const float black[4] = {0, 0, 0, 0};
-    first.lit.clear_color(0, black);
-    const PixelRect area = lit_texels(frame, first.light);
-    std::vector<std::string> defines;
-    if (frame.resolved->settings.bloom.suppress_fireflies) defines.emplace_back("SUPPRESS_FIREFLIES");
-    const gl::Program& blocks = blocks_.get(defines);
-    summed_.bind();
-    blocks.use();
-    blocks.set("u_bloom", glow_.parameters);
-    blocks.set("u_size", Vec2(frame.size.cast<float>()));
-    blocks.set("u_radiance", 0);
-    radiance.bind(0);
-    // A texel lies between the block of its own index and the next.
-    gl::draw_screen(screen_state({area.x, area.y, area.width + 1, area.height + 1}));
-    const gl::Program& texels = gather_.get({});
-    first.lit.bind();
-    texels.use();
-    const char* samplers[] = {"u_rise_rise", "u_fall_rise", "u_rise_fall", "u_fall_fall"};
-    for (unsigned i = 0; i < 4; ++i) {
-        sums_[i].bind(i);
-        texels.set(samplers[i], int(i));
-    }
-    gl::draw_screen(screen_state(area));
+ShaderInputs BloomEffect::block_inputs(const Frame& frame, const Target& radiance) const {
+    ShaderInputs values;
+    if (frame.resolved->settings.bloom.suppress_fireflies) values.define("SUPPRESS_FIREFLIES");
+    values.set("u_bloom", glow_.parameters);
+    values.set("u_size", Vec2(frame.size.cast<float>()));
+    values.set("u_radiance", radiance);
+    return values;
 }
 
-void BloomEffect::resample(const gl::Texture& from, const Vec2& extent, const gl::Framebuffer& to,
-                           const std::vector<std::string>& step, const gl::Blending& blending) {
-    const gl::Program& program = resample_.get(step);
-    to.bind();
-    program.use();
-    program.set("u_source", 0);
-    program.set("u_source_size", Vec2(float(from.width()), float(from.height())));
-    program.set("u_extent", extent);
-    from.bind(0);
-    gl::draw_screen({.blending = blending});
+ShaderInputs BloomEffect::gather_inputs() const {
+    ShaderInputs values;
+    const char* samplers[] = {"u_rise_rise", "u_fall_rise", "u_rise_fall", "u_fall_fall"};
+    for (size_t i = 0; i < 4; ++i) values.set(samplers[i], sums_[i]);
+    return values;
+}
+
+void BloomEffect::spread(const Run& run) {
+    const size_t count = levels_.size();
+    for (size_t i = 1; i < count; ++i) {
+        const Level& larger = levels_[i - 1];
+        run(resample_, resample_inputs(larger.light.target, larger.extent, "DOWN"), levels_[i].light, 0);
+    }
+    // Upwards each level becomes the mean of itself and the levels below, all counting alike.
+    for (size_t i = count; i-- > 0;) {
+        Level& level = levels_[i];
+        run(resample_, resample_inputs(level.light.target, level.extent, nullptr), level.glow, 0);
+        if (i + 1 == count) continue;
+        const Level& smaller = levels_[i + 1];
+        run(resample_, resample_inputs(smaller.glow.target, smaller.extent, "UP"), level.glow,
+            1 / float(count - i));
+    }
 }
 
 }  // namespace easypbr::render

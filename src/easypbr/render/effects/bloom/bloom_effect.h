@@ -1,11 +1,12 @@
 // Bloom: light that spreads around what is bright.
 #pragma once
 
+#include <functional>
 #include <vector>
 
 #include "easypbr/render/effects/bloom/glow.h"
 #include "easypbr/render/effects/effect.h"
-#include "easypbr/render/frame/programs.h"
+#include "easypbr/render/frame/screen_shader.h"
 
 namespace easypbr::render {
 
@@ -18,28 +19,37 @@ class BloomEffect : public Effect {
     bool is_on(const Shot& shot) const override;
     int reach(const Frame& whole, const Box3d& bounds) const override;
     void draw(const EffectInputs& inputs, LitPicture& lit) override;
+    void shade(const EffectInputs& inputs, LitPicture& lit, Transfers& transfers) override;
 
   private:
+    struct Picture {
+        Target target;
+        gl::Framebuffer framebuffer;
+    };
     struct Level {
-        gl::Texture light, glow;
-        gl::Framebuffer lit, glowing;
+        Picture light, glow;
         Vec2 extent;  ///< of the picture in texels: not whole
     };
+    /// Runs a shader over a level, of which a part is kept: by the driver, or natively.
+    using Run = std::function<void(ScreenShader&, const ShaderInputs&, Picture& to, float kept)>;
+
+    void begin(const Frame& frame);
     void make_levels(Vec2i size, int count);
-    void gather(const Frame& frame, const gl::Texture& radiance);
-    /// Draws what a texture of this extent holds to another level, by {"DOWN"}, {"UP"}, or {}: of the same
-    /// size.
-    void resample(const gl::Texture& from, const Vec2& extent, const gl::Framebuffer& to,
-                  const std::vector<std::string>& step, const gl::Blending& blending);
+    void make_framebuffers();
+    ShaderInputs block_inputs(const Frame& frame, const Target& radiance) const;
+    ShaderInputs gather_inputs() const;
+    /// From the first level's light to the glow.
+    void spread(const Run& run);
+    void finish(LitPicture& lit);
 
     Glow glow_;
     Vec2i size_{0, 0};
     std::vector<Level> levels_;
-    gl::Texture sums_[4];  ///< of the blocks of pixels around the first level's texels
+    Target sums_[4];  ///< of the blocks of pixels around the first level's texels
     gl::Framebuffer summed_;
-    ProgramVariants blocks_{"screen_triangle.vert", "bloom_blocks.frag"};
-    ProgramVariants gather_{"screen_triangle.vert", "bloom_gather.frag"};
-    ProgramVariants resample_{"screen_triangle.vert", "bloom_resample.frag"};
+    ScreenShader blocks_{"bloom_blocks.frag", native::Shader::bloom_blocks};
+    ScreenShader gather_{"bloom_gather.frag", native::Shader::bloom_gather};
+    ScreenShader resample_{"bloom_resample.frag", native::Shader::bloom_resample};
 };
 
 }  // namespace easypbr::render

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "easypbr/core/math.h"
-#include "easypbr/gl/texture.h"
+#include "easypbr/render/frame/target.h"
 
 namespace easypbr::render {
 
@@ -10,8 +10,8 @@ namespace easypbr::render {
 inline constexpr int glow_texel = 4;
 
 struct Glow {
-    const gl::Texture* light = nullptr;  ///< RGBA16F, exposed light, a texel for 4 x 4 pixels
-    Vec4 parameters = Vec4::Zero();      ///< intensity, exposure, threshold, half width of the knee
+    const Target* light = nullptr;   ///< RGBA16F, exposed light, a texel for 4 x 4 pixels
+    Vec4 parameters = Vec4::Zero();  ///< intensity, exposure, threshold, half width of the knee
 
     /// In pixels.
     Vec2 size() const {

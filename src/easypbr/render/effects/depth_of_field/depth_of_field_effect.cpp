@@ -1,5 +1,7 @@
 #include "easypbr/render/effects/depth_of_field/depth_of_field_effect.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
@@ -30,27 +32,41 @@ double largest_confusion(const Frame& frame, const Box3d& bounds) {
     return std::min(largest, largest_part * frame.picture_size.y());
 }
 
-template <class Picture>
-void bind(const gl::Program& program, const char* sampler, unsigned unit, const Picture& texture) {
-    program.set(sampler, int(unit));
-    texture.bind(unit);
+/// Where focus_gather.frag looks: x, y, their distance, and the area that each place stands for.
+void set_taps(ShaderInputs& values, double reach) {
+    constexpr int taps = 72;
+    const double golden_angle = pi * (3 - std::sqrt(5.0)), widest = reach + 0.5;
+    for (int k = 0; k < taps; ++k) {
+        const double u = (k + 0.5) / taps, distance = widest * std::pow(u, 0.75), angle = k * golden_angle;
+        const double area = 1.5 * pi * widest * widest * std::sqrt(u) / taps;
+        const Eigen::Vector4d tap(distance * std::cos(angle), distance * std::sin(angle), distance, area);
+        values.set(fmt::format("u_taps[{}]", k), Vec4(tap.cast<float>()));
+    }
 }
 
 }  // namespace
 
 void DepthOfFieldEffect::make_targets(Vec2i size) {
     if (radiance_.size() == size) return;
-    const int w = (size.x() + 1) / 2, h = (size.y() + 1) / 2;
+    const Vec2i half((size.x() + 1) / 2, (size.y() + 1) / 2);
     radiance_ = Target(gl::Format::rgba32f, size);
-    light_ = gl::Texture(gl::Format::rgba16f, w, h);
-    confusion_ = gl::Texture(gl::Format::r32f, w, h);
-    behind_ = gl::Texture(gl::Format::rgba16f, w, h);
-    before_ = gl::Texture(gl::Format::rgba16f, w, h);
-    hidden_ = gl::Texture(gl::Format::r16f, w, h);
-    for (gl::Texture* texture : {&behind_, &before_, &hidden_}) texture->sampling(gl::Filtering::linear);
-    halved_ = gl::Framebuffer({&light_, &confusion_});
-    gathered_ = gl::Framebuffer({&behind_, &before_, &hidden_});
-    composed_ = gl::Framebuffer({&radiance_.drawn()});
+    light_ = Target(gl::Format::rgba16f, half);
+    behind_ = Target(gl::Format::rgba16f, half);
+    before_ = Target(gl::Format::rgba16f, half);
+    confusion_ = Target(gl::Format::r32f, half);
+    hidden_ = Target(gl::Format::r16f, half);
+    halved_ = gl::Framebuffer();
+}
+
+void DepthOfFieldEffect::make_framebuffers() {
+    for (const Target* target : {&light_, &confusion_, &behind_, &before_, &hidden_, &radiance_})
+        target->drawn();
+    if (halved_) return;
+    for (const Target* target : {&behind_, &before_, &hidden_})
+        target->attachment().sampling(gl::Filtering::linear);
+    halved_ = gl::Framebuffer({&light_.attachment(), &confusion_.attachment()});
+    gathered_ = gl::Framebuffer({&behind_.attachment(), &before_.attachment(), &hidden_.attachment()});
+    composed_ = gl::Framebuffer({&radiance_.attachment()});
 }
 
 bool DepthOfFieldEffect::is_on(const Shot& shot) const {
@@ -63,43 +79,61 @@ int DepthOfFieldEffect::reach(const Frame& whole, const Box3d& bounds) const {
     return int(std::ceil(largest_confusion(whole, bounds))) + 4;
 }
 
+ShaderInputs DepthOfFieldEffect::halve_inputs(const EffectInputs& inputs) const {
+    ShaderInputs values;
+    values.set("u_size", Vec2(inputs.frame.size.cast<float>()));
+    values.set("u_focus", Vec2(confusion_of(inputs.frame).cast<float>()));
+    values.set("u_radiance", inputs.targets.radiance);
+    values.set("u_depth_target", inputs.targets.depth);
+    return values;
+}
+
+ShaderInputs DepthOfFieldEffect::gather_inputs(const EffectInputs& inputs) const {
+    const double reach = largest_confusion(inputs.frame, inputs.bounds) / 2;
+    ShaderInputs values;
+    values.set("u_half_size", Vec2(light_.size().cast<float>()));
+    values.set("u_reach", float(reach));
+    set_taps(values, reach);
+    values.set("u_half_light", light_);
+    values.set("u_confusion", confusion_);
+    return values;
+}
+
+ShaderInputs DepthOfFieldEffect::compose_inputs(const EffectInputs& inputs) const {
+    ShaderInputs values = halve_inputs(inputs);
+    values.set("u_covered_size", Vec2(2 * light_.size().cast<float>()));
+    values.set("u_behind", behind_);
+    values.set("u_before", before_);
+    values.set("u_hidden", hidden_);
+    return values;
+}
+
 void DepthOfFieldEffect::draw(const EffectInputs& inputs, LitPicture& lit) {
-    const Frame& frame = inputs.frame;
-    const GBuffer& targets = inputs.targets;
-    make_targets(frame.size);
-    const Vec2 size = frame.size.cast<float>(), focus = confusion_of(frame).cast<float>();
-    const Vec2 half(float(light_.width()), float(light_.height()));
-
-    const gl::Program& halve = halve_.get({});
+    make_targets(inputs.frame.size);
+    make_framebuffers();
     halved_.bind();
-    halve.use();
-    halve.set("u_size", size);
-    halve.set("u_focus", focus);
-    bind(halve, "u_radiance", 0, targets.radiance);
-    bind(halve, "u_depth_target", 1, targets.depth);
-    gl::draw_screen({});
-
-    const gl::Program& gather = gather_.get({});
+    halve_.draw(halve_inputs(inputs), {});
     gathered_.bind();
-    gather.use();
-    gather.set("u_half_size", half);
-    gather.set("u_reach", float(largest_confusion(frame, inputs.bounds) / 2));
-    bind(gather, "u_light", 0, light_);
-    bind(gather, "u_confusion", 1, confusion_);
-    gl::draw_screen({});
-
-    const gl::Program& compose = compose_.get({});
+    gather_.draw(gather_inputs(inputs), {});
     composed_.bind();
-    compose.use();
-    compose.set("u_size", size);
-    compose.set("u_covered_size", Vec2(2 * half));
-    compose.set("u_focus", focus);
-    bind(compose, "u_radiance", 0, targets.radiance);
-    bind(compose, "u_depth_target", 1, targets.depth);
-    bind(compose, "u_behind", 2, behind_);
-    bind(compose, "u_before", 3, before_);
-    bind(compose, "u_hidden", 4, hidden_);
-    gl::draw_screen({});
+    compose_.draw(compose_inputs(inputs), {});
+    finish(lit);
+}
+
+void DepthOfFieldEffect::shade(const EffectInputs& inputs, LitPicture& lit, Transfers& transfers) {
+    make_targets(inputs.frame.size);
+    for (const Target* target : {&light_, &confusion_, &behind_, &before_, &hidden_, &radiance_})
+        target->write(target->whole());
+    const PixelRect half = light_.whole();
+    halve_.shade(halve_inputs(inputs), {.target = &light_, .area = half, .further = {&confusion_}},
+                 transfers);
+    gather_.shade(gather_inputs(inputs), {.target = &behind_, .area = half, .further = {&before_, &hidden_}},
+                  transfers);
+    compose_.shade(compose_inputs(inputs), {.target = &radiance_, .area = radiance_.whole()}, transfers);
+    finish(lit);
+}
+
+void DepthOfFieldEffect::finish(LitPicture& lit) const {
     lit.radiance = &radiance_;
     lit.partly_covered = lit.spreads = true;
 }

@@ -3,7 +3,7 @@
 #pragma once
 
 #include "easypbr/render/effects/effect.h"
-#include "easypbr/render/frame/programs.h"
+#include "easypbr/render/frame/screen_shader.h"
 
 namespace easypbr::render {
 
@@ -16,16 +16,22 @@ class DepthOfFieldEffect : public Effect {
     bool is_on(const Shot& shot) const override;
     int reach(const Frame& whole, const Box3d& bounds) const override;
     void draw(const EffectInputs& inputs, LitPicture& lit) override;
+    void shade(const EffectInputs& inputs, LitPicture& lit, Transfers& transfers) override;
 
   private:
     void make_targets(Vec2i size);
+    void make_framebuffers();
+    ShaderInputs halve_inputs(const EffectInputs& inputs) const;
+    ShaderInputs gather_inputs(const EffectInputs& inputs) const;
+    ShaderInputs compose_inputs(const EffectInputs& inputs) const;
+    void finish(LitPicture& lit) const;
 
-    gl::Texture light_, confusion_, behind_, before_, hidden_;
+    Target light_, confusion_, behind_, before_, hidden_;  ///< of half resolution
     Target radiance_;
     gl::Framebuffer halved_, gathered_, composed_;
-    ProgramVariants halve_{"screen_triangle.vert", "focus_halve.frag"};
-    ProgramVariants gather_{"screen_triangle.vert", "focus_gather.frag"};
-    ProgramVariants compose_{"screen_triangle.vert", "focus_compose.frag"};
+    ScreenShader halve_{"focus_halve.frag", native::Shader::focus_halve};
+    ScreenShader gather_{"focus_gather.frag", native::Shader::focus_gather};
+    ScreenShader compose_{"focus_compose.frag", native::Shader::focus_compose};
 };
 
 }  // namespace easypbr::render

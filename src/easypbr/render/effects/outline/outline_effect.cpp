@@ -32,60 +32,77 @@ int OutlineEffect::reach(const Frame& whole, const Box3d& /*bounds*/) const {
     return is_on(whole) ? line_reach(whole.resolved->settings.outline) + 2 : 0;
 }
 
+void OutlineEffect::make_edges(Vec2i size) {
+    if (edges_.size() == size) return;
+    edges_ = Target(gl::Format::rg8, size);
+    found_ = gl::Framebuffer();
+}
+
 void OutlineEffect::draw(const EffectInputs& inputs, LitPicture& lit) {
     const Frame& frame = inputs.frame;
-    const auto& outline = frame.resolved->settings.outline;
-    if (!edges_ || Vec2i(edges_.width(), edges_.height()) != frame.size) {
-        edges_ = gl::Texture(gl::Format::rg8, frame.size.x(), frame.size.y());
-        found_ = gl::Framebuffer({&edges_});
-    }
-    find_edges(inputs);
+    make_edges(frame.size);
+    // Draws surfaces where it is asked for ids.
+    const ShaderInputs edges = edge_inputs(inputs);
+    edges_.drawn();
+    if (!found_) found_ = gl::Framebuffer({&edges_.attachment()});
+    const float none[4] = {0, 0, 0, 0};
+    found_.clear_color(0, none);
+    found_.bind();
+    // An edge lies between a pixel and the one after it: the first row before the content has some too.
+    finding_.draw(edges, screen_state(grown(frame.covered, 1, frame.size)));
     if (overlay_id_ != inputs.targets.overlay.attachment().id()) {
         overlay_ = gl::Framebuffer({&inputs.targets.overlay.drawn()});
         overlay_id_ = inputs.targets.overlay.attachment().id();
     }
-    lit.covered = grown(lit.covered, line_reach(outline), frame.size);
-    const gl::Program& program = line_programs_.get({});
+    lit.covered = grown(lit.covered, line_reach(frame.resolved->settings.outline), frame.size);
     overlay_.bind();
-    program.use();
-    program.set("u_edges", 0);
-    edges_.bind(0);
-    program.set("u_reach", line_reach(outline));
-    program.set("u_half_width", outline.width / 2);
-    program.set("u_color", linear_from_srgb(outline.color));
-    gl::draw_screen(screen_state(lit.covered, gl::over));
+    lines_.draw(line_inputs(frame), screen_state(lit.covered, gl::over));
 }
 
-void OutlineEffect::find_edges(const EffectInputs& inputs) {
+void OutlineEffect::shade(const EffectInputs& inputs, LitPicture& lit, Transfers& transfers) {
+    const Frame& frame = inputs.frame;
+    make_edges(frame.size);
+    const ShaderInputs edges = edge_inputs(inputs);
+    const PixelRect area = grown(frame.covered, 1, frame.size);
+    edges_.write(area);
+    finding_.shade(edges, {.target = &edges_, .area = area}, transfers);
+    lit.covered = grown(lit.covered, line_reach(frame.resolved->settings.outline), frame.size);
+    lines_.shade(line_inputs(frame),
+                 {.target = &inputs.targets.overlay, .area = lit.covered, .store = native::Store::over},
+                 transfers);
+}
+
+ShaderInputs OutlineEffect::line_inputs(const Frame& frame) const {
+    const auto& outline = frame.resolved->settings.outline;
+    ShaderInputs values;
+    values.set("u_edges", edges_);
+    values.set("u_size", Vec2(frame.size.cast<float>()));
+    values.set("u_reach", line_reach(outline));
+    values.set("u_half_width", outline.width / 2);
+    values.set("u_color", linear_from_srgb(outline.color));
+    return values;
+}
+
+ShaderInputs OutlineEffect::edge_inputs(const EffectInputs& inputs) const {
     const Frame& frame = inputs.frame;
     const auto& outline = frame.resolved->settings.outline;
-    std::vector<std::string> defines = camera_defines(frame);
-    if (outline.silhouettes) defines.emplace_back("SILHOUETTES");
-    if (outline.creases) defines.emplace_back("CREASES");
-    if (outline.objects) defines.emplace_back("OBJECTS");
-    // Drawn first where it is asked for: it binds framebuffers of its own.
-    const GBuffer& ids = outline.objects ? inputs.with_ids() : inputs.targets;
-    const float none[4] = {0, 0, 0, 0};
-    found_.clear_color(0, none);
-    found_.bind();
-    const gl::Program& program = edge_programs_.get(defines);
-    program.use();
-    const std::pair<const char*, const Target*> sources[] = {{"u_depth_target", &inputs.targets.depth},
-                                                             {"u_normal", &inputs.targets.normal},
-                                                             {"u_material", &inputs.targets.material},
-                                                             {"u_id", &ids.id},
-                                                             {"u_id_depth", &ids.depth}};
-    for (unsigned unit = 0; unit < std::size(sources); ++unit) {
-        if (!program.has(sources[unit].first)) continue;
-        program.set(sources[unit].first, int(unit));
-        sources[unit].second->bind(unit);
-    }
-    program.set("u_depth", Vec3(float(frame.camera.near), float(frame.camera.far), 0));
-    program.set("u_size", Vec2(frame.size.cast<float>()));
-    program.set("u_depth_step", outline.depth_step);
-    program.set("u_least_cosine", float(std::cos(radians(outline.crease_angle_deg))));
-    // An edge lies between a pixel and the one after it: the first row before the content has some too.
-    gl::draw_screen(screen_state(grown(frame.covered, 1, frame.size)));
+    ShaderInputs values;
+    values.define(camera_defines(frame));
+    if (outline.silhouettes) values.define("SILHOUETTES");
+    if (outline.creases) values.define("CREASES");
+    values.set("u_depth_target", inputs.targets.depth);
+    values.set("u_normal", inputs.targets.normal);
+    values.set("u_material", inputs.targets.material);
+    values.set("u_depth", Vec3(float(frame.camera.near), float(frame.camera.far), 0));
+    values.set("u_size", Vec2(frame.size.cast<float>()));
+    values.set("u_depth_step", outline.depth_step);
+    values.set("u_least_cosine", float(std::cos(radians(outline.crease_angle_deg))));
+    if (!outline.objects) return values;
+    values.define("OBJECTS");
+    const GBuffer& ids = inputs.with_ids();
+    values.set("u_id", ids.id);
+    values.set("u_id_depth", ids.depth);
+    return values;
 }
 
 }  // namespace easypbr::render

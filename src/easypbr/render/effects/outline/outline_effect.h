@@ -2,7 +2,7 @@
 #pragma once
 
 #include "easypbr/render/effects/effect.h"
-#include "easypbr/render/frame/programs.h"
+#include "easypbr/render/frame/screen_shader.h"
 
 namespace easypbr::render {
 
@@ -16,17 +16,19 @@ class OutlineEffect : public Effect {
     bool draws_overlay() const override { return true; }
     int reach(const Frame& whole, const Box3d& bounds) const override;
     void draw(const EffectInputs& inputs, LitPicture& lit) override;
+    void shade(const EffectInputs& inputs, LitPicture& lit, Transfers& transfers) override;
 
   private:
-    void find_edges(const EffectInputs& inputs);
+    ShaderInputs edge_inputs(const EffectInputs& inputs) const;
+    ShaderInputs line_inputs(const Frame& frame) const;
+    void make_edges(Vec2i size);
 
-    gl::Texture
-        edges_;  ///< RG8: whether an edge lies between a pixel and the next one to the right, and below
+    Target edges_;  ///< RG8: whether an edge lies between a pixel and the next one to the right, and below
     gl::Framebuffer found_;
     gl::Framebuffer overlay_;
     uint32_t overlay_id_ = 0;
-    ProgramVariants edge_programs_{"screen_triangle.vert", "outline_edges.frag"};
-    ProgramVariants line_programs_{"screen_triangle.vert", "outline_lines.frag"};
+    ScreenShader finding_{"outline_edges.frag", native::Shader::outline_edges};
+    ScreenShader lines_{"outline_lines.frag", native::Shader::outline_lines};
 };
 
 }  // namespace easypbr::render

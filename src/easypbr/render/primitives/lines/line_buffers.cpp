@@ -42,12 +42,23 @@ LineBuffers make_line_buffers(const std::vector<gpu::Segment>& segments) {
 
 }  // namespace
 
+LineCache::Key LineCache::key_of(const MeshData& mesh, gpu::LineKind kind,
+                                 std::optional<float> normal_length) {
+    return {mesh.V.revision(), mesh.E.revision(), mesh.F.revision(),
+            mesh.N.revision(), mesh.C.revision(), kind,
+            normal_length};
+}
+
 const LineBuffers& LineCache::get(const MeshData& mesh, gpu::LineKind kind,
                                   std::optional<float> normal_length) {
-    const Key key{mesh.V.revision(), mesh.E.revision(), mesh.F.revision(),
-                  mesh.N.revision(), mesh.C.revision(), kind,
-                  normal_length};
-    return buffers_.get(key, [&] { return make_line_buffers(segments_of(mesh, kind, normal_length)); });
+    return buffers_.get(key_of(mesh, kind, normal_length),
+                        [&] { return make_line_buffers(segments_of(mesh, kind, normal_length)); });
+}
+
+const std::vector<gpu::Segment>& LineCache::segments(const MeshData& mesh, gpu::LineKind kind,
+                                                     std::optional<float> normal_length) {
+    return segments_.get(key_of(mesh, kind, normal_length),
+                         [&] { return segments_of(mesh, kind, normal_length); });
 }
 
 }  // namespace easypbr::render

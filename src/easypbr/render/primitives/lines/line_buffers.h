@@ -3,6 +3,7 @@
 
 #include <optional>
 #include <tuple>
+#include <vector>
 
 #include "easypbr/core/revision_cache.h"
 #include "easypbr/gl/buffer.h"
@@ -16,19 +17,27 @@ struct LineBuffers {
     int count = 0;
 };
 
-/// Buffers by the revisions of the arrays they were made from.
+/// Segments by the revisions of the arrays they were made from, on the device or in host memory.
 class LineCache {
   public:
     /// `normal_length` is in the mesh's own units; nothing: by the size of the mesh.
     const LineBuffers& get(const MeshData& mesh, gpu::LineKind kind, std::optional<float> normal_length);
+    const std::vector<gpu::Segment>& segments(const MeshData& mesh, gpu::LineKind kind,
+                                              std::optional<float> normal_length);
 
     /// Drops what was not asked for since the last call.
-    void evict_unused() { buffers_.evict_unused(); }
+    void evict_unused() {
+        buffers_.evict_unused();
+        segments_.evict_unused();
+    }
 
   private:
     using Key =
         std::tuple<uint64_t, uint64_t, uint64_t, uint64_t, uint64_t, gpu::LineKind, std::optional<float>>;
+    static Key key_of(const MeshData& mesh, gpu::LineKind kind, std::optional<float> normal_length);
+
     RevisionCache<Key, LineBuffers> buffers_;
+    RevisionCache<Key, std::vector<gpu::Segment>> segments_;
 };
 
 }  // namespace easypbr::render

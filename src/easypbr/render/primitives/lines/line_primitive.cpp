@@ -1,9 +1,12 @@
 #include "easypbr/render/primitives/lines/line_primitive.h"
 
+#include <algorithm>
 #include <optional>
 #include <vector>
 
 #include "easypbr/core/color.h"
+#include "easypbr/native/shaders.h"
+#include "easypbr/render/primitives/lines/screen_lines.h"
 
 namespace easypbr::render {
 namespace {
@@ -37,6 +40,27 @@ std::vector<Stroke> strokes_of(const DrawItem& item) {
     if (style.show_normals && !mesh.V.empty())
         strokes.push_back({gpu::LineKind::normals, given_or(normals_color), style.normal_length});
     return strokes;
+}
+
+Mat4 clip_from_mesh(const Frame& frame, const DrawItem& item) {
+    const Mat4d clip = frame.clip_from_view * frame.camera.view() * item.object->T_world_mesh.matrix();
+    return clip.cast<float>();
+}
+
+LineView view_of(const Frame& frame, const DrawItem& item, const Vec3& color) {
+    return {.clip_from_mesh = clip_from_mesh(frame, item),
+            .size = frame.size.cast<float>(),
+            .orthographic = frame.orthographic(),
+            .near = float(frame.camera.near),
+            .color = color};
+}
+
+/// What overlay_lines.frag reads of an item, for a program or for native shaders.
+template <class To>
+void set_style(To& to, const DrawItem& item) {
+    to.set("u_half_width", item.style.line_width / 2);
+    to.set("u_dash", item.style.line_dash);
+    to.set("u_always", is_over(item) ? 1.0f : 0.0f);
 }
 
 }  // namespace
@@ -116,17 +140,47 @@ void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, c
     const gl::DrawState state = kind == Kind::nearest ? nearest : gl::DrawState{.blending = gl::over};
     for (const DrawItem& item : items) {
         if (kind != Kind::nearest && is_over(item) != (kind == Kind::over)) continue;
-        const Mat4d clip_from_mesh =
-            frame.clip_from_view * frame.camera.view() * item.object->T_world_mesh.matrix();
-        program.set("u_clip_from_mesh", Mat4(clip_from_mesh.cast<float>()));
-        program.set("u_half_width", item.style.line_width / 2);
-        program.set("u_dash", item.style.line_dash);
-        program.set("u_always", is_over(item) ? 1.0f : 0.0f);
+        program.set("u_clip_from_mesh", clip_from_mesh(frame, item));
+        set_style(program, item);
         for (const Stroke& stroke : strokes_of(item)) {
             const LineBuffers& buffers = cache_.get(item.mesh(), stroke.kind, stroke.normal_length);
             if (buffers.count == 0) continue;
             program.set("u_color", stroke.color);
             gl::draw_quads(state, buffers.array, buffers.count);
+        }
+    }
+}
+
+void LinePrimitive::shade_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
+                                  Transfers& transfers) {
+    if (nearest_.size() != frame.size) nearest_ = Target(gl::Format::r32f, frame.size);
+    nearest_.write(targets.overlay.area());
+    std::ranges::fill(nearest_.pixels<float>(), 0.0f);
+    for (const Kind kind : {Kind::nearest, Kind::ordered, Kind::over})
+        shade_items(frame, items, kind, targets, transfers);
+}
+
+void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, const GBuffer& targets,
+                                Transfers& transfers) {
+    const Target& to = kind == Kind::nearest ? nearest_ : targets.overlay;
+    const PixelRect& area = to.area();
+    const native::Region region =
+        region_of({.target = &to, .area = area, .store = native::Store::over}, transfers);
+    for (const DrawItem& item : items) {
+        if (kind != Kind::nearest && is_over(item) != (kind == Kind::over)) continue;
+        ShaderInputs values;
+        values.define(camera_defines(frame));
+        if (kind == Kind::nearest) values.define("DEPTH_ONLY");
+        set_camera_uniforms(values, frame);
+        set_style(values, item);
+        values.set("u_depth_target", targets.depth);
+        values.set("u_normal", targets.normal);
+        if (kind != Kind::nearest) values.set("u_nearest_line", nearest_);
+        for (const Stroke& stroke : strokes_of(item)) {
+            const auto& segments = cache_.segments(item.mesh(), stroke.kind, stroke.normal_length);
+            native::draw_lines(values.native(transfers), region,
+                               screen_lines(segments, view_of(frame, item, stroke.color)),
+                               area.y + area.height);
         }
     }
 }

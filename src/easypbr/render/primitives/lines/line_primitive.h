@@ -2,6 +2,7 @@
 #pragma once
 
 #include "easypbr/render/frame/programs.h"
+#include "easypbr/render/frame/screen_shader.h"
 #include "easypbr/render/primitives/lines/line_buffers.h"
 #include "easypbr/render/primitives/primitive.h"
 
@@ -20,6 +21,8 @@ class LinePrimitive final : public Primitive {
                              const GBuffer& layer) override;
     void draw_overlay_rest(const Frame& frame, DrawItems items, const GBuffer& targets) override;
     void draw_overlay_over(const Frame& frame, DrawItems items, const GBuffer& targets) override;
+    void shade_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
+                       Transfers& transfers) override;
     void evict_unused() override { cache_.evict_unused(); }
 
   private:
@@ -27,9 +30,12 @@ class LinePrimitive final : public Primitive {
     void draw_items(const Frame& frame, DrawItems items, Kind kind, const GBuffer* next = nullptr);
     void add(const Frame& frame, DrawItems items, const GBuffer& targets, Kind kind, const GBuffer* next);
     void bind_surfaces(const gl::Program& program, const GBuffer* next) const;
+    void shade_items(const Frame& frame, DrawItems items, Kind kind, const GBuffer& targets,
+                     Transfers& transfers);
 
     LineCache cache_;
     ProgramVariants programs_{"overlay_lines.vert", "overlay_lines.frag"};
+    Target nearest_;  ///< R32F, natively: reversed depth of the nearest line
     gl::Texture depth_;
     gl::Framebuffer framebuffer_;
     uint32_t overlay_id_ = 0;

@@ -1,0 +1,85 @@
+#include "easypbr/render/primitives/lines/screen_lines.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/core/color.h"
+#include "easypbr/core/parallel.h"
+
+namespace easypbr::render {
+namespace {
+
+/// The part of a segment that is drawn, from 0 to 1; nothing where `from` is not below `to`.
+struct Part {
+    float from = 0, to = 1;
+
+    /// Leaves what is above 0 of a value that is `a` at the start and `b` at the end.
+    void cut(float a, float b) {
+        if (a < 0 && b < 0) to = -1;
+        if (a < 0 && b >= 0) from = std::max(from, a / (a - b));
+        if (a >= 0 && b < 0) to = std::min(to, a / (a - b));
+    }
+    bool is_empty() const { return from > to; }
+};
+
+Part part_of(const Vec4& start, const Vec4& end, const LineView& view) {
+    Part part;
+    if (view.orthographic) {
+        part.cut(start.z(), end.z());
+        part.cut(1 - start.z(), 1 - end.z());
+    } else {
+        part.cut(start.w() - view.near, end.w() - view.near);
+    }
+    return part;
+}
+
+Vec4 channels_of(const Rgba8& c) {
+    return Vec4(c[0], c[1], c[2], c[3]) / 255.0f;
+}
+
+void set_color(float* to, const Vec4& encoded, const Vec3& factor) {
+    const Vec3 linear = linear_from_srgb(Vec3(encoded.head<3>())).cwiseProduct(factor);
+    std::copy_n(linear.data(), 3, to);
+    to[3] = encoded.w();
+}
+
+Vec2 pixel_of(const Vec4& clip, const Vec2& size) {
+    const Vec2 ndc = clip.head<2>() / clip.w();
+    return {(0.5f + 0.5f * ndc.x()) * size.x(), (0.5f - 0.5f * ndc.y()) * size.y()};
+}
+
+/// False where nothing of it is drawn.
+bool project(const gpu::Segment& segment, const LineView& view, native::ScreenLine& line) {
+    const Vec4 start = view.clip_from_mesh * Vec4(segment.a[0], segment.a[1], segment.a[2], 1),
+               end = view.clip_from_mesh * Vec4(segment.b[0], segment.b[1], segment.b[2], 1);
+    const Part part = part_of(start, end, view);
+    if (part.is_empty()) return false;
+    const Vec4 a = start + part.from * (end - start), b = start + part.to * (end - start);
+    const Vec2 from = pixel_of(a, view.size), to = pixel_of(b, view.size), way = to - from;
+    line.length = way.norm();
+    if (!std::isfinite(line.length)) return false;
+    const Vec2 along = line.length > 1e-6f ? Vec2(way / line.length) : Vec2(1, 0);
+    std::copy_n(from.data(), 2, line.start);
+    std::copy_n(along.data(), 2, line.along);
+    line.depths[0] = a.z() / a.w();
+    line.depths[1] = b.z() / b.w();
+    const Vec4 first = channels_of(segment.color_a), last = channels_of(segment.color_b);
+    set_color(line.start_color, first + part.from * (last - first), view.color);
+    set_color(line.end_color, first + part.to * (last - first), view.color);
+    return true;
+}
+
+}  // namespace
+
+std::vector<native::ScreenLine> screen_lines(std::span<const gpu::Segment> segments, const LineView& view) {
+    std::vector<native::ScreenLine> lines(segments.size());
+    std::vector<uint8_t> drawn(segments.size());
+    parallel_for(segments.size(), 4096, [&](size_t i) { drawn[i] = project(segments[i], view, lines[i]); });
+    size_t count = 0;
+    for (size_t i = 0; i < lines.size(); ++i)
+        if (drawn[i]) lines[count++] = lines[i];
+    lines.resize(count);
+    return lines;
+}
+
+}  // namespace easypbr::render
