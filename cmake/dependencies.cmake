@@ -13,7 +13,7 @@ pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
 find_package(tinyexr REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(yaml-cpp REQUIRED)
-# Headers alone; src/easypbr/remote/network.cpp includes them.
+# Headers alone; src/easypbr/remote/connection.h and network.cpp include them.
 find_path(BOOST_FOLDER boost/beast.hpp REQUIRED)
 find_path(STB_FOLDER stb/stb_truetype.h REQUIRED)
 # The window's library is loaded when the first window is opened: only its header is needed here.
