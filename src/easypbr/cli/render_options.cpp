@@ -105,11 +105,7 @@ void declare_look(CLI::App& command, RenderOptions& options) {
         ->option_text("NAME|FILE");
     command.add_flag("--legend", options.legend, "Draw a legend of the labels into the image");
     command.add_flag("--colorbar", options.colorbar, "Draw a colour bar of the values into the image");
-    command.add_option("--set", options.values, "Any setting, for example tonemap.exposure=2")
-        ->allow_extra_args(false)
-        ->option_text("KEY=VALUE");
-    command.add_option("--settings", options.settings, "Start from a file that --save-settings wrote")
-        ->option_text("FILE");
+    declare_settings(command, options.settings, options.values);
     command
         .add_option("--save-settings", options.save_settings,
                     "Write all settings to a JSON file, given and inferred")
@@ -239,6 +235,14 @@ std::optional<Vec2i> parse_focus(const std::string& text) {
         if (error == std::errc() && last == end) return pixel;
     }
     throw UsageError(fmt::format("--focus: expected the pixel X,Y, got '{}'", text));
+}
+
+void declare_settings(CLI::App& command, std::string& settings, std::vector<std::string>& values) {
+    command.add_option("--set", values, "Any setting, for example tonemap.exposure=2")
+        ->allow_extra_args(false)
+        ->option_text("KEY=VALUE");
+    command.add_option("--settings", settings, "Start from a file that --save-settings wrote")
+        ->option_text("FILE");
 }
 
 void declare_passes(CLI::App& command, std::vector<std::string>& passes) {
