@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "easypbr/core/error.h"
+#include "easypbr/io/source/json_depth.h"
 
 namespace easypbr::io {
 namespace {
@@ -88,6 +89,7 @@ GltfDocument::GltfDocument(std::span<const std::byte> bytes, std::filesystem::pa
     : path_(std::move(path)) {
     if (bytes.empty()) fail("the file is empty");
     const std::string_view text = json_chunk(bytes);
+    check_json_depth(text, path_.string());
     try {
         root_ = Json::parse(text);
     } catch (const Json::exception& error) {
