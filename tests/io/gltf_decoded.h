@@ -9,8 +9,8 @@
 #include "easypbr/io/mesh/mesh_io.h"
 #include "io/gltf_builder.h"
 
-inline easypbr::io::LoadedScene decode(const GltfBuilder& builder) {
-    return easypbr::io::decode_gltf(as_span(builder.glb()), "test.glb");
+inline easypbr::io::LoadedScene decode(const GltfBuilder& builder, const std::string& variant = {}) {
+    return easypbr::io::decode_gltf(as_span(builder.glb()), "test.glb", variant);
 }
 
 /// Data of a node of the scene.

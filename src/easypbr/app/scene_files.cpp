@@ -41,7 +41,8 @@ void show_loaded(Session& session, AnimationPlayer& player, const fs::path& path
 io::LoadOptions load_options(const Settings& settings, const std::string& format) {
     return {.crease_angle_deg = settings.load.crease_deg,
             .memory_gb = settings.limits.memory,
-            .format = format};
+            .format = format,
+            .variant = settings.load.variant};
 }
 
 void SceneFiles::open(const fs::path& path) {

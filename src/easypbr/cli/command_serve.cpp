@@ -104,7 +104,7 @@ int run_serve(const ServeCommand& options) {
     require(!shown.files.empty(), "serve", "at least one FILE");
     app::Session session;
     if (!shown.settings.empty()) app::load_settings(session, shown.settings);
-    apply(look_of(shown), session.settings());
+    apply(shown_look(shown), session.settings());
     std::vector<std::pair<std::string, Animations>> animations;
     show_files(shown, session, [&](size_t, const std::string& name, const io::LoadedScene& loaded) {
         if (!loaded.animations.empty()) animations.emplace_back(name, loaded.animations);

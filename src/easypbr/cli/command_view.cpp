@@ -55,7 +55,7 @@ void declare_view(CLI::App& command, ViewOptions& options) {
 }
 
 RenderOptions look_of_view(const ViewOptions& options) {
-    RenderOptions look = look_of(options.shown);
+    RenderOptions look = shown_look(options.shown);
     look.size = options.size;
     if (!options.shader.empty()) look.shorthands.push_back({"--shader", "material.shader", options.shader});
     return look;

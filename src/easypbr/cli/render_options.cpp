@@ -45,7 +45,8 @@ constexpr ShorthandOption shorthand_options[] = {{"--samples", "image.samples", 
                                                  {"--metallic", "material.metallic", "X"},
                                                  {"--roughness", "material.roughness", "X"},
                                                  {"--shader", "material.shader", "FILE"},
-                                                 {"--crease", "load.crease_deg", "DEG"}};
+                                                 {"--crease", "load.crease_deg", "DEG"},
+                                                 {"--variant", "load.variant", "NAME"}};
 
 void declare_shorthands(CLI::App& command, RenderOptions& options) {
     for (const ShorthandOption& shorthand : shorthand_options) {

@@ -12,16 +12,18 @@ void declare_shown_files(CLI::App& command, ShownFiles& options) {
     command.add_option("FILE", options.files,
                        "Meshes: PLY, OBJ, STL, OFF, glTF, GLB and more; - is standard input");
     declare_format(command, options.format);
+    command.add_option("--variant", options.variant, field("load.variant").doc)->option_text("NAME");
     command.add_option("--env,--hdri-file", options.environment, field("environment.file").doc)
         ->option_text("FILE");
     declare_settings(command, options.settings, options.values);
 }
 
-RenderOptions look_of(const ShownFiles& options) {
+RenderOptions shown_look(const ShownFiles& options) {
     RenderOptions look;
     look.values = options.values;
     if (!options.environment.empty())
         look.shorthands.push_back({"--env", "environment.file", options.environment});
+    if (!options.variant.empty()) look.shorthands.push_back({"--variant", "load.variant", options.variant});
     return look;
 }
 

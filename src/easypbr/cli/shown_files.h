@@ -16,14 +16,14 @@ namespace easypbr::cli {
 
 struct ShownFiles {
     std::vector<std::string> files, values;
-    std::string environment, settings, format;
+    std::string environment, settings, format, variant;
 };
 
-/// Ties FILE, --format, --env, --settings and --set to `options`, which must outlive the parsing.
+/// Ties FILE, --format, --variant, --env, --settings and --set to `options`, which must outlive the parsing.
 void declare_shown_files(CLI::App& command, ShownFiles& options);
 
-/// What --env and --set say.
-RenderOptions look_of(const ShownFiles& options);
+/// What --variant, --env and --set say.
+RenderOptions shown_look(const ShownFiles& options);
 
 /// Reads the files into the session's scene, in their order, and calls `shown` after each with its number,
 /// its name in the scene and what it holds. Throws as load_drawable() does.

@@ -16,7 +16,7 @@ void add_safety(auto& message, const HostRules& hosts) {
     message.set(http::field::server, "easypbr");
 }
 
-size_t size_of(const Connection::Item& item) {
+size_t bytes_of_item(const Connection::Item& item) {
     const auto* packet = std::get_if<Packet>(&item);
     return packet ? FrameHeader::size + packet->count : std::get<SharedText>(item)->size();
 }
@@ -42,7 +42,7 @@ void Connection::admit() {
 
 void Connection::send(Item item) {
     if (closing_ || !open_) return;
-    unread_ += size_of(item);
+    unread_ += bytes_of_item(item);
     queue_.push_back(std::move(item));
     if (unread_ > Network::most_unread_bytes) return close(CloseCode::refused, "reads too slowly");
     if (!writing_) write();
@@ -161,7 +161,7 @@ void Connection::write() {
 
 void Connection::on_written(Code error) {
     if (error) return end();
-    unread_ -= size_of(queue_.front());
+    unread_ -= bytes_of_item(queue_.front());
     queue_.pop_front();
     writing_ = false;
     if (!queue_.empty() && !closing_) write();
