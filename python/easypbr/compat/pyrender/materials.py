@@ -77,8 +77,8 @@ class Material:
     occlusionTexture: Any = None
     emissiveTexture: Any = None
     emissiveFactor: Any = None
-    alphaMode: str | None = None
-    alphaCutoff: float | None = None
+    alphaMode: Any = None
+    alphaCutoff: Any = None
     doubleSided: bool = False
     smooth: bool = True
     wireframe: bool = False
