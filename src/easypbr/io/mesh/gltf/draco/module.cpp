@@ -101,11 +101,12 @@ void copy_rows(const draco::PointAttribute& from, uint32_t points, DracoAttribut
         for (size_t c = 0; c < row.size(); ++c) {
             From value;
             std::memcpy(&value, source + c * sizeof(From), sizeof value);
+            const auto number = double(value);  // It holds all types of up to 32 bits.
             if constexpr (!std::is_floating_point_v<To>)
-                expect(double(value) >= double(std::numeric_limits<To>::min()) &&
-                           double(value) <= double(std::numeric_limits<To>::max()),
+                expect(number >= double(std::numeric_limits<To>::min()) &&
+                           number <= double(std::numeric_limits<To>::max()),
                        "a value is out of its type's range");
-            row[c] = To(value);
+            row[c] = To(number);
         }
         std::memcpy(to.rows.data() + point * row.size() * sizeof(To), row.data(), row.size() * sizeof(To));
     }
