@@ -3,7 +3,7 @@ PYTHON := .venv/bin/python
 BUILD := build
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 
-.PHONY: demo test library build setup setup-tests bench check-long docs format lint clean
+.PHONY: demo test library build setup setup-tests bench check-long sanitize fuzz docs format lint clean
 
 # Library, command line and Python module, without tests and benchmarks.
 library: setup
@@ -36,6 +36,15 @@ bench: build
 
 check-long: setup-tests build
 	scripts/check_long.sh
+
+# All C++ tests under AddressSanitizer and UBSan.
+sanitize: setup-tests
+	scripts/sanitize.sh
+
+# Coverage-guided fuzzing of all readers: `make fuzz TIME=3600` seconds.
+TIME ?= 600
+fuzz: setup-tests
+	scripts/fuzz.sh $(TIME)
 
 docs: setup-tests build
 	scripts/docs.sh

@@ -10,10 +10,11 @@ find_package(embree 3 REQUIRED)
 pkg_check_modules(EPOXY REQUIRED IMPORTED_TARGET epoxy)
 pkg_check_modules(SPNG REQUIRED IMPORTED_TARGET spng)
 pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
+pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp)
 find_package(tinyexr REQUIRED)
 find_package(ZLIB REQUIRED)
 find_package(yaml-cpp REQUIRED)
-# Headers alone; src/easypbr/remote/network.cpp includes them.
+# Headers alone; src/easypbr/remote/connection.h and network.cpp include them.
 find_path(BOOST_FOLDER boost/beast.hpp REQUIRED)
 find_path(STB_FOLDER stb/stb_truetype.h REQUIRED)
 # The window's library is loaded when the first window is opened: only its header is needed here.
@@ -28,7 +29,7 @@ find_file(EASYPBR_FONT DejaVuSans.ttf PATHS /usr/share/fonts PATH_SUFFIXES truet
 
 add_library(easypbr_dependencies INTERFACE)
 target_link_libraries(easypbr_dependencies INTERFACE Eigen3::Eigen fmt::fmt TBB::tbb nlohmann_json::nlohmann_json
-  meshoptimizer::meshoptimizer nanoflann::nanoflann embree PkgConfig::EPOXY PkgConfig::SPNG PkgConfig::TURBOJPEG tinyexr::tinyexr ZLIB::ZLIB yaml-cpp ${CMAKE_DL_LIBS})
+  meshoptimizer::meshoptimizer nanoflann::nanoflann embree PkgConfig::EPOXY PkgConfig::SPNG PkgConfig::TURBOJPEG PkgConfig::WEBP tinyexr::tinyexr ZLIB::ZLIB yaml-cpp ${CMAKE_DL_LIBS})
 # What the room gui alone uses.
 add_library(easypbr_gui_dependencies INTERFACE)
 target_link_libraries(easypbr_gui_dependencies INTERFACE ${IMGUI_LIBRARY} ${STB_LIBRARY})

@@ -29,3 +29,11 @@ else()
   message(STATUS "FFmpeg not found: videos are not written "
                  "(Debian: libavcodec-dev libavformat-dev libavutil-dev libswscale-dev)")
 endif()
+
+# Compressed triangles of glTF.
+find_package(draco QUIET CONFIG)
+if(draco_FOUND)
+  easypbr_add_module(draco mesh/gltf/draco draco::draco)
+else()
+  message(STATUS "Draco not found: glTF files with KHR_draco_mesh_compression are not read (Debian: libdraco-dev)")
+endif()

@@ -7,9 +7,5 @@ cd "$(dirname "$0")/.."
 .venv/bin/python bench/cloud_updates.py
 .venv/bin/python -m pytest -q -s tests/long
 EASYPBR_TEST_SCENES=200 build/tests/test_app --gtest_filter='NativeShading.*'
-cmake --preset asan
-cmake --build build-asan
-# Mesa and its JIT keep memory until the process ends; what leaks is theirs.
-export ASAN_OPTIONS=detect_leaks=0 UBSAN_OPTIONS=print_stacktrace=1
-ctest --test-dir build-asan --output-on-failure -j "$(nproc)" -E Fuzz
-EASYPBR_FUZZ_COUNT=10000 ctest --test-dir build-asan --output-on-failure -j "$(nproc)" -R Fuzz --timeout 7200
+scripts/sanitize.sh -E Fuzz
+EASYPBR_FUZZ_COUNT=10000 scripts/sanitize.sh -R Fuzz --timeout 7200

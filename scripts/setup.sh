@@ -8,7 +8,7 @@ packages=(
   g++ cmake ninja-build ccache pkg-config
   libeigen3-dev libfmt-dev libtbb-dev nlohmann-json3-dev libcli11-dev libxxhash-dev libfast-float-dev
   libepoxy-dev libegl1 libegl-mesa0 libopengl0 libgl1-mesa-dri
-  libspng-dev libturbojpeg0-dev libtinyexr-dev zlib1g-dev libmeshoptimizer-dev libnanoflann-dev libassimp-dev libyaml-cpp-dev
+  libspng-dev libturbojpeg0-dev libwebp-dev libtinyexr-dev zlib1g-dev libmeshoptimizer-dev libnanoflann-dev libassimp-dev libdraco-dev libyaml-cpp-dev
   libstb-dev fonts-dejavu-core libglfw3-dev libxcb1-dev libimgui-dev libboost-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
   libgtest-dev python3-dev python3-venv
@@ -16,7 +16,7 @@ packages=(
 )
 requirements=(scripts/requirements.txt)
 if [ "${1:-}" = tests ]; then
-  packages+=(clang-format clang-tidy ffmpeg xvfb openbox xdotool wmctrl xclip python3-torch groff-base zsh fish chromium)
+  packages+=(clang-14 libclang-rt-14-dev clang-format clang-tidy ffmpeg xvfb openbox xdotool wmctrl xclip python3-torch groff-base zsh fish chromium)
   # The page is built again by a test; Node may come from elsewhere.
   command -v npm >/dev/null || packages+=(nodejs npm)
   requirements+=(scripts/requirements-test.txt)

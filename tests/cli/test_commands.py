@@ -95,7 +95,7 @@ def test_compare_refuses_other_sizes(easypbr, two_images, tmp_path):
 
 def test_doctor_says_what_it_found(easypbr, environment):
     out = easypbr("doctor").stdout
-    for part in ("easypbr", "works", "renderer", "OpenGL", environment["EASYPBR_CACHE_DIR"], "writable", "assimp"):
+    for part in ("easypbr", "works", "renderer", "OpenGL", environment["EASYPBR_CACHE_DIR"], "writable", "assimp", "Draco"):
         assert part in out
 
 

@@ -145,7 +145,8 @@ def test_architecture_is_one_look_with_every_design_page():
 def test_architecture_gives_a_reason_for_every_dependency():
     """What the build looks for, under the name that the project itself goes by."""
     own_names = {"Eigen3": "Eigen", "TBB": "oneTBB", "nlohmann_json": "nlohmann-json", "epoxy": "libepoxy",
-                 "spng": "libspng", "libturbojpeg": "libjpeg-turbo", "ZLIB": "zlib", "GTest": "GoogleTest", "embree": "Embree"}
+                 "spng": "libspng", "libturbojpeg": "libjpeg-turbo", "ZLIB": "zlib", "GTest": "GoogleTest", "embree": "Embree",
+                 "draco": "Draco"}
     is_tool = {"PkgConfig", "Python"}
     found = set()
     for path in [*(ROOT / "cmake").glob("*.cmake"), ROOT / "tests/CMakeLists.txt"]:

@@ -117,7 +117,7 @@ TEST(GltfAnimation, SaysWhatIsWrong) {
     file.json["animations"][0]["channels"][0]["sampler"] = 1;
     EXPECT_NE(error_of(file).find("has no sampler 1"), std::string::npos);
     file = moving();
-    file.json["animations"][0]["channels"][0]["target"]["path"] = "pointer";
+    file.json["animations"][0]["channels"][0]["target"]["path"] = "colour";
     EXPECT_TRUE(load(file).animations.duration_s(0) == 0) << "what is not known is left out";
     file = moving();
     file.json["skins"] = {{{"joints", {0, 9}}}};

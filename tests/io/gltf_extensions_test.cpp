@@ -5,28 +5,19 @@
 #include <cmath>
 
 #include "easypbr/core/error.h"
-#include "easypbr/core/log.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/gltf/glb_writer.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/scene/material_table.h"
 #include "easypbr/scene/mesh.h"
-#include "io/gltf_builder.h"
+#include "io/gltf_decoded.h"
 
 using namespace easypbr;
 
 namespace {
 
 using Json = nlohmann::json;
-
-struct LogCapture {
-    LogCapture() {
-        set_log_sink([this](LogLevel, std::string_view message) { text += std::string(message) + "\n"; });
-    }
-    ~LogCapture() { set_log_sink({}); }
-    std::string text;
-};
 
 /// Index of a new texture of 2 x 2 pixels, all of these channels.
 size_t add_texture(GltfBuilder& builder, std::initializer_list<uint8_t> channels) {

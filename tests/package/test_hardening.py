@@ -11,7 +11,7 @@ from test_package import ROOT
 
 BUILD = ROOT / "build"
 PROGRAMS = ["easypbr", "easypbr_read_assimp"]
-LIBRARIES = ["libeasypbr.so", "libeasypbr_ffmpeg.so", "python/easypbr/_easypbr.*.so"]
+LIBRARIES = ["libeasypbr.so", "libeasypbr_ffmpeg.so", "libeasypbr_draco.so", "python/easypbr/_easypbr.*.so"]
 
 
 def built(pattern) -> pathlib.Path:

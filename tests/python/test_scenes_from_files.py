@@ -40,6 +40,23 @@ def test_lights_of_a_file_are_drawn(tmp_path):
     assert picture[16, 16, 0] == pytest.approx(8 / (np.pi * 4), rel=0.005)
 
 
+def test_material_variants_are_chosen_by_name(tmp_path):
+    write_lit_square(tmp_path / "plain.gltf")
+    content = json.loads((tmp_path / "plain.gltf").read_text())
+    content["materials"] = [{"name": "grey"}, {"name": "red", "pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1]}}]
+    content["extensions"]["KHR_materials_variants"] = {"variants": [{"name": "street red"}]}
+    mappings = {"mappings": [{"material": 1, "variants": [0]}]}
+    content["meshes"][0]["primitives"][0].update(material=0, extensions={"KHR_materials_variants": mappings})
+    path = tmp_path / "shoe.gltf"
+    path.write_text(json.dumps(content))
+    assert easypbr.load_scene(path).variants == ["street red"]
+    assert easypbr.load_scene(path).mesh.children[0].material.name == "grey"
+    red = easypbr.load_scene(path, variant="street red").mesh.children[0].material
+    assert (red.name, red.base_color) == ("red", (1, 0, 0))
+    with pytest.raises(easypbr.UnknownNameError, match="did you mean 'street red'"):
+        easypbr.load_scene(path, variant="street rod")
+
+
 def render_in_child(connection):
     try:
         easypbr.render(easypbr.shapes.sphere(), size=(16, 16), samples=1)

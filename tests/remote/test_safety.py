@@ -168,7 +168,7 @@ def test_control_is_asked_for_and_given(connect):
 
 
 FORBIDDEN = ["environment.file", "background.image", "material.shader", "material.base_color_texture", "limits.memory",
-             "load.crease_deg", "image.size"]
+             "load.crease_deg", "load.variant", "image.size"]
 
 
 @pytest.mark.parametrize("name", FORBIDDEN)

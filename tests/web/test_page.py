@@ -137,7 +137,7 @@ def test_every_setting_has_a_control_and_changes_the_picture(view, open_page):
     search.fill("")
     page.page.evaluate("""() => document.querySelectorAll('.group button[aria-expanded="false"]').forEach(b => b.click())""")
     shown = {row.get_attribute("for").removeprefix("field-") for row in page.page.locator(".row label").all()}
-    hidden = {"environment.file", "background.image", "image.size", "load.crease_deg", "limits.memory"}
+    hidden = {"environment.file", "background.image", "image.size", "load.crease_deg", "load.variant", "limits.memory"}
     names = {name for name, _ in view.settings if not name.startswith("material.") or not name.endswith(("_texture", "shader"))}
     assert shown == names - hidden
 

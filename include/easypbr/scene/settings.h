@@ -184,6 +184,7 @@ using AnnotationSettings = BasicAnnotationSettings<Auto>;
 /// Loading of files by the command line and the window.
 struct LoadSettings {
     float crease_deg = 30;  ///< STL: edges between faces at a larger angle stay sharp, degrees, 0 to 180
+    std::string variant;    ///< glTF: name of the material variant; empty: the file's own materials
 };
 
 /// Limits on what files may ask for.

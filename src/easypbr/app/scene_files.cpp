@@ -29,9 +29,7 @@ std::string unique_name(const Scene& scene, const std::string& stem) {
 }
 
 void show_loaded(Session& session, AnimationPlayer& player, const fs::path& path, const std::string& name) {
-    const io::LoadedScene loaded =
-        io::load_scene(path, {.crease_angle_deg = session.settings().load.crease_deg,
-                              .memory_gb = session.settings().limits.memory});
+    const io::LoadedScene loaded = io::load_scene(path, load_options(session.settings()));
     session.scene().show(loaded.mesh, name);
     if (!loaded.animations.empty()) player.add(name, loaded.animations);
     for (const auto& [light, value] : loaded.lights)
@@ -39,6 +37,13 @@ void show_loaded(Session& session, AnimationPlayer& player, const fs::path& path
 }
 
 }  // namespace
+
+io::LoadOptions load_options(const Settings& settings, const std::string& format) {
+    return {.crease_angle_deg = settings.load.crease_deg,
+            .memory_gb = settings.limits.memory,
+            .format = format,
+            .variant = settings.load.variant};
+}
 
 void SceneFiles::open(const fs::path& path) {
     if (is_environment_file(path)) {

@@ -9,7 +9,14 @@
 #include "easypbr/app/notifications.h"
 #include "easypbr/app/session.h"
 
+namespace easypbr::io {
+struct LoadOptions;
+}
+
 namespace easypbr::app {
+
+/// How the settings say that mesh files are read; `format` is an extension, empty: the file's own.
+io::LoadOptions load_options(const Settings& settings, const std::string& format = {});
 
 /// Tells by notifications what it has done.
 class SceneFiles {

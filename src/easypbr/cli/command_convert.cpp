@@ -4,12 +4,13 @@
 #include "easypbr/core/file.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/scene/fields.h"
 
 namespace easypbr::cli {
 namespace {
 
 struct ConvertOptions {
-    std::string in, out, format;
+    std::string in, out, format, variant;
     double crease_deg = io::LoadOptions{}.crease_angle_deg, memory_gb = 0;
     std::vector<MeshStep> steps;
 };
@@ -26,6 +27,7 @@ void declare_convert(CLI::App& command, ConvertOptions& options) {
         .add_option("--memory", options.memory_gb,
                     "Most that the arrays and images of IN may take; 0: three quarters of what is available")
         ->option_text("GB");
+    command.add_option("--variant", options.variant, field("load.variant").doc)->option_text("NAME");
     declare_mesh_steps(command, options.steps);
 }
 
@@ -36,7 +38,8 @@ int run_convert(const ConvertOptions& options) {
     if (!is_image_file(options.in)) {
         const Mesh mesh = load_input(options.in, {.crease_angle_deg = float(options.crease_deg),
                                                   .memory_gb = options.memory_gb,
-                                                  .format = options.format})
+                                                  .format = options.format,
+                                                  .variant = options.variant})
                               .mesh;
         io::save_mesh(apply_mesh_steps(mesh, options.steps), options.out);
         return 0;

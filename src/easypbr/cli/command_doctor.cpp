@@ -11,6 +11,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh/assimp/assimp_loader.h"
+#include "easypbr/io/mesh/gltf/gltf_draco.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/native/shaders.h"
 
@@ -47,6 +48,12 @@ void print_formats() {
               ? "reader not found: FBX, DAE, 3DS and others cannot be read; install libassimp5 and keep "
                 "easypbr_read_assimp beside libeasypbr.so"
               : fmt::format("reader found, {} formats", extensions.size()));
+    print("Draco",
+          io::draco_problem().empty()
+              ? "module found: KHR_draco_mesh_compression of glTF"
+              : fmt::format("module not found ({}): compressed glTF files cannot be read; install libdraco7 "
+                            "and keep libeasypbr_draco.so beside libeasypbr.so",
+                            io::draco_problem()));
 }
 
 void print_context(const gl::ContextInfo& info) {

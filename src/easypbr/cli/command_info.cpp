@@ -119,6 +119,7 @@ Json describe(const io::LoadedScene& loaded) {
         json["bounds"] = {{"min", describe(sum.bounds.min())}, {"max", describe(sum.bounds.max())}};
     json["lights"] = loaded.lights.size();
     json["cameras"] = loaded.cameras.size();
+    json["variants"] = loaded.variants;
     return json;
 }
 
@@ -155,6 +156,8 @@ void print_mesh(const Json& mesh) {
     const auto attributes = mesh["attributes"].get<std::vector<std::string>>();
     fmt::print("{:<12}{}\n", "attributes",
                attributes.empty() ? "none" : fmt::format("{}", fmt::join(attributes, ", ")));
+    if (const auto variants = mesh["variants"].get<std::vector<std::string>>(); !variants.empty())
+        fmt::print("{:<12}{}\n", "variants", fmt::join(variants, ", "));
     if (mesh.contains("bounds"))
         fmt::print("{:<12}{}\n", "bounds", box_text(mesh["bounds"]["min"], mesh["bounds"]["max"]));
     for (const Json& material : mesh["materials"]) {

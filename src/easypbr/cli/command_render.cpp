@@ -9,6 +9,7 @@
 #include "easypbr/app/output.h"
 #include "easypbr/app/recorder.h"
 #include "easypbr/app/recording_target.h"
+#include "easypbr/app/scene_files.h"
 #include "easypbr/app/session.h"
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/console.h"
@@ -226,10 +227,8 @@ class RenderJob {
 
     /// Reads the files while the GL context is made, for all of it takes long.
     void load(const Picture& picture, StageTimes& times) {
-        const io::LoadOptions load_options{.crease_angle_deg = look_.settings.load.crease_deg,
-                                           .memory_gb = look_.settings.limits.memory,
-                                           .format = options_.format};
-        auto loading = std::async(std::launch::async, load_all, picture.files, load_options);
+        auto loading = std::async(std::launch::async, load_all, picture.files,
+                                  app::load_options(look_.settings, options_.format));
         auto lighting = std::async(std::launch::async, [this] { load_environment(); });
         session_.context_info();
         times.lap("context");

@@ -13,34 +13,24 @@
 #include "easypbr/app/settings_files.h"
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/drawable.h"
-#include "easypbr/cli/render_options.h"
+#include "easypbr/cli/shown_files.h"
 #include "easypbr/core/error.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/remote/server.h"
 #include "easypbr/scene/animation.h"
-#include "easypbr/scene/fields.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr::cli {
 namespace {
 
 struct ServeCommand {
-    std::vector<std::string> files, values;
-    std::string environment, settings, format, socket, token_file;
+    ShownFiles shown;
+    std::string socket, token_file;
     remote::ServeOptions server;
 };
 
 void declare_serve(CLI::App& command, ServeCommand& options) {
-    command.add_option("FILE", options.files,
-                       "Meshes: PLY, OBJ, STL, OFF, glTF, GLB and more; - is standard input");
-    declare_format(command, options.format);
-    command.add_option("--env,--hdri-file", options.environment, field("environment.file").doc)
-        ->option_text("FILE");
-    command.add_option("--settings", options.settings, "Start from a file that --save-settings wrote")
-        ->option_text("FILE");
-    command.add_option("--set", options.values, "Any setting, for example tonemap.exposure=2")
-        ->allow_extra_args(false)
-        ->option_text("KEY=VALUE");
+    declare_shown_files(command, options.shown);
     command.add_option("--port", options.server.port, "Port to listen on; 0 takes any that is free")
         ->option_text("N");
     command
@@ -109,25 +99,16 @@ void tell_urls(const remote::Server& server) {
 }
 
 int run_serve(const ServeCommand& options) {
-    check_input("serve", options.files);
-    require(!options.files.empty(), "serve", "at least one FILE");
+    const ShownFiles& shown = options.shown;
+    check_input("serve", shown.files);
+    require(!shown.files.empty(), "serve", "at least one FILE");
     app::Session session;
-    if (!options.settings.empty()) app::load_settings(session, options.settings);
-    RenderOptions look;
-    look.values = options.values;
-    if (!options.environment.empty())
-        look.shorthands.push_back({"--env", "environment.file", options.environment});
-    apply(look, session.settings());
+    if (!shown.settings.empty()) app::load_settings(session, shown.settings);
+    apply(shown_look(shown), session.settings());
     std::vector<std::pair<std::string, Animations>> animations;
-    const std::vector<std::string> names = unique_names(options.files);
-    for (size_t i = 0; i < names.size(); ++i) {
-        const io::LoadOptions load{.crease_angle_deg = session.settings().load.crease_deg,
-                                   .memory_gb = session.settings().limits.memory,
-                                   .format = options.format};
-        const io::LoadedScene loaded = load_drawable(options.files[i], load);
-        show(session.scene(), loaded, names[i]);
-        if (!loaded.animations.empty()) animations.emplace_back(names[i], loaded.animations);
-    }
+    show_files(shown, session, [&](size_t, const std::string& name, const io::LoadedScene& loaded) {
+        if (!loaded.animations.empty()) animations.emplace_back(name, loaded.animations);
+    });
     remote::ServeOptions server_options = options.server;
     server_options.socket = options.socket;
     server_options.token_file = options.token_file;

@@ -6,7 +6,7 @@
 #include "easypbr/app/session.h"
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/drawable.h"
-#include "easypbr/cli/render_options.h"
+#include "easypbr/cli/shown_files.h"
 #include "easypbr/cli/user_config.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
@@ -22,25 +22,17 @@ namespace easypbr::cli {
 namespace {
 
 struct ViewOptions {
-    std::vector<std::string> files, values, passes;
-    std::string size = "1280x720", environment, settings, screenshot, shader, animation, path, format;
+    ShownFiles shown;
+    std::vector<std::string> passes;
+    std::string size = "1280x720", screenshot, shader, animation, path;
     bool watch = false, light = false;
     float panel_scale = 1;
 };
 
 void declare_view(CLI::App& command, ViewOptions& options) {
-    command.add_option("FILE", options.files,
-                       "Meshes: PLY, OBJ, STL, OFF, glTF, GLB and more; - is standard input");
-    declare_format(command, options.format);
+    declare_shown_files(command, options.shown);
     command.add_option("--size,--resolution", options.size, "Width and height of the window in pixels")
         ->option_text("WxH");
-    command.add_option("--env,--hdri-file", options.environment, field("environment.file").doc)
-        ->option_text("FILE");
-    command.add_option("--settings", options.settings, "Start from a file that --save-settings wrote")
-        ->option_text("FILE");
-    command.add_option("--set", options.values, "Any setting, for example tonemap.exposure=2")
-        ->allow_extra_args(false)
-        ->option_text("KEY=VALUE");
     command
         .add_option("--animation", options.animation,
                     "Play this animation of the file, by name, or by number from 0")
@@ -63,11 +55,8 @@ void declare_view(CLI::App& command, ViewOptions& options) {
 }
 
 RenderOptions look_of_view(const ViewOptions& options) {
-    RenderOptions look;
+    RenderOptions look = shown_look(options.shown);
     look.size = options.size;
-    look.values = options.values;
-    if (!options.environment.empty())
-        look.shorthands.push_back({"--env", "environment.file", options.environment});
     if (!options.shader.empty()) look.shorthands.push_back({"--shader", "material.shader", options.shader});
     return look;
 }
@@ -81,25 +70,20 @@ void play(Viewer& view, const std::vector<std::string>& names, const std::string
 }
 
 int run_view(const ViewOptions& options) {
-    check_input("view", options.files);
+    const ShownFiles& shown = options.shown;
+    check_input("view", shown.files);
     Viewer view{Scene()};
-    apply_user_config(options.files, view.settings());
-    if (!options.settings.empty()) app::load_settings(view.session(), options.settings);
+    apply_user_config(shown.files, view.settings());
+    if (!shown.settings.empty()) app::load_settings(view.session(), shown.settings);
     apply(look_of_view(options), view.settings());
     add_passes(options.passes, view.session());
     if (!options.screenshot.empty()) app::encoding_for(options.screenshot);
-    const std::vector<std::string> names = unique_names(options.files);
-    for (size_t i = 0; i < names.size(); ++i) {
-        const io::LoadOptions load{.crease_angle_deg = view.settings().load.crease_deg,
-                                   .memory_gb = view.settings().limits.memory,
-                                   .format = options.format};
-        const io::LoadedScene loaded = load_drawable(options.files[i], load);
-        show(view.scene(), loaded, names[i]);
-        if (!loaded.animations.empty()) view.player().add(names[i], loaded.animations);
-        if (options.watch && options.files[i] != standard_input)
-            view.live().drawing().files().watch(options.files[i], names[i]);
-    }
-    if (!options.animation.empty()) play(view, names, options.animation);
+    show_files(shown, view.session(), [&](size_t i, const std::string& name, const io::LoadedScene& loaded) {
+        if (!loaded.animations.empty()) view.player().add(name, loaded.animations);
+        if (options.watch && shown.files[i] != standard_input)
+            view.live().drawing().files().watch(shown.files[i], name);
+    });
+    if (!options.animation.empty()) play(view, unique_names(shown.files), options.animation);
     if (!options.path.empty()) view.live().drawing().path().editor.set(io::load_camera_path(options.path));
     view.live().set_panel_scale(options.panel_scale);
     if (options.light) view.live().state().screen.theme = gui::Theme::light;

@@ -45,7 +45,8 @@ constexpr ShorthandOption shorthand_options[] = {{"--samples", "image.samples", 
                                                  {"--metallic", "material.metallic", "X"},
                                                  {"--roughness", "material.roughness", "X"},
                                                  {"--shader", "material.shader", "FILE"},
-                                                 {"--crease", "load.crease_deg", "DEG"}};
+                                                 {"--crease", "load.crease_deg", "DEG"},
+                                                 {"--variant", "load.variant", "NAME"}};
 
 void declare_shorthands(CLI::App& command, RenderOptions& options) {
     for (const ShorthandOption& shorthand : shorthand_options) {
@@ -105,11 +106,7 @@ void declare_look(CLI::App& command, RenderOptions& options) {
         ->option_text("NAME|FILE");
     command.add_flag("--legend", options.legend, "Draw a legend of the labels into the image");
     command.add_flag("--colorbar", options.colorbar, "Draw a colour bar of the values into the image");
-    command.add_option("--set", options.values, "Any setting, for example tonemap.exposure=2")
-        ->allow_extra_args(false)
-        ->option_text("KEY=VALUE");
-    command.add_option("--settings", options.settings, "Start from a file that --save-settings wrote")
-        ->option_text("FILE");
+    declare_settings(command, options.settings, options.values);
     command
         .add_option("--save-settings", options.save_settings,
                     "Write all settings to a JSON file, given and inferred")
@@ -239,6 +236,14 @@ std::optional<Vec2i> parse_focus(const std::string& text) {
         if (error == std::errc() && last == end) return pixel;
     }
     throw UsageError(fmt::format("--focus: expected the pixel X,Y, got '{}'", text));
+}
+
+void declare_settings(CLI::App& command, std::string& settings, std::vector<std::string>& values) {
+    command.add_option("--set", values, "Any setting, for example tonemap.exposure=2")
+        ->allow_extra_args(false)
+        ->option_text("KEY=VALUE");
+    command.add_option("--settings", settings, "Start from a file that --save-settings wrote")
+        ->option_text("FILE");
 }
 
 void declare_passes(CLI::App& command, std::vector<std::string>& passes) {

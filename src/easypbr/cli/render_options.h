@@ -57,6 +57,9 @@ std::string setting_of_shorthand(std::string_view option);
 /// Ties the command's options to `options`, which must outlive the parsing.
 void declare_render_options(CLI::App& command, RenderOptions& options);
 
+/// The options --settings and --set.
+void declare_settings(CLI::App& command, std::string& settings, std::vector<std::string>& values);
+
 /// Throws UsageError for options that contradict each other or lack another.
 void check_usage(const RenderOptions& options);
 

@@ -73,7 +73,8 @@ void bind_image(nb::module_& module) {
         "load_image",
         [](const fs::path& path) { return to_numpy(released([&] { return io::load_image(path); })); },
         nb::arg("path"), nb::sig("def load_image(path: str | os.PathLike) -> numpy.ndarray"),
-        "Reads PNG, JPEG, HDR or EXR: height x width x channels, row 0 on top; uint8 or uint16 (sRGB), or "
+        "Reads PNG, JPEG, WebP, HDR or EXR: height x width x channels, row 0 on top; uint8 or uint16 (sRGB), "
+        "or "
         "float32 "
         "(linear).");
     module.def(

@@ -46,18 +46,22 @@ void bind_scene(nb::module_& module) {
         .def_ro("mesh", &io::LoadedScene::mesh)
         .def_ro("cameras", &io::LoadedScene::cameras, "Cameras by name, in world space (glTF).")
         .def_ro("lights", &io::LoadedScene::lights, "Lights by name, in world space (glTF).")
-        .def_ro("animations", &io::LoadedScene::animations,
-                "Animations of the mesh and its children (glTF).");
+        .def_ro("animations", &io::LoadedScene::animations, "Animations of the mesh and its children (glTF).")
+        .def_ro("variants", &io::LoadedScene::variants, "Names of the material variants (glTF).");
     module.def(
         "load_scene",
-        [](const std::filesystem::path& path, double memory_gb, bool strict) {
-            return released([&] { return io::load_scene(path, {.memory_gb = memory_gb, .strict = strict}); });
+        [](const std::filesystem::path& path, double memory_gb, bool strict, const std::string& variant) {
+            return released([&] {
+                return io::load_scene(path, {.memory_gb = memory_gb, .variant = variant, .strict = strict});
+            });
         },
-        nb::arg("path"), nb::arg("memory_gb") = 0.0, nb::arg("strict") = false,
+        nb::arg("path"), nb::arg("memory_gb") = 0.0, nb::arg("strict") = false, nb::arg("variant") = "",
         "Reads a file with its cameras, lights and animations; Mesh(path) reads the mesh alone. Its arrays "
         "and images "
         "may take at most memory_gb; 0: three quarters of what is available. With strict, points of a cloud "
-        "without a finite position raise FormatError; else they are left out with a warning.");
+        "without a finite position raise FormatError; else they are left out with a warning. variant names a "
+        "material variant of a glTF file (LoadedScene.variants); empty: the file's own materials. Raises "
+        "UnknownNameError for one that the file has not.");
     module.def(
         "default_scene", [] { return default_scene(); }, "The default scene.");
     module.def("demo_scene", [] { return released([] { return make_demo_scene(); }); });

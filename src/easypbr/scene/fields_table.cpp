@@ -439,6 +439,9 @@ void add_loading(Table& table) {
                          "Crease angle of STL files loaded by the command line and the window: edges between "
                          "faces at a larger angle stay sharp.",
                          "degrees", {0, 180}));
+    table.push_back(make("load.variant", EASYPBR_AT(load.variant),
+                         "Material variant of glTF files loaded by the command line and the window, by name; "
+                         "empty: the file's own materials."));
     table.push_back(
         make("limits.memory", EASYPBR_AT(limits.memory),
              "Most that the arrays and images of a file may take when the command line or the window "

@@ -11,8 +11,9 @@
 
 namespace easypbr::io {
 
-/// Reads PNG (u8 or u16), JPEG (u8), Radiance HDR (f32) and EXR (f32; channels R, G, B, A or Y), told apart
-/// by their first bytes. Throws FileError or FormatError (a damaged or truncated file, or an unknown kind).
+/// Reads PNG (u8 or u16), JPEG (u8), WebP (u8, one picture), Radiance HDR (f32) and EXR (f32; channels R, G,
+/// B, A or Y), told apart by their first bytes. Throws FileError or FormatError (a damaged or truncated file,
+/// or an unknown kind).
 Image load_image(const std::filesystem::path& path);
 
 /// The same from memory; `name` stands in messages.

@@ -20,9 +20,10 @@ namespace easypbr::io {
 /// All that a file holds. Formats with a hierarchy fill children; a file without one gives a single mesh.
 struct LoadedScene {
     Mesh mesh;
-    std::map<std::string, Light> lights;    ///< in world space (glTF KHR_lights_punctual)
-    std::map<std::string, Camera> cameras;  ///< in world space (glTF)
-    Animations animations = {};             ///< what moves the mesh and its children (glTF)
+    std::map<std::string, Light> lights;     ///< in world space (glTF KHR_lights_punctual)
+    std::map<std::string, Camera> cameras;   ///< in world space (glTF)
+    Animations animations = {};              ///< what moves the mesh and its children (glTF)
+    std::vector<std::string> variants = {};  ///< names of material variants (glTF KHR_materials_variants)
 };
 
 struct LoadOptions {
@@ -30,8 +31,9 @@ struct LoadOptions {
         30;                ///< STL: welded corners whose faces meet at a larger angle keep separate normals
     double memory_gb = 0;  ///< most that the arrays and images of the file may take; 0: three quarters of
                            ///< what the machine has left
-    std::string format = {};  ///< extension of the format that a file is in; empty: its own extension
-    bool strict = false;      ///< points without a finite position are an error: FormatError
+    std::string format = {};   ///< extension of the format that a file is in; empty: its own extension
+    std::string variant = {};  ///< glTF: the material variant; empty: the file's own materials
+    bool strict = false;       ///< points without a finite position are an error: FormatError
 };
 
 /// Reads PLY, OBJ (+ MTL), STL, OFF, glTF, GLB, the point clouds PCD, XYZ, PTS, CSV (also txt, asc), NPY,
@@ -40,7 +42,8 @@ struct LoadOptions {
 /// unknown beside the geometry (a texture file, an element) is logged as a warning and left out. Throws
 /// FileError when the file cannot be read; FormatError, with line or byte, when it is empty, damaged, lies
 /// about its counts, has indices out of range or positions that are not finite, would take more memory than
-/// the options allow, or when its extension is unknown.
+/// the options allow, or when its extension is unknown; NameError for a variant that a file with variants
+/// has not.
 LoadedScene load_scene(const std::filesystem::path& path, const LoadOptions& options = {});
 
 /// The same from bytes without a file, as from a pipe. The format is that of the options, else it is told

@@ -1,12 +1,14 @@
 """Cameras: they look along -z of their node, as OpenGL's."""
 
+from abc import ABC, abstractmethod
+
 import numpy as np
 
 from ...errors import ArgumentError
 from .constants import DEFAULT_Z_FAR, DEFAULT_Z_NEAR
 
 
-class Camera:
+class Camera(ABC):
     """What all cameras have: a name and the depths that they see, in metres."""
 
     def __init__(self, znear: float = DEFAULT_Z_NEAR, zfar: float | None = DEFAULT_Z_FAR, name: str | None = None) -> None:
@@ -14,9 +16,9 @@ class Camera:
         self.znear = float(znear)
         self.zfar = None if zfar is None else float(zfar)
 
+    @abstractmethod
     def get_projection_matrix(self, width: int | None = None, height: int | None = None) -> np.ndarray:
         """OpenGL's 4 x 4 projection matrix for an image of this size."""
-        raise NotImplementedError
 
     def _depth_rows(self, P: np.ndarray) -> np.ndarray:
         """Completes the matrix of a perspective camera."""
@@ -26,9 +28,9 @@ class Camera:
         P[2][3] = -2.0 * near if far is None else 2 * far * near / (near - far)
         return P
 
+    @abstractmethod
     def intrinsics(self, width: int, height: int) -> tuple[float, ...] | None:
         """fx, fy, cx, cy of an image of this size, pixel centres at integers; None: an orthographic camera."""
-        raise NotImplementedError
 
 
 class PerspectiveCamera(Camera):

@@ -1,9 +1,9 @@
 """Materials and textures, as glTF has them."""
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ... import _easypbr
 
@@ -63,30 +63,33 @@ def _color(given: Any, length: int, default: Any) -> np.ndarray:
     return np.append(values, 1.0) if length == 4 and len(values) == 3 else values[:length]
 
 
+def _fraction(number: float) -> float:
+    return float(np.clip(number, 0, 1))
+
+
+# The order of the fields is that of pyrender's positional arguments.
+@dataclass(eq=False, repr=False)
 class Material:
     """What all materials have."""
 
-    def __init__(
-        self,
-        name: str | None = None,
-        normalTexture: Any = None,
-        occlusionTexture: Any = None,
-        emissiveTexture: Any = None,
-        emissiveFactor: ArrayLike | None = None,
-        alphaMode: str | None = None,
-        alphaCutoff: float | None = None,
-        doubleSided: bool = False,
-        smooth: bool = True,
-        wireframe: bool = False,
-    ) -> None:
-        self.name = name
-        self.normalTexture = texture_of(normalTexture, "RGB")
-        self.occlusionTexture = texture_of(occlusionTexture, "R")
-        self.emissiveTexture = texture_of(emissiveTexture, "RGB")
-        self.emissiveFactor = _color(emissiveFactor, 3, (0, 0, 0))
-        self.alphaMode = "OPAQUE" if alphaMode is None else alphaMode
-        self.alphaCutoff = 0.5 if alphaCutoff is None else float(alphaCutoff)
-        self.doubleSided, self.smooth, self.wireframe = doubleSided, smooth, wireframe
+    name: str | None = None
+    normalTexture: Any = None
+    occlusionTexture: Any = None
+    emissiveTexture: Any = None
+    emissiveFactor: Any = None
+    alphaMode: Any = None
+    alphaCutoff: Any = None
+    doubleSided: bool = False
+    smooth: bool = True
+    wireframe: bool = False
+
+    def __post_init__(self) -> None:
+        self.normalTexture = texture_of(self.normalTexture, "RGB")
+        self.occlusionTexture = texture_of(self.occlusionTexture, "R")
+        self.emissiveTexture = texture_of(self.emissiveTexture, "RGB")
+        self.emissiveFactor = _color(self.emissiveFactor, 3, (0, 0, 0))
+        self.alphaMode = "OPAQUE" if self.alphaMode is None else self.alphaMode
+        self.alphaCutoff = 0.5 if self.alphaCutoff is None else float(self.alphaCutoff)
 
     def _color_and_numbers(self) -> tuple[np.ndarray, float, float]:
         """Linear base colour with alpha, metallic, roughness."""
@@ -106,96 +109,74 @@ class Material:
 
     def put_textures(self, material: "_easypbr.Material") -> None:
         """Sets the images, which takes longer."""
-        for name, texture in (("normal", self.normalTexture), ("occlusion", self.occlusionTexture), ("emissive", self.emissiveTexture)):
+        names = ("normal", "occlusion", "emissive", "base_color")
+        for name, texture in zip(names, (self.normalTexture, self.occlusionTexture, self.emissiveTexture, self._color_texture())):
             if texture is not None and texture.pixels is not None:
                 setattr(material, f"{name}_texture", texture.pixels)
 
+    def _color_texture(self) -> Any:
+        """The image of the base colour."""
+        return None
+
     def textures(self) -> tuple[Any, ...]:
         """What decides whether the images are still the same."""
-        return self.normalTexture, self.occlusionTexture, self.emissiveTexture
+        return self.normalTexture, self.occlusionTexture, self.emissiveTexture, self._color_texture()
 
 
+@dataclass(eq=False, repr=False)
 class MetallicRoughnessMaterial(Material):
     """glTF's metallic-roughness material; `baseColorFactor` is linear."""
 
-    def __init__(
-        self,
-        name: str | None = None,
-        normalTexture: Any = None,
-        occlusionTexture: Any = None,
-        emissiveTexture: Any = None,
-        emissiveFactor: ArrayLike | None = None,
-        alphaMode: str | None = None,
-        alphaCutoff: float | None = None,
-        doubleSided: bool = False,
-        smooth: bool = True,
-        wireframe: bool = False,
-        baseColorFactor: ArrayLike | None = None,
-        baseColorTexture: Any = None,
-        metallicFactor: float = 1.0,
-        roughnessFactor: float = 1.0,
-        metallicRoughnessTexture: Any = None,
-    ) -> None:
-        super().__init__(name, normalTexture, occlusionTexture, emissiveTexture, emissiveFactor, alphaMode, alphaCutoff,
-                         doubleSided, smooth, wireframe)  # fmt: skip
-        self.baseColorFactor = _color(baseColorFactor, 4, (1, 1, 1, 1))
-        self.baseColorTexture = texture_of(baseColorTexture, "RGB")
-        self.metallicFactor = 1.0 if metallicFactor is None else float(metallicFactor)
-        self.roughnessFactor = 1.0 if roughnessFactor is None else float(roughnessFactor)
-        self.metallicRoughnessTexture = texture_of(metallicRoughnessTexture, "GB")
+    baseColorFactor: Any = None
+    baseColorTexture: Any = None
+    metallicFactor: float = 1.0
+    roughnessFactor: float = 1.0
+    metallicRoughnessTexture: Any = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.baseColorFactor = _color(self.baseColorFactor, 4, (1, 1, 1, 1))
+        self.baseColorTexture = texture_of(self.baseColorTexture, "RGB")
+        self.metallicFactor = 1.0 if self.metallicFactor is None else float(self.metallicFactor)
+        self.roughnessFactor = 1.0 if self.roughnessFactor is None else float(self.roughnessFactor)
+        self.metallicRoughnessTexture = texture_of(self.metallicRoughnessTexture, "GB")
 
     def _color_and_numbers(self) -> tuple[np.ndarray, float, float]:
-        color = _color(self.baseColorFactor, 4, (1, 1, 1, 1))
-        return color, float(np.clip(self.metallicFactor, 0, 1)), float(np.clip(self.roughnessFactor, 0, 1))
+        return _color(self.baseColorFactor, 4, (1, 1, 1, 1)), _fraction(self.metallicFactor), _fraction(self.roughnessFactor)
+
+    def _color_texture(self) -> Any:
+        return self.baseColorTexture
 
     def textures(self) -> tuple[Any, ...]:
-        return (*super().textures(), self.baseColorTexture, self.metallicRoughnessTexture)
+        return (*super().textures(), self.metallicRoughnessTexture)
 
     def put_textures(self, material: "_easypbr.Material") -> None:
         super().put_textures(material)
-        if self.baseColorTexture is not None and self.baseColorTexture.pixels is not None:
-            material.base_color_texture = self.baseColorTexture.pixels
         both = None if self.metallicRoughnessTexture is None else self.metallicRoughnessTexture.pixels
         if both is not None and both.ndim == 3 and both.shape[2] >= 3:  # glTF: roughness in green, metallic in blue.
             material.roughness_texture, material.metallic_texture = both[:, :, 1].copy(), both[:, :, 2].copy()
 
 
+@dataclass(eq=False, repr=False)
 class SpecularGlossinessMaterial(Material):
     """The older material of glTF: its diffuse colour, and roughness 1 - glossiness."""
 
-    def __init__(
-        self,
-        name: str | None = None,
-        normalTexture: Any = None,
-        occlusionTexture: Any = None,
-        emissiveTexture: Any = None,
-        emissiveFactor: ArrayLike | None = None,
-        alphaMode: str | None = None,
-        alphaCutoff: float | None = None,
-        doubleSided: bool = False,
-        smooth: bool = True,
-        wireframe: bool = False,
-        diffuseFactor: ArrayLike | None = None,
-        diffuseTexture: Any = None,
-        specularFactor: ArrayLike | None = None,
-        glossinessFactor: float = 1.0,
-        specularGlossinessTexture: Any = None,
-    ) -> None:
-        super().__init__(name, normalTexture, occlusionTexture, emissiveTexture, emissiveFactor, alphaMode, alphaCutoff,
-                         doubleSided, smooth, wireframe)  # fmt: skip
-        self.diffuseFactor = _color(diffuseFactor, 4, (1, 1, 1, 1))
-        self.diffuseTexture = texture_of(diffuseTexture, "RGBA")
-        self.specularFactor = _color(specularFactor, 3, (1, 1, 1))
-        self.glossinessFactor = float(glossinessFactor)
-        self.specularGlossinessTexture = texture_of(specularGlossinessTexture, "RGBA")
+    diffuseFactor: Any = None
+    diffuseTexture: Any = None
+    specularFactor: Any = None
+    glossinessFactor: float = 1.0
+    specularGlossinessTexture: Any = None
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        self.diffuseFactor = _color(self.diffuseFactor, 4, (1, 1, 1, 1))
+        self.diffuseTexture = texture_of(self.diffuseTexture, "RGBA")
+        self.specularFactor = _color(self.specularFactor, 3, (1, 1, 1))
+        self.glossinessFactor = float(self.glossinessFactor)
+        self.specularGlossinessTexture = texture_of(self.specularGlossinessTexture, "RGBA")
 
     def _color_and_numbers(self) -> tuple[np.ndarray, float, float]:
-        return _color(self.diffuseFactor, 4, (1, 1, 1, 1)), 0.0, float(np.clip(1 - self.glossinessFactor, 0, 1))
+        return _color(self.diffuseFactor, 4, (1, 1, 1, 1)), 0.0, _fraction(1 - self.glossinessFactor)
 
-    def textures(self) -> tuple[Any, ...]:
-        return (*super().textures(), self.diffuseTexture)
-
-    def put_textures(self, material: "_easypbr.Material") -> None:
-        super().put_textures(material)
-        if self.diffuseTexture is not None and self.diffuseTexture.pixels is not None:
-            material.base_color_texture = self.diffuseTexture.pixels
+    def _color_texture(self) -> Any:
+        return self.diffuseTexture

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 from ... import _easypbr
 from ...conversions.maker import colors
 from ...errors import ArgumentError
+from .bounded import Bounded
 from .constants import GLTF
 from .materials import Material, MetallicRoughnessMaterial
 
@@ -17,7 +18,7 @@ def _floats(array: ArrayLike | None) -> np.ndarray | None:
     return None if array is None else np.ascontiguousarray(array, dtype=np.float32)
 
 
-class Primitive:
+class Primitive(Bounded):
     """Arrays that are drawn at once. `indices` are m x 3 of triangles, or flat; `mode` is glTF's; `poses` (k x 4 x 4) draws
     it k times."""
 
@@ -110,7 +111,7 @@ class Primitive:
         return root
 
 
-class Mesh:
+class Mesh(Bounded):
     """Primitives under one name."""
 
     def __init__(
@@ -126,21 +127,6 @@ class Mesh:
             return np.zeros((2, 3))
         corners = np.array([primitive.bounds for primitive in self.primitives])
         return np.array([corners[:, 0].min(axis=0), corners[:, 1].max(axis=0)])
-
-    @property
-    def centroid(self) -> np.ndarray:
-        """Middle of the bounds."""
-        return self.bounds.mean(axis=0)
-
-    @property
-    def extents(self) -> np.ndarray:
-        """Sides of the bounds."""
-        return np.diff(self.bounds, axis=0).reshape(-1)
-
-    @property
-    def scale(self) -> float:
-        """Diagonal of the bounds."""
-        return float(np.linalg.norm(self.extents))
 
     @property
     def is_transparent(self) -> bool:

@@ -7,13 +7,14 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...errors import ArgumentError
+from .bounded import Bounded
 from .cameras import Camera
 from .lights import DirectionalLight, Light, PointLight, SpotLight
 from .mesh import Mesh
 from .node import Node
 
 
-class Scene:
+class Scene(Bounded):
     """Nodes, a background colour (sRGB, alpha counts with RenderFlags.RGBA) and ambient light (linear)."""
 
     def __init__(
@@ -131,18 +132,6 @@ class Scene:
             return np.zeros((2, 3))
         points = np.concatenate(corners)
         return np.array([points.min(axis=0), points.max(axis=0)])
-
-    @property
-    def centroid(self) -> np.ndarray:
-        return self.bounds.mean(axis=0)
-
-    @property
-    def extents(self) -> np.ndarray:
-        return np.diff(self.bounds, axis=0).reshape(-1)
-
-    @property
-    def scale(self) -> float:
-        return float(np.linalg.norm(self.extents))
 
     def add(
         self,

@@ -17,8 +17,12 @@ using Bytes = std::span<const std::byte>;
 /// supported.
 Image decode_png(Bytes bytes, const std::string& name);
 Image decode_jpeg(Bytes bytes, const std::string& name);
+Image decode_webp(Bytes bytes, const std::string& name);
 Image decode_hdr(Bytes bytes, const std::string& name);
 Image decode_exr(Bytes bytes, const std::string& name);
+
+/// Whether the first bytes are those of a WebP file.
+bool is_webp(Bytes bytes);
 
 /// Of files that save_image() writes.
 inline constexpr int jpeg_quality = 95;

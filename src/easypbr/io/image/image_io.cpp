@@ -47,10 +47,14 @@ Image decode_image(std::span<const std::byte> bytes, const std::string& name) {
     if (bytes.empty()) fail_image(name, "the file is empty");
     if (starts_with(bytes, "\x89PNG")) return decode_png(bytes, name);
     if (starts_with(bytes, "\xff\xd8\xff")) return decode_jpeg(bytes, name);
+    if (is_webp(bytes)) return decode_webp(bytes, name);
+    if (starts_with(bytes, "\xabKTX "))
+        fail_image(name, "a KTX texture, which is not supported: expected PNG, JPEG or WebP");
     if (starts_with(bytes, "#?")) return decode_hdr(bytes, name);
     if (starts_with(bytes, "\x76\x2f\x31\x01")) return decode_exr(bytes, name);
-    fail_image(name,
-               "its first bytes are of no known image format (expected PNG, JPEG, Radiance HDR or OpenEXR)");
+    fail_image(
+        name,
+        "its first bytes are of no known image format (expected PNG, JPEG, WebP, Radiance HDR or OpenEXR)");
 }
 
 Image load_image(const std::filesystem::path& path) {

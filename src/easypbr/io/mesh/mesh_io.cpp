@@ -76,7 +76,7 @@ bool is_gltf(const std::string& format) {
 /// `format` is glTF's or that of one of the readers.
 LoadedScene decode(const FileBytes& bytes, const fs::path& path, const std::string& format,
                    const LoadOptions& options) {
-    if (is_gltf(format)) return decode_gltf(bytes.bytes(), path);
+    if (is_gltf(format)) return decode_gltf(bytes.bytes(), path, options.variant);
     MeshData data = readers().at(format)(Source(bytes, path), options);
     bytes.check();
     // Of a cloud these are the points that were kept.
@@ -138,7 +138,7 @@ uint64_t limit_of(const LoadOptions& options) {
 LoadedScene load_scene(const fs::path& path, const LoadOptions& options) {
     const MemoryScope memory(path.string(), limit_of(options));
     const std::string format = options.format.empty() ? extension_of(path) : options.format;
-    if (is_gltf(format)) return load_gltf(path);
+    if (is_gltf(format)) return load_gltf(path, options.variant);
     if (readers().contains(format)) return decode(FileBytes(path), path, format, options);
     if (contains(assimp_extensions(), format)) return load_assimp(path);
     fail_extension(path, format, "read", readable_extensions());

@@ -9,6 +9,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/io/source/json_depth.h"
 
 namespace easypbr::io {
 namespace {
@@ -24,6 +25,7 @@ class PathReader {
   public:
     PathReader(const std::string& text, const std::string& name) : name_(name) {
         try {
+            check_json_depth(text, name_);
             root_ = Json::parse(text);
         } catch (const Json::exception& error) {
             throw FormatError(fmt::format("{}: {}", name_, error.what()));

@@ -10,6 +10,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/io/settings/label_map_text.h"
+#include "easypbr/io/source/json_depth.h"
 #include "easypbr/scene/label_colors.h"
 
 namespace easypbr::io {
@@ -66,7 +67,8 @@ UnknownLabels unknown_of(const std::string& text) {
     throw ArgumentError(fmt::format("\"unknown\": expected refused or unlabelled, got '{}'", text));
 }
 
-ReadMap read_json(std::string_view text) {
+ReadMap read_json(std::string_view text, const std::string& file) {
+    check_json_depth(text, file);
     const OrderedJson root = OrderedJson::parse(text);
     ReadMap map;
     for (const auto& [key, value] : root.items()) {
@@ -123,7 +125,7 @@ bool is_yaml(const fs::path& path) {
 }
 
 ReadMap read(const fs::path& path, std::string_view text) {
-    if (extension_of(path) == "json") return read_json(text);
+    if (extension_of(path) == "json") return read_json(text, path.string());
     if (is_yaml(path)) return read_yaml(text);
     return {{}, parse_label_text(text, path.string()), {}, UnknownLabels::refused};
 }
@@ -144,9 +146,12 @@ std::string label_map_json(const LabelMap& map) {
 }  // namespace
 
 LabelMap load_label_map(const fs::path& path) {
-    const FileBytes file(path);
+    return parse_label_map(FileBytes(path).text(), path);
+}
+
+LabelMap parse_label_map(std::string_view text, const fs::path& path) {
     try {
-        ReadMap map = read(path, file.text());
+        ReadMap map = read(path, text);
         if (map.name.empty()) map.name = path.stem().string();
         return finished(std::move(map));
     } catch (const FormatError&) {

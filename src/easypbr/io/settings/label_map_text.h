@@ -1,6 +1,7 @@
-// Label maps as lines of text. Used by label_map_io.cpp alone.
+// Label maps from text, without files.
 #pragma once
 
+#include <filesystem>
 #include <string_view>
 
 #include "easypbr/scene/label_map.h"
@@ -19,5 +20,9 @@ std::vector<ReadClass> parse_label_text(std::string_view text, const std::string
 
 /// "LABEL NAME R G B" for each class; names with blanks are quoted.
 std::string to_label_text(const LabelMap& map);
+
+/// The content of a label map's file, of the format that the path's extension names. Throws as
+/// load_label_map() does for what is in a file.
+LabelMap parse_label_map(std::string_view text, const std::filesystem::path& path);
 
 }  // namespace easypbr::io

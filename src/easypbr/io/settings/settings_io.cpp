@@ -10,6 +10,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/core/hash.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/io/source/json_depth.h"
 #include "easypbr/scene/fields.h"
 #include "easypbr/scene/light_table.h"
 
@@ -64,6 +65,7 @@ class SettingsParser {
     SettingsFile parse(const std::string& text) {
         OrderedJson root;
         try {
+            check_json_depth(text, name_);
             root = OrderedJson::parse(text);
         } catch (const OrderedJson::exception& error) {
             fail(error.what());

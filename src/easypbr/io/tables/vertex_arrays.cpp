@@ -82,6 +82,7 @@ void plan_floats(const std::vector<VertexField>& fields, const std::vector<size_
                  Matrix& matrix) {
     if (found.empty()) return;
     matrix.resize(Eigen::Index(count), Eigen::Index(found.size()));
+    if (count == 0) return;  // There is no memory to point into.
     for (size_t i = 0; i < found.size(); ++i) {
         fields[found[i]].column->floats = matrix.data() + i;
         fields[found[i]].column->stride = found.size();

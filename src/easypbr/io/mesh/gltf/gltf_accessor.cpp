@@ -9,6 +9,7 @@
 
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/io/mesh/gltf/component_type.h"
 
 namespace easypbr::io {
 namespace {
@@ -30,25 +31,6 @@ size_t size_of_component(size_t type) {
             return 4;
         default:
             return 0;
-    }
-}
-
-/// Calls use(T{}) with the C++ type of a component type.
-template <class Use>
-void with_component(size_t type, Use&& use) {
-    switch (type) {
-        case 5120:
-            return use(int8_t{});
-        case 5121:
-            return use(uint8_t{});
-        case 5122:
-            return use(int16_t{});
-        case 5123:
-            return use(uint16_t{});
-        case 5125:
-            return use(uint32_t{});
-        default:
-            return use(float{});
     }
 }
 
@@ -83,17 +65,17 @@ class Accessor {
   public:
     Accessor(GltfDocument& document, size_t index)
         : document_(document), index_(index), json_(document.item("accessors", index)) {
-        count = document.integer(json_, "count");
-        type = document.integer(json_, "componentType");
-        components = components_of(document.text(json_, "type"));
-        normalized = document.boolean(json_, "normalized", false);
-        if (!size_of_component(type)) fail(fmt::format("has unknown componentType {}", type));
-        if (!components) fail("must be SCALAR, VEC2, VEC3, VEC4 or MAT4");
-        if (count < 1 || count > size_t(std::numeric_limits<int32_t>::max()))
-            fail(fmt::format("has a count of {}", count));
+        const GltfRows form = gltf_rows(document, index);
+        count = form.count;
+        type = form.component_type;
+        components = form.components;
+        normalized = form.normalized;
+        const size_t row_bytes = size_t(components) * size_of_component(type);
         if (const auto view = document.optional_integer(json_, "bufferView"))
-            rows = rows_of(*view, document.optional_integer(json_, "byteOffset").value_or(0), count,
-                           size_t(components) * size_of_component(type));
+            rows =
+                rows_of(*view, document.optional_integer(json_, "byteOffset").value_or(0), count, row_bytes);
+        else if (const auto* given = document.provided(index))
+            use_rows(*given, row_bytes);
         else if (count > most_rows_without_data)
             fail(fmt::format("has {} rows and no data", count));
     }
@@ -123,6 +105,13 @@ class Accessor {
                 "ends behind bufferViews[{}]: {} rows of {} bytes from byte {} on, {} bytes apart, in {}",
                 view, row_count, row_bytes, offset, stride, bytes.size()));
         return {bytes.data() + offset, stride};
+    }
+
+    /// Of compressed data, which hold what they hold: exporters write the count of before.
+    void use_rows(const std::vector<std::byte>& bytes, size_t row_bytes) {
+        count = bytes.size() / row_bytes;
+        rows = {bytes.data(), row_bytes};
+        if (count == 0) fail("has no rows in its compressed data");
     }
 
     std::vector<uint32_t> sparse_rows(const Json& sparse, size_t sparse_count) const {
@@ -177,6 +166,23 @@ void apply_sparse(GltfDocument& document, const Accessor& accessor, ArrayXf::Den
 }
 
 }  // namespace
+
+GltfRows gltf_rows(const GltfDocument& document, size_t index) {
+    const auto fail = [&](const std::string& what) {
+        document.fail(fmt::format("accessors[{}] {}", index, what));
+    };
+    const Json& json = document.item("accessors", index);
+    const GltfRows rows{.count = document.integer(json, "count"),
+                        .component_type = document.integer(json, "componentType"),
+                        .components = components_of(document.text(json, "type")),
+                        .normalized = document.boolean(json, "normalized", false)};
+    if (!size_of_component(rows.component_type))
+        fail(fmt::format("has unknown componentType {}", rows.component_type));
+    if (!rows.components) fail("must be SCALAR, VEC2, VEC3, VEC4 or MAT4");
+    if (rows.count < 1 || rows.count > size_t(std::numeric_limits<int32_t>::max()))
+        fail(fmt::format("has a count of {}", rows.count));
+    return rows;
+}
 
 ArrayXf::Dense read_floats(GltfDocument& document, size_t index, int least, int most) {
     const Accessor accessor(document, index);

@@ -9,6 +9,17 @@
 
 namespace easypbr::io {
 
+/// What the rows of an accessor are.
+struct GltfRows {
+    size_t count = 0;           ///< 1 to 2^31 - 1
+    size_t component_type = 0;  ///< 5120 int8, 5121 uint8, 5122 int16, 5123 uint16, 5125 uint32, 5126 float
+    int components = 0;         ///< 1 to 4, or 16
+    bool normalized = false;
+};
+
+/// Throws FormatError for an accessor that says something else.
+GltfRows gltf_rows(const GltfDocument& document, size_t accessor);
+
 /// Rows of floats; normalised integers become 0..1 or -1..1, plain ones (KHR_mesh_quantization) keep their
 /// values. Throws FormatError unless the number of components lies in [least, most] and all bytes lie in the
 /// buffer.

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <charconv>
+#include <tuple>
 
 #include "easypbr/core/log.h"
 #include "easypbr/io/mesh/gltf/gltf_accessor.h"
@@ -41,12 +43,13 @@ class AnimationReader {
     std::optional<AnimationChannel> read_channel(const Json& json) {
         const Json* target = member(json, "target");
         if (!target) fail("has a channel without a target");
-        const auto node = document_.optional_integer(*target, "node");
-        const std::string path = document_.text(*target, "path");
+        auto node = document_.optional_integer(*target, "node");
+        std::string path = document_.text(*target, "path");
+        if (path == "pointer") std::tie(node, path) = pointed_at(*target);
         constexpr const char* properties[] = {"translation", "rotation", "scale", "weights"};
         const auto known = std::ranges::find(properties, path);
         if (known == std::end(properties))
-            log_warning(fmt::format("{}: {} animates '{}', which is not known; it is left out",
+            log_warning(fmt::format("{}: {} animates '{}', which cannot be animated; it is left out",
                                     document_.path().string(), name_, path));
         if (!node || known == std::end(properties)) return {};
         document_.item("nodes", *node);
@@ -58,6 +61,21 @@ class AnimationReader {
         channel.times = std::move(sampler.times);
         channel.values = read_values(channel, sampler.output);
         return channel;
+    }
+
+    /// What KHR_animation_pointer names: a property of a node; another one is returned as a whole.
+    std::pair<std::optional<size_t>, std::string> pointed_at(const Json& target) const {
+        const Json* given = extension(target, khr_animation_pointer);
+        if (!given) fail("has a channel of path 'pointer' without a pointer");
+        const std::string pointer = document_.text(*given, "pointer");
+        constexpr std::string_view nodes = "/nodes/";
+        const size_t end = pointer.find('/', nodes.size());
+        if (!pointer.starts_with(nodes) || end == pointer.npos) return {std::nullopt, pointer};
+        size_t node = 0;
+        const auto read = std::from_chars(pointer.data() + nodes.size(), pointer.data() + end, node);
+        if (read.ec != std::errc() || read.ptr != pointer.data() + end) return {std::nullopt, pointer};
+        const std::string property = pointer.substr(end + 1);
+        return {node, property.find('/') == property.npos ? property : pointer};
     }
 
     Sampler read_sampler(size_t index) {

@@ -8,6 +8,8 @@
 
 namespace easypbr::io {
 
+inline constexpr const char* khr_animation_pointer = "KHR_animation_pointer";
+
 /// Translation, rotation and scale, or the matrix, of a node; parent, mesh and deformation stay empty. Throws
 /// FormatError.
 AnimationNode read_gltf_pose(const GltfDocument& document, size_t index);

@@ -6,6 +6,8 @@
 #include <cstring>
 
 #include "easypbr/core/error.h"
+#include "easypbr/io/mesh/gltf/gltf_meshopt.h"
+#include "easypbr/io/source/json_depth.h"
 
 namespace easypbr::io {
 namespace {
@@ -88,6 +90,7 @@ GltfDocument::GltfDocument(std::span<const std::byte> bytes, std::filesystem::pa
     : path_(std::move(path)) {
     if (bytes.empty()) fail("the file is empty");
     const std::string_view text = json_chunk(bytes);
+    check_json_depth(text, path_.string());
     try {
         root_ = Json::parse(text);
     } catch (const Json::exception& error) {
@@ -162,19 +165,30 @@ std::span<const std::byte> GltfDocument::buffer(size_t index) {
     return buffer.bytes;
 }
 
+const std::vector<std::byte>* GltfDocument::provided(size_t accessor) const {
+    const auto found = provided_.find(accessor);
+    return found == provided_.end() ? nullptr : &found->second;
+}
+
 void GltfDocument::check_files() const {
     for (const Buffer& buffer : buffers_) buffer.file.check();
 }
 
 std::span<const std::byte> GltfDocument::buffer_view(size_t index) {
     const Json& view = item("bufferViews", index);
-    if (extension(view, "EXT_meshopt_compression"))
-        fail("compressed with EXT_meshopt_compression, which is not supported: save it without compression");
-    const auto bytes = buffer(integer(view, "buffer"));
-    const size_t offset = optional_integer(view, "byteOffset").value_or(0);
-    const size_t length = integer(view, "byteLength");
+    const Json* packed = extension(view, ext_meshopt_compression);
+    if (!packed) return range_of(view, index);
+    const auto [found, is_new] = unpacked_views_.try_emplace(index);
+    if (is_new) found->second = unpack_meshopt(*this, view, *packed, range_of(*packed, index), index);
+    return found->second;
+}
+
+std::span<const std::byte> GltfDocument::range_of(const Json& range, size_t view) {
+    const auto bytes = buffer(integer(range, "buffer"));
+    const size_t offset = optional_integer(range, "byteOffset").value_or(0);
+    const size_t length = integer(range, "byteLength");
     if (offset > bytes.size() || length > bytes.size() - offset)
-        fail(fmt::format("bufferViews[{}] ends at byte {} of a buffer of {}", index, offset + length,
+        fail(fmt::format("bufferViews[{}] ends at byte {} of a buffer of {}", view, offset + length,
                          bytes.size()));
     return bytes.subspan(offset, length);
 }

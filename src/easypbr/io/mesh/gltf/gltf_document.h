@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -32,9 +33,14 @@ class GltfDocument {
     const Json& item(const char* array, size_t index) const;
     size_t count(const char* array) const;
 
-    /// The bytes of a buffer view, which live as long as the document. Throws FormatError, or FileError when
-    /// a file that holds them cannot be read.
+    /// The bytes of a buffer view, unpacked if it is compressed, which live as long as the document. Throws
+    /// FormatError, or FileError when a file that holds them cannot be read.
     std::span<const std::byte> buffer_view(size_t index);
+
+    /// Gives accessors without a buffer view their rows, close together, in place of all given before.
+    void provide(std::map<size_t, std::vector<std::byte>> rows) { provided_ = std::move(rows); }
+    /// The rows given to an accessor, or null.
+    const std::vector<std::byte>* provided(size_t accessor) const;
 
     /// What a URI stands for: the bytes of a data URI, else nothing. Throws FormatError for a damaged one.
     std::optional<std::vector<std::byte>> data_of_uri(std::string_view uri) const;
@@ -62,6 +68,8 @@ class GltfDocument {
   private:
     std::string_view json_chunk(std::span<const std::byte> bytes);
     std::span<const std::byte> buffer(size_t index);
+    /// The bytes that buffer, byteOffset and byteLength name, of a buffer view or of its compressed form.
+    std::span<const std::byte> range_of(const Json& range, size_t view);
     size_t whole_number(const Json& value, const char* key) const;
 
     struct Buffer {
@@ -75,6 +83,8 @@ class GltfDocument {
     Json root_;
     std::span<const std::byte> binary_chunk_;
     std::vector<Buffer> buffers_;
+    std::map<size_t, std::vector<std::byte>> unpacked_views_;  ///< of compressed ones
+    std::map<size_t, std::vector<std::byte>> provided_;        ///< by accessor
 };
 
 /// The member of an object, or null.

@@ -17,6 +17,7 @@ inline constexpr const char* khr_transmission = "KHR_materials_transmission";
 inline constexpr const char* khr_volume = "KHR_materials_volume";
 inline constexpr const char* khr_iridescence = "KHR_materials_iridescence";
 inline constexpr const char* khr_anisotropy = "KHR_materials_anisotropy";
+inline constexpr const char* ext_texture_webp = "EXT_texture_webp";
 
 /// Reads the numbers of all extensions that a material has; those it has not keep their defaults.
 void read_gltf_extensions(const GltfDocument& document, const Json& json, Material& out);

@@ -198,11 +198,21 @@ class MaterialReader {
 
     std::optional<size_t> source_of(const Json& info) const {
         const size_t index = document_.integer(info, "index");
-        const auto source = document_.optional_integer(document_.item("textures", index), "source");
+        const Json& texture = document_.item("textures", index);
+        const auto source = image_of(texture);
         if (!source)
-            log_warning(fmt::format("drawn without a texture: {}, textures[{}] has no PNG or JPEG image",
-                                    document_.path().string(), index));
+            log_warning(fmt::format(
+                "drawn without a texture: {}, textures[{}] has no PNG, JPEG or WebP image{}",
+                document_.path().string(), index,
+                extension(texture, "KHR_texture_basisu") ? " (KHR_texture_basisu is not supported)" : ""));
         return source;
+    }
+
+    /// The WebP image where there is one: the other is for programs that cannot read it.
+    std::optional<size_t> image_of(const Json& texture) const {
+        const Json* webp = extension(texture, ext_texture_webp);
+        const auto source = webp ? document_.optional_integer(*webp, "source") : std::nullopt;
+        return source ? source : document_.optional_integer(texture, "source");
     }
 
     int uv_set_of_info(const Json& info) const {
@@ -232,7 +242,7 @@ class MaterialReader {
         const Json* info = texture_info(json, place);
         if (!info) return out;
         const Json& texture = document_.item("textures", document_.integer(*info, "index"));
-        const auto source = document_.optional_integer(texture, "source");
+        const auto source = image_of(texture);
         if (!source || !images_.image(*source)) return out;
         out.image = images_.image(*source);
         out.path = images_.path(*source);

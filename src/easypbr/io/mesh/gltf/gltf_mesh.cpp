@@ -12,6 +12,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh/gltf/gltf_accessor.h"
+#include "easypbr/io/mesh/gltf/gltf_draco.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::io {
@@ -80,8 +81,12 @@ std::vector<int32_t> triangle_corners(Mode mode, size_t count, Index&& index) {
 
 class MeshBuilder {
   public:
-    MeshBuilder(GltfDocument& document, const GltfMaterials& materials, size_t index)
-        : document_(document), materials_(materials), name_(fmt::format("meshes[{}]", index)) {}
+    MeshBuilder(GltfDocument& document, const GltfMaterials& materials, const GltfVariants& variants,
+                size_t index)
+        : document_(document),
+          materials_(materials),
+          variants_(variants),
+          name_(fmt::format("meshes[{}]", index)) {}
 
     GltfMesh build(const Json& json) {
         const Json* primitives = member(json, "primitives");
@@ -106,24 +111,17 @@ class MeshBuilder {
     void add(const Json& json) {
         const Json* attributes = member(json, "attributes");
         if (!attributes || !member(*attributes, "POSITION")) fail("has a primitive without POSITION");
-        check_not_compressed(json, *attributes);
+        const auto compressed = unpack_draco(document_, json, name_);
         const size_t mode = document_.optional_integer(json, "mode").value_or(size_t(Mode::triangles));
         if (mode > size_t(Mode::triangle_fan)) fail(fmt::format("has a primitive of unknown mode {}", mode));
-        const auto material = document_.optional_integer(json, "material");
-        VertexBlock& block = block_of(json, *attributes, materials_.uv_set(material));
+        const auto material = variants_.material_of(json);
+        VertexBlock& block = block_of(json, *attributes, materials_.uv_set(material), compressed);
         add_elements(json, Mode(mode), material, block);
     }
 
-    void check_not_compressed(const Json& json, const Json& attributes) const {
-        if (!extension(json, "KHR_draco_mesh_compression")) return;
-        const Json& position = document_.item("accessors", document_.integer(attributes, "POSITION"));
-        if (!member(position, "bufferView"))
-            fail(
-                "is compressed with KHR_draco_mesh_compression, which is not supported: save it without "
-                "compression");
-    }
-
-    VertexBlock& block_of(const Json& primitive, const Json& attributes, int uv_set) {
+    /// `compressed`: the buffer view with the vertices, of which there may be several for the same accessors.
+    VertexBlock& block_of(const Json& primitive, const Json& attributes, int uv_set,
+                          std::optional<size_t> compressed) {
         const std::string wanted_uv = fmt::format("TEXCOORD_{}", uv_set);
         const char* uv = member(attributes, wanted_uv.c_str()) ? wanted_uv.c_str() : "TEXCOORD_0";
         BlockKey key;
@@ -134,6 +132,7 @@ class MeshBuilder {
             for (const Json& target : *targets)
                 for (const char* name : {"POSITION", "NORMAL"})
                     key.push_back(document_.optional_integer(target, name));
+        key.push_back(compressed);
         const auto [found, is_new] = block_index_.try_emplace(key, blocks_.size());
         if (is_new) blocks_.push_back(read_block(key));
         return blocks_[found->second];
@@ -161,7 +160,7 @@ class MeshBuilder {
             append_columns(block.joints, joints);
             append_columns(block.weights, weights);
         }
-        for (size_t target = 8; target + 1 < key.size(); target += 2) {
+        for (size_t target = 8; target + 2 < key.size(); target += 2) {
             read(key[target], 3, 3, block.targets_V.emplace_back());
             read(key[target + 1], 3, 3, block.targets_N.emplace_back());
         }
@@ -296,6 +295,7 @@ class MeshBuilder {
 
     GltfDocument& document_;
     const GltfMaterials& materials_;
+    const GltfVariants& variants_;
     std::string name_;
     MeshData out_;
     std::vector<VertexBlock> blocks_;
@@ -308,9 +308,10 @@ class MeshBuilder {
 
 }  // namespace
 
-GltfMesh read_gltf_mesh(GltfDocument& document, const GltfMaterials& materials, size_t index) {
+GltfMesh read_gltf_mesh(GltfDocument& document, const GltfMaterials& materials, const GltfVariants& variants,
+                        size_t index) {
     const Json& json = document.item("meshes", index);
-    return MeshBuilder(document, materials, index).build(json);
+    return MeshBuilder(document, materials, variants, index).build(json);
 }
 
 }  // namespace easypbr::io

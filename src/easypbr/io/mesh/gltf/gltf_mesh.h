@@ -3,6 +3,7 @@
 
 #include "easypbr/io/mesh/gltf/gltf_document.h"
 #include "easypbr/io/mesh/gltf/gltf_materials.h"
+#include "easypbr/io/mesh/gltf/gltf_variants.h"
 #include "easypbr/scene/animation.h"
 #include "easypbr/scene/mesh_data.h"
 
@@ -17,6 +18,7 @@ struct GltfMesh {
 /// Triangles, strips and fans become F with a part for each primitive, lines E, points plain vertices.
 /// Primitives with the same attributes share their vertices. Where only some primitives have normals, the
 /// others' are computed. Throws FormatError as load_gltf() does.
-GltfMesh read_gltf_mesh(GltfDocument& document, const GltfMaterials& materials, size_t index);
+GltfMesh read_gltf_mesh(GltfDocument& document, const GltfMaterials& materials, const GltfVariants& variants,
+                        size_t index);
 
 }  // namespace easypbr::io

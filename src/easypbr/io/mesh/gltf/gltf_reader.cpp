@@ -11,9 +11,13 @@
 #include "easypbr/core/log.h"
 #include "easypbr/io/mesh/gltf/gltf_animation.h"
 #include "easypbr/io/mesh/gltf/gltf_document.h"
+#include "easypbr/io/mesh/gltf/gltf_draco.h"
 #include "easypbr/io/mesh/gltf/gltf_extensions.h"
+#include "easypbr/io/mesh/gltf/gltf_instances.h"
 #include "easypbr/io/mesh/gltf/gltf_materials.h"
 #include "easypbr/io/mesh/gltf/gltf_mesh.h"
+#include "easypbr/io/mesh/gltf/gltf_meshopt.h"
+#include "easypbr/io/mesh/gltf/gltf_variants.h"
 #include "easypbr/io/mesh/mesh_io.h"
 
 namespace easypbr::io {
@@ -31,7 +35,14 @@ constexpr std::string_view known_extensions[] = {khr_unlit,
                                                  khr_anisotropy,
                                                  "KHR_texture_transform",
                                                  "KHR_lights_punctual",
-                                                 "KHR_mesh_quantization"};
+                                                 "KHR_mesh_quantization",
+                                                 khr_variants,
+                                                 "KHR_node_visibility",
+                                                 khr_animation_pointer,
+                                                 ext_mesh_gpu_instancing,
+                                                 khr_draco,
+                                                 ext_meshopt_compression,
+                                                 ext_texture_webp};
 
 /// A name that the map does not have yet.
 template <class Value>
@@ -43,9 +54,10 @@ std::string free_name(const std::map<std::string, Value>& taken, const std::stri
 
 class SceneReader {
   public:
-    explicit SceneReader(GltfDocument& document)
+    SceneReader(GltfDocument& document, const std::string& variant)
         : document_(document),
           materials_(document),
+          variants_(document, variant),
           meshes_(document.count("meshes")),
           visited_(document.count("nodes")) {}
 
@@ -57,9 +69,11 @@ class SceneReader {
         root.name = document_.path().stem().string();
         root.source = document_.path();
         for (const size_t node : root_nodes())
-            if (auto mesh = read_node(node, Eigen::Affine3d::Identity(), 1)) root.children.push_back(*mesh);
+            if (auto mesh = read_node(node, Eigen::Affine3d::Identity(), 1, true))
+                root.children.push_back(*mesh);
         if (root.children.empty()) document_.fail("there is no mesh in its scene");
         out_.mesh = Mesh(std::move(root));
+        out_.variants = variants_.names();
         if (!rig_.animations.empty()) out_.animations = Animations(std::move(rig_));
         return std::move(out_);
     }
@@ -110,7 +124,9 @@ class SceneReader {
     }
 
     /// The node as a mesh; nothing when neither it nor what hangs below it has one.
-    std::optional<Mesh> read_node(size_t index, const Eigen::Affine3d& T_world_parent, int depth) {
+    /// `visible`: whether its parent is.
+    std::optional<Mesh> read_node(size_t index, const Eigen::Affine3d& T_world_parent, int depth,
+                                  bool visible) {
         const Json& json = document_.item("nodes", index);
         if (visited_[index])
             document_.fail(fmt::format("nodes[{}] has two parents or is part of a circle", index));
@@ -122,16 +138,39 @@ class SceneReader {
         MeshData data = mesh ? mesh_of(*mesh).data : MeshData();
         data.name =
             document_.text(json, "name", data.name.empty() ? fmt::format("node {}", index) : data.name);
+        const auto copies = mesh ? read_gltf_instances(document_, json, index) : std::nullopt;
+        if (copies) data = copied(data, *copies);
+        if (!is_visible(json)) data.style.visible = visible = false;
         data.T_parent_mesh = pose_of(index);
         const Eigen::Affine3d T_world_node = T_world_parent * data.T_parent_mesh;
         add_camera(json, document_.text(json, "name", ""), data.name, T_world_node);
-        add_light(json, data.name, T_world_node);
+        if (visible) add_light(json, data.name, T_world_node);
         for (const size_t child : document_.integers(json, "children"))
-            if (auto below = read_node(child, T_world_node, depth + 1)) data.children.push_back(*below);
+            if (auto below = read_node(child, T_world_node, depth + 1, visible))
+                data.children.push_back(*below);
         if (!mesh && data.children.empty()) return std::nullopt;
         const Mesh node(std::move(data));
-        if (!rig_.animations.empty()) animate(index, json, node, mesh);
+        if (!rig_.animations.empty()) animate(index, json, node, copies ? std::nullopt : mesh);
         return node;
+    }
+
+    /// KHR_node_visibility; a parent that is not visible takes its children with it.
+    bool is_visible(const Json& node) const {
+        const Json* visibility = extension(node, "KHR_node_visibility");
+        return !visibility || document_.boolean(*visibility, "visible", true);
+    }
+
+    /// A mesh without vertices, whose children are copies of `data`; they share its arrays.
+    static MeshData copied(const MeshData& data, const std::vector<Eigen::Affine3d>& poses) {
+        MeshData out;
+        out.name = data.name;
+        for (const Eigen::Affine3d& pose : poses) {
+            MeshData copy = data;
+            copy.name = fmt::format("{} {}", data.name, out.children.size());
+            copy.T_parent_mesh = pose;
+            out.children.emplace_back(std::move(copy));
+        }
+        return out;
     }
 
     /// Tells the animations which mesh is the node's.
@@ -154,7 +193,7 @@ class SceneReader {
         Json content = document_.item("meshes", index);
         content.erase("name");
         const auto [same, is_new] = first_of_.try_emplace(content.dump(), index);
-        mesh = is_new ? read_gltf_mesh(document_, materials_, index) : *meshes_[same->second];
+        mesh = is_new ? read_gltf_mesh(document_, materials_, variants_, index) : *meshes_[same->second];
         mesh->data.name = document_.text(document_.item("meshes", index), "name");
         return *mesh;
     }
@@ -229,6 +268,7 @@ class SceneReader {
 
     GltfDocument& document_;
     GltfMaterials materials_;
+    GltfVariants variants_;
     std::vector<std::optional<GltfMesh>> meshes_;
     std::map<std::string, size_t> first_of_;  ///< meshes, by their JSON without names
     AnimationRig rig_;
@@ -238,17 +278,18 @@ class SceneReader {
 
 }  // namespace
 
-LoadedScene load_gltf(const std::filesystem::path& path) {
+LoadedScene load_gltf(const std::filesystem::path& path, const std::string& variant) {
     const FileBytes file(path);
-    LoadedScene scene = decode_gltf(file.bytes(), path);
+    LoadedScene scene = decode_gltf(file.bytes(), path, variant);
     file.check();
     return scene;
 }
 
-LoadedScene decode_gltf(std::span<const std::byte> bytes, const std::filesystem::path& path) {
+LoadedScene decode_gltf(std::span<const std::byte> bytes, const std::filesystem::path& path,
+                        const std::string& variant) {
     try {
         GltfDocument document(bytes, path);
-        LoadedScene scene = SceneReader(document).read();
+        LoadedScene scene = SceneReader(document, variant).read();
         document.check_files();
         return scene;
     } catch (const ArgumentError& error) {

@@ -1,0 +1,29 @@
+"""What follows from the bounds of something."""
+
+from abc import ABC, abstractmethod
+
+import numpy as np
+
+
+class Bounded(ABC):
+    """Something with bounds."""
+
+    @property
+    @abstractmethod
+    def bounds(self) -> np.ndarray:
+        """Lower and upper corner, 2 x 3."""
+
+    @property
+    def centroid(self) -> np.ndarray:
+        """Middle of the bounds."""
+        return self.bounds.mean(axis=0)
+
+    @property
+    def extents(self) -> np.ndarray:
+        """Sides of the bounds."""
+        return np.diff(self.bounds, axis=0).reshape(-1)
+
+    @property
+    def scale(self) -> float:
+        """Diagonal of the bounds."""
+        return float(np.linalg.norm(self.extents))

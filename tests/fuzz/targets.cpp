@@ -1,0 +1,110 @@
+#include "fuzz/targets.h"
+
+#include <sys/mman.h>
+#include <unistd.h>
+
+#include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
+#include "easypbr/core/log.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/mesh/gltf/gltf_reader.h"
+#include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/io/settings/camera_path_io.h"
+#include "easypbr/io/settings/label_map_text.h"
+#include "easypbr/io/settings/settings_io.h"
+#include "easypbr/remote/messages.h"
+
+namespace easypbr::fuzz {
+namespace {
+
+constexpr double memory_gb = 0.5;
+
+template <class Read>
+void refuse_or(Read&& read) {
+    try {
+        read();
+    } catch (const Error&) {
+    }
+}
+
+std::string_view text_of(std::span<const std::byte> bytes) {
+    return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// The bytes in a file without a name: what readers of files are given.
+FileBytes file_of(std::span<const std::byte> bytes) {
+    const Descriptor file(memfd_create("fuzz", MFD_CLOEXEC));
+    if (write(file.get(), bytes.data(), bytes.size()) != ssize_t(bytes.size()) ||
+        lseek(file.get(), 0, SEEK_SET))
+        throw std::runtime_error("no memory for a file");
+    return {file.get(), "fuzz"};
+}
+
+/// The format is the name of the target.
+template <char... letters>
+void read_mesh(std::span<const std::byte> bytes) {
+    refuse_or([&] {
+        io::load_scene(file_of(bytes), "/nowhere/fuzz",
+                       {.memory_gb = memory_gb, .format = std::string{letters...}});
+    });
+}
+
+void read_image(std::span<const std::byte> bytes) {
+    refuse_or([&] { io::decode_image(bytes, "fuzz"); });
+}
+
+void read_settings(std::span<const std::byte> bytes) {
+    refuse_or([&] { io::parse_settings(std::string(text_of(bytes)), "fuzz"); });
+}
+
+void read_camera_path(std::span<const std::byte> bytes) {
+    refuse_or([&] { io::parse_camera_path(std::string(text_of(bytes)), "fuzz"); });
+}
+
+void read_label_text(std::span<const std::byte> bytes) {
+    refuse_or([&] { io::parse_label_map(text_of(bytes), "fuzz.txt"); });
+}
+
+void read_label_json(std::span<const std::byte> bytes) {
+    refuse_or([&] { io::parse_label_map(text_of(bytes), "fuzz.json"); });
+}
+
+void read_label_yaml(std::span<const std::byte> bytes) {
+    refuse_or([&] { io::parse_label_map(text_of(bytes), "fuzz.yaml"); });
+}
+
+void read_message(std::span<const std::byte> bytes) {
+    try {
+        remote::parse_message(text_of(bytes));
+    } catch (const remote::ProtocolError&) {
+    }
+}
+
+}  // namespace
+
+const std::vector<Target>& targets() {
+    static const std::vector<Target> all = {
+        {"ply", read_mesh<'p', 'l', 'y'>},
+        {"obj", read_mesh<'o', 'b', 'j'>},
+        {"stl", read_mesh<'s', 't', 'l'>},
+        {"off", read_mesh<'o', 'f', 'f'>},
+        {"gltf", read_mesh<'g', 'l', 't', 'f'>},
+        {"pcd", read_mesh<'p', 'c', 'd'>},
+        {"xyz", read_mesh<'x', 'y', 'z'>},
+        {"pts", read_mesh<'p', 't', 's'>},
+        {"npy", read_mesh<'n', 'p', 'y'>},
+        {"npz", read_mesh<'n', 'p', 'z'>},
+        {"las", read_mesh<'l', 'a', 's'>},
+        {"bin", read_mesh<'b', 'i', 'n'>},
+        {"image", read_image},
+        {"settings", read_settings},
+        {"camera_path", read_camera_path},
+        {"label_text", read_label_text},
+        {"label_json", read_label_json},
+        {"label_yaml", read_label_yaml},
+        {"message", read_message},
+    };
+    return all;
+}
+
+}  // namespace easypbr::fuzz

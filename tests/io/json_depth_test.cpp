@@ -1,0 +1,57 @@
+// JSON that is nested deeper than the stack is refused by all that reads JSON.
+#include <gtest/gtest.h>
+
+#include "easypbr/io/settings/camera_path_io.h"
+#include "easypbr/io/settings/label_map_text.h"
+#include "easypbr/io/settings/settings_io.h"
+#include "easypbr/io/source/json_depth.h"
+#include "io/gltf_decoded.h"
+
+using namespace easypbr;
+
+namespace {
+
+/// `levels` lists in each other.
+std::string nested(size_t levels) {
+    return std::string(levels, '[') + std::string(levels, ']');
+}
+
+std::string refusal(auto&& read) {
+    try {
+        read();
+    } catch (const FormatError& error) {
+        return error.what();
+    }
+    return "accepted";
+}
+
+}  // namespace
+
+TEST(JsonDepth, BracketsCountOutsideOfTextsAlone) {
+    const auto check = [](const std::string& text) {
+        return refusal([&] { io::check_json_depth(text, "a.json"); });
+    };
+    EXPECT_EQ(check(nested(512)), "accepted");
+    EXPECT_EQ(check(nested(513)), "cannot read a.json: its JSON is nested more than 512 levels deep");
+    EXPECT_EQ(check("[\"" + std::string(1000, '[') + "\\\"" + std::string(1000, '{') + "\"]"), "accepted");
+    std::string wide = "[";
+    for (int i = 0; i < 1000; ++i) wide += "{\"a\":[]},";
+    EXPECT_EQ(check(wide + "0]"), "accepted");
+    EXPECT_EQ(check("\"\\"), "accepted");
+}
+
+TEST(JsonDepth, IsLimitedForEveryReader) {
+    const std::string deep = nested(300000);
+    const std::string gltf =
+        "{\"asset\":{\"version\":\"2.0\"},\"nodes\":[{\"mesh\":0}],\"meshes\":[{\"extras\":" + deep +
+        ",\"primitives\":[{\"attributes\":{\"POSITION\":0},\"mode\":0}]}],\"accessors\":[{\"componentType\":"
+        "5126,"
+        "\"count\":1,\"type\":\"VEC3\"}]}";
+    const std::vector<std::string> messages = {
+        refusal([&] { io::decode_gltf(as_span(gltf), "deep"); }),
+        refusal([&] { io::parse_settings("{\"easypbr\":1,\"settings\":" + deep + "}", "deep"); }),
+        refusal([&] { io::parse_camera_path("{\"keys\":[{\"position\":" + deep + "}]}", "deep"); }),
+        refusal([&] { io::parse_label_map("{\"classes\":" + deep + "}", "deep.json"); })};
+    for (const std::string& message : messages)
+        EXPECT_NE(message.find("nested more than 512 levels deep"), std::string::npos) << message;
+}
