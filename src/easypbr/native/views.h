@@ -136,6 +136,8 @@ namespace uni {
 
 struct vec2 {
     float x, y;
+    EASYPBR_INLINE constexpr vec2() : x(0), y(0) {}
+    EASYPBR_INLINE constexpr vec2(float a, float b) : x(a), y(b) {}
     EASYPBR_INLINE float operator[](int i) const { return i == 0 ? x : y; }
     EASYPBR_INLINE constexpr vec2 xy() const { return *this; }
 };

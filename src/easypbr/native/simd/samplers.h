@@ -207,7 +207,7 @@ INLINE vec4 fetch(const Rgba16f& s, vint x, vint y) {
         });
 }
 INLINE vec4 fetch(const Rgba16fLinear& s, vint x, vint y) {
-    return fetch(Rgba16f(s), x, y);
+    return fetch(Rgba16f{s}, x, y);
 }
 INLINE vec4 fetch(const R16fLinear& s, vint x, vint y) {
     const Place p = place_of(s, x, y);
