@@ -308,6 +308,26 @@ def rays() -> np.ndarray:
     return row(pictures)
 
 
+def paths() -> np.ndarray:
+    """Rays; path tracing with few and with many samples: an open box under a sky."""
+    scene = Scene()
+    sides = {"floor": ((2, 0.04, 2), (0, 0, 0), "#d8d4cc"), "back": ((2, 1.4, 0.04), (0, 0.7, -1), "#d8d4cc"),
+             "left": ((0.04, 1.4, 2), (-1, 0.7, 0), "#c03020"), "right": ((0.04, 1.4, 2), (1, 0.7, 0), "#3878c0")}
+    for name, (size, place, color) in sides.items():
+        side = shapes.box(size)
+        side.material = Material(base_color=color, roughness=1)
+        side.translate(place)
+        scene.show(side, name)
+    pot = teapot("#e8e4da", 0, 0.3)
+    pot.translate((0, 0.02, 0))
+    scene.show(pot, "pot")
+    view = Viewer((290, 220), {"camera": {"azimuth_deg": 0, "elevation_deg": 20}}, scene)
+    view.load_environment_map(sky())
+    pictures = [view.render(samples=64)]
+    view.settings.path.enabled = True
+    return row([*pictures, view.render(samples=16), view.render(samples=256)])
+
+
 def bloom() -> np.ndarray:
     """Without, with a threshold, with a tenth of all light spread."""
     scene = on_floor(teapot("#ffe29b", 1, 0.2))
@@ -507,7 +527,7 @@ def outline() -> np.ndarray:
     return view.render()
 
 
-PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion, rays,
+PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion, rays, paths,
             bloom, outlines, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
             viewer_slices, viewer_path, viewer_animations, viewer_lights, viewer_own, segmentation, detection, own_shading,
             outline]

@@ -28,7 +28,7 @@ def shader(folder: Path) -> str:
 def test_the_page_lists_what_is_built() -> None:
     listed = set(re.findall(r"^\| `(\w+)` \| natively", (ROOT / "docs/design/native.md").read_text(), re.MULTILINE))
     cmake = (ROOT / "cmake/native.cmake").read_text()
-    built = " ".join(re.findall(r"set\(native_(?:surface_|line_)?shaders ([\w\s]+)\)", cmake)).split()
+    built = " ".join(re.findall(r"set\(native_(?:surface_|line_|stream_)?shaders ([\w\s]+)\)", cmake)).split()
     assert built and listed == set(built)
 
 

@@ -198,7 +198,9 @@ def test_a_client_that_answers_nothing_is_sent_a_few_pictures_and_no_more(connec
     for step in range(40):
         client.pointer("move", 80 + step, 60)
         client.collect(0.03)
-    assert 1 <= sum(frame.kind == MOVING for frame in client.frames) <= 8
+    # Which kinds they are is a matter of time: the exact picture may have come first.
+    assert client.frames
+    assert sum(frame.kind == MOVING for frame in client.frames) <= 8
     # It answers again: the newest camera is shown.
     client.answers = True
     for frame in list(client.frames):

@@ -58,6 +58,15 @@ void declare_shorthands(CLI::App& command, RenderOptions& options) {
         command.add_option_function<std::string>(names, keep, field(setting).doc)
             ->option_text(shorthand.placeholder);
     }
+    const auto keep_mode = [&options](const std::string& mode) {
+        options.shorthands.push_back({"--mode", "path.enabled", mode == "path" ? "true" : "false"});
+    };
+    command
+        .add_option_function<std::string>(
+            "--mode", keep_mode,
+            "How accumulated images are lit: raster, as the frames of the window, or path "
+            "tracing")
+        ->check(CLI::IsMember({"raster", "path"}));
 }
 
 void declare_output(CLI::App& command, RenderOptions& options) {

@@ -9,7 +9,6 @@
 #include "easypbr/scene/effects/ground.h"
 #include "easypbr/scene/effects/motion_blur.h"
 #include "easypbr/scene/effects/outline.h"
-#include "easypbr/scene/effects/path_tracing.h"
 #include "easypbr/scene/effects/ray_tracing.h"
 
 /// EFFECT(member of BasicSettings, its type there), in the order of the table of settings.

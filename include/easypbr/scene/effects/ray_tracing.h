@@ -1,4 +1,4 @@
-// Settings of ray-traced visibility and reflections.
+// Settings of ray-traced visibility and reflections, and of path tracing.
 #pragma once
 
 #include "easypbr/scene/auto.h"
@@ -12,5 +12,16 @@ struct BasicRaySettings {
     int count = 256;            ///< diffuse rays per pixel of an image, over all samples, 1 to 65536
 };
 using RaySettings = BasicRaySettings<Auto>;
+
+/// Light by path tracing on the CPU, from the surfaces that the frame shows: all that lights, the environment
+/// and other surfaces send, in place of shadow maps, ambient occlusion and the split sum. Averages of many
+/// samples converge to the solution of the rendering equation (Kajiya 1986).
+template <template <class> class MaybeAuto>
+struct BasicPathSettings {
+    MaybeAuto<bool> enabled{};  ///< automatic: off
+    int bounces = 8;            ///< surfaces that a path meets after the one that is seen, 0 to 64
+    float clamp = 10;           ///< most luminance that a path adds beyond direct light, 0: unlimited
+};
+using PathSettings = BasicPathSettings<Auto>;
 
 }  // namespace easypbr

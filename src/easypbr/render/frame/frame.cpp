@@ -126,6 +126,17 @@ Frame make_frame(const Shot& shot, int sample_index, const Camera& camera, const
     return frame;
 }
 
+Vec3d view_position(const Frame& frame, Vec2i pixel, double depth) {
+    const Vec2d ndc((pixel.x() + 0.5) / frame.size.x() * 2 - 1, 1 - (pixel.y() + 0.5) / frame.size.y() * 2);
+    const Mat4d& p = frame.clip_from_view;
+    if (frame.orthographic()) {
+        const double z = frame.camera.far + (frame.camera.near - frame.camera.far) * depth;
+        return {(ndc.x() - p(0, 3)) / p(0, 0), (ndc.y() - p(1, 3)) / p(1, 1), -z};
+    }
+    const double z = frame.camera.near / depth;
+    return {(ndc.x() + p(0, 2)) / p(0, 0) * z, (ndc.y() + p(1, 2)) / p(1, 1) * z, -z};
+}
+
 void set_noise_uniforms(const gl::Program& program, const Frame& frame) {
     program.set("u_noise_origin", Vec2(frame.origin.cast<float>()));
 }

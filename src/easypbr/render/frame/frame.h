@@ -73,6 +73,9 @@ Camera camera_of(const Shot& shot, int sample_index);
 Frame make_frame(const Shot& shot, int sample_index, const Camera& camera, const Box3d& bounds,
                  bool reaches_beyond);
 
+/// Place in view space of a pixel's centre at the depth that GBuffer::depth holds, above 0.
+Vec3d view_position(const Frame& frame, Vec2i pixel, double depth);
+
 /// First pixel of the frame, for shaders/common_noise.glsl: patterns lie on the picture, not on its tiles.
 void set_noise_uniforms(const gl::Program& program, const Frame& frame);
 void set_noise_uniforms(ShaderInputs& inputs, const Frame& frame);

@@ -28,7 +28,7 @@ void set_eye_dome_uniforms(To& to, const Frame& frame) {
     to.set("u_depth_scale", Vec2(float(doublings_per_depth(frame.camera)), 0));
 }
 
-ShaderInputs inputs_of(const Frame& frame, const GBuffer& targets) {
+ShaderInputs overlay_inputs(const Frame& frame, const GBuffer& targets) {
     ShaderInputs values;
     values.define(camera_defines(frame));
     set_eye_dome_uniforms(values, frame);
@@ -54,7 +54,7 @@ void DisplayPass::draw(const Frame& frame, const GBuffer& targets) {
     targets.display().bind();
     gl::DrawState state = screen_state(frame.covered);
     state.depth_test = gl::DepthTest::less;
-    surfaces_.draw(inputs_of(frame, targets), state);
+    surfaces_.draw(overlay_inputs(frame, targets), state);
 }
 
 void DisplayPass::shade_overlay(const Frame& frame, const GBuffer& targets, const PixelRect& area,
@@ -62,7 +62,7 @@ void DisplayPass::shade_overlay(const Frame& frame, const GBuffer& targets, cons
     targets.overlay.write(area);
     // With zeros where nothing is shown.
     surfaces_.shade(
-        inputs_of(frame, targets),
+        overlay_inputs(frame, targets),
         {.target = &targets.overlay, .area = area, .where = native::Where::covered, .depth = &targets.depth},
         transfers);
 }

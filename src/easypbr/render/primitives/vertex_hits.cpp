@@ -7,7 +7,7 @@
 namespace easypbr::render {
 namespace {
 
-Vec3 vertex_color(const DrawItem& item, uint32_t vertex) {
+Vec3 color_of_vertex(const DrawItem& item, uint32_t vertex) {
     const ArrayXf& C = item.mesh().C;
     if (!item.with_colors || C.empty()) return Vec3::Ones();
     const auto row = std::min<Eigen::Index>(Eigen::Index(vertex), C.rows() - 1);
@@ -24,7 +24,7 @@ void VertexHits::shade(std::span<const native::ElementHit> hits, const native::H
     const Material& material = item_.material;
     const SurfaceKind kind = material.unlit ? SurfaceKind::unlit : item_.kind;
     for (size_t i = 0; i < hits.size(); ++i) {
-        const Vec3 color = material.base_color.cwiseProduct(vertex_color(item_, hits[i].element));
+        const Vec3 color = material.base_color.cwiseProduct(color_of_vertex(item_, hits[i].element));
         const Vec3 normal = Eigen::Map<const Vec3>(hits[i].normal);
         put(to.normal, i, normal);
         put(to.face, i, normal);

@@ -1,4 +1,4 @@
-// Surfaces of elements that are each of one colour: points and surfels.
+// Surfaces of elements that are each of one colour, as points are.
 #pragma once
 
 #include "easypbr/render/drawables/draw_list.h"

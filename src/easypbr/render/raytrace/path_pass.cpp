@@ -14,7 +14,7 @@ namespace {
 /// Pixels whose paths are traced together.
 constexpr int block_width = 64, block_height = 16;
 
-bool is_lit(uint8_t kind) {
+bool is_traced(uint8_t kind) {
     return kind < uint8_t(SurfaceKind::display);
 }
 bool is_catcher(uint8_t kind) {
@@ -54,18 +54,6 @@ struct PathPass::Pixels {
           world_from_view(frame.camera.T_world_cam.linear()),
           eye(frame.camera.position() - scene.centre()) {}
 
-    /// View space; `d` > 0.
-    Vec3d view_position(int x, int y, double d) const {
-        const Vec2d ndc((x + 0.5) / frame.size.x() * 2 - 1, 1 - (y + 0.5) / frame.size.y() * 2);
-        const Mat4d& p = frame.clip_from_view;
-        if (frame.orthographic()) {
-            const double z = frame.camera.far + (frame.camera.near - frame.camera.far) * d;
-            return {(ndc.x() - p(0, 3)) / p(0, 0), (ndc.y() - p(1, 3)) / p(1, 1), -z};
-        }
-        const double z = frame.camera.near / d;
-        return {(ndc.x() + p(0, 2)) / p(0, 0) * z, (ndc.y() + p(1, 2)) / p(1, 1) * z, -z};
-    }
-
     /// Adds the path of a pixel to a batch; `index` is that of its radiance.
     void add(int x, int y, uint32_t index, PathBatch& batch) const;
 
@@ -80,21 +68,9 @@ struct PathPass::Pixels {
     Vec3d eye;  ///< relative to the scene's centre
 };
 
-namespace {
-
-/// Normal of the element itself that is seen at a place: interpolated ones lie above it or below.
-Vec3 face_at(const Vec3& place, const Vec3& normal, const Vec3& view, const RayScene& scene) {
-    const float near = 1e-4f * std::max(1.0f, place.norm());
-    const auto hit = scene.trace(place + near * view, -view);
-    const bool found = hit && hit->distance < 2 * near && hit->normal.dot(normal) > 0.3f;
-    return found ? hit->normal : normal;
-}
-
-}  // namespace
-
 void PathPass::Pixels::add(int x, int y, uint32_t index, PathBatch& batch) const {
     const std::array<uint8_t, 4>& m = *material.at(x, y);
-    const Vec3d position = view_position(x, y, *depth.at(x, y));
+    const Vec3d position = view_position(frame, {x, y}, *depth.at(x, y));
     const Vec3d towards = frame.orthographic() ? Vec3d(0, 0, 1) : Vec3d(-position.normalized());
     const Vec3 view = (world_from_view * towards).cast<float>();
     const Vec3 place = ((world_from_view * position + eye) / scene.unit()).cast<float>();
@@ -102,10 +78,14 @@ void PathPass::Pixels::add(int x, int y, uint32_t index, PathBatch& batch) const
     const Vec3 mapped = oct_decode(Vec2(n[0], n[1]) / 32767.5f - Vec2(1, 1));
     const std::array<uint16_t, 4>& color = *albedo.at(x, y);
     const Vec2i pixel = frame.origin + Vec2i(x, y);
+    const Vec3d beside = view_position(frame, {x + 1, y}, *depth.at(x, y));
+    const auto footprint = float((beside - position).norm() / scene.unit());
+    const RayScene::Seen seen = is_catcher(m[3]) ? RayScene::Seen{place, mapped, mapped}
+                                                 : scene.seen_at(place, mapped, view, footprint);
     const size_t i = batch.count++;
-    batch.position.set(i, place);
-    batch.normal.set(i, mapped);
-    batch.face.set(i, is_catcher(m[3]) ? mapped : face_at(place, mapped, view, scene));
+    batch.position.set(i, seen.position);
+    batch.normal.set(i, seen.normal);
+    batch.face.set(i, seen.face);
     batch.view.set(i, view);
     batch.albedo.set(i, Vec3(color[0], color[1], color[2]) / 65535.0f);
     batch.parameters.set(i, Vec2(m[0], m[1]) / 255.0f);
@@ -129,7 +109,7 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
         const uint8_t kind = (*pixels.material.at(x, y))[3];
         if (is_catcher(kind))
             pixels.add(x, y, index, caught);
-        else if (is_lit(kind))
+        else if (is_traced(kind))
             pixels.add(x, y, index, lit);
     });
     tracer_.trace(lit, radiance);

@@ -11,8 +11,6 @@
 namespace easypbr::render {
 namespace {
 
-/// Roundings of positions, in RayScene::unit().
-constexpr float rounding = 2e-5f;
 /// From this surface on paths end at random (Russian roulette).
 constexpr uint32_t first_roulette = 3;
 /// The part of its length by which a ray widens, of directions that a matt surface sends: textures are read
@@ -93,8 +91,10 @@ void PathTracer::prepare(const ResolvedSettings& resolved, const RayScene& scene
     of_catcher_ = with(true);
 }
 
-Vec3 PathTracer::off_surface(const Vec3& place, const Vec3& face) const {
-    return place + face * (std::max(1.0f, place.norm()) * rounding + scene_->reach());
+Vec3 PathTracer::start_of(const PathBatch& batch, size_t path) const {
+    const Vec3 view = batch.view.at(path);
+    return RayScene::off_surface(RayScene::off_surface(batch.position.at(path), view), batch.face.at(path),
+                                 scene_->reach());
 }
 
 Vec3 PathTracer::limited(const Vec3& light, uint32_t depth) const {
@@ -124,7 +124,7 @@ void PathTracer::add_direct(const PathBatch& batch, uint32_t depth, const std::v
                             const Scattered& scattered, std::vector<Vec3>& radiance) const {
     constexpr float no_end = std::numeric_limits<float>::infinity();
     for (size_t i = 0; i < batch.count; ++i) {
-        const Vec3 place = batch.position.at(i), from = off_surface(place, batch.face.at(i));
+        const Vec3 place = batch.position.at(i), from = start_of(batch, i);
         Vec3 light = Vec3::Zero();
         if (lamps[i].all > 0 && lights_.reaches(lamps[i].index, from, place,
                                                 batch.samplers[i].pair(depth, emitter_point), *scene_))
@@ -147,7 +147,7 @@ void PathTracer::follow(PathBatch& batch, uint32_t depth, const Scattered& scatt
             throughput /= goes_on;
         }
         const Vec3 direction = scattered.direction.at(i);
-        const auto hit = scene_->trace(off_surface(batch.position.at(i), batch.face.at(i)), direction);
+        const auto hit = scene_->trace(start_of(batch, i), direction);
         if (hit)
             found.hits.push_back({uint32_t(i), *hit, direction, throughput});
         else
@@ -158,8 +158,8 @@ void PathTracer::follow(PathBatch& batch, uint32_t depth, const Scattered& scatt
 
 Vec3 PathTracer::caught_sky(const RayHit& hit, const Vec3& direction, const Vec2& u) const {
     const Vec3 up = cosine_direction(RayFrame(hit.normal), u);
-    const bool open =
-        !scene_->blocked(off_surface(hit.position, hit.normal), up, std::numeric_limits<float>::infinity());
+    const bool open = !scene_->blocked(RayScene::off_surface(hit.position, hit.normal, scene_->reach()), up,
+                                       std::numeric_limits<float>::infinity());
     return open ? sky_.radiance(direction) : Vec3(Vec3::Zero());
 }
 
@@ -227,7 +227,7 @@ void PathTracer::trace_caught(const PathBatch& batch, std::vector<CaughtLight>& 
     Scattered scattered(PathBatch::rounded_up(batch.count));
     scatter(batch, 0, true, scattered);
     for (size_t i = 0; i < batch.count; ++i) {
-        const Vec3 place = batch.position.at(i), from = off_surface(place, batch.face.at(i));
+        const Vec3 place = batch.position.at(i), from = start_of(batch, i);
         CaughtLight& to = light[batch.index[i]];
         const auto add = [&](float amount, bool arrives) {
             to.all += amount;

@@ -32,7 +32,9 @@ class PathTracer {
 
     /// Where rays start that leave a place (RayScene's frame) of a surface: beyond what its roundings might
     /// meet again.
-    Vec3 off_surface(const Vec3& place, const Vec3& face) const;
+    /// Where rays start that leave the place of a path: back along the path too, so that it is on the right
+    /// side of other surfaces that meet this one there.
+    Vec3 start_of(const PathBatch& batch, size_t path) const;
 
   private:
     struct Scattered;

@@ -13,8 +13,6 @@ namespace {
 
 /// What rays see of a sky: its light is summed over many of them, so that details only make noise.
 constexpr int widest_sky = 128;
-/// Roundings of positions, in RayScene::unit().
-constexpr float rounding = 2e-5f;
 
 Vec3 fresnel(const RaySurface& s, float n_dot_v) {
     const Vec3 grazing = s.f0.cwiseMax(s.f0.isZero() ? 0.0f : 1 - s.roughness);
@@ -120,10 +118,6 @@ Vec3 RayLight::bright_direction(const Vec2& u) const {
            equirect_direction((float(x) + within_pixel) / float(w), float(v));
 }
 
-Vec3 RayLight::off_surface(const Vec3& at, const Vec3& normal, float reach) const {
-    return at + normal * (std::max(1.0f, at.norm()) * rounding + reach);
-}
-
 Vec3 RayLight::from_lights(const Vec3& at, const Vec3& normal) const {
     Vec3 sum = Vec3::Zero();
     const auto unit = float(scene_->unit());
@@ -141,7 +135,7 @@ Vec3 RayLight::from_lights(const Vec3& at, const Vec3& normal) const {
         if (falls <= 0) continue;
         const float reach = parallel ? std::numeric_limits<float>::infinity() : distance;
         if (light.casts_shadows && resolved_->settings.shadows.enabled &&
-            scene_->blocked(off_surface(at, normal, scene_->reach()), l, reach))
+            scene_->blocked(RayScene::off_surface(at, normal, scene_->reach()), l, reach))
             continue;
         sum += light.color * (light.intensity * falls * cosine / float(pi));
     }
@@ -150,8 +144,8 @@ Vec3 RayLight::from_lights(const Vec3& at, const Vec3& normal) const {
 
 Vec3 RayLight::caught(const RayHit& hit, const Vec3& direction, RayRandom& random) const {
     const Vec3 up = cosine_direction(RayFrame(hit.normal), random.next().tail<2>());
-    const bool open =
-        !scene_->blocked(off_surface(hit.position, hit.normal), up, std::numeric_limits<float>::infinity());
+    const bool open = !scene_->blocked(RayScene::off_surface(hit.position, hit.normal), up,
+                                       std::numeric_limits<float>::infinity());
     return open ? sky(direction) : Vec3(Vec3::Zero());
 }
 
@@ -180,7 +174,8 @@ Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, 
                      : cosine_direction(frame, u);
         if (next.dot(hit.normal) <= 0) break;
         weight = weight.cwiseProduct(mirrored ? Vec3(reflects / likely) : Vec3(diffuse / (1 - likely)));
-        const auto found = scene_->trace(off_surface(hit.position, hit.normal, scene_->reach()), next);
+        const auto found =
+            scene_->trace(RayScene::off_surface(hit.position, hit.normal, scene_->reach()), next);
         // What is seen past a matt surface is blurred, so that few paths do: the sky's mean around a
         // direction.
         const bool blurred = scattered || !mirrored;

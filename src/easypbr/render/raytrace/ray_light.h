@@ -34,9 +34,6 @@ class RayLight {
     /// Radiance that a surface sends back along a ray that met it. `scattered`: the ray left a matt surface.
     Vec3 radiance(const RayHit& hit, const Vec3& direction, bool scattered, RayRandom& random) const;
 
-    /// Where rays start that leave a point (RayScene's frame) of a surface with this normal.
-    Vec3 off_surface(const Vec3& at, const Vec3& normal, float reach = 0) const;
-
   private:
     /// What a ground shows that catches shadows: the sky behind it, where it is open.
     Vec3 caught(const RayHit& hit, const Vec3& direction, RayRandom& random) const;

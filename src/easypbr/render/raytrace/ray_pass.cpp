@@ -66,18 +66,6 @@ struct RayPass::Pixels {
     }
     size_t index(int x, int y) const { return size_t(y - area.y) * size_t(area.width) + size_t(x - area.x); }
 
-    /// View space; `d` > 0.
-    Vec3d view_position(int x, int y, double d) const {
-        const Vec2d ndc((x + 0.5) / frame.size.x() * 2 - 1, 1 - (y + 0.5) / frame.size.y() * 2);
-        const Mat4d& p = frame.clip_from_view;
-        if (frame.orthographic()) {
-            const double z = frame.camera.far + (frame.camera.near - frame.camera.far) * d;
-            return {(ndc.x() - p(0, 3)) / p(0, 0), (ndc.y() - p(1, 3)) / p(1, 1), -z};
-        }
-        const double z = frame.camera.near / d;
-        return {(ndc.x() + p(0, 2)) / p(0, 0) * z, (ndc.y() + p(1, 2)) / p(1, 1) * z, -z};
-    }
-
     const Frame& frame;
     PixelRect area;  ///< that is traced
     PixelRect held;  ///< of the G-buffer, in host memory
@@ -101,14 +89,6 @@ struct Seen {
     Vec3 from, normal, face, view;
     float alpha = 1;
 };
-
-/// Normal of the element itself that is seen at a place: interpolated ones lie above it or below.
-Vec3 face_at(const Vec3& place, const Seen& seen, const RayScene& scene) {
-    const float near = 1e-4f * std::max(1.0f, place.norm());
-    const auto hit = scene.trace(place + near * seen.view, -seen.view);
-    const bool found = hit && hit->distance < 2 * near && hit->normal.dot(seen.normal) > 0.3f;
-    return found ? hit->normal : seen.normal;
-}
 
 struct Sent {
     Vec3 sky_visibility{1, 1, 1}, indirect_diffuse{0, 0, 0}, indirect_specular{0, 0, 0};
@@ -206,15 +186,15 @@ void RayPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& s
         const size_t from = *seen_at, at = pixels.index(x, y);
         const uint8_t* material = &pixels.material[from * 4];
         if (!is_lit(material[3])) return;
-        const Vec3d position = pixels.view_position(x, y, pixels.depth[from]);
+        const Vec3d position = view_position(frame, {x, y}, pixels.depth[from]);
         const Vec3d towards = frame.orthographic() ? Vec3d(0, 0, 1) : Vec3d(-position.normalized());
         Seen seen;
         seen.normal =
             oct_decode(Vec2(pixels.normal[from * 2], pixels.normal[from * 2 + 1]) / 32767.5f - Vec2(1, 1));
         seen.view = (pixels.world_from_view * towards).cast<float>();
         const Vec3 place = ((pixels.world_from_view * position + eye) / scene.unit()).cast<float>();
-        seen.face = face_at(place, seen, scene);
-        seen.from = rays_.off_surface(place, seen.face, scene.reach());
+        seen.face = scene.seen_at(place, seen.normal, seen.view).face;
+        seen.from = RayScene::off_surface(place, seen.face, scene.reach());
         const float roughness = float(material[1]) / 255;
         seen.alpha = roughness * roughness;
         const Vec2d pixel = (frame.origin + Vec2i(x, y)).cast<double>();

@@ -2,6 +2,7 @@
 
 #include <embree3/rtcore.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
@@ -223,6 +224,11 @@ const HitSurface& RayScene::surface(int index) const {
     return *scene_->surfaces[size_t(index)];
 }
 
+Vec3 RayScene::off_surface(const Vec3& at, const Vec3& normal, float reach) {
+    constexpr float rounding = 2e-5f;  // of positions
+    return at + normal * (std::max(1.0f, at.norm()) * rounding + reach);
+}
+
 float RayScene::ground_distance(const Vec3& from, const Vec3& direction) const {
     constexpr float none = std::numeric_limits<float>::infinity();
     if (!ground_) return none;
@@ -259,6 +265,16 @@ std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction) c
     const Vec3 n(found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z);
     hit.normal = n.normalized() * (n.dot(direction) > 0 ? -1.0f : 1.0f);
     return hit;
+}
+
+RayScene::Seen RayScene::seen_at(const Vec3& place, const Vec3& normal, const Vec3& view,
+                                 float footprint) const {
+    const float rounding = 1e-4f * std::max(1.0f, place.norm()), near = std::max(rounding, footprint);
+    const auto hit = trace(place + near * view, -view);
+    if (!hit || hit->distance > near + rounding) return {place, normal, normal};
+    if (hit->normal.dot(normal) > 0.3f) return {hit->position, hit->normal, normal};
+    const bool stands_before = hit->distance < near - 0.02f * rounding;
+    return stands_before ? Seen{hit->position, hit->normal, hit->normal} : Seen{place, normal, normal};
 }
 
 bool RayScene::blocked(const Vec3& from, const Vec3& direction, float distance) const {

@@ -54,10 +54,24 @@ class RayScene {
     /// How far the lit surfaces around vertices reach, so that rays start beyond them; 0 where all are faces.
     float reach() const { return reach_; }
 
+    /// Where rays start that leave a place of a surface with this normal: beyond its roundings, and beyond
+    /// `reach`.
+    static Vec3 off_surface(const Vec3& at, const Vec3& normal, float reach = 0);
+
     const std::optional<RayGround>& ground() const { return ground_; }
 
     /// The first surface in the direction (unit); safe to call from several threads.
     std::optional<RayHit> trace(const Vec3& from, const Vec3& direction) const;
+    /// What a camera's pixel shows, as rays find it.
+    struct Seen {
+        Vec3 position;
+        Vec3 face;    ///< normal of the element itself: the interpolated one lies above it or below
+        Vec3 normal;  ///< the interpolated one, but for a surface that stands before the place
+    };
+    /// What is seen at a place along `view` (unit, towards the viewer). The rasteriser rounds vertices to a
+    /// part of a pixel: a place that lies beyond an adjacent face by less than `footprint`, the width of a
+    /// pixel there, moves onto that face.
+    Seen seen_at(const Vec3& place, const Vec3& normal, const Vec3& view, float footprint = 0) const;
     /// Whether any caster lies nearer than `distance` (RayScene::unit()).
     bool blocked(const Vec3& from, const Vec3& direction, float distance) const;
 

@@ -47,7 +47,7 @@ Mat4 clip_from_mesh(const Frame& frame, const DrawItem& item) {
     return clip.cast<float>();
 }
 
-LineView view_of(const Frame& frame, const DrawItem& item, const Vec3& color) {
+LineView screen_view_of(const Frame& frame, const DrawItem& item, const Vec3& color) {
     return {.clip_from_mesh = clip_from_mesh(frame, item),
             .size = frame.size.cast<float>(),
             .orthographic = frame.orthographic(),
@@ -179,7 +179,7 @@ void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, 
         for (const Stroke& stroke : strokes_of(item)) {
             const auto& segments = cache_.segments(item.mesh(), stroke.kind, stroke.normal_length);
             native::draw_lines(values.native(transfers), region,
-                               screen_lines(segments, view_of(frame, item, stroke.color)),
+                               screen_lines(segments, screen_view_of(frame, item, stroke.color)),
                                area.y + area.height);
         }
     }
