@@ -32,7 +32,7 @@ ROOMS = {
 # Sub-rooms from the ground up. A sub-room may use those above its own line in this list; folders below one of the
 # names ("mesh/ply", "effects/bloom") stand side by side: they may use the sub-room's own files, not each other.
 SUBROOMS = {
-    "render": ["frame", "drawables", "raster", "primitives", "shadow", "raytrace", "lighting", "transparency", "effects",
+    "render": ["frame", "drawables", "raster", "primitives", "shadow", "raytrace", "denoise", "lighting", "transparency", "effects",
                "output", "pipeline"],
     "io": ["source", "archive", "tables", "image", "video", "settings", "mesh"],
 }

@@ -309,7 +309,7 @@ def rays() -> np.ndarray:
 
 
 def paths() -> np.ndarray:
-    """Rays; path tracing with few and with many samples: an open box under a sky."""
+    """Path tracing with few samples, noisy and denoised, and with many: an open box under a sky."""
     scene = Scene()
     sides = {"floor": ((2, 0.04, 2), (0, 0, 0), "#d8d4cc"), "back": ((2, 1.4, 0.04), (0, 0.7, -1), "#d8d4cc"),
              "left": ((0.04, 1.4, 2), (-1, 0.7, 0), "#c03020"), "right": ((0.04, 1.4, 2), (1, 0.7, 0), "#3878c0")}
@@ -323,9 +323,12 @@ def paths() -> np.ndarray:
     scene.show(pot, "pot")
     view = Viewer((290, 220), {"camera": {"azimuth_deg": 0, "elevation_deg": 20}}, scene)
     view.load_environment_map(sky())
-    pictures = [view.render(samples=64)]
     view.settings.path.enabled = True
-    return row([*pictures, view.render(samples=16), view.render(samples=256)])
+    pictures = []
+    for denoise, samples in (("off", 8), ("filter", 8), ("filter", 256)):
+        view.settings.path.denoise = denoise
+        pictures.append(view.render(samples=samples))
+    return row(pictures)
 
 
 def bloom() -> np.ndarray:

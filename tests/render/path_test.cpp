@@ -1,5 +1,7 @@
 // Path tracing against closed forms.
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 
 #include "render_test.h"
 
@@ -212,6 +214,60 @@ TEST(Paths, ErrorsFallWithSamples) {
         return std::sqrt(sum);
     };
     EXPECT_GT(error_of(4) / error_of(64), 3.5);
+}
+
+// Mean distance of a picture to another, of 255.
+double apart(const Image& a, const Image& b) {
+    double sum = 0;
+    const auto x = a.bytes(), y = b.bytes();
+    for (size_t i = 0; i < x.size(); ++i) sum += std::abs(int(x[i]) - int(y[i]));
+    return sum / double(x.size());
+}
+
+// Half of the noisy picture's error at most: in a picture this small the silhouette, which keeps its noise,
+// is a large part.
+TEST(Paths, DenoisedPicturesAreCloser) {
+    Scene scene;
+    scene.show(ball(surface(0.5f, 0, 0.5f)), "ball");
+    app::Session session = path_session_under_sky(scene, 64);
+    session.settings().ground.mode = GroundMode::plane;
+    const auto drawn = [&](Denoising denoise, int samples) {
+        session.settings().path.denoise = denoise;
+        return session.render({std::nullopt, samples});
+    };
+    const Image reference = drawn(Denoising::off, 512), noisy = drawn(Denoising::off, 8),
+                denoised = drawn(Denoising::filter, 8);
+    EXPECT_LT(apart(denoised, reference), apart(noisy, reference) / 2);
+}
+
+// Light without noise is kept: 0.02 of 255 are roundings.
+TEST(Paths, DenoisingLeavesWhatHasConverged) {
+    Scene scene;
+    scene.show(facing_square(1, surface(0.5f, 0, 1)), "square");
+    Light light;
+    light.position = Vec3(0, 0, 2);
+    light.radius = 0;
+    scene.set_light("light", light);
+    app::Session session = path_session(scene, 64);
+    session.settings().path.denoise = Denoising::off;
+    const Image exact = session.render({std::nullopt, 64});
+    session.settings().path.denoise = Denoising::filter;
+    EXPECT_LT(apart(session.render({std::nullopt, 64}), exact), 0.02);
+}
+
+// Scene-linear pictures are references: nothing is taken out of them unless it is asked for.
+TEST(Paths, LinearPicturesAreNotDenoised) {
+    Scene scene;
+    scene.show(ball(surface(0.5f, 0, 0.5f)), "ball");
+    app::Session session = path_session_under_sky(scene, 32);
+    const auto drawn = [&](Denoising denoise) {
+        session.settings().path.denoise = denoise;
+        return session.render({std::nullopt, 4, Encoding::scene_linear});
+    };
+    const Image automatic = drawn(Denoising::automatic), off = drawn(Denoising::off),
+                filter = drawn(Denoising::filter);
+    EXPECT_TRUE(std::ranges::equal(automatic.bytes(), off.bytes()));
+    EXPECT_FALSE(std::ranges::equal(filter.bytes(), off.bytes()));
 }
 
 }  // namespace

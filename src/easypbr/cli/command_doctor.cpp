@@ -14,6 +14,7 @@
 #include "easypbr/io/mesh/gltf/gltf_draco.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/native/shaders.h"
+#include "easypbr/render/denoise/open_image_denoise.h"
 
 namespace easypbr::cli {
 namespace {
@@ -76,6 +77,9 @@ int run_doctor(const DoctorOptions&) {
     std::fflush(stdout);
     print("CPU", fmt::format("shades with {} where there is no GPU (there are {})", native::instruction_set(),
                              fmt::join(native::instruction_sets(), ", ")));
+    const std::string oidn = render::OpenImageDenoise::version();
+    print("denoiser", oidn.empty() ? "built-in filter (Open Image Denoise is not there: `pip install pyoidn`)"
+                                   : "Open Image Denoise " + oidn);
     app::Session session;
     gl::Context& context = session.context();
     try {

@@ -14,6 +14,7 @@ namespace nb = nanobind;
 void bind_errors();
 void bind_log();
 void bind_laz();
+void bind_denoiser();
 void bind_settings(nb::module_& module);
 void bind_image(nb::module_& module);
 void bind_material(nb::module_& module);

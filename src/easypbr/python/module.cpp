@@ -31,6 +31,7 @@ NB_MODULE(_easypbr, module) {
     bind_log();
     bind_jobs();
     bind_laz();
+    bind_denoiser();
     bind_settings(module);
     bind_image(module);
     bind_material(module);

@@ -22,6 +22,11 @@ constexpr float code_of(SurfaceKind kind) {
     return float(kind) / 255.0f;
 }
 
+/// Whether light of the scene falls on a pixel with this code and is what it shows.
+constexpr bool is_lit_by_scene(uint8_t code) {
+    return code < uint8_t(SurfaceKind::display);
+}
+
 /// Whether the colour is shown past light and tone curve.
 constexpr bool is_display(SurfaceKind kind) {
     return kind == SurfaceKind::display || kind == SurfaceKind::eye_dome || kind == SurfaceKind::exact;

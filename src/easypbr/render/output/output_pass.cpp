@@ -92,6 +92,16 @@ ShaderInputs display_inputs(const Frame& frame, const LitPicture& lit, Encoding 
     return values;
 }
 
+/// Of a frame that is added to others.
+ShaderInputs sample_inputs(const Frame& frame, const LitPicture& lit, Encoding encoding) {
+    ShaderInputs values;
+    values.define(tone_defines(frame, lit, encoding));
+    values.set("u_size", Vec2(frame.size.cast<float>()));
+    values.set("u_exposure", exposure_of(frame, encoding));
+    add_lit(lit, "u_radiance", values);
+    return values;
+}
+
 /// The background as the picture holds it.
 Vec4 background_code(const Frame& frame, Encoding encoding) {
     Vec4 code = background_color(frame);
@@ -176,21 +186,11 @@ const gl::Texture& OutputPass::texture() const {
     return picture_.texture();
 }
 
-void OutputPass::accumulate(const Frame& frame, const LitPicture& lit_frame) {
+void OutputPass::accumulate(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces) {
     const bool first = frame.sample_index == 0;
-    LitPicture lit = lit_frame;
     drawn_ = first ? lit.covered : united(drawn_, lit.covered);
-    // The mean of noisy light comes before the tone curve, and what covers it after.
-    if (frame.averages_radiance) {
-        add_overlay(frame, std::exchange(lit.overlay, nullptr));
-        lit.partly_covered = true;
-    }
-    const Encoding summed = frame.averages_radiance ? Encoding::scene_linear : encoding_;
-    ShaderInputs values;
-    values.define(tone_defines(frame, lit, summed));
-    values.set("u_size", Vec2(frame.size.cast<float>()));
-    values.set("u_exposure", exposure_of(frame, summed));
-    add_lit(lit, "u_radiance", values);
+    if (frame.averages_radiance) return add_radiance(frame, lit, surfaces);
+    const ShaderInputs values = sample_inputs(frame, lit, encoding_);
     if (lit.radiance->is_ahead() && (first || sum_.is_ahead())) return add_natively(frame, lit, values);
 
     lit.radiance->upload(transfers_);
@@ -201,6 +201,34 @@ void OutputPass::accumulate(const Frame& frame, const LitPicture& lit_frame) {
     if (first) sum_framebuffer_.clear_color(0, zero);
     sum_framebuffer_.bind();
     accumulate_.draw(values, limited_to(lit.covered, frame, lit, gl::add));
+}
+
+// The mean of noisy light comes before the tone curve, and what covers it after.
+void OutputPass::add_radiance(const Frame& frame, const LitPicture& lit_frame, const GBuffer& surfaces) {
+    if (frame.sample_index == 0) mean_.begin(frame.size, denoising_of(frame) != Denoising::off);
+    LitPicture lit = lit_frame;
+    if (const Target* overlay = std::exchange(lit.overlay, nullptr))
+        mean_.add_overlay(frame, *overlay, transfers_);
+    lit.partly_covered = true;
+    const ShaderInputs values = sample_inputs(frame, lit, Encoding::scene_linear);
+    const PixelRect area = is_whole(frame, lit) ? frame.whole() : lit.covered;
+    const Target& sample = mean_.sample();
+    if (lit.radiance->is_ahead()) {
+        sample.write(area);
+        accumulate_.shade(values, {.target = &sample, .area = area}, transfers_);
+    } else {
+        sample.drawn();
+        sample_framebuffer_ = gl::Framebuffer({&sample.attachment()});
+        sample_framebuffer_.bind();
+        accumulate_.draw(values, screen_state(area));
+    }
+    mean_.add(frame, area, surfaces, transfers_);
+}
+
+Denoising OutputPass::denoising_of(const Frame& frame) const {
+    const Denoising asked = frame.resolved->settings.path.denoise;
+    const bool is_reference = encoding_ == Encoding::scene_linear && asked == Denoising::automatic;
+    return is_reference ? Denoising::off : asked;
 }
 
 void OutputPass::add_natively(const Frame& frame, const LitPicture& lit, const ShaderInputs& values) {
@@ -215,42 +243,12 @@ void OutputPass::add_natively(const Frame& frame, const LitPicture& lit, const S
                       transfers_);
 }
 
-void OutputPass::add_overlay(const Frame& frame, const Target* overlay) {
-    if (frame.sample_index == 0) overlay_sum_.clear();
-    if (!overlay) return;
-    overlay->download(frame.whole(), transfers_);
-    overlay_sum_.resize(size_t(frame.size.prod()), Vec4::Zero());
-    const auto pixels = overlay->pixels<Eigen::Vector4<Eigen::half>>();
-    const PixelRect& area = overlay->area();
-    parallel_for(size_t(area.height), 16, [&](size_t y) {
-        const size_t from = y * size_t(area.width),
-                     to = (y + size_t(area.y)) * size_t(frame.size.x()) + size_t(area.x);
-        for (size_t x = 0; x < size_t(area.width); ++x)
-            overlay_sum_[to + x] += pixels[from + x].cast<float>();
-    });
-}
-
 LitPicture OutputPass::mean_of(const Frame& frame, const LitPicture& lit) {
     LitPicture mean = lit;
-    const float scale = 1 / float(frame.sample_index + 1);
-    sum_.download(frame.whole(), transfers_);
-    if (mean_.size() != frame.size) {
-        mean_ = Target(gl::Format::rgba32f, frame.size);
-        overlay_mean_ = Target(gl::Format::rgba16f, frame.size);
-    }
-    mean_.write(frame.whole());
-    const auto from = sum_.pixels<Vec4>(), to = mean_.pixels<Vec4>();
-    parallel_for(to.size(), size_t(1) << 14, [&](size_t i) { to[i] = from[i] * scale; });
-    mean.radiance = &mean_;
+    mean.radiance = &mean_.mean(denoising_of(frame), transfers_);
+    mean.overlay = mean_.overlay_mean();
     mean.glow = nullptr;
-    mean.overlay = nullptr;
     mean.covered = drawn_;
-    if (overlay_sum_.empty()) return mean;
-    overlay_mean_.write(frame.whole());
-    const auto over = overlay_mean_.pixels<Eigen::Vector4<Eigen::half>>();
-    parallel_for(over.size(), size_t(1) << 14,
-                 [&](size_t i) { over[i] = (overlay_sum_[i] * scale).cast<Eigen::half>(); });
-    mean.overlay = &overlay_mean_;
     return mean;
 }
 

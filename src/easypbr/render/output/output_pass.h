@@ -3,6 +3,7 @@
 #pragma once
 
 #include "easypbr/gl/texture.h"
+#include "easypbr/render/denoise/radiance_mean.h"
 #include "easypbr/render/effects/bloom/glow.h"
 #include "easypbr/render/effects/effect.h"
 #include "easypbr/render/frame/frame.h"
@@ -25,8 +26,8 @@ class OutputPass {
     bool is_native(const Shot& shot, bool background_image) const;
     /// Whether the picture is in host memory alone: write_exact() leaves it there.
     bool is_finished_natively() const { return picture_.is_ahead(); }
-    /// Adds a frame's radiance to the sum. Not needed for a picture of one sample.
-    void accumulate(const Frame& frame, const LitPicture& lit);
+    /// Adds a frame's radiance to the sum. Not needed for a picture of one sample. `surfaces`: the frame's.
+    void accumulate(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces);
     /// Writes the picture from the sum of the frames so far, or from the radiance of the only one.
     /// `exact`: the G-buffer whose exact colours anti-aliasing leaves alone, where there are some.
     void finish(const Frame& frame, const LitPicture& lit, const gl::Texture* background_image,
@@ -47,9 +48,11 @@ class OutputPass {
     void finish_natively(const Frame& frame, const LitPicture& lit, const GBuffer* exact);
     void blur_edges_natively(const Frame& frame, const PixelRect& area, const GBuffer* exact);
     ShaderInputs edge_inputs(const Frame& frame, const GBuffer* exact) const;
-    /// Adds a frame's overlay to the sum of overlays, in host memory.
-    void add_overlay(const Frame& frame, const Target* overlay);
-    /// The mean of the frames so far, as if it were the only one.
+    /// Adds a frame of noisy light to the mean, before the tone curve.
+    void add_radiance(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces);
+    /// How such frames' mean is denoised.
+    Denoising denoising_of(const Frame& frame) const;
+    /// The mean of such frames so far, as if it were the only one.
     LitPicture mean_of(const Frame& frame, const LitPicture& lit);
     void add_natively(const Frame& frame, const LitPicture& lit, const ShaderInputs& values);
 
@@ -57,9 +60,8 @@ class OutputPass {
     PixelRect drawn_;  ///< what the frames of the sum cover together
     Encoding encoding_ = Encoding::srgb8;
     Target sum_, picture_, aliased_;
-    std::vector<Vec4> overlay_sum_;  ///< of frames whose radiance is averaged
-    Target mean_, overlay_mean_;     ///< likewise
-    gl::Framebuffer sum_framebuffer_;
+    RadianceMean mean_;  ///< of frames whose radiance is averaged
+    gl::Framebuffer sum_framebuffer_, sample_framebuffer_;
     mutable gl::Framebuffer picture_framebuffer_;
     ScreenShader accumulate_{"accumulate_sample.frag", native::Shader::accumulate_sample};
     ScreenShader display_{"display_output.frag", native::Shader::display_output};

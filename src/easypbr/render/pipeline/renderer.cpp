@@ -157,7 +157,8 @@ int Renderer::add_sample() {
     picture.frame = make_frame(shot, picture.frames, camera, bounds, reaches_beyond);
     picture.lit = pipeline_.draw(picture.frame, picture.averaged, picture.list, picture.contents);
     if (shot.sample_count > 1)
-        pipeline_.timer().run("accumulate", [&] { output_.accumulate(picture.frame, picture.lit); });
+        pipeline_.timer().run("accumulate",
+                              [&] { output_.accumulate(picture.frame, picture.lit, pipeline_.targets()); });
     return ++picture.frames;
 }
 

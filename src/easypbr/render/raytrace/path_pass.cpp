@@ -1,10 +1,10 @@
 #include "easypbr/render/raytrace/path_pass.h"
 
 #include <algorithm>
-#include <span>
 
 #include "easypbr/core/octahedral.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/render/frame/held_pixels.h"
 #include "easypbr/render/frame/surface_kind.h"
 #include "easypbr/scene/resolve.h"
 
@@ -14,29 +14,9 @@ namespace {
 /// Pixels whose paths are traced together.
 constexpr int block_width = 64, block_height = 16;
 
-bool is_traced(uint8_t kind) {
-    return kind < uint8_t(SurfaceKind::display);
-}
 bool is_catcher(uint8_t kind) {
     return kind == uint8_t(SurfaceKind::ground_catcher);
 }
-
-/// A target in host memory: the pixel at a place, nothing beyond what is held.
-template <class Pixel>
-class Held {
-  public:
-    explicit Held(const Target& target) : area_(target.area()), pixels_(target.pixels<Pixel>()) {}
-
-    Pixel* at(int x, int y) const {
-        if (x < area_.x || y < area_.y || x >= area_.x + area_.width || y >= area_.y + area_.height)
-            return nullptr;
-        return &pixels_[size_t(y - area_.y) * size_t(area_.width) + size_t(x - area_.x)];
-    }
-
-  private:
-    PixelRect area_;
-    std::span<Pixel> pixels_;
-};
 
 }  // namespace
 
@@ -59,11 +39,11 @@ struct PathPass::Pixels {
 
     const Frame& frame;
     const RayScene& scene;
-    Held<std::array<uint16_t, 4>> albedo;
-    Held<std::array<uint16_t, 2>> normal;
-    Held<std::array<uint8_t, 4>> material;
-    Held<float> depth;
-    Held<Vec4> emission, radiance;
+    HeldPixels<std::array<uint16_t, 4>> albedo;
+    HeldPixels<std::array<uint16_t, 2>> normal;
+    HeldPixels<std::array<uint8_t, 4>> material;
+    HeldPixels<float> depth;
+    HeldPixels<Vec4> emission, radiance;
     Mat3d world_from_view;
     Vec3d eye;  ///< relative to the scene's centre
 };
@@ -109,7 +89,7 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
         const uint8_t kind = (*pixels.material.at(x, y))[3];
         if (is_catcher(kind))
             pixels.add(x, y, index, caught);
-        else if (is_traced(kind))
+        else if (is_lit_by_scene(kind))
             pixels.add(x, y, index, lit);
     });
     tracer_.trace(lit, radiance);

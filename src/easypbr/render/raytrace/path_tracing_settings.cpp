@@ -4,6 +4,12 @@
 
 namespace easypbr::detail {
 
+template <>
+const std::vector<std::string>& enum_names<Denoising>() {
+    static const std::vector<std::string> names = {"automatic", "oidn", "filter", "off"};
+    return names;
+}
+
 void add_path(Table& table) {
     table.push_back(not_kept(make(
         "path.enabled", EASYPBR_AT(path.enabled),
@@ -16,6 +22,11 @@ void add_path(Table& table) {
              "Most luminance that a path adds beyond direct light, against bright single pixels; 0 is "
              "unlimited and unbiased.",
              "", {0, unlimited}));
+    table.push_back(
+        make("path.denoise", EASYPBR_AT(path.denoise),
+             "Takes the noise out of path traced images: oidn by Intel Open Image Denoise, filter by a built-in "
+             "edge-avoiding filter; automatic: oidn where it is installed, else filter, off for scene-linear "
+             "images."));
 }
 
 void infer(PathSettings& path, const EffectContext& context) {

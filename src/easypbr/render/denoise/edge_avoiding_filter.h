@@ -1,0 +1,23 @@
+// A denoiser that is always there: a wavelet transform that stops at edges, guided by variance.
+#pragma once
+
+#include "easypbr/render/denoise/noisy_light.h"
+#include "easypbr/render/frame/screen_shader.h"
+
+namespace easypbr::render {
+
+class EdgeAvoidingFilter {
+  public:
+    /// Levels of the transform; the last sees as far as `reach` pixels.
+    static constexpr int levels = 5;
+    static constexpr int reach = 2 * ((1 << levels) - 1);
+
+    /// Smooths the light; returns the target that holds it, `light` or `scratch`, both of which are
+    /// overwritten.
+    const Target& smooth(const NoisyLight& noisy, Transfers& transfers);
+
+  private:
+    ScreenShader smooth_{"denoise_smooth.frag", native::Shader::denoise_smooth};
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,177 @@
+#include "easypbr/render/denoise/radiance_mean.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "easypbr/core/octahedral.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/render/frame/held_pixels.h"
+#include "easypbr/render/frame/surface_kind.h"
+
+namespace easypbr::render {
+namespace {
+
+/// Pixels of one task of parallel loops.
+constexpr size_t grain = size_t(1) << 14;
+
+/// A ground that has faded further is as good as not there.
+constexpr float least_coverage = 1.0f / 64;
+
+/// Light of the scene falls on the pixel: its radiance is an estimate.
+bool is_noisy(uint8_t kind) {
+    return is_lit_by_scene(kind) || kind == uint8_t(SurfaceKind::ground_catcher);
+}
+
+/// What part of the light a surface sends back, about, by its base colour and metallic: diffuse and at normal
+/// incidence.
+Vec3 reflectance(const Vec3& base, float metallic) {
+    constexpr float dielectric = 0.04f;
+    return (base + Vec3::Constant(dielectric * (1 - metallic))).cwiseMin(1.0f);
+}
+
+void clear(const Target& target) {
+    target.write(target.whole());
+    std::ranges::fill(target.pixels<Vec4>(), Vec4::Zero());
+}
+
+}  // namespace
+
+void RadianceMean::begin(Vec2i size, bool denoised) {
+    frames_ = 0;
+    overlay_sum_.clear();
+    notes_surfaces_ = denoised;
+    const auto make = [&](Target& target) {
+        if (target.size() != size) target = Target(gl::Format::rgba32f, size);
+    };
+    make(sum_);
+    make(sample_);
+    make(light_);
+    clear(sum_);
+    if (!denoised) return;
+    for (Target* target : {&seen_, &surface_, &color_}) {
+        make(*target);
+        clear(*target);
+    }
+}
+
+void RadianceMean::add(const Frame& frame, const PixelRect& area, const GBuffer& surfaces,
+                       Transfers& transfers) {
+    ++frames_;
+    sample_.download(area, transfers);
+    const HeldPixels<Vec4> sample(sample_), sum(sum_);
+    parallel_for(size_t(area.height), 16, [&](size_t row) {
+        const int y = area.y + int(row);
+        for (int x = area.x; x < area.x + area.width; ++x) *sum.at(x, y) += *sample.at(x, y);
+    });
+    if (!notes_surfaces_) return;
+    for (const Target* target : {&surfaces.albedo, &surfaces.normal, &surfaces.material, &surfaces.depth})
+        target->download(area, transfers);
+    add_surfaces(frame, area, surfaces);
+}
+
+void RadianceMean::add_surfaces(const Frame& frame, const PixelRect& area, const GBuffer& surfaces) {
+    const HeldPixels<Vec4> sample(sample_), seen(seen_), surface(surface_), color(color_);
+    const HeldPixels<std::array<uint16_t, 4>> albedo(surfaces.albedo);
+    const HeldPixels<std::array<uint16_t, 2>> normal(surfaces.normal);
+    const HeldPixels<std::array<uint8_t, 4>> material(surfaces.material);
+    const HeldPixels<float> depth(surfaces.depth);
+    // The depth of orthographic pictures is linear in [0, 1]: what is logarithmic elsewhere.
+    const bool orthographic = frame.orthographic();
+    parallel_for(size_t(area.height), 16, [&](size_t row) {
+        const int y = area.y + int(row);
+        for (int x = area.x; x < area.x + area.width; ++x) {
+            const float* d = depth.at(x, y);
+            if (!d || *d <= 0) continue;
+            const std::array<uint8_t, 4>& m = *material.at(x, y);
+            if (!is_noisy(m[3])) continue;
+            const Vec4& of_frame = *sample.at(x, y);
+            if (of_frame.w() < least_coverage) continue;
+            const Vec3 light = of_frame.head<3>();
+            const float bright = luminance_of(light);
+            const std::array<uint16_t, 4>& a = *albedo.at(x, y);
+            const std::array<uint16_t, 2>& n = *normal.at(x, y);
+            const Vec3 direction = oct_decode(Vec2(n[0], n[1]) / 32767.5f - Vec2(1, 1));
+            const bool is_caught = !is_lit_by_scene(m[3]);
+            // Where a ground fades its radiance does, as if it reflected less.
+            const Vec3 reflects =
+                is_caught ? Vec3(Vec3::Ones())
+                          : Vec3(reflectance(Vec3(a[0], a[1], a[2]) / 65535.0f, float(m[0]) / 255) *
+                                 std::clamp(of_frame.w(), 0.0f, 1.0f));
+            *seen.at(x, y) += Vec4(light.x(), light.y(), light.z(), bright * bright);
+            *surface.at(x, y) +=
+                Vec4(direction.x(), direction.y(), direction.z(), orthographic ? *d : std::log2(*d));
+            *color.at(x, y) += Vec4(reflects.x(), reflects.y(), reflects.z(), 1);
+        }
+    });
+}
+
+void RadianceMean::add_overlay(const Frame& frame, const Target& overlay, Transfers& transfers) {
+    overlay.download(frame.whole(), transfers);
+    overlay_sum_.resize(size_t(frame.size.prod()), Vec4::Zero());
+    const auto pixels = overlay.pixels<Eigen::Vector4<Eigen::half>>();
+    const PixelRect& area = overlay.area();
+    parallel_for(size_t(area.height), 16, [&](size_t y) {
+        const size_t from = y * size_t(area.width),
+                     to = (y + size_t(area.y)) * size_t(frame.size.x()) + size_t(area.x);
+        for (size_t x = 0; x < size_t(area.width); ++x)
+            overlay_sum_[to + x] += pixels[from + x].cast<float>();
+    });
+}
+
+const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
+    const bool finds_oidn = denoising == Denoising::automatic && !OpenImageDenoise::version().empty();
+    if (denoising == Denoising::automatic) denoising = finds_oidn ? Denoising::oidn : Denoising::filter;
+    const float scale = 1 / float(frames_);
+    const auto sum = sum_.pixels<Vec4>();
+    // One frame alone says nothing about its noise.
+    if (denoising == Denoising::off || !notes_surfaces_ || frames_ < 2) {
+        light_.write(light_.whole());
+        const auto to = light_.pixels<Vec4>();
+        parallel_for(to.size(), grain, [&](size_t i) { to[i] = sum[i] * scale; });
+        return light_;
+    }
+    const Target& result = denoised(denoising, transfers);
+    const auto to = result.pixels<Vec4>(), seen = seen_.pixels<Vec4>(), color = color_.pixels<Vec4>();
+    parallel_for(to.size(), grain, [&](size_t i) {
+        const Vec3 light = to[i].head<3>() * color[i].w();
+        const Vec3 apart = sum[i].head<3>() - seen[i].head<3>();
+        to[i].head<3>() = color[i].w() > 0 ? Vec3((apart + light) * scale) : Vec3(sum[i].head<3>() * scale);
+        to[i].w() = sum[i].w() * scale;
+    });
+    return result;
+}
+
+const Target& RadianceMean::denoised(Denoising denoising, Transfers& transfers) {
+    write_noisy_light();
+    const NoisyLight noisy{light_, surface_, color_, sample_};
+    return denoising == Denoising::oidn ? oidn_.denoise(noisy) : filter_.smooth(noisy, transfers);
+}
+
+void RadianceMean::write_noisy_light() {
+    light_.write(light_.whole());
+    const auto to = light_.pixels<Vec4>(), seen = seen_.pixels<Vec4>(), color = color_.pixels<Vec4>();
+    parallel_for(to.size(), grain, [&](size_t i) {
+        const float count = color[i].w();
+        to[i].setZero();
+        if (!(count > 0)) return;
+        const Vec3 mean = seen[i].head<3>() / count;
+        const float bright = luminance_of(mean), squares = seen[i].w() / count;
+        // Of the mean, by the sample variance; of one sample its own square.
+        const float variance = count > 1 ? std::max(0.0f, squares - bright * bright) / (count - 1) : squares;
+        to[i] = Vec4(mean.x(), mean.y(), mean.z(), variance);
+    });
+}
+
+const Target* RadianceMean::overlay_mean() {
+    if (overlay_sum_.empty()) return nullptr;
+    const Vec2i size = sum_.size();
+    if (overlay_mean_.size() != size) overlay_mean_ = Target(gl::Format::rgba16f, size);
+    overlay_mean_.write(overlay_mean_.whole());
+    const auto to = overlay_mean_.pixels<Eigen::Vector4<Eigen::half>>();
+    const float scale = 1 / float(frames_);
+    parallel_for(to.size(), grain, [&](size_t i) { to[i] = (overlay_sum_[i] * scale).cast<Eigen::half>(); });
+    return &overlay_mean_;
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,54 @@
+// The mean of frames of noisy light, in linear radiance, and how it is denoised.
+#pragma once
+
+#include <vector>
+
+#include "easypbr/render/denoise/edge_avoiding_filter.h"
+#include "easypbr/render/denoise/open_image_denoise.h"
+#include "easypbr/render/frame/frame.h"
+#include "easypbr/render/frame/gbuffer.h"
+#include "easypbr/scene/effects/ray_tracing.h"
+
+namespace easypbr::render {
+
+/// Light that no surface of a frame sends is kept apart from denoising: backgrounds stay exact. So do pixels
+/// of a surface that shows its own colour.
+class RadianceMean {
+  public:
+    /// Forgets all frames. `denoised`: surfaces are taken note of.
+    void begin(Vec2i size, bool denoised);
+
+    /// Takes a frame's radiance, RGBA32F: written before add(), in either memory.
+    const Target& sample() const { return sample_; }
+    /// Adds what sample() holds in a rectangle of a frame with these surfaces. Downloads what is not in host
+    /// memory.
+    void add(const Frame& frame, const PixelRect& area, const GBuffer& surfaces, Transfers& transfers);
+    /// Adds a frame's overlay, RGBA16F.
+    void add_overlay(const Frame& frame, const Target& overlay, Transfers& transfers);
+
+    /// The means so far, in host memory; they live until the next call of a member. Throws Error when a
+    /// denoiser that is asked for by name fails.
+    const Target& mean(Denoising denoising, Transfers& transfers);
+    /// Null where there was none.
+    const Target* overlay_mean();
+
+  private:
+    void add_surfaces(const Frame& frame, const PixelRect& area, const GBuffer& surfaces);
+    void write_noisy_light();
+    const Target& denoised(Denoising denoising, Transfers& transfers);
+
+    int frames_ = 0;
+    bool notes_surfaces_ = false;
+    Target sum_;  ///< of all frames
+    /// Of frames that show a surface: its radiance, a: the sum of squares of its luminance; and what
+    /// NoisyLight has.
+    Target seen_, surface_, color_;
+    Target sample_;  ///< later a scratch target of denoisers, and the mean
+    Target light_;
+    std::vector<Vec4> overlay_sum_;
+    Target overlay_mean_;
+    EdgeAvoidingFilter filter_;
+    OpenImageDenoise oidn_;
+};
+
+}  // namespace easypbr::render
