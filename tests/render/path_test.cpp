@@ -2,7 +2,10 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <utility>
+#include <vector>
 
+#include "easypbr/core/stopwatch.h"
 #include "render_test.h"
 
 namespace easypbr {
@@ -268,6 +271,70 @@ TEST(Paths, LinearPicturesAreNotDenoised) {
                 filter = drawn(Denoising::filter);
     EXPECT_TRUE(std::ranges::equal(automatic.bytes(), off.bytes()));
     EXPECT_FALSE(std::ranges::equal(filter.bytes(), off.bytes()));
+}
+
+// The picture that refinement ends with, and its number of frames.
+std::pair<Image, int> refined(app::Session& session, int samples) {
+    for (;;) {
+        const auto done = session.refine({std::nullopt, samples});
+        if (done.frames == done.total) return {done.drawn.picture(), done.frames};
+    }
+}
+
+// Mean distances of squares of 16 x 16 pixels of a grey surface that covers both pictures, from 0 to 1,
+// sorted.
+std::vector<double> tiles_apart(const Image& a, const Image& b) {
+    std::vector<double> distances;
+    for (int y0 = 0; y0 < a.height(); y0 += 16)
+        for (int x0 = 0; x0 < a.width(); x0 += 16) {
+            double sum = 0;
+            for (int i = 0; i < 256; ++i) {
+                const int x = x0 + i % 16, y = y0 + i / 16;
+                sum += std::abs(int(a.at<uint8_t>(x, y)[1]) - int(b.at<uint8_t>(x, y)[1]));
+            }
+            distances.push_back(sum / 256 / 255);
+        }
+    std::ranges::sort(distances);
+    return distances;
+}
+
+// The noise that is asked for is the noise that there is. A normal deviate's mean distance is 0.8 deviations.
+// 30 %: green for luminance, the reference's own noise, a power for sRGB's curve, and tiles that differ
+// within.
+TEST(Paths, EndOnceNoiseIsLow) {
+    Scene scene;
+    scene.show(ball(surface(0.5f, 0, 1)), "ball");
+    app::Session session = path_session_under_sky(scene, 128);
+    session.settings().path.denoise = Denoising::off;
+    look_from(session, Vec3d(0, 0, 3), 20);
+    Light light;
+    light.position = Vec3(3, 3, 3);
+    light.radius = 2;
+    light.intensity = 60;
+    scene.set_light("lamp", light);
+    const auto [reference, all] = refined(session, 400);
+    EXPECT_EQ(all, 400);
+    constexpr float asked = 0.008f;
+    session.settings().image.noise = asked;
+    const auto [picture, frames] = refined(session, 400);
+    EXPECT_GT(frames, 4);
+    EXPECT_LT(frames, 100);
+    const std::vector<double> distances = tiles_apart(picture, reference);
+    EXPECT_NEAR(distances[size_t(double(distances.size()) * 0.95)] / 0.8, asked, 0.3 * asked);
+    EXPECT_TRUE(std::ranges::equal(session.render({std::nullopt, 400}).bytes(), picture.bytes()));
+}
+
+TEST(Session, PicturesEndWithTheirTime) {
+    Scene scene;
+    scene.show(ball(surface(0.5f, 0, 0.5f)), "ball");
+    app::Session session = plain_session(scene);
+    session.settings().image.time_budget = 0.2f;
+    const Timer timer;
+    const auto [picture, frames] = refined(session, 65536);
+    EXPECT_LT(frames, 65536);
+    EXPECT_LT(timer.seconds(), 10);
+    session.settings().image.time_budget = 1e-6f;
+    EXPECT_EQ(refined(session, 16).second, 1);
 }
 
 }  // namespace

@@ -123,7 +123,8 @@ bool LivePicture::refine(const LiveShot& shot) {
     const bool show = frames_ + 1 >= std::min(least_frames, total);
     const Session::Refinement done = session_.refine({shot.size, total}, show, motion_);
     frames_ = statistics_.frames = done.frames;
-    if (show && (shot.channel == "picture" || is_complete())) show_picture(done.drawn);
+    statistics_.total = done.total;
+    if ((show || is_complete()) && (shot.channel == "picture" || is_complete())) show_picture(done.drawn);
     gl::finish();
     return show;
 }

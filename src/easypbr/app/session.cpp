@@ -32,6 +32,7 @@ struct Session::Refined {
     Drawn frames_drawn;  ///< of all frames, when they are finished
     Drawn drawn;         ///< finished last
     int frames = 0;
+    bool is_complete = false;  ///< maybe with fewer frames than asked for
 };
 
 Session::Session(Scene scene) : scene_(std::move(scene)), settings_(std::make_unique<Settings>()) {}
@@ -182,8 +183,8 @@ Session::Refinement Session::refine(const PictureOptions& options, bool finish, 
     Refinement done;
     done.total = prepared.options.samples;
     done.began = !refined_ || !same_picture(refined_->prepared, prepared);
-    if (!done.began && refined_->frames == done.total) {
-        done.frames = done.total;
+    if (!done.began && refined_->is_complete) {
+        done.frames = done.total = refined_->frames;
         done.drawn = refined_->drawn;
         return done;
     }
@@ -198,11 +199,13 @@ Session::Refinement Session::refine(const PictureOptions& options, bool finish, 
         annotate(drawn, prepared);
         latch_from(prepared);
         prepared.options.size = asked;  // What the next call compares with.
-        refined_ = std::make_unique<Refined>(Refined{std::move(prepared), std::move(drawn), {}, 0});
+        refined_ = std::make_unique<Refined>(Refined{std::move(prepared), std::move(drawn), {}, 0, false});
     }
     done.drew = true;
     done.frames = refined_->frames = renderer.add_sample();
-    if (finish || done.frames == done.total) {
+    refined_->is_complete = renderer.is_complete();
+    if (refined_->is_complete) done.total = done.frames;
+    if (finish || refined_->is_complete) {
         renderer.finish();
         refined_->drawn = refined_->frames_drawn;
         refined_->drawn.picture_ = ++device_->picture;
@@ -223,7 +226,7 @@ uint64_t Session::picture_version(std::optional<Vec2i> size) {
 PickBuffer Session::pick_buffer(std::optional<Vec2i> size) {
     Prepared prepared = prepare({size, 1, Encoding::srgb8});
     // A complete picture stays what it is; one that is being refined has to begin again.
-    if (refined_ && refined_->frames < refined_->prepared.options.samples) refined_.reset();
+    if (refined_ && !refined_->is_complete) refined_.reset();
     const Drawn drawn = begin(prepared, false, true);
     {
         const gl::ContextScope scope(*device_->context);

@@ -45,6 +45,7 @@ void TiledPicture::draw_tile(render::Renderer& renderer, const Tile& tile) const
     part.size = {tile.outer.width, tile.outer.height};
     part.origin = {tile.outer.x, tile.outer.y};
     part.reach = guard.reach;
+    part.time_share = 1 / double(tiles.size());
     renderer.draw(scene, resolved, part, images);
 }
 

@@ -32,6 +32,8 @@ struct ShorthandOption {
 
 /// Their help is the setting's documentation.
 constexpr ShorthandOption shorthand_options[] = {{"--samples", "image.samples", "N"},
+                                                 {"--noise", "image.noise", "X"},
+                                                 {"--time-budget", "image.time_budget", "SECONDS"},
                                                  {"--env,--hdri-file", "environment.file", "FILE"},
                                                  {"--env-rotation", "environment.rotation_deg", "DEG"},
                                                  {"--env-intensity", "environment.intensity", "X"},

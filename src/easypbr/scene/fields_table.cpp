@@ -103,6 +103,16 @@ void add_image(Table& table) {
         make("image.samples", EASYPBR_AT(image.samples),
              "Number of jittered samples averaged per pixel; 1 draws a single frame without accumulation.",
              "", {1, 65536}));
+    table.push_back(make(
+        "image.noise", EASYPBR_AT(image.noise),
+        "Path traced images take no further sample once their noise is below: the standard error of what "
+        "is displayed, of white, before it is denoised, in 95 of 100 squares of 16 by 16 pixels. 0: they "
+        "take all samples.",
+        "", {0, 1}));
+    table.push_back(make("image.time_budget", EASYPBR_AT(image.time_budget),
+                         "Time after which an image takes no further sample; the first is always taken. 0 is "
+                         "unlimited.",
+                         "seconds", {0, 1e6}));
     table.push_back(
         make("image.antialias", EASYPBR_AT(image.antialias),
              "Anti-aliasing of a single frame; an accumulated image is anti-aliased by its samples."));

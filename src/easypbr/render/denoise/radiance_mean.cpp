@@ -30,6 +30,19 @@ Vec3 reflectance(const Vec3& base, float metallic) {
     return (base + Vec3::Constant(dielectric * (1 - metallic))).cwiseMin(1.0f);
 }
 
+/// Of a mean's luminance, from a pixel of RadianceMean's `seen_`, by the sample variance; of one frame its
+/// own square.
+float variance_of(const Vec4& seen, float count) {
+    const float bright = luminance_of(seen.head<3>()) / count, squares = seen.w() / count;
+    return count > 1 ? std::max(0.0f, squares - bright * bright) / (count - 1) : squares;
+}
+
+/// By how much what is displayed differs where radiance, after exposure, does by a little.
+float display_slope(float radiance) {
+    constexpr float gamma = 2.2f, darkest = 0.02f;
+    return std::pow(std::max(radiance, darkest), 1 / gamma - 1) / gamma;
+}
+
 void clear(const Target& target) {
     target.write(target.whole());
     std::ranges::fill(target.pixels<Vec4>(), Vec4::Zero());
@@ -37,10 +50,10 @@ void clear(const Target& target) {
 
 }  // namespace
 
-void RadianceMean::begin(Vec2i size, bool denoised) {
+void RadianceMean::begin(Vec2i size, bool with_surfaces) {
     frames_ = 0;
     overlay_sum_.clear();
-    notes_surfaces_ = denoised;
+    notes_surfaces_ = with_surfaces;
     const auto make = [&](Target& target) {
         if (target.size() != size) target = Target(gl::Format::rgba32f, size);
     };
@@ -48,7 +61,7 @@ void RadianceMean::begin(Vec2i size, bool denoised) {
     make(sample_);
     make(light_);
     clear(sum_);
-    if (!denoised) return;
+    if (!with_surfaces) return;
     for (Target* target : {&seen_, &surface_, &color_}) {
         make(*target);
         clear(*target);
@@ -119,6 +132,34 @@ void RadianceMean::add_overlay(const Frame& frame, const Target& overlay, Transf
     });
 }
 
+float RadianceMean::noise(float exposure) const {
+    const auto seen = seen_.pixels<Vec4>(), color = color_.pixels<Vec4>();
+    const int width = sum_.width(), height = sum_.height(), columns = (width + 15) / 16,
+              rows = (height + 15) / 16;
+    std::vector<float> errors(size_t(columns) * size_t(rows), -1.0f);
+    parallel_for(errors.size(), 64, [&](size_t tile) {
+        const int x0 = int(tile) % columns * 16, y0 = int(tile) / columns * 16;
+        float error = 0;
+        int pixels = 0;
+        for (int y = y0; y < std::min(y0 + 16, height); ++y)
+            for (int x = x0; x < std::min(x0 + 16, width); ++x) {
+                const size_t i = size_t(y) * size_t(width) + size_t(x);
+                const float count = color[i].w();
+                if (!(count > 0)) continue;
+                const float bright = exposure * luminance_of(seen[i].head<3>()) / count;
+                error += exposure * std::sqrt(variance_of(seen[i], count)) * display_slope(bright);
+                ++pixels;
+            }
+        // A few pixels of a silhouette say little.
+        if (pixels >= 32) errors[tile] = error / float(pixels);
+    });
+    std::erase(errors, -1.0f);
+    if (errors.empty()) return 0;
+    const auto at = errors.begin() + std::ptrdiff_t(double(errors.size() - 1) * 0.95);
+    std::ranges::nth_element(errors, at);
+    return *at;
+}
+
 const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
     const bool finds_oidn = denoising == Denoising::automatic && !OpenImageDenoise::version().empty();
     if (denoising == Denoising::automatic) denoising = finds_oidn ? Denoising::oidn : Denoising::filter;
@@ -156,10 +197,7 @@ void RadianceMean::write_noisy_light() {
         to[i].setZero();
         if (!(count > 0)) return;
         const Vec3 mean = seen[i].head<3>() / count;
-        const float bright = luminance_of(mean), squares = seen[i].w() / count;
-        // Of the mean, by the sample variance; of one sample its own square.
-        const float variance = count > 1 ? std::max(0.0f, squares - bright * bright) / (count - 1) : squares;
-        to[i] = Vec4(mean.x(), mean.y(), mean.z(), variance);
+        to[i] = Vec4(mean.x(), mean.y(), mean.z(), variance_of(seen[i], count));
     });
 }
 

@@ -15,8 +15,8 @@ namespace easypbr::render {
 /// of a surface that shows its own colour.
 class RadianceMean {
   public:
-    /// Forgets all frames. `denoised`: surfaces are taken note of.
-    void begin(Vec2i size, bool denoised);
+    /// Forgets all frames. `with_surfaces`: they are taken note of, for mean() with a denoiser and noise().
+    void begin(Vec2i size, bool with_surfaces);
 
     /// Takes a frame's radiance, RGBA32F: written before add(), in either memory.
     const Target& sample() const { return sample_; }
@@ -25,6 +25,10 @@ class RadianceMean {
     void add(const Frame& frame, const PixelRect& area, const GBuffer& surfaces, Transfers& transfers);
     /// Adds a frame's overlay, RGBA16F.
     void add_overlay(const Frame& frame, const Target& overlay, Transfers& transfers);
+
+    /// Of the frames so far: the standard error of what is displayed with an exposure, of white, that 95 of
+    /// 100 squares of 16 x 16 pixels are below; 0 where no surface is. Surfaces must be taken note of.
+    float noise(float exposure) const;
 
     /// The means so far, in host memory; they live until the next call of a member. Throws Error when a
     /// denoiser that is asked for by name fails.

@@ -205,7 +205,9 @@ void OutputPass::accumulate(const Frame& frame, const LitPicture& lit, const GBu
 
 // The mean of noisy light comes before the tone curve, and what covers it after.
 void OutputPass::add_radiance(const Frame& frame, const LitPicture& lit_frame, const GBuffer& surfaces) {
-    if (frame.sample_index == 0) mean_.begin(frame.size, denoising_of(frame) != Denoising::off);
+    const bool looks_for_noise = frame.resolved->settings.image.noise > 0;
+    if (frame.sample_index == 0)
+        mean_.begin(frame.size, looks_for_noise || denoising_of(frame) != Denoising::off);
     LitPicture lit = lit_frame;
     if (const Target* overlay = std::exchange(lit.overlay, nullptr))
         mean_.add_overlay(frame, *overlay, transfers_);
@@ -223,6 +225,10 @@ void OutputPass::add_radiance(const Frame& frame, const LitPicture& lit_frame, c
         accumulate_.draw(values, screen_state(area));
     }
     mean_.add(frame, area, surfaces, transfers_);
+}
+
+float OutputPass::noise(const Frame& frame) const {
+    return frame.averages_radiance ? mean_.noise(exposure_of(frame, Encoding::srgb8)) : 0;
 }
 
 Denoising OutputPass::denoising_of(const Frame& frame) const {

@@ -28,6 +28,8 @@ class OutputPass {
     bool is_finished_natively() const { return picture_.is_ahead(); }
     /// Adds a frame's radiance to the sum. Not needed for a picture of one sample. `surfaces`: the frame's.
     void accumulate(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces);
+    /// See RadianceMean::noise(); 0 where frames are not of noisy light.
+    float noise(const Frame& frame) const;
     /// Writes the picture from the sum of the frames so far, or from the radiance of the only one.
     /// `exact`: the G-buffer whose exact colours anti-aliasing leaves alone, where there are some.
     void finish(const Frame& frame, const LitPicture& lit, const gl::Texture* background_image,

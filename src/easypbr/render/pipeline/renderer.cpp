@@ -6,6 +6,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/step_progress.h"
+#include "easypbr/core/stopwatch.h"
 #include "easypbr/gl/pace.h"
 #include "easypbr/render/pipeline/kept_surfaces.h"
 #include "easypbr/scene/resolve.h"
@@ -18,6 +19,9 @@ PixelType pixel_type(gl::Format format) {
            : format == gl::Format::rgba16 ? PixelType::u16
                                           : PixelType::f32;
 }
+
+/// The variance of fewer says too little.
+constexpr int least_frames_for_noise = 4;
 
 /// Something is seen through it, or it is drawn at random: another frame than the one through the pixels'
 /// centres shows what is there.
@@ -60,6 +64,7 @@ struct Renderer::Picture {
     Frame frame;                  ///< drawn last
     LitPicture lit;               ///< of that frame
     int frames = 0;               ///< so far
+    double seconds = 0;           ///< that the frames took so far
     bool with_exact = false;      ///< colours of tables, which nothing may mix with others
     bool is_finished = false;     ///< at least once
     bool holds_surfaces = false;  ///< its only frame is what the pixels' centres see
@@ -73,7 +78,7 @@ void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved
     begin(scene, resolved, options, images);
     gl::Pace pace;
     StepProgress progress("picture", "sample", options.samples);
-    for (int samples = add_sample(); samples < options.samples; samples = add_sample()) {
+    for (int samples = add_sample(); !is_complete(); samples = add_sample()) {
         pace.step();
         progress.done(samples);
     }
@@ -144,6 +149,25 @@ void Renderer::prepare(Picture& picture) {
 
 int Renderer::add_sample() {
     Picture& picture = *picture_;
+    const Stopwatch watch(picture.seconds);
+    draw_sample(picture);
+    ++picture.frames;
+    return picture.frames;
+}
+
+bool Renderer::is_complete() const {
+    const Picture& picture = *picture_;
+    if (picture.frames >= picture.shot.sample_count) return true;
+    const ImageSettings& image = picture.resolved.settings.image;
+    // The next frame takes as long as the others did.
+    const double budget = image.time_budget * picture.options.time_share,
+                 next = picture.seconds * (1 + 1.0 / picture.frames);
+    if (budget > 0 && next > budget) return true;
+    return image.noise > 0 && picture.frames >= least_frames_for_noise && picture.contents.paths &&
+           output_.noise(picture.frame) < image.noise;
+}
+
+void Renderer::draw_sample(Picture& picture) {
     const Shot& shot = picture.shot;
     Camera camera = camera_of(shot, picture.frames);
     if (shot.motion) {
@@ -159,7 +183,6 @@ int Renderer::add_sample() {
     if (shot.sample_count > 1)
         pipeline_.timer().run("accumulate",
                               [&] { output_.accumulate(picture.frame, picture.lit, pipeline_.targets()); });
-    return ++picture.frames;
 }
 
 void Renderer::finish() {
@@ -173,7 +196,7 @@ void Renderer::finish() {
     if (picture.shot.motion) move_objects(picture.drawable, picture.scene, *picture.shot.motion, 1);
     if (exact) timer.run("exact", [&] { draw_exact(); });
     if (picture.contents.custom) draw_custom_over_picture();
-    const bool is_last = picture.frames == picture.shot.sample_count;
+    const bool is_last = is_complete();
     if (is_last && picture.options.surfaces && !picture.holds_surfaces)
         timer.run("surfaces", [&] { kept_->draw(pipeline_); });
     // Once a picture: frames after the first ask for less than the first did.

@@ -24,6 +24,7 @@ struct DrawOptions {
     Vec2i picture_size{0, 0};  ///< of a tile: of the whole picture that the camera sees; else 0
     Vec2i origin{0, 0};  ///< of a tile: its first pixel in the picture, multiples of tile_grid (tiles.h)
     double reach = unlimited_reach;  ///< of a tile: see Frame
+    double time_share = 1;           ///< of a tile: its part of image.time_budget
     bool ids = false;                ///< fill the id target too
     bool layers = false;    ///< read_layer() will be called: blended surfaces stand in it where they are half
                             ///< opaque or more, and there is no picture
@@ -50,14 +51,17 @@ class Renderer {
     void draw(const SceneSnapshot& scene, const ResolvedSettings& resolved, const DrawOptions& options,
               const SettingsImages& images = {});
 
-    /// The same picture frame by frame: begin(), then add_sample() up to options.samples times; finish()
-    /// writes the picture of the frames so far and may be called after any of them. After the last one it is
-    /// draw()'s, bit for bit, and complete. What is drawn between must not be another picture: then begin()
-    /// again.
+    /// The same picture frame by frame: begin(), then add_sample() until is_complete(), which is after
+    /// options.samples frames at the latest; finish() writes the picture of the frames so far and may be
+    /// called after any of them. After the last one it is draw()'s, bit for bit (but for image.time_budget).
+    /// What is drawn between must not be another picture: then begin() again.
     void begin(const SceneSnapshot& scene, const ResolvedSettings& resolved, const DrawOptions& options,
                const SettingsImages& images = {});
     /// Returns the number of frames so far.
     int add_sample();
+    /// Whether the picture has all its frames, is as good as image.noise asks, or has taken
+    /// image.time_budget.
+    bool is_complete() const;
     void finish();
 
     /// Draws nothing but surfaces, through the pixels' centres: for read_layer() and read_surfaces(). The
@@ -122,6 +126,7 @@ class Renderer {
   private:
     struct Picture;
     void prepare(Picture& picture);
+    void draw_sample(Picture& picture);
     void keep_surfaces(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i size,
                        const SettingsImages& images);
     /// Draws the exact colours that nothing may mix with, once, through the pixels' centres.

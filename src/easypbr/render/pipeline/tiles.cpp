@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "easypbr/core/error.h"
+#include "easypbr/render/denoise/edge_avoiding_filter.h"
 #include "easypbr/render/effects/ambient_occlusion/ambient_occlusion_pass.h"
 #include "easypbr/render/effects/effect.h"
 #include "easypbr/render/effects/ground/ground_pass.h"
@@ -97,6 +98,7 @@ Guard guard_of(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec
         // What rough glass shows is blurred by a quarter of its reach, seen through twice as wide a filter.
         guard.pixels += int(1.5 * most_reach_beside_transmission);
     }
+    if (resolved.traces_paths) guard.pixels += EdgeAvoidingFilter::reach;
     for (const auto& effect : make_effects()) guard.pixels += effect->reach(whole, bounds);
     return guard;
 }

@@ -22,11 +22,11 @@ void add_path(Table& table) {
              "Most luminance that a path adds beyond direct light, against bright single pixels; 0 is "
              "unlimited and unbiased.",
              "", {0, unlimited}));
-    table.push_back(
-        make("path.denoise", EASYPBR_AT(path.denoise),
-             "Takes the noise out of path traced images: oidn by Intel Open Image Denoise, filter by a built-in "
-             "edge-avoiding filter; automatic: oidn where it is installed, else filter, off for scene-linear "
-             "images."));
+    table.push_back(make(
+        "path.denoise", EASYPBR_AT(path.denoise),
+        "Takes the noise out of path traced images: oidn by Intel Open Image Denoise, filter by a built-in "
+        "edge-avoiding filter; automatic: oidn where it is installed, else filter, off for scene-linear "
+        "images."));
 }
 
 void infer(PathSettings& path, const EffectContext& context) {
