@@ -17,7 +17,7 @@ layout(location = 0) out vec4 o_color;  // the catcher's radiance; else a factor
 // The part of a catcher's light that is missing, as black.
 vec4 missing_light(vec2 uv) {
     vec2 light = textureLod(u_light, uv, 0.0).rg;
-    float lit = light.g > 0.0 ? clamp(light.r / light.g, 0.0, 1.0) : 1.0;
+    float lit = light.g > 0.0 ? light.r / light.g : 1.0;  // Of one frame of noisy light it may be more than 1.
     return vec4(0.0, 0.0, 0.0, u_strength * (1.0 - lit));
 }
 

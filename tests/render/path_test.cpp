@@ -243,6 +243,29 @@ TEST(Paths, DenoisedPicturesAreCloser) {
     EXPECT_LT(apart(denoised, reference), apart(noisy, reference) / 2);
 }
 
+// The same of a shadow catcher's alpha.
+TEST(Paths, DenoisedShadowsAreCloser) {
+    Scene scene;
+    scene.show(ball(surface(0.5f, 0, 0.5f)), "ball");
+    app::Session session = path_session_under_sky(scene, 64);
+    session.settings().ground.mode = GroundMode::shadow;
+    const auto drawn = [&](Denoising denoise, int samples) {
+        session.settings().path.denoise = denoise;
+        return session.render({std::nullopt, samples});
+    };
+    const Image reference = drawn(Denoising::off, 512), noisy = drawn(Denoising::off, 8),
+                denoised = drawn(Denoising::filter, 8);
+    const auto alpha_apart = [&](const Image& image) {
+        double sum = 0;
+        for (int y = 48; y < 64; ++y)
+            for (int x = 0; x < 64; ++x)
+                sum += std::abs(int(image.at<uint8_t>(x, y)[3]) - int(reference.at<uint8_t>(x, y)[3]));
+        return sum / (16 * 64);
+    };
+    EXPECT_GT(alpha_apart(noisy), 2);
+    EXPECT_LT(alpha_apart(denoised), alpha_apart(noisy) / 2);
+}
+
 // Light without noise is kept: 0.02 of 255 are roundings.
 TEST(Paths, DenoisingLeavesWhatHasConverged) {
     Scene scene;

@@ -8,6 +8,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/render/frame/held_pixels.h"
 #include "easypbr/render/frame/surface_kind.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {
@@ -62,6 +63,7 @@ void RadianceMean::begin(Vec2i size, bool with_surfaces) {
     make(light_);
     clear(sum_);
     if (!with_surfaces) return;
+    noisy_.assign(size_t(size.prod()), Noisy::nothing);
     for (Target* target : {&seen_, &surface_, &color_}) {
         make(*target);
         clear(*target);
@@ -91,6 +93,7 @@ void RadianceMean::add_surfaces(const Frame& frame, const PixelRect& area, const
     const HeldPixels<float> depth(surfaces.depth);
     // The depth of orthographic pictures is linear in [0, 1]: what is logarithmic elsewhere.
     const bool orthographic = frame.orthographic();
+    const bool over_nothing = !frame.resolved->settings.background.shows_environment();
     parallel_for(size_t(area.height), 16, [&](size_t row) {
         const int y = area.y + int(row);
         for (int x = area.x; x < area.x + area.width; ++x) {
@@ -99,13 +102,18 @@ void RadianceMean::add_surfaces(const Frame& frame, const PixelRect& area, const
             const std::array<uint8_t, 4>& m = *material.at(x, y);
             if (!is_noisy(m[3])) continue;
             const Vec4& of_frame = *sample.at(x, y);
-            if (of_frame.w() < least_coverage) continue;
-            const Vec3 light = of_frame.head<3>();
+            const bool is_caught = !is_lit_by_scene(m[3]);
+            if (!is_caught && of_frame.w() < least_coverage) continue;
+            const Noisy kind = is_caught && over_nothing ? Noisy::coverage : Noisy::radiance;
+            Noisy& noted = noisy_[size_t(y) * size_t(sum_.width()) + size_t(x)];
+            if (noted == Noisy::nothing) noted = kind;
+            if (noted != kind) continue;
+            const Vec3 light =
+                kind == Noisy::coverage ? Vec3(Vec3::Constant(of_frame.w())) : Vec3(of_frame.head<3>());
             const float bright = luminance_of(light);
             const std::array<uint16_t, 4>& a = *albedo.at(x, y);
             const std::array<uint16_t, 2>& n = *normal.at(x, y);
             const Vec3 direction = oct_decode(Vec2(n[0], n[1]) / 32767.5f - Vec2(1, 1));
-            const bool is_caught = !is_lit_by_scene(m[3]);
             // Where a ground fades its radiance does, as if it reflected less.
             const Vec3 reflects =
                 is_caught ? Vec3(Vec3::Ones())
@@ -146,8 +154,11 @@ float RadianceMean::noise(float exposure) const {
                 const size_t i = size_t(y) * size_t(width) + size_t(x);
                 const float count = color[i].w();
                 if (!(count > 0)) continue;
-                const float bright = exposure * luminance_of(seen[i].head<3>()) / count;
-                error += exposure * std::sqrt(variance_of(seen[i], count)) * display_slope(bright);
+                const float deviation = std::sqrt(variance_of(seen[i], count)),
+                            bright = exposure * luminance_of(seen[i].head<3>()) / count;
+                // A coverage is displayed as it is.
+                error +=
+                    noisy_[i] == Noisy::coverage ? deviation : exposure * deviation * display_slope(bright);
                 ++pixels;
             }
         // A few pixels of a silhouette say little.
@@ -175,10 +186,11 @@ const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
     const Target& result = denoised(denoising, transfers);
     const auto to = result.pixels<Vec4>(), seen = seen_.pixels<Vec4>(), color = color_.pixels<Vec4>();
     parallel_for(to.size(), grain, [&](size_t i) {
-        const Vec3 light = to[i].head<3>() * color[i].w();
-        const Vec3 apart = sum[i].head<3>() - seen[i].head<3>();
-        to[i].head<3>() = color[i].w() > 0 ? Vec3((apart + light) * scale) : Vec3(sum[i].head<3>() * scale);
-        to[i].w() = sum[i].w() * scale;
+        const Vec3 changed = to[i].head<3>() * color[i].w() - seen[i].head<3>();
+        to[i] = sum[i];
+        if (noisy_[i] == Noisy::radiance) to[i].head<3>() += changed;
+        if (noisy_[i] == Noisy::coverage) to[i].w() += luminance_of(changed);
+        to[i] *= scale;
     });
     return result;
 }

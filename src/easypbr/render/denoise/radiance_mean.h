@@ -44,11 +44,14 @@ class RadianceMean {
     int frames_ = 0;
     bool notes_surfaces_ = false;
     Target sum_;  ///< of all frames
-    /// Of frames that show a surface: its radiance, a: the sum of squares of its luminance; and what
-    /// NoisyLight has.
+    /// Of frames that show a surface: its radiance, of a shadow catcher over nothing its coverage; a: the sum
+    /// of squares of the luminance; and what NoisyLight has.
     Target seen_, surface_, color_;
     Target sample_;  ///< later a scratch target of denoisers, and the mean
     Target light_;
+    /// What of each pixel is taken note of: that of its first frame with noise.
+    enum class Noisy : uint8_t { nothing, radiance, coverage };
+    std::vector<Noisy> noisy_;
     std::vector<Vec4> overlay_sum_;
     Target overlay_mean_;
     EdgeAvoidingFilter filter_;

@@ -20,6 +20,15 @@ bool is_catcher(uint8_t kind) {
 
 }  // namespace
 
+void PathPass::Caught::add(const CaughtLight& light) {
+    sum.arrives += light.arrives;
+    sum.all += light.all;
+    const double mean = sum.all > 0 ? double(sum.arrives) / double(sum.all) : 1;
+    of_frame = float((frames + 1) * mean - frames * ratio);
+    ratio = mean;
+    ++frames;
+}
+
 /// The targets in host memory, and how pixels become places.
 struct PathPass::Pixels {
     Pixels(const Frame& frame_, const GBuffer& targets, const Target& emission_, const RayScene& scene_)
@@ -102,9 +111,8 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
         to->head<3>() = radiance[index] + (emission ? Vec3(emission->head<3>()) : Vec3(Vec3::Zero()));
         to->w() = 1;
         if (caught_.empty()) return;
-        CaughtLight& sum = caught_[size_t(y) * size_t(pixels.frame.size.x()) + size_t(x)];
-        sum.arrives += light[index].arrives;
-        sum.all += light[index].all;
+        if (is_catcher((*pixels.material.at(x, y))[3]))
+            caught_[size_t(y) * size_t(pixels.frame.size.x()) + size_t(x)].add(light[index]);
     });
 }
 
@@ -141,7 +149,7 @@ void PathPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& 
     if (!caught) return;
     caught->write(frame.whole());
     const auto light = caught->pixels<Vec4>();
-    for (size_t i = 0; i < light.size(); ++i) light[i] = Vec4(caught_[i].arrives, caught_[i].all, 0, 0);
+    for (size_t i = 0; i < light.size(); ++i) light[i] = Vec4(caught_[i].of_frame, 1, 0, 0);
 }
 
 }  // namespace easypbr::render

@@ -23,7 +23,17 @@ class PathPass {
     void trace_block(const Pixels& pixels, const PixelRect& block);
 
     PathTracer tracer_;
-    std::vector<CaughtLight> caught_;  ///< for each pixel, summed over the frames so far
+    /// The part of a shadow catcher's light that arrives at a pixel: the ratio of sums over all frames so
+    /// far.
+    struct Caught {
+        void add(const CaughtLight& light);
+
+        CaughtLight sum;
+        double ratio = 0;
+        int frames = 0;
+        float of_frame = 1;  ///< by which the last frame changed the sum of frames, each of this ratio
+    };
+    std::vector<Caught> caught_;  ///< for each pixel
 };
 
 }  // namespace easypbr::render
