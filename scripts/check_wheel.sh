@@ -13,4 +13,4 @@ venv/bin/python -c "import easypbr; easypbr.render(easypbr.shapes.teapot(), 'fir
 "$python" -c "print('install %.1f s, first picture %.1f s' % ($installed - $begin, $(now) - $installed))"
 site=$(venv/bin/python -c "import easypbr, os; print(os.path.dirname(os.path.dirname(easypbr.__file__)))")
 du -sb --total "$site"/easypbr "$site"/easypbr.libs | awk 'END {printf "installed: %.1f MB\n", $1 / 1e6}'
-venv/bin/python -m unittest -v -b "$folder/test_installed.py"
+venv/bin/python "$folder/test_installed.py" -v
