@@ -49,10 +49,10 @@ for version in "${versions[@]}"; do
   prepare "$work/$version"
   chmod 755 "$work"
   python=$(python_of "$version")
-  # pyenv's Pythons stand in a home that other users cannot enter.
+  # pyenv's Pythons and their libraries stand in a home that other users cannot enter.
   chain=(unshare --net --mount)
   "${chain[@]}" bash -c 'mount --bind "$1" /mnt && shift && exec "$@"' - "$("$python" -c 'import sys; print(sys.base_prefix)')" \
-      "${alone[@]}" HOME="$work/$version/home" "$work/$version/check_wheel.sh" \
+      "${alone[@]}" HOME="$work/$version/home" LD_LIBRARY_PATH=/mnt/lib "$work/$version/check_wheel.sh" \
       "/mnt/bin/python$version" "$work/$version" || failed=1
 done
 
