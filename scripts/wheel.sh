@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Builds wheels that need nothing of the system but the C and C++ libraries of manylinux_2_34: dist/easypbr-*.whl, one for
 # each version of Python below 3.12, and one for 3.12 and all later ones (stable ABI). usage: wheel.sh [VERSION ...]
-# Versions default to 3.10, 3.11 and 3.12; each is looked for as pythonVERSION in PATH, then among pyenv's.
+# Versions default to 3.10, 3.11 and 3.12; each is looked for as pythonVERSION in PATH, then among pyenv's. WHEEL_OPTIONS
+# holds further options of `pip wheel`.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 . scripts/find_python.sh

@@ -1,5 +1,5 @@
 """The installed package, seen from outside: run by scripts/test_wheel.sh with the Python that has it, and with nothing
-but the standard library and numpy beside it. As the user who runs it: without root, with a HOME that cannot be written."""
+but the standard library and numpy beside it; by a user without root, whose HOME cannot be written."""
 import json
 import os
 import pathlib

@@ -69,16 +69,16 @@ std::string pixel_format_of(const fs::path& program, const std::string& encoder)
         fmt::format("the encoder {} takes none of the kinds of pictures that can be made for it", encoder));
 }
 
-void append(Arguments& arguments, std::initializer_list<std::string> more) {
+void add_to(Arguments& arguments, std::initializer_list<std::string> more) {
     arguments.insert(arguments.end(), more);
 }
 
 /// Colours of BT.709, and tags that say so.
-void append_colors(Arguments& arguments, const std::string& pixels) {
+void add_colors(Arguments& arguments, const std::string& pixels) {
     const bool is_yuv = pixels.starts_with("yuv");
     const std::string range = pixels == "yuvj420p" ? "pc" : "tv";
     if (is_yuv)
-        append(
+        add_to(
             arguments,
             {"-vf",
              fmt::format("scale=in_range=pc:out_range={0}:out_color_matrix=bt709:flags=bicubic+accurate_rnd+"
@@ -87,22 +87,22 @@ void append_colors(Arguments& arguments, const std::string& pixels) {
                          range, pixels),
              "-color_range", range, "-color_primaries", "bt709", "-color_trc", "bt709", "-colorspace",
              "bt709"});
-    append(arguments, {"-pix_fmt", pixels});
+    add_to(arguments, {"-pix_fmt", pixels});
 }
 
 /// 256 colours for each picture, and an ordered dither, which stays in place from one frame to the next.
-void append_palette(Arguments& arguments) {
-    append(arguments, {"-filter_complex",
+void add_palette(Arguments& arguments) {
+    add_to(arguments, {"-filter_complex",
                        "split[a][b];[a]palettegen=stats_mode=single:reserve_transparent=0[p];"
                        "[b][p]paletteuse=new=1:dither=bayer:bayer_scale=4"});
 }
 
-void append_encoder(Arguments& arguments, const std::string& encoder, double fps) {
-    append(arguments,
+void add_encoder(Arguments& arguments, const std::string& encoder, double fps) {
+    add_to(arguments,
            {"-c:v", encoder, "-g", fmt::format("{}", std::max(1, int(std::lround(fps)))), "-bf", "0"});
     const auto options = encoder_options(encoder);
-    for (const auto& [name, value] : options) append(arguments, {fmt::format("-{}:v", name), value});
-    if (options.empty()) append(arguments, {"-q:v", fmt::format("{}", fixed_quantiser)});
+    for (const auto& [name, value] : options) add_to(arguments, {fmt::format("-{}:v", name), value});
+    if (options.empty()) add_to(arguments, {"-q:v", fmt::format("{}", fixed_quantiser)});
 }
 
 /// What the program is told: pictures of this size come through its standard input.
@@ -110,18 +110,18 @@ Arguments arguments_for(const fs::path& path, const Vec2i& size, double fps, con
                         const std::string& pixels) {
     Arguments arguments{"-hide_banner", "-loglevel", "error",    "-nostats",
                         "-f",           "rawvideo",  "-pix_fmt", "rgb0"};
-    append(arguments, {"-video_size", fmt::format("{}x{}", size.x(), size.y()), "-framerate",
+    add_to(arguments, {"-video_size", fmt::format("{}x{}", size.x(), size.y()), "-framerate",
                        fmt::format("{}", fps), "-i", "pipe:0", "-an"});
     if (encoder == "gif") {
-        append_palette(arguments);
-        append(arguments, {"-c:v", encoder});
+        add_palette(arguments);
+        add_to(arguments, {"-c:v", encoder});
     } else {
-        append_colors(arguments, pixels);
-        append_encoder(arguments, encoder, fps);
+        add_colors(arguments, pixels);
+        add_encoder(arguments, encoder, fps);
     }
     const std::string container = container_of(path).name;
-    if (container == "mp4" || container == "mov") append(arguments, {"-movflags", "+faststart"});
-    append(arguments, {"-f", container, "-y", "file:" + path.string()});
+    if (container == "mp4" || container == "mov") add_to(arguments, {"-movflags", "+faststart"});
+    add_to(arguments, {"-f", container, "-y", "file:" + path.string()});
     return arguments;
 }
 
