@@ -69,7 +69,8 @@ def test_pkg_config_serves_builds_without_cmake(tmp_path):
     environment = {**os.environ, "PKG_CONFIG_PATH": str(found.parent)}
     ask = ["pkg-config", "--cflags", "--libs", "easypbr >= 0.1"]
     flags = shlex.split(subprocess.run(ask, env=environment, capture_output=True, text=True, check=True).stdout)
-    run("c++", "-std=c++20", OUTSIDE / "main.cpp", *flags, f"-Wl,-rpath,{found.parent.parent}", "-o", "outside", cwd=tmp_path)
+    run("c++", "-std=c++20", OUTSIDE / "main.cpp", *flags, f"-Wl,-rpath,{found.parent.parent}", "-o", "outside",
+        cwd=tmp_path)
     write_inputs(tmp_path)
     run(tmp_path / "outside", "drone.ply", "map.hdr", "cpp.png", cwd=tmp_path)
     assert (tmp_path / "cpp.png").stat().st_size > 1000

@@ -88,7 +88,8 @@ class Installed(unittest.TestCase):
         self.assert_drawn("out.png")
 
     def test_turntable(self) -> None:
-        self.run_(PROGRAM, "render", "drone.ply", "--turntable", "4", "--size", "96x64", "--samples", "1", "-o", "f_%d.png")
+        self.run_(PROGRAM, "render", "drone.ply", "--turntable", "4", "--size", "96x64", "--samples", "1", "-o",
+                  "f_%d.png")
         pictures = [picture(self.folder / f"f_{i}.png").astype(int) for i in range(4)]
         for i in range(4):
             self.assertGreater(np.abs(pictures[i] - pictures[i - 1]).max(), 50)
@@ -125,7 +126,8 @@ class Installed(unittest.TestCase):
 
     def test_opengl_is_not_needed_until_it_is_asked_for(self) -> None:
         done = self.run_(sys.executable, "-c", "import easypbr; easypbr.render(easypbr.shapes.teapot(), size=(64, 64));"
-                         "print([l for l in open('/proc/self/maps') if 'libGL' in l or 'libEGL' in l])", EASYPBR_DEVICE="cpu")
+                         "print([l for l in open('/proc/self/maps') if 'libGL' in l or 'libEGL' in l])",
+                         EASYPBR_DEVICE="cpu")
         self.assertEqual(done.stdout.strip(), "[]")
 
 
