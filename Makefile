@@ -3,7 +3,7 @@ PYTHON := .venv/bin/python
 BUILD := build
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 
-.PHONY: demo test library build setup setup-tests bench check-long sanitize fuzz docs format lint clean
+.PHONY: demo test library build setup setup-tests bench wheel test-wheel check-long sanitize fuzz docs format lint clean
 
 # Library, command line and Python module, without tests and benchmarks.
 library: setup
@@ -33,6 +33,14 @@ test: setup-tests build
 
 bench: build
 	scripts/bench.sh
+
+# Wheels in dist/, for Python 3.10, 3.11, and 3.12 and later.
+wheel: setup
+	scripts/wheel.sh
+
+# The wheels of dist/ from outside: fresh environments, a system with Python and nothing else. Needs root.
+test-wheel: setup-tests
+	scripts/test_wheel.sh
 
 check-long: setup-tests build
 	scripts/check_long.sh

@@ -19,6 +19,10 @@ configure_package_config_file(cmake/easypbrConfig.cmake.in ${PROJECT_BINARY_DIR}
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/easypbrConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/easypbrConfig.cmake ${PROJECT_BINARY_DIR}/easypbrConfigVersion.cmake
         DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/easypbr COMPONENT library)
+# For builds without CMake. The prefix is found from the place of the file, so that it may move.
+file(RELATIVE_PATH EASYPBR_PREFIX /${CMAKE_INSTALL_LIBDIR}/pkgconfig /)
+configure_file(cmake/easypbr.pc.in ${PROJECT_BINARY_DIR}/easypbr.pc @ONLY)
+install(FILES ${PROJECT_BINARY_DIR}/easypbr.pc DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig COMPONENT library)
 
 # Manual pages and completions, which the program writes from its own table of options.
 set(shell_pages ${PROJECT_BINARY_DIR}/share)

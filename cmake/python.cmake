@@ -2,7 +2,8 @@
 if(NOT DEFINED Python_EXECUTABLE AND EXISTS ${PROJECT_SOURCE_DIR}/.venv/bin/python)
   set(Python_EXECUTABLE ${PROJECT_SOURCE_DIR}/.venv/bin/python)
 endif()
-find_package(Python 3.10 REQUIRED COMPONENTS Interpreter Development.Module)
+# scikit-build-core names the component of the stable ABI where the interpreter is new enough for it.
+find_package(Python 3.10 REQUIRED COMPONENTS Interpreter Development.Module ${SKBUILD_SABI_COMPONENT})
 execute_process(COMMAND ${Python_EXECUTABLE} -m nanobind --cmake_dir OUTPUT_STRIP_TRAILING_WHITESPACE
                 OUTPUT_VARIABLE nanobind_ROOT RESULT_VARIABLE nanobind_missing ERROR_QUIET)
 if(nanobind_missing)
@@ -13,7 +14,8 @@ find_package(nanobind CONFIG REQUIRED)
 
 set(package ${PROJECT_BINARY_DIR}/python/easypbr)
 file(GLOB bindings CONFIGURE_DEPENDS src/easypbr/python/*.cpp)
-nanobind_add_module(_easypbr NB_STATIC NB_SUPPRESS_WARNINGS NOMINSIZE ${bindings})
+# One module for Python 3.12 and later, where the stable ABI is; another for each version before.
+nanobind_add_module(_easypbr NB_STATIC STABLE_ABI NB_SUPPRESS_WARNINGS NOMINSIZE ${bindings})
 target_link_libraries(_easypbr PRIVATE easypbr easypbr_options easypbr_dependencies)
 target_compile_definitions(_easypbr PRIVATE EASYPBR_VERSION="${PROJECT_VERSION}")
 if(TARGET easypbr_cli)
@@ -69,4 +71,12 @@ if(SKBUILD)
     install(TARGETS easypbr_ffmpeg LIBRARY DESTINATION easypbr COMPONENT python)
   endif()
   install(FILES ${package}/_easypbr.pyi ${package}/settings.pyi DESTINATION easypbr COMPONENT python)
+  if(EASYPBR_PORTABLE)
+    # Others' libraries travel in the wheel, so their licences do too.
+    set(licenses ${PROJECT_BINARY_DIR}/licenses)
+    add_custom_target(easypbr_licenses COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/write_licenses.py ${licenses}
+                      COMMENT "Collecting licences" VERBATIM)
+    add_dependencies(python_package easypbr_licenses)
+    install(DIRECTORY ${licenses}/ DESTINATION ${SKBUILD_METADATA_DIR}/licenses/bundled COMPONENT python)
+  endif()
 endif()

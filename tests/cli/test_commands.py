@@ -163,6 +163,19 @@ def test_without_opengl_errors_name_the_pass_and_what_to_install(without_opengl,
     assert done.returncode == 1 and "libEGL.so.1 is not installed" in done.stderr
 
 
+def test_without_opengl_the_cpu_records(without_opengl, easypbr, box, tmp_path):
+    """The frames of a turntable, which are those that OpenGL draws: up to rounding, and edges that either may cover."""
+    turn = ("render", box, "--turntable", "3", "--size", "64x48", "--samples", "2")
+    done = without_opengl(*turn, "-o", tmp_path / "cpu_%d.png")
+    assert done.returncode == 0, done.stderr
+    easypbr(*turn, "-o", "gl_%d.png", "--device", "gl")
+    frames = [[png.read(tmp_path / f"{device}_{i}.png").astype(int) for i in range(3)] for device in ("cpu", "gl")]
+    for i in range(3):
+        difference = np.abs(frames[0][i] - frames[1][i]).max(axis=2)
+        assert (difference > 1).mean() < 0.01, i
+    assert np.abs(frames[0][0] - frames[0][1]).max() > 20, "it turns"
+
+
 def test_doctor_says_that_opengl_is_not_there(without_opengl):
     done = without_opengl("doctor")
     assert done.returncode == 0

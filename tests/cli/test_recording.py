@@ -156,18 +156,78 @@ def test_what_cannot_be_recorded(render, box, tmp_path, arguments, message):
     assert not (tmp_path / "a.mp4").exists()
 
 
-def test_a_missing_module_is_named(environment, box, tmp_path):
-    """The program and its library alone, in a folder without the module."""
-    for file in BINARY.parent.glob("libeasypbr.so*"):
-        (tmp_path / file.name).symlink_to(file)
-    for file in (BINARY, *BINARY.parent.glob("libeasypbr.so.*.*.*")):
-        (tmp_path / file.name).unlink(missing_ok=True)
-        (tmp_path / file.name).write_bytes(file.read_bytes())
-        (tmp_path / file.name).chmod(0o755)
-    command = [tmp_path / BINARY.name, "render", box, "--turntable", "2", "-o", tmp_path / "a.mp4"]
-    done = subprocess.run(command, capture_output=True, text=True, env={**environment, "LD_LIBRARY_PATH": str(tmp_path)})
-    assert done.returncode == 1
-    assert "FFmpeg module" in done.stderr and "libeasypbr_ffmpeg.so" in done.stderr
+@pytest.fixture
+def without_module(environment, tmp_path):
+    """The program and its library alone, in a folder without the module: a command, and its environment."""
+    folder = tmp_path / "alone"
+    folder.mkdir()
+    for file in (BINARY, *BINARY.parent.glob("libeasypbr.so*")):
+        (folder / file.name).write_bytes(file.read_bytes())
+        (folder / file.name).chmod(0o755)
+    own = {**environment, "LD_LIBRARY_PATH": str(folder)}
+    return folder / BINARY.name, own
+
+
+def render_alone(without_module, folder, *arguments, code=0, **more):
+    program, environment = without_module
+    done = subprocess.run([program, "render", *arguments], cwd=folder, env={**environment, **more}, capture_output=True,
+                          text=True, timeout=300)
+    assert done.returncode == code, done.stderr
+    return done
+
+
+def test_an_ffmpeg_that_is_missing_is_named(without_module, box, tmp_path):
+    """Neither the module nor a program: the message has both ways to get one."""
+    done = render_alone(without_module, tmp_path, box, "--turntable", "2", "-o", "a.mp4", code=1, PATH=str(tmp_path))
+    for part in ("libeasypbr_ffmpeg.so", "apt install ffmpeg", "pip install imageio-ffmpeg", "frame_%04d.png"):
+        assert part in done.stderr
+    assert not (tmp_path / "a.mp4").exists()
+
+
+def test_the_program_writes_the_frames_of_the_stills(without_module, render, box, tmp_path):
+    """Where the module is missing the program ffmpeg writes: the same frames, size and tags as the module's video."""
+    look = ("--size", "51x33", *LOOK[2:])
+    render_alone(without_module, tmp_path, box, "--turntable", "6", "--fps", "24", "-o", "a.mp4", *look)
+    render(box, "--turntable", "6", "--fps", "24", "-o", "f_%d.png", *look)
+    found = probe(tmp_path / "a.mp4")
+    assert (found["codec_name"], found["width"], found["height"], found["nb_read_frames"]) == ("h264", 52, 34, "6")
+    assert found["r_frame_rate"] == "24/1" and found["pix_fmt"] == "yuv420p"
+    tags = [found[name] for name in ("color_range", "color_space", "color_primaries", "color_transfer")]
+    assert tags == ["tv", "bt709", "bt709", "bt709"]
+    planes = luma_of_video(tmp_path / "a.mp4", 52, 34)
+    stills = [np.pad(luma(png.read(tmp_path / f"f_{i}.png")), ((0, 1), (0, 1)), "edge") for i in range(6)]
+    for i, still in enumerate(stills):
+        assert psnr(planes[i], still) >= 38, i
+    assert psnr(planes[0], stills[1]) < 30
+
+
+@pytest.mark.parametrize("name, codec", [("a.webm", "vp9"), ("a.gif", "gif"), ("a.mkv", "h264"), ("a.mov", "h264")])
+def test_other_videos_of_the_program(without_module, box, tmp_path, name, codec):
+    render_alone(without_module, tmp_path, box, "--turntable", "10", "--fps", "25", "-o", name, *LOOK)
+    found = probe(tmp_path / name)
+    assert (found["codec_name"], found["width"], found["height"], found["nb_read_frames"]) == (codec, *SIZE, "10")
+    assert float(found["file_duration"]) == pytest.approx(0.4, abs=0.03)
+
+
+def test_errors_of_the_program_are_ours(without_module, box, tmp_path):
+    """A codec that it lacks, one that the container does not take, and a disk that is full: no file remains."""
+    for codec, message in (("betamax", "no encoder 'betamax' for it; it has "), ("libvpx-vp9", "cannot write a.mov")):
+        done = render_alone(without_module, tmp_path, box, "--turntable", "3", "-o", "a.mov", "--codec", codec, *LOOK, code=1)
+        assert message in done.stderr
+        assert not (tmp_path / "a.mov").exists()
+    program, environment = without_module
+    # In KiB: more than the list of encoders, which is read from a file in memory; less than 50 frames of this size take.
+    limited = ["bash", "-c", 'ulimit -f 60; exec "$0" "$@"', program, "render", box, "--turntable", "50", "-o", "a.gif", *LOOK]
+    done = subprocess.run(limited, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300)
+    assert done.returncode == 1 and "cannot write a.gif" in done.stderr, done.stderr
+    assert not (tmp_path / "a.gif").exists(), "half a video"
+
+
+def test_a_program_that_does_not_work_is_named(without_module, box, tmp_path):
+    (tmp_path / "ffmpeg").write_text("#!/bin/sh\nexit 3\n")
+    (tmp_path / "ffmpeg").chmod(0o755)
+    done = render_alone(without_module, tmp_path, box, "--turntable", "2", "-o", "a.mp4", code=1, PATH=f"{tmp_path}:/bin")
+    assert f"{tmp_path}/ffmpeg does not work: it lists no encoders" in done.stderr
 
 
 def killed_recording(environment, box, folder, name):

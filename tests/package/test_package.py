@@ -1,6 +1,8 @@
 """The installed library: an outside program finds it, builds and runs after the source tree is out of reach, and makes
 the same picture as the Python program of the same five lines."""
+import os
 import pathlib
+import shlex
 import shutil
 import subprocess
 import sys
@@ -57,3 +59,20 @@ def test_outside_program_matches_python(tmp_path):
     run(sys.executable, "-c", SCRIPT, cwd=work)
     comparison = run(ROOT / "build/easypbr", "compare", "cpp.png", "img.png", cwd=work)
     assert (work / "cpp.png").read_bytes() == (work / "img.png").read_bytes(), comparison.stdout
+
+
+def test_pkg_config_serves_builds_without_cmake(tmp_path):
+    """The flags suffice to build and run the program, from a prefix that was moved after the installation."""
+    run("cmake", "--install", ROOT / "build", "--prefix", tmp_path / "first", "--component", "library", cwd=tmp_path)
+    prefix = (tmp_path / "first").rename(tmp_path / "moved")
+    (found,) = prefix.rglob("easypbr.pc")
+    environment = {**os.environ, "PKG_CONFIG_PATH": str(found.parent)}
+    ask = ["pkg-config", "--cflags", "--libs", "easypbr >= 0.1"]
+    flags = shlex.split(subprocess.run(ask, env=environment, capture_output=True, text=True, check=True).stdout)
+    run("c++", "-std=c++20", OUTSIDE / "main.cpp", *flags, f"-Wl,-rpath,{found.parent.parent}", "-o", "outside",
+        cwd=tmp_path)
+    write_inputs(tmp_path)
+    run(tmp_path / "outside", "drone.ply", "map.hdr", "cpp.png", cwd=tmp_path)
+    assert (tmp_path / "cpp.png").stat().st_size > 1000
+    missing = subprocess.run(["pkg-config", "--exists", "easypbr >= 99"], env=environment, check=False)
+    assert missing.returncode != 0

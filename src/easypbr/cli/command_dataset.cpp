@@ -7,11 +7,11 @@
 #include <cstdio>
 #include <cstdlib>
 #include <cstring>
-#include <sstream>
 
 #include "easypbr/cli/command.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/program.h"
 
 namespace easypbr::cli {
 namespace {
@@ -70,14 +70,8 @@ void declare_dataset(CLI::App& command, DatasetOptions& o) {
     command.add_flag("-q,--quiet", o.quiet, "Suppress progress");
 }
 
-/// Where a program of this name is. Of PATH only absolute folders count: the current one is not trusted.
 std::string found_in_path(const std::string& name) {
-    const char* path = std::getenv("PATH");
-    std::istringstream folders(path ? path : "/usr/local/bin:/usr/bin:/bin");
-    for (std::string folder; std::getline(folders, folder, ':');) {
-        const fs::path program = fs::path(folder) / name;
-        if (program.is_absolute() && access(program.c_str(), X_OK) == 0) return program.string();
-    }
+    if (const auto program = program_in_path(name)) return program->string();
     throw ContextError(fmt::format("dataset: there is no {} in PATH: {}", name, hint));
 }
 

@@ -13,6 +13,7 @@
 #include "easypbr/io/mesh/assimp/assimp_loader.h"
 #include "easypbr/io/mesh/gltf/gltf_draco.h"
 #include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/io/video/video.h"
 #include "easypbr/native/shaders.h"
 #include "easypbr/render/denoise/open_image_denoise.h"
 
@@ -55,6 +56,7 @@ void print_formats() {
               : fmt::format("module not found ({}): compressed glTF files cannot be read; install libdraco7 "
                             "and keep libeasypbr_draco.so beside libeasypbr.so",
                             io::draco_problem()));
+    print("videos", io::video_support());
 }
 
 void print_context(const gl::ContextInfo& info) {

@@ -3,13 +3,11 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <spawn.h>
-#include <unistd.h>
 
-#include <cstdlib>
 #include <cstring>
-#include <sstream>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/program.h"
 
 extern char** environ;
 
@@ -18,12 +16,7 @@ namespace easypbr::cli {
 namespace fs = std::filesystem;
 
 std::string opening_program() {
-    const char* path = std::getenv("PATH");
-    std::istringstream folders(path ? path : "/usr/local/bin:/usr/bin:/bin");
-    for (std::string folder; std::getline(folders, folder, ':');) {
-        const fs::path program = fs::path(folder) / "xdg-open";
-        if (program.is_absolute() && access(program.c_str(), X_OK) == 0) return program.string();
-    }
+    if (const auto program = program_in_path("xdg-open")) return program->string();
     throw ContextError("render: --open needs xdg-open in PATH (Debian: apt install xdg-utils)");
 }
 

@@ -4,6 +4,7 @@
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/app/recorder.h"
+#include "easypbr/core/error.h"
 #include "easypbr/io/video/video.h"
 #include "easypbr/python/shared_viewer.h"
 #include "easypbr/python/text.h"
@@ -82,6 +83,16 @@ void bind_clock(nb::class_<SharedViewer>& viewer) {
 }
 
 /// A viewer's camera settings, to put back.
+/// What imageio-ffmpeg has, where it is installed; empty elsewhere.
+fs::path find_ffmpeg() {
+    const nb::gil_scoped_acquire gil;
+    try {
+        return nb::cast<std::string>(nb::module_::import_("easypbr.video").attr("find_ffmpeg")());
+    } catch (const nb::python_error& error) {
+        throw Error(nb::cast<std::string>(nb::str(error.value())));
+    }
+}
+
 struct CameraState {
     CameraSettings settings;
 };
@@ -89,6 +100,7 @@ struct CameraState {
 }  // namespace
 
 void bind_recorder(nb::module_& module, nb::class_<SharedViewer>& viewer) {
+    io::set_ffmpeg_finder(find_ffmpeg);
     const nb::class_<CameraState> state(module, "_CameraState");
     bind_recording(viewer);
     bind_clock(viewer);

@@ -26,8 +26,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Seconds = std::chrono::duration<double>;
 
-constexpr int output_descriptor = 3;
-
 [[noreturn]] void fail_memory(int error) {
     throw FileError(fmt::format("cannot share memory with a child process: {}", std::strerror(error)));
 }
@@ -36,13 +34,14 @@ constexpr int output_descriptor = 3;
 /// so that it is safe beside other threads, and quick whatever this process holds.
 class SpawnPlan {
   public:
-    explicit SpawnPlan(int output) {
+    explicit SpawnPlan(const ChildStreams& streams) {
         ::posix_spawn_file_actions_init(&files_);
         ::posix_spawnattr_init(&attributes_);
-        for (const int standard : {0, 1, 2})
-            check(::posix_spawn_file_actions_addopen(&files_, standard, "/dev/null", O_RDWR, 0));
-        check(::posix_spawn_file_actions_adddup2(&files_, output, output_descriptor));
-        check(::posix_spawn_file_actions_addclosefrom_np(&files_, output_descriptor + 1));
+        give(streams.input, 0);
+        give(streams.output, 1);
+        give(streams.errors, 2);
+        if (streams.answer >= 0) give(streams.answer, 3);
+        check(::posix_spawn_file_actions_addclosefrom_np(&files_, streams.answer >= 0 ? 4 : 3));
         sigset_t none, all;
         sigemptyset(&none);
         sigfillset(&all);
@@ -70,6 +69,13 @@ class SpawnPlan {
     }
 
   private:
+    void give(int own, int standard) {
+        if (own < 0)
+            check(::posix_spawn_file_actions_addopen(&files_, standard, "/dev/null", O_RDWR, 0));
+        else
+            check(::posix_spawn_file_actions_adddup2(&files_, own, standard));
+    }
+
     static void check(int error) {
         if (error) throw FileError(fmt::format("cannot start a child process: {}", std::strerror(error)));
     }
@@ -78,64 +84,13 @@ class SpawnPlan {
     posix_spawnattr_t attributes_;
 };
 
-/// Ends with its object, and leaves no zombie.
-class Child {
-  public:
-    explicit Child(pid_t process) : process_(process) {}
-    ~Child() { kill(); }
-    Child(const Child&) = delete;
-
-    /// Nothing while it runs.
-    std::optional<ChildEnd> poll() { return wait(WNOHANG); }
-
-    void kill() {
-        if (ended_) return;
-        ::kill(process_, SIGKILL);
-        wait(0);
-    }
-
-  private:
-    std::optional<ChildEnd> wait(int flags) {
-        int status = 0;
-        pid_t process;
-        do process = ::waitpid(process_, &status, flags);
-        while (process < 0 && errno == EINTR);
-        if (process == 0) return std::nullopt;
-        ended_ = true;
-        // A program may ignore SIGCHLD, or wait for children that are not its own.
-        if (process < 0) return ChildEnd{ChildEnd::How::unknown};
-        if (WIFSIGNALED(status)) return ChildEnd{ChildEnd::How::signalled, WTERMSIG(status)};
-        return ChildEnd{ChildEnd::How::exited, WEXITSTATUS(status)};
-    }
-
-    pid_t process_;
-    bool ended_ = false;
-};
-
-/// Asks again after 2 % of the time so far: what that adds to a long job cannot be felt, nor can what asking
-/// costs.
-ChildEnd wait_for(Child& child, double seconds) {
-    using namespace std::chrono_literals;
-    const auto start = Clock::now();
-    for (;;) {
-        if (const auto end = child.poll()) return *end;
-        check_interrupt();
-        const auto elapsed = Clock::now() - start;
-        if (Seconds(elapsed).count() > seconds) {
-            child.kill();
-            return {ChildEnd::How::killed_late};
-        }
-        std::this_thread::sleep_for(std::clamp<Clock::duration>(elapsed / 50, 100us, 20ms));
-    }
-}
-
 }  // namespace
 
 SharedMemory::SharedMemory() {
     const Descriptor file{::memfd_create("easypbr", MFD_CLOEXEC | MFD_ALLOW_SEALING)};
     if (file.get() < 0) fail_memory(errno);
     // Beyond those that a child's standard streams and output take.
-    file_ = Descriptor{::fcntl(file.get(), F_DUPFD_CLOEXEC, output_descriptor + 1)};
+    file_ = Descriptor{::fcntl(file.get(), F_DUPFD_CLOEXEC, ChildStreams::first_free)};
     if (file_.get() < 0) fail_memory(errno);
 }
 
@@ -160,10 +115,74 @@ void SharedMemory::seal() {
     size_ = size_t(info.st_size);
 }
 
+std::string text_of(const ChildEnd& end) {
+    switch (end.how) {
+        case ChildEnd::How::exited:
+            return fmt::format("ended with status {}", end.code);
+        case ChildEnd::How::signalled:
+            return fmt::format("was ended by signal {}", end.code);
+        case ChildEnd::How::killed_late:
+            return "took too long";
+        case ChildEnd::How::unknown:
+            break;
+    }
+    return "ended";
+}
+
+ChildProcess::ChildProcess(const fs::path& program, const std::vector<std::string>& arguments,
+                           const ChildStreams& streams)
+    : process_(SpawnPlan(streams).start(program, arguments)) {}
+
+ChildProcess::~ChildProcess() {
+    kill();
+}
+
+/// Asks again after 2 % of the time so far: what that adds to a long job cannot be felt, nor can what asking
+/// costs.
+ChildEnd ChildProcess::wait(double seconds) {
+    using namespace std::chrono_literals;
+    const auto start = Clock::now();
+    for (;;) {
+        if (const auto end = ask(WNOHANG)) return *end;
+        check_interrupt();
+        const auto elapsed = Clock::now() - start;
+        if (Seconds(elapsed).count() > seconds) {
+            kill();
+            return {ChildEnd::How::killed_late};
+        }
+        std::this_thread::sleep_for(std::clamp<Clock::duration>(elapsed / 50, 100us, 20ms));
+    }
+}
+
+ChildEnd ChildProcess::join() {
+    return ask(0).value_or(ChildEnd{ChildEnd::How::unknown});
+}
+
+void ChildProcess::kill() {
+    if (ended_) return;
+    ::kill(process_, SIGKILL);
+    ask(0);
+}
+
+/// Nothing while it runs.
+std::optional<ChildEnd> ChildProcess::ask(int flags) {
+    if (ended_) return ChildEnd{ChildEnd::How::unknown};
+    int status = 0;
+    pid_t process;
+    do process = ::waitpid(process_, &status, flags);
+    while (process < 0 && errno == EINTR);
+    if (process == 0) return std::nullopt;
+    ended_ = true;
+    // A program may ignore SIGCHLD, or wait for children that are not its own.
+    if (process < 0) return ChildEnd{ChildEnd::How::unknown};
+    if (WIFSIGNALED(status)) return ChildEnd{ChildEnd::How::signalled, WTERMSIG(status)};
+    return ChildEnd{ChildEnd::How::exited, WEXITSTATUS(status)};
+}
+
 ChildEnd run_child(const fs::path& program, const std::vector<std::string>& arguments,
                    const SharedMemory& output, double seconds) {
-    Child child(SpawnPlan(output.descriptor()).start(program, arguments));
-    return wait_for(child, seconds);
+    ChildProcess child(program, arguments, {.answer = output.descriptor()});
+    return child.wait(seconds);
 }
 
 }  // namespace easypbr::io

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -34,19 +35,27 @@ class VideoWriter {
 /// and written with the primaries and matrix of BT.709 in limited range, and tagged so. While it is written
 /// an MP4 consists of fragments of its own, so that it can be played when the process is killed; finish()
 /// makes it an ordinary file. The work is done by a module of its own (libeasypbr_ffmpeg.so, searched beside
-/// libeasypbr.so and then where the system searches). Throws FormatError when the module is missing,
-/// ArgumentError for a codec that is not there (naming those that are), a size or a rate out of range,
-/// FileError when the file cannot be written.
+/// libeasypbr.so and then where the system searches) or, where that or FFmpeg's libraries are missing, by the
+/// program ffmpeg, which finishes the file when this process is killed. Throws FormatError when both are
+/// missing, ArgumentError for a codec that is not there (naming those that are), a size or a rate out of
+/// range, FileError when the file cannot be written.
 std::unique_ptr<VideoWriter> open_video(const std::filesystem::path& path, const VideoOptions& options);
 
-/// Throws as open_video() does for a codec or module that is missing; writes nothing.
+/// Throws as open_video() does for a codec or an FFmpeg that is missing; writes nothing.
 void check_video(const std::filesystem::path& path, const std::string& codec);
 
 /// Whether the extension is one of a video.
 bool is_video(const std::filesystem::path& path);
 std::vector<std::string> video_extensions();
 
-/// Names of the encoders that are there; empty without the module.
+/// Names of the encoders that are there; empty without FFmpeg.
 std::vector<std::string> video_encoders();
+
+/// What finds a program ffmpeg where PATH has none; it returns an empty path when it knows none. The Python
+/// package sets one that asks imageio-ffmpeg. Called from any thread. Thread-safe.
+void set_ffmpeg_finder(std::function<std::filesystem::path()> find);
+
+/// By what videos are written here, or what to install: the end of the sentence "Videos are ...".
+std::string video_support();
 
 }  // namespace easypbr::io

@@ -5,7 +5,9 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/source/module_loader.h"
+#include "easypbr/io/video/encoders.h"
 #include "easypbr/io/video/ffmpeg/module.h"
+#include "easypbr/io/video/ffmpeg_program.h"
 #include "easypbr/io/video/video.h"
 
 namespace easypbr::io {
@@ -20,6 +22,8 @@ struct VideoModule : RuntimeModule {
         find(encoders, "easypbr_ffmpeg_encoders");
     }
 
+    bool works() const { return reason().empty(); }
+
     decltype(&easypbr_ffmpeg_open) open = nullptr;
     decltype(&easypbr_ffmpeg_check) check = nullptr;
     decltype(&easypbr_ffmpeg_encoders) encoders = nullptr;
@@ -30,16 +34,18 @@ const VideoModule& ffmpeg_module() {
     return loaded;
 }
 
-const VideoModule& require_module(const fs::path& path) {
-    const VideoModule& ffmpeg = ffmpeg_module();
-    if (!ffmpeg.reason().empty())
-        throw FormatError(fmt::format(
-            "cannot write {}: videos are written by the FFmpeg module, which cannot be loaded ({}); install "
-            "the packages libavcodec59, libavformat59 and libswscale6 and keep {} beside libeasypbr.so, or "
-            "write "
-            "pictures: out/frame_%04d.png",
-            path.string(), ffmpeg.reason(), video_file));
-    return ffmpeg;
+std::string how_to_get() {
+    return fmt::format(
+        "FFmpeg's libraries cannot be loaded ({}), and there is no program ffmpeg; install ffmpeg (Debian: "
+        "apt "
+        "install ffmpeg), or for Python: pip install imageio-ffmpeg",
+        ffmpeg_module().reason());
+}
+
+fs::path require_program(const fs::path& path) {
+    if (fs::path program = ffmpeg_program(); !program.empty()) return program;
+    throw FormatError(fmt::format("cannot write {}: {}; or write pictures: out/frame_%04d.png", path.string(),
+                                  how_to_get()));
 }
 
 }  // namespace
@@ -53,19 +59,33 @@ bool is_video(const fs::path& path) {
 }
 
 void check_video(const fs::path& path, const std::string& codec) {
-    require_module(path).check(path, codec);
+    if (ffmpeg_module().works())
+        ffmpeg_module().check(path, codec);
+    else
+        choose_encoder(path, codec, encoders_of_program(require_program(path)));
 }
 
 std::unique_ptr<VideoWriter> open_video(const fs::path& path, const VideoOptions& options) {
+    if (!ffmpeg_module().works()) return open_video_by_program(require_program(path), path, options);
     std::unique_ptr<VideoWriter> writer;
-    require_module(path).open(path, options, writer);
+    ffmpeg_module().open(path, options, writer);
     return writer;
 }
 
 std::vector<std::string> video_encoders() {
     std::vector<std::string> names;
-    if (ffmpeg_module().reason().empty()) ffmpeg_module().encoders(names);
+    if (ffmpeg_module().works())
+        ffmpeg_module().encoders(names);
+    else if (const fs::path program = ffmpeg_program(); !program.empty())
+        names = encoders_of_program(program);
     return names;
+}
+
+std::string video_support() {
+    if (ffmpeg_module().works()) return "written by FFmpeg's libraries";
+    const fs::path program = ffmpeg_program();
+    return program.empty() ? "not written: " + how_to_get()
+                           : fmt::format("written by the program {}", program.string());
 }
 
 }  // namespace easypbr::io

@@ -296,6 +296,7 @@ Image Renderer::read_picture(const PixelRect& area) const {
 }
 
 Image Renderer::begin_reading(gl::Readback& readback) const {
+    if (output_.picture().is_ahead()) return read_picture();
     const gl::Framebuffer& from = output_.framebuffer();
     readback.begin(from, 0, output_.format(), 0, 0, from.width(), from.height());
     return {from.width(), from.height(), 4, pixel_type(output_.format())};

@@ -87,7 +87,7 @@ class Renderer {
     Image read_picture(int width, int height) const { return read_picture({0, 0, width, height}); }
     Image read_picture(const PixelRect& area) const;
     /// Begins to read the picture back, as it is now: an image of its size and kind, whose bytes
-    /// readback.finish() fills.
+    /// readback.finish() fills. Nothing is pending of a picture in host memory, which the image is at once.
     Image begin_reading(gl::Readback& readback) const;
     Image read_layer(Layer layer) const;
     /// What the pixels' centres see; of a picture drawn with `surfaces`.

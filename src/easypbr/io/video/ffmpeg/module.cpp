@@ -1,7 +1,6 @@
 #include "easypbr/io/video/ffmpeg/module.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,6 +8,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
+#include "easypbr/io/video/encoders.h"
 #include "easypbr/io/video/ffmpeg/handles.h"
 #include "easypbr/io/video/ffmpeg/palette.h"
 #include "easypbr/io/video/ffmpeg/remux.h"
@@ -28,21 +28,6 @@ int require_written(int code, const fs::path& path) {
 
 namespace {
 
-/// A kind of file: FFmpeg's name, and the encoders that are tried for it.
-struct Container {
-    const char* name;
-    std::vector<std::string> encoders;
-};
-
-Container container_of(const fs::path& path) {
-    const std::string extension = extension_of(path);
-    if (extension == "gif") return {"gif", {"gif"}};
-    if (extension == "webm") return {"webm", {"libvpx-vp9", "libvpx"}};
-    if (extension == "mkv") return {"matroska", {"libx264", "libopenh264"}};
-    if (extension == "mov") return {"mov", {"libx264", "libopenh264"}};
-    return {"mp4", {"libx264", "libopenh264"}};
-}
-
 /// Encoders for pictures that a file of this kind may hold.
 std::vector<std::string> encoders_for(const char* container) {
     const AVOutputFormat* format = av_guess_format(container, nullptr, nullptr);
@@ -57,14 +42,8 @@ std::vector<std::string> encoders_for(const char* container) {
 }
 
 const AVCodec& encoder_for(const fs::path& path, const std::string& wanted) {
-    const Container container = container_of(path);
-    const std::vector<std::string> there = encoders_for(container.name);
-    for (const std::string& name : wanted.empty() ? container.encoders : std::vector<std::string>{wanted})
-        if (std::ranges::count(there, name)) return *avcodec_find_encoder_by_name(name.c_str());
-    throw ArgumentError(fmt::format(
-        "cannot write {}: FFmpeg has no encoder {} for it; it has {}", path.string(),
-        wanted.empty() ? fmt::format("{}", fmt::join(container.encoders, " or ")) : "'" + wanted + "'",
-        there.empty() ? "none" : fmt::format("{}", fmt::join(there, ", "))));
+    const std::vector<std::string> there = encoders_for(container_of(path).name);
+    return *avcodec_find_encoder_by_name(choose_encoder(path, wanted, there).c_str());
 }
 
 /// What the encoder takes of the pictures' kinds that we can make: its own first choice among them.
@@ -81,21 +60,10 @@ AVPixelFormat pixel_format_of(const AVCodec& encoder) {
         "the encoder {} takes none of the kinds of pictures that can be made for it", encoder.name));
 }
 
-void check_options(const fs::path& path, const VideoOptions& options) {
-    if (options.size.minCoeff() < 2 || options.size.maxCoeff() > 16384)
-        throw ArgumentError(fmt::format("cannot write {}: expected a size from 2x2 to 16384x16384, got {}x{}",
-                                        path.string(), options.size.x(), options.size.y()));
-    const double most = extension_of(path) == "gif" ? 50 : 1000;
-    if (!(options.fps > 0 && options.fps <= most))
-        throw ArgumentError(
-            fmt::format("cannot write {}: expected above 0 and at most {} frames per second, got {}",
-                        path.string(), most, options.fps));
-}
-
 class FfmpegVideo final : public VideoWriter {
   public:
     FfmpegVideo(const fs::path& path, const VideoOptions& options) : path_(path), size_(options.size) {
-        check_options(path, options);
+        check_video_options(path, options);
         // FFmpeg would print; what a program has chosen itself stays.
         if (av_log_get_level() == AV_LOG_INFO) av_log_set_level(AV_LOG_QUIET);
         const AVCodec& encoder = encoder_for(path, options.codec);
@@ -120,11 +88,7 @@ class FfmpegVideo final : public VideoWriter {
     }
 
     void add(const Image& picture) override {
-        if (picture.width() != size_.x() || picture.height() != size_.y() || picture.channels() != 4 ||
-            picture.type() != PixelType::u8)
-            throw ArgumentError(fmt::format(
-                "{}: expected pictures of {}x{} with 4 channels of 8 bits, got {}x{} with {}", path_.string(),
-                size_.x(), size_.y(), picture.width(), picture.height(), picture.channels()));
+        check_video_picture(path_, size_, picture);
         require_written(av_frame_make_writable(frame_.get()), path_);
         if (codec_->pix_fmt == AV_PIX_FMT_PAL8)
             fill_palette(picture);
@@ -195,24 +159,11 @@ class FfmpegVideo final : public VideoWriter {
     void open_encoder(const AVCodec& encoder) {
         AVDictionary* options = nullptr;
         const std::string name = encoder.name;
-        if (name == "libx264") {
-            av_dict_set(&options, "preset", "superfast", 0);
-            av_dict_set(&options, "crf", "17", 0);
-            av_dict_set(&options, "x264-params", "log=-1", 0);
-        } else if (name == "libx265") {
-            // It prints by itself.
-            av_dict_set(&options, "preset", "superfast", 0);
-            av_dict_set(&options, "crf", "19", 0);
-            av_dict_set(&options, "x265-params", "log-level=none", 0);
-        } else if (name.starts_with("libvpx")) {
-            av_dict_set(&options, "deadline", "realtime", 0);
-            av_dict_set(&options, "cpu-used", "6", 0);
-            av_dict_set(&options, "crf", "20", 0);
-            av_dict_set(&options, "b", "0", 0);
-            if (name == "libvpx-vp9") av_dict_set(&options, "row-mt", "1", 0);
-        } else if (name != "gif") {
+        const auto wanted = encoder_options(name);
+        for (const auto& [option, value] : wanted) av_dict_set(&options, option.c_str(), value.c_str(), 0);
+        if (wanted.empty() && name != "gif") {
             codec_->flags |= AV_CODEC_FLAG_QSCALE;
-            codec_->global_quality = 3 * FF_QP2LAMBDA;
+            codec_->global_quality = fixed_quantiser * FF_QP2LAMBDA;
         }
         const int opened = avcodec_open2(codec_.get(), &encoder, &options);
         av_dict_free(&options);
