@@ -4,6 +4,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include "easypbr/core/file.h"
 #include "easypbr/python/shared_viewer.h"
 #include "easypbr/python/text.h"
 #include "easypbr/remote/channel.h"
