@@ -3,7 +3,7 @@ PYTHON := .venv/bin/python
 BUILD := build
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 
-.PHONY: demo test library build setup setup-tests bench wheel test-wheel check-long sanitize fuzz docs format lint clean
+.PHONY: demo test library build setup setup-tests bench wheel test-wheel check-long check-notebook sanitize fuzz docs format lint clean
 
 # Library, command line and Python module, without tests and benchmarks.
 library: setup
@@ -44,6 +44,10 @@ test-wheel: setup-tests
 
 check-long: setup-tests build
 	scripts/check_long.sh
+
+# The widget in JupyterLab, in an environment of its own.
+check-notebook: setup-tests library
+	scripts/check_notebook.sh
 
 # All C++ tests under AddressSanitizer and UBSan.
 sanitize: setup-tests

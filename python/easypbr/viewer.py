@@ -5,6 +5,7 @@ import os
 import threading
 import time
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -47,6 +48,7 @@ class Viewer(WindowCallbacks):
         self._settings = Settings(self._handle)
         self._thread: threading.Thread | None = None
         self._made_at = time.monotonic()
+        self._widget: Any = None
         self._init_callbacks()
         if isinstance(settings, Mapping):
             self._settings.update(settings)
@@ -324,6 +326,26 @@ class Viewer(WindowCallbacks):
             server.wait()
         return server
 
+    def save_html(
+        self,
+        path: str | os.PathLike,
+        orbit: tuple[int, int] = (36, 3),
+        *,
+        row_step: float = 20.0,
+        size: ArrayLike | None = None,
+        samples: int | None = None,
+        format: str = "webp",
+        quality: int = 85,
+        max_mb: float = 20.0,
+        title: str = "",
+    ) -> Path:
+        """Writes images from all around as one HTML file that is turned by dragging, without a server. `orbit`: directions
+        around the content (1 to 360) by elevations (1 to 60), `row_step` degrees apart, the camera's own among them. The images
+        are "webp" or "jpeg" of at most this quality (1 to 100); where they do not fit into `max_mb` megabytes, their quality goes
+        down to 40, then their size. `title`: by default the objects' names."""
+        columns, rows = orbit
+        return self._handle.save_html(path, (columns, rows), row_step, size, samples_of(samples), format, quality, max_mb, title)
+
     def show_image(
         self, name: str, image: Any, range: tuple[float, float] | None = None, colormap: str | None = None
     ) -> None:
@@ -440,6 +462,27 @@ class Viewer(WindowCallbacks):
     def screenshot(self, size: ArrayLike | None = None, scale: float = 1) -> np.ndarray:
         """The contents of the window as an image, panels included; needs no display. `scale`: HiDPI scale."""
         return self._handle.screenshot(size, scale)
+
+    def widget(self, size: ArrayLike | None = None) -> Any:
+        """A widget for notebooks (pip install easypbr[jupyter]): the view in a cell, turned with the mouse, over the kernel's
+        own channel. It has a camera of its own, which begins as the view's; what the program changes in the scene and in the
+        settings is seen in it. `size`: (width, height) in CSS pixels, 16 to 4096, by default that of the images, at most 800
+        wide. Members: keep(), add_animations(name, animations), close()."""
+        from .widget import size_for, widget_class
+
+        return widget_class()(self, size_for(self, size))
+
+    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, Any] | None:
+        """The widget, one for all cells, with the present image beside it; None: no notebook, or no support for widgets."""
+        from .widget import can_show
+
+        if not self.scene.names() or not can_show():
+            return None
+        if self._widget is None or self._widget.comm is None:
+            self._widget = self.widget()
+        else:
+            self._widget.keep()
+        return self._widget._repr_mimebundle_()
 
     def _repr_png_(self) -> bytes | None:
         if not self.scene.names():

@@ -1,35 +1,63 @@
-// The one WebSocket: begins with the secret, comes back by itself.
-import { keepToken, takeLink } from "./link";
+// A view's connection: begins with the secret, comes back by itself. What carries the messages is a Wire.
+import type { Link } from "./link";
 import { Painter } from "./painter";
 import type { ClientMessage, ServerMessage } from "./protocol";
-import { notify, state, update } from "./store";
+import { Store } from "./store";
+import type { Wire } from "./wire";
 
 const FIRST_WAIT = 250;
 const LONGEST_WAIT = 4000;
 const WRONG_TOKEN = 4001;
 const FULL = 1013;
+/** Messages that change nothing for others. */
+const SILENT = new Set(["ack", "pause"]);
+
+export interface Rules {
+  needsToken: boolean;
+  /** All clients are one person's: who does something controls. */
+  takesControl: boolean;
+  keepToken?: (token: string) => void;
+}
 
 export class Connection {
-  private socket: WebSocket | null = null;
-  private link = takeLink();
+  readonly store = new Store();
   private wait = FIRST_WAIT;
   private timer = 0;
+  private begun = false;
   private session = "";
   private inputs = 0;
+  /** The server has said so; it has, or it will when what was sent arrives. */
+  private controlled = false;
+  private holds = false;
+  private paused = false;
   private size = { width: 1, height: 1 };
   /** What this page has set: told to a server that has begun anew. */
   private touched: Record<string, string> = {};
-  readonly painter = new Painter({
+  /** Canvases that can be seen, as far as is known. */
+  private hidden = new Map<Element, boolean>();
+  readonly painter = new Painter(this.store, {
     ack: (frame, chunk) => this.send({ kind: "ack", frame, chunk }),
     shot: (_id, picture) => download(picture, "easypbr.png"),
   });
 
-  constructor() {
-    this.touched = { ...this.link.settings };
-    document.addEventListener("visibilitychange", () => this.pause());
-    window.addEventListener("online", () => this.retry());
-    if (this.link.token) this.open();
-    else update({ phase: "denied", reason: "" });
+  constructor(
+    private wire: Wire,
+    private link: Link,
+    private rules: Rules,
+  ) {
+    this.touched = { ...link.settings };
+    document.addEventListener("visibilitychange", this.turned);
+    window.addEventListener("online", this.retry);
+    if (link.token) this.open();
+    else if (rules.needsToken) this.store.update({ phase: "denied", reason: "" });
+  }
+
+  /** For good. */
+  end(): void {
+    document.removeEventListener("visibilitychange", this.turned);
+    window.removeEventListener("online", this.retry);
+    clearTimeout(this.timer);
+    this.wire.end();
   }
 
   get token(): string {
@@ -39,28 +67,34 @@ export class Connection {
     return this.touched;
   }
   get isLive(): boolean {
-    return this.socket?.readyState === WebSocket.OPEN && state.phase === "live";
+    return this.wire.isOpen && this.store.state.phase === "live";
   }
 
   useToken(token: string): void {
     this.link.token = token;
-    keepToken(token);
+    this.rules.keepToken?.(token);
     this.open();
   }
 
-  retry(): void {
-    if (this.socket && this.socket.readyState <= WebSocket.OPEN) return;
+  retry = (): void => {
+    if (!this.begun || this.wire.isBusy || this.store.state.phase === "denied") return;
     this.wait = FIRST_WAIT;
     this.open();
-  }
+  };
 
+  /** What changes the view is preceded by taking control where this may be taken at once. */
   send(message: ClientMessage): void {
-    if (this.socket?.readyState === WebSocket.OPEN) this.socket.send(JSON.stringify(message));
+    if (!this.wire.isOpen) return;
+    if (this.rules.takesControl && !this.holds && !SILENT.has(message.kind)) {
+      this.wire.send(JSON.stringify({ kind: "act", what: "take" }));
+      this.holds = true;
+    }
+    this.wire.send(JSON.stringify(message));
   }
 
   /** A message about an input: numbered, so that a picture can name it. */
   input(message: ClientMessage): void {
-    if (!this.isLive || !state.control.controls) return;
+    if (!this.isLive || !this.store.state.control.controls) return;
     const id = ++this.inputs;
     this.painter.sentInput(id);
     this.send({ ...message, id });
@@ -74,36 +108,47 @@ export class Connection {
   resize(width: number, height: number): void {
     if (width === this.size.width && height === this.size.height) return;
     this.size = { width, height };
-    if (this.isLive && state.control.controls) this.send({ kind: "resize", ...this.size });
+    // Without a secret it begins with the first canvas.
+    if (!this.begun && !this.rules.needsToken) this.open();
+    if (this.isLive && this.store.state.control.controls) this.send({ kind: "resize", ...this.size });
+  }
+
+  /** A canvas has come into sight, or has gone out of it; undefined: it is no more. */
+  seen(canvas: Element, visible: boolean | undefined): void {
+    if (visible === undefined) this.hidden.delete(canvas);
+    else this.hidden.set(canvas, !visible);
+    this.pause();
   }
 
   private pause(): void {
-    this.send({ kind: "pause", paused: document.hidden });
-    if (!document.hidden) this.retry();
+    const paused = document.hidden || [...this.hidden.values()].every(Boolean); // Without a canvas too.
+    if (!this.isLive || paused === this.paused) return;
+    this.send({ kind: "pause", paused });
+    this.paused = paused;
   }
+
+  private turned = (): void => {
+    this.pause();
+    if (!document.hidden) this.retry();
+  };
 
   private open(): void {
     clearTimeout(this.timer);
-    const address = new URL("socket", document.baseURI);
-    address.protocol = address.protocol.replace("http", "ws");
-    address.hash = address.search = "";
-    const socket = new WebSocket(address, "easypbr.1");
-    socket.binaryType = "arraybuffer";
-    socket.onopen = () => socket.send(JSON.stringify({ kind: "hello", token: this.link.token, ...this.size }));
-    socket.onmessage = (event) => this.receive(event.data as string | ArrayBuffer);
-    socket.onclose = (event) => this.closed(socket, event);
-    this.socket = socket;
-    if (state.phase !== "lost") update({ phase: "connecting", reason: "" });
+    this.begun = true;
+    this.wire.open({
+      opened: () => this.wire.send(JSON.stringify({ kind: "hello", token: this.link.token, ...this.size })),
+      received: (data) => this.receive(data),
+      closed: (code, reason) => this.closed(code, reason),
+    });
+    if (this.store.state.phase !== "lost") this.store.update({ phase: "connecting", reason: "" });
   }
 
-  private closed(socket: WebSocket, event: CloseEvent): void {
-    if (this.socket !== socket) return;
-    this.socket = null;
-    if (event.code === WRONG_TOKEN) {
-      update({ phase: "denied", reason: "That secret does not fit this server." });
+  private closed(code: number, reason: string): void {
+    if (code === WRONG_TOKEN) {
+      this.store.update({ phase: "denied", reason: "That secret does not fit this server." });
       return;
     }
-    update({ phase: event.code === FULL ? "full" : "lost", reason: event.reason });
+    this.store.update({ phase: code === FULL ? "full" : "lost", reason });
     const delay = this.wait * (0.75 + 0.5 * Math.random());
     this.wait = Math.min(LONGEST_WAIT, this.wait * 2);
     this.timer = window.setTimeout(() => this.open(), delay);
@@ -111,10 +156,12 @@ export class Connection {
 
   private receive(data: string | ArrayBuffer): void {
     if (typeof data === "string") this.read(JSON.parse(data) as ServerMessage);
-    else this.painter.take(data).catch(() => notify("A picture could not be decoded", true));
+    else this.painter.take(data).catch(() => this.store.notify("A picture could not be decoded", true));
   }
 
   private read(message: ServerMessage): void {
+    const { state } = this.store;
+    const update = (change: Parameters<Store["update"]>[0]) => this.store.update(change);
     switch (message.kind) {
       case "welcome":
         return this.begin(message);
@@ -127,7 +174,7 @@ export class Connection {
       case "control":
         return this.control(message);
       case "notice":
-        return notify(message.text, message.error);
+        return this.store.notify(message.text, message.error);
       case "pick":
         return update({ pick: message });
       case "animation":
@@ -143,17 +190,20 @@ export class Connection {
     const isNew = this.session !== message.session;
     const isAgain = this.session !== "";
     this.session = message.session;
-    update({ phase: "live", reason: "", watches: message.watches, channels: message.channels, fields: message.fields });
+    this.holds = false;
+    this.paused = false;
+    this.store.update({ phase: "live", reason: "", watches: message.watches, channels: message.channels, fields: message.fields });
     // What a link asks for, or what was seen before the server began anew.
-    this.restore = isNew ? { camera: isAgain ? state.camera : this.link.camera, settings: { ...this.touched } } : null;
-    if (document.hidden) this.pause();
+    this.restore = isNew ? { camera: isAgain ? this.store.state.camera : this.link.camera, settings: { ...this.touched } } : null;
+    this.pause();
   }
 
   private restore: { camera: string; settings: Record<string, string> } | null = null;
 
   private control(control: ServerMessage & { kind: "control" }): void {
-    const gained = control.controls && !state.control.controls;
-    update({ control });
+    const gained = control.controls && !this.controlled;
+    this.controlled = this.holds = control.controls;
+    this.store.update({ control: { ...control, controls: control.controls || this.rules.takesControl } });
     if (!control.controls) return;
     if (gained || this.restore) this.send({ kind: "resize", ...this.size });
     const restore = this.restore;

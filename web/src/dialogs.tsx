@@ -2,7 +2,7 @@ import type { ComponentChildren } from "preact";
 import { useEffect, useRef, useState } from "preact/hooks";
 import type { Connection } from "./connection";
 import { formatFragment, tokenOf } from "./link";
-import { notify, state, useStore } from "./store";
+import { useStore } from "./store";
 
 function Dialog({ title, close, children }: { title: string; close: () => void; children: ComponentChildren }) {
   const dialog = useRef<HTMLDialogElement>(null);
@@ -27,7 +27,7 @@ export function ShotDialog({ connection, close }: { connection: Connection; clos
     event.preventDefault();
     if (!fits) return;
     connection.send({ kind: "shot", id: 1, width, height });
-    notify("The picture is drawn, then it is downloaded");
+    connection.store.notify("The picture is drawn, then it is downloaded");
     close();
   };
   const preset = (factor: number) => () => {
@@ -80,10 +80,10 @@ export function ShareDialog({ connection, close }: { connection: Connection; clo
   const copy = async () => {
     try {
       await navigator.clipboard.writeText(link);
-      notify("The link is on the clipboard");
+      connection.store.notify("The link is on the clipboard");
       close();
     } catch {
-      notify("The browser does not let pages copy here: copy the text by hand", true);
+      connection.store.notify("The browser does not let pages copy here: copy the text by hand", true);
     }
   };
   return (
@@ -92,7 +92,7 @@ export function ShareDialog({ connection, close }: { connection: Connection; clo
       <textarea readOnly rows={4} aria-label="Link" value={link} onFocus={(event) => event.currentTarget.select()} />
       <label class="check">
         <input type="checkbox" checked={secret} onChange={(event) => setSecret(event.currentTarget.checked)} />
-        With the secret: who has this link {state.watches ? "can watch" : "can control"}
+        With the secret: who has this link {connection.store.state.watches ? "can watch" : "can control"}
       </label>
       <div class="actions">
         <button type="button" onClick={close}>

@@ -22,6 +22,10 @@ export interface GestureHooks {
   /** Pixels of the picture for each of the page. */
   scale(): number;
   clicked(at: Point): void;
+  /** Somebody begins to do something here. */
+  entered(): void;
+  /** Whether the wheel zooms; else the document scrolls. */
+  takesWheel(): boolean;
 }
 
 export class Gestures {
@@ -49,7 +53,12 @@ export class Gestures {
     canvas.addEventListener("keydown", (event) => this.key(event, true));
     canvas.addEventListener("keyup", (event) => this.key(event, false));
     canvas.addEventListener("blur", () => this.release());
-    window.addEventListener("blur", () => this.release());
+    window.addEventListener("blur", this.release);
+  }
+
+  /** Of what outlives the canvas. */
+  end(): void {
+    window.removeEventListener("blur", this.release);
   }
 
   private place(event: MouseEvent): Point {
@@ -81,6 +90,7 @@ export class Gestures {
 
   private down(event: PointerEvent): void {
     this.canvas.focus({ preventScroll: true });
+    this.hooks.entered();
     this.canvas.setPointerCapture(event.pointerId);
     this.time = event.timeStamp / 1000;
     const at = this.place(event);
@@ -157,6 +167,7 @@ export class Gestures {
   }
 
   private wheel(event: WheelEvent): void {
+    if (!this.hooks.takesWheel()) return;
     event.preventDefault();
     this.time = event.timeStamp / 1000;
     const notches = event.deltaMode === WheelEvent.DOM_DELTA_PIXEL ? event.deltaY / 100 : event.deltaY / 3;
@@ -201,14 +212,14 @@ export class Gestures {
     this.later(centre, zoom, false);
   }
 
-  private release(): void {
+  private release = (): void => {
     if (this.keys.size === 0 && !this.pressed) return;
     this.keys.clear();
     this.fingers.clear();
     this.pressed = null;
     this.pending = null;
     this.connection.input({ kind: "blur" });
-  }
+  };
 }
 
 function distance(a: Point, b: Point): number {

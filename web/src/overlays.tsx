@@ -1,15 +1,16 @@
 import type { Connection } from "./connection";
 import { IconButton } from "./icons";
-import { dismiss, update, useStore } from "./store";
+import { useStore, useWholeStore } from "./store";
 
 export function Notices() {
+  const store = useWholeStore();
   const notices = useStore((state) => state.notices);
   return (
     <div class="notices" role="status" aria-live="polite">
       {notices.map((notice) => (
         <div key={notice.id} class={notice.error ? "notice error" : "notice"}>
           <span>{notice.text}</span>
-          <IconButton icon="close" label="Dismiss" onClick={() => dismiss(notice.id)} />
+          <IconButton icon="close" label="Dismiss" onClick={() => store.dismiss(notice.id)} />
         </div>
       ))}
     </div>
@@ -20,6 +21,7 @@ const number = (value: number) => String(Number(value.toPrecision(6)));
 
 /** What was clicked. */
 export function ReadOut() {
+  const store = useWholeStore();
   const pick = useStore((state) => state.pick);
   if (!pick?.hit) return null;
   const values = pick.values ?? {};
@@ -35,7 +37,7 @@ export function ReadOut() {
     <section class="read-out" aria-label="Picked">
       <div class="head">
         <strong>{pick.object}</strong>
-        <IconButton icon="close" label="Close the read-out" onClick={() => update({ pick: null })} />
+        <IconButton icon="close" label="Close the read-out" onClick={() => store.update({ pick: null })} />
       </div>
       <dl>
         {rows.map(([name, value]) => (

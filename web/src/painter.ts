@@ -1,6 +1,6 @@
 // Pictures onto the canvas: in order, the newest only, each answered when it is drawn.
 import { FLAG_EXACT, FLAG_LAST, FRAME_MOVING, FRAME_SHOT, HEADER_BYTES, mimeOf, readHeader, type FrameHeader } from "./protocol";
-import { update } from "./store";
+import type { Store } from "./store";
 
 export interface PainterHooks {
   ack(frame: number, chunk: number): void;
@@ -21,16 +21,30 @@ export class Painter {
   private still: Parts = { frame: 0, chunks: [] };
   private shot: Parts = { frame: 0, chunks: [] };
   private drawn = 0;
-  private canvas: HTMLCanvasElement | null = null;
+  /** All show the same pictures. */
+  private canvases = new Set<HTMLCanvasElement>();
   /** Of the picture on the canvas. */
   last: FrameHeader | null = null;
 
-  constructor(private hooks: PainterHooks) {
+  constructor(
+    private store: Store,
+    private hooks: PainterHooks,
+  ) {
     setInterval(() => this.tellRates(), 500);
   }
 
-  attach(canvas: HTMLCanvasElement | null): void {
-    this.canvas = canvas;
+  attach(canvas: HTMLCanvasElement): void {
+    const [other] = this.canvases;
+    this.canvases.add(canvas);
+    if (!other || !this.last) return;
+    canvas.width = other.width;
+    canvas.height = other.height;
+    Object.assign(canvas.dataset, other.dataset);
+    canvas.getContext("2d")?.drawImage(other, 0, 0);
+  }
+
+  detach(canvas: HTMLCanvasElement): void {
+    this.canvases.delete(canvas);
   }
 
   /** Another connection: its pictures are numbered anew. */
@@ -76,14 +90,10 @@ export class Painter {
   private async paint(header: FrameHeader, chunks: ArrayBuffer[]): Promise<void> {
     const options: ImageBitmapOptions = { colorSpaceConversion: "none", premultiplyAlpha: "none" };
     const bitmap = await createImageBitmap(blobOf(header, chunks), options);
-    const canvas = this.canvas;
-    const context = canvas?.getContext("2d");
-    if (canvas && context && header.frame > this.drawn) {
+    if (this.canvases.size > 0 && header.frame > this.drawn) {
       this.drawn = header.frame;
       this.last = header;
-      fit(canvas, bitmap, header);
-      if (header.kind !== FRAME_MOVING) context.clearRect(0, 0, canvas.width, canvas.height);
-      context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
+      for (const canvas of this.canvases) draw(canvas, bitmap, header);
       this.measure(header);
     }
     bitmap.close();
@@ -91,19 +101,16 @@ export class Painter {
 
   private measure(header: FrameHeader): void {
     const exact = (header.flags & FLAG_EXACT) !== 0;
-    if (this.canvas) {
-      this.canvas.dataset.frame = String(header.frame);
-      this.canvas.dataset.input = String(header.input);
-      this.canvas.dataset.exact = String(exact);
-    }
-    update({ exact });
+    const note = (values: Record<string, string>) => this.canvases.forEach((canvas) => Object.assign(canvas.dataset, values));
+    note({ frame: String(header.frame), input: String(header.input), exact: String(exact) });
+    this.store.update({ exact, drawn: true });
     const sent = this.inputs.get(header.input);
     if (sent === undefined) return;
     const latency = performance.now() - sent;
     this.latencies.push(latency);
     if (this.latencies.length > 60) this.latencies.shift();
     // Without what the server waited and drew: on the way there, encoding, on the way here, decoding.
-    if (this.canvas) this.canvas.dataset.latency = `${latency} ${latency - header.waitUs / 1000} ${header.encodeUs / 1000}`;
+    note({ latency: `${latency} ${latency - header.waitUs / 1000} ${header.encodeUs / 1000}` });
     for (const id of [...this.inputs.keys()]) if (id <= header.input) this.inputs.delete(id);
   }
 
@@ -113,12 +120,19 @@ export class Painter {
     const bytes = this.arrivals.reduce((sum, arrival) => sum + arrival.bytes, 0);
     const pictures = this.arrivals.filter((arrival) => arrival.draws).length;
     const sorted = [...this.latencies].sort((a, b) => a - b);
-    update({ rate: { fps: pictures / 2, kbytes: bytes / 2000, inputMs: sorted[sorted.length >> 1] ?? 0 } });
+    this.store.update({ rate: { fps: pictures / 2, kbytes: bytes / 2000, inputMs: sorted[sorted.length >> 1] ?? 0 } });
   }
 }
 
 function blobOf(header: FrameHeader, chunks: ArrayBuffer[]): Blob {
   return new Blob(chunks.map((chunk) => new Uint8Array(chunk, HEADER_BYTES)), { type: mimeOf(header) });
+}
+
+function draw(canvas: HTMLCanvasElement, bitmap: ImageBitmap, header: FrameHeader): void {
+  fit(canvas, bitmap, header);
+  const context = canvas.getContext("2d") as CanvasRenderingContext2D;
+  if (header.kind !== FRAME_MOVING) context.clearRect(0, 0, canvas.width, canvas.height);
+  context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
 }
 
 /** Pictures at rest have a pixel of the canvas for each of theirs; smaller ones that move are stretched over it. */

@@ -1,5 +1,6 @@
-// What the page knows. One object; parts of the page are drawn again when it changes.
-import { useEffect, useState } from "preact/hooks";
+// What the page knows of a view. One object; parts of the page are drawn again when it changes.
+import { createContext } from "preact";
+import { useContext, useEffect, useState } from "preact/hooks";
 import type { Animation, Control, Field, FieldValue, Pick, SceneNode, Statistics } from "./protocol";
 
 export type Phase = "connecting" | "live" | "lost" | "denied" | "full";
@@ -29,13 +30,13 @@ export interface State {
   /** Of the last seconds: what came, and how long an input took to be seen. */
   rate: { fps: number; kbytes: number; inputMs: number };
   exact: boolean;
+  /** A picture has been drawn. */
+  drawn: boolean;
 }
 
 type Listener = () => void;
 
-const listeners = new Set<Listener>();
-
-export const state: State = {
+const begin = (): State => ({
   phase: "connecting",
   reason: "",
   watches: false,
@@ -53,41 +54,56 @@ export const state: State = {
   notices: [],
   rate: { fps: 0, kbytes: 0, inputMs: 0 },
   exact: false,
-};
+  drawn: false,
+});
 
-let scheduled = false;
+export class Store {
+  readonly state = begin();
+  private listeners = new Set<Listener>();
+  private scheduled = false;
+  private notices = 0;
 
-export function update(change: Partial<State>): void {
-  Object.assign(state, change);
-  if (scheduled) return;
-  scheduled = true;
-  queueMicrotask(() => {
-    scheduled = false;
-    for (const listener of listeners) listener();
-  });
+  update(change: Partial<State>): void {
+    Object.assign(this.state, change);
+    if (this.scheduled) return;
+    this.scheduled = true;
+    queueMicrotask(() => {
+      this.scheduled = false;
+      for (const listener of this.listeners) listener();
+    });
+  }
+
+  /** Returns what ends it. */
+  listen(listener: Listener): () => void {
+    this.listeners.add(listener);
+    return () => void this.listeners.delete(listener);
+  }
+
+  notify(text: string, error = false): void {
+    const notice = { id: ++this.notices, text, error };
+    const others = this.state.notices.filter((other) => other.text !== text);
+    this.update({ notices: [...others, notice].slice(-4) });
+    setTimeout(() => this.dismiss(notice.id), error ? 12000 : 5000);
+  }
+
+  dismiss(id: number): void {
+    this.update({ notices: this.state.notices.filter((notice) => notice.id !== id) });
+  }
 }
+
+/** Of the view that a component belongs to: a page may hold several. */
+export const StoreContext = createContext(new Store());
+
+export const useWholeStore = (): Store => useContext(StoreContext);
 
 /** The state; the component is drawn again when what `part` picks out of it is another thing. */
 export function useStore<T>(part: (state: State) => T): T {
-  const [value, setValue] = useState(() => part(state));
+  const store = useWholeStore();
+  const [value, setValue] = useState(() => part(store.state));
   useEffect(() => {
-    const listener = () => setValue(() => part(state));
-    listeners.add(listener);
+    const listener = () => setValue(() => part(store.state));
     listener();
-    return () => void listeners.delete(listener);
+    return store.listen(listener);
   }, []);
   return value;
-}
-
-let noticeId = 0;
-
-export function notify(text: string, error = false): void {
-  const notice = { id: ++noticeId, text, error };
-  const others = state.notices.filter((other) => other.text !== text);
-  update({ notices: [...others, notice].slice(-4) });
-  setTimeout(() => dismiss(notice.id), error ? 12000 : 5000);
-}
-
-export function dismiss(id: number): void {
-  update({ notices: state.notices.filter((notice) => notice.id !== id) });
 }

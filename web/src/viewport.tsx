@@ -19,26 +19,39 @@ function sizeOf(element: HTMLElement): [number, number] {
   return [side(element.clientWidth), side(element.clientHeight)];
 }
 
-export function Viewport({ connection }: { connection: Connection }) {
+/** `embedded`: in a document that scrolls, where the wheel zooms only when the picture has the focus. */
+export function Viewport({ connection, embedded = false }: { connection: Connection; embedded?: boolean }) {
   const canvas = useRef<HTMLCanvasElement>(null);
   const phase = useStore((state) => state.phase);
   const controls = useStore((state) => state.control.controls);
   useEffect(() => {
     const element = canvas.current as HTMLCanvasElement;
     connection.painter.attach(element);
-    new Gestures(element, connection, {
+    // Without a size it is not laid out yet, or no more.
+    const measure = () => element.clientWidth > 0 && connection.resize(...sizeOf(element));
+    const gestures = new Gestures(element, connection, {
       scale: ratio,
+      entered: measure,
+      takesWheel: () => !embedded || (element.getRootNode() as ShadowRoot).activeElement === element,
       clicked: (at) => connection.isLive && connection.send({ kind: "pick", id: ++pickId, x: at.x, y: at.y }),
     });
     let timer = 0;
-    const measure = () => connection.resize(...sizeOf(element));
     const observer = new ResizeObserver(() => {
       clearTimeout(timer);
       timer = window.setTimeout(measure, RESIZE_MS);
     });
     measure();
     observer.observe(element);
-    return () => observer.disconnect();
+    const sight = new IntersectionObserver(([last]) => last && connection.seen(element, last.isIntersecting));
+    sight.observe(element);
+    connection.seen(element, true);
+    return () => {
+      observer.disconnect();
+      sight.disconnect();
+      gestures.end();
+      connection.painter.detach(element);
+      connection.seen(element, undefined);
+    };
   }, []);
   const help = "Drag to turn, right drag or two fingers to move, wheel or pinch to zoom, double click to focus. " +
     "Arrow keys turn, plus and minus zoom, W A S D Q E fly, F fits.";

@@ -16,6 +16,8 @@
 #include "easypbr/app/picture.h"
 #include "easypbr/app/recorder.h"
 #include "easypbr/core/image.h"
+#include "easypbr/remote/channel.h"
+#include "easypbr/remote/orbit_page.h"
 #include "easypbr/remote/server.h"
 #include "easypbr/scene/scene.h"
 
@@ -114,6 +116,11 @@ class Viewer {
     /// Forgets what was inferred, so that the next picture infers it anew.
     void refit();
 
+    /// Writes pictures from all around as one HTML file that is turned without a server. Returns the path.
+    /// Throws as remote::save_orbit_page() does.
+    std::filesystem::path save_html(const std::filesystem::path& path,
+                                    const remote::OrbitPageOptions& options = {});
+
     /// Every value, chosen and inferred, of the last picture, with the hashes of the files it was made from.
     void save_settings(const std::filesystem::path& path,
                        const std::vector<std::filesystem::path>& files = {});
@@ -169,7 +176,9 @@ class Viewer {
     /// camera and change settings of their own; what they hide is hidden in the scene. The server ends with
     /// its last handle. Custom passes and panels are not shown. Throws as remote::Server does.
     std::shared_ptr<remote::Server> serve(const remote::ServeOptions& options = {});
-    /// Changes for the clients of servers what has changed in settings().
+    /// The same for clients whose messages the program itself carries, as a notebook's kernel does.
+    std::shared_ptr<remote::Channel> open_channel();
+    /// Changes for the clients of servers and channels what has changed in settings().
     void tell_servers();
 
     /// Draws a custom pass in every picture from now on; one of the same name is replaced. See
@@ -187,6 +196,7 @@ class Viewer {
     bool update_window();
 
     std::vector<std::weak_ptr<remote::Server>> servers_;
+    std::vector<std::weak_ptr<remote::Channel>> channels_;
     struct Window;
     Window& window();
     static void shut(Window& window);

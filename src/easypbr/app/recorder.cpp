@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 
+#include "easypbr/app/kept_camera.h"
 #include "easypbr/app/output.h"
 #include "easypbr/app/picture_ring.h"
 #include "easypbr/app/recording_target.h"
@@ -15,23 +16,6 @@
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::app {
-namespace {
-
-/// Puts the camera back at the end.
-class KeptCamera {
-  public:
-    explicit KeptCamera(Session& session) : session_(session), camera_(session.settings().camera) {}
-    ~KeptCamera() { session_.settings().camera = camera_; }
-    KeptCamera(const KeptCamera&) = delete;
-    KeptCamera& operator=(const KeptCamera&) = delete;
-
-  private:
-    Session& session_;
-    CameraSettings camera_;
-};
-
-}  // namespace
-
 struct Recorder::Recording {
     std::filesystem::path path;
     PictureOptions picture;

@@ -1,7 +1,12 @@
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <cmath>
 
+#include "easypbr/app/orbit_grid.h"
 #include "easypbr/app/recorder.h"
 #include "easypbr/app/session.h"
+#include "easypbr/core/error.h"
 #include "easypbr/scene/offset.h"
 #include "easypbr/scene/resolve.h"
 
@@ -50,21 +55,98 @@ bool is_automatic(const CameraSettings& camera) {
            camera.projection == Projection::perspective && camera.intrinsics.empty();
 }
 
+/// What a camera is turned around, and how far away it is for all of its directions.
+struct Round {
+    ResolvedSettings resolved;
+    Cylinder content;
+    Camera camera;
+    bool fits = false;  ///< the distance is free
+    Vec2d tangents;
+};
+
+Round round_of(Session& session, const Vec2i& size) {
+    Round round{session.resolve(size), {}, {}, false, {}};
+    round.content = swept(session.scene().snapshot(), parse_up(round.resolved.settings.camera.up));
+    round.camera = round.resolved.camera;
+    round.fits =
+        is_automatic(session.settings().camera) && round.content.radius + round.content.half_height > 0;
+    const double margin = 1 - double(round.resolved.settings.camera.margin);
+    const double tangent = std::tan(radians(round.camera.fov_y_deg) / 2) * margin;
+    round.tangents = {tangent * size.x() / size.y(), tangent};
+    return round;
+}
+
+void place_at(Camera& camera, const Round& round, double distance) {
+    camera.T_world_cam.translation() = round.content.center + camera.T_world_cam.linear().col(2) * distance;
+}
+
+/// The camera turned up about the content's middle, in the vertical plane that it stands in.
+Camera raised(const Round& round, double up_deg) {
+    Camera camera = round.camera;
+    const Vec3d back = camera.T_world_cam.linear().col(2), side = round.content.axis.cross(back);
+    const Vec3d right =
+        side.norm() > 1e-9 ? Vec3d(side.normalized()) : Vec3d(camera.T_world_cam.linear().col(0));
+    const Eigen::AngleAxisd turn(-radians(up_deg), right);
+    camera.T_world_cam.linear() = turn.toRotationMatrix() * round.camera.T_world_cam.linear();
+    camera.T_world_cam.translation() =
+        round.content.center + turn * (round.camera.T_world_cam.translation() - round.content.center);
+    return camera;
+}
+
+constexpr double steepest_deg = 85;
+
+/// The number of steps to the lowest row, 0 or below: as many rows to each side as there is room for.
+int lowest_step(double elevation_deg, int rows, double step_deg) {
+    int lowest = -(rows - 1) / 2;
+    while (lowest > 1 - rows && elevation_deg + (lowest + rows - 1) * step_deg > steepest_deg) --lowest;
+    while (lowest < 0 && elevation_deg + lowest * step_deg < -steepest_deg) ++lowest;
+    return lowest;
+}
+
 }  // namespace
 
 CameraPath turntable(Session& session, double duration_s) {
-    const ResolvedSettings resolved = session.resolve();
-    const Cylinder content = swept(session.scene().snapshot(), parse_up(resolved.settings.camera.up));
-    Camera camera = resolved.camera;
-    if (is_automatic(session.settings().camera) && content.radius + content.half_height > 0) {
-        const Vec2i size = session.settings().image.size;
-        const double tangent =
-            std::tan(radians(camera.fov_y_deg) / 2) * (1 - double(resolved.settings.camera.margin));
-        const double distance =
-            distance_for(content, camera.T_world_cam.linear(), {tangent * size.x() / size.y(), tangent});
-        camera.T_world_cam.translation() = content.center + camera.T_world_cam.linear().col(2) * distance;
+    const Round round = round_of(session, session.settings().image.size);
+    Camera camera = round.camera;
+    if (round.fits)
+        place_at(camera, round, distance_for(round.content, camera.T_world_cam.linear(), round.tangents));
+    return CameraPath::orbit(camera, round.content.center, round.content.axis, 360, duration_s);
+}
+
+void check_orbit_grid(int columns, int rows, double row_step_deg) {
+    if (columns < 1 || columns > 360)
+        throw ArgumentError(fmt::format("orbit: expected 1 to 360 columns, got {}", columns));
+    if (rows < 1 || rows > 60) throw ArgumentError(fmt::format("orbit: expected 1 to 60 rows, got {}", rows));
+    if (!(row_step_deg > 0) || (rows - 1) * row_step_deg > 160)
+        throw ArgumentError(fmt::format(
+            "orbit: expected a step above 0 and rows within 160 degrees, got {} rows {} degrees apart", rows,
+            row_step_deg));
+}
+
+OrbitGrid orbit_grid(Session& session, int columns, int rows, double row_step_deg,
+                     std::optional<Vec2i> size) {
+    check_orbit_grid(columns, rows, row_step_deg);
+    const Round round = round_of(session, size.value_or(session.settings().image.size));
+    const double sine = round.content.axis.dot(round.camera.T_world_cam.linear().col(2));
+    const double elevation = std::asin(std::clamp(sine, -1.0, 1.0)) * 180 / pi;
+    OrbitGrid grid{columns, {}, -lowest_step(elevation, rows, row_step_deg), {}};
+    std::vector<Camera> firsts;
+    double distance = 0;
+    for (int row = 0; row < rows; ++row) {
+        const double up = (row - grid.start_row) * row_step_deg;
+        grid.elevations_deg.push_back(elevation + up);
+        firsts.push_back(raised(round, up));
+        if (round.fits)
+            distance = std::max(
+                distance, distance_for(round.content, firsts.back().T_world_cam.linear(), round.tangents));
     }
-    return CameraPath::orbit(camera, content.center, content.axis, 360, duration_s);
+    for (Camera& first : firsts) {
+        if (round.fits) place_at(first, round, distance);
+        const CameraPath path = CameraPath::orbit(first, round.content.center, round.content.axis, 360, 1);
+        for (int column = 0; column < columns; ++column)
+            grid.cameras.push_back(path.camera(double(column) / columns, first));
+    }
+    return grid;
 }
 
 }  // namespace easypbr::app

@@ -87,6 +87,8 @@ app::RecordingOptions recording_of(const RenderOptions& options) {
 void check_files(const Picture& picture, const Settings& settings, const RenderOptions& options) {
     if (options.records())
         app::check_recording(picture.output, settings, recording_of(options));
+    else if (options.is_page())
+        remote::check_orbit_page(picture.output, settings, page_options_of(options));
     else if (picture.output != "-")
         app::check_picture(picture.output, settings);
     for (const std::string& layer : options.layers) check_writable(truth_path(picture.output, layer));
@@ -153,14 +155,21 @@ class RenderJob {
         start_look();
         load(picture, times);
         if (const auto pixel = parse_focus(options_.focus)) session_.focus_at(pixel->x(), pixel->y());
-        if (options_.records()) {
-            record(picture);
+        if (options_.records() || options_.is_page()) {
+            if (options_.is_page())
+                remote::save_orbit_page(session_, picture.output, page_options_of(options_));
+            else
+                record(picture);
             times.lap("record");
             save_settings(picture);
-            open(picture);
-            if (options_.timing) fmt::print(stderr, "easypbr: timing: {}\n", times.summary());
-            return;
+        } else {
+            draw(picture, times);
         }
+        open(picture);
+        if (options_.timing) fmt::print(stderr, "easypbr: timing: {}\n", times.summary());
+    }
+
+    void draw(const Picture& picture, StageTimes& times) {
         begin_motion();
         const Image image = session_.render({std::nullopt, std::nullopt, encoding_of(picture)});
         times.add("context", session_.timing().context);
@@ -170,8 +179,6 @@ class RenderJob {
         times.restart();
         write(picture, image);
         times.lap("write");
-        open(picture);
-        if (options_.timing) fmt::print(stderr, "easypbr: timing: {}\n", times.summary());
     }
 
     void open(const Picture& picture) const {

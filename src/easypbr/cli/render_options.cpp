@@ -73,9 +73,10 @@ void declare_shorthands(CLI::App& command, RenderOptions& options) {
 
 void declare_output(CLI::App& command, RenderOptions& options) {
     command
-        .add_option("-o,--output", options.output,
-                    "Image file to write: PNG, JPEG, HDR or EXR; '-': PNG to standard output. For several "
-                    "frames: MP4, WebM, GIF, or numbered images: frame_%04d.png")
+        .add_option(
+            "-o,--output", options.output,
+            "Image file to write: PNG, JPEG, HDR or EXR; '-': PNG to standard output. For several "
+            "frames: MP4, WebM, GIF, or numbered images: frame_%04d.png. HTML: a page to turn the content in")
         ->option_text("FILE");
     command.add_option("--size,--resolution", options.size, "Width and height in pixels")->option_text("WxH");
     command.add_option("--bit-depth", options.bit_depth, "Bits per channel of a PNG: 8 or 16")
@@ -137,6 +138,15 @@ void declare_camera(CLI::App& command, RenderOptions& options) {
     command.add_option("--turntable", options.turntable, "Record a turntable of N frames")->option_text("N");
     command.add_option("--camera-path", options.camera_path, "Record along a camera path from a JSON file")
         ->option_text("FILE");
+    command
+        .add_option("--orbit", options.orbit,
+                    "Pictures of an HTML page: directions around the content by elevations (36x3)")
+        ->option_text("COLUMNSxROWS");
+    command.add_option("--page-limit", options.page_limit, "Size of an HTML page at most (20)")
+        ->option_text("MB");
+    command.add_option("--page-format", options.page_format, "Pictures of an HTML page: webp or jpeg")
+        ->check(CLI::IsMember({"webp", "jpeg"}));
+    command.add_option("--page-title", options.page_title, "Title of an HTML page")->option_text("TEXT");
     command.add_option("--fps", options.fps, "Frames per second of a recording (30)")->option_text("X");
     command.add_option("--codec", options.codec, "Video encoder by its FFmpeg name")->option_text("NAME");
     command
@@ -287,6 +297,27 @@ Vec2i parse_size(const std::string& text) {
             parse_side(std::string_view(text).substr(at + 1), text)};
 }
 
+remote::OrbitPageOptions page_options_of(const RenderOptions& options) {
+    remote::OrbitPageOptions page;
+    if (!options.orbit.empty()) {
+        const size_t at = options.orbit.find('x');
+        const auto count = [&](const std::string& text) {
+            int value = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            if (at == options.orbit.npos || text.empty() || error != std::errc() ||
+                end != text.data() + text.size())
+                throw UsageError(fmt::format("--orbit: expected COLUMNSxROWS, got '{}'", options.orbit));
+            return value;
+        };
+        page.columns = count(options.orbit.substr(0, at));
+        page.rows = count(options.orbit.substr(at + 1));
+    }
+    page.most_megabytes = options.page_limit.value_or(page.most_megabytes);
+    if (!options.page_format.empty()) page.format = options.page_format;
+    page.title = options.page_title;
+    return page;
+}
+
 std::string shorthand_option(std::string_view setting) {
     // These are read before they become settings.
     if (setting == "image.size") return "--size";
@@ -325,6 +356,18 @@ void declare_render_options(CLI::App& command, RenderOptions& options) {
 
 namespace {
 
+void check_page_usage(const RenderOptions& options) {
+    if (!options.is_page()) {
+        const bool is_asked = !options.orbit.empty() || options.page_limit || !options.page_format.empty() ||
+                              !options.page_title.empty();
+        if (is_asked) throw UsageError("render: --orbit and --page-... need an HTML file: -o FILE.html");
+        return;
+    }
+    if (options.records()) throw UsageError("render: an HTML page is no recording: give --orbit alone");
+    if (!options.layers.empty()) throw UsageError("render: --layers are of one picture, not of an HTML page");
+    page_options_of(options);
+}
+
 void check_recording_usage(const RenderOptions& options) {
     if (options.animation_time && options.animation.empty())
         throw UsageError("render: --animation-time needs --animation");
@@ -354,6 +397,7 @@ void check_usage(const RenderOptions& options) {
     require(!options.output.empty(), "render", "-o OUT.png");
     check_input("render", options.files);
     check_recording_usage(options);
+    check_page_usage(options);
     parse_styles(options.styles, unique_names(options.files));
     if (options.smooth && options.flat) throw UsageError("render: --smooth and --flat exclude each other");
     if (!options.camera_pose.empty())

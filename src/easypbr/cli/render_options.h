@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "easypbr/app/session.h"
+#include "easypbr/core/file.h"
 #include "easypbr/core/math.h"
+#include "easypbr/remote/orbit_page.h"
 
 namespace easypbr::cli {
 
@@ -24,8 +26,11 @@ struct RenderOptions {
     std::string camera;  ///< name or number of a camera in the files
     std::string focus;   ///< "X,Y"
     std::string camera_pose, camera_axes = "opengl";
-    std::optional<int> turntable;  ///< frames of one turn
-    std::string camera_path;       ///< file
+    std::optional<int> turntable;      ///< frames of one turn
+    std::string camera_path;           ///< file
+    std::string orbit;                 ///< "36x3": columns and rows of a page
+    std::optional<double> page_limit;  ///< megabytes
+    std::string page_format, page_title;
     std::optional<double> fps;
     std::string codec;
     std::string animation;                 ///< name or number of one in the files
@@ -46,6 +51,8 @@ struct RenderOptions {
 
     /// Many frames instead of one picture.
     bool records() const { return turntable || !camera_path.empty(); }
+    /// Pictures from all around in one HTML file.
+    bool is_page() const { return extension_of(output) == "html"; }
 };
 
 /// The option of `render` whose value is this setting's, "--color" of material.color; empty: there is none.
@@ -66,6 +73,9 @@ void check_usage(const RenderOptions& options);
 /// Sets what the options say, --set last; the rest stays as it is. Throws UsageError for a value that cannot
 /// be understood, FileError or FormatError for a pose file, ArgumentError for a picture size out of range.
 void apply(const RenderOptions& options, Settings& settings);
+
+/// What a page is written with. Throws UsageError.
+remote::OrbitPageOptions page_options_of(const RenderOptions& options);
 
 /// The pixel that --focus names; nothing without it. Throws UsageError when it is not X,Y.
 std::optional<Vec2i> parse_focus(const std::string& text);

@@ -1,6 +1,7 @@
 // The recorder and the clock of a viewer.
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/app/recorder.h"
@@ -8,6 +9,7 @@
 #include "easypbr/io/video/video.h"
 #include "easypbr/python/shared_viewer.h"
 #include "easypbr/python/text.h"
+#include "easypbr/remote/orbit_page.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr::python {
@@ -33,8 +35,19 @@ void add_frame(SharedViewer& self, const nb::object& picture) {
     self.run([&](Viewer& viewer) { viewer.recorder.add_frame(std::move(image)); });
 }
 
+fs::path save_html(SharedViewer& self, const fs::path& path, std::pair<int, int> orbit, double row_step,
+                   const nb::object& size, std::optional<int> samples, const std::string& format, int quality,
+                   double max_mb, const std::string& title) {
+    const remote::OrbitPageOptions options{
+        orbit.first, orbit.second, row_step, optional_size(size), samples, format, quality, max_mb, title};
+    return self.run([&](Viewer& viewer) { return viewer.save_html(path, options); });
+}
+
 void bind_recording(nb::class_<SharedViewer>& viewer) {
     viewer
+        .def("save_html", save_html, nb::arg("path"), nb::arg("orbit"), nb::arg("row_step"),
+             nb::arg("size").none(), nb::arg("samples").none(), nb::arg("format"), nb::arg("quality"),
+             nb::arg("max_mb"), nb::arg("title"))
         .def("record", record, nb::arg("path"), nb::arg("size").none() = nb::none(),
              nb::arg("samples").none() = nb::none(), nb::arg("deep") = false)
         .def("start_recording", start, nb::arg("path"), nb::arg("fps"), nb::arg("size").none(),

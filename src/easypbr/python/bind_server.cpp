@@ -1,15 +1,20 @@
 // Server, as the Python class of the same name uses it.
 #include <nanobind/stl/filesystem.h>
 #include <nanobind/stl/shared_ptr.h>
+#include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include "easypbr/core/file.h"
 #include "easypbr/python/shared_viewer.h"
 #include "easypbr/python/text.h"
+#include "easypbr/remote/channel.h"
+#include "easypbr/remote/page.h"
 #include "easypbr/remote/server.h"
 
 namespace easypbr::python {
 namespace {
 
+using remote::Channel;
 using remote::Server;
 using remote::ServerClient;
 
@@ -18,6 +23,36 @@ std::shared_ptr<Server> serve(SharedViewer& self, int port, const std::string& b
                               const std::vector<std::string>& origins, int max_clients) {
     const remote::ServeOptions options{port, bind, socket, token_file, host_names, origins, max_clients};
     return self.run([&](Viewer& viewer) { return viewer.serve(options); });
+}
+
+/// Client, words, bytes and code of each message.
+using Messages = std::vector<std::tuple<uint64_t, std::string, nb::bytes, int>>;
+
+Messages take(Channel& self, double seconds) {
+    const auto messages = released([&] { return self.take(seconds); });
+    Messages taken;
+    for (const remote::ChannelMessage& message : messages)
+        taken.emplace_back(message.client, message.text,
+                           nb::bytes(message.bytes.data(), message.bytes.size()), message.close_code);
+    return taken;
+}
+
+void bind_channel(nb::module_& module, nb::class_<SharedViewer>& viewer) {
+    nb::class_<Channel>(module, "ChannelHandle", "A view for clients whose messages Python carries.")
+        .def("receive", [](Channel& self, uint64_t client,
+                           const std::string& text) { released([&] { self.receive(client, text); }); })
+        .def("leave", [](Channel& self, uint64_t client) { released([&] { self.leave(client); }); })
+        .def("take", take, nb::arg("seconds"))
+        .def("client_count", &Channel::client_count)
+        .def_prop_ro("is_open", &Channel::is_open)
+        .def("add_animations",
+             [](Channel& self, const std::string& name, const Animations& animations) {
+                 released([&] { self.add_animations(name, animations); });
+             })
+        .def("close", [](Channel& self) { released([&] { self.close(); }); });
+    viewer.def("open_channel",
+               [](SharedViewer& self) { return self.run([](Viewer& view) { return view.open_channel(); }); });
+    module.def("widget_script", [] { return std::string(remote::offline_document("widget.js")); });
 }
 
 }  // namespace
@@ -46,6 +81,7 @@ void bind_server(nb::module_& module, nb::class_<SharedViewer>& viewer) {
         .def("close", [](Server& self) { released([&] { self.close(); }); });
     viewer.def("serve", serve, nb::arg("port"), nb::arg("bind"), nb::arg("socket"), nb::arg("token_file"),
                nb::arg("host_names"), nb::arg("origins"), nb::arg("max_clients"));
+    bind_channel(module, viewer);
 }
 
 }  // namespace easypbr::python

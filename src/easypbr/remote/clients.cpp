@@ -9,8 +9,12 @@
 
 namespace easypbr::remote {
 
-Clients::Clients(Network& network, Inbox& inbox, Tokens tokens, size_t most_clients)
-    : network_(network), inbox_(inbox), tokens_(std::move(tokens)), most_clients_(most_clients) {}
+Clients::Clients(Wire& wire, Inbox& inbox, Tokens tokens, size_t most_clients, HandOver hand_over)
+    : wire_(wire),
+      inbox_(inbox),
+      tokens_(std::move(tokens)),
+      most_clients_(most_clients),
+      hand_over_(hand_over) {}
 
 void Clients::opened(ClientId client) {
     const std::lock_guard lock(mutex_);
@@ -31,7 +35,7 @@ void Clients::received(ClientId id, std::string_view text) {
     try {
         handle(id, found->second, text, now_seconds());
     } catch (const ProtocolError& error) {
-        network_.close(id, CloseCode::refused, error.what());
+        wire_.close(id, CloseCode::refused, error.what());
     }
 }
 
@@ -52,13 +56,13 @@ void Clients::admit(ClientId id, Client& client, const ClientMessage& message, d
     const bool watches = same_secret(hello->token, tokens_.watch);
     if (!controls && !watches) {
         wrong_.add(now);
-        return network_.close(id, CloseCode::wrong_token, "the token is wrong", wrong_.delay_s(now));
+        return wire_.close(id, CloseCode::wrong_token, "the token is wrong", wrong_.delay_s(now));
     }
-    if (admitted() >= most_clients_) return network_.close(id, CloseCode::full, "there are too many clients");
+    if (admitted() >= most_clients_) return wire_.close(id, CloseCode::full, "there are too many clients");
     client.admitted = true;
     client.may_control = controls;
-    network_.admit(id);
-    network_.send(id, std::make_shared<const std::string>(controls ? welcome_ : watcher_welcome_));
+    wire_.admit(id);
+    wire_.send(id, std::make_shared<const std::string>(controls ? welcome_ : watcher_welcome_));
     inbox_.add({id, *hello, now});
     if (controls && !controller_) return give_control(id);
     tell_control();
@@ -75,7 +79,7 @@ void Clients::obey(ClientId id, Client& client, ClientMessage message, double no
     const auto* act = std::get_if<Act>(&message);
     if (act && act->what == Act::What::take_control) return take_control(id, client, now);
     if (controller_ != id)
-        return network_.send(
+        return wire_.send(
             id, std::make_shared<const std::string>(notice_text("Somebody else controls this view", true)));
     if (act && act->what == Act::What::leave_control) return leave_control(id);
     if (!std::holds_alternative<Resize>(message)) last_input_s_ = now;
@@ -94,14 +98,15 @@ void Clients::ack(ClientId id, Client& client, const Ack& ack, double now) {
 
 void Clients::take_control(ClientId id, Client& client, double now) {
     if (controller_ == id) return;
-    const bool is_free = !controller_ || now - last_input_s_ > idle_control_s;
+    const bool is_free =
+        hand_over_ == HandOver::at_once || !controller_ || now - last_input_s_ > idle_control_s;
     if (client.may_control && is_free) return give_control(id);
     const std::string why =
         client.may_control ? "Who controls this view is using it" : "This link is for watching only";
-    network_.send(id, std::make_shared<const std::string>(notice_text(why, true)));
+    wire_.send(id, std::make_shared<const std::string>(notice_text(why, true)));
     if (client.may_control)
-        network_.send(*controller_, std::make_shared<const std::string>(
-                                        notice_text("Somebody asks for control of this view", false)));
+        wire_.send(*controller_, std::make_shared<const std::string>(
+                                     notice_text("Somebody asks for control of this view", false)));
 }
 
 /// The next in the order in which they came follows.
@@ -127,9 +132,8 @@ void Clients::give_control(ClientId id) {
 void Clients::tell_control() {
     for (const auto& [id, client] : clients_)
         if (client.admitted)
-            network_.send(id,
-                          std::make_shared<const std::string>(control_text(
-                              controller_ == id, controller_.has_value(), client.may_control, admitted())));
+            wire_.send(id, std::make_shared<const std::string>(control_text(
+                               controller_ == id, controller_.has_value(), client.may_control, admitted())));
 }
 
 size_t Clients::admitted() const {
@@ -184,7 +188,7 @@ void Clients::send_part(ClientId id, Client& client, const Picture& picture, siz
     packet.header.bytes = uint32_t(picture.bytes->size());
     if (from == picture.bytes->size()) packet.header.flags |= FrameHeader::last;
     client.flow.sent(packet.header.frame, packet.header.chunk, packet.count, now);
-    network_.send(id, std::move(packet));
+    wire_.send(id, std::move(packet));
 }
 
 void Clients::send_shot(ClientId id, Picture picture) {
@@ -201,11 +205,11 @@ void Clients::broadcast(const std::string& text) {
     const auto shared = std::make_shared<const std::string>(text);
     const std::lock_guard lock(mutex_);
     for (const auto& [id, client] : clients_)
-        if (client.admitted) network_.send(id, shared);
+        if (client.admitted) wire_.send(id, shared);
 }
 
 void Clients::tell(ClientId client, const std::string& text) {
-    network_.send(client, std::make_shared<const std::string>(text));
+    wire_.send(client, std::make_shared<const std::string>(text));
 }
 
 std::vector<ClientState> Clients::states() const {

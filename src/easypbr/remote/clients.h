@@ -10,8 +10,8 @@
 #include "easypbr/remote/flow.h"
 #include "easypbr/remote/gate.h"
 #include "easypbr/remote/inbox.h"
-#include "easypbr/remote/network.h"
 #include "easypbr/remote/token.h"
+#include "easypbr/remote/wire.h"
 
 namespace easypbr::remote {
 
@@ -28,12 +28,19 @@ struct ClientState {
     double latency_s = 0;  ///< from sending a picture to the answer that it is drawn
 };
 
+/// When a client that may control gets control from another one.
+enum class HandOver {
+    when_idle,  ///< clients are of several persons: who uses it keeps it
+    at_once     ///< clients are of one person
+};
+
 /// One client at a time controls, of those that may; all see the same pictures. Each gets the newest one at
 /// its own pace: nothing is queued. Used from any thread.
-class Clients : public NetworkEvents {
+class Clients : public WireEvents {
   public:
     /// All must outlive it.
-    Clients(Network& network, Inbox& inbox, Tokens tokens, size_t most_clients);
+    Clients(Wire& wire, Inbox& inbox, Tokens tokens, size_t most_clients,
+            HandOver hand_over = HandOver::when_idle);
 
     void opened(ClientId client) override;
     void received(ClientId client, std::string_view text) override;
@@ -94,10 +101,11 @@ class Clients : public NetworkEvents {
     const Client* looking_controller() const;
     size_t admitted() const;
 
-    Network& network_;
+    Wire& wire_;
     Inbox& inbox_;
     const Tokens tokens_;
     const size_t most_clients_;
+    const HandOver hand_over_;
 
     mutable std::mutex mutex_;
     std::map<ClientId, Client> clients_;

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "easypbr/remote/messages.h"
-#include "easypbr/remote/network.h"
+#include "easypbr/remote/wire.h"
 
 namespace easypbr::remote {
 

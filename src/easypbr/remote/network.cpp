@@ -49,7 +49,7 @@ class Network::Loop : public Owner, public std::enable_shared_from_this<Network:
     }
     ~Loop() override { stop(); }
 
-    void start(NetworkEvents& events) {
+    void start(WireEvents& events) {
         events_ = &events;
         accept_next();
         thread_ = std::thread([this] { context_.run(); });
@@ -190,7 +190,7 @@ class Network::Loop : public Owner, public std::enable_shared_from_this<Network:
     }
 
     NetworkOptions options_;
-    NetworkEvents* events_ = nullptr;
+    WireEvents* events_ = nullptr;
     net::io_context context_{1};
     Tcp::acceptor tcp_;
     Local::acceptor local_;
@@ -208,7 +208,7 @@ Network::~Network() {
     loop_->stop();
 }
 
-void Network::start(NetworkEvents& events) {
+void Network::start(WireEvents& events) {
     loop_->start(events);
 }
 

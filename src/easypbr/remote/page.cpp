@@ -14,6 +14,10 @@ constexpr Embedded embedded[] = {
 #include "easypbr_page.inc"
 };
 
+constexpr Embedded offline[] = {
+#include "easypbr_offline.inc"
+};
+
 constexpr std::string_view type_of(std::string_view name) {
     if (name.ends_with(".html")) return "text/html; charset=utf-8";
     if (name.ends_with(".js")) return "text/javascript; charset=utf-8";
@@ -35,6 +39,10 @@ constexpr auto files = make_files();
 const PageFile* page_file(std::string_view name) {
     const auto found = std::ranges::find(files, name, &PageFile::name);
     return found == files.end() ? nullptr : &*found;
+}
+
+std::string_view offline_document(std::string_view name) {
+    return std::ranges::find(offline, name, &Embedded::name)->content;
 }
 
 }  // namespace easypbr::remote

@@ -12,4 +12,7 @@ struct PageFile {
 /// Null when there is none of this name.
 const PageFile* page_file(std::string_view name);
 
+/// A file that no server answers with: it is written, or handed on. It is there.
+std::string_view offline_document(std::string_view name);
+
 }  // namespace easypbr::remote

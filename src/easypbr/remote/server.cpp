@@ -7,6 +7,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
+#include "easypbr/remote/network.h"
 #include "easypbr/remote/view.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/scene/settings.h"

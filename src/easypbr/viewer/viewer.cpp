@@ -106,10 +106,20 @@ std::shared_ptr<remote::Server> Viewer::serve(const remote::ServeOptions& option
     return server;
 }
 
+std::shared_ptr<remote::Channel> Viewer::open_channel() {
+    const auto channel = std::make_shared<remote::Channel>(scene(), settings());
+    channels_.push_back(channel);
+    return channel;
+}
+
 void Viewer::tell_servers() {
-    std::erase_if(servers_, [](const auto& server) { return server.expired(); });
-    for (const auto& each : servers_)
-        if (const auto server = each.lock()) server->take_settings(settings());
+    const auto tell = [&](auto& all) {
+        std::erase_if(all, [](const auto& each) { return each.expired(); });
+        for (const auto& each : all)
+            if (const auto one = each.lock()) one->take_settings(settings());
+    };
+    tell(servers_);
+    tell(channels_);
 }
 
 bool Viewer::update() try { return update_window(); } catch (const Error&) {
@@ -302,6 +312,11 @@ double Viewer::focus_at(int x, int y, std::optional<Vec2i> size) {
 
 void Viewer::refit() {
     parts_->session.refit();
+}
+
+std::filesystem::path Viewer::save_html(const std::filesystem::path& path,
+                                        const remote::OrbitPageOptions& options) {
+    return remote::save_orbit_page(parts_->session, path, options);
 }
 
 void Viewer::save_settings(const std::filesystem::path& path,

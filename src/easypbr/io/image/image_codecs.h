@@ -30,6 +30,8 @@ inline constexpr int jpeg_quality = 95;
 std::vector<std::byte> encode_jpeg(const Image& image, int quality = jpeg_quality);
 /// Of pictures that are seen for a moment: half the chroma in each direction, quicker transforms. RGBA u8.
 std::vector<std::byte> encode_jpeg_quickly(const Image& image, int quality);
+/// Quality 0 to 100, with alpha where the image has it. u8 with 3 or 4 channels, at most 16383 pixels a side.
+std::vector<std::byte> encode_webp(const Image& image, int quality);
 /// Run-length encoded RGBE; alpha is dropped, negative and NaN become 0. f32 only.
 std::vector<std::byte> encode_hdr(const Image& image);
 /// float32 channels, ZIP-compressed scanlines. f32 only.

@@ -1,8 +1,10 @@
 #include <webp/decode.h>
+#include <webp/encode.h>
 
 #include <fmt/format.h>
 
 #include <cstring>
+#include <memory>
 
 #include "easypbr/io/image/image_codecs.h"
 
@@ -45,6 +47,21 @@ Image decode_webp(Bytes bytes, const std::string& name) {
     const VP8StatusCode decoded = WebPDecode(webp_data_of(bytes), bytes.size(), &config);
     if (decoded != VP8_STATUS_OK) fail_image(name, fmt::format("damaged WebP: {}", status_of(decoded)));
     return image;
+}
+
+std::vector<std::byte> encode_webp(const Image& image, int quality) {
+    if (image.width() > WEBP_MAX_DIMENSION || image.height() > WEBP_MAX_DIMENSION)
+        throw ArgumentError(fmt::format("cannot encode WebP: {}x{} pixels, the format holds at most {}",
+                                        image.width(), image.height(), WEBP_MAX_DIMENSION));
+    if (image.channels() < 3) throw ArgumentError("cannot encode WebP: expected 3 or 4 channels");
+    const auto encode = image.channels() == 4 ? WebPEncodeRGBA : WebPEncodeRGB;
+    uint8_t* out = nullptr;
+    const size_t size = encode(image.pixels<uint8_t>().data(), image.width(), image.height(),
+                               int(image.row_bytes()), float(quality), &out);
+    const std::unique_ptr<uint8_t, decltype(&WebPFree)> owner(out, WebPFree);
+    if (size == 0) throw ArgumentError("cannot encode WebP: out of memory");
+    const auto* begin = reinterpret_cast<const std::byte*>(out);
+    return {begin, begin + size};
 }
 
 }  // namespace easypbr::io

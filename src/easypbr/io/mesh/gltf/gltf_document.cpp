@@ -7,6 +7,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/io/mesh/gltf/gltf_meshopt.h"
+#include "easypbr/io/source/base64.h"
 #include "easypbr/io/source/json_depth.h"
 
 namespace easypbr::io {
@@ -36,34 +37,6 @@ std::string percent_decoded(std::string_view text) {
                            hex_digit(text[i + 2]) >= 0;
         out += coded ? char(hex_digit(text[i + 1]) * 16 + hex_digit(text[i + 2])) : text[i];
         if (coded) i += 2;
-    }
-    return out;
-}
-
-std::array<int8_t, 256> base64_table() {
-    std::array<int8_t, 256> table;
-    table.fill(-1);
-    const std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    for (size_t i = 0; i < digits.size(); ++i) table[uint8_t(digits[i])] = int8_t(i);
-    table['-'] = 62;
-    table['_'] = 63;
-    return table;
-}
-
-/// Nothing when there is a character that is no digit of base 64.
-std::optional<std::vector<std::byte>> base64_decoded(std::string_view text) {
-    static const std::array<int8_t, 256> table = base64_table();
-    while (!text.empty() && text.back() == '=') text.remove_suffix(1);
-    std::vector<std::byte> out;
-    out.reserve(text.size() / 4 * 3 + 3);
-    uint32_t bits = 0;
-    int held = 0;
-    for (const char c : text) {
-        const int8_t digit = table[uint8_t(c)];
-        if (digit < 0) return std::nullopt;
-        bits = bits << 6 | uint32_t(digit);
-        held += 6;
-        if (held >= 8) out.push_back(std::byte(bits >> (held -= 8)));
     }
     return out;
 }

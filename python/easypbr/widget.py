@@ -1,0 +1,153 @@
+"""Notebook widgets: a view in a cell, over the kernel's own channel."""
+
+import base64
+import functools
+import importlib
+import importlib.util
+import operator
+import sys
+import threading
+import weakref
+from typing import Any, Protocol
+
+import numpy as np
+
+from . import _easypbr
+from .errors import ArgumentError
+from .scene import Scene
+from .settings import Settings
+
+#: Above it an image is saved with the notebook as JPEG.
+MOST_PNG_BYTES = 300_000
+#: Width of a widget without a size, in CSS pixels.
+USUAL_WIDTH = 800
+#: Sides of a widget, in CSS pixels.
+SMALLEST, LARGEST = 16, 4096
+MIME_TYPE = "application/vnd.jupyter.widget-view+json"
+
+
+class View(Protocol):
+    """What a widget needs of a Viewer."""
+
+    scene: Scene
+    _handle: "_easypbr.ViewerHandle"
+
+    @property
+    def settings(self) -> Settings: ...
+
+    def render(self, size: Any = None) -> np.ndarray: ...
+
+
+def can_show() -> bool:
+    """Whether this is a notebook's kernel and anywidget is installed."""
+    ipython = sys.modules.get("IPython")
+    shell = None if ipython is None else ipython.get_ipython()
+    return getattr(shell, "kernel", None) is not None and importlib.util.find_spec("anywidget") is not None
+
+
+def picture_of(view: View, size: tuple[int, int]) -> tuple[str, bytes]:
+    """What is saved with a notebook, and its MIME type: PNG, or JPEG where that is large."""
+    image = view.render(size)
+    data = _easypbr.encode_png(image)
+    if len(data) <= MOST_PNG_BYTES or image[..., 3].min() < 255:
+        return "image/png", data
+    return "image/jpeg", _easypbr.encode_jpeg(image, 90)
+
+
+@functools.cache
+def widget_class() -> type:
+    """The class of widgets; made when the first one is, so that easypbr imports nothing of notebooks."""
+    try:
+        anywidget: Any = importlib.import_module("anywidget")
+        traitlets: Any = importlib.import_module("traitlets")
+    except ImportError:
+        raise ImportError("widgets need anywidget: pip install easypbr[jupyter]") from None
+
+    class ViewWidget(anywidget.AnyWidget):
+        """A view in the cells of a notebook; Viewer.widget() makes it."""
+
+        _esm = _easypbr.widget_script()
+        _width = traitlets.Int().tag(sync=True)
+        _height = traitlets.Int().tag(sync=True)
+        _label = traitlets.Unicode().tag(sync=True)
+        _picture = traitlets.Bytes().tag(sync=True)
+
+        def __init__(self, view: View, size: tuple[int, int]) -> None:
+            self._view = view
+            kind, picture = picture_of(view, size)
+            self._still = kind, picture
+            label = ", ".join(view.scene.names()) or "Empty scene"
+            super().__init__(_width=size[0], _height=size[1], _label=label, _picture=picture)
+            self._channel = view._handle.open_channel()
+            # Threads within the library must not outlive the interpreter.
+            weakref.finalize(self, self._channel.close)
+            self.on_msg(_receive)
+            threading.Thread(target=_carry, args=(weakref.ref(self), self._channel), name="easypbr widget", daemon=True).start()
+
+        def keep(self) -> None:
+            """Takes the present picture of the view as the one that is saved with the notebook. Cells show it when they run
+            again; where the widget's state is saved too, at once."""
+            self._still = picture_of(self._view, (self._width, self._height))
+            self._picture = self._still[1]
+
+        def add_animations(self, name: str, animations: "_easypbr.Animations") -> None:
+            """Lets the widget play the animations of a file: load_scene(path).animations."""
+            self._channel.add_animations(name, animations)
+
+        def close(self) -> None:
+            """Ends the drawing and removes the widget from all cells."""
+            if hasattr(self, "_channel"):
+                self._channel.close()
+            super().close()
+
+        def _repr_mimebundle_(self, **_: Any) -> dict[str, Any]:
+            kind, picture = self._still
+            return {
+                "text/plain": f"<view of {self._label}>",
+                kind: base64.b64encode(picture).decode(),
+                MIME_TYPE: {"version_major": 2, "version_minor": 0, "model_id": self.model_id},
+            }
+
+    return ViewWidget
+
+
+def _receive(widget: Any, content: Any, _: Any) -> None:
+    """What a page has sent. It is only put aside here: the kernel's thread draws nothing."""
+    client = content.get("client") if isinstance(content, dict) else None
+    if not isinstance(client, int) or not 0 <= client < 2**53:
+        return
+    if content.get("gone"):
+        widget._channel.leave(client)
+    else:
+        widget._channel.receive(client, str(content.get("text", "")))
+
+
+def _carry(reference: "weakref.ref[Any]", channel: "_easypbr.ChannelHandle") -> None:
+    """Hands on what the view has for the pages, also while a cell runs."""
+    while channel.is_open:
+        messages = channel.take(1.0)
+        widget = reference()
+        if widget is None:
+            return
+        for client, text, data, code in messages:
+            if code:
+                widget.send({"client": client, "code": code, "reason": text})
+            elif data:
+                widget.send({"client": client}, [data])
+            else:
+                widget.send({"client": client, "text": text})
+        del widget
+
+
+def size_for(view: View, size: Any) -> tuple[int, int]:
+    """In CSS pixels: as it is given, else that of the view's images, as wide as a notebook."""
+    if size is not None:
+        try:
+            width, height = (operator.index(side) for side in size)
+        except (TypeError, ValueError):
+            raise ArgumentError(f"size: expected (width, height) as whole numbers, got {size!r}") from None
+        if not SMALLEST <= min(width, height) <= max(width, height) <= LARGEST:
+            raise ArgumentError(f"size: expected sides from {SMALLEST} to {LARGEST} CSS pixels, got {size!r}")
+        return width, height
+    width, height = (int(side) for side in np.asarray(view.settings["image.size"]))
+    return min(width, USUAL_WIDTH), max(SMALLEST, round(height * min(1.0, USUAL_WIDTH / width)))

@@ -1,0 +1,114 @@
+#include "easypbr/remote/channel.h"
+
+#include <atomic>
+#include <mutex>
+
+#include "easypbr/remote/mailbox.h"
+#include "easypbr/remote/view.h"
+#include "easypbr/scene/scene.h"
+#include "easypbr/scene/settings.h"
+
+namespace easypbr::remote {
+namespace {
+
+constexpr size_t most_channel_clients = 64;
+
+}  // namespace
+
+struct Channel::Parts {
+    Parts(const Scene& scene, const Settings& settings)
+        : clients(mailbox, inbox, {"", random_token()}, most_channel_clients, HandOver::at_once),
+          view(scene, settings, inbox, clients) {
+        const std::string text = welcome_text(random_token().substr(0, 16), false);
+        clients.set_welcome(text, text);
+        view.start();
+    }
+
+    /// Whether it was there.
+    bool forget(ClientId client) {
+        {
+            const std::lock_guard lock(mutex);
+            if (!attendance.drop(client)) return false;
+        }
+        clients.closed(client);
+        return true;
+    }
+
+    void forget_silent() {
+        std::vector<ClientId> silent;
+        {
+            const std::lock_guard lock(mutex);
+            silent = attendance.drop_silent(now_seconds());
+        }
+        for (const ClientId client : silent) clients.closed(client);
+    }
+
+    Inbox inbox;
+    Mailbox mailbox;
+    Clients clients;
+    View view;
+    mutable std::mutex mutex;  ///< of `attendance`
+    Attendance attendance;
+    std::mutex closing;
+    std::atomic<bool> open = true;
+};
+
+Channel::Channel(const Scene& scene, const Settings& settings)
+    : parts_(std::make_unique<Parts>(scene, settings)) {}
+
+Channel::~Channel() {
+    close();
+}
+
+void Channel::receive(uint64_t client, std::string_view text) {
+    Parts& parts = *parts_;
+    if (!is_open()) return;
+    bool is_new = false;
+    {
+        const std::lock_guard lock(parts.mutex);
+        if (text.empty() && !parts.attendance.knows(client)) return;
+        is_new = parts.attendance.note(client, now_seconds());
+    }
+    if (is_new) parts.clients.opened(client);
+    if (!text.empty()) parts.clients.received(client, text);
+}
+
+void Channel::leave(uint64_t client) {
+    if (is_open()) parts_->forget(client);
+}
+
+std::vector<ChannelMessage> Channel::take(double seconds) {
+    Parts& parts = *parts_;
+    if (!is_open()) return {};
+    parts.forget_silent();
+    std::vector<ChannelMessage> messages = parts.mailbox.take(seconds);
+    for (const ChannelMessage& message : messages)
+        if (message.close_code > 0) parts.forget(message.client);
+    return messages;
+}
+
+size_t Channel::client_count() const {
+    const std::lock_guard lock(parts_->mutex);
+    return parts_->attendance.count();
+}
+
+void Channel::take_settings(const Settings& settings) {
+    if (is_open()) parts_->view.take_settings(settings);
+}
+
+void Channel::add_animations(const std::string& name, const Animations& animations) {
+    if (is_open()) parts_->view.add_animations(name, animations);
+}
+
+void Channel::close() {
+    const std::lock_guard lock(parts_->closing);
+    if (!parts_->open.exchange(false)) return;
+    parts_->mailbox.shut();
+    parts_->view.stop();
+}
+
+bool Channel::is_open() const {
+    return parts_->open;
+}
+
+}  // namespace easypbr::remote
