@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 #include "easypbr/remote/mailbox.h"
 #include "easypbr/scene/mesh.h"
@@ -22,18 +25,23 @@ class ChannelTest : public testing::Test {
   protected:
     ChannelTest() : channel(Scene(), Settings()) {}
 
-    /// The messages of this kind that come to a client, until there is one.
+    /// The next message of this kind that comes to a client; null where none does.
     json until(uint64_t client, const std::string& kind) {
-        for (int i = 0; i < 100; ++i)
-            for (const ChannelMessage& message : channel.take(0.1)) {
-                if (message.client != client || message.text.empty()) continue;
-                const json words = json::parse(message.text, nullptr, false);
-                if (words.is_object() && words["kind"] == kind) return words;
+        for (int i = 0; i < 100; ++i) {
+            for (auto at = unread.begin(); at != unread.end(); ++at) {
+                if (at->client != client || at->text.empty()) continue;
+                const json words = json::parse(at->text, nullptr, false);
+                if (!words.is_object() || words["kind"] != kind) continue;
+                unread.erase(unread.begin(), std::next(at));
+                return words;
             }
+            for (ChannelMessage& message : channel.take(0.1)) unread.push_back(std::move(message));
+        }
         return {};
     }
 
     Channel channel;
+    std::vector<ChannelMessage> unread;
 };
 
 TEST_F(ChannelTest, LetsClientsInWithoutASecret) {

@@ -290,7 +290,7 @@ TEST(Paths, LinearPicturesAreNotDenoised) {
         session.settings().path.denoise = denoise;
         return session.render({std::nullopt, 4, Encoding::scene_linear});
     };
-    const Image automatic = drawn(Denoising::automatic), off = drawn(Denoising::off),
+    const Image automatic = drawn(Denoising::best), off = drawn(Denoising::off),
                 filter = drawn(Denoising::filter);
     EXPECT_TRUE(std::ranges::equal(automatic.bytes(), off.bytes()));
     EXPECT_FALSE(std::ranges::equal(filter.bytes(), off.bytes()));

@@ -70,7 +70,7 @@ TEST(Fields, AreComplete) {
     for (const Field& field : fields()) ++counts[field.name.substr(0, field.name.find('.'))];
     // clang-format off
     const std::map<std::string, int> expected = {
-        {"image", 3},
+        {"image", 5},
         {"camera", 14},
         {"environment", 5},
         {"background", 4},
@@ -85,6 +85,7 @@ TEST(Fields, AreComplete) {
         {"depth_of_field", 4},
         {"motion_blur", 2},
         {"outline", 8},
+        {"path", 4},
         {"transparency", 2},
         {"tonemap", 3},
         {"material", 4 + 18 + 7 + 1},
@@ -92,7 +93,7 @@ TEST(Fields, AreComplete) {
         {"points", 1},
         {"clip", 2},
         {"annotation", 5},
-        {"load", 1},
+        {"load", 2},
         {"limits", 1},
     };
     // clang-format on

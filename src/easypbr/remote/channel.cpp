@@ -17,7 +17,8 @@ constexpr size_t most_channel_clients = 64;
 
 struct Channel::Parts {
     Parts(const Scene& scene, const Settings& settings)
-        : clients(mailbox, inbox, {"", random_token()}, most_channel_clients, HandOver::at_once),
+        : clients(mailbox, inbox, {random_token(), random_token(), false}, most_channel_clients,
+                  HandOver::at_once),
           view(scene, settings, inbox, clients) {
         const std::string text = welcome_text(random_token().substr(0, 16), false);
         clients.set_welcome(text, text);

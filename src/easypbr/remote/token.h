@@ -10,6 +10,7 @@ namespace easypbr::remote {
 /// Who holds `control` may change what is seen, who holds `watch` sees it.
 struct Tokens {
     std::string control, watch;
+    bool asked = true;  ///< false: whoever can send messages controls
 };
 
 /// 256 random bits of the system as 64 hexadecimal digits. Throws Error when the system gives none.

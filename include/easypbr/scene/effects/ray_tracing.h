@@ -13,9 +13,10 @@ struct BasicRaySettings {
 };
 using RaySettings = BasicRaySettings<Auto>;
 
-/// How the noise of path traced pictures is taken out: by Intel Open Image Denoise, by a filter of our own, or
-/// not. Automatic: by the first where it is there, but not of scene-linear pictures.
-enum class Denoising { automatic, oidn, filter, off };
+/// How the noise of path traced pictures is taken out: by Intel Open Image Denoise, by a filter of our own,
+/// or not. Best: by the first where it is there, else by the second; scene-linear pictures are left as they
+/// are.
+enum class Denoising { best, oidn, filter, off };
 
 /// Light by path tracing on the CPU, from the surfaces that the frame shows: all that lights, the environment
 /// and other surfaces send, in place of shadow maps, ambient occlusion and the split sum. Averages of many
@@ -25,7 +26,7 @@ struct BasicPathSettings {
     MaybeAuto<bool> enabled{};  ///< automatic: off
     int bounces = 8;            ///< surfaces that a path meets after the one that is seen, 0 to 64
     float clamp = 10;           ///< most luminance that a path adds beyond direct light, 0: unlimited
-    Denoising denoise = Denoising::automatic;
+    Denoising denoise = Denoising::best;
 };
 using PathSettings = BasicPathSettings<Auto>;
 

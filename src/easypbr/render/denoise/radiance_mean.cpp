@@ -172,8 +172,8 @@ float RadianceMean::noise(float exposure) const {
 }
 
 const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
-    const bool finds_oidn = denoising == Denoising::automatic && !OpenImageDenoise::version().empty();
-    if (denoising == Denoising::automatic) denoising = finds_oidn ? Denoising::oidn : Denoising::filter;
+    const bool finds_oidn = denoising == Denoising::best && !OpenImageDenoise::version().empty();
+    if (denoising == Denoising::best) denoising = finds_oidn ? Denoising::oidn : Denoising::filter;
     const float scale = 1 / float(frames_);
     const auto sum = sum_.pixels<Vec4>();
     // One frame alone says nothing about its noise.

@@ -233,7 +233,7 @@ float OutputPass::noise(const Frame& frame) const {
 
 Denoising OutputPass::denoising_of(const Frame& frame) const {
     const Denoising asked = frame.resolved->settings.path.denoise;
-    const bool is_reference = encoding_ == Encoding::scene_linear && asked == Denoising::automatic;
+    const bool is_reference = encoding_ == Encoding::scene_linear && asked == Denoising::best;
     return is_reference ? Denoising::off : asked;
 }
 

@@ -6,7 +6,7 @@ namespace easypbr::detail {
 
 template <>
 const std::vector<std::string>& enum_names<Denoising>() {
-    static const std::vector<std::string> names = {"automatic", "oidn", "filter", "off"};
+    static const std::vector<std::string> names = {"best", "oidn", "filter", "off"};
     return names;
 }
 
@@ -25,7 +25,7 @@ void add_path(Table& table) {
     table.push_back(make(
         "path.denoise", EASYPBR_AT(path.denoise),
         "Takes the noise out of path traced images: oidn by Intel Open Image Denoise, filter by a built-in "
-        "edge-avoiding filter; automatic: oidn where it is installed, else filter, off for scene-linear "
+        "edge-avoiding filter; best: oidn where it is installed, else filter, but not out of scene-linear "
         "images."));
 }
 

@@ -1,0 +1,46 @@
+"""Denoising and ending path traced images."""
+
+import time
+
+import numpy as np
+import pytest
+
+import easypbr
+
+SIZE = (64, 64)
+
+
+def view(**path: object) -> easypbr.Viewer:
+    scene = easypbr.Scene()
+    scene.show(easypbr.shapes.sphere(1), "ball")
+    return easypbr.Viewer(SIZE, {"path": {"enabled": True, **path}, "ground": {"mode": "plane"}}, scene=scene)
+
+
+def test_denoising_comes_nearer_to_many_samples() -> None:
+    reference = view(denoise="off").render(samples=256).astype(float)
+    noisy, smooth = (np.abs(view(denoise=how).render(samples=8) - reference).mean() for how in ("off", "filter"))
+    assert smooth < noisy / 2
+
+
+def test_a_library_that_is_missing_is_named() -> None:
+    try:
+        view(denoise="oidn").render(samples=4)
+    except easypbr.Error as error:
+        assert "pip install pyoidn" in str(error)
+
+
+def test_an_unknown_denoiser_is_refused() -> None:
+    with pytest.raises(easypbr.ArgumentError, match="denoise.*best, oidn, filter"):
+        view(denoise="median")
+
+
+def test_images_end_by_their_noise_and_by_their_time() -> None:
+    seen = view(denoise="off")
+    whole = seen.render(samples=64)
+    seen.settings.image.noise = 0.05
+    assert not np.array_equal(seen.render(samples=64), whole)
+    seen.settings.image.noise = 0
+    seen.settings.image.time_budget = 0.3
+    begin = time.monotonic()
+    seen.render(samples=65536)
+    assert time.monotonic() - begin < 30
