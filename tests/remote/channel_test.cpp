@@ -1,5 +1,5 @@
 // Channels: clients whose messages the program carries, all of one person.
-#include "easypbr/remote/channel.h"
+#include "easypbr/remote/server.h"
 
 #include <gtest/gtest.h>
 

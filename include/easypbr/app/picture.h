@@ -38,6 +38,19 @@ struct Pick {
     double depth = 0;         ///< along the optical axis
 };
 
+/// A page of pictures from all around, which is turned without a server.
+struct OrbitPageOptions {
+    int columns = 36;                ///< pictures around the up axis, 1 to 360
+    int rows = 3;                    ///< elevations, 1 to 60; the camera's own is one of them
+    double row_step_deg = 20;        ///< between rows, above 0; all rows lie within 160 degrees
+    std::optional<Vec2i> size = {};  ///< none: the settings'
+    std::optional<int> samples = {};
+    std::string format = "webp";  ///< of the pictures: "webp" or "jpeg"
+    int quality = 85;             ///< of the pictures at most, 1 to 100
+    double most_megabytes = 20;   ///< of the file, 10^6 bytes each
+    std::string title = {};       ///< empty: the names of the objects
+};
+
 /// How an image is shown beside the scene. Its values are shown as they are: no curve is applied.
 struct ImageLook {
     std::optional<float> min, max;  ///< black and white; none: 0 to 255 of u8, 0 to 65535 of u16, 0 to 1 of

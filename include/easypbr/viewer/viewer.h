@@ -16,8 +16,6 @@
 #include "easypbr/app/picture.h"
 #include "easypbr/app/recorder.h"
 #include "easypbr/core/image.h"
-#include "easypbr/remote/channel.h"
-#include "easypbr/remote/orbit_page.h"
 #include "easypbr/remote/server.h"
 #include "easypbr/scene/scene.h"
 
@@ -119,7 +117,7 @@ class Viewer {
     /// Writes pictures from all around as one HTML file that is turned without a server. Returns the path.
     /// Throws as remote::save_orbit_page() does.
     std::filesystem::path save_html(const std::filesystem::path& path,
-                                    const remote::OrbitPageOptions& options = {});
+                                    const app::OrbitPageOptions& options = {});
 
     /// Every value, chosen and inferred, of the last picture, with the hashes of the files it was made from.
     void save_settings(const std::filesystem::path& path,

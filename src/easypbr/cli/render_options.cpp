@@ -297,8 +297,8 @@ Vec2i parse_size(const std::string& text) {
             parse_side(std::string_view(text).substr(at + 1), text)};
 }
 
-remote::OrbitPageOptions page_options_of(const RenderOptions& options) {
-    remote::OrbitPageOptions page;
+app::OrbitPageOptions page_options_of(const RenderOptions& options) {
+    app::OrbitPageOptions page;
     if (!options.orbit.empty()) {
         const size_t at = options.orbit.find('x');
         const auto count = [&](const std::string& text) {

@@ -75,7 +75,7 @@ void check_usage(const RenderOptions& options);
 void apply(const RenderOptions& options, Settings& settings);
 
 /// What a page is written with. Throws UsageError.
-remote::OrbitPageOptions page_options_of(const RenderOptions& options);
+app::OrbitPageOptions page_options_of(const RenderOptions& options);
 
 /// The pixel that --focus names; nothing without it. Throws UsageError when it is not X,Y.
 std::optional<Vec2i> parse_focus(const std::string& text);

@@ -38,7 +38,7 @@ void add_frame(SharedViewer& self, const nb::object& picture) {
 fs::path save_html(SharedViewer& self, const fs::path& path, std::pair<int, int> orbit, double row_step,
                    const nb::object& size, std::optional<int> samples, const std::string& format, int quality,
                    double max_mb, const std::string& title) {
-    const remote::OrbitPageOptions options{
+    const app::OrbitPageOptions options{
         orbit.first, orbit.second, row_step, optional_size(size), samples, format, quality, max_mb, title};
     return self.run([&](Viewer& viewer) { return viewer.save_html(path, options); });
 }

@@ -7,7 +7,6 @@
 #include "easypbr/core/file.h"
 #include "easypbr/python/shared_viewer.h"
 #include "easypbr/python/text.h"
-#include "easypbr/remote/channel.h"
 #include "easypbr/remote/page.h"
 #include "easypbr/remote/server.h"
 

@@ -1,4 +1,4 @@
-#include "easypbr/remote/channel.h"
+#include "easypbr/remote/server.h"
 
 #include <atomic>
 #include <mutex>

@@ -6,7 +6,7 @@
 #include <mutex>
 #include <vector>
 
-#include "easypbr/remote/channel.h"
+#include "easypbr/remote/server.h"
 #include "easypbr/remote/wire.h"
 
 namespace easypbr::remote {

@@ -66,7 +66,7 @@ std::string filled(std::string_view document, const std::map<std::string_view, s
     }
 }
 
-std::vector<std::byte> encoded(const Image& image, const OrbitPageOptions& options, int quality) {
+std::vector<std::byte> encoded(const Image& image, const app::OrbitPageOptions& options, int quality) {
     return options.format == "jpeg" ? io::encode_jpeg(image, quality) : io::encode_webp(image, quality);
 }
 
@@ -76,7 +76,7 @@ size_t text_bytes(size_t bytes) {
 }
 
 /// The picture at the best quality that takes at most `budget` bytes of text; the least one where none does.
-std::vector<std::byte> encoded_within(const Image& image, const OrbitPageOptions& options, double budget) {
+std::vector<std::byte> encoded_within(const Image& image, const app::OrbitPageOptions& options, double budget) {
     const auto fits = [&](const std::vector<std::byte>& bytes) {
         return double(text_bytes(bytes.size())) <= budget;
     };
@@ -99,7 +99,7 @@ std::vector<std::byte> encoded_within(const Image& image, const OrbitPageOptions
 
 class OrbitPage {
   public:
-    OrbitPage(app::Session& session, const fs::path& path, const OrbitPageOptions& options)
+    OrbitPage(app::Session& session, const fs::path& path, const app::OrbitPageOptions& options)
         : session_(session),
           path_(path),
           options_(options),
@@ -150,7 +150,7 @@ class OrbitPage {
     std::string first_picture() {
         const double budget = left_ / double(grid_.cameras.size());
         const Vec2i wanted = size_;
-        OrbitPageOptions least = options_;
+        app::OrbitPageOptions least = options_;
         least.quality = std::min(options_.quality, least_quality);
         for (;;) {
             const Image image = drawn(start_index());
@@ -195,7 +195,7 @@ class OrbitPage {
 
     app::Session& session_;
     fs::path path_;
-    OrbitPageOptions options_;
+    app::OrbitPageOptions options_;
     Vec2i size_;
     app::OrbitGrid grid_;
     double left_ = 0;  ///< bytes of the file
@@ -209,7 +209,7 @@ void check_size(const Vec2i& size) {
 
 }  // namespace
 
-void check_orbit_page(const fs::path& path, const Settings& settings, const OrbitPageOptions& options) {
+void check_orbit_page(const fs::path& path, const Settings& settings, const app::OrbitPageOptions& options) {
     app::check_orbit_grid(options.columns, options.rows, options.row_step_deg);
     if (options.format != "webp" && options.format != "jpeg")
         throw ArgumentError(
@@ -228,7 +228,7 @@ void check_orbit_page(const fs::path& path, const Settings& settings, const Orbi
     check_writable(path);
 }
 
-fs::path save_orbit_page(app::Session& session, const fs::path& path, const OrbitPageOptions& options) {
+fs::path save_orbit_page(app::Session& session, const fs::path& path, const app::OrbitPageOptions& options) {
     check_orbit_page(path, session.settings(), options);
     OrbitPage(session, path, options).write();
     return path;

@@ -8,6 +8,7 @@
 #include "easypbr/gui/display.h"
 #include "easypbr/gui/live_view.h"
 #include "easypbr/gui/window.h"
+#include "easypbr/remote/orbit_page.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr {
@@ -315,7 +316,7 @@ void Viewer::refit() {
 }
 
 std::filesystem::path Viewer::save_html(const std::filesystem::path& path,
-                                        const remote::OrbitPageOptions& options) {
+                                        const app::OrbitPageOptions& options) {
     return remote::save_orbit_page(parts_->session, path, options);
 }
 
