@@ -1,5 +1,5 @@
-// Server: a scene's picture in the browsers of other machines; Channel: for clients whose messages the program
-// itself carries, such as the widgets of a notebook.
+// Server: a scene's picture in the browsers of other machines; Channel: for clients whose messages the
+// program itself carries, such as the widgets of a notebook.
 #pragma once
 
 #include <cstddef>

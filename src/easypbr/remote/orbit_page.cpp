@@ -76,7 +76,8 @@ size_t text_bytes(size_t bytes) {
 }
 
 /// The picture at the best quality that takes at most `budget` bytes of text; the least one where none does.
-std::vector<std::byte> encoded_within(const Image& image, const app::OrbitPageOptions& options, double budget) {
+std::vector<std::byte> encoded_within(const Image& image, const app::OrbitPageOptions& options,
+                                      double budget) {
     const auto fits = [&](const std::vector<std::byte>& bytes) {
         return double(text_bytes(bytes.size())) <= budget;
     };
