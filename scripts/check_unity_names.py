@@ -27,6 +27,9 @@ TYPES = {"class", "struct", "union", "enum"}
 #: Statements that declare no name of their own.
 OTHERS = {"friend", "static_assert", "extern", "typedef"}
 
+#: Tests that compile functions of native shaders themselves, in the namespace that those are compiled in.
+ALONE = {"simd_test.cpp"}
+
 
 class Declaration(NamedTuple):
     namespace: tuple[str, ...]
@@ -199,8 +202,17 @@ def clashes(root: pathlib.Path) -> Iterator[str]:
                     yield f"{first}: {name} is also a function of {header}, which it hides or overloads in a unity build"
 
 
+def nameless_tests(root: pathlib.Path) -> Iterator[str]:
+    """Tests whose names do not stand in a namespace called as their file: they have helpers of the same names."""
+    for path in sorted((root / "tests").glob("*/*_test.cpp")):
+        if path.name in ALONE:
+            continue
+        if not re.search(rf"^namespace easypbr(?:::\w+)*::{path.stem} {{$", path.read_text(), re.MULTILINE):
+            yield f"{path.relative_to(root)}: expected its names in a namespace easypbr::{path.stem}"
+
+
 if __name__ == "__main__":
     base = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
-    found = list(clashes(base))
+    found = [*clashes(base), *nameless_tests(base)]
     print("\n".join(found) or "unity builds: sources of a target have no name of their own in common")
     sys.exit(1 if found else 0)

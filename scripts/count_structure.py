@@ -5,6 +5,7 @@ usage: count_structure.py [ROOT]      prints the counts; exit code 1 and one lin
 """
 import pathlib
 import re
+import subprocess
 import sys
 from collections.abc import Iterator
 
@@ -105,6 +106,32 @@ def rebuilt(root: pathlib.Path, headers: set[str]) -> tuple[int, int]:
     return count, len(units)
 
 
+def recompiled(root: pathlib.Path, headers: set[str]) -> tuple[int, int] | None:
+    """Objects of the last build in build/ that are compiled anew when one of these headers changes, and all of them. A
+    unity build compiles several sources as one. None without a build."""
+    plan = root / "build/build.ninja"
+    if not plan.is_file():
+        return None
+    objects = set(re.findall(r"^build (\S+\.o):", plan.read_text(), re.MULTILINE))
+    printed = subprocess.run(["ninja", "-C", plan.parent, "-t", "deps"], capture_output=True, text=True, check=True)
+    uses = {name: any(line.endswith(tuple(f"/{header}" for header in headers)) for line in lines.splitlines())
+            for name, lines in re.findall(r"^(\S+): [^\n]*\n((?: +[^\n]*\n)*)", printed.stdout, re.MULTILINE)
+            if name in objects}
+    return sum(uses.values()), len(uses)
+
+
+#: Most compilations that a change of a header may take.
+MOST_RECOMPILED = {"render/effects/bloom/bloom_effect.h": 10, "scene/settings.h": 60, "scene/mesh.h": 120}
+
+
+def header_faults(root: pathlib.Path) -> Iterator[str]:
+    """Headers that too much of the last build includes; nothing without a build."""
+    for header, most in MOST_RECOMPILED.items():
+        compiled = recompiled(root, {f"easypbr/{header}"})
+        if compiled and compiled[0] > most:
+            yield f"{header}: a change takes {compiled[0]} compilations; expected at most {most}"
+
+
 def installed_headers(root: pathlib.Path) -> int:
     """Headers of include/ where it stands, else of the rooms that cmake/install.cmake installs."""
     if (root / "include/easypbr").is_dir():
@@ -129,7 +156,9 @@ def counts(root: pathlib.Path) -> Iterator[tuple[str, str]]:
     effect = {"easypbr/render/effects/bloom/bloom_effect.h", "easypbr/render/bloom_pass.h"}
     for what, headers in (("bloom's header", effect), ("scene/settings.h", {"easypbr/scene/settings.h"}),
                           ("scene/mesh.h", {"easypbr/scene/mesh.h"})):
-        yield f"units that a change of {what} rebuilds", "{} of {}".format(*rebuilt(root, headers))
+        yield f"sources that a change of {what} reaches", "{} of {}".format(*rebuilt(root, headers))
+        if compiled := recompiled(root, headers):
+            yield f"compilations that a change of {what} takes", "{} of {}".format(*compiled)
     yield 'files of src that name "surfel", but for its own', str(len(naming(root, "surfel")))
 
 
@@ -183,7 +212,7 @@ def code_faults(root: pathlib.Path) -> Iterator[str]:
 if __name__ == "__main__":
     base = pathlib.Path(sys.argv[1] if len(sys.argv) > 1 else ".").resolve()
     for what, number in counts(base):
-        print(f"{what:52} {number}")
-    faults = [*shader_faults(base), *(code_faults(base) if (base / "src/easypbr/render/pipeline").is_dir() else ())]
+        print(f"{what:58} {number}")
+    faults = [*shader_faults(base), *header_faults(base), *(code_faults(base) if (base / "src/easypbr/render/pipeline").is_dir() else ())]
     print("\n".join(faults), end="\n" if faults else "")
     sys.exit(1 if faults else 0)

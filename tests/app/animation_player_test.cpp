@@ -7,7 +7,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "scene/slide.h"
 
-namespace easypbr::app {
+namespace easypbr::app::animation_player_test {
 namespace {
 
 class Player : public testing::Test {
@@ -110,4 +110,4 @@ TEST_F(Player, KnowsOtherFilesAndRefusesWhatThereIsNot) {
 }
 
 }  // namespace
-}  // namespace easypbr::app
+}  // namespace easypbr::app::animation_player_test

@@ -11,7 +11,7 @@
 #include "easypbr/scene/label_colors.h"
 #include "easypbr/scene/settings.h"
 
-using namespace easypbr;
+namespace easypbr::annotation_test {
 using namespace easypbr::app;
 
 namespace {
@@ -323,3 +323,5 @@ TEST(Font, HasWidthsAndAlphabets) {
         EXPECT_GT(touched, 10) << text;
     }
 }
+
+}  // namespace easypbr::annotation_test

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace easypbr::app {
+namespace easypbr::app::camera_control_test {
 namespace {
 
 constexpr double exact = 1e-12;  // a few roundings of numbers near 1
@@ -213,4 +213,4 @@ TEST(CameraControl, ControlKeysAreNotForTheCamera) {
 }
 
 }  // namespace
-}  // namespace easypbr::app
+}  // namespace easypbr::app::camera_control_test

@@ -7,7 +7,7 @@
 
 #include "easypbr/core/error.h"
 
-namespace easypbr::app {
+namespace easypbr::app::clock_test {
 namespace {
 
 TEST(Clock, FixedStepsAreCountedNotAddedUp) {
@@ -47,4 +47,4 @@ TEST(Clock, MayBeSet) {
 }
 
 }  // namespace
-}  // namespace easypbr::app
+}  // namespace easypbr::app::clock_test

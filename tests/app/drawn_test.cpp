@@ -8,7 +8,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/settings.h"
 
-namespace easypbr::app {
+namespace easypbr::app::drawn_test {
 namespace {
 
 Session small_session() {
@@ -111,4 +111,4 @@ TEST(DrawnTest, OutlivesItsSession) {
 }
 
 }  // namespace
-}  // namespace easypbr::app
+}  // namespace easypbr::app::drawn_test

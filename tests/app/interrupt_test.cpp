@@ -8,7 +8,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/settings.h"
 
-namespace easypbr {
+namespace easypbr::interrupt_test {
 namespace {
 
 const app::PictureOptions options{Vec2i(320, 240), 8, app::Encoding::srgb8};
@@ -68,4 +68,4 @@ TEST(Interrupt, TheInnermostScopeCounts) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::interrupt_test

@@ -12,7 +12,7 @@
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/scene/settings.h"
 
-namespace easypbr::app {
+namespace easypbr::app::live_drawing_test {
 namespace {
 
 using Kind = InputEvent::Kind;
@@ -170,4 +170,4 @@ TEST_F(LiveDrawingTest, RecordsACameraPathAndShowsItsFrames) {
 }
 
 }  // namespace
-}  // namespace easypbr::app
+}  // namespace easypbr::app::live_drawing_test

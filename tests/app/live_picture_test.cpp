@@ -5,7 +5,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/settings.h"
 
-namespace easypbr::app {
+namespace easypbr::app::live_picture_test {
 namespace {
 
 Session ball_session() {
@@ -234,4 +234,4 @@ TEST(ViewPoint, ReplacesAPinnedPositionAndComesNear) {
 }
 
 }  // namespace
-}  // namespace easypbr::app
+}  // namespace easypbr::app::live_picture_test

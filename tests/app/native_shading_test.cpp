@@ -11,7 +11,7 @@
 #include "easypbr/scene/settings.h"
 #include "render/render_test.h"
 
-namespace easypbr {
+namespace easypbr::native_shading_test {
 namespace {
 
 bool has_gpu() {
@@ -279,4 +279,4 @@ TEST(NativeShading, NamesUnknownInstructionSets) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::native_shading_test

@@ -11,7 +11,7 @@
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/settings.h"
 
-namespace easypbr::app {
+namespace easypbr::app::orbit_grid_test {
 namespace {
 
 using Points = Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor>;
@@ -118,4 +118,4 @@ TEST(OrbitGrid, RefusesWhatIsNoGrid) {
 }
 
 }  // namespace
-}  // namespace easypbr::app
+}  // namespace easypbr::app::orbit_grid_test

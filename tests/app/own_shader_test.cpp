@@ -12,7 +12,7 @@
 #include "easypbr/scene/settings.h"
 #include "render/render_test.h"
 
-namespace easypbr::app {
+namespace easypbr::app::own_shader_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -432,4 +432,4 @@ TEST(OwnPass, OfAFileIsReadAgainWhenItChanges) {
 }
 
 }  // namespace
-}  // namespace easypbr::app
+}  // namespace easypbr::app::own_shader_test

@@ -5,7 +5,7 @@
 
 #include "easypbr/core/error.h"
 
-namespace easypbr::app {
+namespace easypbr::app::path_editor_test {
 namespace {
 
 Camera camera_at(double x) {
@@ -109,4 +109,4 @@ TEST(PathEditor, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace easypbr::app
+}  // namespace easypbr::app::path_editor_test

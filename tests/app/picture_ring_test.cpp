@@ -10,7 +10,7 @@
 #include "easypbr/scene/label_map.h"
 #include "easypbr/scene/settings.h"
 
-namespace easypbr::app {
+namespace easypbr::app::picture_ring_test {
 namespace {
 
 class PictureRings : public testing::Test {
@@ -118,4 +118,4 @@ TEST_F(PictureRings, MayBeDroppedWithPicturesOnTheirWay) {
 }
 
 }  // namespace
-}  // namespace easypbr::app
+}  // namespace easypbr::app::picture_ring_test

@@ -17,7 +17,7 @@
 #include "file_limit.h"
 #include "io/temporary_folder.h"
 
-namespace easypbr::app {
+namespace easypbr::app::recorder_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -303,4 +303,4 @@ TEST(Turntable, KeepsTheContentInThePicture) {
 }
 
 }  // namespace
-}  // namespace easypbr::app
+}  // namespace easypbr::app::recorder_test

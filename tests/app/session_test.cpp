@@ -16,7 +16,7 @@
 #include "easypbr/scene/resolve.h"
 #include "easypbr/scene/setting_files.h"
 
-namespace easypbr::app {
+namespace easypbr::app::session_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -219,4 +219,4 @@ TEST_F(SessionFiles, EditsWhileDrawing) {
 }
 
 }  // namespace
-}  // namespace easypbr::app
+}  // namespace easypbr::app::session_test

@@ -6,7 +6,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/settings.h"
 
-namespace easypbr::app {
+namespace easypbr::app::tiled_passes_test {
 namespace {
 
 /// Brightens by the place in the whole picture, and draws a line where the depth eight pixels away differs:
@@ -74,4 +74,4 @@ INSTANTIATE_TEST_SUITE_P(Stages, TiledPasses, testing::Values(Stage::light, Stag
                          [](const auto& info) { return stage_names()[size_t(info.param)]; });
 
 }  // namespace
-}  // namespace easypbr::app
+}  // namespace easypbr::app::tiled_passes_test

@@ -17,7 +17,7 @@
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/scene/resolve.h"
 
-namespace easypbr::app {
+namespace easypbr::app::tiled_picture_test {
 namespace {
 
 using render::Guard;
@@ -416,4 +416,4 @@ TEST(PictureSizes, HaveALimitThatIsSaid) {
 }
 
 }  // namespace
-}  // namespace easypbr::app
+}  // namespace easypbr::app::tiled_picture_test

@@ -8,7 +8,7 @@
 #include "easypbr/app/user_panels.h"
 #include "easypbr/core/error.h"
 
-namespace easypbr::app {
+namespace easypbr::app::widgets_test {
 namespace {
 
 /// Writes down what it is asked for; the person behind it moves every slider to its upper end.
@@ -130,4 +130,4 @@ TEST(WidgetsTest, PlotsShowWhatOccurs) {
 }
 
 }  // namespace
-}  // namespace easypbr::app
+}  // namespace easypbr::app::widgets_test

@@ -4,7 +4,7 @@
 
 #include "easypbr/core/error.h"
 
-using namespace easypbr;
+namespace easypbr::color_test {
 
 // IEC 61966-2-1 evaluated by hand: 1.055 * 0.18^(1/2.4) - 0.055 and 1.055 * 0.5^(1/2.4) - 0.055.
 // Tolerance: half a unit of the fifth digit they are given with.
@@ -42,3 +42,5 @@ TEST(Color, RefusesWhatIsNoColor) {
         EXPECT_NE(std::string(error.what()).find("did you mean 'white'"), std::string::npos) << error.what();
     }
 }
+
+}  // namespace easypbr::color_test

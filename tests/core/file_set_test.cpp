@@ -9,7 +9,7 @@
 #include "file_limit.h"
 #include "io/temporary_folder.h"
 
-namespace easypbr {
+namespace easypbr::file_set_test {
 namespace {
 
 class FileSets : public testing::Test {
@@ -72,4 +72,4 @@ TEST_F(FileSets, ChangeNothingWhereOneTargetIsAFolder) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::file_set_test

@@ -23,7 +23,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/core/suggest.h"
 
-using namespace easypbr;
+namespace easypbr::file_test {
 
 namespace {
 
@@ -352,3 +352,5 @@ TEST(Parallel, VisitsEveryIndexOnceInFixedChunks) {
                               }),
                  ArgumentError);
 }
+
+}  // namespace easypbr::file_test

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-using namespace easypbr;
+namespace easypbr::image_test {
 
 namespace {
 
@@ -90,3 +90,5 @@ TEST(Compare, KnowsEqualAndUnlikeImages) {
     EXPECT_THROW(compare(a, with_channels(a, 3)), ArgumentError);
     EXPECT_THROW(compare(a, to_u8(a)), ArgumentError);
 }
+
+}  // namespace easypbr::image_test

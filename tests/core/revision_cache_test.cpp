@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <tuple>
 
-namespace easypbr {
+namespace easypbr::revision_cache_test {
 namespace {
 
 /// Counts what is made. Values cannot be copied, as buffers of a device cannot.
@@ -67,4 +67,4 @@ TEST(RevisionCache, KeepsNothingOfAValueThatCannotBeMade) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::revision_cache_test

@@ -10,7 +10,7 @@
 
 #include "easypbr/core/log.h"
 
-namespace easypbr {
+namespace easypbr::step_progress_test {
 namespace {
 
 struct Said {
@@ -72,4 +72,4 @@ TEST(StepProgress, IsAPartOfTheStepAroundIt) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::step_progress_test

@@ -7,7 +7,7 @@
 #include "easypbr/scene/settings.h"
 #include "render/render_test.h"
 
-namespace easypbr::dataset {
+namespace easypbr::dataset::element_ids_test {
 namespace {
 
 constexpr int side = 7, picture = 160;
@@ -232,4 +232,4 @@ TEST(ElementIds, PickingNamesTheSame) {
 }
 
 }  // namespace
-}  // namespace easypbr::dataset
+}  // namespace easypbr::dataset::element_ids_test

@@ -8,7 +8,7 @@
 #include "easypbr/scene/settings.h"
 #include "render/render_test.h"
 
-namespace easypbr::dataset {
+namespace easypbr::dataset::ground_truth_test {
 namespace {
 
 Mesh moved(Mesh mesh, const Vec3d& by) {
@@ -355,4 +355,4 @@ TEST(GroundTruth, NamesWhatThereIsNot) {
 }
 
 }  // namespace
-}  // namespace easypbr::dataset
+}  // namespace easypbr::dataset::ground_truth_test

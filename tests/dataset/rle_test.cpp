@@ -6,7 +6,7 @@
 
 #include "easypbr/core/error.h"
 
-namespace easypbr::dataset {
+namespace easypbr::dataset::rle_test {
 namespace {
 
 // Value of cocoapi's maskApi.c for a 5 x 7 mask whose rows 1-3, columns 2-4 are set.
@@ -38,4 +38,4 @@ TEST(Rle, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace easypbr::dataset
+}  // namespace easypbr::dataset::rle_test

@@ -18,6 +18,15 @@ def test_code_keeps_its_bounds():
     assert list(count_structure.code_faults(ROOT)) == []
 
 
+def test_headers_keep_their_bounds(monkeypatch):
+    # In the tree that `make test` has built; elsewhere there is nothing to count.
+    assert list(count_structure.header_faults(ROOT)) == []
+    monkeypatch.setattr(count_structure, "recompiled", lambda root, headers: (61, 96))
+    assert list(count_structure.header_faults(ROOT)) == [
+        "render/effects/bloom/bloom_effect.h: a change takes 61 compilations; expected at most 10",
+        "scene/settings.h: a change takes 61 compilations; expected at most 60"]
+
+
 def test_opengl_outside_its_rooms_and_a_long_frame(tmp_path):
     bound = count_structure.LONGEST_FRAME
     frame = "LitPicture Pipeline::draw(const Frame& frame) {\n" + "    pass();\n" * (bound - 1) + "}\n"

@@ -31,6 +31,15 @@ def local(text, namespace="easypbr::io"):
 
 def test_the_library_has_no_clash():
     assert list(check_unity_names.clashes(ROOT)) == []
+    assert list(check_unity_names.nameless_tests(ROOT)) == []
+
+
+def test_tests_without_a_namespace_are_named(tmp_path):
+    (tmp_path / "tests/io").mkdir(parents=True)
+    for name in ("obj", "ply"):
+        (tmp_path / f"tests/io/{name}_test.cpp").write_text("namespace easypbr::io::ply_test {\n}\n")
+    assert list(check_unity_names.nameless_tests(tmp_path)) == [
+        "tests/io/obj_test.cpp: expected its names in a namespace easypbr::obj_test"]
 
 
 def test_one_name_in_two_sources(clashes):

@@ -6,7 +6,7 @@
 
 #include "geometry/measure.h"
 
-namespace easypbr {
+namespace easypbr::camera_frustum_test {
 namespace {
 
 Vec3d world_vertex(const Mesh& mesh, Eigen::Index vertex) {
@@ -81,4 +81,4 @@ TEST(CameraFrustum, ImpossibleOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::camera_frustum_test

@@ -4,7 +4,7 @@
 
 #include "easypbr/core/error.h"
 
-namespace easypbr {
+namespace easypbr::camera_path_shape_test {
 namespace {
 
 TEST(CameraPathShape, IsTheCurveWithACameraAtEachKey) {
@@ -37,4 +37,4 @@ TEST(CameraPathShape, OfAnOrbitIsAClosedCircleOfTwelve) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::camera_path_shape_test

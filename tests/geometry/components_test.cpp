@@ -6,7 +6,7 @@
 #include "easypbr/scene/merge.h"
 #include "geometry/measure.h"
 
-namespace easypbr {
+namespace easypbr::components_test {
 namespace {
 
 using Rows3 = Array3f::Dense;
@@ -60,4 +60,4 @@ TEST(Split, LeavesOutLooseVerticesAndRefusesClouds) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::components_test

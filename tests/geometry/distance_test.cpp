@@ -10,7 +10,7 @@
 #include "easypbr/geometry/sample.h"
 #include "geometry/measure.h"
 
-namespace easypbr {
+namespace easypbr::distance_test {
 namespace {
 
 using Rows3 = Array3f::Dense;
@@ -195,4 +195,4 @@ TEST(SampleSurface, RefusesWhatHasNoArea) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::distance_test

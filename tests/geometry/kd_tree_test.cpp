@@ -8,7 +8,7 @@
 
 #include "geometry/measure.h"
 
-namespace easypbr {
+namespace easypbr::kd_tree_test {
 namespace {
 
 Array3f random_points(int count, int seed = 1) {
@@ -78,4 +78,4 @@ TEST(KdTree, RefusesWhatHasNoAnswer) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::kd_tree_test

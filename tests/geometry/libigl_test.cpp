@@ -9,6 +9,7 @@
 #include "easypbr/geometry/repair.h"
 #include "geometry/measure.h"
 
+namespace easypbr::libigl_test {
 namespace {
 
 /// As igl::doublearea.
@@ -83,3 +84,5 @@ TEST(LibiglSignatures, PlainMatricesAreOneAssignmentAway) {
 }
 
 }  // namespace
+
+}  // namespace easypbr::libigl_test

@@ -8,7 +8,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "geometry/measure.h"
 
-namespace easypbr {
+namespace easypbr::place_test {
 namespace {
 
 Mesh cloud(Array3f::Dense V) {
@@ -132,4 +132,4 @@ TEST(OrientedBoundingBox, OfWhatHasNoVolume) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::place_test

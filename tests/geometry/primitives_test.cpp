@@ -8,7 +8,7 @@
 
 #include "geometry/measure.h"
 
-namespace easypbr {
+namespace easypbr::primitives_test {
 namespace {
 
 TEST(Sphere, IsClosedAndItsVerticesLieOnIt) {
@@ -287,4 +287,4 @@ TEST(DemoScene, ShowsTeapotsAndSpheresOnAFloor) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::primitives_test

@@ -7,7 +7,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "geometry/measure.h"
 
-namespace easypbr {
+namespace easypbr::refine_test {
 namespace {
 
 using Rows3 = Array3f::Dense;
@@ -134,4 +134,4 @@ TEST(Refine, SurvivesDegenerateFaces) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::refine_test

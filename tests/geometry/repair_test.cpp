@@ -8,7 +8,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "geometry/measure.h"
 
-namespace easypbr {
+namespace easypbr::repair_test {
 namespace {
 
 using Rows3 = Array3f::Dense;
@@ -122,4 +122,4 @@ TEST(Flip, TurnsWindingAndNormals) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::repair_test

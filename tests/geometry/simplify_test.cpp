@@ -13,7 +13,7 @@
 #include "geometry/measure.h"
 #include "test_data.h"
 
-namespace easypbr {
+namespace easypbr::simplify_test {
 namespace {
 
 TEST(Decimate, APlaneNeedsFewFaces) {
@@ -117,4 +117,4 @@ TEST(RealDecimation, KeepsTheBunny) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::simplify_test

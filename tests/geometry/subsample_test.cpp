@@ -9,7 +9,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "geometry/measure.h"
 
-namespace easypbr {
+namespace easypbr::subsample_test {
 namespace {
 
 using Rows3 = Array3f::Dense;
@@ -109,4 +109,4 @@ TEST(Voxelize, CentresAreOnTheGrid) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::subsample_test

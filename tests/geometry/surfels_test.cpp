@@ -13,7 +13,7 @@
 #include "geometry/measure.h"
 #include "test_data.h"
 
-namespace easypbr {
+namespace easypbr::surfels_test {
 namespace {
 
 using Rows3 = Array3f::Dense;
@@ -282,4 +282,4 @@ TEST(RealSurfels, CoverTheBunnyAndFaceOutwards) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::surfels_test

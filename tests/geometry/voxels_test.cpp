@@ -6,7 +6,7 @@
 
 #include "geometry/measure.h"
 
-namespace easypbr {
+namespace easypbr::voxels_test {
 namespace {
 
 VoxelGrid grid() {
@@ -62,4 +62,4 @@ TEST(Voxels, WhatDoesNotFitIsRefused) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::voxels_test

@@ -11,7 +11,7 @@
 #include "easypbr/gl/buffer.h"
 #include "easypbr/gl/texture.h"
 
-namespace easypbr::gl {
+namespace easypbr::gl::context_test {
 namespace {
 
 TEST(Context, SaysWhatItIs) {
@@ -144,4 +144,4 @@ TEST(Texture, RoundTrips) {
 }
 
 }  // namespace
-}  // namespace easypbr::gl
+}  // namespace easypbr::gl::context_test

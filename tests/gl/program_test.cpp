@@ -15,7 +15,7 @@
 #include "easypbr/gl/context.h"
 #include "easypbr/gl/texture.h"
 
-namespace easypbr::gl {
+namespace easypbr::gl::program_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -120,4 +120,4 @@ TEST_F(ProgramTest, IncludesAFileOnce) {
 }
 
 }  // namespace
-}  // namespace easypbr::gl
+}  // namespace easypbr::gl::program_test

@@ -10,7 +10,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/gl/context.h"
 
-namespace easypbr::gl {
+namespace easypbr::gl::program_text_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -98,4 +98,4 @@ TEST_F(LongLines, DoNotHideWhatIsNoInclude) {
 }
 
 }  // namespace
-}  // namespace easypbr::gl
+}  // namespace easypbr::gl::program_text_test

@@ -10,7 +10,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/gl/context.h"
 
-namespace easypbr::gl {
+namespace easypbr::gl::readback_test {
 namespace {
 
 class Readbacks : public testing::Test {
@@ -85,4 +85,4 @@ TEST_F(Readbacks, DieAnywhere) {
 }
 
 }  // namespace
-}  // namespace easypbr::gl
+}  // namespace easypbr::gl::readback_test

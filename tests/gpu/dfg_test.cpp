@@ -6,7 +6,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-namespace easypbr::gpu {
+namespace easypbr::gpu::dfg_test {
 namespace {
 
 /// A and B as the shader reads them: bilinear between the nodes.
@@ -65,4 +65,4 @@ TEST(Dfg, OtherGeometryTerms) {
 }
 
 }  // namespace
-}  // namespace easypbr::gpu
+}  // namespace easypbr::gpu::dfg_test

@@ -4,7 +4,7 @@
 
 #include "easypbr/geometry/primitives.h"
 
-namespace easypbr::gpu {
+namespace easypbr::gpu::facing_test {
 namespace {
 
 /// A tetrahedron with outward faces.
@@ -82,4 +82,4 @@ TEST(Facing, NormalsAgree) {
 }
 
 }  // namespace
-}  // namespace easypbr::gpu
+}  // namespace easypbr::gpu::facing_test

@@ -6,7 +6,7 @@
 
 #include "easypbr/gpu/cube_map.h"
 
-namespace easypbr::gpu {
+namespace easypbr::gpu::prefilter_test {
 namespace {
 
 float value(uint16_t half) {
@@ -95,4 +95,4 @@ TEST(Prefilter, LevelsSpanAllRoughness) {
 }
 
 }  // namespace
-}  // namespace easypbr::gpu
+}  // namespace easypbr::gpu::prefilter_test

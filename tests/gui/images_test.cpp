@@ -10,7 +10,7 @@
 #include "easypbr/gui/live_view.h"
 #include "easypbr/scene/settings.h"
 
-namespace easypbr::gui {
+namespace easypbr::gui::images_test {
 namespace {
 
 using app::InputEvent;
@@ -146,4 +146,4 @@ TEST_F(ImageWindow, KeepsWhatIsShownWithoutDrawingIt) {
 }
 
 }  // namespace
-}  // namespace easypbr::gui
+}  // namespace easypbr::gui::images_test

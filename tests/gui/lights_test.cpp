@@ -7,7 +7,7 @@
 #include "easypbr/scene/light_table.h"
 #include "easypbr/scene/settings.h"
 
-namespace easypbr::gui {
+namespace easypbr::gui::lights_test {
 namespace {
 
 using app::InputEvent;
@@ -167,4 +167,4 @@ TEST_F(LightsPanel, PanelsAreAsLargeAsTheyAreAskedToBe) {
 }
 
 }  // namespace
-}  // namespace easypbr::gui
+}  // namespace easypbr::gui::lights_test

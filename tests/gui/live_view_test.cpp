@@ -9,7 +9,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/settings.h"
 
-namespace easypbr::gui {
+namespace easypbr::gui::live_view_test {
 namespace {
 
 using app::InputEvent;
@@ -336,4 +336,4 @@ TEST(Slices, CutThePictureIntoSlantedParts) {
 }
 
 }  // namespace
-}  // namespace easypbr::gui
+}  // namespace easypbr::gui::live_view_test

@@ -15,7 +15,7 @@
 #include "easypbr/scene/settings.h"
 #include "scene/slide.h"
 
-namespace easypbr::gui {
+namespace easypbr::gui::motion_panels_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -406,4 +406,4 @@ TEST_F(MotionPanels, ACameraThatRestsOnItsPathIsBlurred) {
 }
 
 }  // namespace
-}  // namespace easypbr::gui
+}  // namespace easypbr::gui::motion_panels_test

@@ -11,7 +11,7 @@
 #include "easypbr/gui/live_view.h"
 #include "easypbr/scene/settings.h"
 
-namespace easypbr::gui {
+namespace easypbr::gui::user_panels_test {
 namespace {
 
 using app::InputEvent;
@@ -245,4 +245,4 @@ TEST_F(UserPanel, HandlersSeeEventsBeforeTheViewDoes) {
 }
 
 }  // namespace
-}  // namespace easypbr::gui
+}  // namespace easypbr::gui::user_panels_test

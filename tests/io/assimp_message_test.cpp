@@ -13,7 +13,7 @@
 #include "easypbr/scene/mesh.h"
 #include "io/fuzz.h"
 
-namespace easypbr::io {
+namespace easypbr::io::assimp_message_test {
 namespace {
 
 constexpr uint64_t memory = 1 << 20;
@@ -171,4 +171,4 @@ TEST(AssimpMessage, SurvivesMutation) {
 }
 
 }  // namespace
-}  // namespace easypbr::io
+}  // namespace easypbr::io::assimp_message_test

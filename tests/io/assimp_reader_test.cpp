@@ -18,7 +18,7 @@
 #include "io/assimp_files.h"
 #include "io/temporary_folder.h"
 
-namespace easypbr::io {
+namespace easypbr::io::assimp_reader_test {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -157,4 +157,4 @@ TEST_F(AssimpReader, WorksWithoutStandardInput) {
 }
 
 }  // namespace
-}  // namespace easypbr::io
+}  // namespace easypbr::io::assimp_reader_test

@@ -17,7 +17,7 @@
 #include <assimp/Importer.hpp>
 #endif
 
-using namespace easypbr;
+namespace easypbr::assimp_test {
 
 namespace {
 
@@ -268,3 +268,5 @@ TEST_F(AssimpLoader, AnswersWhatAssimpReads) {
     }
 }
 #endif
+
+}  // namespace easypbr::assimp_test

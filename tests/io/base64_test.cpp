@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace easypbr::io {
+namespace easypbr::io::base64_test {
 namespace {
 
 std::span<const std::byte> bytes_of(std::string_view text) {
@@ -32,4 +32,4 @@ TEST(Base64, ReadsWhatItWrites) {
 }
 
 }  // namespace
-}  // namespace easypbr::io
+}  // namespace easypbr::io::base64_test

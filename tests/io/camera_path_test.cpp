@@ -7,7 +7,7 @@
 #include "easypbr/core/error.h"
 #include "io/temporary_folder.h"
 
-namespace easypbr::io {
+namespace easypbr::io::camera_path_test {
 namespace {
 
 CameraKey key_at(double x, double angle, double segment_s) {
@@ -99,4 +99,4 @@ TEST(CameraPathFile, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace easypbr::io
+}  // namespace easypbr::io::camera_path_test

@@ -9,7 +9,7 @@
 #include "easypbr/io/mesh/mesh_io.h"
 #include "io/temporary_folder.h"
 
-using namespace easypbr;
+namespace easypbr::cloud_writers_test {
 
 namespace {
 
@@ -123,3 +123,5 @@ TEST(CloudFiles, ChildrenAreMerged) {
     ASSERT_EQ(back->V.rows(), 15);
     EXPECT_FLOAT_EQ(back->V(10, 0), child.V()(0, 0) + 100);
 }
+
+}  // namespace easypbr::cloud_writers_test

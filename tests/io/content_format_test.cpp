@@ -13,7 +13,7 @@
 #include "io/las_builder.h"
 #include "io/temporary_folder.h"
 
-using namespace easypbr;
+namespace easypbr::content_format_test {
 
 namespace {
 
@@ -127,3 +127,5 @@ TEST(ContentFormat, OfAPipeHasErrorsWithItsName) {
 }
 
 }  // namespace
+
+}  // namespace easypbr::content_format_test

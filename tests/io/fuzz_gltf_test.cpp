@@ -4,7 +4,7 @@
 #include "io/fuzz.h"
 #include "io/gltf_builder.h"
 
-using namespace easypbr;
+namespace easypbr::fuzz_gltf_test {
 
 namespace {
 
@@ -78,3 +78,5 @@ TEST(FuzzGltf, Numbers) {
         }
     }
 }
+
+}  // namespace easypbr::fuzz_gltf_test

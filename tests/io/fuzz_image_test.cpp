@@ -7,7 +7,7 @@
 #include "io/fuzz.h"
 #include "io/temporary_folder.h"
 
-using namespace easypbr;
+namespace easypbr::fuzz_image_test {
 
 namespace {
 
@@ -74,3 +74,5 @@ TEST(FuzzImage, ExrPiz) {
         io::decode_image(std::as_bytes(std::span(bytes.data(), bytes.size())), "mutant");
     });
 }
+
+}  // namespace easypbr::fuzz_image_test

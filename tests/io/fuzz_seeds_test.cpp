@@ -6,7 +6,7 @@
 #include "easypbr/core/file.h"
 #include "fuzz/targets.h"
 
-namespace easypbr {
+namespace easypbr::fuzz_seeds_test {
 namespace {
 
 fs::path seeds() {
@@ -34,4 +34,4 @@ TEST(FuzzSeeds, EachFolderIsThatOfATarget) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::fuzz_seeds_test

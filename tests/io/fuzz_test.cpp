@@ -14,7 +14,7 @@
 #include "io/npy_builder.h"
 #include "io/ply_builder.h"
 
-using namespace easypbr;
+namespace easypbr::fuzz_test {
 
 namespace {
 
@@ -293,3 +293,5 @@ TEST(Fuzz, Off) {
     fuzz("COFF # kind\n4 2 0\n0 0 0 255 0 0\n1 0 0 0 255 0\n1 1 0 0 0 255\n0 1 0 9 9 9\n4 0 1 2 3\n3 0 1 2\n",
          [](const io::Source& source) { validate(io::read_off(source)); });
 }
+
+}  // namespace easypbr::fuzz_test

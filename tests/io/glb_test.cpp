@@ -9,7 +9,7 @@
 #include "io/temporary_folder.h"
 #include "test_data.h"
 
-using namespace easypbr;
+namespace easypbr::glb_test {
 
 namespace {
 
@@ -164,3 +164,5 @@ TEST(Glb, RefusesAnEmptyMeshAndLeavesNothing) {
     EXPECT_THROW(io::save_glb(Mesh(square()), folder / "missing" / "a.glb"), FileError);
     EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
 }
+
+}  // namespace easypbr::glb_test

@@ -7,7 +7,7 @@
 #include "io/gltf_builder.h"
 #include "test_data.h"
 
-namespace easypbr::io {
+namespace easypbr::io::gltf_animation_test {
 namespace {
 
 LoadedScene load(const GltfBuilder& file) {
@@ -125,4 +125,4 @@ TEST(GltfAnimation, SaysWhatIsWrong) {
 }
 
 }  // namespace
-}  // namespace easypbr::io
+}  // namespace easypbr::io::gltf_animation_test

@@ -11,7 +11,7 @@
 #include "io/fuzz.h"
 #include "io/gltf_decoded.h"
 
-using namespace easypbr;
+namespace easypbr::gltf_draco_test {
 
 namespace {
 
@@ -209,3 +209,5 @@ TEST(GltfDraco, RefusesWhatDoesNotFit) {
             << "expected: " << expected << "\ngot: " << message;
 }
 #endif
+
+}  // namespace easypbr::gltf_draco_test

@@ -13,7 +13,7 @@
 #include "easypbr/scene/mesh.h"
 #include "io/gltf_decoded.h"
 
-using namespace easypbr;
+namespace easypbr::gltf_extensions_test {
 
 namespace {
 
@@ -255,3 +255,5 @@ TEST(GltfExtensions, WrongTypesAreRefused) {
 }
 
 }  // namespace
+
+}  // namespace easypbr::gltf_extensions_test

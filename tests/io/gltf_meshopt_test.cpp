@@ -7,7 +7,7 @@
 #include "io/fuzz.h"
 #include "io/gltf_decoded.h"
 
-using namespace easypbr;
+namespace easypbr::gltf_meshopt_test {
 
 namespace {
 
@@ -209,3 +209,5 @@ TEST(GltfMeshopt, SurvivesDamage) {
     fuzz(grid_file(grid, triangles(grid.F, 36)).glb(),
          [](const std::string& bytes) { io::decode_gltf(as_span(bytes), "mutant.glb"); });
 }
+
+}  // namespace easypbr::gltf_meshopt_test

@@ -9,7 +9,7 @@
 #include "easypbr/scene/mesh.h"
 #include "io/gltf_decoded.h"
 
-using namespace easypbr;
+namespace easypbr::gltf_nodes_test {
 
 namespace {
 
@@ -252,3 +252,5 @@ TEST(GltfExtensions, WhatIsNotKnownIsNamed) {
     EXPECT_EQ(log.text,
               "test.glb: the extension KHR_materials_dispersion is not known; it is drawn without\n");
 }
+
+}  // namespace easypbr::gltf_nodes_test

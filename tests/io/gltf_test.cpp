@@ -11,7 +11,7 @@
 #include "io/temporary_folder.h"
 #include "test_data.h"
 
-using namespace easypbr;
+namespace easypbr::gltf_test {
 using io::LoadedScene;
 
 namespace {
@@ -406,3 +406,5 @@ TEST(Gltf, SurvivesDeeplyNestedJson) {
     const std::string text = "{\"asset\":{\"version\":\"2.0\"},\"extras\":" + std::string(200000, '[');
     EXPECT_THROW(io::decode_gltf(as_span(text), "x.gltf"), FormatError);
 }
+
+}  // namespace easypbr::gltf_test

@@ -17,7 +17,7 @@
 #include "io/temporary_folder.h"
 #include "test_data.h"
 
-using namespace easypbr;
+namespace easypbr::image_test {
 
 namespace {
 
@@ -374,3 +374,5 @@ TEST(EnvironmentFile, IsReadAsLinear) {
     // 188/255 = 0.73725 is sRGB of 0.50289 (inverse of IEC 61966-2-1).
     EXPECT_NEAR(environment.image().pixels<float>()[0], 0.50289f, 1e-4);
 }
+
+}  // namespace easypbr::image_test

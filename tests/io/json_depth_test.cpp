@@ -7,7 +7,7 @@
 #include "easypbr/io/source/json_depth.h"
 #include "io/gltf_decoded.h"
 
-using namespace easypbr;
+namespace easypbr::json_depth_test {
 
 namespace {
 
@@ -55,3 +55,5 @@ TEST(JsonDepth, IsLimitedForEveryReader) {
     for (const std::string& message : messages)
         EXPECT_NE(message.find("nested more than 512 levels deep"), std::string::npos) << message;
 }
+
+}  // namespace easypbr::json_depth_test

@@ -8,7 +8,7 @@
 #include "io/bytes.h"
 #include "io/temporary_folder.h"
 
-using namespace easypbr;
+namespace easypbr::kitti_test {
 
 namespace {
 
@@ -94,3 +94,5 @@ TEST(Kitti, RefusesLabelsOfAnotherLength) {
             << error.what();
     }
 }
+
+}  // namespace easypbr::kitti_test

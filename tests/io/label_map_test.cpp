@@ -6,7 +6,7 @@
 #include "easypbr/scene/label_colors.h"
 #include "io/temporary_folder.h"
 
-using namespace easypbr;
+namespace easypbr::label_map_test {
 
 namespace {
 
@@ -138,3 +138,5 @@ TEST(LabelMapFiles, AreFoundByNameOrPath) {
             "semantic_kitti_train, cityscapes, cityscapes_train, scannet, scannet_train, asprs");
     }
 }
+
+}  // namespace easypbr::label_map_test

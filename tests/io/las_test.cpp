@@ -4,7 +4,7 @@
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "io/las_builder.h"
 
-using namespace easypbr;
+namespace easypbr::las_test {
 
 namespace {
 
@@ -84,3 +84,5 @@ TEST(Las, ReadsPointsNearZeroAsTheyAre) {
     EXPECT_EQ(mesh.offset, Vec3d::Zero());
     EXPECT_FLOAT_EQ(mesh.V(0, 2), 20.5f);
 }
+
+}  // namespace easypbr::las_test

@@ -15,7 +15,7 @@
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
 
-namespace easypbr::io {
+namespace easypbr::io::memory_limit_test {
 namespace {
 
 std::string message_of(const auto& job) {
@@ -189,4 +189,4 @@ TEST(MemoryLimit, RefusesWhatIsNone) {
 }
 
 }  // namespace
-}  // namespace easypbr::io
+}  // namespace easypbr::io::memory_limit_test

@@ -11,7 +11,7 @@
 #include "io/ply_builder.h"
 #include "io/temporary_folder.h"
 
-using namespace easypbr;
+namespace easypbr::mesh_bad_input_test {
 
 namespace {
 
@@ -327,3 +327,5 @@ TEST(BadMeshes, TruncatedAnywhereTheyLoadOrThrow) {
     write_file(folder / "whole.ply", ply.text());
     EXPECT_EQ(io::load_mesh(folder / "whole.ply").F().rows(), 3);
 }
+
+}  // namespace easypbr::mesh_bad_input_test

@@ -6,7 +6,7 @@
 #include "easypbr/io/mesh/mesh_io.h"
 #include "test_data.h"
 
-using namespace easypbr;
+namespace easypbr::mesh_files_test {
 
 namespace {
 
@@ -76,3 +76,5 @@ TEST(RealMeshes, LoadTheSameTwice) {
         EXPECT_EQ(a->UV, b->UV) << name;
     }
 }
+
+}  // namespace easypbr::mesh_files_test

@@ -6,7 +6,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "temporary_folder.h"
 
-namespace easypbr::io {
+namespace easypbr::io::mesh_queue_test {
 namespace {
 
 // Files of different sizes come in their order, and an error at its own place only.
@@ -46,4 +46,4 @@ TEST(MeshQueue, RefusesNoWorkers) {
 }
 
 }  // namespace
-}  // namespace easypbr::io
+}  // namespace easypbr::io::mesh_queue_test

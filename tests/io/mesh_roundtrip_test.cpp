@@ -9,7 +9,7 @@
 #include "file_limit.h"
 #include "io/temporary_folder.h"
 
-using namespace easypbr;
+namespace easypbr::mesh_roundtrip_test {
 
 namespace {
 
@@ -221,3 +221,5 @@ TEST(MeshFiles, AnUnwritableTargetIsAnErrorAndLeavesNothing) {
     EXPECT_THROW(mesh.save(folder / "m.stl"), FormatError);
     EXPECT_TRUE(fs::is_empty(folder.path()));
 }
+
+}  // namespace easypbr::mesh_roundtrip_test

@@ -7,7 +7,7 @@
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "io/npy_builder.h"
 
-using namespace easypbr;
+namespace easypbr::npy_test {
 
 namespace {
 
@@ -165,3 +165,5 @@ TEST(Npz, LeavesOutWhatItDoesNotUnderstandWithAWarning) {
     EXPECT_NE(warnings[1].find("Python objects"), std::string::npos) << warnings[1];
     EXPECT_NE(warnings[2].find("'pose' of shape (4, 4)"), std::string::npos) << warnings[2];
 }
+
+}  // namespace easypbr::npy_test

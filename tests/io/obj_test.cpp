@@ -9,7 +9,7 @@
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "io/temporary_folder.h"
 
-using namespace easypbr;
+namespace easypbr::obj_test {
 
 namespace {
 
@@ -191,3 +191,5 @@ TEST(Obj, GivesTheSameMeshHoweverItIsCutIntoPieces) {
             ASSERT_EQ(mesh.materials[size_t(part.material)].name,
                       fmt::format("m{}", (mesh.source_face(f) + 1) / 1000 % 7));
 }
+
+}  // namespace easypbr::obj_test

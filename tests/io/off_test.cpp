@@ -3,7 +3,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 
-using namespace easypbr;
+namespace easypbr::off_test {
 
 namespace {
 
@@ -39,3 +39,5 @@ TEST(Off, ReadsAttributesInTheOrderOfTheManual) {
     EXPECT_EQ(read("COFF\n1 0 0\n1 2 3 1 0.5 0\n").C(0, 1), 0.5f) << "real colours are taken as they are";
     EXPECT_EQ(read("OFF\n1 0 0\n1 2 3 255 0 0\n").C.cols(), 3) << "colours of a plain OFF";
 }
+
+}  // namespace easypbr::off_test

@@ -8,7 +8,7 @@
 #include "io/ply_builder.h"
 #include "io/temporary_folder.h"
 
-using namespace easypbr;
+namespace easypbr::offset_files_test {
 
 namespace {
 
@@ -133,3 +133,5 @@ TEST(FarFiles, ChildrenWithOtherOffsetsAreSavedInPlace) {
     const Vec3d second = merged->offset + merged->V.row(grid_count).transpose().cast<double>();
     EXPECT_LE((second - grid_point(0) - Vec3d(1000, 0, 0)).cwiseAbs().maxCoeff(), std::exp2(-13.0));
 }
+
+}  // namespace easypbr::offset_files_test

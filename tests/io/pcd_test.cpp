@@ -10,7 +10,7 @@
 #include "io/bytes.h"
 #include "test_data.h"
 
-using namespace easypbr;
+namespace easypbr::pcd_test {
 
 namespace {
 
@@ -355,3 +355,5 @@ TEST(Pcd, ReadsRealFiles) {
     EXPECT_EQ(terrain->V.rows(), 522'674);
     EXPECT_GT(terrain->offset.norm(), 1e5) << "it has UTM coordinates";
 }
+
+}  // namespace easypbr::pcd_test

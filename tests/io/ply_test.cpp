@@ -10,7 +10,7 @@
 #include "io/ply_builder.h"
 #include "io/temporary_folder.h"
 
-using namespace easypbr;
+namespace easypbr::ply_test {
 
 namespace {
 
@@ -304,3 +304,5 @@ TEST(Ply, ReadsBinaryRowsAfterAWindowsHeader) {
     ply.values("float", {13, 10, 2});
     EXPECT_EQ(Vec3(read(ply.text()).V.row(0)), Vec3(13, 10, 2));
 }
+
+}  // namespace easypbr::ply_test

@@ -9,7 +9,7 @@
 #include "easypbr/scene/settings.h"
 #include "io/temporary_folder.h"
 
-using namespace easypbr;
+namespace easypbr::settings_test {
 
 namespace {
 
@@ -148,3 +148,5 @@ TEST(SettingsFile, HashesContent) {
     EXPECT_EQ(io::hash_file(folder / "a").size(), 32u);
     EXPECT_THROW(io::hash_file(folder / "missing"), FileError);
 }
+
+}  // namespace easypbr::settings_test

@@ -18,7 +18,7 @@
 #include "io/gltf_builder.h"
 #include "io/temporary_folder.h"
 
-using namespace easypbr;
+namespace easypbr::special_files_test {
 
 namespace {
 
@@ -145,3 +145,5 @@ TEST(ChangingFile, IsReadOrRefused) {
 }
 
 }  // namespace
+
+}  // namespace easypbr::special_files_test

@@ -8,7 +8,7 @@
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 
-using namespace easypbr;
+namespace easypbr::stl_test {
 
 namespace {
 
@@ -118,3 +118,5 @@ TEST(Stl, ReadsManyTextFacets) {
     ASSERT_EQ(mesh.V.rows(), 36000);
     for (int i = 0; i < 12000; ++i) ASSERT_EQ(mesh.V(mesh.F(i, 1), 0), i * 2.f + 1);
 }
+
+}  // namespace easypbr::stl_test

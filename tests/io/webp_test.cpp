@@ -11,7 +11,7 @@
 #include "io/gltf_decoded.h"
 #include "io/temporary_folder.h"
 
-using namespace easypbr;
+namespace easypbr::webp_test {
 
 namespace {
 
@@ -135,3 +135,5 @@ TEST(WebP, TexturesOfBasisUniversalAreDrawnByTheirFallbackAlone) {
         std::string::npos)
         << log.text;
 }
+
+}  // namespace easypbr::webp_test

@@ -6,7 +6,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 
-using namespace easypbr;
+namespace easypbr::xyz_test {
 
 namespace {
 
@@ -133,3 +133,5 @@ TEST(Xyz, HoldsForOnePointAndForManyChunks) {
         EXPECT_EQ(mesh.I[i], float(i));
     }
 }
+
+}  // namespace easypbr::xyz_test

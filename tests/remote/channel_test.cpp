@@ -14,7 +14,7 @@
 #include "easypbr/scene/scene.h"
 #include "easypbr/scene/settings.h"
 
-namespace easypbr::remote {
+namespace easypbr::remote::channel_test {
 namespace {
 
 using nlohmann::json;
@@ -122,4 +122,4 @@ TEST(Mailbox, KeepsTheOrderAndPutsTheHeaderFirst) {
 }
 
 }  // namespace
-}  // namespace easypbr::remote
+}  // namespace easypbr::remote::channel_test

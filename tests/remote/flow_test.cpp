@@ -6,7 +6,7 @@
 #include "easypbr/remote/frame_header.h"
 #include "easypbr/remote/inbox.h"
 
-namespace easypbr::remote {
+namespace easypbr::remote::flow_test {
 namespace {
 
 TEST(FlowControl, AFewPicturesAreOnTheirWayAtATime) {
@@ -153,4 +153,4 @@ TEST(Inbox, IsBounded) {
 }
 
 }  // namespace
-}  // namespace easypbr::remote
+}  // namespace easypbr::remote::flow_test

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <random>
 
-namespace easypbr::remote {
+namespace easypbr::remote::messages_test {
 namespace {
 
 template <class T>
@@ -101,4 +101,4 @@ TEST(FuzzMessages, AreReadOrRefused) {
 }
 
 }  // namespace
-}  // namespace easypbr::remote
+}  // namespace easypbr::remote::messages_test

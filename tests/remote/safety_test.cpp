@@ -12,7 +12,7 @@
 #include "easypbr/remote/http_answer.h"
 #include "easypbr/remote/token.h"
 
-namespace easypbr::remote {
+namespace easypbr::remote::safety_test {
 namespace {
 
 TEST(Hosts, LoopbackIsAllowedUnderAllItsNames) {
@@ -190,4 +190,4 @@ TEST(HttpAnswer, CarriesAPolicy) {
 }
 
 }  // namespace
-}  // namespace easypbr::remote
+}  // namespace easypbr::remote::safety_test

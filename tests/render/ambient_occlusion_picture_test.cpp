@@ -4,7 +4,7 @@
 #include "easypbr/scene/resolve.h"
 #include "occlusion_test.h"
 
-namespace easypbr {
+namespace easypbr::ambient_occlusion_picture_test {
 namespace {
 
 // A sphere far before a wall: neither occludes the other, and the pixels of both sides of the silhouette stay
@@ -264,4 +264,4 @@ TEST(AmbientOcclusion, SaysWhatItExpected) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::ambient_occlusion_picture_test

@@ -4,7 +4,7 @@
 
 #include "easypbr/scene/resolve.h"
 
-namespace easypbr {
+namespace easypbr::ambient_occlusion_test {
 namespace {
 
 // A plane sees all of its hemisphere, at the borders of the picture too. 0.98 is required; a pixel's place
@@ -123,4 +123,4 @@ TEST(AmbientOcclusion, AgreesWithRaysOnRealFiles) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::ambient_occlusion_test

@@ -9,7 +9,7 @@
 #include "easypbr/scene/resolve.h"
 #include "render_test.h"
 
-namespace easypbr {
+namespace easypbr::bloom_test {
 namespace {
 
 /// Light of a picture, one float for each pixel; and the pass alone over it, without the scene that would
@@ -299,4 +299,4 @@ TEST(Bloom, GlowsOverATransparentBackground) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::bloom_test

@@ -8,7 +8,7 @@
 #include "easypbr/scene/settings.h"
 #include "render_test.h"
 
-namespace easypbr {
+namespace easypbr::broken_light_test {
 namespace {
 
 constexpr float nan = std::numeric_limits<float>::quiet_NaN(),
@@ -107,4 +107,4 @@ TEST(BrokenLight, OfABackgroundImageIsContained) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::broken_light_test

@@ -7,7 +7,7 @@
 #include "easypbr/scene/settings.h"
 #include "render_test.h"
 
-namespace easypbr::render {
+namespace easypbr::render::color_test {
 namespace {
 
 MeshData labelled_cloud(int n) {
@@ -318,4 +318,4 @@ TEST(HoleFilling, ClosesGapsBetweenPoints) {
 }
 
 }  // namespace
-}  // namespace easypbr::render
+}  // namespace easypbr::render::color_test

@@ -12,7 +12,7 @@
 #include "easypbr/render/denoise/edge_avoiding_filter.h"
 #include "easypbr/render/denoise/open_image_denoise.h"
 
-namespace easypbr::render {
+namespace easypbr::render::denoise_test {
 namespace {
 
 constexpr int frames = 16;
@@ -147,4 +147,4 @@ TEST(Denoise, SaysWhatIsMissing) {
 }
 
 }  // namespace
-}  // namespace easypbr::render
+}  // namespace easypbr::render::denoise_test

@@ -7,7 +7,7 @@
 #include "easypbr/scene/resolve.h"
 #include "render_test.h"
 
-namespace easypbr {
+namespace easypbr::depth_of_field_test {
 namespace {
 
 constexpr int size = 241;
@@ -214,4 +214,4 @@ TEST(DepthOfField, HoldsTheFurnace) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::depth_of_field_test

@@ -10,7 +10,7 @@
 #include "extension_sphere.h"
 #include "lobe_reference.h"
 
-namespace easypbr {
+namespace easypbr::extension_pictures_test {
 namespace {
 
 using namespace reference;
@@ -203,4 +203,4 @@ TEST(Extensions, GroundTruthKnowsThem) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::extension_pictures_test

@@ -8,7 +8,7 @@
 
 #include "easypbr/scene/settings.h"
 
-namespace easypbr {
+namespace easypbr::extensions_test {
 namespace {
 
 using namespace reference;
@@ -263,4 +263,4 @@ TEST(Extensions, VarnishDimsWhatGlowsBelow) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::extensions_test

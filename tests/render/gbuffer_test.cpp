@@ -5,7 +5,7 @@
 #include "easypbr/scene/settings.h"
 #include "render_test.h"
 
-namespace easypbr {
+namespace easypbr::gbuffer_test {
 namespace {
 
 Vec3 unproject(const Camera& camera, int x, int y, int width, int height, float z) {
@@ -172,4 +172,4 @@ TEST(Frame, JitterIsCentred) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::gbuffer_test

@@ -3,7 +3,7 @@
 
 #include "easypbr/scene/resolve.h"
 
-namespace easypbr {
+namespace easypbr::ground_test {
 namespace {
 
 constexpr int size = 128;
@@ -295,4 +295,4 @@ TEST(Ground, ANothingHasNone) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::ground_test

@@ -4,7 +4,7 @@
 
 #include "easypbr/scene/settings.h"
 
-namespace easypbr {
+namespace easypbr::id_layer_test {
 namespace {
 
 // Two squares side by side, one with a child before it: every pixel says whose it is, exactly.
@@ -39,4 +39,4 @@ TEST(IdLayer, NamesEveryPixel) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::id_layer_test

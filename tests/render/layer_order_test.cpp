@@ -7,7 +7,7 @@
 #include "easypbr/scene/settings.h"
 #include "render_test.h"
 
-namespace easypbr::render {
+namespace easypbr::render::layer_order_test {
 namespace {
 
 /// Display colours are kept in halves (2^-11), opacities in 16 bits.
@@ -267,4 +267,4 @@ TEST(LayerOrder, TransparentLabels) {
 }
 
 }  // namespace
-}  // namespace easypbr::render
+}  // namespace easypbr::render::layer_order_test

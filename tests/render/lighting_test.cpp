@@ -4,7 +4,7 @@
 
 #include "easypbr/scene/settings.h"
 
-namespace easypbr {
+namespace easypbr::lighting_test {
 namespace {
 
 Material diffuse(float albedo) {
@@ -158,4 +158,4 @@ TEST(Lighting, ExposureUndoesIntensity) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::lighting_test

@@ -12,7 +12,7 @@
 #include "easypbr/scene/settings.h"
 #include "render_test.h"
 
-namespace easypbr::render {
+namespace easypbr::render::line_test {
 namespace {
 
 Mesh segment(const Vec3& a, const Vec3& b) {
@@ -228,4 +228,4 @@ TEST(Lines, AreOverlaysAndNoSurfaces) {
 }
 
 }  // namespace
-}  // namespace easypbr::render
+}  // namespace easypbr::render::line_test

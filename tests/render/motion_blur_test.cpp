@@ -6,7 +6,7 @@
 #include "easypbr/scene/settings.h"
 #include "render_test.h"
 
-namespace easypbr {
+namespace easypbr::motion_blur_test {
 namespace {
 
 constexpr int size = 128;
@@ -128,4 +128,4 @@ TEST(Motion, TurnsEvenlyTheShorterWay) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::motion_blur_test

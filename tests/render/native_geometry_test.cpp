@@ -7,7 +7,7 @@
 #include "easypbr/scene/resolve.h"
 #include "render_test.h"
 
-namespace easypbr::render {
+namespace easypbr::render::native_geometry_test {
 namespace {
 
 struct Comparison {
@@ -434,4 +434,4 @@ TEST(VisibilityBuffer, APartHoldsWhatTheWholeHolds) {
 }
 
 }  // namespace
-}  // namespace easypbr::render
+}  // namespace easypbr::render::native_geometry_test

@@ -3,7 +3,7 @@
 
 #include "easypbr/scene/settings.h"
 
-namespace easypbr {
+namespace easypbr::outline_test {
 namespace {
 
 constexpr int size = 128;
@@ -144,4 +144,4 @@ TEST(Outline, RefusesWhatCannotBe) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::outline_test

@@ -5,7 +5,7 @@
 #include "easypbr/scene/settings.h"
 #include "render_test.h"
 
-namespace easypbr {
+namespace easypbr::output_test {
 namespace {
 
 /// An unlit square that fills the picture.
@@ -217,4 +217,4 @@ TEST(Output, RefusesSizesThatCannotBe) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::output_test

@@ -8,7 +8,7 @@
 #include "easypbr/core/stopwatch.h"
 #include "render_test.h"
 
-namespace easypbr {
+namespace easypbr::path_test {
 namespace {
 
 /// Of paths that never end before their light is below what is measured.
@@ -361,4 +361,4 @@ TEST(Session, PicturesEndWithTheirTime) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::path_test

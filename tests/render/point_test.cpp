@@ -10,7 +10,7 @@
 #include "easypbr/scene/spacing.h"
 #include "render_test.h"
 
-namespace easypbr::render {
+namespace easypbr::render::point_test {
 namespace {
 
 /// A grid of n x n points over [-half, half]^2 at height z(x, y).
@@ -318,4 +318,4 @@ TEST(Spacing, OutliersAreTrimmed) {
 }
 
 }  // namespace
-}  // namespace easypbr::render
+}  // namespace easypbr::render::point_test

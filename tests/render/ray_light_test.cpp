@@ -6,7 +6,7 @@
 #include "easypbr/scene/settings.h"
 #include "shadow_test.h"
 
-namespace easypbr {
+namespace easypbr::ray_light_test {
 namespace {
 
 /// Reflects a part of all light evenly and nothing like a mirror.
@@ -383,4 +383,4 @@ TEST(RayLight, NothingIsNoError) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::ray_light_test

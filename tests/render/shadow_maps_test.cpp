@@ -7,7 +7,7 @@
 #include "easypbr/scene/settings.h"
 #include "shadow_test.h"
 
-namespace easypbr {
+namespace easypbr::shadow_maps_test {
 namespace {
 
 Scene two_boxes() {
@@ -406,4 +406,4 @@ TEST(ShadowLights, MoreThanMemoryHolds) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::shadow_maps_test

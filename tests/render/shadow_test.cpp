@@ -7,7 +7,7 @@
 #include "easypbr/render/frame/shadow_view.h"
 #include "easypbr/scene/settings.h"
 
-namespace easypbr {
+namespace easypbr::shadow_test {
 namespace {
 
 // The map has a texel per 2 / (64 - 6) over the square of -1 .. 1 (3 texels are its margin). The caster's
@@ -212,4 +212,4 @@ TEST(Shadow, PenumbraOfAKnifeEdge) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::shadow_test

@@ -6,7 +6,7 @@
 #include "ray_caster.h"
 #include "shadow_test.h"
 
-namespace easypbr {
+namespace easypbr::shadow_visibility_test {
 namespace {
 
 constexpr int size = 192, ray_count = 64;
@@ -127,4 +127,4 @@ TEST(ShadowVisibility, Head) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::shadow_visibility_test

@@ -5,7 +5,7 @@
 
 #include "easypbr/scene/settings.h"
 
-namespace easypbr {
+namespace easypbr::splat_shadow_test {
 namespace {
 
 constexpr int size = 128;
@@ -259,4 +259,4 @@ TEST(SplatShadow, NothingIsDrawnForWhatReceivesNone) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::splat_shadow_test

@@ -9,7 +9,7 @@
 
 #include "easypbr/scene/settings.h"
 
-namespace easypbr::render {
+namespace easypbr::render::surfel_layers_test {
 namespace {
 
 struct Sheet {
@@ -242,4 +242,4 @@ TEST(SurfelLayers, MasksAndGroundTruth) {
 }
 
 }  // namespace
-}  // namespace easypbr::render
+}  // namespace easypbr::render::surfel_layers_test

@@ -8,7 +8,7 @@
 #include "easypbr/scene/settings.h"
 #include "render_test.h"
 
-namespace easypbr::render {
+namespace easypbr::render::surfel_test {
 namespace {
 
 /// Surfels on the plane z = 0 within [-half, half]^2, spacing apart and jittered, with elliptic axes turned
@@ -268,4 +268,4 @@ TEST(Surfels, CanBeAskedOfAnyCloud) {
 }
 
 }  // namespace
-}  // namespace easypbr::render
+}  // namespace easypbr::render::surfel_test

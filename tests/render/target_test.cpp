@@ -10,7 +10,7 @@
 #include "easypbr/scene/resolve.h"
 #include "render_test.h"
 
-namespace easypbr::render {
+namespace easypbr::render::target_test {
 namespace {
 
 class TargetTest : public testing::Test {
@@ -171,4 +171,4 @@ TEST(Transfers, NativeGroundTruthNeverLeavesHostMemory) {
 }
 
 }  // namespace
-}  // namespace easypbr::render
+}  // namespace easypbr::render::target_test

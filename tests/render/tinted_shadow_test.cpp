@@ -4,7 +4,7 @@
 
 #include "easypbr/scene/settings.h"
 
-namespace easypbr {
+namespace easypbr::tinted_shadow_test {
 namespace {
 
 Material blended(float opacity) {
@@ -265,4 +265,4 @@ TEST(TintedShadow, IsCaughtByAGround) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::tinted_shadow_test

@@ -7,7 +7,7 @@
 #include "lobe_reference.h"
 #include "render_test.h"
 
-namespace easypbr {
+namespace easypbr::transmission_test {
 namespace {
 
 using namespace reference;
@@ -362,4 +362,4 @@ TEST(Transmission, GlassHasAnId) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::transmission_test

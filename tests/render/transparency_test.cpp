@@ -9,7 +9,7 @@
 #include "easypbr/scene/settings.h"
 #include "render_test.h"
 
-namespace easypbr {
+namespace easypbr::transparency_test {
 namespace {
 
 /// Shown as it is, so that the closed form is known exactly.
@@ -403,4 +403,4 @@ TEST(Transparency, NothingThereIsNoLayer) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::transparency_test

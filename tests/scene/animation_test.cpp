@@ -6,7 +6,7 @@
 
 #include "easypbr/core/error.h"
 
-namespace easypbr {
+namespace easypbr::animation_test {
 namespace {
 
 AnimationChannel channel(Interpolation interpolation, std::vector<float> times, ArrayXf::Dense values,
@@ -160,4 +160,4 @@ TEST(Animations, RefuseBrokenRigs) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::animation_test

@@ -8,7 +8,7 @@
 
 #include "easypbr/core/error.h"
 
-namespace easypbr {
+namespace easypbr::camera_path_test {
 namespace {
 
 using Keys = std::vector<CameraKey>;
@@ -269,4 +269,4 @@ TEST(CameraPath, HoldsManyKeys) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::camera_path_test

@@ -6,7 +6,7 @@
 
 #include "easypbr/core/error.h"
 
-using namespace easypbr;
+namespace easypbr::camera_test {
 
 namespace {
 
@@ -138,3 +138,5 @@ TEST(Camera, RefusesWhatIsNoCamera) {
     EXPECT_THROW(Camera::from_opencv(-example_K, identity, 640, 480), ArgumentError);
     EXPECT_THROW(Camera::from_opencv(example_K.transpose(), identity, 640, 480), ArgumentError);
 }
+
+}  // namespace easypbr::camera_test

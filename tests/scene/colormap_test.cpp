@@ -7,7 +7,7 @@
 
 #include "easypbr/core/error.h"
 
-using namespace easypbr;
+namespace easypbr::colormap_test {
 
 namespace {
 
@@ -165,3 +165,5 @@ TEST(Colormap, GivenEndsReplaceInferredOnes) {
     const ValueRange point = value_range(data, 5, 5);
     EXPECT_LT(point.min, point.max);
 }
+
+}  // namespace easypbr::colormap_test

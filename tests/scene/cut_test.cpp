@@ -7,7 +7,7 @@
 #include "easypbr/scene/cut.h"
 #include "easypbr/scene/voxels.h"
 
-namespace easypbr {
+namespace easypbr::cut_test {
 namespace {
 
 const Eigen::Vector4d keep_positive_x(1, 0, 0, 0);
@@ -153,4 +153,4 @@ TEST(Voxels, RefuseSizesThatMakeNoGrid) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::cut_test

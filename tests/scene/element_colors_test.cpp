@@ -7,7 +7,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/scene/label_colors.h"
 
-using namespace easypbr;
+namespace easypbr::element_colors_test {
 
 namespace {
 
@@ -311,3 +311,5 @@ TEST(ElementColors, AreTheSameInAnyChunk) {
     for (Eigen::Index i = 0; i < n; ++i)
         ASSERT_EQ(all[size_t(i)], opaque(generated.color_of(int32_t(i % 97))));
 }
+
+}  // namespace easypbr::element_colors_test

@@ -11,7 +11,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
 
-namespace easypbr {
+namespace easypbr::environment_test {
 namespace {
 
 /// An equirectangular picture of L(direction) at the centres of the pixels.
@@ -185,4 +185,4 @@ TEST(Studio, IsARoomWithBrightLampsAndDarkSurroundings) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::environment_test

@@ -12,7 +12,7 @@
 #include "easypbr/scene/resolve.h"
 #include "easypbr/scene/settings.h"
 
-using namespace easypbr;
+namespace easypbr::fields_test {
 
 namespace {
 
@@ -262,3 +262,5 @@ TEST(Settings, StudioLightsAreWarmAndCool) {
     EXPECT_EQ(to_text(field("lights.fill.color"), get(settings, "lights.fill.color")), "#e6efff");
     EXPECT_EQ(to_text(field("lights.rim.color"), get(settings, "lights.rim.color")), "#ffffff");
 }
+
+}  // namespace easypbr::fields_test

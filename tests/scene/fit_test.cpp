@@ -6,7 +6,7 @@
 #include "easypbr/scene/resolve.h"
 #include "point_mesh.h"
 
-using namespace easypbr;
+namespace easypbr::fit_test {
 
 namespace {
 
@@ -229,3 +229,5 @@ TEST(Fit, CopesWithContentWithoutExtent) {
     }
     EXPECT_THROW(fit_camera({}, Mat3d::Identity(), {}, 1), ArgumentError);
 }
+
+}  // namespace easypbr::fit_test

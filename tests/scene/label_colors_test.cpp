@@ -6,7 +6,7 @@
 #include <limits>
 #include <set>
 
-using namespace easypbr;
+namespace easypbr::label_colors_test {
 
 namespace {
 
@@ -62,3 +62,5 @@ TEST(LabelColors, AreAsManyAsTheySay) {
     EXPECT_EQ(colors.color_of(-1), (Rgb8{128, 128, 128}));
     EXPECT_EQ(colors.color_of(std::numeric_limits<int32_t>::min()), (Rgb8{128, 128, 128}));
 }
+
+}  // namespace easypbr::label_colors_test

@@ -6,7 +6,7 @@
 
 #include "easypbr/core/error.h"
 
-using namespace easypbr;
+namespace easypbr::label_map_test {
 
 namespace {
 
@@ -100,3 +100,5 @@ TEST(LabelMap, GeneratesColoursForNames) {
     EXPECT_EQ(map.find(1)->name, "car");
     EXPECT_EQ(map.color_of(1), (Rgb8{156, 210, 21}));
 }
+
+}  // namespace easypbr::label_map_test

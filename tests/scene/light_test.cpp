@@ -7,7 +7,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/scene/light_table.h"
 
-namespace easypbr {
+namespace easypbr::light_test {
 namespace {
 
 std::string message_of(const Light& light) {
@@ -93,4 +93,4 @@ TEST(Light, NumbersOutsideOfTheirRangeAreNamed) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::light_test

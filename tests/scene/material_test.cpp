@@ -10,7 +10,7 @@
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/settings.h"
 
-using namespace easypbr;
+namespace easypbr::material_test {
 
 namespace {
 
@@ -151,3 +151,5 @@ TEST(Material, ReplaceableTexturesHaveTheirSetting) {
                 << name << ", " << other.name;
     }
 }
+
+}  // namespace easypbr::material_test

@@ -8,7 +8,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/scene/mesh.h"
 
-namespace easypbr {
+namespace easypbr::merge_test {
 namespace {
 
 using Rows3 = Array3f::Dense;
@@ -194,4 +194,4 @@ TEST(Flatten, BringsDescendantsIntoTheFrameOfTheParent) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::merge_test

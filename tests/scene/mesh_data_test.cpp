@@ -9,7 +9,7 @@
 
 #include "easypbr/core/error.h"
 
-using namespace easypbr;
+namespace easypbr::mesh_data_test {
 
 namespace {
 
@@ -46,3 +46,5 @@ TEST(MeshData, IsValidatedWithoutItsHandle) {
 }
 
 }  // namespace
+
+}  // namespace easypbr::mesh_data_test

@@ -7,7 +7,7 @@
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/scene.h"
 
-namespace easypbr {
+namespace easypbr::mesh_pose_test {
 namespace {
 
 Mesh point(const std::string& name) {
@@ -171,4 +171,4 @@ TEST(MeshPose, MayBeMovedFromManyThreads) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::mesh_pose_test

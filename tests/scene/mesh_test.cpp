@@ -8,7 +8,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/scene/scene.h"
 
-using namespace easypbr;
+namespace easypbr::mesh_test {
 
 namespace {
 
@@ -255,3 +255,5 @@ TEST(Mesh, ComposesPosesFromParentToChild) {
     ASSERT_EQ(origins.size(), 2u);
     EXPECT_EQ(origins[1], Vec3d(2, 0, 0));
 }
+
+}  // namespace easypbr::mesh_test

@@ -9,7 +9,7 @@
 #include "easypbr/core/math.h"
 #include "easypbr/geometry/primitives.h"
 
-namespace easypbr {
+namespace easypbr::normals_test {
 namespace {
 
 double angle_deg(const Vec3& a, const Vec3& b) {
@@ -162,4 +162,4 @@ TEST(FaceNormals, AreUnitAndFollowTheWinding) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::normals_test

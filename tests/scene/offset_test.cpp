@@ -9,7 +9,7 @@
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/scene.h"
 
-using namespace easypbr;
+namespace easypbr::offset_test {
 
 namespace {
 
@@ -158,3 +158,5 @@ TEST(Offset, MergingKeepsTheWorld) {
     EXPECT_EQ(flat.offset, a.offset);
     EXPECT_EQ(flat.V, whole.V);
 }
+
+}  // namespace easypbr::offset_test

@@ -9,7 +9,7 @@
 #include "easypbr/scene/fields.h"
 #include "point_mesh.h"
 
-using namespace easypbr;
+namespace easypbr::resolve_test {
 
 namespace {
 
@@ -321,3 +321,5 @@ TEST(Resolve, NeedsContentOnlyToPlaceTheCamera) {
     latch(settings, resolved.settings);
     EXPECT_FALSE(settings.ground.height.value());
 }
+
+}  // namespace easypbr::resolve_test

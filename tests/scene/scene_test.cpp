@@ -5,7 +5,7 @@
 #include "easypbr/core/error.h"
 #include "point_mesh.h"
 
-using namespace easypbr;
+namespace easypbr::scene_test {
 
 TEST(Scene, KeepsMeshesByName) {
     Scene scene;
@@ -94,3 +94,5 @@ TEST(Scene, BoundsOfManyVerticesAreThoseOfALoop) {
     EXPECT_EQ(scene.snapshot().bounds().min(), low);
     EXPECT_EQ(scene.snapshot().bounds().max(), high);
 }
+
+}  // namespace easypbr::scene_test

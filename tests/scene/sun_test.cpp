@@ -11,7 +11,7 @@
 #include "easypbr/scene/environment.h"
 #include "easypbr/scene/resolve.h"
 
-namespace easypbr {
+namespace easypbr::sun_test {
 namespace {
 
 Image picture(int width, const std::function<Vec3(const Vec3&)>& radiance) {
@@ -145,4 +145,4 @@ TEST(Sun, BecomesALight) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::sun_test

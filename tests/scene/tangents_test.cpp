@@ -8,7 +8,7 @@
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/scene/normals.h"
 
-namespace easypbr {
+namespace easypbr::tangents_test {
 namespace {
 
 ArrayXf tangents_of(const Mesh& mesh) {
@@ -168,4 +168,4 @@ TEST(CornerTangents, WrongShapesAreRefused) {
 }
 
 }  // namespace
-}  // namespace easypbr
+}  // namespace easypbr::tangents_test
