@@ -1,4 +1,7 @@
-// Normals: of points that have none, from the depths in a part of the occlusion's radius around them; others as they are.
+// Normals that occlusion is seen about: of points that have none, from the depths in a part of the occlusion's radius
+// around them; of frames with normal maps those of the surfaces themselves, which would hide a part of what a mapped
+// normal faces; others as they are.
+#feature MAPPED_NORMALS has_mapped_normals
 #include "common_lanes.glsl"
 #include "common_occlusion.glsl"
 #include "common_surface_kind.glsl"
@@ -41,9 +44,32 @@ vec2 estimated_normal(vec2 at) {
     return oct_encode(u_world_from_view * normal) * 0.5 + 0.5;
 }
 
+// From a surface to the next pixel of the same surface along an axis: of both neighbours the one nearer in depth.
+vec3 along_surface(Surface s, float depth, vec2 axis) {
+    vec2 before = s.pixel - axis, after = s.pixel + axis;
+    float depth_before = textureLod(u_depth_target, before / u_size, 0.0).r;
+    float depth_after = textureLod(u_depth_target, after / u_size, 0.0).r;
+    float step_before = depth_before > 0.0 && dot(before, axis) > 0.0 ? abs(depth_before - depth) : 1e30;
+    float step_after = depth_after > 0.0 && dot(after, axis) < dot(u_size, axis) ? abs(depth_after - depth) : 1e30;
+    return step_after <= step_before ? view_position(after, depth_after) - s.position
+                                     : s.position - view_position(before, depth_before);
+}
+
+// Of the plane through a pixel and its neighbours.
+vec2 surface_normal(vec2 at) {
+    float depth;
+    Surface s = full_surface(at, depth);
+    vec3 face = cross(along_surface(s, depth, vec2(0.0, 1.0)), along_surface(s, depth, vec2(1.0, 0.0)));
+    float size = length(face);
+    face = size > 0.0 ? face / size : s.normal;
+    face = dot(face, to_viewer(s.position)) < 0.0 ? -face : face;
+    return oct_encode(u_world_from_view * face) * 0.5 + 0.5;
+}
+
 void main() {
     vec2 uv = gl_FragCoord.xy / u_size;
     bool estimated = is_eye_dome(textureLod(u_material, uv, 0.0).w);
     o_normal = textureLod(u_normal, uv, 0.0).rg;
+    if (has_mapped_normals) o_normal = surface_normal(gl_FragCoord.xy);
     if (any_lane(estimated)) o_normal = estimated ? estimated_normal(gl_FragCoord.xy) : o_normal;
 }

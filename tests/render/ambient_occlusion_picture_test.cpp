@@ -86,6 +86,55 @@ TEST(AmbientOcclusion, FurnaceHoldsOnAnOpenPlane) {
     }
 }
 
+/// Every texel leans by 45 degrees, to another side than its neighbours.
+Texture steep_normals() {
+    Image image(8, 8, 3, PixelType::u8);
+    for (int i = 0; i < 64; ++i) {
+        const double side = 2.4 * i;  // the golden angle, nearly
+        const Vec3d n = Vec3d(std::cos(side), std::sin(side), 1).normalized();
+        for (int c = 0; c < 3; ++c)
+            image.at<uint8_t>(i % 8, i / 8)[c] = uint8_t(std::lround((n[c] * 0.5 + 0.5) * 255));
+    }
+    Texture texture;
+    texture.image = std::make_shared<Image>(std::move(image));
+    return texture;
+}
+
+// A plane does not hide what its mapped normals face: light that the map's own relief would throw on is not
+// lost.
+TEST(AmbientOcclusion, FurnaceHoldsWithSteepNormalMaps) {
+    for (const bool metal : {true, false})
+        for (const float roughness : {0.2f, 0.8f}) {
+            Material white;
+            white.base_color = Vec3::Ones();
+            white.metallic = metal ? 1.0f : 0.0f;
+            white.roughness = roughness;
+            white.normal_texture = steep_normals();
+            Scene scene;
+            scene.show(facing_square(1, white), "square");
+            scene.set_environment(constant_environment(0.7f));
+            for (const OcclusionMethod method : {OcclusionMethod::horizon, OcclusionMethod::hemisphere})
+                for (const int samples : {1, 8}) {
+                    app::Session session = occlusion_session(scene, 64);
+                    session.settings().environment.enabled = true;
+                    session.settings().ssao.method = method;
+                    place(session, Vec3d(1.5, 1, 2), Vec3d(0, 0, 0), 30);
+                    const Image image = render_linear(session, samples);
+                    int seen = 0;
+                    for (int y = 0; y < 64; ++y)
+                        for (int x = 0; x < 64; ++x) {
+                            const float* p = image.at<float>(x, y);
+                            if (p[3] != 1) continue;
+                            ++seen;
+                            // 0.5 % as without a map.
+                            ASSERT_NEAR(p[1] / 0.7f, 1, 0.005) << "metal " << metal << ", roughness "
+                                                               << roughness << ", samples " << samples;
+                        }
+                    EXPECT_GT(seen, 400);
+                }
+        }
+}
+
 /// Visibility as the mean of many frames shows it, from the light on a white matt scene.
 Image averaged_visibility(const Scene& scene, int samples) {
     Image ratio;

@@ -227,34 +227,36 @@ double apart(const Image& a, const Image& b) {
     return sum / double(x.size());
 }
 
+/// A ball on a ground: what many samples show, few, and the same few denoised.
+struct DenoisedBall {
+    Image reference, noisy, denoised;
+
+    explicit DenoisedBall(GroundMode ground) {
+        Scene scene;
+        scene.show(ball(surface(0.5f, 0, 0.5f)), "ball");
+        app::Session session = path_session_under_sky(scene, 64);
+        session.settings().ground.mode = ground;
+        const auto drawn = [&](Denoising denoise, int samples) {
+            session.settings().path.denoise = denoise;
+            return session.render({std::nullopt, samples});
+        };
+        reference = drawn(Denoising::off, 512);
+        noisy = drawn(Denoising::off, 8);
+        denoised = drawn(Denoising::filter, 8);
+    }
+};
+
 // Half of the noisy picture's error at most: in a picture this small the silhouette, which keeps its noise,
 // is a large part.
 TEST(Paths, DenoisedPicturesAreCloser) {
-    Scene scene;
-    scene.show(ball(surface(0.5f, 0, 0.5f)), "ball");
-    app::Session session = path_session_under_sky(scene, 64);
-    session.settings().ground.mode = GroundMode::plane;
-    const auto drawn = [&](Denoising denoise, int samples) {
-        session.settings().path.denoise = denoise;
-        return session.render({std::nullopt, samples});
-    };
-    const Image reference = drawn(Denoising::off, 512), noisy = drawn(Denoising::off, 8),
-                denoised = drawn(Denoising::filter, 8);
+    const auto [reference, noisy, denoised] = DenoisedBall(GroundMode::plane);
     EXPECT_LT(apart(denoised, reference), apart(noisy, reference) / 2);
 }
 
 // The same of a shadow catcher's alpha.
 TEST(Paths, DenoisedShadowsAreCloser) {
-    Scene scene;
-    scene.show(ball(surface(0.5f, 0, 0.5f)), "ball");
-    app::Session session = path_session_under_sky(scene, 64);
-    session.settings().ground.mode = GroundMode::shadow;
-    const auto drawn = [&](Denoising denoise, int samples) {
-        session.settings().path.denoise = denoise;
-        return session.render({std::nullopt, samples});
-    };
-    const Image reference = drawn(Denoising::off, 512), noisy = drawn(Denoising::off, 8),
-                denoised = drawn(Denoising::filter, 8);
+    const DenoisedBall ball(GroundMode::shadow);
+    const Image& reference = ball.reference;
     const auto alpha_apart = [&](const Image& image) {
         double sum = 0;
         for (int y = 48; y < 64; ++y)
@@ -262,8 +264,8 @@ TEST(Paths, DenoisedShadowsAreCloser) {
                 sum += std::abs(int(image.at<uint8_t>(x, y)[3]) - int(reference.at<uint8_t>(x, y)[3]));
         return sum / (16 * 64);
     };
-    EXPECT_GT(alpha_apart(noisy), 2);
-    EXPECT_LT(alpha_apart(denoised), alpha_apart(noisy) / 2);
+    EXPECT_GT(alpha_apart(ball.noisy), 2);
+    EXPECT_LT(alpha_apart(ball.denoised), alpha_apart(ball.noisy) / 2);
 }
 
 // Light without noise is kept: 0.02 of 255 are roundings.

@@ -50,11 +50,16 @@ Loaded& loaded() {
     return the_one;
 }
 
-void* open_in(const std::vector<fs::path>& folders) {
+/// By EASYPBR_OIDN alone where that is set; else in these folders, then where the system looks.
+void* open_library(const std::vector<fs::path>& folders) {
+    const char* given = std::getenv("EASYPBR_OIDN");
+    const bool is_given = given && *given;
+    const std::vector<fs::path> looked_in = is_given ? std::vector<fs::path>{given} : folders;
     for (const char* name : {"libOpenImageDenoise.so.2", "libOpenImageDenoise.so.1"}) {
-        for (const fs::path& folder : folders)
+        for (const fs::path& folder : looked_in)
             if (folder.is_absolute())
                 if (void* handle = ::dlopen((folder / name).c_str(), RTLD_NOW | RTLD_LOCAL)) return handle;
+        if (is_given) continue;
         if (void* handle = ::dlopen(name, RTLD_NOW | RTLD_LOCAL)) return handle;
     }
     return nullptr;
@@ -89,10 +94,7 @@ const Library* library() {
     Loaded& known = loaded();
     const std::lock_guard lock(known.mutex);
     if (known.handle) return &known.library;
-    std::vector<fs::path> folders;
-    if (const char* given = std::getenv("EASYPBR_OIDN"); given && *given) folders.emplace_back(given);
-    folders.insert(folders.end(), known.folders.begin(), known.folders.end());
-    void* handle = open_in(folders);
+    void* handle = open_library(known.folders);
     if (!handle || !load_all(handle, known.library)) return nullptr;
     known.handle = handle;
     return &known.library;

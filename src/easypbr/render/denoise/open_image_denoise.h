@@ -9,8 +9,8 @@
 namespace easypbr::render {
 
 /// A network that was trained to take Monte Carlo noise out of pictures, guided by reflectance and normal.
-/// Runs on the CPU. The library is looked for in the folder that EASYPBR_OIDN names, in those of
-/// add_denoiser_folder(), and where the system keeps libraries.
+/// Runs on the CPU. The library is looked for in the folder that EASYPBR_OIDN names, where that is set; else
+/// in those of add_denoiser_folder(), and where the system keeps libraries.
 class OpenImageDenoise {
   public:
     OpenImageDenoise();

@@ -125,6 +125,10 @@ bool DrawItem::needs_tangents() const {
     return (mapped && !style.flat) || material.anisotropy > 0;
 }
 
+bool DrawItem::has_mapped_normals() const {
+    return (material.normal_texture && !style.flat && !mesh().UV.empty()) || material.shader;
+}
+
 ExtensionSet DrawList::extensions() const {
     ExtensionSet set = 0;
     for (const DrawItem& item : of(DrawMode::mesh)) set |= item.extensions();

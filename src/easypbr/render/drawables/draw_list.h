@@ -49,6 +49,8 @@ struct DrawItem {
         return material.transmits() && (material.roughness > 0 || material.roughness_texture);
     }
     bool needs_tangents() const;
+    /// Normals lean from the surface: by a map, or as a shader of its own may do.
+    bool has_mapped_normals() const;
     /// What its shading needs beyond glTF's core model.
     ExtensionSet extensions() const { return kind == SurfaceKind::lit ? extensions_of(material) : 0; }
 };

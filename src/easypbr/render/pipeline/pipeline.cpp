@@ -79,7 +79,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     if (contents.ground)
         timer_.run("ground", [&] { native ? ground_.shade(seen, targets_) : ground_.draw(seen, targets_); });
     light_surfaces(seen, casters, contents, {.native = native, .extensions = outputs.extensions},
-                   with_overlay);
+                   {.of_points = with_overlay, .mapped = opaque.has(&DrawItem::has_mapped_normals)});
     const bool shows_environment =
         !resolved.environment.empty() && resolved.settings.background.shows_environment();
     if (native) shade_surroundings(seen, contents, shows_environment);
@@ -103,13 +103,13 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
 }
 
 void Pipeline::light_surfaces(const Frame& frame, const DrawList& casters, const FrameContents& contents,
-                              const LightInputs& inputs, bool with_points) {
+                              const LightInputs& inputs, AmbientOcclusionPass::Normals normals) {
     const ResolvedSettings& resolved = *frame.resolved;
     const bool caught = contents.ground && GroundPass::is_shadow_catcher(resolved);
     if (contents.traced || contents.paths)
         timer_.run("rays", [&] { update_ray_scene(frame, casters, contents.ground); });
     if (contents.paths) return trace_paths(frame, inputs.native, caught);
-    if (resolved.settings.ssao.enabled && !contents.traced) occlude(frame, inputs.native, with_points);
+    if (resolved.settings.ssao.enabled && !contents.traced) occlude(frame, inputs.native, normals);
     light(frame, targets_, contents, inputs, caught);
 }
 
@@ -141,12 +141,12 @@ void Pipeline::shade_surroundings(const Frame& frame, const FrameContents& conte
                    [&] { background_.shade(frame, targets_, environment_, ground, transfers_); });
 }
 
-void Pipeline::occlude(const Frame& frame, bool native, bool with_points) {
+void Pipeline::occlude(const Frame& frame, bool native, AmbientOcclusionPass::Normals normals) {
     timer_.run("ambient occlusion", [&] {
         if (native)
-            ambient_occlusion_.shade(frame, targets_, with_points, transfers_);
+            ambient_occlusion_.shade(frame, targets_, normals, transfers_);
         else
-            ambient_occlusion_.draw(frame, targets_, with_points);
+            ambient_occlusion_.draw(frame, targets_, normals);
     });
 }
 

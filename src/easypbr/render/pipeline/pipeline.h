@@ -87,7 +87,7 @@ class Pipeline {
                bool caught);
     /// Finds the light of all surfaces that are not layers, by the way that the contents ask for.
     void light_surfaces(const Frame& frame, const DrawList& casters, const FrameContents& contents,
-                        const LightInputs& inputs, bool with_points);
+                        const LightInputs& inputs, AmbientOcclusionPass::Normals normals);
     void trace_paths(const Frame& frame, bool native, bool caught);
     void update_ray_scene(const Frame& frame, const DrawList& casters, bool ground);
     /// Depth that hides overlays and layers: of what is drawn over everything else too.
@@ -105,7 +105,7 @@ class Pipeline {
     const gl::Texture* shade_points(const Frame& frame, const DrawList& layers, const gl::Texture& opaque);
     /// Whether a frame is lit natively: its surfaces are in host memory, and nothing of it needs the driver.
     bool is_lit_natively(const DrawList& list, const FrameContents& contents) const;
-    void occlude(const Frame& frame, bool native, bool with_points);
+    void occlude(const Frame& frame, bool native, AmbientOcclusionPass::Normals normals);
     /// What is around lit surfaces, natively: what the ground shows of itself, and the environment.
     void shade_surroundings(const Frame& frame, const FrameContents& contents, bool environment);
     /// Empties the overlay, and draws the surfaces that are shown past light.

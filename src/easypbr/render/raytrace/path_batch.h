@@ -58,6 +58,17 @@ struct PathBatch {
         return (count + step - 1) / step * step;
     }
 
+    /// The surfaces as a stream of a shader names them (native/shader_streams.h).
+    template <class Stream>
+    void read_by(Stream& stream) const {
+        position.read_by(stream.v_position);
+        normal.read_by(stream.v_normal);
+        face.read_by(stream.v_face);
+        view.read_by(stream.v_view);
+        albedo.read_by(stream.v_albedo);
+        parameters.read_by(stream.v_parameters);
+    }
+
     size_t count = 0;
     PathVectors<3> position;
     PathVectors<3> normal;  ///< interpolated and mapped

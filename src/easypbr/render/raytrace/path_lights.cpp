@@ -26,12 +26,7 @@ struct Found {
 
 native::path_lamps_stream stream_of(const PathBatch& batch, Found& found) {
     native::path_lamps_stream stream;
-    batch.position.read_by(stream.v_position);
-    batch.normal.read_by(stream.v_normal);
-    batch.face.read_by(stream.v_face);
-    batch.view.read_by(stream.v_view);
-    batch.albedo.read_by(stream.v_albedo);
-    batch.parameters.read_by(stream.v_parameters);
+    batch.read_by(stream);
     stream.v_choice = found.choice.data();
     found.light.written_by(stream.o_light);
     stream.o_sum = found.sum.data();

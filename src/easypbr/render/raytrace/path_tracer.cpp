@@ -44,12 +44,7 @@ struct PathTracer::Scattered {
 
     native::path_scatter_stream stream(const PathBatch& batch) {
         native::path_scatter_stream stream;
-        batch.position.read_by(stream.v_position);
-        batch.normal.read_by(stream.v_normal);
-        batch.face.read_by(stream.v_face);
-        batch.view.read_by(stream.v_view);
-        batch.albedo.read_by(stream.v_albedo);
-        batch.parameters.read_by(stream.v_parameters);
+        batch.read_by(stream);
         random.read_by(stream.v_random);
         sky_direction.read_by(stream.v_sky_direction);
         sky.read_by(stream.v_sky);

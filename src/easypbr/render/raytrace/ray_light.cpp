@@ -37,54 +37,12 @@ void RayLight::prepare(const ResolvedSettings& resolved, const RayScene& scene) 
     hash_.clear();  // until all is there: it can be interrupted
     sky_ = resolved.environment.image();
     while (sky_.width() > widest_sky) sky_ = half_size(sky_);
-    find_bright_parts();
+    bright_.prepare(sky_);
     hash_ = resolved.environment.hash();
 }
 
-void RayLight::find_bright_parts() {
-    const int w = sky_.width(), h = sky_.height();
-    const auto light_of = [&](int x, int y) {
-        const float* p = sky_.at<float>(x, y);
-        return double(p[0]) + p[1] + p[2];
-    };
-    // Of a pixel, as it is seen.
-    const auto angle_of = [&](int y) {
-        return 2 * pi / w * (std::cos(pi * y / h) - std::cos(pi * (y + 1) / h));
-    };
-    double all = 0, bright = 0;
-    for (int y = 0; y < h; ++y)
-        for (int x = 0; x < w; ++x) all += light_of(x, y) * angle_of(y);
-    const double mean = all / (4 * pi);
-    density_.assign(size_t(w) * size_t(h), 0);
-    row_ends_.assign(size_t(h), 0);
-    pixel_ends_.assign(density_.size(), 0);
-    for (int y = 0; y < h; ++y) {
-        double row = 0;
-        for (int x = 0; x < w; ++x) {
-            const size_t i = size_t(y) * size_t(w) + size_t(x);
-            density_[i] = float(std::max(light_of(x, y) - mean, 0.0));
-            row += density_[i] * angle_of(y);
-            pixel_ends_[i] = float(row);
-        }
-        bright += row;
-        row_ends_[size_t(y)] = float(bright);
-        for (int x = 0; x < w && row > 0; ++x) pixel_ends_[size_t(y) * size_t(w) + size_t(x)] /= float(row);
-    }
-    bright_part_ = all > 0 ? float(bright / all) : 0;
-    // A sky that is even but for roundings has no bright part.
-    if (bright_part_ < 1e-3f) bright_part_ = 0;
-    for (float& value : density_) value /= float(std::max(bright, 1e-30));
-    for (float& value : row_ends_) value /= float(std::max(bright, 1e-30));
-}
-
-Vec2i RayLight::pixel_of(const Vec3& direction) const {
-    const Vec2 uv = equirect_uv(resolved_->R_env_world * direction);
-    const auto pixel = [](float at, int size) { return std::clamp(int(at * float(size)), 0, size - 1); };
-    return {pixel(uv.x(), sky_.width()), pixel(uv.y(), sky_.height())};
-}
-
 Vec3 RayLight::sky(const Vec3& direction) const {
-    const Vec2i at = pixel_of(direction);
+    const Vec2i at = pixel_at(equirect_uv(resolved_->R_env_world * direction), {sky_.width(), sky_.height()});
     const float* p = sky_.at<float>(at.x(), at.y());
     return resolved_->settings.environment.intensity * Vec3(p[0], p[1], p[2]);
 }
@@ -95,27 +53,12 @@ Vec3 RayLight::even_sky(const Vec3& normal) const {
 }
 
 float RayLight::bright_density(const Vec3& direction) const {
-    const Vec2i at = pixel_of(direction);
-    return density_[size_t(at.y()) * size_t(sky_.width()) + size_t(at.x())];
+    return bright_.density(equirect_uv(resolved_->R_env_world * direction));
 }
 
 Vec3 RayLight::bright_direction(const Vec2& u) const {
-    // The place within a step of the distribution function is that within the row or pixel.
-    const auto find = [](std::span<const float> ends, float at, float& within) {
-        const auto found = std::min(std::upper_bound(ends.begin(), ends.end(), at), ends.end() - 1);
-        const float begin = found == ends.begin() ? 0 : *(found - 1);
-        within = std::clamp((at - begin) / std::max(*found - begin, 1e-20f), 0.0f, 1.0f);
-        return int(found - ends.begin());
-    };
-    float within_row = 0, within_pixel = 0;
-    const auto w = size_t(sky_.width());
-    const int y = find(row_ends_, u.y(), within_row);
-    const int x = find(std::span(pixel_ends_).subspan(size_t(y) * w, w), u.x(), within_pixel);
-    // Even over the sphere within a row.
-    const double step = pi / sky_.height(), top = std::cos(step * y), bottom = std::cos(step * (y + 1));
-    const double v = std::acos(std::clamp(top + (bottom - top) * within_row, -1.0, 1.0)) / pi;
-    return resolved_->R_env_world.transpose() *
-           equirect_direction((float(x) + within_pixel) / float(w), float(v));
+    const Vec2 uv = bright_.sample(u).uv;
+    return resolved_->R_env_world.transpose() * equirect_direction(uv.x(), uv.y());
 }
 
 Vec3 RayLight::from_lights(const Vec3& at, const Vec3& normal) const {

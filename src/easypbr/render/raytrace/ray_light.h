@@ -1,6 +1,7 @@
 // The light that a ray brings back.
 #pragma once
 
+#include "easypbr/render/raytrace/bright_sky.h"
 #include "easypbr/render/raytrace/ray_random.h"
 #include "easypbr/render/raytrace/ray_scene.h"
 
@@ -25,8 +26,8 @@ class RayLight {
     Vec3 sky(const Vec3& direction) const;
 
     /// How many of the rays are best sent where the sky is brighter than on average: the part of its light
-    /// that is there (MIS compensation, Karlik et al. 2019).
-    float bright_part() const { return bright_part_; }
+    /// that is there.
+    float bright_part() const { return bright_.bright_part(); }
     /// A direction of the bright sky, and the density of such directions, per steradian.
     Vec3 bright_direction(const Vec2& u) const;
     float bright_density(const Vec3& direction) const;
@@ -40,18 +41,12 @@ class RayLight {
     Vec3 from_lights(const Vec3& at, const Vec3& normal) const;
     /// Irradiance of the open sky on a surface, divided by pi.
     Vec3 even_sky(const Vec3& normal) const;
-    /// Row and column of the sky's picture.
-    Vec2i pixel_of(const Vec3& direction) const;
-    void find_bright_parts();
 
     const ResolvedSettings* resolved_ = nullptr;
     const RayScene* scene_ = nullptr;
     std::string hash_;
     Image sky_;
-    float bright_part_ = 0;
-    std::vector<float> density_;     ///< of bright_direction(), for each pixel of the sky
-    std::vector<float> row_ends_;    ///< distribution function over the rows
-    std::vector<float> pixel_ends_;  ///< and within each of them
+    BrightSky bright_;  ///< of the sky's picture
 };
 
 }  // namespace easypbr::render

@@ -2,8 +2,8 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
+#include "easypbr/render/raytrace/bright_sky.h"
 #include "easypbr/scene/environment.h"
 
 namespace easypbr::render {
@@ -20,31 +20,25 @@ class SkySampler {
     Vec3 radiance(const Vec3& direction) const;
 
     /// Whether directions are chosen at all: not of a sky that is as bright everywhere.
-    bool is_sampled() const { return is_sampled_; }
+    bool is_sampled() const { return bright_.bright_part() > 0; }
     struct Sample {
         Vec3 direction;  ///< unit
         Vec3 radiance;
         float density;
     };
-    /// A direction by a point of the unit square; the brighter the sky is beyond its mean, the likelier (MIS
-    /// compensation, Karlik et al. 2019): what is left is found by sampling BSDFs.
+    /// A direction by a point of the unit square; the brighter the sky is beyond its mean, the likelier.
     Sample sample(const Vec2& u) const;
     /// Density of such directions, per steradian.
     float density(const Vec3& direction) const;
 
   private:
-    void make_distribution(const Image& map);
     Vec3 texel_at(const Vec2& uv) const;
 
     Environment environment_;
     Mat3 R_env_world_ = Mat3::Identity();
     float intensity_ = 1;
     std::string hash_;
-    bool is_sampled_ = false;
-    Vec2i size_{0, 0};               ///< of the map of densities
-    std::vector<float> density_;     ///< for each of its pixels
-    std::vector<float> row_ends_;    ///< distribution function over the rows
-    std::vector<float> pixel_ends_;  ///< and within each of them
+    BrightSky bright_;
 };
 
 }  // namespace easypbr::render

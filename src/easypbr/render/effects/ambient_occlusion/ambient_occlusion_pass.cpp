@@ -79,14 +79,14 @@ AmbientOcclusionPass::Plan AmbientOcclusionPass::plan_of(const Frame& frame) {
     return plan;
 }
 
-void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets, bool with_points) {
+void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets, Normals normals) {
     const Plan plan = plan_of(frame);
     targets.add_ambient_occlusion();
     const float open[4] = {1, 1, 1, 1};
     targets.occluded().clear_color(0, open);
     estimated_ = false;
-    if (with_points) estimate_normals(frame, targets);
-    estimated_ = with_points;
+    if (normals.any()) estimate_normals(frame, targets, normals);
+    estimated_ = normals.any();
     const PixelRect area = in_texels(frame.covered, plan.half ? 2 : 1);
     if (!plan.smooth) return run(frame, targets, {*plan.sampling, plan.defines, targets.occluded(), area});
     make_targets(frame.size, plan.half);
@@ -106,7 +106,7 @@ void AmbientOcclusionPass::draw(const Frame& frame, GBuffer& targets, bool with_
         run(frame, targets, {magnifying_, plan.defines, targets.occluded(), frame.covered, &sampled_});
 }
 
-void AmbientOcclusionPass::shade(const Frame& frame, GBuffer& targets, bool with_points,
+void AmbientOcclusionPass::shade(const Frame& frame, GBuffer& targets, Normals normals,
                                  Transfers& transfers) {
     const Plan plan = plan_of(frame);
     targets.add_ambient_occlusion();
@@ -125,11 +125,11 @@ void AmbientOcclusionPass::shade(const Frame& frame, GBuffer& targets, bool with
                       .depth = of_half ? &surface_ : &targets.depth},
                      transfers);
     };
-    if (with_points) {
+    if (normals.any()) {
         make_normals(frame.size);
         normal_.write(held);
         estimating_.shade(
-            surface_inputs(frame, targets, plan.defines),
+            surface_inputs(frame, targets, normal_defines(frame, normals)),
             {.target = &normal_, .area = held, .where = native::Where::covered, .depth = &targets.depth},
             transfers);
         estimated_ = true;
@@ -148,10 +148,16 @@ void AmbientOcclusionPass::make_normals(Vec2i size) {
     estimate_ = gl::Framebuffer();
 }
 
-void AmbientOcclusionPass::estimate_normals(const Frame& frame, const GBuffer& targets) {
+std::vector<std::string> AmbientOcclusionPass::normal_defines(const Frame& frame, Normals normals) {
+    std::vector<std::string> defines = camera_defines(frame);
+    if (normals.mapped) defines.emplace_back("MAPPED_NORMALS");
+    return defines;
+}
+
+void AmbientOcclusionPass::estimate_normals(const Frame& frame, const GBuffer& targets, Normals normals) {
     make_normals(frame.size);
     estimate_ = gl::Framebuffer({&normal_.drawn()}, &targets.depth_test());
-    run(frame, targets, {estimating_, camera_defines(frame), estimate_, frame.covered});
+    run(frame, targets, {estimating_, normal_defines(frame, normals), estimate_, frame.covered});
 }
 
 double AmbientOcclusionPass::reach(const Frame& whole, const Box3d& bounds) {

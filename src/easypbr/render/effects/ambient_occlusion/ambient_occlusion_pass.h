@@ -12,16 +12,20 @@ namespace easypbr::render {
 /// a longer accumulated image each take other directions at full resolution, and their mean needs no blur.
 class AmbientOcclusionPass {
   public:
-    /// Adds and fills the G-buffer's visibility from its depth and normals. Points without normals
-    /// (`with_points`: there may be some) have those of the surface that they sample, estimated from the
-    /// depth.
-    void draw(const Frame& frame, GBuffer& targets, bool with_points);
+    /// Surfaces whose normals in the G-buffer are not those that visibility is about.
+    struct Normals {
+        bool of_points = false;  ///< some may have none: they get that of the surface that they sample
+        bool mapped = false;     ///< some lean from their surface, which must not hide what they face
+        bool any() const { return of_points || mapped; }
+    };
+    /// Adds and fills the G-buffer's visibility from its depth and normals.
+    void draw(const Frame& frame, GBuffer& targets, Normals normals);
 
     /// How far occluders are looked for, in pixels of a frame of the whole picture; 0 where it is off.
     static double reach(const Frame& whole, const Box3d& bounds);
 
     /// The same natively: from and to host memory.
-    void shade(const Frame& frame, GBuffer& targets, bool with_points, Transfers& transfers);
+    void shade(const Frame& frame, GBuffer& targets, Normals normals, Transfers& transfers);
 
   private:
     struct Step;
@@ -34,7 +38,8 @@ class AmbientOcclusionPass {
     void make_targets(Vec2i size, bool half);
     void make_framebuffers();
     void make_normals(Vec2i size);
-    void estimate_normals(const Frame& frame, const GBuffer& targets);
+    void estimate_normals(const Frame& frame, const GBuffer& targets, Normals normals);
+    static std::vector<std::string> normal_defines(const Frame& frame, Normals normals);
     ShaderInputs surface_inputs(const Frame& frame, const GBuffer& targets,
                                 const std::vector<std::string>& defines) const;
     ShaderInputs inputs_of(const Frame& frame, const GBuffer& targets,

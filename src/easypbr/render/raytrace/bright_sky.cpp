@@ -1,0 +1,78 @@
+#include "easypbr/render/raytrace/bright_sky.h"
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+
+namespace easypbr::render {
+namespace {
+
+/// Of the light: less is a rounding.
+constexpr double least_bright_part = 1e-3;
+
+/// The step of a CDF that holds a number; `within`: where in the step.
+int step_of(std::span<const float> ends, float at, float& within) {
+    const auto found = std::min(std::upper_bound(ends.begin(), ends.end(), at), ends.end() - 1);
+    const float begin = found == ends.begin() ? 0 : *(found - 1);
+    within = std::clamp((at - begin) / std::max(*found - begin, 1e-20f), 0.0f, 1.0f);
+    return int(found - ends.begin());
+}
+
+}  // namespace
+
+Vec2i pixel_at(const Vec2& uv, Vec2i size) {
+    const auto pixel = [](float at, int count) { return std::clamp(int(at * float(count)), 0, count - 1); };
+    return {pixel(uv.x(), size.x()), pixel(uv.y(), size.y())};
+}
+
+void BrightSky::prepare(const Image& map) {
+    const int w = map.width(), h = map.height();
+    size_ = {w, h};
+    const auto light_of = [&](int x, int y) {
+        const float* p = map.at<float>(x, y);
+        return double(p[0]) + p[1] + p[2];
+    };
+    const auto solid_angle_of = [&](int y) {
+        return 2 * pi / w * (std::cos(pi * y / h) - std::cos(pi * (y + 1) / h));
+    };
+    double all = 0, bright = 0;
+    for (int y = 0; y < h; ++y)
+        for (int x = 0; x < w; ++x) all += light_of(x, y) * solid_angle_of(y);
+    const double mean = all / (4 * pi);
+    density_.assign(size_t(w) * size_t(h), 0);
+    row_ends_.assign(size_t(h), 0);
+    pixel_ends_.assign(density_.size(), 0);
+    for (int y = 0; y < h; ++y) {
+        double row = 0;
+        const size_t first = size_t(y) * size_t(w);
+        for (size_t i = first; i < first + size_t(w); ++i) {
+            density_[i] = float(std::max(light_of(int(i - first), y) - mean, 0.0));
+            row += density_[i] * solid_angle_of(y);
+            pixel_ends_[i] = float(row);
+        }
+        bright += row;
+        row_ends_[size_t(y)] = float(bright);
+        for (size_t i = first; i < first + size_t(w) && row > 0; ++i) pixel_ends_[i] /= float(row);
+    }
+    bright_part_ = bright > least_bright_part * all ? float(bright / all) : 0;
+    for (float& value : density_) value /= float(std::max(bright, 1e-30));
+    for (float& value : row_ends_) value /= float(std::max(bright, 1e-30));
+}
+
+float BrightSky::density(const Vec2& uv) const {
+    const Vec2i at = pixel_at(uv, size_);
+    return density_[size_t(at.y()) * size_t(size_.x()) + size_t(at.x())];
+}
+
+BrightSky::Sample BrightSky::sample(const Vec2& u) const {
+    float within_row = 0, within_pixel = 0;
+    const auto w = size_t(size_.x());
+    const int y = step_of(row_ends_, u.y(), within_row);
+    const int x = step_of(std::span(pixel_ends_).subspan(size_t(y) * w, w), u.x(), within_pixel);
+    // Even over the sphere within a row.
+    const double step = pi / size_.y(), top = std::cos(step * y), bottom = std::cos(step * (y + 1));
+    const double v = std::acos(std::clamp(top + (bottom - top) * within_row, -1.0, 1.0)) / pi;
+    return {{(float(x) + within_pixel) / float(w), float(v)}, density_[size_t(y) * w + size_t(x)]};
+}
+
+}  // namespace easypbr::render

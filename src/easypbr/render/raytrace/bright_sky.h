@@ -1,0 +1,40 @@
+// Directions of the light that a sky has beyond its mean.
+#pragma once
+
+#include <vector>
+
+#include "easypbr/core/image.h"
+#include "easypbr/core/math.h"
+
+namespace easypbr::render {
+
+/// Distribution over an equirectangular map by how much brighter its pixels are than its mean (MIS
+/// compensation, Karlik et al. 2019): what is left is found by sampling BSDFs.
+class BrightSky {
+  public:
+    /// `map`: RGB, f32, radiance.
+    void prepare(const Image& map);
+
+    /// Share of the map's light that lies above its mean, 0 to 1; 0 where the map is even but for roundings.
+    float bright_part() const { return bright_part_; }
+    /// Density of sampled directions, per steradian, at a place of the map, 0 to 1 each.
+    float density(const Vec2& uv) const;
+    struct Sample {
+        Vec2 uv;
+        float density;  ///< per steradian
+    };
+    /// A place by a point of the unit square. Its density is 0 where the map is even.
+    Sample sample(const Vec2& u) const;
+
+  private:
+    Vec2i size_{0, 0};
+    float bright_part_ = 0;
+    std::vector<float> density_;     ///< for each pixel
+    std::vector<float> row_ends_;    ///< CDF over the rows
+    std::vector<float> pixel_ends_;  ///< and within each of them
+};
+
+/// The pixel of a map that a place lies in, 0 to 1 each.
+Vec2i pixel_at(const Vec2& uv, Vec2i size);
+
+}  // namespace easypbr::render
