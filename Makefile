@@ -3,7 +3,7 @@ PYTHON := .venv/bin/python
 BUILD := build
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 
-.PHONY: demo test library build setup setup-tests bench wheel test-wheel check-long check-notebook sanitize fuzz docs format lint clean
+.PHONY: demo test library build setup setup-tests bench wheel test-wheel deb check-long check-notebook sanitize fuzz docs format lint clean
 
 # Library, command line and Python module, without tests and benchmarks.
 library: setup
@@ -41,6 +41,12 @@ wheel: setup
 # The wheels of dist/ from outside: fresh environments, a system with Python and nothing else. Needs root.
 test-wheel: setup-tests
 	scripts/test_wheel.sh
+
+# Debian packages in dist/: easypbr, libeasypbr, libeasypbr-dev, python3-easypbr.
+deb: library
+	cmake --build $(BUILD) --target easypbr_shell_pages
+	cd $(BUILD) && cpack -G DEB -B $(CURDIR)/$(BUILD)/packages
+	mkdir -p dist && cp $(BUILD)/packages/*.deb dist/
 
 check-long: setup-tests build
 	scripts/check_long.sh

@@ -79,4 +79,12 @@ if(SKBUILD)
     add_dependencies(python_package easypbr_licenses)
     install(DIRECTORY ${licenses}/ DESTINATION ${SKBUILD_METADATA_DIR}/licenses/bundled COMPONENT python)
   endif()
+else()
+  # Where Debian's Python looks, below the prefix.
+  set(installed lib/python3/dist-packages/easypbr)
+  set_target_properties(_easypbr PROPERTIES INSTALL_RPATH "$ORIGIN/../../../../${CMAKE_INSTALL_LIBDIR}")
+  install(TARGETS _easypbr LIBRARY DESTINATION ${installed} COMPONENT python)
+  install(FILES ${package}/_easypbr.pyi ${package}/settings.pyi DESTINATION ${installed} COMPONENT python)
+  install(DIRECTORY python/easypbr/ DESTINATION ${installed} COMPONENT python
+          PATTERN __pycache__ EXCLUDE)
 endif()

@@ -86,7 +86,7 @@ def write_program(folder, name, text):
 def programs(tmp_path_factory):
     """The C++ of README, docs/cpp.md and examples/cpp, built against the installed library; gives their folder."""
     prefix, source, build = (tmp_path_factory.mktemp(name) for name in ("prefix", "source", "build"))
-    run("cmake", "--install", ROOT / "build", "--prefix", prefix, "--component", "library", cwd=source)
+    run("cmake", "--install", ROOT / "build", "--prefix", prefix, cwd=source)
     shutil.copytree(CPP_EXAMPLES, source, dirs_exist_ok=True)
     with (source / "CMakeLists.txt").open("a") as project:
         project.write(write_program(source, "readme", *blocks(README, "cpp")))

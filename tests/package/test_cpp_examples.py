@@ -13,7 +13,7 @@ EXAMPLE = ROOT / "examples/cpp"
 @pytest.fixture(scope="module")
 def programs(tmp_path_factory):
     folder = tmp_path_factory.mktemp("examples")
-    run("cmake", "--install", ROOT / "build", "--prefix", folder / "prefix", "--component", "library", cwd=folder)
+    run("cmake", "--install", ROOT / "build", "--prefix", folder / "prefix", cwd=folder)
     run("cmake", "-S", EXAMPLE, "-B", folder / "build", f"-DCMAKE_PREFIX_PATH={folder / 'prefix'}",
         "-DCMAKE_DISABLE_FIND_PACKAGE_libigl=ON", cwd=folder)
     run("cmake", "--build", folder / "build", cwd=folder)

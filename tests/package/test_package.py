@@ -41,7 +41,7 @@ def write_inputs(folder):
 
 def test_outside_program_matches_python(tmp_path):
     prefix, source, build = tmp_path / "prefix", tmp_path / "source", tmp_path / "build"
-    run("cmake", "--install", ROOT / "build", "--prefix", prefix, "--component", "library", cwd=tmp_path)
+    run("cmake", "--install", ROOT / "build", "--prefix", prefix, cwd=tmp_path)
     shutil.copytree(OUTSIDE, source)
     for path in prefix.rglob("*.cmake"):
         assert str(ROOT) not in path.read_text(), f"{path.name} points into the source tree"
@@ -63,7 +63,7 @@ def test_outside_program_matches_python(tmp_path):
 
 def test_pkg_config_serves_builds_without_cmake(tmp_path):
     """The flags suffice to build and run the program, from a prefix that was moved after the installation."""
-    run("cmake", "--install", ROOT / "build", "--prefix", tmp_path / "first", "--component", "library", cwd=tmp_path)
+    run("cmake", "--install", ROOT / "build", "--prefix", tmp_path / "first", cwd=tmp_path)
     prefix = (tmp_path / "first").rename(tmp_path / "moved")
     (found,) = prefix.rglob("easypbr.pc")
     environment = {**os.environ, "PKG_CONFIG_PATH": str(found.parent)}

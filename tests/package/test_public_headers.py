@@ -14,7 +14,7 @@ COMPILER = shutil.which("g++") or shutil.which("c++")
 @pytest.fixture(scope="module")
 def include(tmp_path_factory):
     prefix = tmp_path_factory.mktemp("prefix")
-    run("cmake", "--install", ROOT / "build", "--prefix", prefix, "--component", "library", cwd=prefix)
+    run("cmake", "--install", ROOT / "build", "--prefix", prefix, cwd=prefix)
     return prefix / "include"
 
 
