@@ -75,9 +75,13 @@ if(SKBUILD)
     # Others' libraries travel in the wheel, so their licences do too.
     set(licenses ${PROJECT_BINARY_DIR}/licenses)
     add_custom_target(easypbr_licenses COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/write_licenses.py ${licenses}
+                      COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/write_licenses.py --sbom
+                              ${PROJECT_BINARY_DIR}/sboms/easypbr.spdx.json
                       COMMENT "Collecting licences" VERBATIM)
     add_dependencies(python_package easypbr_licenses)
     install(DIRECTORY ${licenses}/ DESTINATION ${SKBUILD_METADATA_DIR}/licenses/bundled COMPONENT python)
+    # Where PEP 770 puts it.
+    install(FILES ${PROJECT_BINARY_DIR}/sboms/easypbr.spdx.json DESTINATION ${SKBUILD_METADATA_DIR}/sboms COMPONENT python)
   endif()
 else()
   # Where Debian's Python looks, below the prefix.

@@ -3,14 +3,19 @@
 compiled in, as their Debian packages and nanobind state them.
 
 usage: write_licenses.py FOLDER            writes one text each, and those of the licences that they refer to
+       write_licenses.py --sbom FILE       writes a list of them with versions: SPDX 2.3 in JSON
        write_licenses.py --check WHEEL     exit code 1 when a bundled library is of none of the packages below
 """
+import datetime
 import importlib.metadata
+import json
+import os
 import pathlib
 import re
 import shutil
 import subprocess
 import sys
+import uuid
 import zipfile
 
 #: Debian packages of the libraries that auditwheel bundles, and of what they are linked to.
@@ -47,6 +52,49 @@ def write(folder: pathlib.Path) -> None:
         sys.exit("write_licenses: nanobind is installed without its licence")
 
 
+def version_of_project() -> str:
+    text = (pathlib.Path(__file__).parents[1] / "CMakeLists.txt").read_text(encoding="utf-8")
+    found = re.search(r"project\(easypbr VERSION ([0-9.]+)", text)
+    assert found
+    return found[1]
+
+
+def version_of(package: str) -> str:
+    asked = subprocess.run(["dpkg-query", "-W", "-f=${Version}", package], capture_output=True, text=True, check=False)
+    if asked.returncode != 0 or not asked.stdout:
+        sys.exit(f"write_licenses: {package} is not installed")
+    return asked.stdout
+
+
+def sbom() -> dict[str, object]:
+    """What a wheel contains, as SPDX 2.3 names it (clauses 6, 7 and 11). SOURCE_DATE_EPOCH sets its time."""
+    version = version_of_project()
+    time = datetime.datetime.fromtimestamp(int(os.environ.get("SOURCE_DATE_EPOCH", "0")) or
+                                           datetime.datetime.now().timestamp(), datetime.timezone.utc)
+
+    def package(name: str, version: str, declared: str = "NOASSERTION", place: str | None = None) -> dict[str, object]:
+        named: dict[str, object] = {"SPDXID": f"SPDXRef-{name.replace('_', '-')}", "name": name, "versionInfo": version,
+                                    "downloadLocation": "NOASSERTION", "filesAnalyzed": False,
+                                    "licenseConcluded": "NOASSERTION", "licenseDeclared": declared,
+                                    "copyrightText": "NOASSERTION"}
+        if place:
+            named["externalRefs"] = [{"referenceCategory": "PACKAGE-MANAGER", "referenceType": "purl",
+                                      "referenceLocator": f"{place}/{name}@{version}"}]
+        return named
+
+    others = [package(name, version_of(name), place="pkg:deb/debian") for name in BUNDLED + COMPILED]
+    others.append(package("nanobind", importlib.metadata.version("nanobind"), "BSD-3-Clause", "pkg:pypi"))
+    relations = [("SPDXRef-DOCUMENT", "DESCRIBES", "SPDXRef-easypbr")]
+    relations += [("SPDXRef-easypbr", "CONTAINS", str(other["SPDXID"])) for other in others]
+    return {
+        "spdxVersion": "SPDX-2.3", "dataLicense": "CC0-1.0", "SPDXID": "SPDXRef-DOCUMENT",
+        "name": f"easypbr-{version}", "documentNamespace": f"https://spdx.org/spdxdocs/easypbr-{version}-{uuid.uuid4()}",
+        "creationInfo": {"created": time.strftime("%Y-%m-%dT%H:%M:%SZ"), "creators": ["Tool: write_licenses.py"]},
+        "packages": [package("easypbr", version, "MIT"), *others],
+        "relationships": [{"spdxElementId": a, "relationshipType": kind, "relatedSpdxElement": b} for a, kind, b in relations],
+    }
+
+
 def bundled_in(wheel: pathlib.Path) -> list[str]:
     """Names of the libraries as the system has them: "libfmt-1a2b3c4d.so.9.1.0" is its libfmt.so.9.1.0."""
     names = [pathlib.PurePosixPath(name) for name in zipfile.ZipFile(wheel).namelist()]
@@ -69,6 +117,10 @@ if __name__ == "__main__":
             sys.exit(f"{sys.argv[2]} bundles no library: was it repaired?")
         if faults := unknown_of(pathlib.Path(sys.argv[2])):
             sys.exit("bundled without a licence: " + "; ".join(faults))
+    elif len(sys.argv) == 3 and sys.argv[1] == "--sbom":
+        target = pathlib.Path(sys.argv[2])
+        target.parent.mkdir(parents=True, exist_ok=True)
+        target.write_text(json.dumps(sbom(), indent=1) + "\n", encoding="utf-8")
     elif len(sys.argv) == 2:
         write(pathlib.Path(sys.argv[1]))
     else:

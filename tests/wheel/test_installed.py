@@ -1,5 +1,6 @@
 """The installed package, seen from outside: run by scripts/test_wheel.sh with the Python that has it, and with nothing
 but the standard library and numpy beside it; by a user without root, whose HOME cannot be written."""
+import importlib.metadata
 import json
 import os
 import pathlib
@@ -57,6 +58,17 @@ class Installed(unittest.TestCase):
 
     def assert_drawn(self, name: str) -> None:
         self.assertGreater(np.ptp(picture(self.folder / name)[:, :, :3]), 50, name)
+
+    def test_it_says_what_it_contains(self) -> None:
+        files = importlib.metadata.files("easypbr") or []
+        lists = [file for file in files if file.name == "easypbr.spdx.json"]
+        self.assertEqual([file.parent.name for file in lists], ["sboms"])
+        names = {package["name"] for package in json.loads(lists[0].read_text())["packages"]}
+        bundled = [file.name for file in files if file.parent.name == "easypbr.libs"]
+        self.assertTrue(bundled)
+        for start, package in (("libfmt-", "libfmt9"), ("libtbb-", "libtbb12"), ("libembree3-", "libembree3-3")):
+            self.assertTrue(any(name.startswith(start) for name in bundled), start)
+            self.assertIn(package, names)
 
     def test_user(self) -> None:
         """What the other tests are worth: no root, and nothing can be written at home."""
