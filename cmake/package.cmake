@@ -26,8 +26,8 @@ set(CPACK_DEBIAN_LIBRARY_DESCRIPTION "${what}: library")
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_NAME easypbr)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_SECTION graphics)
 set(CPACK_DEBIAN_PROGRAM_PACKAGE_DEPENDS "libeasypbr ${own}")
-# `easypbr dataset` runs the Python package, and names it where it is missing.
-set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS python3-easypbr)
+# `easypbr dataset` runs the Python package, the window loads GLFW; both are named where they are missing.
+set(CPACK_DEBIAN_PROGRAM_PACKAGE_RECOMMENDS "python3-easypbr, libglfw3, libegl1")
 set(CPACK_DEBIAN_PROGRAM_DESCRIPTION "${what}: command line and window")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME libeasypbr-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
