@@ -36,6 +36,8 @@ function(easypbr_add_instruction_set name)
   target_link_libraries(easypbr_native_${name} PRIVATE easypbr_options)
   target_compile_definitions(easypbr_native_${name} PRIVATE EASYPBR_ISA=${name})
   target_compile_options(easypbr_native_${name} PRIVATE -O2 -ffp-contract=off -fno-math-errno -fno-trapping-math
+                         # Registers of whole functions at once: a fifth less to compile, and smaller code.
+                         $<$<CXX_COMPILER_ID:GNU>:-fira-region=one>
                          # Shader functions ignore arguments. GCC 12 takes its own intrinsics for uninitialised.
                          -Wno-unused-parameter -Wno-psabi -Wno-maybe-uninitialized -Wno-uninitialized ${ARGN})
   add_dependencies(easypbr_native_${name} easypbr_native_texts)

@@ -43,6 +43,14 @@ Vec2d slope_normal(double radius, double height) {
     return Vec2d(height, radius).normalized();
 }
 
+/// Turns the y axis to a direction, by the shortest way. Quaterniond::FromTwoVectors would do, and compile a
+/// singular value decomposition for directions close to -y.
+Eigen::Quaterniond turn_from_y(const Vec3d& direction) {
+    const Vec3d d = direction.normalized();
+    if (d.y() < -1 + 1e-12) return {0, 1, 0, 0};
+    return Eigen::Quaterniond(1 + d.y(), d.z(), 0, -d.x()).normalized();
+}
+
 }  // namespace
 
 Mesh make_sphere(float radius, int segments) {
@@ -119,8 +127,7 @@ Mesh make_arrow(const Vec3& from, const Vec3& to, std::optional<float> radius, i
                                  {r, 0, down},
                                  {0, 0, down}},
                                 segments);
-    const Eigen::Affine3d T = Eigen::Translation3d(from.cast<double>()) *
-                              Eigen::Quaterniond::FromTwoVectors(Vec3d::UnitY(), direction);
+    const Eigen::Affine3d T = Eigen::Translation3d(from.cast<double>()) * turn_from_y(direction);
     return Mesh(transformed(*upright.snapshot(), T));
 }
 

@@ -1,8 +1,9 @@
 #include "easypbr/geometry/surfel_cell.h"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+
+#include "easypbr/scene/principal_axes.h"
 
 namespace easypbr::geometry {
 namespace {
@@ -134,9 +135,9 @@ SurfelAxes covering_axes(const Vec3d& normal, std::span<const Vec3d> steps, doub
         if (across.squaredNorm() > 0) bounds.push_back({across, step.squaredNorm() / 2});
     }
     const Cell cell = bounded_cell(bounds, reach);
-    const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(covering_moments(cell));
-    const Vec2d direction = solver.eigenvectors().col(1);
-    const double shape = std::sqrt(std::max(solver.eigenvalues()[0], 1e-4) / solver.eigenvalues()[1]);
+    const detail::PrincipalAxes axes = detail::principal_axes(covering_moments(cell));
+    const Vec2d direction = axes.directions.col(1);
+    const double shape = std::sqrt(std::max(axes.values[0], 1e-4) / axes.values[1]);
     double first = 0;
     cell.visit([&](const Vec2d& corner, int, int) {
         const double along = corner.dot(direction);

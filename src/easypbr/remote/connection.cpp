@@ -146,17 +146,19 @@ void Connection::on_message(Code error) {
 void Connection::write() {
     writing_ = true;
     const Item& item = queue_.front();
-    const auto done = [self = shared_from_this()](Code error, size_t) { self->on_written(error); };
-    if (const auto* packet = std::get_if<Packet>(&item)) {
-        socket_.binary(true);
+    // One type of buffers for both kinds, so that the writing of messages is compiled once.
+    std::array<net::const_buffer, 2> parts;
+    const auto* packet = std::get_if<Packet>(&item);
+    if (packet) {
         header_ = packet->header.encoded();
-        const std::array<net::const_buffer, 2> parts = {
-            net::const_buffer(header_.data(), header_.size()),
-            net::const_buffer(packet->bytes->data() + packet->from, packet->count)};
-        return socket_.async_write(parts, done);
+        parts = {net::const_buffer(header_.data(), header_.size()),
+                 net::const_buffer(packet->bytes->data() + packet->from, packet->count)};
+    } else {
+        parts[0] = net::buffer(*std::get<SharedText>(item));
     }
-    socket_.text(true);
-    socket_.async_write(net::buffer(*std::get<SharedText>(item)), done);
+    socket_.binary(packet != nullptr);
+    socket_.async_write(parts,
+                        [self = shared_from_this()](Code error, size_t) { self->on_written(error); });
 }
 
 void Connection::on_written(Code error) {

@@ -70,7 +70,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
     void stop_all();
     void end();
 
-    websocket::stream<Stream> socket_;
+    /// Without permessage-deflate, which pictures gain nothing from and which compiles for long.
+    websocket::stream<Stream, false> socket_;
     ClientId id_;
     Owner* owner_;
     beast::flat_buffer buffer_;

@@ -1,9 +1,9 @@
-#include <Eigen/Eigenvalues>
 #include <cmath>
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/scene/directions.h"
 #include "easypbr/scene/merge.h"
+#include "easypbr/scene/principal_axes.h"
 
 namespace easypbr {
 namespace {
@@ -40,7 +40,7 @@ std::pair<Vec3d, Vec3d> semi_axes(const Vec3d& t, const Vec3d& b) {
     if (std::abs(mixed) <= 1e-6 * t.norm() * b.norm()) return {t, b};
     Eigen::Matrix2d gram;
     gram << t.squaredNorm(), mixed, mixed, b.squaredNorm();
-    const Eigen::Matrix2d v = Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(gram).eigenvectors();
+    const Eigen::Matrix2d v = detail::principal_axes(gram).directions;
     return {v(0, 1) * t + v(1, 1) * b, v(0, 0) * t + v(1, 0) * b};
 }
 

@@ -49,6 +49,10 @@ native::View view_of(const Target& target) {
             .held_height = held.height};
 }
 
+void ShaderInputs::add(std::string name, Value value) {
+    values_.emplace_back(std::move(name), std::move(value));
+}
+
 unsigned ShaderInputs::bind(const gl::Program& program) const {
     unsigned unit = 0;
     const auto bind_texture = [&](const std::string& name, const gl::Texture& texture) {

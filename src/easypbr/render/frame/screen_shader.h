@@ -30,12 +30,10 @@ class ShaderInputs {
                                native::View, native::Cube, native::Panorama, native::Layers, native::Texture>;
     template <class T>
     void set(std::string name, const T& value) {
-        values_.emplace_back(std::move(name), value);
+        add(std::move(name), Value(value));
     }
-    void set(std::string name, const Target& target) { values_.emplace_back(std::move(name), &target); }
-    void set(std::string name, const gl::Texture& texture) {
-        values_.emplace_back(std::move(name), &texture);
-    }
+    void set(std::string name, const Target& target) { add(std::move(name), Value(&target)); }
+    void set(std::string name, const gl::Texture& texture) { add(std::move(name), Value(&texture)); }
     /// A uniform block, by its binding and the name of its member.
     void set_block(unsigned binding, std::string member, std::span<const std::byte> bytes) {
         blocks_.push_back({binding, std::move(member), {bytes.begin(), bytes.end()}});
@@ -49,6 +47,7 @@ class ShaderInputs {
 
   private:
     friend class ScreenShader;
+    void add(std::string name, Value value);
     struct Block {
         unsigned binding;
         std::string member;
