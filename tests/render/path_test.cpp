@@ -150,6 +150,77 @@ TEST(Paths, ManyLights) {
     EXPECT_NEAR(render_linear(session, 4).at<float>(32, 32)[0] / expected, 1, 0.01);
 }
 
+/// A floor of albedo 0.5 at z = 0 under a square lamp at z = 1 that faces it and reflects nothing.
+Scene floor_under_lamp(float half, const Material& lamp) {
+    Scene scene;
+    scene.show(facing_square(0.5f, surface(0.5f, 0, 1)), "floor");
+    Mesh square = facing_square(half, lamp);
+    Eigen::Affine3d pose = Eigen::Affine3d::Identity();
+    pose.translation() = Vec3d(0, 0, 1);
+    square.set_T_world_mesh(pose);
+    scene.show(square, "lamp");
+    return scene;
+}
+
+Material emissive(float radiance) {
+    Material m = surface(0, 0, 1);
+    m.emissive = Vec3::Constant(radiance);
+    return m;
+}
+
+/// What the floor shows below the middle of the lamp.
+double seen_below(app::Session& session, int samples) {
+    session.settings().shading.dielectric_f0 = 0;
+    look_from(session, Vec3d(4, 0, 1.5), 0.05f);
+    return mean_of(render_linear(session, samples)).x();
+}
+
+/// Part of a floor's hemisphere, weighted by the cosine, that one quarter of a parallel square of half width
+/// a covers, seen from below its middle at distance 1 (Howell, A Catalog of Radiation Heat Transfer
+/// Configuration Factors, B-4).
+double quarter_factor(double a) {
+    const double root = std::sqrt(1 + a * a);
+    return a / root * std::atan(a / root) / pi;
+}
+
+// Lambert: albedo times radiance times the part of the hemisphere. 0.005: lamps that small look alike from
+// every point of theirs; by chance one path in 600 meets it.
+TEST(Paths, SmallEmissiveSquare) {
+    Scene scene = floor_under_lamp(0.05f, emissive(40));
+    app::Session session = path_session(scene, 3);
+    EXPECT_NEAR(seen_below(session, 16) / (0.5 * 40 * 4 * quarter_factor(0.05)), 1, 0.005);
+}
+
+// Of a large lamp one half shines. 0.015: three times what the noise of 1024 samples of nine pixels is.
+TEST(Paths, TexturedEmissiveSquare) {
+    Image halves(64, 1, 3, PixelType::u8);
+    for (int x = 0; x < 64; ++x)
+        for (int c = 0; c < 3; ++c) halves.at<uint8_t>(x, 0)[c] = x < 32 ? 255 : 0;
+    Material lamp = emissive(3);
+    lamp.emissive_texture.image = std::make_shared<Image>(halves);
+    Scene scene = floor_under_lamp(1, lamp);
+    app::Session session = path_session(scene, 3);
+    EXPECT_NEAR(seen_below(session, 1024) / (0.5 * 3 * 2 * quarter_factor(1)), 1, 0.015);
+}
+
+// Light adds up, whichever of both a path looks for. 0.015: as above.
+TEST(Paths, EmissiveSquareUnderASky) {
+    Image map(16, 8, 3, PixelType::f32);
+    for (float& v : map.pixels<float>()) v = 0.2f;
+    for (int c = 0; c < 3; ++c) map.at<float>(3, 3)[c] = 60;
+    const auto seen = [&](float emission, bool sky) {
+        Scene scene = floor_under_lamp(0.3f, emissive(emission));
+        if (sky) scene.set_environment(Environment(map));
+        app::Session session = path_session(scene, 3);
+        session.settings().environment.enabled = sky;
+        return seen_below(session, 1024);
+    };
+    const double of_lamp = seen(5, false), of_sky = seen(0, true), of_both = seen(5, true);
+    EXPECT_GT(of_lamp, 0.1 * of_both);
+    EXPECT_GT(of_sky, 0.1 * of_both);
+    EXPECT_NEAR(of_both / (of_lamp + of_sky), 1, 0.015);
+}
+
 // A half of an even sky lies below a wall's horizon: on a floor beside a wall without end the other half
 // arrives. A wall of albedo 0. 0.02: 1024 samples of one pixel are even within 0.015.
 TEST(Paths, SkyBesideAWall) {

@@ -55,6 +55,7 @@ void BrightSky::prepare(const Image& map) {
         for (size_t i = first; i < first + size_t(w) && row > 0; ++i) pixel_ends_[i] /= float(row);
     }
     bright_part_ = bright > least_bright_part * all ? float(bright / all) : 0;
+    brightness_ = bright_part_ > 0 ? float(bright / 3) : 0;
     for (float& value : density_) value /= float(std::max(bright, 1e-30));
     for (float& value : row_ends_) value /= float(std::max(bright, 1e-30));
 }

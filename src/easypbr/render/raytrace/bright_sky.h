@@ -17,6 +17,8 @@ class BrightSky {
 
     /// Share of the map's light that lies above its mean, 0 to 1; 0 where the map is even but for roundings.
     float bright_part() const { return bright_part_; }
+    /// That part's integral over all directions, of the mean of the channels.
+    float brightness() const { return brightness_; }
     /// Density of sampled directions, per steradian, at a place of the map, 0 to 1 each.
     float density(const Vec2& uv) const;
     struct Sample {
@@ -28,7 +30,7 @@ class BrightSky {
 
   private:
     Vec2i size_{0, 0};
-    float bright_part_ = 0;
+    float bright_part_ = 0, brightness_ = 0;
     std::vector<float> density_;     ///< for each pixel
     std::vector<float> row_ends_;    ///< CDF over the rows
     std::vector<float> pixel_ends_;  ///< and within each of them

@@ -43,9 +43,15 @@ struct Element {
     const DrawItem* item = nullptr;
     int first = 0;      ///< element of the item
     int triangles = 1;  ///< of each
+    int faces = 0;      ///< of a mesh; 0: the elements are no faces
 
     int of(unsigned triangle) const { return first + int(triangle) / triangles; }
 };
+
+/// Whether rays pass some places of it.
+bool is_filtered(const DrawItem& item) {
+    return item.alpha != AlphaMode::opaque || item.casts_tint();
+}
 
 /// Leaves out holes and what lets the ray through.
 void filter(const RTCFilterFunctionNArguments* args) {
@@ -90,7 +96,7 @@ struct RayScene::Scene final : RayGeometry {
         const DrawItem& item = *element.item;
         elements.push_back(std::make_unique<Element>(element));
         rtcSetGeometryUserData(geometry, elements.back().get());
-        if (item.alpha != AlphaMode::opaque || item.casts_tint()) {
+        if (is_filtered(item)) {
             rtcSetGeometryIntersectFilterFunction(geometry, filter);
             rtcSetGeometryOccludedFilterFunction(geometry, filter);
         }
@@ -122,7 +128,7 @@ struct RayScene::Scene final : RayGeometry {
         for (size_t i = 0; i < F.size(); ++i)
             for (int c = 0; c < 3; ++c)
                 F[i][size_t(c)] = uint32_t(mesh.F(item.part.first_face + Eigen::Index(i), c));
-        attach(geometry, {&item, item.part.first_face});
+        attach(geometry, {&item, item.part.first_face, 1, int(F.size())});
     }
 
     void add_discs(const DrawItem& item, double world_radius) override {
@@ -214,6 +220,7 @@ void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t gen
 }
 
 void RayScene::make_surfaces(const ResolvedSettings& resolved) {
+    ++surfaces_generation_;
     if (!scene_) return;
     scene_->surfaces.clear();
     for (size_t i = 0; i < scene_->elements.size(); ++i)
@@ -222,6 +229,25 @@ void RayScene::make_surfaces(const ResolvedSettings& resolved) {
 
 const HitSurface& RayScene::surface(int index) const {
     return *scene_->surfaces[size_t(index)];
+}
+
+int RayScene::surface_count() const {
+    return scene_ ? int(scene_->surfaces.size()) : 0;
+}
+
+FaceRange RayScene::emissive_faces(int surface) const {
+    const Element& element = *scene_->elements[size_t(surface)];
+    const DrawItem& item = *element.item;
+    const Material& material = item.material;
+    const bool emits = item.kind == SurfaceKind::lit && !material.unlit && material.emissive.maxCoeff() > 0;
+    return emits && !is_filtered(item) ? FaceRange{element.first, element.faces} : FaceRange{};
+}
+
+std::array<Vec3, 3> RayScene::triangle(int surface, int face) const {
+    const DrawItem& item = *scene_->elements[size_t(surface)]->item;
+    const auto& V = scene_->vertices.at(item.object);
+    const auto corner = [&](int c) { return V[size_t(item.mesh().F(face, c))]; };
+    return {corner(0), corner(1), corner(2)};
 }
 
 Vec3 RayScene::off_surface(const Vec3& at, const Vec3& normal, float reach) {

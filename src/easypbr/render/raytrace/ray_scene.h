@@ -1,6 +1,7 @@
 // What casts shadows as rays find it: triangles and discs in a tree of boxes, on the CPU.
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -18,6 +19,11 @@ struct RayGround {
     float roughness = 1;
     bool shadow_catcher =
         false;  ///< shows what lies behind it where it is open to the sky, in place of a colour
+};
+
+/// Faces of a mesh.
+struct FaceRange {
+    int first = 0, count = 0;
 };
 
 /// Where a ray ends.
@@ -47,6 +53,13 @@ class RayScene {
     /// Makes the surfaces of what update() was given; they live as long as its casters.
     void make_surfaces(const ResolvedSettings& resolved);
     const HitSurface& surface(int index) const;
+    int surface_count() const;
+    /// Another one each time that surfaces are made.
+    uint64_t surfaces_generation() const { return surfaces_generation_; }
+    /// The faces of a surface whose material emits; none of surfaces with holes, or that light passes.
+    FaceRange emissive_faces(int surface) const;
+    /// The corners of a face, relative to centre(), in unit().
+    std::array<Vec3, 3> triangle(int surface, int face) const;
 
     bool empty() const { return scene_ == nullptr; }
     const Vec3d& centre() const { return centre_; }
@@ -82,7 +95,7 @@ class RayScene {
 
     std::unique_ptr<Scene> scene_;
     std::optional<RayGround> ground_;
-    uint64_t generation_ = 0;
+    uint64_t generation_ = 0, surfaces_generation_ = 1;
     Vec3d centre_{0, 0, 0};
     double unit_ = 1;
     float reach_ = 0;

@@ -21,6 +21,8 @@ class SkySampler {
 
     /// Whether directions are chosen at all: not of a sky that is as bright everywhere.
     bool is_sampled() const { return bright_.bright_part() > 0; }
+    /// Light that is found by such directions: the integral of their radiance, of the mean of the channels.
+    float brightness() const { return intensity_ * bright_.brightness(); }
     struct Sample {
         Vec3 direction;  ///< unit
         Vec3 radiance;

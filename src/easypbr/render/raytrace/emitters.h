@@ -1,0 +1,60 @@
+// Surfaces that shine, as lights that directions are chosen towards.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "easypbr/render/raytrace/ray_scene.h"
+
+namespace easypbr::render {
+
+/// The emissive triangles of a scene: opaque meshes whose material emits. Each is chosen by its share of
+/// their light. What emits and is not among them (discs, polygons of surfels, surfaces with holes) is found
+/// by chance alone.
+class Emitters {
+  public:
+    /// Keeps what it makes of a scene until its surfaces are made anew; the scene must outlive the other
+    /// calls.
+    void prepare(const RayScene& scene);
+
+    bool empty() const { return triangles_.empty(); }
+    /// Light that they send to a place that is as far away as the scene's radius, RGB's mean: the integral of
+    /// radiance over directions.
+    float brightness() const { return brightness_; }
+
+    struct Sample {
+        native::ElementHit hit;  ///< its footprint is not set
+        int surface = 0;         ///< for RayScene::surface()
+        Vec3 direction;          ///< unit
+        float distance = 0;      ///< in RayScene::unit()
+        float density = 0;       ///< per steradian; 0: seen from its edge
+    };
+    /// A point of a triangle by a point of the unit square. `from` in RayScene's frame. There must be one.
+    Sample sample(const Vec3& from, const Vec2& u) const;
+    /// Density of directions that sample() chooses for what a ray has met in one of them; 0 for other
+    /// surfaces.
+    float density(const RayHit& hit, const Vec3& direction) const;
+
+  private:
+    struct Triangle {
+        Vec3 corner, edge1, edge2;
+        int surface = 0, element = 0;
+        float weight = 0;  ///< chance per area
+    };
+    void add_surface(const RayScene& scene, int surface);
+
+    uint64_t generation_ = 0;
+    std::vector<Triangle> triangles_;
+    std::vector<float> ends_;  ///< CDF
+    /// The elements of a surface that emits, and where theirs begin in `chances_`.
+    struct Elements {
+        int first = 0, count = 0;
+        size_t at = 0;
+    };
+    std::vector<Elements> elements_;  ///< for each surface
+    std::vector<float> chances_;      ///< chance per area
+    float brightness_ = 0;
+};
+
+}  // namespace easypbr::render
