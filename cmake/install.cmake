@@ -42,3 +42,7 @@ install(FILES ${shell_pages}/easypbr DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-c
 install(FILES ${shell_pages}/_easypbr DESTINATION ${CMAKE_INSTALL_DATADIR}/zsh/site-functions COMPONENT program OPTIONAL)
 install(FILES ${shell_pages}/easypbr.fish DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT program
         OPTIONAL)
+
+# For file managers: how pictures of mesh files are made, and the types of files that are not known otherwise.
+install(FILES cmake/desktop/easypbr.thumbnailer DESTINATION ${CMAKE_INSTALL_DATADIR}/thumbnailers COMPONENT program)
+install(FILES cmake/desktop/easypbr.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mime/packages COMPONENT program)

@@ -48,6 +48,8 @@ def test_packages_hold_what_their_names_say(packages):
     files = {name: contents(path) for name, path in packages.items()}
     assert [name for name in PACKAGES if any(f.endswith("/bin/easypbr") for f in files[name])] == ["easypbr"]
     assert any(f.endswith("/man1/easypbr.1") for f in files["easypbr"])
+    assert "./usr/share/thumbnailers/easypbr.thumbnailer" in files["easypbr"]
+    assert "./usr/share/mime/packages/easypbr.xml" in files["easypbr"]
     assert any(re.search(r"/libeasypbr\.so\.\d", f) for f in files["libeasypbr"])
     assert not any(f.endswith(("/libeasypbr.so", ".h")) for f in files["libeasypbr"])
     headers = {f.split("/include/", 1)[1] for f in files["libeasypbr-dev"] if f.endswith(".h")}

@@ -118,6 +118,7 @@ void add_commands(CLI::App& app, Job& job) {
     add_doctor(app, job);
     add_view(app, job);
     add_serve(app, job);
+    add_thumbnail(app, job);
     add_dataset(app, job);
     add_cache(app, job);
     add_completion(app, job);

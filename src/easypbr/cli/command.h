@@ -32,6 +32,7 @@ void add_compare(CLI::App& app, Job& job);
 void add_view(CLI::App& app, Job& job);
 void add_serve(CLI::App& app, Job& job);
 void add_demo(CLI::App& app, Job& job);
+void add_thumbnail(CLI::App& app, Job& job);
 void add_dataset(CLI::App& app, Job& job);
 void add_cache(CLI::App& app, Job& job);
 void add_completion(CLI::App& app, Job& job);
