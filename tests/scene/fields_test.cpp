@@ -160,6 +160,10 @@ TEST(Fields, ReadCommonSpellings) {
     EXPECT_FALSE(settings.shading.multiple_scattering);
     set_from_text(settings, "tonemap.operator", "agx");
     EXPECT_EQ(settings.tonemap.tone_operator, ToneOperator::agx);
+    set_from_text(settings, "tonemap.operator", "ACES");
+    EXPECT_EQ(settings.tonemap.tone_operator, ToneOperator::aces);
+    set_from_text(settings, "camera.up", "+Z");
+    EXPECT_EQ(settings.camera.up, "+z");
     set_from_text(settings, "camera.position", "auto");
     EXPECT_FALSE(settings.camera.position.value());
     set_from_text(settings, "camera.position", "follow");

@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cfloat>
 #include <cmath>
 #include <map>
@@ -159,6 +160,16 @@ bool is_allowed(const FieldInfo& field, const Value::Data& data) {
     return false;
 }
 
+/// A choice in any case: F3D writes axes as +Z.
+std::string spelled_as_chosen(const FieldInfo& field, const std::string& text) {
+    const auto same_letter = [](unsigned char a, unsigned char b) {
+        return std::tolower(a) == std::tolower(b);
+    };
+    for (const std::string& choice : field.choices)
+        if (std::ranges::equal(choice, text, same_letter)) return choice;
+    return text;
+}
+
 }  // namespace
 
 const Field& field(std::string_view name) {
@@ -188,8 +199,11 @@ Value checked(const FieldInfo& field, const Value& value, std::string_view owner
         parsed.latched = value.latched;
         return parsed;
     }
-    if (!is_allowed(field, value.data)) reject(field, value, owner);
-    return value;
+    Value given = value;
+    if (auto* text = std::get_if<std::string>(&given.data); text && field.type == FieldType::choice)
+        *text = spelled_as_chosen(field, *text);
+    if (!is_allowed(field, given.data)) reject(field, value, owner);
+    return given;
 }
 
 void set(Settings& settings, std::string_view name, const Value& value) {
