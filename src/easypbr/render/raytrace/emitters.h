@@ -10,8 +10,8 @@
 namespace easypbr::render {
 
 /// The emissive triangles of a scene: opaque meshes whose material emits. Each is chosen by its share of
-/// their light. What emits and is not among them (discs, polygons of surfels, surfaces with holes) is found
-/// by chance alone.
+/// their light. What emits and is not among them (discs and polygons around vertices, surfaces with holes) is
+/// found by chance alone.
 class Emitters {
   public:
     /// Keeps what it makes of a scene until its surfaces are made anew; the scene must outlive the other
