@@ -10,7 +10,7 @@ import pytest
 import png
 from binary import BINARY
 
-COMMANDS = "render demo info convert compare doctor view serve dataset cache completion man".split()
+COMMANDS = "render demo info convert compare doctor view serve thumbnail dataset cache completion man".split()
 
 
 @pytest.fixture(scope="module")

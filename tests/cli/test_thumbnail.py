@@ -68,7 +68,7 @@ def test_the_thumbnailer_calls_the_command(environment, sphere, tmp_path):
 def test_types_of_files_are_all_known():
     """Those of the thumbnailer are ours or stand in shared-mime-info 2.2."""
     tree = xml.etree.ElementTree.parse(DESKTOP / "easypbr.xml")
-    own = {node.get("type") for node in tree.iter("{*}mime-type")}
+    own = {node.get("type") for node in tree.findall("{*}mime-type")}
     types = set(re.search(r"MimeType=(.*);", (DESKTOP / "easypbr.thumbnailer").read_text())[1].split(";"))
     assert types - own == {"model/gltf-binary", "model/gltf+json", "model/obj", "model/stl"}
     assert own <= types
