@@ -86,7 +86,7 @@ TEST(AmbientOcclusion, FurnaceHoldsOnAnOpenPlane) {
     }
 }
 
-/// Every texel leans by 45 degrees, to another side than its neighbours.
+/// A normal map whose texels are tilted by 45 degrees, neighbours in different directions.
 Texture steep_normals() {
     Image image(8, 8, 3, PixelType::u8);
     for (int i = 0; i < 64; ++i) {

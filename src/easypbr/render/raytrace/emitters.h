@@ -1,8 +1,7 @@
-// Surfaces that shine, as lights that directions are chosen towards.
+// Emissive triangles as light sources of next-event estimation.
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "easypbr/render/raytrace/ray_scene.h"

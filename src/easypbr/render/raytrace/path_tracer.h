@@ -32,8 +32,6 @@ class PathTracer {
     /// The light of surfaces that catch shadows, from lights and sky alone, added by the paths' places.
     void trace_caught(const PathBatch& batch, std::vector<CaughtLight>& light) const;
 
-    /// Where rays start that leave a place (RayScene's frame) of a surface: beyond what its roundings might
-    /// meet again.
     /// Where rays start that leave the place of a path: back along the path too, so that it is on the right
     /// side of other surfaces that meet this one there.
     Vec3 start_of(const PathBatch& batch, size_t path) const;
