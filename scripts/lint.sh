@@ -14,6 +14,9 @@ cmake --preset release -B "$build" -DCMAKE_UNITY_BUILD_BATCH_SIZE=32 -DCMAKE_DIS
     -DEASYPBR_BUILD_TESTS=OFF -DPython_EXECUTABLE="$PWD/.venv/bin/python" >"$log" 2>&1 || { cat "$log"; exit 1; }
 ninja -C "$build" -j "$jobs" generated/easypbr_shaders.inc generated/easypbr_dfg.inc generated/easypbr_page.inc generated/easypbr_offline.inc generated/native/shaders.h >"$log" || { cat "$log"; exit 1; }
 
+# What only GCC knows.
+sed -i 's/ -fira-region=[a-z]*//' "$build/compile_commands.json"
+
 # A source that is in no unit, for want of an optional package say, would pass unseen.
 # Of the kernels, which are compiled for each instruction set, those of the widest one are checked.
 others='/(nanobind-static|bench_[a-z]+|easypbr_native_(v2|avx2))\.dir/'
@@ -30,7 +33,7 @@ declare -A seen
 set +e
 run-clang-tidy -quiet -j "$jobs" -p "$build" "^(?!.*$others)" 2>&1 |
     sed -u "s/\x1b\[[0-9;]*m//g; s|^$PWD/||; s/: error: \(.*\),-warnings-as-errors\]/: warning: \1]/" | tee "$log" |
-    grep --line-buffered -E '^[^ ]+:[0-9]+:[0-9]+: (warning|error): ' | while IFS= read -r line; do
+    grep --line-buffered -E '^([^ ]+:[0-9]+:[0-9]+: (warning|error)|error): ' | while IFS= read -r line; do
       [ -n "${seen[$line]:-}" ] || echo "$line"
       seen[$line]=1
     done
