@@ -4,19 +4,13 @@
 #include <cmath>
 #include <span>
 
+#include "easypbr/render/raytrace/cdf.h"
+
 namespace easypbr::render {
 namespace {
 
 /// Of the light: less is a rounding.
 constexpr double least_bright_part = 1e-3;
-
-/// The step of a CDF that holds a number; `within`: where in the step.
-int step_of(std::span<const float> ends, float at, float& within) {
-    const auto found = std::min(std::upper_bound(ends.begin(), ends.end(), at), ends.end() - 1);
-    const float begin = found == ends.begin() ? 0 : *(found - 1);
-    within = std::clamp((at - begin) / std::max(*found - begin, 1e-20f), 0.0f, 1.0f);
-    return int(found - ends.begin());
-}
 
 }  // namespace
 
@@ -68,8 +62,8 @@ float BrightSky::density(const Vec2& uv) const {
 BrightSky::Sample BrightSky::sample(const Vec2& u) const {
     float within_row = 0, within_pixel = 0;
     const auto w = size_t(size_.x());
-    const int y = step_of(row_ends_, u.y(), within_row);
-    const int x = step_of(std::span(pixel_ends_).subspan(size_t(y) * w, w), u.x(), within_pixel);
+    const int y = int(step_of(row_ends_, u.y(), within_row));
+    const int x = int(step_of(std::span(pixel_ends_).subspan(size_t(y) * w, w), u.x(), within_pixel));
     // Even over the sphere within a row.
     const double step = pi / size_.y(), top = std::cos(step * y), bottom = std::cos(step * (y + 1));
     const double v = std::acos(std::clamp(top + (bottom - top) * within_row, -1.0, 1.0)) / pi;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "easypbr/render/raytrace/cdf.h"
 #include "easypbr/render/raytrace/hit_surfaces.h"
 
 namespace easypbr::render {
@@ -70,10 +71,8 @@ void Emitters::add_surface(const RayScene& scene, int surface) {
 }
 
 Emitters::Sample Emitters::sample(const Vec3& from, const Vec2& u) const {
-    const auto found = std::min(std::upper_bound(ends_.begin(), ends_.end(), u.x()), ends_.end() - 1);
-    const float begin = found == ends_.begin() ? 0 : *(found - 1);
-    const float within = std::clamp((u.x() - begin) / std::max(*found - begin, 1e-20f), 0.0f, 1.0f);
-    const Triangle& triangle = triangles_[size_t(found - ends_.begin())];
+    float within = 0;
+    const Triangle& triangle = triangles_[step_of(ends_, u.x(), within)];
     const float root = std::sqrt(within);
     Sample sample;
     sample.hit.element = uint32_t(triangle.element);
