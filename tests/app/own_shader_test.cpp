@@ -103,6 +103,22 @@ TEST(OwnShader, KnowsWhereItIs) {
     EXPECT_NEAR(albedo.z(), 5 / std::sqrt(25 + 2 * off * off), 1.0 / 65535);
 }
 
+// Shaders are for pixels: a ball beside the square is lit by what the square's material emits.
+TEST(OwnShader, PathsMeetTheMaterialWithoutIt) {
+    Material green;
+    green.emissive = Vec3(0, 1, 0);
+    Session session =
+        square_session({"void surface(inout Surface s) { s.emission = vec3(s.uv, 0.0); }\n"}, green);
+    Mesh ball = make_sphere(0.5f, 32);
+    ball.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(1.5, 0, 0.9)));
+    session.scene().show(ball, "ball");
+    look_from(session, Vec3d(5, 0, 3), 10);
+    session.settings().path.enabled = true;
+    const Vec4 seen = middle_of(render_linear(session, 16));
+    EXPECT_GT(seen.y(), 0.01f);
+    EXPECT_LT(seen.x(), 1e-3f);
+}
+
 TEST(OwnShader, MovesWithTheMeshAndTurnsItsNormal) {
     Session session =
         square_session({"void surface(inout Surface s) {\n"

@@ -104,9 +104,12 @@ std::shared_ptr<const void> NativeMeshes::shader_of(const ResolvedSettings& reso
 std::unique_ptr<HitSurface> NativeMeshes::hit_surface(const ResolvedSettings& resolved,
                                                       const DrawItem& item) {
     const MeshFacts& known = facts_of(item.mesh());
+    // Without a shader of its own, which is for pixels.
+    DrawItem plain = item;
+    plain.material.shader = {};
     // What the footprint of a ray blurs is not blurred less for being jittered.
-    return std::make_unique<MeshHits>(item, known, shader_of(resolved, 1, item, known),
-                                      attributes_of(item, known));
+    return std::make_unique<MeshHits>(item, known, shader_of(resolved, 1, plain, known),
+                                      attributes_of(plain, known));
 }
 
 std::unique_ptr<MeshSurface> NativeMeshes::surface_of(const Frame& frame, const DrawItem& item,
