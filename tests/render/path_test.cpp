@@ -184,11 +184,12 @@ double quarter_factor(double a) {
 }
 
 // Lambert: albedo times radiance times the part of the hemisphere. 0.005: lamps that small look alike from
-// every point of theirs and the pixel's; by chance one path in 300 meets it.
+// every point of theirs and the pixel's; by chance one path in 300 meets it, 14 +- 4 of 4096, which count
+// about twice: 0.002.
 TEST(Paths, SmallEmissiveSquare) {
     Scene scene = floor_under_lamp(0.05f, emissive(40));
     app::Session session = path_session(scene, 3);
-    EXPECT_NEAR(seen_below(session, 64, {1.5, 0, 3}) / (0.5 * 40 * 4 * quarter_factor(0.05)), 1, 0.005);
+    EXPECT_NEAR(seen_below(session, 4096, {1.5, 0, 3}) / (0.5 * 40 * 4 * quarter_factor(0.05)), 1, 0.005);
 }
 
 // Of a large lamp one half shines. 0.015: the standard error of 4096 independent samples is
@@ -397,7 +398,7 @@ std::vector<double> tiles_apart(const Image& a, const Image& b) {
 
 // The noise that is asked for is the noise that there is. A normal deviate's mean distance is 0.8 deviations.
 // 30 %: green for luminance, the reference's own noise, a power for sRGB's curve, and tiles that differ
-// within.
+// within. Down to half: noise is estimated as that of independent samples, and Sobol's points are more even.
 TEST(Paths, EndOnceNoiseIsLow) {
     Scene scene;
     scene.show(ball(surface(0.5f, 0, 1)), "ball");
@@ -417,7 +418,9 @@ TEST(Paths, EndOnceNoiseIsLow) {
     EXPECT_GT(frames, 4);
     EXPECT_LT(frames, 100);
     const std::vector<double> distances = tiles_apart(picture, reference);
-    EXPECT_NEAR(distances[size_t(double(distances.size()) * 0.95)] / 0.8, asked, 0.3 * asked);
+    const double noise = distances[size_t(double(distances.size()) * 0.95)] / 0.8;
+    EXPECT_LT(noise, 1.3 * asked);
+    EXPECT_GT(noise, 0.5 * asked);
     EXPECT_TRUE(std::ranges::equal(session.render({std::nullopt, 400}).bytes(), picture.bytes()));
 }
 

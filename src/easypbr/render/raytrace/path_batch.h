@@ -50,7 +50,7 @@ struct PathBatch {
           albedo(rounded_up(capacity)),
           parameters(rounded_up(capacity)),
           throughput(rounded_up(capacity), Vec3::Ones()),
-          samplers(rounded_up(capacity), PathSampler(0, 0, 0)),
+          samplers(rounded_up(capacity)),
           index(rounded_up(capacity), 0) {}
 
     static size_t rounded_up(size_t count) {

@@ -78,7 +78,8 @@ void PathPass::Pixels::add(int x, int y, uint32_t index, PathBatch& batch) const
     batch.view.set(i, view);
     batch.albedo.set(i, Vec3(color[0], color[1], color[2]) / 65535.0f);
     batch.parameters.set(i, Vec2(m[0], m[1]) / 255.0f);
-    batch.samplers[i] = PathSampler(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(frame.sample_index));
+    batch.samplers[i] = PathSampler(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(frame.sample_index),
+                                    uint32_t(frame.sample_count));
     batch.index[i] = index;
 }
 

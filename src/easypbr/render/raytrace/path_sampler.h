@@ -1,7 +1,9 @@
 // Random numbers of paths: points of Sobol's sequence, scrambled by hashes.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <cstdint>
 
 #include "easypbr/render/raytrace/ray_random.h"
@@ -42,13 +44,32 @@ inline const std::array<std::array<uint32_t, 256>, 4>& sobol_table() {
     return table;
 }
 
-/// Numbers for the paths of a pixel. Each pair of dimensions is a (0, 2)-sequence over the pixel's samples,
-/// whose order and digits are scrambled anew for each pair, pixel and depth.
+/// Spreads the lower 16 bits to the even places.
+inline uint32_t spread_bits(uint32_t x) {
+    x &= 0xffffu;
+    x = (x | x << 8) & 0x00ff00ffu;
+    x = (x | x << 4) & 0x0f0f0f0fu;
+    x = (x | x << 2) & 0x33333333u;
+    return (x | x << 1) & 0x55555555u;
+}
+
+/// Numbers for the paths of a pixel. Each pair of dimensions is one (0, 2)-sequence, whose order and digits
+/// are scrambled anew for each pair and depth. It goes through the pixels in Z-order, so that the samples of
+/// a pixel are stratified, and those of neighbours together as well: what is left of the noise is of high
+/// frequency, and filters away (Ahmed and Wonka 2020, "Screen-space blue-noise diffusion of Monte Carlo
+/// sampling error via hierarchical ordering of pixels").
 class PathSampler {
   public:
-    /// `pixel` is in the whole picture.
-    PathSampler(uint32_t x, uint32_t y, uint32_t sample)
-        : seed_(pcg_hash(x + pcg_hash(y))), sample_(sample) {}
+    PathSampler() = default;
+    /// The pixel is in the whole picture; `samples`: how many it gets at most.
+    PathSampler(uint32_t x, uint32_t y, uint32_t sample, uint32_t samples) {
+        const auto bits = uint32_t(std::bit_width(std::max(samples, 1u) - 1));
+        // As large a square of pixels as 32 bits allow; the next ones have other sequences.
+        const uint32_t side = (32 - std::min(bits, 16u)) / 2;
+        const uint32_t inside = (1u << side) - 1;
+        sample_ = (spread_bits(x & inside) | spread_bits(y & inside) << 1) << bits | sample;
+        seed_ = pcg_hash((x >> side) + pcg_hash(y >> side));
+    }
 
     /// In [0, 1)^2, of dimension `pair` of the vertex `depth`.
     Vec2 pair(uint32_t depth, uint32_t pair) const {
@@ -62,7 +83,7 @@ class PathSampler {
     }
 
   private:
-    uint32_t seed_, sample_;
+    uint32_t seed_ = 0, sample_ = 0;
 };
 
 }  // namespace easypbr::render
