@@ -38,7 +38,7 @@ SHORT_NAMES = {
 #: Settings that render() has an argument of its own for.
 _ARGUMENTS = {
     "image.size": "size=(800, 600)",
-    "image.samples": "samples=16",
+    "image.samples": "samples=8",
     "environment.file": "environment='map.hdr'",
     "background.color": "background='#ffffff'",
     "background.mode": "background='transparent'",
@@ -114,7 +114,7 @@ def render(
     or a table of arrays, an object of trimesh, Open3D, PyVista or VTK, or a list of these.
 
     Returns height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`. `size` is (800, 600) and
-    `samples` 16 by default. `out` writes the image to a file too. `environment`: environment map, a path, an array or
+    `samples` 8 by default. `out` writes the image to a file too. `environment`: environment map, a path, an array or
     an Environment. `background`: a colour, an image file, "environment", "blur" or "transparent". `camera`: "front", "back",
     "left", "right", "top", "bottom", "iso", the name of a camera of the file, a Camera, a dict of settings.camera, a 4 x 4
     camera-to-world matrix with OpenGL axes, or (position, target, up). Points without a finite position are left out with a

@@ -152,7 +152,7 @@ def test_without_opengl_clouds_colour_bars_effects_and_lines_are_drawn(without_o
 
 def test_without_opengl_errors_name_the_pass_and_what_to_install(without_opengl, sphere, tmp_path):
     glass = ("--set", "material.opacity=0.5")
-    for name, settings in {"shadows": glass, "transparency": (*glass, "--set", "shadows.enabled=false"),
+    for name, settings in {"shadows": (*glass, "--mode", "raster"), "transparency": (*glass, "--set", "shadows.enabled=false"),
                            "materials": ("--set", "material.transmission=1"),
                            "geometry": ("--set", "material.clearcoat=1")}.items():
         done = without_opengl("render", sphere, "-o", tmp_path / "out.png", *settings)

@@ -30,7 +30,7 @@ std::string message_of(const std::string& name, const std::string& text) {
 Value other_value(const Field& field) {
     const double low = std::max(field.min, -1e3), high = std::min(field.max, 1e3);
     // Two decimals, so that the double is the nearest to a short text, as those that come from floats are.
-    const double number = field.whole ? low + 7 : std::round((low + 0.37 * (high - low)) * 100) / 100;
+    const double number = field.whole ? low + 6 : std::round((low + 0.37 * (high - low)) * 100) / 100;
     switch (field.type) {
         case FieldType::boolean:
             return {!std::get<bool>(field.get(Settings{}).data)};

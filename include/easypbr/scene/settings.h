@@ -27,7 +27,7 @@ enum class ToneOperator { aces, reinhard, agx, neutral, none };
 /// Size and sampling of the image.
 struct ImageSettings {
     Vec2i size{800, 600};  ///< width and height in pixels, 1 to 65536
-    int samples = 16;      ///< jittered samples averaged per pixel, 1 to 65536
+    int samples = 8;       ///< jittered samples averaged per pixel, 1 to 65536
     float noise =
         0;  ///< path traced images end once their noise is below, 0 to 1 (white); 0: by samples alone
     float time_budget = 0;  ///< seconds after which an image takes no further sample; 0: unlimited

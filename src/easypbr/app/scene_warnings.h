@@ -15,7 +15,8 @@ namespace easypbr::app {
 class SceneWarnings {
   public:
     /// Logs what is new: a lens for an orthographic camera; a style that needs normals for a mesh without any,
-    /// which is drawn as points; a material with a shader that has no faces to act on.
+    /// which is drawn as points; a material with a shader that has no faces to act on; paths that are asked for
+    /// where a material has extensions of glTF.
     void check(const SceneSnapshot& scene, const Settings& settings, const ResolvedSettings& resolved);
 
   private:
@@ -24,7 +25,7 @@ class SceneWarnings {
         bool told = false;
         void tell(const std::string& text);
     };
-    Once lens_, normals_, shaders_;
+    Once lens_, normals_, shaders_, paths_;
 };
 
 }  // namespace easypbr::app

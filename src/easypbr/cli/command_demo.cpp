@@ -17,7 +17,7 @@ namespace {
 
 struct DemoOptions {
     std::string output = "demo.png", size = "1280x720";
-    int samples = 8;  // Seconds without a GPU; rays, so that metal mirrors its floor, take minutes.
+    int samples = 8;
 };
 
 void declare_demo(CLI::App& command, DemoOptions& options) {
@@ -25,7 +25,7 @@ void declare_demo(CLI::App& command, DemoOptions& options) {
     command.add_option("--size,--resolution", options.size, "Width and height in pixels")->option_text("WxH");
     command
         .add_option("--samples", options.samples,
-                    "Number of jittered samples averaged per pixel; ray tracing is used from 32 on")
+                    "Number of jittered samples averaged per pixel")
         ->option_text("N")
         ->capture_default_str();
 }

@@ -19,6 +19,7 @@ struct ResolvedSettings {
     bool traces_rays = false;           ///< rays replace ambient occlusion, see RaySettings
     bool traces_single_frames = false;  ///< in a frame that stands for one sample too: the user asks for rays
     bool traces_paths = false;          ///< paths are traced, see PathSettings
+    bool asks_for_paths = false;        ///< the user: in single frames too, and scene-linear pictures stay noisy
     Camera camera;
     std::vector<ResolvedLight> lights;         ///< enabled lights of the scene, then key, fill, rim and sun
     std::map<std::string, float> light_radii;  ///< those inferred for lights of the scene, by name

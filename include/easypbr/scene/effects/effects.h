@@ -15,8 +15,8 @@
 #define EASYPBR_EFFECTS(EFFECT)                                  \
     EFFECT(ground, BasicGroundSettings<MaybeAuto>)               \
     EFFECT(ssao, BasicSsaoSettings<MaybeAuto>)                   \
-    EFFECT(rays, BasicRaySettings<MaybeAuto>)                    \
     EFFECT(path, BasicPathSettings<MaybeAuto>)                   \
+    EFFECT(rays, BasicRaySettings<MaybeAuto>)                    \
     EFFECT(bloom, BasicBloomSettings<MaybeAuto>)                 \
     EFFECT(depth_of_field, BasicDepthOfFieldSettings<MaybeAuto>) \
     EFFECT(motion_blur, MotionBlurSettings)                      \

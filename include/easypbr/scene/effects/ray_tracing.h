@@ -8,14 +8,14 @@ namespace easypbr {
 /// Sky visibility and indirect light by ray tracing on the CPU, in place of ambient occlusion.
 template <template <class> class MaybeAuto>
 struct BasicRaySettings {
-    MaybeAuto<bool> enabled{};  ///< automatic: from 32 samples on, if ssao.enabled
+    MaybeAuto<bool> enabled{};  ///< automatic: from 32 samples on, if ssao.enabled and no paths are traced
     int count = 256;            ///< diffuse rays per pixel of an image, over all samples, 1 to 65536
 };
 using RaySettings = BasicRaySettings<Auto>;
 
 /// How the noise of path traced pictures is taken out: by Intel Open Image Denoise, by a filter of our own,
 /// or not. Best: by the first where it is there, else by the second; scene-linear pictures are left as they
-/// are.
+/// are where path.enabled was turned on.
 enum class Denoising { best, oidn, filter, off };
 
 /// Light by path tracing on the CPU, from the surfaces that the frame shows: all that lights, the environment
@@ -23,9 +23,11 @@ enum class Denoising { best, oidn, filter, off };
 /// samples converge to the solution of the rendering equation (Kajiya 1986).
 template <template <class> class MaybeAuto>
 struct BasicPathSettings {
-    MaybeAuto<bool> enabled{};  ///< automatic: off
-    int bounces = 8;            ///< surfaces that a path meets after the one that is seen, 0 to 64
-    float clamp = 10;           ///< most luminance that a path adds beyond direct light, 0: unlimited
+    /// On: single frames too. Automatic: images of several samples if ssao.enabled, but where ssao.enabled,
+    /// rays.enabled or shadows.enabled were set, or a material has extensions of glTF.
+    MaybeAuto<bool> enabled{};
+    int bounces = 8;   ///< surfaces that a path meets after the one that is seen, 0 to 64
+    float clamp = 10;  ///< most luminance that a path adds beyond direct light, 0: unlimited
     Denoising denoise = Denoising::best;
 };
 using PathSettings = BasicPathSettings<Auto>;

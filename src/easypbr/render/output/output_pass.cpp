@@ -233,8 +233,8 @@ float OutputPass::noise(const Frame& frame) const {
 
 Denoising OutputPass::denoising_of(const Frame& frame) const {
     const Denoising asked = frame.resolved->settings.path.denoise;
-    const bool is_reference = encoding_ == Encoding::scene_linear && asked == Denoising::best;
-    return is_reference ? Denoising::off : asked;
+    const bool is_reference = encoding_ == Encoding::scene_linear && frame.resolved->asks_for_paths;
+    return is_reference && asked == Denoising::best ? Denoising::off : asked;
 }
 
 void OutputPass::add_natively(const Frame& frame, const LitPicture& lit, const ShaderInputs& values) {

@@ -128,11 +128,12 @@ void Renderer::prepare(Picture& picture) {
         picture.holds_surfaces =
             options.samples == 1 && !all.has(shows_more) && !all.extensions() && !GroundPass::is_on(resolved);
     }
+    const bool traces_paths = resolved.traces_paths && (options.samples > 1 || resolved.asks_for_paths);
     picture.contents = {.ids = options.ids || picture.holds_surfaces,
                         // Layers are of the content, and are not lit.
                         .ground = GroundPass::is_on(resolved) && is_picture,
-                        .traced = (resolved.traces_rays || resolved.traces_paths) && !options.layers,
-                        .paths = resolved.traces_paths && is_picture && !picture.list.extensions(),
+                        .traced = (resolved.traces_rays || traces_paths) && !options.layers,
+                        .paths = traces_paths && is_picture && !picture.list.extensions(),
                         .layers = options.layers,
                         .custom = is_picture ? &custom_ : nullptr};
     picture.shot.averages_radiance = picture.contents.paths && options.samples > 1;
@@ -226,6 +227,7 @@ void Renderer::draw_exact() {
     if (averaged && has_layers) {
         FrameContents contents = picture.contents;
         contents.traced = picture.resolved.traces_single_frames && !contents.layers;
+        contents.paths = contents.paths && picture.resolved.asks_for_paths;
         lit = pipeline_.draw(frame, picture.list, picture.list, contents);
         lit.partly_covered |= picture.lit.partly_covered;
     }

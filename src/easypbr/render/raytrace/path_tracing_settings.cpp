@@ -1,4 +1,8 @@
 // The rows of the table for path tracing, and what is inferred.
+#include <algorithm>
+
+#include "easypbr/render/drawables/draw_list.h"
+#include "easypbr/render/frame/extensions.h"
 #include "easypbr/scene/effect_settings.h"
 #include "easypbr/scene/field_builder.h"
 
@@ -13,8 +17,9 @@ const std::vector<std::string>& enum_names<Denoising>() {
 void add_path(Table& table) {
     table.push_back(not_kept(make(
         "path.enabled", EASYPBR_AT(path.enabled),
-        "Enables path tracing on the CPU of accumulated images, in place of shadow maps, ambient occlusion "
-        "and the split sum; automatic: off.")));
+        "Enables path tracing on the CPU, in place of shadow maps, ambient occlusion and the split sum; "
+        "automatic: on in images of several samples if ssao.enabled, unless ssao.enabled, rays.enabled or "
+        "shadows.enabled is set, or a material has glTF extensions.")));
     table.push_back(make("path.bounces", EASYPBR_AT(path.bounces),
                          "Surfaces that a path meets after the one that is seen.", "", {0, 64}));
     table.push_back(
@@ -26,13 +31,35 @@ void add_path(Table& table) {
         "path.denoise", EASYPBR_AT(path.denoise),
         "Takes the noise out of path traced images: oidn by Intel Open Image Denoise, filter by a built-in "
         "edge-avoiding filter; best: oidn where it is installed, else filter, but not out of scene-linear "
-        "images."));
+        "images where path.enabled is on by choice."));
 }
 
+namespace {
+
+bool has_extensions(const SceneSnapshot& scene, const MaterialSettings& overrides) {
+    const auto is_extended = [&](const Material& material) {
+        return render::extensions_of(render::overridden(material, overrides, {})) != 0;
+    };
+    return is_extended({}) || std::ranges::any_of(scene.objects, [&](const SceneSnapshot::Object& object) {
+               return std::ranges::any_of(object.mesh->materials, is_extended);
+           });
+}
+
+/// Nobody asks for the effects that paths take the place of, nor for pictures without them.
+bool replaces_unasked(const Settings& settings) {
+    return settings.shadows.enabled && !settings.ssao.enabled.is_pinned() &&
+           !settings.rays.enabled.is_pinned();
+}
+
+}  // namespace
+
 void infer(PathSettings& path, const EffectContext& context) {
-    const bool single = path.enabled.value_or(false);
-    fill(path.enabled, false);
-    context.resolved.traces_paths = *path.enabled && (single || context.samples > 1);
+    const Settings& settings = context.settings;
+    context.resolved.asks_for_paths = path.enabled.is_pinned() && *path.enabled;
+    const bool extended = has_extensions(context.content.scene(), settings.material);
+    fill(path.enabled,
+         context.samples > 1 && *settings.ssao.enabled && replaces_unasked(settings) && !extended);
+    context.resolved.traces_paths = *path.enabled && !extended;
 }
 
 }  // namespace easypbr::detail
