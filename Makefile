@@ -3,7 +3,7 @@ PYTHON := .venv/bin/python
 BUILD := build
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 
-.PHONY: demo test library build setup setup-tests bench wheel test-wheel deb check-long check-notebook sanitize fuzz docs format lint clean
+.PHONY: demo test library build setup setup-tests bench bench-light wheel test-wheel deb check-long check-notebook sanitize fuzz docs format lint clean
 
 # Library, command line and Python module, without tests and benchmarks.
 library: setup
@@ -33,6 +33,11 @@ test: setup-tests build
 
 bench: build
 	scripts/bench.sh
+
+# CPU seconds that light takes, beside Mitsuba 3. Needs EASYPBR_TEST_DATA.
+bench-light: setup-tests library
+	@scripts/oracle.sh
+	.venv-oracle/bin/python bench/light.py
 
 # Wheels in dist/, for Python 3.10, 3.11, and 3.12 and later.
 wheel: setup

@@ -282,7 +282,7 @@ def shading() -> np.ndarray:
 
 def ambient_occlusion() -> np.ndarray:
     """Without, with, and the visibility."""
-    view = Viewer((290, 220), scene=on_floor(teapot("#d8d2c4", 0, 0.6)))
+    view = Viewer((290, 220), {"path": {"enabled": False}}, on_floor(teapot("#d8d2c4", 0, 0.6)))
     view.load_environment_map(np.full((16, 32, 3), 1.0, np.float32))
     visibility = view.layers(["ambient_occlusion"])["ambient_occlusion"]
     with_occlusion = view.render()
@@ -454,7 +454,7 @@ def camera_path() -> np.ndarray:
 
 def shadows() -> np.ndarray:
     """None, 3x3, soft in one frame, soft in 64."""
-    view = Viewer((220, 170), scene=on_floor(teapot("#d8d2c4", 0, 0.6)))
+    view = Viewer((220, 170), {"path": {"enabled": False}}, on_floor(teapot("#d8d2c4", 0, 0.6)))
     view.settings.environment.intensity = 0.4
     for name in ("fill", "rim"):
         view.lights[name].enabled = False

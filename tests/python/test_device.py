@@ -58,4 +58,4 @@ except easypbr.ContextError as error:
     done = subprocess.run([sys.executable, "-c", program], env=environment_without_opengl, capture_output=True, text=True,
                           timeout=120)
     assert done.returncode == 0, done.stderr
-    assert "shadows: this needs OpenGL" in done.stdout and "Install" in done.stdout
+    assert "transparency: this needs OpenGL" in done.stdout and "Install" in done.stdout

@@ -48,7 +48,11 @@ TEST(DefaultLight, WhatPathsReplaceIsDrawnWhenItIsAskedFor) {
         EXPECT_FALSE(traces_paths_with([&](Settings& s) { s.ssao.enabled = on; })) << on;
         EXPECT_FALSE(traces_paths_with([&](Settings& s) { s.rays.enabled = on; })) << on;
     }
+    EXPECT_FALSE(traces_paths_with([](Settings& s) { s.ssao.radius = 0.1f; }));
     EXPECT_FALSE(traces_paths_with([](Settings& s) { s.shadows.enabled = false; }));
+    EXPECT_FALSE(traces_paths_with([](Settings& s) { s.shadows.mode = ShadowMode::pcf; }));
+    EXPECT_TRUE(traces_paths_with([](Settings& s) { s.ssao.enabled = follow; }));
+    EXPECT_TRUE(traces_paths_with([](Settings& s) { s.shadows.mode = ShadowMode::soft; }));
     EXPECT_FALSE(traces_paths_with([](Settings& s) { s.path.enabled = false; }));
     EXPECT_TRUE(traces_paths_with([](Settings& s) { s.ssao.enabled = s.path.enabled = true; }));
     // A value that was inferred before is nobody's wish.

@@ -148,7 +148,7 @@ def test_an_exception_in_a_callback_is_shown_and_the_loop_goes_on(window, capsys
 
 def test_a_window_that_lives_beside_the_program(display):
     view = easypbr.show(easypbr.shapes.box(), block=False, size=(320, 240))
-    wait_until(lambda: view._handle.gui_state()["frames"] == 16)
+    wait_until(lambda: view._handle.gui_state()["frames"] == view.settings.image.samples)
     before = view.camera.position
     view.settings.camera.azimuth_deg = 80
     view.refit()

@@ -2,6 +2,7 @@
 // values. Both are defined in the effect's folder.
 #pragma once
 
+#include <string_view>
 #include <vector>
 
 #include "easypbr/scene/auto_parameters.h"
@@ -15,9 +16,13 @@ struct EffectContext {
     const Content& content;
     Vec2i size;                ///< of the picture
     int samples;               ///< of the picture
+    const Settings& given;     ///< by the user
     const Settings& settings;  ///< as far as they are inferred
     ResolvedSettings& resolved;
 };
+
+/// Whether the user gives a setting of a group ("ssao.") another value than its default.
+bool is_asked_for(const Settings& given, std::string_view group);
 
 #define EASYPBR_DECLARE(name, Type)             \
     void add_##name(std::vector<Field>& table); \

@@ -115,6 +115,15 @@ void require_representable(const SceneSnapshot& scene, const ResolvedSettings& r
 
 }  // namespace
 
+bool detail::is_asked_for(const Settings& given, std::string_view group) {
+    static const Settings defaults;
+    return std::ranges::any_of(fields(), [&](const Field& field) {
+        if (!field.name.starts_with(group)) return false;
+        const Value value = field.get(given);
+        return value.state == Value::State::given && value != field.get(defaults);
+    });
+}
+
 ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& given, Vec2i size,
                          std::optional<int> samples) {
     if (size.minCoeff() < 1 || size.maxCoeff() > max_image_side)
@@ -131,8 +140,8 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& given, Vec2
     resolve_exposure(content, settings, resolved);
     detail::fill(settings.annotation.legend, false);
     detail::fill(settings.annotation.colorbar, false);
-    const detail::EffectContext context{content, size, samples.value_or(settings.image.samples), settings,
-                                        resolved};
+    const detail::EffectContext context{content, size,     samples.value_or(settings.image.samples),
+                                        given,   settings, resolved};
 #define EASYPBR_INFER(name, Type) detail::infer(settings.name, context);
     EASYPBR_EFFECTS(EASYPBR_INFER)
 #undef EASYPBR_INFER

@@ -23,8 +23,8 @@ enum class Denoising { best, oidn, filter, off };
 /// samples converge to the solution of the rendering equation (Kajiya 1986).
 template <template <class> class MaybeAuto>
 struct BasicPathSettings {
-    /// On: single frames too. Automatic: images of several samples if ssao.enabled, but where ssao.enabled,
-    /// rays.enabled or shadows.enabled were set, or a material has extensions of glTF.
+    /// On: single frames too. Automatic: images of several samples if ssao.enabled, unless a setting of
+    /// ssao, rays or shadows is given or a material has extensions of glTF.
     MaybeAuto<bool> enabled{};
     int bounces = 8;   ///< surfaces that a path meets after the one that is seen, 0 to 64
     float clamp = 10;  ///< most luminance that a path adds beyond direct light, 0: unlimited

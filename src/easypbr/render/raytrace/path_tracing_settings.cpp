@@ -15,11 +15,11 @@ const std::vector<std::string>& enum_names<Denoising>() {
 }
 
 void add_path(Table& table) {
-    table.push_back(not_kept(make(
-        "path.enabled", EASYPBR_AT(path.enabled),
-        "Enables path tracing on the CPU, in place of shadow maps, ambient occlusion and the split sum; "
-        "automatic: on in images of several samples if ssao.enabled, unless ssao.enabled, rays.enabled or "
-        "shadows.enabled is set, or a material has glTF extensions.")));
+    table.push_back(not_kept(
+        make("path.enabled", EASYPBR_AT(path.enabled),
+             "Enables path tracing on the CPU, in place of shadow maps, ambient occlusion and the split sum; "
+             "automatic: on in images of several samples if ssao.enabled, unless a setting of ssao, rays or "
+             "shadows is given, or a material has glTF extensions.")));
     table.push_back(make("path.bounces", EASYPBR_AT(path.bounces),
                          "Surfaces that a path meets after the one that is seen.", "", {0, 64}));
     table.push_back(
@@ -45,10 +45,9 @@ bool has_extensions(const SceneSnapshot& scene, const MaterialSettings& override
            });
 }
 
-/// Nobody asks for the effects that paths take the place of, nor for pictures without them.
-bool replaces_unasked(const Settings& settings) {
-    return settings.shadows.enabled && !settings.ssao.enabled.is_pinned() &&
-           !settings.rays.enabled.is_pinned();
+/// Somebody asks for effects that paths take the place of, or for pictures without them.
+bool asks_for_raster(const Settings& given) {
+    return is_asked_for(given, "ssao.") || is_asked_for(given, "rays.") || is_asked_for(given, "shadows.");
 }
 
 }  // namespace
@@ -58,7 +57,7 @@ void infer(PathSettings& path, const EffectContext& context) {
     context.resolved.asks_for_paths = path.enabled.is_pinned() && *path.enabled;
     const bool extended = has_extensions(context.content.scene(), settings.material);
     fill(path.enabled,
-         context.samples > 1 && *settings.ssao.enabled && replaces_unasked(settings) && !extended);
+         context.samples > 1 && *settings.ssao.enabled && !asks_for_raster(context.given) && !extended);
     context.resolved.traces_paths = *path.enabled && !extended;
 }
 

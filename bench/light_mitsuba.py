@@ -1,0 +1,83 @@
+"""The half of bench/light.py that Mitsuba 3 draws, in the environment of scripts/oracle.sh. usage: light_mitsuba.py FOLDER"""
+import os
+import pathlib
+import sys
+import time
+
+import mitsuba as mi
+import numpy as np
+
+import light_scenes
+
+SAMPLES = (1, 2, 4, 8, 16, 32, 64, 128, 256)
+REFERENCE_PASSES, REFERENCE_SAMPLES = 8, 128
+
+
+def bsdf(shape):
+    color = {"type": "rgb", "value": [float(c) for c in shape.color]}
+    if shape.kind == light_scenes.CONDUCTOR:
+        return {"type": "roughconductor", "material": "none", "distribution": "ggx", "alpha": shape.roughness ** 2,
+                "specular_reflectance": color}
+    if shape.kind == light_scenes.PLASTIC:
+        return {"type": "principled", "base_color": color, "roughness": shape.roughness, "specular": 0.5}
+    return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": color}}
+
+
+def mesh(shape):
+    properties = mi.Properties()
+    properties["bsdf"] = mi.load_dict(bsdf(shape))
+    if shape.emission:
+        properties["emitter"] = mi.load_dict({"type": "area", "radiance": {"type": "rgb", "value": shape.emission}})
+    made = mi.Mesh("shape", len(shape.V), len(shape.F), props=properties)
+    parameters = mi.traverse(made)
+    parameters["vertex_positions"] = np.ascontiguousarray(shape.V, np.float32).ravel()
+    parameters["faces"] = np.ascontiguousarray(shape.F, np.uint32).ravel()
+    parameters.update()
+    return made
+
+
+def scene_of(setup):
+    transform = mi.ScalarTransform4f()
+    scene = {
+        "type": "scene", "integrator": {"type": "path", "max_depth": 9, "hide_emitters": True},
+        "sensor": {
+            "type": "perspective", "fov": setup.fov_y_deg, "fov_axis": "y",
+            "to_world": transform.look_at(origin=list(setup.position), target=list(setup.target), up=[0, 1, 0]),
+            "film": {"type": "hdrfilm", "width": light_scenes.SIZE[0], "height": light_scenes.SIZE[1],
+                     "pixel_format": "rgba", "rfilter": {"type": "box"}},
+            "sampler": {"type": "multijitter"},
+        },
+    }
+    if setup.sky is not None:
+        scene["sky"] = {"type": "envmap", "bitmap": mi.Bitmap(setup.sky), "to_world": transform.rotate([0, 1, 0], 180)}
+    for i, (position, intensity) in enumerate(setup.lamps):
+        scene[f"lamp{i}"] = {"type": "point", "position": list(position), "intensity": {"type": "rgb", "value": intensity}}
+    for i, shape in enumerate(setup.shapes):
+        scene[f"shape{i}"] = mesh(shape)
+    return mi.load_dict(scene)
+
+
+def render(scene, samples, seed):
+    """The picture and the CPU seconds that it took."""
+    start = time.process_time()
+    picture = np.array(mi.render(scene, spp=samples, seed=seed))
+    return picture, time.process_time() - start
+
+
+def main():
+    folder = pathlib.Path(sys.argv[1])
+    variant = os.environ["MITSUBA_VARIANT"]
+    mi.set_variant(variant)
+    for name, setup in light_scenes.read_all(folder).items():
+        scene = scene_of(setup)
+        render(scene, 1, 0)  # compiles kernels
+        drawn = {(samples, "off"): render(scene, samples, 1) for samples in SAMPLES}
+        if variant.startswith("llvm"):
+            parts = [render(scene, REFERENCE_SAMPLES, 100 + i)[0] for i in range(REFERENCE_PASSES)]
+            drawn[0, "off"] = np.mean(parts, axis=0), 0
+        np.save(folder / f"{variant} {name}.npy", drawn)
+        print(f"... {variant}: {name}", file=sys.stderr, flush=True)
+
+
+if __name__ == "__main__":
+    main()

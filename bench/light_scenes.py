@@ -1,0 +1,95 @@
+"""The scenes of bench/light.py as numbers that both renderers build them from, and how pictures are compared."""
+import dataclasses
+import pathlib
+
+import numpy as np
+
+SIZE = (256, 192)
+#: Reflectances: of a diffuse surface; of a conductor of a roughness; of a dielectric of index 1.5 over a diffuse base.
+DIFFUSE, CONDUCTOR, PLASTIC = "diffuse", "conductor", "plastic"
+
+
+@dataclasses.dataclass
+class Shape:
+    V: np.ndarray
+    F: np.ndarray
+    kind: str = DIFFUSE
+    color: tuple = (0.6, 0.6, 0.6)
+    roughness: float = 1.0
+    emission: float = 0.0
+
+
+@dataclasses.dataclass
+class Setup:
+    shapes: list
+    position: tuple
+    target: tuple
+    fov_y_deg: float = 30.0
+    sky: np.ndarray | None = None  #: equirectangular radiance
+    lamps: list = dataclasses.field(default_factory=list)  #: position and intensity
+    exposure: float = 1.0
+
+
+def box(size, centre=(0.0, 0.0, 0.0)):
+    corners = np.array([[x, y, z] for x in (-1, 1) for y in (-1, 1) for z in (-1, 1)]) * np.array(size) / 2 + centre
+    faces = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6], [0, 2, 6], [0, 6, 4],
+             [1, 5, 7], [1, 7, 3]]
+    # Corners of their own for each face: flat.
+    return corners[np.array(faces).ravel()].astype(np.float32), np.arange(36, dtype=np.int32).reshape(-1, 3)
+
+
+def square(half, height):
+    V = np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [1, 0, -1]], np.float32) * half + np.array([0, height, 0], np.float32)
+    return V, np.array([[0, 1, 2], [0, 2, 3]], np.int32)
+
+
+def room():
+    """A closed box of coloured walls, a lamp of a tenth of its ceiling, and two blocks."""
+    wall = 0.05
+    shapes = [Shape(*box((2, wall, 2), (0, -1, 0)), color=(0.7, 0.7, 0.7)),
+              Shape(*box((2, wall, 2), (0, 1, 0)), color=(0.7, 0.7, 0.7)),
+              Shape(*box((2, 2, wall), (0, 0, -1)), color=(0.7, 0.7, 0.7)),
+              Shape(*box((wall, 2, 2), (-1, 0, 0)), color=(0.65, 0.06, 0.05)),
+              Shape(*box((wall, 2, 2), (1, 0, 0)), color=(0.12, 0.45, 0.09)),
+              Shape(*box((0.55, 1.1, 0.55), (-0.35, -0.43, -0.35)), color=(0.7, 0.7, 0.7)),
+              Shape(*box((0.5, 0.5, 0.5), (0.4, -0.72, 0.3)), color=(0.7, 0.7, 0.7)),
+              Shape(*box((0.4, 0.02, 0.4), (0, 0.96, 0)), color=(0.0, 0.0, 0.0), emission=12.0)]
+    return Setup(shapes, (0, 0, 4.6), (0, 0, 0), 28)
+
+
+def pit(sky):
+    """A box that is open above and in front."""
+    shapes = [Shape(*box((2, 0.1, 2), (0, -0.05, 0)), color=(0.7, 0.7, 0.7)),
+              Shape(*box((2, 1.3, 0.1), (0, 0.65, -0.95)), color=(0.7, 0.7, 0.7)),
+              Shape(*box((0.1, 1.3, 1.8), (-0.95, 0.65, 0.05)), color=(0.7, 0.1, 0.1)),
+              Shape(*box((0.1, 1.3, 1.8), (0.95, 0.65, 0.05)), color=(0.1, 0.5, 0.1)),
+              Shape(*box((0.5, 0.5, 0.5), (0.1, 0.25, -0.1)))]
+    return Setup(shapes, (0, 0.9, 4.2), (0, 0.62, 0), 30, sky, exposure=2.0)
+
+
+def figures(V, F, sky):
+    """A figure of three materials on a ground under the sky, and under three lamps."""
+    V = (V - (V.min(0) + V.max(0)) / 2) / np.ptp(V, axis=0).max()
+    ground = Shape(*square(3, V[:, 1].min()), color=(0.5, 0.5, 0.5))
+    lamps = [((1.5, 2.0, 2.0), 6.0), ((-2.0, 1.0, 1.5), 2.0), ((0.5, 1.5, -2.0), 3.0)]
+
+    def of(figure, **more):
+        return Setup([figure, ground], (0.7, 0.5, 1.9), (0, -0.05, 0), 34, **more)
+
+    return {
+        "matt figure": of(Shape(V, F), sky=sky, exposure=2.5),
+        "gold figure": of(Shape(V, F, CONDUCTOR, (1.0, 0.77, 0.34), 0.2), sky=sky, exposure=2.5),
+        "plastic figure": of(Shape(V, F, PLASTIC, (0.1, 0.25, 0.6), 0.3), sky=sky, exposure=2.5),
+        "three lamps": of(Shape(V, F), lamps=lamps, exposure=1.5),
+    }
+
+
+def read_all(folder: pathlib.Path):
+    """What bench/light.py has saved."""
+    return np.load(folder / "setups.npy", allow_pickle=True).item()
+
+
+def displayed(radiance, exposure):
+    """sRGB in [0, 1] of linear radiance, height x width x 3."""
+    linear = np.clip(np.asarray(radiance, np.float32)[:, :, :3] * exposure, 0, 1)
+    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055).astype(np.float32)
