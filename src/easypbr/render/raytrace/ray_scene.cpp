@@ -41,9 +41,10 @@ RTCRay ray_of(const Vec3& from, const Vec3& direction, float farthest) {
 /// What a filter needs to know.
 struct Element {
     const DrawItem* item = nullptr;
-    int first = 0;      ///< element of the item
-    int triangles = 1;  ///< of each
-    int faces = 0;      ///< of a mesh; 0: the elements are no faces
+    int first = 0;                                ///< element of the item
+    int triangles = 1;                            ///< of each
+    int faces = 0;                                ///< of a mesh; 0: the elements are no faces
+    const std::vector<Vec3>* vertices = nullptr;  ///< of faces
 
     int of(unsigned triangle) const { return first + int(triangle) / triangles; }
 };
@@ -128,7 +129,7 @@ struct RayScene::Scene final : RayGeometry {
         for (size_t i = 0; i < F.size(); ++i)
             for (int c = 0; c < 3; ++c)
                 F[i][size_t(c)] = uint32_t(mesh.F(item.part.first_face + Eigen::Index(i), c));
-        attach(geometry, {&item, item.part.first_face, 1, int(F.size())});
+        attach(geometry, {&item, item.part.first_face, 1, int(F.size()), &V});
     }
 
     void add_discs(const DrawItem& item, double world_radius) override {
@@ -244,9 +245,8 @@ FaceRange RayScene::emissive_faces(int surface) const {
 }
 
 std::array<Vec3, 3> RayScene::triangle(int surface, int face) const {
-    const DrawItem& item = *scene_->elements[size_t(surface)]->item;
-    const auto& V = scene_->vertices.at(item.object);
-    const auto corner = [&](int c) { return V[size_t(item.mesh().F(face, c))]; };
+    const Element& element = *scene_->elements[size_t(surface)];
+    const auto corner = [&](int c) { return (*element.vertices)[size_t(element.item->mesh().F(face, c))]; };
     return {corner(0), corner(1), corner(2)};
 }
 
