@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
 """What light costs: CPU seconds until pictures are within a mean FLIP of 0.05 of their limit, beside Mitsuba 3 in the same run.
 
-usage: light.py --data FOLDER      FOLDER holds head.obj and env/monument_valley.hdr; `make bench-light` installs what it needs
+usage: light.py --data FOLDER [SCENE...]
+FOLDER holds head.obj and env/monument_valley.hdr. `make bench-light` installs what it needs.
 
-Six scenes of 256 x 192 pixels, paths of up to 8 reflections. Each renderer's pictures are compared with its own mean of 1024 samples:
+Six scenes of 256 x 192 pixels, paths of up to 8 reflections. Each renderer's pictures are compared with its own mean of 512 samples:
 what the two limits differ by, which is their materials, is a column of its own. Seconds are those of the process from the second
 picture on, so that neither loading nor compiling counts; of Mitsuba's variants scalar_rgb and llvm_ad_rgb the quicker one.
 """
@@ -71,9 +72,10 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     folder = os.environ.get("EASYPBR_TEST_DATA")
     parser.add_argument("--data", type=pathlib.Path, default=folder, required=not folder)
-    data = parser.parse_args().data
+    parser.add_argument("scenes", nargs="*", help="names of the table; all without any")
+    chosen = parser.parse_args()
     with tempfile.TemporaryDirectory() as work:
-        run(".venv", "light_easypbr.py", "--setups", work, data)
+        run(".venv", "light_easypbr.py", "--setups", work, chosen.data, *chosen.scenes)
         run(".venv", "light_easypbr.py", work)
         for variant in VARIANTS:
             run(".venv-oracle", "light_mitsuba.py", work, MITSUBA_VARIANT=variant)

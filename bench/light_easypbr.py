@@ -1,4 +1,4 @@
-"""The half of bench/light.py that EasyPBR draws. usage: light_easypbr.py --setups FOLDER DATA | FOLDER"""
+"""The half of bench/light.py that EasyPBR draws. usage: light_easypbr.py --setups FOLDER DATA [SCENE...] | FOLDER"""
 import pathlib
 import sys
 import time
@@ -13,12 +13,12 @@ SAMPLES = (1, 2, 4, 8, 16, 32, 64, 128, 256)
 DENOISED_SAMPLES = (2, 4, 8, 16, 32)
 
 
-def write_setups(folder, data):
+def write_setups(folder, data, names):
     sky = np.ascontiguousarray(easypbr.load_image(data / "env/monument_valley.hdr")[:, :, :3], np.float32)
     head = Mesh(data / "head.obj")
     setups = {"closed room": light_scenes.room(), "open box": light_scenes.pit(sky),
               **light_scenes.figures(np.asarray(head.V), np.asarray(head.F), sky)}
-    np.save(folder / "setups.npy", setups)
+    np.save(folder / "setups.npy", {name: setups[name] for name in names or setups})
 
 
 def view_of(setup):
@@ -57,13 +57,13 @@ def draw(setup):
     pictures = {(samples, "off"): drawn(samples, "off") for samples in SAMPLES}
     pictures |= {(samples, "filter"): drawn(samples, "filter") for samples in DENOISED_SAMPLES}
     view.settings.path.clamp = 0
-    pictures[0, "off"] = drawn(1024, "off")
+    pictures[0, "off"] = drawn(512, "off")
     return pictures
 
 
 def main():
     if sys.argv[1] == "--setups":
-        write_setups(pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]))
+        write_setups(pathlib.Path(sys.argv[2]), pathlib.Path(sys.argv[3]), sys.argv[4:])
         return
     folder = pathlib.Path(sys.argv[1])
     for name, setup in light_scenes.read_all(folder).items():

@@ -9,8 +9,8 @@ import numpy as np
 
 import light_scenes
 
-SAMPLES = (1, 2, 4, 8, 16, 32, 64, 128, 256)
-REFERENCE_PASSES, REFERENCE_SAMPLES = 8, 128
+SAMPLES = (1, 2, 4, 8, 16, 36, 64, 144, 256)  # as multijitter takes them
+REFERENCE_PASSES, REFERENCE_SAMPLES = 2, 256
 
 
 def bsdf(shape):

@@ -210,7 +210,7 @@ def materials() -> np.ndarray:
             mesh.T_parent_mesh = [[1, 0, 0, column], [0, 1, 0, -line], [0, 0, 1, 0], [0, 0, 0, 1]]
             scene.show(mesh, f"{line}-{column}")
     values = {"camera": {"azimuth_deg": 0, "elevation_deg": 0, "fov_y_deg": 12}}
-    return Viewer((700, 400), values, scene).render()
+    return Viewer((700, 400), values, scene).render(samples=64)
 
 
 def lights() -> np.ndarray:
@@ -308,8 +308,8 @@ def rays() -> np.ndarray:
     return row(pictures)
 
 
-def paths() -> np.ndarray:
-    """Path tracing with few samples, noisy and denoised, and with many: an open box under a sky."""
+def open_box(pot: Mesh) -> Viewer:
+    """A pot in a box that is open above and in front, under a sky."""
     scene = Scene()
     sides = {"floor": ((2, 0.04, 2), (0, 0, 0), "#d8d4cc"), "back": ((2, 1.4, 0.04), (0, 0.7, -1), "#d8d4cc"),
              "left": ((0.04, 1.4, 2), (-1, 0.7, 0), "#c03020"), "right": ((0.04, 1.4, 2), (1, 0.7, 0), "#3878c0")}
@@ -318,11 +318,29 @@ def paths() -> np.ndarray:
         side.material = Material(base_color=color, roughness=1)
         side.translate(place)
         scene.show(side, name)
-    pot = teapot("#e8e4da", 0, 0.3)
     pot.translate((0, 0.02, 0))
     scene.show(pot, "pot")
     view = Viewer((290, 220), {"camera": {"azimuth_deg": 0, "elevation_deg": 20}}, scene)
     view.load_environment_map(sky())
+    return view
+
+
+def modes() -> np.ndarray:
+    """Rasterised; path traced by default; with 256 samples. A matt pot, and one of metal."""
+    rows = []
+    for metallic, roughness in ((0, 0.6), (1, 0.15)):
+        view = open_box(teapot("#e8e4da", metallic, roughness))
+        pictures = []
+        for enabled, samples in ((False, 16), (True, 8), (True, 256)):
+            view.settings.path.enabled = enabled
+            pictures.append(view.render(samples=samples))
+        rows.append(row(pictures))
+    return np.vstack([rows[0], np.full((6, rows[0].shape[1], 3), 255, np.uint8), rows[1]])
+
+
+def paths() -> np.ndarray:
+    """Path tracing with few samples, noisy and denoised, and with many: an open box under a sky."""
+    view = open_box(teapot("#e8e4da", 0, 0.3))
     view.settings.path.enabled = True
     pictures = []
     for denoise, samples in (("off", 8), ("filter", 8), ("filter", 256)):
@@ -530,7 +548,7 @@ def outline() -> np.ndarray:
     return view.render()
 
 
-PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion, rays, paths,
+PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion, rays, modes, paths,
             bloom, outlines, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
             viewer_slices, viewer_path, viewer_animations, viewer_lights, viewer_own, segmentation, detection, own_shading,
             outline]
