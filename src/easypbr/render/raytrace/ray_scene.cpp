@@ -4,12 +4,16 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
+#include <thread>
+#include <utility>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/interrupt.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/render/raytrace/ray_random.h"
 #include "easypbr/render/raytrace/ray_surface.h"
@@ -62,6 +66,32 @@ void filter(const RTCFilterFunctionNArguments* args) {
     const float stops = opacity_at(*element.item, element.of(hit.primID), hit.u, hit.v);
     const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);
     if (stops < 1 && (stops <= 0 || hash_of(ray, hit.primID) >= stops)) args->valid[0] = 0;
+}
+
+/// Whether a tree is to be built on. Embree asks on all threads that build; only the one that has begun can
+/// be interrupted, and nothing may be thrown through Embree.
+struct Building {
+    std::thread::id owner = std::this_thread::get_id();
+    std::atomic<bool> stopped = false;
+
+    static bool goes_on(void* pointer, double) {
+        auto& self = *static_cast<Building*>(pointer);
+        if (std::this_thread::get_id() == self.owner) try {
+                check_interrupt();
+            } catch (const Interrupted&) {
+                self.stopped = true;
+            }
+        return !self.stopped;
+    }
+};
+
+/// Builds the tree.
+void commit(RTCScene scene) {
+    Building building;
+    rtcSetSceneProgressMonitorFunction(scene, Building::goes_on, &building);
+    rtcCommitScene(scene);
+    rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
+    if (building.stopped) throw Interrupted();
 }
 
 }  // namespace
@@ -211,13 +241,14 @@ void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t gen
     if (items.empty() || bounds.isEmpty() || !(bounds.diagonal().norm() > 0)) return;
     centre_ = bounds.center();
     unit_ = bounds.diagonal().norm() / 2;
-    scene_ = std::make_unique<Scene>(centre_, unit_);
+    auto made = std::make_unique<Scene>(centre_, unit_);  // kept once all is there: it can be interrupted
     for (const auto& [kind, item] : items) {
         if (item->kind == SurfaceKind::lit) reach_ = std::max(reach_, float(kind->reach(*item) / unit_));
-        kind->add_to(*scene_, *item);
-        scene_->kinds.resize(scene_->elements.size(), kind);
+        kind->add_to(*made, *item);
+        made->kinds.resize(made->elements.size(), kind);
     }
-    rtcCommitScene(scene_->scene);
+    commit(made->scene);
+    scene_ = std::move(made);
 }
 
 void RayScene::make_surfaces(const ResolvedSettings& resolved) {
