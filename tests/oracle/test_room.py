@@ -37,7 +37,7 @@ def pictures():
     scene.show(room, "room")
     view = Viewer(tuple(ROOM["size"]), {
         "camera": ROOM["camera"], "environment": {"enabled": False}, "shading": {"dielectric_f0": 0},
-        "background": {"mode": "transparent"}, "style": {"flat": True}, "path": {"enabled": False}}, scene)  # one reflection
+        "background": {"mode": "transparent"}, "style": {"flat": True}, "path": {"enabled": False}}, scene)  # direct light only
     for name in ("key", "fill", "rim"):
         view.lights[name].enabled = False
     for number, light in enumerate(ROOM["lights"]):
