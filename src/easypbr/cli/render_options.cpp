@@ -66,8 +66,8 @@ void declare_shorthands(CLI::App& command, RenderOptions& options) {
     command
         .add_option_function<std::string>(
             "--mode", keep_mode,
-            "How accumulated images are lit: raster, as the frames of the window, or path "
-            "tracing")
+            "How images are lit: raster, as frames that move, or path tracing, the "
+            "default of several samples")
         ->check(CLI::IsMember({"raster", "path"}));
 }
 

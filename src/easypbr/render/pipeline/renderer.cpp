@@ -133,7 +133,7 @@ void Renderer::prepare(Picture& picture) {
                         // Layers are of the content, and are not lit.
                         .ground = GroundPass::is_on(resolved) && is_picture,
                         .traced = (resolved.traces_rays || traces_paths) && !options.layers,
-                        .paths = traces_paths && is_picture && !picture.list.extensions(),
+                        .paths = traces_paths && is_picture,
                         .layers = options.layers,
                         .custom = is_picture ? &custom_ : nullptr};
     picture.shot.averages_radiance = picture.contents.paths && options.samples > 1;

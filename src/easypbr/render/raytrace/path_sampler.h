@@ -53,11 +53,10 @@ inline uint32_t spread_bits(uint32_t x) {
     return (x | x << 1) & 0x55555555u;
 }
 
-/// Numbers for the paths of a pixel. Each pair of dimensions is one (0, 2)-sequence, whose order and digits
-/// are scrambled anew for each pair and depth. It goes through the pixels in Z-order, so that the samples of
-/// a pixel are stratified, and those of neighbours together as well: what is left of the noise is of high
-/// frequency, and filters away (Ahmed and Wonka 2020, "Screen-space blue-noise diffusion of Monte Carlo
-/// sampling error via hierarchical ordering of pixels").
+/// Numbers for the paths of a pixel. Each pair of dimensions is a (0, 2)-sequence, scrambled anew for each
+/// pair and depth. It visits the pixels in Z-order. The samples of a pixel are stratified, and so are those
+/// of neighbouring pixels together: the error is distributed as blue noise (Ahmed and Wonka 2020,
+/// "Screen-space blue-noise diffusion of Monte Carlo sampling error via hierarchical ordering of pixels").
 class PathSampler {
   public:
     PathSampler() = default;
