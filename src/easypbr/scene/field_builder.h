@@ -205,14 +205,38 @@ struct Range {
     double min = -unlimited, max = unlimited;
 };
 
+/// Access by plain functions: what is compiled for a field then depends on its types alone.
+template <class Member, class Inferred>
+struct Place {
+    Member& (*of_settings)(Settings&);
+    const Member& (*of_const_settings)(const Settings&);
+    Inferred& (*of_inferred)(InferredSettings&);
+    const Inferred& (*of_const_inferred)(const InferredSettings&);
+
+    Member& operator()(Settings& settings) const { return of_settings(settings); }
+    const Member& operator()(const Settings& settings) const { return of_const_settings(settings); }
+    Inferred& operator()(InferredSettings& settings) const { return of_inferred(settings); }
+    const Inferred& operator()(const InferredSettings& settings) const { return of_const_inferred(settings); }
+};
+
+template <class Access>
+auto place_of(Access access) {
+    using Member = std::remove_cvref_t<decltype(access(std::declval<Settings&>()))>;
+    using Inferred = std::remove_cvref_t<decltype(access(std::declval<InferredSettings&>()))>;
+    if constexpr (std::is_empty_v<Access>)
+        return Place<Member, Inferred>{access, access, access, access};
+    else
+        return access;
+}
+
 /// Fills what the owner's type says of a field.
 template <class Owner, class Access>
-void make(FieldOf<Owner>& field, std::string name, Access access, std::string doc, std::string unit,
-          Range range) {
+void make(FieldOf<Owner>& field, std::string_view name, Access access, std::string_view doc,
+          std::string_view unit, Range range) {
     using Member = std::remove_cvref_t<decltype(access(std::declval<Owner&>()))>;
-    field.name = std::move(name);
-    field.doc = std::move(doc);
-    field.unit = std::move(unit);
+    field.name = name;
+    field.doc = doc;
+    field.unit = unit;
     describe<typename Unwrapped<Member>::type>(field);
     field.can_be_automatic = Unwrapped<Member>::is_auto;
     field.min = std::max(field.min, range.min);
@@ -221,20 +245,27 @@ void make(FieldOf<Owner>& field, std::string name, Access access, std::string do
     field.put = [access](Owner& owner, const Value& value) { from_value(value, access(owner)); };
 }
 
-template <class Access>
-Field make(std::string name, Access access, std::string doc, std::string unit = {}, Range range = {}) {
+/// The same for one of all kinds of access that have the same types.
+template <class Place>
+Field made(Place place, std::string_view name, std::string_view doc, std::string_view unit, Range range) {
     Field field;
-    make(field, std::move(name), access, std::move(doc), std::move(unit), range);
-    field.get_inferred = [access](const InferredSettings& settings) { return to_value(access(settings)); };
-    field.copy = [access, name = field.name](InferredSettings& to, const Settings& from) {
-        copy_value(name, access(from), access(to));
+    make(field, name, place, doc, unit, range);
+    field.get_inferred = [place](const InferredSettings& settings) { return to_value(place(settings)); };
+    field.copy = [place, name = field.name](InferredSettings& to, const Settings& from) {
+        copy_value(name, place(from), place(to));
     };
     return field;
 }
 
 template <class Access>
-Field color(std::string name, Access access, std::string doc) {
-    Field field = make(std::move(name), access, std::move(doc), "sRGB", {0, 1});
+Field make(std::string_view name, Access access, std::string_view doc, std::string_view unit = {},
+           Range range = {}) {
+    return made(place_of(access), name, doc, unit, range);
+}
+
+template <class Access>
+Field color(std::string_view name, Access access, std::string_view doc) {
+    Field field = make(name, access, doc, "sRGB", {0, 1});
     field.type = FieldType::color;
     return field;
 }
