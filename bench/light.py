@@ -2,9 +2,9 @@
 """What light costs: CPU seconds until pictures are within a mean FLIP of 0.05 of their limit, beside Mitsuba 3 in the same run.
 
 usage: light.py --data FOLDER [SCENE...]
-FOLDER holds head.obj and env/monument_valley.hdr. `make bench-light` installs what it needs.
+FOLDER holds head.obj, env/monument_valley.hdr and env/studio.hdr. `make bench-light` installs what it needs.
 
-Six scenes of 256 x 192 pixels, paths of up to 8 reflections. Each renderer's pictures are compared with its own mean of 512 samples:
+Twelve scenes of 256 x 192 pixels, paths of up to 8 reflections. Each renderer's pictures are compared with its own mean of 512 samples:
 what the two limits differ by, which is their materials, is a column of its own. Seconds are those of the process from the second
 picture on, so that neither loading nor compiling counts; of Mitsuba's variants scalar_rgb and llvm_ad_rgb the quicker one.
 """

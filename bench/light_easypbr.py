@@ -14,10 +14,11 @@ DENOISED_SAMPLES = (2, 4, 8, 16, 32)
 
 
 def write_setups(folder, data, names):
-    sky = np.ascontiguousarray(easypbr.load_image(data / "env/monument_valley.hdr")[:, :, :3], np.float32)
+    sky, studio = (np.ascontiguousarray(easypbr.load_image(data / f"env/{name}.hdr")[:, :, :3], np.float32)
+                   for name in ("monument_valley", "studio"))
     head = Mesh(data / "head.obj")
-    setups = {"closed room": light_scenes.room(), "open box": light_scenes.pit(sky),
-              **light_scenes.figures(np.asarray(head.V), np.asarray(head.F), sky)}
+    setups = {**light_scenes.rooms(), "open box": light_scenes.pit(sky), **light_scenes.balls(sky),
+              **light_scenes.figures(np.asarray(head.V), np.asarray(head.F), sky, studio)}
     np.save(folder / "setups.npy", {name: setups[name] for name in names or setups})
 
 
@@ -27,6 +28,9 @@ def view_of(setup):
         mesh = Mesh(shape.V, shape.F)
         mesh.material = Material(base_color=shape.color, metallic=float(shape.kind == light_scenes.CONDUCTOR),
                                  roughness=shape.roughness, emissive=(shape.emission,) * 3)
+        if shape.kind == light_scenes.GLASS:
+            mesh.material.transmission = mesh.material.thickness = 1.0
+            mesh.material.ior = 1.5
         mesh.style.flat = True  # as Mitsuba draws what has no normals
         scene.show(mesh, f"shape{i}")
     matt = all(shape.kind == light_scenes.DIFFUSE for shape in setup.shapes)

@@ -20,6 +20,9 @@ def bsdf(shape):
                 "specular_reflectance": color}
     if shape.kind == light_scenes.PLASTIC:
         return {"type": "principled", "base_color": color, "roughness": shape.roughness, "specular": 0.5}
+    if shape.kind == light_scenes.GLASS:
+        rough = {"type": "roughdielectric", "distribution": "ggx", "alpha": shape.roughness ** 2} if shape.roughness else {}
+        return {"type": "dielectric", "int_ior": 1.5, "ext_ior": 1.0, **rough}
     return {"type": "twosided", "bsdf": {"type": "diffuse", "reflectance": color}}
 
 

@@ -5,8 +5,8 @@ import pathlib
 import numpy as np
 
 SIZE = (256, 192)
-#: Reflectances: of a diffuse surface; of a conductor of a roughness; of a dielectric of index 1.5 over a diffuse base.
-DIFFUSE, CONDUCTOR, PLASTIC = "diffuse", "conductor", "plastic"
+#: Materials: a diffuse surface; a conductor of a roughness; a dielectric of index 1.5 over a diffuse base; one that transmits.
+DIFFUSE, CONDUCTOR, PLASTIC, GLASS = "diffuse", "conductor", "plastic", "glass"
 
 
 @dataclasses.dataclass
@@ -38,21 +38,33 @@ def box(size, centre=(0.0, 0.0, 0.0)):
     return corners[np.array(faces).ravel()].astype(np.float32), np.arange(36, dtype=np.int32).reshape(-1, 3)
 
 
+def ball(radius, centre=(0.0, 0.0, 0.0), columns=96):
+    """Of flat faces, as both renderers draw what has no normals."""
+    rows = columns // 2
+    polar, azimuth = np.meshgrid(np.linspace(0, np.pi, rows + 1), np.arange(columns) * 2 * np.pi / columns, indexing="ij")
+    V = np.stack([np.sin(polar) * np.sin(azimuth), np.cos(polar), np.sin(polar) * np.cos(azimuth)], -1).reshape(-1, 3)
+    row, column = np.divmod(np.arange(rows * columns), columns)
+    a, b = row * columns + column, row * columns + (column + 1) % columns
+    lower, upper = np.stack([a, a + columns, b + columns], -1), np.stack([a, b + columns, b], -1)
+    F = np.concatenate([lower[row < rows - 1], upper[row > 0]])
+    return (V * radius + centre).astype(np.float32), F.astype(np.int32)
+
+
 def square(half, height):
     V = np.array([[-1, 0, -1], [-1, 0, 1], [1, 0, 1], [1, 0, -1]], np.float32) * half + np.array([0, height, 0], np.float32)
     return V, np.array([[0, 1, 2], [0, 2, 3]], np.int32)
 
 
-def room():
-    """A closed box of coloured walls, a lamp of a tenth of its ceiling, and two blocks."""
+def room(tall=None, small=None):
+    """A closed box of coloured walls, a lamp of a tenth of its ceiling, and two blocks, or what stands in their place."""
     wall = 0.05
     shapes = [Shape(*box((2, wall, 2), (0, -1, 0)), color=(0.7, 0.7, 0.7)),
               Shape(*box((2, wall, 2), (0, 1, 0)), color=(0.7, 0.7, 0.7)),
               Shape(*box((2, 2, wall), (0, 0, -1)), color=(0.7, 0.7, 0.7)),
               Shape(*box((wall, 2, 2), (-1, 0, 0)), color=(0.65, 0.06, 0.05)),
               Shape(*box((wall, 2, 2), (1, 0, 0)), color=(0.12, 0.45, 0.09)),
-              Shape(*box((0.55, 1.1, 0.55), (-0.35, -0.43, -0.35)), color=(0.7, 0.7, 0.7)),
-              Shape(*box((0.5, 0.5, 0.5), (0.4, -0.72, 0.3)), color=(0.7, 0.7, 0.7)),
+              tall or Shape(*box((0.55, 1.1, 0.55), (-0.35, -0.43, -0.35)), color=(0.7, 0.7, 0.7)),
+              small or Shape(*box((0.5, 0.5, 0.5), (0.4, -0.72, 0.3)), color=(0.7, 0.7, 0.7)),
               Shape(*box((0.4, 0.02, 0.4), (0, 0.96, 0)), color=(0.0, 0.0, 0.0), emission=12.0)]
     return Setup(shapes, (0, 0, 4.6), (0, 0, 0), 28)
 
@@ -67,8 +79,25 @@ def pit(sky):
     return Setup(shapes, (0, 0.9, 4.2), (0, 0.62, 0), 30, sky, exposure=2.0)
 
 
-def figures(V, F, sky):
-    """A figure of three materials on a ground under the sky, and under three lamps."""
+def rooms():
+    gold = Shape(*box((0.55, 1.1, 0.55), (-0.35, -0.43, -0.35)), CONDUCTOR, (1.0, 0.77, 0.34), 0.15)
+    glass = Shape(*ball(0.3, (0.4, -0.67, 0.3)), GLASS, (1.0, 1.0, 1.0), 0.0)
+    return {"closed room": room(), "gold in a room": room(tall=gold), "glass in a room": room(small=glass)}
+
+
+def balls(sky):
+    """Of glass, on a ground under the sky."""
+    ground = Shape(*square(3, -0.5), color=(0.5, 0.5, 0.5))
+
+    def of(roughness):
+        glass = Shape(*ball(0.5), GLASS, (1.0, 1.0, 1.0), roughness)
+        return Setup([glass, ground], (0.7, 0.5, 1.9), (0, -0.05, 0), 34, sky, exposure=2.5)
+
+    return {"glass ball": of(0.0), "frosted ball": of(0.45)}
+
+
+def figures(V, F, sky, studio):
+    """A figure of three materials on a ground under two skies, and under three lamps."""
     V = (V - (V.min(0) + V.max(0)) / 2) / np.ptp(V, axis=0).max()
     ground = Shape(*square(3, V[:, 1].min()), color=(0.5, 0.5, 0.5))
     lamps = [((1.5, 2.0, 2.0), 6.0), ((-2.0, 1.0, 1.5), 2.0), ((0.5, 1.5, -2.0), 3.0)]
@@ -80,7 +109,9 @@ def figures(V, F, sky):
         "matt figure": of(Shape(V, F), sky=sky, exposure=2.5),
         "gold figure": of(Shape(V, F, CONDUCTOR, (1.0, 0.77, 0.34), 0.2), sky=sky, exposure=2.5),
         "plastic figure": of(Shape(V, F, PLASTIC, (0.1, 0.25, 0.6), 0.3), sky=sky, exposure=2.5),
+        "studio": of(Shape(V, F), sky=studio, exposure=1.0),
         "three lamps": of(Shape(V, F), lamps=lamps, exposure=1.5),
+        "gold, three lamps": of(Shape(V, F, CONDUCTOR, (1.0, 0.77, 0.34), 0.3), lamps=lamps, exposure=1.5),
     }
 
 

@@ -5,8 +5,8 @@ set(native_shaders lighting_surface background_environment display_output accumu
                    lighting_catcher ground_finish occlusion_normals display_surface exact_surface
                    bloom_blocks bloom_gather bloom_resample focus_halve focus_gather focus_compose
                    outline_edges outline_lines denoise_smooth)
-set(native_surface_shaders mesh_resolve)
-set(native_stream_shaders path_lamps path_scatter)
+set(native_surface_shaders mesh_resolve mesh_hit_extended)
+set(native_stream_shaders path_lamps path_scatter path_lamps_extended path_scatter_extended)
 set(native_line_shaders overlay_lines)
 set(native_folder ${PROJECT_BINARY_DIR}/generated/native)
 list(JOIN native_shaders ") X(" native_names)
@@ -18,7 +18,7 @@ file(GLOB shader_texts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/shaders/*.glsl ${
 add_custom_command(
   OUTPUT ${native_folder}/shader_uniforms.h ${native_folder}/shaders.h ${native_folder}/shader_streams.h
   COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/native_shaders.py ${PROJECT_SOURCE_DIR}/shaders
-          ${native_folder} --define DFG_SIZE=64 --define LIGHTS_PER_BLOCK=64 --define SHADOWS --define UV_TRANSFORMS=7
+          ${native_folder} --define DFG_SIZE=64 --define LIGHTS_PER_BLOCK=64 --define SHADOWS --define UV_TRANSFORMS=19
           --define NATIVE --define DEPTH_ONLY --without SHADOW_TINTS ${native_shaders} ${native_surface_shaders}
           ${native_line_shaders} ${native_stream_options}
   DEPENDS ${shader_texts} ${PROJECT_SOURCE_DIR}/scripts/native_shaders.py

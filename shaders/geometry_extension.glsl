@@ -44,41 +44,41 @@ uniform vec4 u_iridescence_thickness_channel;
 uniform sampler2D u_anisotropy_texture;
 
 // One channel of a data texture.
-#define ONE_CHANNEL(name, slot) dot(texture(u_##name##_texture, uv_of(slot), u_lod_bias), u_##name##_channel)
+float channel_of(sampler2D source, int slot, vec4 channel) { return dot(texel_of(source, slot), channel); }
 
 void read_layers(inout Extension e, Normals n) {
     e.clearcoat = u_coat.x;
     e.coat_roughness = u_coat.y;
     e.coat_normal = n.geometric;
-    if (has_clearcoat_texture) e.clearcoat *= ONE_CHANNEL(clearcoat, 7);
-    if (has_clearcoat_roughness_texture) e.coat_roughness *= ONE_CHANNEL(clearcoat_roughness, 8);
+    if (has_clearcoat_texture) e.clearcoat *= channel_of(u_clearcoat_texture, 7, u_clearcoat_channel);
+    if (has_clearcoat_roughness_texture) e.coat_roughness *= channel_of(u_clearcoat_roughness_texture, 8, u_clearcoat_roughness_channel);
     if (has_clearcoat_normal_texture)
-        e.coat_normal = mapped_normal(n, texture(u_clearcoat_normal_texture, uv_of(9), u_lod_bias).xyz, u_coat.z);
+        e.coat_normal = mapped_normal(n, texel_of(u_clearcoat_normal_texture, 9).xyz, u_coat.z);
     e.sheen_color = u_sheen.rgb;
     e.sheen_roughness = u_sheen.a;
-    if (has_sheen_color_texture) e.sheen_color *= texture(u_sheen_color_texture, uv_of(10), u_lod_bias).rgb;
-    if (has_sheen_roughness_texture) e.sheen_roughness *= ONE_CHANNEL(sheen_roughness, 11);
+    if (has_sheen_color_texture) e.sheen_color *= texel_of(u_sheen_color_texture, 10).rgb;
+    if (has_sheen_roughness_texture) e.sheen_roughness *= channel_of(u_sheen_roughness_texture, 11, u_sheen_roughness_channel);
     e.iridescence = u_film.x;
     e.film_ior = u_film.y;
     e.film_thickness = u_film.w;
-    if (has_iridescence_texture) e.iridescence *= ONE_CHANNEL(iridescence, 16);
+    if (has_iridescence_texture) e.iridescence *= channel_of(u_iridescence_texture, 16, u_iridescence_channel);
     if (has_iridescence_thickness_texture)
-        e.film_thickness = mix(u_film.z, u_film.w, ONE_CHANNEL(iridescence_thickness, 17));
+        e.film_thickness = mix(u_film.z, u_film.w, channel_of(u_iridescence_thickness_texture, 17, u_iridescence_thickness_channel));
 }
 
 void read_dielectric(inout Extension e) {
     vec3 f0 = u_specular.rgb;
     e.f90 = u_specular.a;
-    if (has_specular_texture) e.f90 *= ONE_CHANNEL(specular, 12);
-    if (has_specular_color_texture) f0 *= texture(u_specular_color_texture, uv_of(13), u_lod_bias).rgb;
+    if (has_specular_texture) e.f90 *= channel_of(u_specular_texture, 12, u_specular_channel);
+    if (has_specular_color_texture) f0 *= texel_of(u_specular_color_texture, 13).rgb;
     e.f0 = min(f0, 1.0) * e.f90;
     e.transmission = u_volume.x;
     e.thickness = u_volume.y;
     e.ior = u_volume.z;
-    if (has_transmission_texture) e.transmission *= ONE_CHANNEL(transmission, 14);
+    if (has_transmission_texture) e.transmission *= channel_of(u_transmission_texture, 14, u_transmission_channel);
     vec3 attenuation = u_attenuation;
     if (has_thickness_texture) {
-        float part = ONE_CHANNEL(thickness, 15);
+        float part = channel_of(u_thickness_texture, 15, u_thickness_channel);
         e.thickness *= part;
         attenuation *= part;
     }
@@ -89,19 +89,23 @@ void read_anisotropy(inout Extension e, Normals n) {
     e.anisotropy = u_anisotropy.x;
     vec2 direction = vec2(1.0, 0.0);
     if (has_anisotropy_texture) {
-        vec3 texel = texture(u_anisotropy_texture, uv_of(18), u_lod_bias).rgb;
+        vec3 texel = texel_of(u_anisotropy_texture, 18).rgb;
         direction = texel.rg * 2.0 - 1.0;
         e.anisotropy *= texel.b;
     }
-    direction = mat2(u_anisotropy.y, u_anisotropy.z, -u_anisotropy.z, u_anisotropy.y) * direction;
-    e.tangent = n.tangent * direction.x + n.bitangent * direction.y;
+    e.tangent = n.tangent * (u_anisotropy.y * direction.x - u_anisotropy.z * direction.y) +
+                n.bitangent * (u_anisotropy.z * direction.x + u_anisotropy.y * direction.y);
 }
 
-// Both halves of GBuffer::extension; `decoded` is the normal that a reader of the G-buffer will see.
-void write_extension(Normals n, vec3 decoded, out uvec4 first, out uvec4 second) {
+Extension read_extension(Normals n) {
     Extension e = plain_extension(n.geometric, vec3(0.0));
     read_layers(e, n);
     read_dielectric(e);
     read_anisotropy(e, n);
-    pack_extension(e, decoded, first, second);
+    return e;
+}
+
+// Both halves of GBuffer::extension; `decoded` is the normal that a reader of the G-buffer will see.
+void write_extension(Normals n, vec3 decoded, out uvec4 first, out uvec4 second) {
+    pack_extension(read_extension(n), decoded, first, second);
 }

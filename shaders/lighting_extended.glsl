@@ -9,8 +9,6 @@
 #feature IRIDESCENCE has_iridescence
 #feature ANISOTROPY has_anisotropy
 
-uniform usampler2D u_extension0;
-uniform usampler2D u_extension1;
 uniform sampler2D u_sheen_albedo;
 
 const vec3 coat_f0 = vec3(0.04);  // index of refraction 1.5
@@ -37,13 +35,8 @@ vec3 tangent_space(Surface s, vec3 direction, float cosine) {
     return vec3(dot(s.extension.tangent, direction), dot(cross(s.normal, s.extension.tangent), direction), cosine);
 }
 
-// Fills in what plain surfaces have too, and what each layer leaves of those below.
-void prepare(inout Surface s, vec3 albedo, float metallic, float kind) {
-    ivec2 pixel = ivec2(gl_FragCoord.xy);
-    if (is_extended(kind))
-        s.extension = unpack_extension(texelFetch(u_extension0, pixel, 0), texelFetch(u_extension1, pixel, 0), s.normal);
-    else
-        s.extension = plain_extension(s.normal, vec3(u_dielectric_f0));
+// Fills in what plain surfaces have too, and what each layer leaves of those below. The extension is known.
+void prepare_extended(inout Surface s, vec3 albedo, float metallic) {
     Extension e = s.extension;
     s.f0 = mix(e.f0, albedo, metallic);
     s.f90 = mix(vec3(e.f90), vec3(1.0), metallic);
@@ -82,15 +75,17 @@ void prepare(inout Surface s, vec3 albedo, float metallic, float kind) {
     }
 }
 
+// Facets turn nothing without refraction.
+float transmitted_roughness(Surface s) { return max(s.roughness * clamp(2.0 * s.extension.ior - 2.0, 0.0, 1.0), 0.045); }
+
 // A light on the other side: the specular lobe around the way straight through (KHR_materials_transmission).
 float transmitted_lobe(vec3 l, Surface s) {
     float n_dot_l = -dot(s.normal, l);
-    if (n_dot_l <= 0.0) return 0.0;
     vec3 mirrored = l + 2.0 * n_dot_l * s.normal;
-    // Without refraction facets turn nothing.
-    float roughness = max(s.roughness * clamp(2.0 * s.extension.ior - 2.0, 0.0, 1.0), 0.045);
+    float roughness = transmitted_roughness(s);
     float n_dot_h = clamp(dot(s.normal, normalize(mirrored + s.view)), 0.0, 1.0);
-    return n_dot_l * D_ggx(n_dot_h, roughness * roughness) * V_smith(s.n_dot_v, n_dot_l, roughness);
+    float lobe = n_dot_l * D_ggx(n_dot_h, roughness * roughness) * V_smith(s.n_dot_v, max(n_dot_l, 1e-5), roughness);
+    return n_dot_l > 0.0 ? lobe : 0.0;
 }
 
 // D V of the base's specular lobe.
@@ -101,26 +96,36 @@ float lobe_of(vec3 l, vec3 h, float n_dot_h, float n_dot_l, Surface s) {
            V_smith_anisotropic(tangent_space(s, s.view, s.n_dot_v), tangent_space(s, l, n_dot_l), alpha);
 }
 
-// Light from one direction into the view: the BRDF times the cosine.
-vec3 scattered(vec3 l, Surface s) {
+// Light from one direction into the view, below all layers: the BRDF times the cosine.
+vec3 scattered_by_base(vec3 l, vec3 h, float n_dot_l, Surface s) {
     Extension e = s.extension;
-    vec3 h = normalize(l + s.view);
-    float n_dot_l = clamp(dot(s.normal, l), 0.0, 1.0), n_dot_h = clamp(dot(s.normal, h), 0.0, 1.0);
-    float v_dot_h = clamp(dot(s.view, h), 0.0, 1.0), safe_n_dot_l = max(n_dot_l, 1e-5);
+    float n_dot_h = clamp(dot(s.normal, h), 0.0, 1.0), v_dot_h = clamp(dot(s.view, h), 0.0, 1.0);
     vec3 fresnel = F_schlick90(v_dot_h, s.f0, s.f90);
     vec3 compensated = s.f0;
     if (has_iridescence) {
-        if (e.iridescence > 0.0) fresnel = mix(fresnel, F_film(v_dot_h, e.film_ior, e.film_thickness, s.f0), e.iridescence);
+        fresnel = e.iridescence > 0.0 ? mix(fresnel, F_film(v_dot_h, e.film_ior, e.film_thickness, s.f0), e.iridescence) : fresnel;
         compensated = mix(compensated, s.film, e.iridescence);
     }
-    vec3 specular = lobe_of(l, h, n_dot_h, safe_n_dot_l, s) * fresnel;
+    vec3 specular = lobe_of(l, h, n_dot_h, max(n_dot_l, 1e-5), s) * fresnel;
     if (has_multiple_scattering) specular *= 1.0 + compensated * (1.0 / s.energy.e - 1.0);
-    vec3 result = n_dot_l * (s.diffuse / pi + specular);
-    if (has_transmission) result += s.extension.transmittance * s.through * transmitted_lobe(l, s);
+    return n_dot_l * (s.diffuse / pi + specular);
+}
+
+// What the sheen leaves of one direction's light.
+float sheen_keep(float n_dot_l, Surface s) {
+    Extension e = s.extension;
+    float albedo = min(sheen_albedo(n_dot_l, e.sheen_roughness), 1.0);
+    return min(s.sheen_keep, 1.0 - max_channel(e.sheen_color) * albedo);
+}
+
+// What sheen, which leaves `keep` of it, and varnish make of the base's light.
+vec3 under_layers(vec3 base, vec3 l, vec3 h, float n_dot_l, float keep, Surface s) {
+    Extension e = s.extension;
+    vec3 result = base;
+    float n_dot_h = clamp(dot(s.normal, h), 0.0, 1.0), v_dot_h = clamp(dot(s.view, h), 0.0, 1.0);
     if (has_sheen) {
-        float sheen = D_charlie(n_dot_h, e.sheen_roughness) * V_charlie(min(s.n_dot_v, 1.0), safe_n_dot_l, e.sheen_roughness);
-        float albedo = min(sheen_albedo(n_dot_l, e.sheen_roughness), 1.0);
-        float keep = min(s.sheen_keep, 1.0 - max_channel(e.sheen_color) * albedo);
+        float sheen =
+            D_charlie(n_dot_h, e.sheen_roughness) * V_charlie(min(s.n_dot_v, 1.0), max(n_dot_l, 1e-5), e.sheen_roughness);
         result = result * keep + e.sheen_color * (n_dot_l * sheen / max(s.sheen_albedo, 1.0));
     }
     if (has_clearcoat) {
@@ -132,4 +137,13 @@ vec3 scattered(vec3 l, Surface s) {
     return result;
 }
 
-#include "lighting_extended_sky.glsl"
+// The same with all layers.
+vec3 scattered(vec3 l, Surface s) {
+    vec3 h = normalize(l + s.view);
+    float n_dot_l = clamp(dot(s.normal, l), 0.0, 1.0);
+    vec3 base = scattered_by_base(l, h, n_dot_l, s);
+    if (has_transmission) base += s.extension.transmittance * s.through * transmitted_lobe(l, s);
+    float keep = 1.0;
+    if (has_sheen) keep = sheen_keep(n_dot_l, s);
+    return under_layers(base, l, h, n_dot_l, keep, s);
+}

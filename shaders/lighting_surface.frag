@@ -33,7 +33,7 @@ layout(location = 0) out vec4 o_radiance;
 
 // Each model has prepare(), scattered() and indirect().
 #ifdef EXTENDED  // Compiling the model that no one asks for takes as long as all else.
-#include "lighting_extended.glsl"
+#include "lighting_extended_surface.glsl"
 #else
 #include "lighting_plain.glsl"
 #endif

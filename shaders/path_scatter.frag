@@ -1,7 +1,7 @@
 // Where paths go on from a surface, and what it reflects of the light that arrives from another direction, of the sky or of
 // an emissive surface. Both are ways to find such light, and are combined by multiple importance sampling (Veach and
 // Guibas 1995, balance heuristic).
-#include "path_surface.glsl"
+#include "path_plain.glsl"
 
 in vec3 v_random;  // in [0, 1)
 in vec3 v_light_direction;

@@ -4,7 +4,6 @@
 #include <set>
 
 #include "easypbr/app/session.h"
-#include "easypbr/core/log.h"
 #include "easypbr/render/raytrace/path_sampler.h"
 #include "easypbr/scene/resolve.h"
 #include "render_test.h"
@@ -14,11 +13,9 @@ namespace {
 
 using render::PathSampler;
 
-Scene with_box(const Material& material = {}) {
-    Mesh box = make_box();
-    box.set_material(material);
+Scene with_box() {
     Scene scene;
-    scene.show(box, "box");
+    scene.show(make_box(), "box");
     return scene;
 }
 
@@ -63,29 +60,12 @@ TEST(DefaultLight, WhatPathsReplaceIsDrawnWhenItIsAskedFor) {
     EXPECT_FALSE(traces_paths(scene, latched, 1));
 }
 
-TEST(DefaultLight, ExtensionsAndUnlitPointsAreRasterised) {
-    Material varnished;
-    varnished.clearcoat = 1;
-    EXPECT_FALSE(traces_paths(with_box(varnished)));
-    EXPECT_FALSE(traces_paths_with([](Settings& s) { s.material.clearcoat = 1; }));
+TEST(DefaultLight, UnlitPointsAreRasterised) {
     Scene cloud;
     MeshData points;
     points.V = Array3f(Array3f::Dense::Random(50, 3));
     cloud.show(Mesh(std::move(points)), "cloud");
     EXPECT_FALSE(traces_paths(cloud));
-}
-
-TEST(DefaultLight, SaysWhatPathsCannotDraw) {
-    std::vector<std::string> warnings;
-    set_log_sink([&](LogLevel, std::string_view text) { warnings.emplace_back(text); });
-    app::Session session(with_box());
-    session.settings().material.clearcoat = 1;
-    session.settings().path.enabled = true;
-    session.render({Vec2i(32, 24), 2});
-    session.render({Vec2i(32, 24), 2});
-    set_log_sink({});
-    ASSERT_EQ(warnings.size(), 1u);
-    EXPECT_NE(warnings[0].find("path.enabled: "), std::string::npos) << warnings[0];
 }
 
 // With nothing set: under a white sky a room of matt walls, seen from within, is black.

@@ -25,12 +25,6 @@ std::string lens_text(const Settings& settings, const ResolvedSettings& resolved
     return "depth_of_field.enabled: an orthographic camera has no lens, so nothing is blurred";
 }
 
-std::string paths_text(const ResolvedSettings& resolved) {
-    if (!resolved.asks_for_paths || resolved.traces_paths) return {};
-    return "path.enabled: a material has extensions of glTF, which paths do not evaluate: images are "
-           "rasterised";
-}
-
 std::string surfels_text(const SceneSnapshot& scene, const Settings& settings) {
     const std::string name = first_name(scene, [&](const Object& object) {
         const DrawStyle style = resolve_style(*object.mesh, settings.style);
@@ -68,7 +62,6 @@ void SceneWarnings::check(const SceneSnapshot& scene, const Settings& settings,
     lens_.tell(lens_text(settings, resolved));
     normals_.tell(surfels_text(scene, settings));
     shaders_.tell(shaders_text(scene, settings));
-    paths_.tell(paths_text(resolved));
 }
 
 }  // namespace easypbr::app

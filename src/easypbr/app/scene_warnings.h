@@ -25,7 +25,7 @@ class SceneWarnings {
         bool told = false;
         void tell(const std::string& text);
     };
-    Once lens_, normals_, shaders_, paths_;
+    Once lens_, normals_, shaders_;
 };
 
 }  // namespace easypbr::app

@@ -7,6 +7,14 @@ namespace {
 
 #include "easypbr_dfg.inc"
 
+native::View view_of(std::span<const uint16_t> table) {
+    return {.data = std::as_bytes(table).data(),
+            .width = dfg_size,
+            .height = dfg_size,
+            .held_width = dfg_size,
+            .held_height = dfg_size};
+}
+
 }  // namespace
 
 std::span<const uint16_t> dfg_table(Brdf brdf) {
@@ -21,15 +29,15 @@ std::span<const uint16_t> dfg_table(Brdf brdf) {
 }
 
 native::View host_dfg(Brdf brdf) {
-    return {.data = std::as_bytes(dfg_table(brdf)).data(),
-            .width = dfg_size,
-            .height = dfg_size,
-            .held_width = dfg_size,
-            .held_height = dfg_size};
+    return view_of(dfg_table(brdf));
 }
 
 std::span<const uint16_t> sheen_albedo_table() {
     return sheen_albedo;
+}
+
+native::View host_sheen_albedo() {
+    return view_of(sheen_albedo_table());
 }
 
 }  // namespace easypbr::gpu

@@ -23,5 +23,7 @@ native::View host_dfg(Brdf brdf);
 /// What the sheen of KHR_materials_sheen with colour 1 reflects of a uniform environment (Estevez and Kulla
 /// 2017), at the same nodes, as halves.
 std::span<const uint16_t> sheen_albedo_table();
+/// The same for native shaders.
+native::View host_sheen_albedo();
 
 }  // namespace easypbr::gpu

@@ -109,6 +109,13 @@ struct ElementHit {
     float footprint = 0;   ///< width of the part of the surface that the ray stands for, world units
 };
 
+/// What glTF's material extensions add to surfaces that rays have met, as shaders/path_extended.glsl names
+/// it; an array for each component.
+struct HitExtensions {
+    float *dielectric[4] = {}, *coat[4] = {}, *sheen[4] = {}, *film[4] = {}, *tangent[4] = {};
+    float *volume[3] = {}, *transmittance[3] = {};
+};
+
 /// Surfaces that rays have met; an array for each component.
 struct HitSurfaces {
     float* normal[3] = {};  ///< world, interpolated and mapped, on the side that the ray comes from
@@ -117,6 +124,7 @@ struct HitSurfaces {
     float* parameters[2] = {};  ///< metallic, roughness
     float* emission[3] = {};    ///< radiance
     float* kind = nullptr;      ///< code of the surface's
+    HitExtensions extensions;   ///< of surfaces that have them
 };
 
 /// Evaluates the triangles' shader where rays have met them.
@@ -161,6 +169,7 @@ struct Kernels {
     ResolveTriangles resolve_triangles;
     AlphaOfTriangles alpha_of_triangles;
     ShadeHits shade_hits;
+    ShadeHits shade_extended_hits;  ///< of triangles whose shader is mesh_hit_extended
     DrawLines draw_lines;
     ShadeRows shade[shader_count];     ///< by Shader
     ShadeStream stream[stream_count];  ///< by Stream

@@ -220,6 +220,15 @@ void shade_hits(const VisibleTriangles& triangles, std::span<const ElementHit> h
     chosen_set().kernels->shade_hits(triangles, hits.data(), int(hits.size()), surfaces);
 }
 
+std::shared_ptr<const void> extended_hit_uniforms(const Inputs& inputs) {
+    return filled<mesh_hit_extended_uniforms>(inputs);
+}
+
+void shade_extended_hits(const VisibleTriangles& triangles, std::span<const ElementHit> hits,
+                         const HitSurfaces& surfaces) {
+    chosen_set().kernels->shade_extended_hits(triangles, hits.data(), int(hits.size()), surfaces);
+}
+
 std::shared_ptr<const void> stream_uniforms(Stream shader, const Inputs& inputs) {
 #define EASYPBR_CASE(name) \
     case Stream::name:     \

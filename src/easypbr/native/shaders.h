@@ -54,6 +54,13 @@ void alpha_of_triangles(const VisibleTriangles& triangles, std::span<const Visib
 void shade_hits(const VisibleTriangles& triangles, std::span<const ElementHit> hits,
                 const HitSurfaces& surfaces);
 
+/// The uniforms of mesh_hit_extended, for VisibleTriangles::shader. Throws Error when a value is not of the
+/// uniform's type.
+std::shared_ptr<const void> extended_hit_uniforms(const Inputs& inputs);
+/// shade_hits() with HitSurfaces::extensions, of triangles with these uniforms.
+void shade_extended_hits(const VisibleTriangles& triangles, std::span<const ElementHit> hits,
+                         const HitSurfaces& surfaces);
+
 /// The uniforms of a stream's shader. Throws Error when a value is not of the uniform's type.
 std::shared_ptr<const void> stream_uniforms(Stream shader, const Inputs& inputs);
 // Shade a stream by the shader of its name. On the calling thread.

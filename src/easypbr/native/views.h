@@ -128,6 +128,19 @@ using u_normal_texture = Texture;
 using u_occlusion_texture = Texture;
 using u_emissive_texture = Texture;
 using u_opacity_texture = Texture;
+using u_clearcoat_texture = Texture;
+using u_clearcoat_roughness_texture = Texture;
+using u_clearcoat_normal_texture = Texture;
+using u_sheen_color_texture = Texture;
+using u_sheen_roughness_texture = Texture;
+using u_specular_texture = Texture;
+using u_specular_color_texture = Texture;
+using u_transmission_texture = Texture;
+using u_thickness_texture = Texture;
+using u_iridescence_texture = Texture;
+using u_iridescence_thickness_texture = Texture;
+using u_anisotropy_texture = Texture;
+using u_sheen_albedo = R16fLinear;
 }  // namespace samplers
 
 /// Values that are the same for all pixels, as GLSL names their types.

@@ -318,6 +318,7 @@ extern const Kernels kernels;
 const Kernels kernels{resolve_triangles,
                       alpha_of_triangles,
                       shade_hits,
+                      shade_extended_hits,
                       draw_lines,
                       {EASYPBR_SHADERS(EASYPBR_ROWS)},
                       {EASYPBR_STREAMS(EASYPBR_ARRAYS)}};

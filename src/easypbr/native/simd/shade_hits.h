@@ -54,7 +54,8 @@ struct HitLanes {
 };
 
 /// Texture coordinates, which change over the footprint alike in all directions.
-INLINE void set_uv(mesh_resolve& s, const VisibleTriangles& t, const ElementHit* hits, const HitLanes& seen) {
+template <class Shader>
+INLINE void set_uv(Shader& s, const VisibleTriangles& t, const ElementHit* hits, const HitLanes& seen) {
     CornerValues<2> uv;
     seen.each_corner(
         t, hits, [&](int k, int c, size_t, size_t vertex) __attribute__((always_inline)) {
@@ -82,36 +83,85 @@ INLINE void store_components(float* const (&to)[3], int at, const vec3& v) {
     store_lanes(to[2], size_t(at), v.z);
 }
 
-inline void shade_hits(const VisibleTriangles& t, const ElementHit* hits, int count, const HitSurfaces& to) {
-    mesh_resolve s;
-    static_cast<mesh_resolve_uniforms&>(s) = *static_cast<const mesh_resolve_uniforms*>(t.shader);
+INLINE void store_components(float* const (&to)[4], int at, const vec4& v) {
+    store_lanes(to[0], size_t(at), v.x);
+    store_lanes(to[1], size_t(at), v.y);
+    store_lanes(to[2], size_t(at), v.z);
+    store_lanes(to[3], size_t(at), v.w);
+}
+
+/// Everything that the shader interpolates.
+template <class Shader>
+INLINE void set_inputs(Shader& s, const VisibleTriangles& t, const ElementHit* hits, const HitLanes& seen) {
+    s.gl_FrontFacing = dot(transformed(t.normal_from_mesh, cross(seen.edge1, seen.edge2)), seen.face) > 0.0f;
+    if (s.sees_by_faces) s.v_face = seen.face;
+    if (!s.is_flat) {
+        Corners normal;
+        seen.each_corner(
+            t, hits, [&](int k, int c, size_t, size_t vertex) __attribute__((always_inline)) {
+                normal.set(c, k, t.N + 3 * vertex);
+            });
+        const vec3 mean(seen.hit.mean(normal, 0), seen.hit.mean(normal, 1), seen.hit.mean(normal, 2));
+        s.v_normal = unit_or(transformed(t.normal_from_mesh, mean), seen.face);
+    }
+    if (s.has_uv) set_uv(s, t, hits, seen);
+    if (s.has_vertex_colors) set_color(s, t, hits, seen);
+    if (s.has_tangents) set_tangent(s, t, hits, seen);
+}
+
+INLINE void store_surface(mesh_resolve& s, const vec3& face, const HitSurfaces& to, int at) {
+    const vec3 color = s.base_color().xyz(), parameters = s.read_parameters();
+    const vec3 normal = s.read_normals().shading;
+    store_components(to.normal, at, select(dot(normal, face) < 0.0f, -normal, normal));
+    store_components(to.face, at, face);
+    store_components(to.albedo, at, color);
+    store_components(to.emission, at, s.emission_of(color));
+    store_lanes(to.parameters[0], size_t(at), parameters.x);
+    store_lanes(to.parameters[1], size_t(at), parameters.y);
+    store_lanes(to.kind, size_t(at), vfloat(s.u_emissive.w));
+}
+
+INLINE void store_surface(mesh_hit_extended& s, const vec3& face, const HitSurfaces& to, int at) {
+    s.main();
+    const auto towards = [&](const vec3& n) __attribute__((always_inline)) {
+        return select(dot(n, face) < 0.0f, -n, n);
+    };
+    store_components(to.normal, at, towards(s.o_normal));
+    store_components(to.face, at, face);
+    store_components(to.albedo, at, s.o_albedo);
+    store_components(to.emission, at, s.o_emission);
+    store_lanes(to.parameters[0], size_t(at), s.o_parameters.x);
+    store_lanes(to.parameters[1], size_t(at), s.o_parameters.y);
+    store_lanes(to.kind, size_t(at), vfloat(s.u_emissive.w));
+    const HitExtensions& e = to.extensions;
+    store_components(e.dielectric, at, s.o_dielectric);
+    store_components(e.coat, at, vec4(towards(s.o_coat.xyz()), s.o_coat.w));
+    store_components(e.sheen, at, s.o_sheen);
+    store_components(e.film, at, s.o_film);
+    store_components(e.tangent, at, s.o_tangent);
+    store_components(e.volume, at, s.o_volume);
+    store_components(e.transmittance, at, s.o_transmittance);
+}
+
+template <class Shader, class Uniforms>
+INLINE void shade_hits_by(const VisibleTriangles& t, const ElementHit* hits, int count,
+                          const HitSurfaces& to) {
+    Shader s;
+    static_cast<Uniforms&>(s) = *static_cast<const Uniforms*>(t.shader);
     for (int first = 0; first < count; first += lanes, hits += lanes) {
         const HitLanes seen(t, hits, count - first);
-        const vec3& face = seen.face;
-        s.gl_FrontFacing = dot(transformed(t.normal_from_mesh, cross(seen.edge1, seen.edge2)), face) > 0.0f;
-        if (s.sees_by_faces) s.v_face = face;
-        if (!s.is_flat) {
-            Corners normal;
-            seen.each_corner(
-                t, hits, [&](int k, int c, size_t, size_t vertex) __attribute__((always_inline)) {
-                    normal.set(c, k, t.N + 3 * vertex);
-                });
-            const vec3 mean(seen.hit.mean(normal, 0), seen.hit.mean(normal, 1), seen.hit.mean(normal, 2));
-            s.v_normal = unit_or(transformed(t.normal_from_mesh, mean), face);
-        }
-        if (s.has_uv) set_uv(s, t, hits, seen);
-        if (s.has_vertex_colors) set_color(s, t, hits, seen);
-        if (s.has_tangents) set_tangent(s, t, hits, seen);
-        const vec3 color = s.base_color().xyz(), parameters = s.read_parameters();
-        const vec3 normal = s.read_normals().shading;
-        store_components(to.normal, first, select(dot(normal, face) < 0.0f, -normal, normal));
-        store_components(to.face, first, face);
-        store_components(to.albedo, first, color);
-        store_components(to.emission, first, s.emission_of(color));
-        store_lanes(to.parameters[0], size_t(first), parameters.x);
-        store_lanes(to.parameters[1], size_t(first), parameters.y);
-        store_lanes(to.kind, size_t(first), vfloat(s.u_emissive.w));
+        set_inputs(s, t, hits, seen);
+        store_surface(s, seen.face, to, first);
     }
+}
+
+inline void shade_hits(const VisibleTriangles& t, const ElementHit* hits, int count, const HitSurfaces& to) {
+    shade_hits_by<mesh_resolve, mesh_resolve_uniforms>(t, hits, count, to);
+}
+
+inline void shade_extended_hits(const VisibleTriangles& t, const ElementHit* hits, int count,
+                                const HitSurfaces& to) {
+    shade_hits_by<mesh_hit_extended, mesh_hit_extended_uniforms>(t, hits, count, to);
 }
 
 }  // namespace easypbr::native::EASYPBR_ISA

@@ -39,8 +39,8 @@ INLINE void set_uv(mesh_resolve& s, const VisibleTriangles& t, const VisiblePixe
 }
 
 /// `places` is what the lanes stand for: pixels, or hits of rays.
-template <class Place, class Lanes>
-INLINE void set_color(mesh_resolve& s, const VisibleTriangles& t, const Place* places, const Lanes& seen) {
+template <class Shader, class Place, class Lanes>
+INLINE void set_color(Shader& s, const VisibleTriangles& t, const Place* places, const Lanes& seen) {
     CornerValues<4> color;
     seen.each_corner(
         t, places, [&](int k, int c, size_t, size_t vertex) __attribute__((always_inline)) {
@@ -50,8 +50,8 @@ INLINE void set_color(mesh_resolve& s, const VisibleTriangles& t, const Place* p
                      seen.hit.mean(color, 3));
 }
 
-template <class Place, class Lanes>
-INLINE void set_tangent(mesh_resolve& s, const VisibleTriangles& t, const Place* places, const Lanes& seen) {
+template <class Shader, class Place, class Lanes>
+INLINE void set_tangent(Shader& s, const VisibleTriangles& t, const Place* places, const Lanes& seen) {
     CornerValues<4> tangent;
     seen.each_corner(
         t, places, [&](int k, int c, size_t corner, size_t) __attribute__((always_inline)) {

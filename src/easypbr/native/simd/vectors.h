@@ -182,6 +182,8 @@ INLINE uvec3 floatBitsToUint(const vec3& a) {
 #define SQRT(c) sqrt(a.c)
 #define LOG2(c) log2(a.c)
 #define EXP2(c) exp2(a.c)
+#define EXP(c) exp(a.c)
+#define COS(c) cos(a.c)
 #define MIX(c) mix(a.c, b.c, t.c)
 #define SELECT(c) select(condition, a.c, b.c)
 #define UNARY(V, EACH, name, TERM) \
@@ -207,6 +209,8 @@ INLINE uvec3 floatBitsToUint(const vec3& a) {
     UNARY(V, EACH, sqrt, SQRT)                                 \
     UNARY(V, EACH, log2, LOG2)                                 \
     UNARY(V, EACH, exp2, EXP2)                                 \
+    UNARY(V, EACH, exp, EXP)                                   \
+    UNARY(V, EACH, cos, COS)                                   \
     BINARY(V, EACH, min, MIN)                                  \
     BINARY(V, EACH, max, MAX)                                  \
     BINARY(V, EACH, pow, POW)                                  \
@@ -243,6 +247,8 @@ VECTOR(vec4, EACH4)
 #undef UNARY
 #undef SELECT
 #undef MIX
+#undef COS
+#undef EXP
 #undef EXP2
 #undef LOG2
 #undef SQRT
@@ -295,6 +301,9 @@ INLINE vec3 reflect(const vec3& i, const vec3& n) {
 }
 INLINE vec3 cross(const vec3& a, const vec3& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+INLINE bvec3 lessThan(const vec3& a, const vec3& b) {
+    return {a.x < b.x, a.y < b.y, a.z < b.z};
 }
 INLINE bvec3 lessThanEqual(const vec3& a, const vec3& b) {
     return {a.x <= b.x, a.y <= b.y, a.z <= b.z};

@@ -135,6 +135,19 @@ ExtensionSet DrawList::extensions() const {
     return set;
 }
 
+DrawList DrawList::as_first_hits() const {
+    DrawList list = *this;
+    const auto meshes = list.items.find(DrawMode::mesh);
+    if (meshes == list.items.end()) return list;
+    for (DrawItem& item : meshes->second) {
+        // A shader of its own is for pixels; blended surfaces are mixed with what is behind them.
+        if (!item.extensions() || item.material.shader || item.alpha == AlphaMode::blend) continue;
+        item.layered = false;
+        item.kind = SurfaceKind::extended;
+    }
+    return list;
+}
+
 DrawList DrawList::as_surfaces() const {
     DrawList surfaces = *this;
     for (auto& [kind, of_kind] : surfaces.items)

@@ -100,6 +100,9 @@ struct DrawList {
     DrawList without_layers() const;
     /// Of all items together.
     ExtensionSet extensions() const;
+    /// The items where paths begin at them: what their extensions are, and what light passes them, is up to
+    /// the paths.
+    DrawList as_first_hits() const;
     /// All items as surfaces that hide what is behind them: what depth, ids and labels are of. A blended
     /// surface is one where its opacity is at least one half.
     DrawList as_surfaces() const;

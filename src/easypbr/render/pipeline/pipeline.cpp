@@ -63,7 +63,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     const DrawList& opaque = has_layers ? solid : list;
     const bool with_overlay = list.needs_overlay() || draws_overlay(frame, contents);
     const SurfaceOutputs outputs{.ids = contents.ids,
-                                 .extensions = contents.ids ? 0 : opaque.extensions(),
+                                 .extensions = contents.ids || contents.paths ? 0 : opaque.extensions(),
                                  .whole = contents.ground && native_shading_};
     if (with_overlay) targets_.add_overlay();
     if (outputs.extensions) targets_.add_extensions();

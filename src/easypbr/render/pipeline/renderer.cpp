@@ -145,6 +145,7 @@ void Renderer::prepare(Picture& picture) {
     // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
     const bool apart = options.samples > 1 && picture.with_exact;
     picture.averaged = apart ? picture.list.without_exact() : picture.list;
+    if (picture.contents.paths) picture.averaged = picture.averaged.as_first_hits();
     if (picture.contents.ids) pipeline_.targets().add_ids();
 }
 

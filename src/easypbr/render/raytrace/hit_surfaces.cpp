@@ -17,13 +17,15 @@ void put_ground(const RayGround& ground, const native::ElementHit& hit, size_t a
 
 }  // namespace
 
-HitSurfaces::HitSurfaces(size_t count)
+HitSurfaces::HitSurfaces(size_t count, bool with_extensions)
     : normal(PathBatch::rounded_up(count) + native::stream_alignment),
       face(normal.component[0].size()),
       albedo(face.component[0].size()),
       emission(face.component[0].size()),
       parameters(face.component[0].size()),
-      kind(face.component[0].size()) {}
+      kind(face.component[0].size()) {
+    if (with_extensions) extensions.emplace(face.component[0].size());
+}
 
 native::HitSurfaces HitSurfaces::from(size_t first) {
     native::HitSurfaces to;
@@ -37,12 +39,13 @@ native::HitSurfaces HitSurfaces::from(size_t first) {
     point(emission, to.emission);
     point(parameters, to.parameters);
     to.kind = kind.data() + first;
+    if (extensions) to.extensions = extensions->written_from(first);
     return to;
 }
 
 HitSurfaces evaluate(const RayScene& scene, std::span<const native::ElementHit> hits,
                      std::span<const int> surfaces) {
-    HitSurfaces found(hits.size());
+    HitSurfaces found(hits.size(), scene.extensions() != 0);
     // In this order: what a surface is padded with, the next one overwrites.
     for (size_t first = 0; first < hits.size();) {
         const int surface = surfaces[first];

@@ -10,13 +10,14 @@
 namespace easypbr::render {
 
 struct HitSurfaces {
-    explicit HitSurfaces(size_t count);
+    HitSurfaces(size_t count, bool with_extensions);
     /// The arrays from one of them on.
     native::HitSurfaces from(size_t first);
 
     PathVectors<3> normal, face, albedo, emission;
-    PathVectors<2> parameters;  ///< metallic, roughness
-    std::vector<float> kind;    ///< code of the surface's
+    PathVectors<2> parameters;                 ///< metallic, roughness
+    std::vector<float> kind;                   ///< code of the surface's
+    std::optional<PathExtensions> extensions;  ///< of those whose kind is extended
 };
 
 /// Evaluates the surfaces of hits, which are sorted by RayHit::surface; `surfaces` holds that of each.

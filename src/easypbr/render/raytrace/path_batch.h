@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "easypbr/core/math.h"
@@ -38,20 +39,91 @@ struct PathVectors {
     std::array<std::vector<float>, size_t(components)> component;
 };
 
+/// What has become of a path so far.
+struct PathState {
+    Vec3 throughput{1, 1, 1};
+    PathSampler sampler;
+    uint32_t index = 0;     ///< of the radiance that the path adds to
+    uint16_t bounces = 0;   ///< surfaces that have reflected it
+    uint16_t passages = 0;  ///< surfaces that it has passed, or whose volume it has not left
+    /// Surfaces whose volumes the path is in, the innermost first; -1: none.
+    std::array<int, 2> volumes{-1, -1};
+};
+
+/// What glTF's material extensions add to surfaces, as shaders/path_extended.glsl names it.
+struct PathExtensions {
+    explicit PathExtensions(size_t room)
+        : dielectric(room),
+          coat(room),
+          sheen(room),
+          film(room),
+          tangent(room),
+          volume(room),
+          transmittance(room) {}
+
+    template <class Stream>
+    void read_by(Stream& stream) const {
+        dielectric.read_by(stream.v_dielectric);
+        coat.read_by(stream.v_coat);
+        sheen.read_by(stream.v_sheen);
+        film.read_by(stream.v_film);
+        tangent.read_by(stream.v_tangent);
+        volume.read_by(stream.v_volume);
+        transmittance.read_by(stream.v_transmittance);
+    }
+    /// The arrays from one of them on.
+    native::HitExtensions written_from(size_t first) {
+        native::HitExtensions to;
+        const auto point = [first](auto& vectors, auto& arrays) {
+            vectors.written_by(arrays);
+            for (float*& array : arrays) array += first;
+        };
+        point(dielectric, to.dielectric);
+        point(coat, to.coat);
+        point(sheen, to.sheen);
+        point(film, to.film);
+        point(tangent, to.tangent);
+        point(volume, to.volume);
+        point(transmittance, to.transmittance);
+        return to;
+    }
+    void copy(size_t to, const PathExtensions& from, size_t i) {
+        dielectric.set(to, from.dielectric.at(i));
+        coat.set(to, from.coat.at(i));
+        sheen.set(to, from.sheen.at(i));
+        film.set(to, from.film.at(i));
+        tangent.set(to, from.tangent.at(i));
+        volume.set(to, from.volume.at(i));
+        transmittance.set(to, from.transmittance.at(i));
+    }
+
+    PathVectors<4> dielectric, coat, sheen, film, tangent;
+    PathVectors<3> volume, transmittance;
+};
+
+/// Of a path at a surface with extensions.
+struct ExtendedPath {
+    int surface = -1;        ///< of the ray scene
+    Vec3 emission{0, 0, 0};  ///< what the path adds of the surface's light, but for what its layers keep
+};
+
 /// The places of paths on surfaces, in RayScene's frame, and what has become of them so far. Vectors are in
 /// world directions.
 struct PathBatch {
-    /// `capacity` paths at most.
-    explicit PathBatch(size_t capacity)
+    /// `capacity` paths at most; the surfaces of all have extensions, or none has.
+    explicit PathBatch(size_t capacity, bool extended = false)
         : position(rounded_up(capacity)),
           normal(rounded_up(capacity)),
           face(rounded_up(capacity)),
           view(rounded_up(capacity)),
           albedo(rounded_up(capacity)),
           parameters(rounded_up(capacity)),
-          throughput(rounded_up(capacity), Vec3::Ones()),
-          samplers(rounded_up(capacity)),
-          index(rounded_up(capacity), 0) {}
+          state(rounded_up(capacity)) {
+        if (!extended) return;
+        extensions.emplace(rounded_up(capacity));
+        inside.assign(rounded_up(capacity), 0.0f);
+        extended_paths.resize(rounded_up(capacity));
+    }
 
     static size_t rounded_up(size_t count) {
         constexpr auto step = size_t(native::stream_alignment);
@@ -67,6 +139,10 @@ struct PathBatch {
         view.read_by(stream.v_view);
         albedo.read_by(stream.v_albedo);
         parameters.read_by(stream.v_parameters);
+        if constexpr (requires { stream.v_inside; }) {
+            extensions->read_by(stream);
+            stream.v_inside = inside.data();
+        }
     }
 
     size_t count = 0;
@@ -76,9 +152,11 @@ struct PathBatch {
     PathVectors<3> view;    ///< unit, back along the path
     PathVectors<3> albedo;
     PathVectors<2> parameters;  ///< metallic, roughness
-    std::vector<Vec3> throughput;
-    std::vector<PathSampler> samplers;
-    std::vector<uint32_t> index;  ///< of the radiance that the path adds to
+    std::vector<PathState> state;
+
+    std::optional<PathExtensions> extensions;
+    std::vector<float> inside;  ///< with extensions: 1 where the path comes from within the surface's volume
+    std::vector<ExtendedPath> extended_paths;  ///< with extensions
 };
 
 }  // namespace easypbr::render

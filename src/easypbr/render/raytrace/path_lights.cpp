@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "easypbr/gpu/dfg.h"
+#include "easypbr/render/frame/extensions.h"
 #include "easypbr/render/frame/shading_inputs.h"
 #include "easypbr/render/shadow/light_block.h"
 #include "easypbr/scene/resolve.h"
@@ -24,8 +25,9 @@ struct Found {
     std::vector<float> sum, number;
 };
 
-native::path_lamps_stream stream_of(const PathBatch& batch, Found& found) {
-    native::path_lamps_stream stream;
+template <class Stream>
+Stream stream_of(const PathBatch& batch, Found& found) {
+    Stream stream;
     batch.read_by(stream);
     stream.v_choice = found.choice.data();
     found.light.written_by(stream.o_light);
@@ -36,12 +38,17 @@ native::path_lamps_stream stream_of(const PathBatch& batch, Found& found) {
 
 }  // namespace
 
-ShaderInputs path_inputs(const ResolvedSettings& resolved, bool caught) {
+ShaderInputs path_inputs(const ResolvedSettings& resolved, const RayScene& scene, PathSurfaces surfaces) {
     const ShadingSettings& shading = resolved.settings.shading;
     ShaderInputs values;
     set_brdf(values, shading);
     values.set("u_dfg", gpu::host_dfg(shading.brdf));
-    if (caught) values.define("SHADOW_CATCHER");
+    if (surfaces == PathSurfaces::catcher) values.define("SHADOW_CATCHER");
+    if (surfaces != PathSurfaces::extended) return values;
+    std::vector<std::string> defines;
+    add_extension_defines(scene.extensions(), defines);
+    values.define(defines);
+    values.set("u_sheen_albedo", gpu::host_sheen_albedo());
     return values;
 }
 
@@ -54,14 +61,19 @@ void PathLights::prepare(const ResolvedSettings& resolved, const RayScene& scene
         Uniforms uniforms{};
         for (size_t i = 0; i < count; ++i)
             uniforms[i] = light_uniform(lights[first + i], scene.centre(), scene.unit());
-        const auto with = [&](bool caught) {
-            ShaderInputs values = path_inputs(resolved, caught);
+        const auto with = [&](PathSurfaces surfaces, native::Stream shader) {
+            ShaderInputs values = path_inputs(resolved, scene, surfaces);
             values.set_block(0, "u_lights", gl::bytes_of(uniforms));
             values.set("u_light_count", int(count));
             Transfers none;
-            return native::stream_uniforms(native::Stream::path_lamps, values.native(none));
+            return native::stream_uniforms(shader, values.native(none));
         };
-        blocks_.push_back({uint32_t(first), with(false), with(true)});
+        Block& block = blocks_.emplace_back();
+        block.first = uint32_t(first);
+        block.uniforms = with(PathSurfaces::plain, native::Stream::path_lamps);
+        block.of_catcher = with(PathSurfaces::catcher, native::Stream::path_lamps);
+        if (scene.extensions())
+            block.extended = with(PathSurfaces::extended, native::Stream::path_lamps_extended);
     }
 }
 
@@ -70,11 +82,15 @@ void PathLights::choose(const PathBatch& batch, uint32_t depth, bool caught,
     chosen.assign(batch.count, {});
     if (blocks_.empty()) return;
     Found found(PathBatch::rounded_up(batch.count));
-    for (size_t i = 0; i < batch.count; ++i) found.choice[i] = batch.samplers[i].pair(depth, 1).x();
-    const native::path_lamps_stream stream = stream_of(batch, found);
+    for (size_t i = 0; i < batch.count; ++i) found.choice[i] = batch.state[i].sampler.pair(depth, 1).x();
     for (const Block& block : blocks_) {
-        const void* uniforms = (caught ? block.of_catcher : block.uniforms).get();
-        native::run(uniforms, stream, int(batch.count));
+        const int count = int(batch.count);
+        if (batch.extensions)
+            native::run(block.extended.get(), stream_of<native::path_lamps_extended_stream>(batch, found),
+                        count);
+        else
+            native::run((caught ? block.of_catcher : block.uniforms).get(),
+                        stream_of<native::path_lamps_stream>(batch, found), count);
         for (size_t i = 0; i < batch.count; ++i) {
             ChosenLight& so_far = chosen[i];
             const float sum = found.sum[i];
@@ -92,25 +108,24 @@ void PathLights::choose(const PathBatch& batch, uint32_t depth, bool caught,
     }
 }
 
-bool PathLights::reaches(uint32_t index, const Vec3& from, const Vec3& place, const Vec2& u,
-                         const RayScene& scene) const {
+PathLights::Towards PathLights::towards(uint32_t index, const Vec3& place, const Vec2& u,
+                                        const RayScene& scene) const {
     const ResolvedLight& light = resolved_->lights[index];
-    if (!light.casts_shadows || !resolved_->settings.shadows.enabled) return true;
+    if (!light.casts_shadows || !resolved_->settings.shadows.enabled) return {};
     const bool parallel = light.type == LightType::directional;
     const double unit = scene.unit();
     const Vec3 middle =
         parallel ? Vec3(-light.direction.normalized())
                  : Vec3(((light.position.cast<double>() - scene.centre()) / unit).cast<float>() - place);
     const float distance = middle.norm();
-    if (!(distance > 0)) return true;
+    if (!(distance > 0)) return {};
     // A point of the disc that the emitter is seen as.
     const float radius = parallel ? std::tan(radians(light.angular_radius_deg)) : light.radius / float(unit);
     const RayFrame frame(middle / distance);
     const float r = radius * std::sqrt(u.x()), phi = float(2 * pi) * u.y();
     const Vec3 towards = middle + (frame.t * std::cos(phi) + frame.b * std::sin(phi)) * r;
     const float reach = towards.norm();
-    return !scene.blocked(from, towards / reach,
-                          parallel ? std::numeric_limits<float>::infinity() : reach * (1 - 1e-4f));
+    return {towards / reach, parallel ? std::numeric_limits<float>::infinity() : reach * (1 - 1e-4f)};
 }
 
 }  // namespace easypbr::render

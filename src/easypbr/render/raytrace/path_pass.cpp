@@ -43,8 +43,16 @@ struct PathPass::Pixels {
           world_from_view(frame.camera.T_world_cam.linear()),
           eye(frame.camera.position() - scene.centre()) {}
 
-    /// Adds the path of a pixel to a batch; `index` is that of its radiance.
-    void add(int x, int y, uint32_t index, PathBatch& batch) const;
+    /// A pixel's surface as the G-buffer has it.
+    struct Place {
+        Vec3 position, view;
+        float footprint;  ///< width of the pixel there, RayScene::unit()
+        PathState state;
+    };
+    /// `index` is that of the pixel's radiance.
+    Place place_of(int x, int y, uint32_t index) const;
+    /// Adds the path of a pixel to a batch.
+    void add(int x, int y, const Place& place, PathBatch& batch) const;
 
     const Frame& frame;
     const RayScene& scene;
@@ -57,35 +65,44 @@ struct PathPass::Pixels {
     Vec3d eye;  ///< relative to the scene's centre
 };
 
-void PathPass::Pixels::add(int x, int y, uint32_t index, PathBatch& batch) const {
-    const std::array<uint8_t, 4>& m = *material.at(x, y);
+PathPass::Pixels::Place PathPass::Pixels::place_of(int x, int y, uint32_t index) const {
     const Vec3d position = view_position(frame, {x, y}, *depth.at(x, y));
     const Vec3d towards = frame.orthographic() ? Vec3d(0, 0, 1) : Vec3d(-position.normalized());
-    const Vec3 view = (world_from_view * towards).cast<float>();
-    const Vec3 place = ((world_from_view * position + eye) / scene.unit()).cast<float>();
+    const Vec3d beside = view_position(frame, {x + 1, y}, *depth.at(x, y));
+    const Vec2i pixel = frame.origin + Vec2i(x, y);
+    Place place;
+    place.position = ((world_from_view * position + eye) / scene.unit()).cast<float>();
+    place.view = (world_from_view * towards).cast<float>();
+    place.footprint = float((beside - position).norm() / scene.unit());
+    place.state.sampler = PathSampler(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(frame.sample_index),
+                                      uint32_t(frame.sample_count));
+    place.state.index = index;
+    return place;
+}
+
+void PathPass::Pixels::add(int x, int y, const Place& place, PathBatch& batch) const {
+    const std::array<uint8_t, 4>& m = *material.at(x, y);
     const std::array<uint16_t, 2>& n = *normal.at(x, y);
     const Vec3 mapped = oct_decode(Vec2(n[0], n[1]) / 32767.5f - Vec2(1, 1));
     const std::array<uint16_t, 4>& color = *albedo.at(x, y);
-    const Vec2i pixel = frame.origin + Vec2i(x, y);
-    const Vec3d beside = view_position(frame, {x + 1, y}, *depth.at(x, y));
-    const auto footprint = float((beside - position).norm() / scene.unit());
-    const RayScene::Seen seen = is_catcher(m[3]) ? RayScene::Seen{place, mapped, mapped}
-                                                 : scene.seen_at(place, mapped, view, footprint);
+    const RayScene::Seen seen = is_catcher(m[3]) ? RayScene::Seen{place.position, mapped, mapped}
+                                                 : scene.seen_at(place.position, mapped, place.view,
+                                                                 place.footprint, Transmissive::met);
     const size_t i = batch.count++;
     batch.position.set(i, seen.position);
     batch.normal.set(i, seen.normal);
     batch.face.set(i, seen.face);
-    batch.view.set(i, view);
+    batch.view.set(i, place.view);
     batch.albedo.set(i, Vec3(color[0], color[1], color[2]) / 65535.0f);
     batch.parameters.set(i, Vec2(m[0], m[1]) / 255.0f);
-    batch.samplers[i] = PathSampler(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(frame.sample_index),
-                                    uint32_t(frame.sample_count));
-    batch.index[i] = index;
+    batch.state[i] = place.state;
 }
 
 void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
     const auto count = size_t(block.width) * size_t(block.height);
     PathBatch lit(count), caught(count);
+    std::vector<PathTracer::Hit> hits;  // of surfaces that the G-buffer does not hold all of
+    std::vector<bool> is_hit(count, false);
     std::vector<Vec3> radiance(count, Vec3::Zero());
     std::vector<CaughtLight> light(count);
     const auto each = [&](auto&& visit) {
@@ -97,18 +114,25 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
         const float* depth = pixels.depth.at(x, y);
         if (!depth || *depth <= 0) return;
         const uint8_t kind = (*pixels.material.at(x, y))[3];
-        if (is_catcher(kind))
-            pixels.add(x, y, index, caught);
-        else if (is_lit_by_scene(kind))
-            pixels.add(x, y, index, lit);
+        if (!is_catcher(kind) && !is_lit_by_scene(kind)) return;
+        const Pixels::Place place = pixels.place_of(x, y, index);
+        if (kind == uint8_t(SurfaceKind::extended)) {
+            if (const auto hit = pixels.scene.hit_at(place.position, place.view, place.footprint)) {
+                const float width = place.footprint * float(pixels.scene.unit());
+                hits.push_back(PathTracer::camera_hit(place.state, *hit, -place.view, width));
+                is_hit[index] = true;
+                return;
+            }
+        }
+        pixels.add(x, y, place, is_catcher(kind) ? caught : lit);
     });
-    tracer_.trace(lit, radiance);
+    tracer_.trace(lit, hits, radiance);
     tracer_.trace_caught(caught, light);
     each([&](int x, int y, uint32_t index) {
         const float* depth = pixels.depth.at(x, y);
         Vec4* to = pixels.radiance.at(x, y);
         if (!to || !depth || *depth <= 0) return;
-        const Vec4* emission = pixels.emission.at(x, y);
+        const Vec4* emission = is_hit[index] ? nullptr : pixels.emission.at(x, y);
         to->head<3>() = radiance[index] + (emission ? Vec3(emission->head<3>()) : Vec3(Vec3::Zero()));
         to->w() = 1;
         if (caught_.empty()) return;

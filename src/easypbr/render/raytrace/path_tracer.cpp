@@ -23,12 +23,32 @@ constexpr float below_one = 1 - 0x1p-24f;
 /// Neither the sky nor emissive surfaces get less of the directions of next-event estimation, where there are
 /// both.
 constexpr float least_part = 0.1f;
+/// Surfaces that a path passes before it ends at random. They take little of its throughput.
+constexpr uint16_t sure_passages = 16;
+/// Of directions that are the only ones.
+constexpr float only_direction = 1e30f;
 
 /// Dimensions of PathSampler, in pairs; the first of `lobe_and_light` belongs to PathLights.
 enum Dimension : uint32_t { sky_point, light_and_lobe, lobe_point, emitter_point, roulette };
 
 float luminance(const Vec3& c) {
     return c.dot(Vec3(0.2126f, 0.7152f, 0.0722f));
+}
+
+bool is_extended_kind(float code) {
+    return std::abs(code - code_of(SurfaceKind::extended)) < 0.01f;
+}
+
+/// Two parts of one object bound the same volume.
+bool is_same_volume(const RayScene& scene, int a, int b) {
+    return a == b || (a >= 0 && b >= 0 && scene.item_of(a).object == scene.item_of(b).object);
+}
+
+/// Per world unit; 0 where nothing is absorbed.
+Vec3 absorption_of(const Material& material) {
+    if (!(material.thickness > 0) || !std::isfinite(material.attenuation_distance)) return Vec3::Zero();
+    const Vec3 logarithm = material.attenuation_color.cwiseMax(1e-30f).array().log();
+    return -logarithm / material.attenuation_distance;
 }
 
 bool is_lit_kind(float code) {
@@ -48,10 +68,12 @@ struct PathTracer::Scattered {
           chosen_light(room),
           direction(room),
           weight(room),
-          density(room) {}
+          density(room),
+          keep(room) {}
 
-    native::path_scatter_stream stream(const PathBatch& batch) {
-        native::path_scatter_stream stream;
+    template <class Stream>
+    Stream stream(const PathBatch& batch) {
+        Stream stream;
         batch.read_by(stream);
         random.read_by(stream.v_random);
         chosen_direction.read_by(stream.v_light_direction);
@@ -61,6 +83,7 @@ struct PathTracer::Scattered {
         direction.written_by(stream.o_direction);
         weight.written_by(stream.o_weight);
         stream.o_density = density.data();
+        if constexpr (requires { stream.o_keep; }) keep.written_by(stream.o_keep);
         return stream;
     }
 
@@ -75,18 +98,17 @@ struct PathTracer::Scattered {
     std::vector<float> chosen_density, distance;  ///< how far the light of the direction is
     PathVectors<3> chosen_light, direction, weight;
     std::vector<float> density;
+    PathVectors<3> keep;  ///< of emission, where the surfaces have extensions
 };
 
-/// Paths that met a surface.
-struct PathTracer::Found {
-    struct Hit {
-        uint32_t path;  ///< in the batch
-        RayHit hit;
-        Vec3 direction, throughput;
-        float density;  ///< of the direction, per steradian
-    };
-    std::vector<Hit> hits;
+struct PathTracer::Batches {
+    PathBatch plain, extended;
 };
+
+PathTracer::Hit PathTracer::camera_hit(const PathState& state, const RayHit& hit, const Vec3& direction,
+                                       float footprint) {
+    return {state, hit, direction, only_direction, footprint};
+}
 
 void PathTracer::prepare(const ResolvedSettings& resolved, const RayScene& scene) {
     resolved_ = &resolved;
@@ -98,13 +120,20 @@ void PathTracer::prepare(const ResolvedSettings& resolved, const RayScene& scene
     emitter_part_ =
         emitters_.empty() ? 0 : std::clamp(of_emitters / (of_emitters + of_sky), least_part, 1 - least_part);
     if (!emitters_.empty() && !sky_.is_sampled()) emitter_part_ = 1;
-    const auto with = [&](bool caught) {
+    transmits_ = false;
+    for (int i = 0; i < scene.surface_count(); ++i) transmits_ |= scene.item_of(i).casts_tint();
+    const auto with = [&](PathSurfaces surfaces, native::Stream shader) {
         Transfers none;
-        return native::stream_uniforms(native::Stream::path_scatter,
-                                       path_inputs(resolved, caught).native(none));
+        return native::stream_uniforms(shader, path_inputs(resolved, scene, surfaces).native(none));
     };
-    uniforms_ = with(false);
-    of_catcher_ = with(true);
+    uniforms_ = with(PathSurfaces::plain, native::Stream::path_scatter);
+    of_catcher_ = with(PathSurfaces::catcher, native::Stream::path_scatter);
+    extended_.reset();
+    absorption_.clear();
+    if (!scene.extensions()) return;
+    extended_ = with(PathSurfaces::extended, native::Stream::path_scatter_extended);
+    for (int i = 0; i < scene.surface_count(); ++i)
+        absorption_.push_back(absorption_of(scene.item_of(i).material) * float(scene.unit()));
 }
 
 Vec3 PathTracer::start_of(const PathBatch& batch, size_t path) const {
@@ -113,9 +142,15 @@ Vec3 PathTracer::start_of(const PathBatch& batch, size_t path) const {
                                  scene_->reach());
 }
 
-Vec3 PathTracer::limited(const Vec3& light, uint32_t depth) const {
+Vec3 PathTracer::start_towards(const PathBatch& batch, size_t path, const Vec3& direction) const {
+    const Vec3 face = batch.face.at(path);
+    if (!batch.extensions || direction.dot(face) > 0) return start_of(batch, path);
+    return RayScene::off_surface(batch.position.at(path), -face, scene_->reach());
+}
+
+Vec3 PathTracer::limited(const Vec3& light, uint32_t bounces) const {
     const float most = resolved_->settings.path.clamp, brightness = luminance(light);
-    return depth > 0 && most > 0 && brightness > most ? Vec3(light * (most / brightness)) : light;
+    return bounces > 0 && most > 0 && brightness > most ? Vec3(light * (most / brightness)) : light;
 }
 
 Vec3 PathTracer::escaped(const Vec3& direction, float density, float sky_part) const {
@@ -131,7 +166,7 @@ void PathTracer::choose_directions(const PathBatch& batch, uint32_t depth, bool 
     const float emitter_part = caught ? 0 : emitter_part_;
     std::vector<std::pair<Emitters::Sample, size_t>> chosen;
     for (size_t i = 0; i < batch.count; ++i) {
-        Vec2 u = batch.samplers[i].pair(depth, sky_point);
+        Vec2 u = batch.state[i].sampler.pair(depth, sky_point);
         if (u.x() < emitter_part) {
             u.x() = std::min(u.x() / emitter_part, below_one);
             chosen.emplace_back(emitters_.sample(start_of(batch, i), u), i);
@@ -159,48 +194,100 @@ void PathTracer::choose_directions(const PathBatch& batch, uint32_t depth, bool 
 
 void PathTracer::scatter(const PathBatch& batch, uint32_t depth, bool caught, Scattered& to) const {
     for (size_t i = 0; i < batch.count; ++i) {
-        const PathSampler& sampler = batch.samplers[i];
+        const PathSampler& sampler = batch.state[i].sampler;
         const Vec2 lobe = sampler.pair(depth, lobe_point);
         to.random.set(i, {lobe.x(), lobe.y(), sampler.pair(depth, light_and_lobe).y()});
     }
     choose_directions(batch, depth, caught, to);
-    native::run((caught ? of_catcher_ : uniforms_).get(), to.stream(batch), int(batch.count));
+    const int count = int(batch.count);
+    if (batch.extensions)
+        native::run(extended_.get(), to.stream<native::path_scatter_extended_stream>(batch), count);
+    else
+        native::run((caught ? of_catcher_ : uniforms_).get(), to.stream<native::path_scatter_stream>(batch),
+                    count);
 }
 
 void PathTracer::add_direct(const PathBatch& batch, uint32_t depth, const std::vector<ChosenLight>& lamps,
                             const Scattered& scattered, std::vector<Vec3>& radiance) const {
     for (size_t i = 0; i < batch.count; ++i) {
-        const Vec3 place = batch.position.at(i), from = start_of(batch, i);
+        const PathState& state = batch.state[i];
         Vec3 light = Vec3::Zero();
-        if (lamps[i].all > 0 && lights_.reaches(lamps[i].index, from, place,
-                                                batch.samplers[i].pair(depth, emitter_point), *scene_))
-            light += lamps[i].light;
-        const Vec3 chosen = scattered.chosen_light.at(i);
-        if (chosen.maxCoeff() > 0 &&
-            !scene_->blocked(from, scattered.chosen_direction.at(i), scattered.distance[i]))
+        if (lamps[i].all > 0) {
+            const auto to = lights_.towards(lamps[i].index, batch.position.at(i),
+                                            state.sampler.pair(depth, emitter_point), *scene_);
+            light += lamps[i].light.cwiseProduct(lamp_transmittance(batch, i, to));
+        }
+        const Vec3 chosen = scattered.chosen_light.at(i), direction = scattered.chosen_direction.at(i);
+        if (chosen.maxCoeff() > 0 && !scene_->blocked(start_towards(batch, i, direction), direction,
+                                                      scattered.distance[i], Transmissive::met))
             light += chosen;
-        radiance[batch.index[i]] += limited(batch.throughput[i].cwiseProduct(light), depth);
+        radiance[state.index] += limited(state.throughput.cwiseProduct(light), state.bounces);
     }
 }
 
-void PathTracer::follow(PathBatch& batch, uint32_t depth, const Scattered& scattered, Found& found,
-                        std::vector<Vec3>& radiance) const {
+Vec3 PathTracer::lamp_transmittance(const PathBatch& batch, size_t path,
+                                    const PathLights::Towards& to) const {
+    if (to.distance <= 0) return Vec3::Ones();
+    const Vec3 from = start_towards(batch, path, to.direction);
+    if (transmits_) return scene_->transmittance(from, to.direction, to.distance);
+    return scene_->blocked(from, to.direction, to.distance) ? Vec3(Vec3::Zero()) : Vec3(Vec3::Ones());
+}
+
+void PathTracer::add_emission(const PathBatch& batch, const Scattered& scattered,
+                              std::vector<Vec3>& radiance) const {
     for (size_t i = 0; i < batch.count; ++i) {
-        Vec3 throughput = batch.throughput[i].cwiseProduct(scattered.weight.at(i));
-        const float most = throughput.maxCoeff();
-        if (!(most > 0)) continue;
-        if (depth >= first_roulette) {
-            const float goes_on = std::min(most, 0.95f);
-            if (batch.samplers[i].pair(depth, roulette).x() >= goes_on) continue;
-            throughput /= goes_on;
-        }
+        const PathState& state = batch.state[i];
+        const Vec3 kept = batch.extended_paths[i].emission.cwiseProduct(scattered.keep.at(i));
+        radiance[state.index] += limited(kept, state.bounces);
+    }
+}
+
+void PathTracer::cross(int surface, bool is_volume, PathState& state) const {
+    if (!is_volume) return;
+    if (is_same_volume(*scene_, state.volumes[0], surface))
+        state.volumes = {state.volumes[1], -1};
+    else
+        state.volumes = {surface, state.volumes[0]};
+}
+
+void PathTracer::absorb(float distance, PathState& state) const {
+    if (state.volumes[0] < 0) return;
+    const Vec3 absorption = absorption_[size_t(state.volumes[0])];
+    state.throughput.array() *= (-absorption * distance).array().exp();
+}
+
+bool PathTracer::goes_on(const PathBatch& batch, size_t path, uint32_t depth, const Vec3& direction,
+                         PathState& state) const {
+    const float most = state.throughput.maxCoeff();
+    if (!(most > 0)) return false;
+    const bool inside = batch.extensions && batch.inside[path] > 0.5f,
+               passes = batch.extensions && direction.dot(batch.face.at(path)) < 0;
+    if (passes) cross(batch.extended_paths[path].surface, batch.extensions->volume.at(path).z() > 0, state);
+    const bool is_sure =
+        inside || passes ? ++state.passages <= sure_passages : ++state.bounces <= first_roulette;
+    if (is_sure) return true;
+    const float chance = std::min(most, 0.95f);
+    state.throughput /= chance;
+    return state.sampler.pair(depth, roulette).x() < chance;
+}
+
+void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered& scattered,
+                        std::vector<Hit>& hits, std::vector<Vec3>& radiance) const {
+    for (size_t i = 0; i < batch.count; ++i) {
+        PathState state = batch.state[i];
+        const uint16_t bounces = state.bounces;
+        state.throughput = state.throughput.cwiseProduct(scattered.weight.at(i));
         const Vec3 direction = scattered.direction.at(i);
-        const auto hit = scene_->trace(start_of(batch, i), direction);
-        if (hit)
-            found.hits.push_back({uint32_t(i), *hit, direction, throughput, scattered.density[i]});
-        else
-            radiance[batch.index[i]] += limited(
-                throughput.cwiseProduct(escaped(direction, scattered.density[i], 1 - emitter_part_)), depth);
+        if (!goes_on(batch, i, depth, direction, state)) continue;
+        const auto hit = scene_->trace(start_towards(batch, i, direction), direction, Transmissive::met);
+        if (hit) {
+            absorb(hit->distance, state);
+            hits.push_back({state, *hit, direction, scattered.density[i],
+                            hit->distance * float(scene_->unit()) * widening});
+        } else {
+            const Vec3 sky = escaped(direction, scattered.density[i], 1 - emitter_part_);
+            radiance[state.index] += limited(state.throughput.cwiseProduct(sky), bounces);
+        }
     }
 }
 
@@ -211,61 +298,105 @@ Vec3 PathTracer::caught_sky(const RayHit& hit, const Vec3& direction, const Vec2
     return open ? sky_.radiance(direction) : Vec3(Vec3::Zero());
 }
 
-void PathTracer::arrive(PathBatch& batch, uint32_t depth, Found& found, std::vector<Vec3>& radiance) const {
-    // Surfaces are evaluated item by item.
-    std::ranges::stable_sort(found.hits, {}, [](const Found::Hit& hit) { return hit.hit.surface; });
-    std::vector<native::ElementHit> elements(found.hits.size());
-    std::vector<int> order(found.hits.size());
-    const auto unit = float(scene_->unit());
-    for (size_t i = 0; i < found.hits.size(); ++i) {
-        const RayHit& hit = found.hits[i].hit;
-        native::ElementHit& to = elements[i];
-        order[i] = hit.surface;
-        to.element = uint32_t(hit.element);
-        to.u = hit.u;
-        to.v = hit.v;
-        std::copy_n(hit.normal.data(), 3, to.normal);
-        to.footprint = hit.distance * unit * widening;
-    }
-    const HitSurfaces surfaces = evaluate(*scene_, elements, order);
-    PathBatch next(found.hits.size());
-    for (size_t i = 0; i < found.hits.size(); ++i) {
-        const Found::Hit& hit = found.hits[i];
-        const PathSampler& sampler = batch.samplers[hit.path];
-        const uint32_t place = batch.index[hit.path];
-        if (hit.hit.surface < 0 && scene_->ground()->shadow_catcher) {
-            const Vec3 sky = caught_sky(hit.hit, hit.direction, sampler.pair(depth, emitter_point));
-            radiance[place] += limited(hit.throughput.cwiseProduct(sky), depth);
-            continue;
-        }
-        const Vec3 emission = surfaces.emission.at(i) * emission_weight(hit.hit, hit.direction, hit.density);
-        radiance[place] += limited(hit.throughput.cwiseProduct(emission), depth);
-        if (surfaces.kind[i] > 0.9f || depth + 1 > uint32_t(resolved_->settings.path.bounces)) continue;
-        const size_t to = next.count++;
-        next.position.set(to, hit.hit.position);
-        next.normal.set(to, surfaces.normal.at(i));
-        next.face.set(to, surfaces.face.at(i));
-        next.view.set(to, -hit.direction);
-        next.albedo.set(to, surfaces.albedo.at(i));
-        // What is shown past the light is as if it were matt.
-        next.parameters.set(to, is_lit_kind(surfaces.kind[i]) ? surfaces.parameters.at(i) : Vec2(0, 1));
-        next.throughput[to] = hit.throughput;
-        next.samplers[to] = sampler;
-        next.index[to] = place;
-    }
-    batch = std::move(next);
+namespace {
+
+/// Of the surface that the path has left last.
+uint32_t bounces_before(const PathTracer::Hit& hit) {
+    return std::max<uint32_t>(hit.state.bounces, 1) - 1;
 }
 
-void PathTracer::trace(PathBatch& batch, std::vector<Vec3>& radiance) const {
-    for (uint32_t depth = 0; batch.count > 0; ++depth) {
-        std::vector<ChosenLight> lamps;
-        lights_.choose(batch, depth, false, lamps);
-        Scattered scattered(PathBatch::rounded_up(batch.count));
-        scatter(batch, depth, false, scattered);
-        add_direct(batch, depth, lamps, scattered, radiance);
-        Found found;
-        follow(batch, depth, scattered, found, radiance);
-        arrive(batch, depth, found, radiance);
+}  // namespace
+
+bool PathTracer::is_caught(const Hit& hit, uint32_t depth, std::vector<Vec3>& radiance) const {
+    if (hit.hit.surface >= 0 || !scene_->ground()->shadow_catcher) return false;
+    const Vec3 sky = caught_sky(hit.hit, hit.direction, hit.state.sampler.pair(depth, emitter_point));
+    radiance[hit.state.index] += limited(hit.state.throughput.cwiseProduct(sky), bounces_before(hit));
+    return true;
+}
+
+namespace {
+
+native::ElementHit element_of(const PathTracer::Hit& hit) {
+    native::ElementHit element;
+    element.element = uint32_t(hit.hit.element);
+    element.u = hit.hit.u;
+    element.v = hit.hit.v;
+    std::copy_n(hit.hit.normal.data(), 3, element.normal);
+    element.footprint = hit.footprint;
+    return element;
+}
+
+/// Adds a path at a surface to a batch.
+size_t add_path(const PathTracer::Hit& hit, const HitSurfaces& surfaces, size_t i, PathBatch& to) {
+    const size_t at = to.count++;
+    to.position.set(at, hit.hit.position);
+    to.normal.set(at, surfaces.normal.at(i));
+    to.face.set(at, surfaces.face.at(i));
+    to.view.set(at, -hit.direction);
+    to.albedo.set(at, surfaces.albedo.at(i));
+    // What is shown past the light is as if it were matt.
+    to.parameters.set(at, is_lit_kind(surfaces.kind[i]) ? surfaces.parameters.at(i) : Vec2(0, 1));
+    to.state[at] = hit.state;
+    return at;
+}
+
+}  // namespace
+
+PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth,
+                                       std::vector<Vec3>& radiance) const {
+    // Surfaces are evaluated item by item.
+    std::ranges::stable_sort(hits, {}, [](const Hit& hit) { return hit.hit.surface; });
+    std::vector<native::ElementHit> elements;
+    std::vector<int> order;
+    for (const Hit& hit : hits) {
+        elements.push_back(element_of(hit));
+        order.push_back(hit.hit.surface);
+    }
+    const HitSurfaces surfaces = evaluate(*scene_, elements, order);
+    const bool with_extensions = extended_ != nullptr;
+    Batches next{PathBatch(hits.size()), PathBatch(with_extensions ? hits.size() : 0, with_extensions)};
+    for (size_t i = 0; i < hits.size(); ++i) {
+        const Hit& hit = hits[i];
+        if (is_caught(hit, depth, radiance)) continue;
+        const Vec3 emission = hit.state.throughput.cwiseProduct(surfaces.emission.at(i)) *
+                              emission_weight(hit.hit, hit.direction, hit.density);
+        const bool extended = is_extended_kind(surfaces.kind[i]),
+                   ends = hit.state.bounces > resolved_->settings.path.bounces;
+        if (!extended || ends) radiance[hit.state.index] += limited(emission, bounces_before(hit));
+        if (surfaces.kind[i] > 0.9f || ends) continue;
+        const size_t at = add_path(hit, surfaces, i, extended ? next.extended : next.plain);
+        if (!extended) continue;
+        next.extended.extensions->copy(at, *surfaces.extensions, i);
+        next.extended.extended_paths[at] = {hit.hit.surface, emission};
+        const bool is_volume = surfaces.extensions->volume.at(i).z() > 0;
+        const bool inside = is_volume && is_same_volume(*scene_, hit.state.volumes[0], hit.hit.surface);
+        next.extended.inside[at] = inside ? 1.0f : 0.0f;
+    }
+    hits.clear();
+    return next;
+}
+
+void PathTracer::step(const PathBatch& batch, uint32_t depth, std::vector<Hit>& hits,
+                      std::vector<Vec3>& radiance) const {
+    if (batch.count == 0) return;
+    std::vector<ChosenLight> lamps;
+    lights_.choose(batch, depth, false, lamps);
+    Scattered scattered(PathBatch::rounded_up(batch.count));
+    scatter(batch, depth, false, scattered);
+    add_direct(batch, depth, lamps, scattered, radiance);
+    if (batch.extensions) add_emission(batch, scattered, radiance);
+    follow(batch, depth, scattered, hits, radiance);
+}
+
+void PathTracer::trace(PathBatch& batch, std::vector<Hit>& hits, std::vector<Vec3>& radiance) const {
+    Batches at = arrive(hits, 0, radiance);
+    step(batch, 0, hits, radiance);
+    step(at.plain, 0, hits, radiance);
+    step(at.extended, 0, hits, radiance);
+    for (uint32_t depth = 1; !hits.empty(); ++depth) {
+        at = arrive(hits, depth - 1, radiance);
+        step(at.plain, depth, hits, radiance);
+        step(at.extended, depth, hits, radiance);
     }
 }
 
@@ -277,14 +408,17 @@ void PathTracer::trace_caught(const PathBatch& batch, std::vector<CaughtLight>& 
     scatter(batch, 0, true, scattered);
     for (size_t i = 0; i < batch.count; ++i) {
         const Vec3 place = batch.position.at(i), from = start_of(batch, i);
-        CaughtLight& to = light[batch.index[i]];
+        CaughtLight& to = light[batch.state[i].index];
         const auto add = [&](float amount, bool arrives) {
             to.all += amount;
             if (arrives) to.arrives += amount;
         };
-        if (lamps[i].all > 0)
-            add(lamps[i].all, lights_.reaches(lamps[i].index, from, place,
-                                              batch.samplers[i].pair(0, emitter_point), *scene_));
+        if (lamps[i].all > 0) {
+            const auto lamp = lights_.towards(lamps[i].index, place,
+                                              batch.state[i].sampler.pair(0, emitter_point), *scene_);
+            to.all += lamps[i].all;
+            to.arrives += lamps[i].all * luminance(lamp_transmittance(batch, i, lamp));
+        }
         const float sky = luminance(scattered.chosen_light.at(i));
         if (sky > 0) add(sky, !scene_->blocked(from, scattered.chosen_direction.at(i), no_end));
         const Vec3 direction = scattered.direction.at(i);

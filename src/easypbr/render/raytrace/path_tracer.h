@@ -20,15 +20,27 @@ struct CaughtLight {
 /// Estimates the radiance that surfaces send back along paths: lights, emissive surfaces and the sky by
 /// next-event estimation at each surface, and what directions find that are sampled by the BSDF. The sky and
 /// emissive surfaces are found both ways, combined by MIS (Veach and Guibas 1995). Materials are evaluated by
-/// shaders/path_surface.glsl, the text that the raster frame lights surfaces by. Of surfaces behind the
-/// first, the core model counts.
+/// shaders/path_plain.glsl and path_extended.glsl, the text that the raster frame lights surfaces by. Lamps
+/// shine straight through transmissive surfaces; all other light is refracted.
 class PathTracer {
   public:
     /// The settings and the scene must outlive the calls of the others.
     void prepare(const ResolvedSettings& resolved, const RayScene& scene);
 
-    /// Adds the radiance of each path to its place in `radiance`. The batch is used up.
-    void trace(PathBatch& batch, std::vector<Vec3>& radiance) const;
+    /// A path that has met a surface.
+    struct Hit {
+        PathState state;
+        RayHit hit;
+        Vec3 direction;
+        float density;    ///< of the direction, per steradian
+        float footprint;  ///< width of what the path stands for there, world units
+    };
+    /// The hit of a camera's ray.
+    static Hit camera_hit(const PathState& state, const RayHit& hit, const Vec3& direction, float footprint);
+
+    /// Adds the radiance of each path to its place in `radiance`: of those of a batch, whose surfaces have no
+    /// extensions, and of others that have met a surface. Both are used up.
+    void trace(PathBatch& batch, std::vector<Hit>& hits, std::vector<Vec3>& radiance) const;
     /// The light of surfaces that catch shadows, from lights and sky alone, added by the paths' places.
     void trace_caught(const PathBatch& batch, std::vector<CaughtLight>& light) const;
 
@@ -38,17 +50,35 @@ class PathTracer {
 
   private:
     struct Scattered;
-    struct Found;
+    /// Paths at surfaces without extensions and with them.
+    struct Batches;
+    /// The same of rays in a direction, which may go through the surface.
+    Vec3 start_towards(const PathBatch& batch, size_t path, const Vec3& direction) const;
+    /// One step of all paths of a batch: `hits` gets the surfaces that they meet next.
+    void step(const PathBatch& batch, uint32_t depth, std::vector<Hit>& hits,
+              std::vector<Vec3>& radiance) const;
     void scatter(const PathBatch& batch, uint32_t depth, bool caught, Scattered& to) const;
     /// Chooses the direction of next-event estimation for each path: to the sky, or to an emissive surface.
     void choose_directions(const PathBatch& batch, uint32_t depth, bool caught, Scattered& to) const;
     void add_direct(const PathBatch& batch, uint32_t depth, const std::vector<ChosenLight>& lamps,
                     const Scattered& scattered, std::vector<Vec3>& radiance) const;
-    /// Follows the paths to the next surface: what they found there is in `found`.
-    void follow(PathBatch& batch, uint32_t depth, const Scattered& scattered, Found& found,
+    /// What reaches a surface of the light that a lamp sends.
+    Vec3 lamp_transmittance(const PathBatch& batch, size_t path, const PathLights::Towards& to) const;
+    /// What surfaces with extensions emit.
+    void add_emission(const PathBatch& batch, const Scattered& scattered, std::vector<Vec3>& radiance) const;
+    /// Follows the paths to the next surface.
+    void follow(const PathBatch& batch, uint32_t depth, const Scattered& scattered, std::vector<Hit>& hits,
                 std::vector<Vec3>& radiance) const;
-    /// The batch becomes the paths that go on from what they found.
-    void arrive(PathBatch& batch, uint32_t depth, Found& found, std::vector<Vec3>& radiance) const;
+    /// What a path becomes that goes on in a direction; false where it ends.
+    bool goes_on(const PathBatch& batch, size_t path, uint32_t depth, const Vec3& direction,
+                 PathState& state) const;
+    /// Of a path that has passed a surface: the volumes that it is in now.
+    void cross(int surface, bool is_volume, PathState& state) const;
+    /// Weakens a path by the volume that it is in.
+    void absorb(float distance, PathState& state) const;
+    /// The paths that go on from hits.
+    Batches arrive(std::vector<Hit>& hits, uint32_t depth, std::vector<Vec3>& radiance) const;
+    bool is_caught(const Hit& hit, uint32_t depth, std::vector<Vec3>& radiance) const;
     /// Part of what a surface emits that a path adds which has met it in a sampled direction.
     float emission_weight(const RayHit& hit, const Vec3& direction, float density) const;
     /// What the sky adds to a path that left a surface in a sampled direction; `sky_part` of the directions
@@ -56,15 +86,18 @@ class PathTracer {
     Vec3 escaped(const Vec3& direction, float density, float sky_part) const;
     /// What a ground that catches shadows shows of the sky behind it.
     Vec3 caught_sky(const RayHit& hit, const Vec3& direction, const Vec2& u) const;
-    Vec3 limited(const Vec3& light, uint32_t depth) const;
+    /// Light that a path adds after some bounces.
+    Vec3 limited(const Vec3& light, uint32_t bounces) const;
 
     const ResolvedSettings* resolved_ = nullptr;
     const RayScene* scene_ = nullptr;
     PathLights lights_;
     SkySampler sky_;
     Emitters emitters_;
+    bool transmits_ = false;  ///< light passes some surface
     float emitter_part_ = 0;  ///< of the directions of next-event estimation; the others are those of the sky
-    std::shared_ptr<const void> uniforms_, of_catcher_;
+    std::shared_ptr<const void> uniforms_, of_catcher_, extended_;
+    std::vector<Vec3> absorption_;  ///< of the surfaces' volumes, per RayScene::unit()
 };
 
 }  // namespace easypbr::render

@@ -1,8 +1,4 @@
 // The rows of the table for path tracing, and what is inferred.
-#include <algorithm>
-
-#include "easypbr/render/drawables/draw_list.h"
-#include "easypbr/render/frame/extensions.h"
 #include "easypbr/scene/effect_settings.h"
 #include "easypbr/scene/field_builder.h"
 
@@ -19,7 +15,7 @@ void add_path(Table& table) {
         make("path.enabled", EASYPBR_AT(path.enabled),
              "Enables path tracing on the CPU, in place of shadow maps, ambient occlusion and the split sum; "
              "automatic: on in images of several samples if ssao.enabled, unless a setting of ssao, rays or "
-             "shadows is given, or a material has glTF extensions.")));
+             "shadows is given.")));
     table.push_back(make("path.bounces", EASYPBR_AT(path.bounces),
                          "Surfaces that a path meets after the one that is seen.", "", {0, 64}));
     table.push_back(
@@ -36,15 +32,6 @@ void add_path(Table& table) {
 
 namespace {
 
-bool has_extensions(const SceneSnapshot& scene, const MaterialSettings& overrides) {
-    const auto is_extended = [&](const Material& material) {
-        return render::extensions_of(render::overridden(material, overrides, {})) != 0;
-    };
-    return is_extended({}) || std::ranges::any_of(scene.objects, [&](const SceneSnapshot::Object& object) {
-               return std::ranges::any_of(object.mesh->materials, is_extended);
-           });
-}
-
 /// Somebody asks for effects that paths take the place of, or for pictures without them.
 bool asks_for_raster(const Settings& given) {
     return is_asked_for(given, "ssao.") || is_asked_for(given, "rays.") || is_asked_for(given, "shadows.");
@@ -55,10 +42,8 @@ bool asks_for_raster(const Settings& given) {
 void infer(PathSettings& path, const EffectContext& context) {
     const Settings& settings = context.settings;
     context.resolved.asks_for_paths = path.enabled.is_pinned() && *path.enabled;
-    const bool extended = has_extensions(context.content.scene(), settings.material);
-    fill(path.enabled,
-         context.samples > 1 && *settings.ssao.enabled && !asks_for_raster(context.given) && !extended);
-    context.resolved.traces_paths = *path.enabled && !extended;
+    fill(path.enabled, context.samples > 1 && *settings.ssao.enabled && !asks_for_raster(context.given));
+    context.resolved.traces_paths = *path.enabled;
 }
 
 }  // namespace easypbr::detail

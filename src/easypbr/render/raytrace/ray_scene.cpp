@@ -58,12 +58,36 @@ bool is_filtered(const DrawItem& item) {
     return item.alpha != AlphaMode::opaque || item.casts_tint();
 }
 
+/// What a ray asks of the surfaces that it passes. Embree hands it to the filter.
+struct RayQuery {
+    RTCIntersectContext embree;
+    Transmissive transmissive = Transmissive::passed;
+    Vec3* transmittance = nullptr;  ///< of what is passed straight, where it is asked for
+
+    explicit RayQuery(Transmissive transmissive_) : transmissive(transmissive_) {
+        rtcInitIntersectContext(&embree);
+    }
+};
+
+/// Light below this part is none.
+constexpr float least_transmittance = 1e-3f;
+
 /// Leaves out holes and what lets the ray through.
 void filter(const RTCFilterFunctionNArguments* args) {
     const auto& element = *static_cast<const Element*>(args->geometryUserPtr);
     if (args->valid[0] != -1 || args->N != 1) return;
     const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
-    const float stops = opacity_at(*element.item, element.of(hit.primID), hit.u, hit.v);
+    const auto& query = *reinterpret_cast<const RayQuery*>(args->context);
+    const int index = element.of(hit.primID);
+    if (query.transmittance) {
+        Vec3& left = *query.transmittance;
+        left = left.cwiseProduct(transmittance_at(*element.item, index, hit.u, hit.v));
+        if (left.maxCoeff() > least_transmittance) args->valid[0] = 0;
+        return;
+    }
+    const float stops = query.transmissive == Transmissive::met
+                            ? coverage_at(*element.item, index, hit.u, hit.v)
+                            : opacity_at(*element.item, index, hit.u, hit.v);
     const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);
     if (stops < 1 && (stops <= 0 || hash_of(ray, hit.primID) >= stops)) args->valid[0] = 0;
 }
@@ -92,6 +116,11 @@ void commit(RTCScene scene) {
     rtcCommitScene(scene);
     rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
     if (building.stopped) throw Interrupted();
+}
+
+/// What a place that comes from a pixel may be off by.
+float rounding_at(const Vec3& place) {
+    return 1e-4f * std::max(1.0f, place.norm());
 }
 
 }  // namespace
@@ -267,6 +296,17 @@ int RayScene::surface_count() const {
     return scene_ ? int(scene_->surfaces.size()) : 0;
 }
 
+const DrawItem& RayScene::item_of(int surface) const {
+    return *scene_->elements[size_t(surface)]->item;
+}
+
+ExtensionSet RayScene::extensions() const {
+    ExtensionSet set = 0;
+    for (int i = 0; i < surface_count(); ++i)
+        if (scene_->elements[size_t(i)]->faces > 0) set |= item_of(i).extensions();
+    return set;
+}
+
 FaceRange RayScene::emissive_faces(int surface) const {
     const Element& element = *scene_->elements[size_t(surface)];
     const DrawItem& item = *element.item;
@@ -297,14 +337,14 @@ float RayScene::ground_distance(const Vec3& from, const Vec3& direction) const {
     return (at - up * up.dot(at)).norm() * float(unit_) < float(ground_->radius) ? above / falls : none;
 }
 
-std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction) const {
+std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction,
+                                      Transmissive transmissive) const {
     const float to_ground = ground_distance(from, direction);
     RTCRayHit found{};
     found.ray = ray_of(from, direction, to_ground);
     found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    if (scene_) rtcIntersect1(scene_->scene, &context, &found);
+    RayQuery query(transmissive);
+    if (scene_) rtcIntersect1(scene_->scene, &query.embree, &found);
     RayHit hit;
     hit.distance = found.ray.tfar;
     hit.position = from + direction * found.ray.tfar;
@@ -324,23 +364,41 @@ std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction) c
     return hit;
 }
 
-RayScene::Seen RayScene::seen_at(const Vec3& place, const Vec3& normal, const Vec3& view,
-                                 float footprint) const {
-    const float rounding = 1e-4f * std::max(1.0f, place.norm()), near = std::max(rounding, footprint);
-    const auto hit = trace(place + near * view, -view);
+RayScene::Seen RayScene::seen_at(const Vec3& place, const Vec3& normal, const Vec3& view, float footprint,
+                                 Transmissive transmissive) const {
+    const float rounding = rounding_at(place), near = std::max(rounding, footprint);
+    const auto hit = trace(place + near * view, -view, transmissive);
     if (!hit || hit->distance > near + rounding) return {place, normal, normal};
     if (hit->normal.dot(normal) > 0.3f) return {hit->position, hit->normal, normal};
     const bool stands_before = hit->distance < near - 0.02f * rounding;
     return stands_before ? Seen{hit->position, hit->normal, hit->normal} : Seen{place, normal, normal};
 }
 
-bool RayScene::blocked(const Vec3& from, const Vec3& direction, float distance) const {
+std::optional<RayHit> RayScene::hit_at(const Vec3& place, const Vec3& view, float footprint) const {
+    const float near = std::max(rounding_at(place), footprint);
+    auto hit = trace(place + near * view, -view, Transmissive::met);
+    // At a silhouette the surface may go on behind the place, by more than a pixel.
+    if (!hit || hit->surface < 0 || hit->distance > 16 * near) return std::nullopt;
+    return hit;
+}
+
+bool RayScene::blocked(const Vec3& from, const Vec3& direction, float distance,
+                       Transmissive transmissive) const {
     if (!scene_) return false;
     RTCRay ray = ray_of(from, direction, distance);
-    RTCIntersectContext context;
-    rtcInitIntersectContext(&context);
-    rtcOccluded1(scene_->scene, &context, &ray);
+    RayQuery query(transmissive);
+    rtcOccluded1(scene_->scene, &query.embree, &ray);
     return ray.tfar < 0;
+}
+
+Vec3 RayScene::transmittance(const Vec3& from, const Vec3& direction, float distance) const {
+    Vec3 left = Vec3::Ones();
+    if (!scene_) return left;
+    RTCRay ray = ray_of(from, direction, distance);
+    RayQuery query(Transmissive::passed);
+    query.transmittance = &left;
+    rtcOccluded1(scene_->scene, &query.embree, &ray);
+    return ray.tfar < 0 ? Vec3(Vec3::Zero()) : left;
 }
 
 }  // namespace easypbr::render

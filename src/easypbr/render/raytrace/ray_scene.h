@@ -37,9 +37,14 @@ struct RayHit {
     float distance = 0;              ///< in RayScene::unit()
 };
 
+/// What surfaces that transmit light are to rays. Blended ones let a part of the rays through in any case.
+enum class Transmissive {
+    passed,  ///< they stop the part of the rays that they take from light, chosen by a hash of the ray
+    met      ///< they are surfaces like others
+};
+
 /// Positions are relative to the casters' centre and in units of half their diagonal, so that single
-/// precision holds them at any scale and place. Masked surfaces have their holes, by the nearest texel;
-/// those that light passes stop the part of the rays that they take from light, chosen by a hash of the ray.
+/// precision holds them at any scale and place. Masked surfaces have their holes, by the nearest texel.
 class RayScene {
   public:
     RayScene();
@@ -56,6 +61,9 @@ class RayScene {
     int surface_count() const;
     /// Another one each time that surfaces are made.
     uint64_t surfaces_generation() const { return surfaces_generation_; }
+    const DrawItem& item_of(int surface) const;
+    /// Of all surfaces together.
+    ExtensionSet extensions() const;
     /// The faces of a surface whose material emits; none of surfaces with holes, or that light passes.
     FaceRange emissive_faces(int surface) const;
     /// The corners of a face, relative to centre(), in unit().
@@ -73,8 +81,9 @@ class RayScene {
 
     const std::optional<RayGround>& ground() const { return ground_; }
 
-    /// The first surface in the direction (unit); safe to call from several threads.
-    std::optional<RayHit> trace(const Vec3& from, const Vec3& direction) const;
+    /// The first surface in the direction (unit); safe to call from several threads, as are the others.
+    std::optional<RayHit> trace(const Vec3& from, const Vec3& direction,
+                                Transmissive transmissive = Transmissive::passed) const;
     /// What a camera's pixel shows, as rays find it.
     struct Seen {
         Vec3 position;
@@ -84,9 +93,16 @@ class RayScene {
     /// What is seen at a place along `view` (unit, towards the viewer). The rasteriser rounds vertices to a
     /// part of a pixel: a place that lies beyond an adjacent face by less than `footprint`, the width of a
     /// pixel there, moves onto that face.
-    Seen seen_at(const Vec3& place, const Vec3& normal, const Vec3& view, float footprint = 0) const;
+    Seen seen_at(const Vec3& place, const Vec3& normal, const Vec3& view, float footprint = 0,
+                 Transmissive transmissive = Transmissive::passed) const;
+    /// The surface at a place that is seen along `view`, transmissive ones too; none where its edges are
+    /// rounded away.
+    std::optional<RayHit> hit_at(const Vec3& place, const Vec3& view, float footprint) const;
     /// Whether any caster lies nearer than `distance` (RayScene::unit()).
-    bool blocked(const Vec3& from, const Vec3& direction, float distance) const;
+    bool blocked(const Vec3& from, const Vec3& direction, float distance,
+                 Transmissive transmissive = Transmissive::passed) const;
+    /// What casters nearer than `distance` leave of light that passes them straight.
+    Vec3 transmittance(const Vec3& from, const Vec3& direction, float distance) const;
 
   private:
     struct Scene;

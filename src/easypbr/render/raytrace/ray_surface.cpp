@@ -92,7 +92,7 @@ Vec2 uv_at(const DrawItem& item, int element, float u, float v) {
 
 }  // namespace
 
-float opacity_at(const DrawItem& item, int element, float u, float v) {
+float coverage_at(const DrawItem& item, int element, float u, float v) {
     const Material& m = item.material;
     if (item.kind != SurfaceKind::lit) return 1;
     float opacity = m.opacity;
@@ -106,9 +106,22 @@ float opacity_at(const DrawItem& item, int element, float u, float v) {
     }
     if (item.alpha == AlphaMode::mask) opacity = opacity < m.alpha_cutoff ? 0.0f : 1.0f;
     if (item.alpha == AlphaMode::opaque) opacity = 1;
-    // What goes through the surface itself.
-    if (m.transmits()) opacity *= 1 - m.transmittance(AlphaMode::opaque).mean();
     return opacity;
+}
+
+float opacity_at(const DrawItem& item, int element, float u, float v) {
+    const float coverage = coverage_at(item, element, u, v);
+    const Material& m = item.material;
+    if (item.kind != SurfaceKind::lit || !m.transmits()) return coverage;
+    return coverage * (1 - m.transmittance(AlphaMode::opaque).mean());
+}
+
+Vec3 transmittance_at(const DrawItem& item, int element, float u, float v) {
+    const float coverage = coverage_at(item, element, u, v);
+    const Vec3 open = Vec3::Constant(1 - coverage);
+    const Material& m = item.material;
+    if (item.kind != SurfaceKind::lit || !m.transmits()) return open;
+    return open + coverage * m.transmittance(AlphaMode::opaque);
 }
 
 RaySurface surface_at(const RayHit& hit, float dielectric_f0) {

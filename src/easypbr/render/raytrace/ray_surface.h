@@ -7,6 +7,11 @@ namespace easypbr::render {
 
 struct RayHit;
 
+/// Part of an element that there is, whatever it is made of: 1 for opaque ones, 0 in the holes of masked
+/// ones, and the opacity of blended ones. Of faces at barycentric coordinates.
+float coverage_at(const DrawItem& item, int element, float u, float v);
+/// What an element leaves of light that passes it straight; its material is that of the factors alone.
+Vec3 transmittance_at(const DrawItem& item, int element, float u, float v);
 /// Part of a ray that an element stops: 1 for opaque ones, 0 in the holes of masked ones, and for others what
 /// they take from light. Of faces at barycentric coordinates; of others by their material.
 float opacity_at(const DrawItem& item, int element, float u, float v);

@@ -71,12 +71,15 @@ void MeshSurface::resolve(const Frame& frame, const DrawItem& item,
 
 MeshHits::MeshHits(const DrawItem& item, const MeshFacts& facts, std::shared_ptr<const void> shader,
                    const native::TriangleAttributes& attributes)
-    : triangles_(shading_triangles(item, facts)), shader_(std::move(shader)) {
+    : triangles_(shading_triangles(item, facts)),
+      shader_(std::move(shader)),
+      extended_(item.extensions() != 0) {
     set_shader(triangles_, shader_.get(), attributes);
 }
 
 void MeshHits::shade(std::span<const native::ElementHit> hits, const native::HitSurfaces& surfaces) const {
-    native::shade_hits(triangles_, hits, surfaces);
+    const auto shade = extended_ ? native::shade_extended_hits : native::shade_hits;
+    shade(triangles_, hits, surfaces);
 }
 
 }  // namespace easypbr::render

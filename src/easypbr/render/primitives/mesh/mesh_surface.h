@@ -42,7 +42,7 @@ class MeshSurface final : public VisibleItem {
 /// The same for rays.
 class MeshHits final : public HitSurface {
   public:
-    /// See MeshSurface::vary().
+    /// See MeshSurface::vary(); of items with extensions the shader is native::extended_hit_uniforms().
     MeshHits(const DrawItem& item, const MeshFacts& facts, std::shared_ptr<const void> shader,
              const native::TriangleAttributes& attributes);
     void shade(std::span<const native::ElementHit> hits, const native::HitSurfaces& surfaces) const override;
@@ -50,6 +50,7 @@ class MeshHits final : public HitSurface {
   private:
     native::VisibleTriangles triangles_;
     std::shared_ptr<const void> shader_;
+    bool extended_;
 };
 
 }  // namespace easypbr::render

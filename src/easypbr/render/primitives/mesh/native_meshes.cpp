@@ -89,16 +89,14 @@ native::TriangleAttributes NativeMeshes::attributes_of(const DrawItem& item, con
     return attributes;
 }
 
-std::shared_ptr<const void> NativeMeshes::shader_of(const ResolvedSettings& resolved, int samples,
-                                                    const DrawItem& item, const MeshFacts& known) {
-    const MaterialContext context{0, samples, &resolved};
+ShaderInputs NativeMeshes::inputs_of(const MaterialContext& context, const DrawItem& item,
+                                     const MeshFacts& known) {
     ShaderInputs values = material_inputs(context, item, textures_, true);
     std::vector<std::string> defines;
     add_mesh_defines(item, known.normals_agree, defines);
     add_material_defines(context, item, defines);
     values.define(defines);
-    Transfers none;
-    return native::surface_uniforms(values.native(none));
+    return values;
 }
 
 std::unique_ptr<HitSurface> NativeMeshes::hit_surface(const ResolvedSettings& resolved,
@@ -108,7 +106,10 @@ std::unique_ptr<HitSurface> NativeMeshes::hit_surface(const ResolvedSettings& re
     DrawItem plain = item;
     plain.material.shader = {};
     // What the footprint of a ray blurs is not blurred less for being jittered.
-    return std::make_unique<MeshHits>(item, known, shader_of(resolved, 1, plain, known),
+    const ShaderInputs inputs = inputs_of({item.extensions(), 1, &resolved}, plain, known);
+    Transfers none;
+    const auto uniforms = item.extensions() ? native::extended_hit_uniforms : native::surface_uniforms;
+    return std::make_unique<MeshHits>(item, known, uniforms(inputs.native(none)),
                                       attributes_of(plain, known));
 }
 
@@ -118,7 +119,9 @@ std::unique_ptr<MeshSurface> NativeMeshes::surface_of(const Frame& frame, const 
     const bool is_plain =
         !item.textured() && !item.with_colors && !item.emits() && item.alpha == AlphaMode::opaque;
     if (is_plain) return surface;
-    surface->vary(shader_of(*frame.resolved, frame.sample_count, item, known), attributes_of(item, known));
+    const ShaderInputs inputs = inputs_of({0, frame.sample_count, frame.resolved}, item, known);
+    Transfers none;
+    surface->vary(native::surface_uniforms(inputs.native(none)), attributes_of(item, known));
     return surface;
 }
 

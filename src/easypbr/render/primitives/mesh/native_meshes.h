@@ -9,6 +9,7 @@
 #include "easypbr/core/revision_cache.h"
 #include "easypbr/gpu/closed_meshes.h"
 #include "easypbr/gpu/texture_cache.h"
+#include "easypbr/render/primitives/mesh/mesh_material.h"
 #include "easypbr/render/primitives/mesh/mesh_surface.h"
 #include "easypbr/render/primitives/primitive.h"
 
@@ -33,9 +34,8 @@ class NativeMeshes {
 
   private:
     const MeshFacts& facts_of(const MeshData& mesh);
-    /// Uniforms of mesh_resolve.
-    std::shared_ptr<const void> shader_of(const ResolvedSettings& resolved, int samples, const DrawItem& item,
-                                          const MeshFacts& known);
+    /// What mesh_resolve reads, and with extensions mesh_hit_extended.
+    ShaderInputs inputs_of(const MaterialContext& context, const DrawItem& item, const MeshFacts& known);
     native::TriangleAttributes attributes_of(const DrawItem& item, const MeshFacts& known);
     std::unique_ptr<MeshSurface> surface_of(const Frame& frame, const DrawItem& item, const MeshFacts& known,
                                             const Mat4d& clip_from_mesh);

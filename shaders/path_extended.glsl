@@ -1,0 +1,75 @@
+// The same with glTF's material extensions. Transmission passes a thin surface straight, or as its roughness spreads it. It
+// enters a volume by refraction; what has entered leaves it by refraction, or stays by total internal reflection.
+#include "common_arriving.glsl"
+#include "common_encoding.glsl"
+#include "common_surface.glsl"
+#include "lighting_extended.glsl"
+#include "path_surface.glsl"
+
+in float v_inside;     // 1: the path comes from within the volume
+in vec4 v_dielectric;  // Extension: f0, f90
+in vec4 v_coat;        // coat_normal, clearcoat
+in vec4 v_sheen;       // sheen_color, sheen_roughness
+in vec4 v_film;        // iridescence, film_ior, film_thickness, coat_roughness
+in vec4 v_tangent;     // tangent, anisotropy
+in vec3 v_volume;      // transmission, ior, thickness
+in vec3 v_transmittance;
+
+Extension path_extension() {
+    Extension e;
+    e.f0 = v_dielectric.xyz;
+    e.f90 = v_dielectric.w;
+    e.coat_normal = v_coat.xyz;
+    e.clearcoat = v_coat.w;
+    e.coat_roughness = max(v_film.w, 0.045);
+    e.sheen_color = v_sheen.xyz;
+    e.sheen_roughness = v_sheen.w;
+    e.iridescence = v_film.x;
+    e.film_ior = v_film.y;
+    e.film_thickness = v_film.z;
+    e.anisotropy = v_tangent.w;
+    vec3 bitangent, any_tangent;
+    frame_around(v_normal, any_tangent, bitangent);
+    vec3 tangent = v_tangent.xyz - v_normal * dot(v_normal, v_tangent.xyz);
+    e.tangent = dot(tangent, tangent) > 1e-12 ? tangent * inversesqrt(max(dot(tangent, tangent), 1e-12)) : any_tangent;
+    e.transmission = v_volume.x;
+    e.ior = v_volume.y;
+    e.thickness = v_volume.z;
+    e.transmittance = v_transmittance;
+    return e;
+}
+
+Surface path_surface() {
+    Surface s = bare_surface();
+    s.extension = path_extension();
+    prepare_extended(s, v_albedo, v_parameters.x);
+    return s;
+}
+
+bool is_inside() { return v_inside > 0.5; }
+bool is_volume(Surface s) { return s.extension.thickness > 0.0; }
+
+// Light goes through as it comes.
+bool is_clear(Surface s) { return v_parameters.y * clamp(2.0 * s.extension.ior - 2.0, 0.0, 1.0) < 0.045; }
+
+// The sheen leaves what it does not reflect of light from everywhere: no energy is lost.
+vec3 scattered_above(vec3 l, Surface s) {
+    vec3 h = normalize(l + s.view);
+    float n_dot_l = clamp(dot(s.normal, l), 0.0, 1.0), keep = 1.0;
+    if (has_sheen) keep = s.sheen_keep;
+    return under_layers(scattered_by_base(l, h, n_dot_l, s), l, h, n_dot_l, keep, s);
+}
+
+// Light from a direction into the view: the BRDF, or what roughness spreads of the BTDF straight through, times the cosine.
+vec3 reflected(vec3 l, Surface s) {
+    vec3 below = mirrored_at_face(l);
+    vec3 light = scattered_above(l, s) + scattered_above(below, s);
+    vec3 spread = vec3(0.0);
+    if (has_transmission) {
+        vec2 dfg = dfg_at(s.n_dot_v, transmitted_roughness(s));
+        float lobe = (transmitted_lobe(l, s) + transmitted_lobe(below, s)) / (dfg.x + dfg.y);
+        spread = is_clear(s) ? vec3(0.0) : s.keep * s.extension.transmittance * s.through * lobe;
+    }
+    vec3 result = dot(l, v_face) > 0.0 ? light : spread;
+    return is_inside() ? vec3(0.0) : result;
+}

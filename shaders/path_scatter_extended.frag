@@ -1,0 +1,156 @@
+// path_scatter.frag for surfaces with glTF's material extensions.
+#include "path_extended.glsl"
+
+in vec3 v_random;  // in [0, 1)
+in vec3 v_light_direction;
+in vec3 v_light;           // radiance
+in float v_light_density;  // of such directions, per steradian; 0: none was chosen
+
+out vec3 o_light;      // of this direction, unless it is hidden
+out vec3 o_direction;  // below the face where the path goes through
+out vec3 o_weight;     // what the path's throughput is multiplied by
+out float o_density;   // of the direction, per steradian; very large where no other direction is possible
+out vec3 o_keep;       // of the light that the surface emits
+
+const float only_direction = 1e30;
+
+// Parts of the directions; the others are those of a cosine.
+struct Lobes {
+    float specular, coat, through;
+};
+
+Lobes lobes_of(Surface s) {
+    Extension e = s.extension;
+    float specular = s.keep * luminance(s.energy.single + s.energy.multiple), coat = 0.0, through = 0.0;
+    float matt = s.keep * luminance(s.diffuse);
+    if (has_sheen) matt += luminance(e.sheen_color) * min(s.sheen_albedo, 1.0);
+    if (has_clearcoat) coat = s.coat_albedo;
+    if (has_transmission) through = s.keep * luminance(s.through);
+    // Where there are several lobes each of them gets some.
+    specular = max(specular, 0.1 * (matt + coat + through));
+    coat = coat > 0.0 ? max(coat, 0.1 * (specular + matt)) : 0.0;
+    matt = matt > 0.0 ? max(matt, 0.1 * specular) : 0.0;
+    float sum = max(specular + coat + through + matt, 1e-6);
+    Lobes lobes;
+    lobes.specular = specular / sum;
+    lobes.coat = coat / sum;
+    lobes.through = through / sum;
+    return lobes;
+}
+
+float specular_density(vec3 h, Surface s) {
+    float n_dot_h = dot(s.normal, h);
+    if (!has_anisotropy) return visible_density(n_dot_h, s.n_dot_v, s.alpha);
+    vec2 alpha = anisotropic_alpha(s, s.alpha);
+    vec3 v = tangent_space(s, s.view, s.n_dot_v);
+    float masked = s.n_dot_v + length(vec3(alpha * v.xy, v.z));
+    return n_dot_h > 0.0 ? D_ggx_anisotropic(tangent_space(s, h, n_dot_h), alpha) / (2.0 * masked) : 0.0;
+}
+
+float density_above(vec3 l, Surface s, Lobes lobes) {
+    vec3 h = normalize(l + s.view);
+    float matt = 1.0 - lobes.specular - lobes.coat - lobes.through;
+    float density = lobes.specular * specular_density(h, s) + matt * max(dot(s.normal, l), 0.0) * inverse_pi;
+    if (has_clearcoat) {
+        Extension e = s.extension;
+        density += lobes.coat * visible_density(dot(e.coat_normal, h), s.coat_n_dot_v, e.coat_roughness * e.coat_roughness);
+    }
+    return density;
+}
+
+float density_below(vec3 l, Surface s) {
+    float roughness = transmitted_roughness(s);
+    vec3 h = normalize(l - 2.0 * dot(s.normal, l) * s.normal + s.view);
+    return visible_density(dot(s.normal, h), s.n_dot_v, roughness * roughness);
+}
+
+// Of directions that could have been found by more than one lobe.
+float density_of(vec3 l, Surface s, Lobes lobes) {
+    vec3 below = mirrored_at_face(l);
+    float above = density_above(l, s, lobes) + density_above(below, s, lobes), through = 0.0;
+    if (has_transmission) through = lobes.through * (density_below(l, s) + density_below(below, s));
+    return dot(l, v_face) > 0.0 ? above : through;
+}
+
+// A facet of a lobe around the normal n, as the view sees it.
+vec3 facet_around(vec3 n, vec3 t, vec3 view, vec2 alpha, vec2 u) {
+    vec3 b = cross(n, t);
+    vec3 h = visible_facet(vec3(dot(t, view), dot(b, view), max(dot(n, view), 1e-5)), alpha, u);
+    return t * h.x + b * h.y + n * h.z;
+}
+
+vec3 mirrored_by(vec3 h, vec3 view) { return normalize(2.0 * dot(view, h) * h - view); }
+
+// A facet that refracts; what is clear has but one.
+vec3 refracting_facet(Surface s, vec3 t, vec2 u) {
+    vec3 h = facet_around(s.normal, t, s.view, vec2(s.alpha), u);
+    return is_clear(s) || dot(h, s.view) <= 0.0 ? s.normal : h;
+}
+
+// Into a volume.
+vec3 refracted(Surface s, vec3 h) {
+    float eta = 1.0 / s.extension.ior, cosine = dot(h, s.view);
+    return (eta * cosine - sqrt(max(1.0 - eta * eta * (1.0 - cosine * cosine), 0.0))) * h - eta * s.view;
+}
+
+// Out of a volume, or back into it: Fresnel's reflectance is the same from both sides, at the angle outside.
+vec3 left_or_kept(Surface s, vec3 h, float u) {
+    float eta = s.extension.ior, cosine = dot(h, s.view);
+    float sine2 = eta * eta * (1.0 - cosine * cosine), outer = sqrt(max(1.0 - sine2, 0.0));
+    float part = luminance(F_schlick90(outer, s.extension.f0, vec3(s.extension.f90)));
+    bool leaves = sine2 < 1.0 && u >= part;
+    return leaves ? (eta * cosine - outer) * h - eta * s.view : mirrored_by(h, s.view);
+}
+
+// A direction above the face, or with -1 below it.
+vec3 on_side(vec3 l, float side) { return side * dot(l, v_face) > 0.0 ? l : mirrored_at_face(l); }
+
+void main() {
+    Surface s = path_surface();
+    Lobes lobes = lobes_of(s);
+    bool spreads = !is_volume(s) && !is_clear(s);
+    float found = v_light_density + density_of(v_light_direction, s, lobes);
+    vec3 seen = dot(v_light_direction, v_face) > 0.0 || spreads ? reflected(v_light_direction, s) : vec3(0.0);
+    o_light = v_light_density > 0.0 ? v_light * seen / found : vec3(0.0);
+
+    vec3 b1, b2;
+    frame_around(s.normal, b1, b2);
+    vec2 u = v_random.xy;
+    vec3 matt = cosine_direction(u);
+    vec3 l = b1 * matt.x + b2 * matt.y + s.normal * matt.z;
+    vec2 alpha = vec2(s.alpha);
+    vec3 t = b1;
+    if (has_anisotropy) {
+        alpha = anisotropic_alpha(s, s.alpha);
+        t = s.extension.tangent;
+    }
+    float specular_end = lobes.specular, coat_end = specular_end + lobes.coat, through_end = coat_end + lobes.through;
+    if (has_clearcoat) {
+        Extension e = s.extension;
+        vec3 c1, c2;
+        frame_around(e.coat_normal, c1, c2);
+        vec3 coat = mirrored_by(facet_around(e.coat_normal, c1, s.view, vec2(e.coat_roughness * e.coat_roughness), u), s.view);
+        l = v_random.z < coat_end ? coat : l;
+    }
+    l = v_random.z < specular_end ? mirrored_by(facet_around(s.normal, t, s.view, alpha, u), s.view) : l;
+    l = on_side(normalize(l), 1.0);
+    bool only = is_inside();
+    if (has_transmission) {
+        bool passes = v_random.z >= coat_end && v_random.z < through_end;
+        float roughness = transmitted_roughness(s);
+        vec3 m = mirrored_by(facet_around(s.normal, b1, s.view, vec2(roughness * roughness), u), s.view);
+        vec3 spread = m - 2.0 * dot(s.normal, m) * s.normal;
+        vec3 h = refracting_facet(s, b1, u);
+        vec3 straight = is_volume(s) ? refracted(s, h) : -s.view;
+        l = passes ? on_side(normalize(spreads ? spread : straight), -1.0) : l;
+        l = is_inside() ? normalize(left_or_kept(s, h, v_random.z)) : l;
+        only = only || (passes && !spreads);
+    }
+    o_direction = l;
+    float density = density_of(l, s, lobes);
+    o_density = only ? only_direction : density;
+    o_weight = density > 0.0 ? reflected(l, s) / density : vec3(0.0);
+    o_weight = only ? s.keep * s.through / max(lobes.through, 1e-6) : o_weight;
+    o_weight = is_inside() ? vec3(1.0) : o_weight;
+    o_keep = is_inside() ? vec3(1.0) : vec3(s.keep);
+}
