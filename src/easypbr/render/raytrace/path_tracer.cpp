@@ -316,7 +316,7 @@ bool PathTracer::is_caught(const Hit& hit, uint32_t depth, std::vector<Vec3>& ra
 
 namespace {
 
-native::ElementHit element_of(const PathTracer::Hit& hit) {
+native::ElementHit native_hit(const PathTracer::Hit& hit) {
     native::ElementHit element;
     element.element = uint32_t(hit.hit.element);
     element.u = hit.hit.u;
@@ -349,7 +349,7 @@ PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth,
     std::vector<native::ElementHit> elements;
     std::vector<int> order;
     for (const Hit& hit : hits) {
-        elements.push_back(element_of(hit));
+        elements.push_back(native_hit(hit));
         order.push_back(hit.hit.surface);
     }
     const HitSurfaces surfaces = evaluate(*scene_, elements, order);
