@@ -290,6 +290,7 @@ TEST(Annotation, NamesWhatOccurs) {
     for (const MeshData& mesh : {cloud, values, values})
         scene.objects.push_back({"m", std::make_shared<const MeshData>(mesh), Eigen::Affine3d::Identity()});
     InferredSettings settings;
+    settings.camera.up = "+y";
     EXPECT_TRUE(annotation_of(scene, settings).empty()) << "nobody asked";
     settings.annotation.legend = true;
     settings.annotation.colorbar = true;

@@ -139,7 +139,7 @@ def test_camera_of_the_command_line_replaces_the_pose_of_a_settings_file(layers,
 
 
 @pytest.mark.parametrize("up, channel, sign", [("+y", "G", 1), ("-y", "G", -1), ("+z", "B", 1), ("-Y", "G", -1), ("+Z", "B", 1),
-                                               ("Z", "B", 1)])
+                                               ("Z", "B", 1), ("auto", "G", 1)])
 def test_up_axis_points_up(layers, sphere, up, channel, sign):
     (normal,) = layers("normal_world", sphere, "--camera-position", "5,0,0", "--camera-target", "0,0,0", "--up", up)
     top = normal[channel][8, 32]  # the sphere covers rows 1 to 46 or fewer

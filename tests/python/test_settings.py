@@ -153,3 +153,22 @@ def test_the_stub_names_every_setting():
     for field in easypbr._easypbr.fields():
         assert f"def {field.name.split('.')[-1]}(self)" in stub
     assert "class LightsKeySettings(SettingsGroup):" in stub
+
+
+def test_up_is_inferred_and_pinned():
+    """A floor and a wall that faces no axis, z up."""
+    floor = np.random.default_rng(1).random((40_000, 3)) * (4, 3, 0)
+    wall = np.random.default_rng(2).random((10_000, 3)) * (3, 2, 1) * np.array([1, 0, 1])
+    wall[:, 1] = 0.5 * wall[:, 0]
+    scene = Scene()
+    scene.show(easypbr.as_mesh(np.concatenate([floor, wall])), "scan")
+    view = Viewer((32, 24), scene=scene)
+    assert view.settings.camera.up == auto
+    view.render(samples=1)
+    assert view.settings.camera.up.value == "+z"
+    view.settings.camera.up = "-Y"
+    assert view.settings.camera.up == "-y"
+    view.settings.camera.up = auto
+    assert view.settings.resolve("camera.up") == "+z"
+    with pytest.raises(easypbr.ArgumentError, match=r"\+x, -x, \+y, -y, \+z, -z.*auto"):
+        view.settings.camera.up = "north"

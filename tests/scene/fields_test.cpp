@@ -163,7 +163,7 @@ TEST(Fields, ReadCommonSpellings) {
     set_from_text(settings, "tonemap.operator", "ACES");
     EXPECT_EQ(settings.tonemap.tone_operator, ToneOperator::aces);
     set_from_text(settings, "camera.up", "+Z");
-    EXPECT_EQ(settings.camera.up, "+z");
+    EXPECT_EQ(*settings.camera.up, "+z");
     set_from_text(settings, "camera.position", "auto");
     EXPECT_FALSE(settings.camera.position.value());
     set_from_text(settings, "camera.position", "follow");

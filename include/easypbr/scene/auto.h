@@ -2,7 +2,9 @@
 // of an object.
 #pragma once
 
+#include <concepts>
 #include <optional>
+#include <string>
 #include <utility>
 
 namespace easypbr {
@@ -25,6 +27,7 @@ class Auto {
     Auto(AutomaticTag) {}
     Auto(FollowTag) : mode_(Mode::follow) {}
     Auto(T value) : value_(std::move(value)), mode_(Mode::pinned) {}
+    Auto(const char* text) requires std::same_as<T, std::string> : Auto(T(text)) {}
 
     bool is_pinned() const { return mode_ == Mode::pinned; }
     bool is_follow() const { return mode_ == Mode::follow; }

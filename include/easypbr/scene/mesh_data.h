@@ -67,6 +67,8 @@ struct MeshData {
     /// of one scene are placed by it: the scene's own frame has an origin (Scene::origin), and a vertex
     /// stands at T_world_mesh * (V + offset - origin).
     Vec3d offset{0, 0, 0};
+    /// Direction that points up by the convention of the file's format, in the frame of V; zero: it has none.
+    Vec3d up{0, 0, 0};
     float voxel_size = 0;  ///< edge of the cubes that V are the centres of; 0: V are no voxels
 
     Array1i source_vertex;  ///< n x 1 index of the file's vertex that each vertex came from; empty: the same

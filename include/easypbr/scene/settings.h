@@ -40,7 +40,7 @@ struct BasicCameraSettings {
     Projection projection = Projection::perspective;
     MaybeAuto<Vec3d> position{};       ///< world units; automatic: frames the content
     MaybeAuto<Vec3d> target{};         ///< point looked at, world units; automatic: centres the content
-    std::string up = "+y";             ///< world axis that points up: +x, -x, +y, -y, +z or -z
+    MaybeAuto<std::string> up{};       ///< world axis that points up: +x, -x, +y, -y, +z or -z; any case
     float fov_y_deg = 30;              ///< vertical field of view in degrees, 1 to 170; perspective
     MaybeAuto<double> ortho_height{};  ///< height of the view volume, world units, above 0; orthographic
     MaybeAuto<double> near{};          ///< distance to the near clipping plane, world units, above 0

@@ -12,8 +12,7 @@ std::optional<Vec2d> Navigation::handle(const InputEvent& event, Vec2i size) {
     if (!can_move) return {};
     const ViewPoint before = session_.view_point(size);
     ViewPoint view = before;
-    const CameraControl::Wish wish =
-        control_.handle(event, view, size, parse_up(session_.settings().camera.up));
+    const CameraControl::Wish wish = control_.handle(event, view, size, session_.up());
     if (view.camera.T_world_cam.matrix() != before.camera.T_world_cam.matrix()) session_.set_view_point(view);
     fit_ |= wish.fit;
     if (wish.zoom) zoom(*wish.zoom, wish.zoom_factor, size);

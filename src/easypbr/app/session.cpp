@@ -242,6 +242,11 @@ ViewPoint Session::view_point(std::optional<Vec2i> size) {
     return {resolved.camera, resolved.settings.camera.target};
 }
 
+Vec3d Session::up() {
+    const std::optional<std::string>& known = settings_->camera.up.value();
+    return parse_up(known ? *known : resolve().settings.camera.up);
+}
+
 std::map<std::string, Image> Session::render_layers(const std::vector<std::string>& names,
                                                     std::optional<Vec2i> size) {
     std::vector<render::Layer> layers;

@@ -122,6 +122,8 @@ class Session {
 
     /// The camera of the next picture with its target.
     ViewPoint view_point(std::optional<Vec2i> size = std::nullopt);
+    /// The axis of the next picture that points up.
+    Vec3d up();
     /// Pins the camera, as set_camera(), and keeps its target; an automatic near plane comes as near as the
     /// camera.
     void set_view_point(const ViewPoint& view);

@@ -69,7 +69,7 @@ void View::obey(ClientId, const Turn& message) {
     own.last_change_s = now_seconds();
     if (own.session.scene().names().empty()) return;
     const app::ViewPoint view = own.session.view_point(own.size);
-    const Vec3d up = parse_up(own.session.settings().camera.up);
+    const Vec3d up = own.session.up();
     own.session.set_view_point(app::orbited(view, up, message.right_deg, message.up_deg));
 }
 

@@ -26,7 +26,7 @@ void reject_contradictions(const CameraSettings& settings) {
 /// Looks as view_rotation() does, also straight up and down where `up` alone says nothing about the picture's
 /// top.
 Camera look_from(const Vec3d& position, const Vec3d& target, const CameraSettings& settings) {
-    const Vec3d up = parse_up(settings.up);
+    const Vec3d up = up_direction(settings);
     const Vec3d forward = (target - position).normalized();
     if (forward.cross(up).norm() >= 1e-6) return Camera::look_at(position, target, up);
     CameraSettings level = settings;

@@ -41,6 +41,11 @@ void fill(Auto<T>& setting, const T& inferred) {
         setting.latch(inferred);
 }
 
+/// The world axis that points up, as a setting says it: what the formats of the content's files say; else the
+/// axis of the ground that it clearly stands on; else "+y". The same for content of the same arrays and
+/// poses.
+std::string inferred_up(const SceneSnapshot& scene);
+
 /// Projection, angle or intrinsics of the settings, without a pose. Throws ArgumentError for bad intrinsics.
 Camera lens_of(const CameraSettings& settings);
 

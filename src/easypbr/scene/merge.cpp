@@ -205,6 +205,8 @@ MeshData merged(Meshes meshes) {
     whole.L = joined_either<Array1i>(meshes, "labels", no_label, [](const MeshData& mesh) { return mesh.L; });
     whole.label_map = first_label_map(meshes);
     whole.scalars = joined_scalars(meshes);
+    const Vec3d up = meshes.front().up;
+    if (all_have(meshes, [&](const MeshData& mesh) { return mesh.up == up; })) whole.up = up;
     const float voxel_size = meshes.front().voxel_size;
     if (all_have(meshes, [&](const MeshData& mesh) { return mesh.voxel_size == voxel_size; }))
         whole.voxel_size = voxel_size;
@@ -238,6 +240,8 @@ MeshData flatten(const Mesh& mesh) {
                       nodes.back().children.clear();
                   });
     MeshData whole = merged(nodes);
+    const auto root = mesh.snapshot();
+    if (!root->up.isZero()) whole.up = root->T_parent_mesh.linear() * root->up;
     whole.name = nodes.size() == 1 ? nodes.front().name : mesh.name();
     return whole;
 }

@@ -27,7 +27,7 @@ void resolve_environment(const SceneSnapshot& scene, Settings& settings, Resolve
     if (*environment.enabled)
         resolved.environment = scene.environment.empty() ? studio_environment() : scene.environment;
     resolved.seen_environment = resolved.environment;
-    resolved.R_env_world = environment_rotation(parse_up(settings.camera.up), environment.rotation_deg);
+    resolved.R_env_world = environment_rotation(up_direction(settings.camera), environment.rotation_deg);
 }
 
 /// Makes the environment's sun a light.
@@ -61,7 +61,7 @@ void resolve_lights(const detail::Content& content, Settings& settings, Resolved
     const bool given =
         *environment.enabled && (!content.scene().environment.empty() || !environment.file.empty());
     for (const ResolvedLight& light : detail::resolve_studio_lights(
-             content, resolved.camera, !given, settings.lights, parse_up(settings.camera.up)))
+             content, resolved.camera, !given, settings.lights, up_direction(settings.camera)))
         resolved.lights.push_back(light);
 }
 
@@ -133,6 +133,7 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& given, Vec2
     const detail::Content content(scene);
     Settings settings = given;
     ResolvedSettings resolved;
+    if (!settings.camera.up.value()) detail::fill(settings.camera.up, detail::inferred_up(scene));
     resolved.camera = detail::resolve_camera(content, settings.camera, double(size.x()) / size.y());
     resolve_environment(scene, settings, resolved);
     resolve_lights(content, settings, resolved);

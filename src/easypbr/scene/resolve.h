@@ -19,7 +19,7 @@ struct ResolvedSettings {
     bool traces_rays = false;           ///< rays replace ambient occlusion, see RaySettings
     bool traces_single_frames = false;  ///< in a frame that stands for one sample too: the user asks for rays
     bool traces_paths = false;          ///< paths are traced, see PathSettings
-    bool asks_for_paths = false;        ///< the user: in single frames too, and scene-linear pictures stay noisy
+    bool asks_for_paths = false;  ///< the user: in single frames too, and scene-linear pictures stay noisy
     Camera camera;
     std::vector<ResolvedLight> lights;         ///< enabled lights of the scene, then key, fill, rim and sun
     std::map<std::string, float> light_radii;  ///< those inferred for lights of the scene, by name
@@ -46,6 +46,11 @@ void release(Settings& settings);
 /// World direction of an up setting: "+x", "-x", "+y", "-y", "+z", "-z" (F3D's spelling, the sign may be
 /// missing).
 Vec3d parse_up(const std::string& up);
+
+/// The same of settings; automatic and not inferred yet: +y.
+inline Vec3d up_direction(const CameraSettings& settings) {
+    return parse_up(settings.up.value_or("+y"));
+}
 
 /// Rows: the world's right, up and front for an up direction that is a world axis. The front is where an
 /// automatic camera with azimuth 0 stands: +z for +y up, -y for +z up. Turns world directions into a frame

@@ -71,6 +71,7 @@ MeshData transformed(const MeshData& mesh, const Eigen::Affine3d& T) {
     if (!mesh.N.empty()) result.N = turned_normals(mesh.N, M);
     if (!mesh.T.empty()) transform_ellipses(result, mesh, M);
     if (determinant < 0 && !mesh.F.empty()) result.F = Array3i::Dense(mesh.F.rowwise().reverse());
+    if (!mesh.up.isZero()) result.up = M * mesh.up;
     result.voxel_size = float(mesh.voxel_size * std::cbrt(std::abs(determinant)));
     return result;
 }

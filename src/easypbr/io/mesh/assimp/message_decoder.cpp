@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/file.h"
 #include "easypbr/io/mesh/assimp/message.h"
 #include "easypbr/io/mesh/assimp/message_cursor.h"
 #include "easypbr/io/mesh/assimp/message_materials.h"
@@ -110,6 +111,12 @@ void take_header(MessageCursor& message, size_t size, MessageKind wanted) {
     if (header.kind != wanted) message.fail("it is of another kind");
 }
 
+/// assimp turns what these formats call up to +y.
+Vec3d up_of_format(const std::string& extension) {
+    const bool is_known = extension == "dae" || extension == "x3d" || extension == "wrl";
+    return is_known ? Vec3d(Vec3d::UnitY()) : Vec3d(Vec3d::Zero());
+}
+
 /// Calls `take` on a message and makes what it throws an error about a file.
 template <class Take>
 auto decode_message(std::span<const std::byte> bytes, const std::string& name, uint64_t memory,
@@ -133,6 +140,7 @@ LoadedScene decode_scene(std::span<const std::byte> message, const std::filesyst
         MeshData root;
         root.name = file.stem().string();
         root.source = file;
+        root.up = up_of_format(extension_of(file));
         root.children.push_back(MessageSceneReader(cursor, file).take_node());
         return LoadedScene{Mesh(std::move(root)), {}, {}};
     });

@@ -68,6 +68,7 @@ class SceneReader {
         MeshData root;
         root.name = document_.path().stem().string();
         root.source = document_.path();
+        root.up = Vec3d::UnitY();
         for (const size_t node : root_nodes())
             if (auto mesh = read_node(node, Eigen::Affine3d::Identity(), 1, true))
                 root.children.push_back(*mesh);

@@ -75,6 +75,7 @@ MeshData read_kitti(const Source& source) {
     mesh.source = source.path;
     if (const auto labels = find_labels(source.path)) read_labels(*labels, mesh);
     drop_points_without_position(source, mesh);
+    mesh.up = Vec3d::UnitZ();
     return mesh;
 }
 

@@ -142,6 +142,7 @@ MeshData read_las(const Source& source) {
     const Source body = header.compressed ? Source(records, source.path) : source.from(header.body);
     MeshData mesh = read_records(source, body, header);
     drop_points_without_position(source, mesh);
+    mesh.up = Vec3d::UnitZ();
     return mesh;
 }
 

@@ -15,7 +15,8 @@ constexpr size_t most_values = 100'000;
 
 class PcdHeaderParser {
   public:
-    explicit PcdHeaderParser(const Source& source) : source_(source), p_(source.begin()), end_(source.end()) {}
+    explicit PcdHeaderParser(const Source& source)
+        : source_(source), p_(source.begin()), end_(source.end()) {}
 
     PcdHeader parse() {
         while (!header_.body) {
@@ -128,6 +129,7 @@ class PcdHeaderParser {
         if (points_ && width_ && product != *points_)
             fail(source_, fmt::format("the header contradicts itself: WIDTH {} x HEIGHT {} are not POINTS {}",
                                       *width_, height_.value_or(1), *points_));
+        header_.rows = height_.value_or(1);
         header_.points = points_.value_or(product);
         if (header_.points > INT32_MAX)
             fail(source_,

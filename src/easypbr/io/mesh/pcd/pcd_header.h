@@ -26,6 +26,7 @@ struct PcdField {
 struct PcdHeader {
     std::vector<PcdField> fields;
     size_t points = 0;
+    size_t rows = 1;  ///< of a depth image; 1: the points have no order
     PcdData data = PcdData::ascii;
     const char* body = nullptr;  ///< first byte after the header
 };

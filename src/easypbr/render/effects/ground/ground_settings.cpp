@@ -44,7 +44,7 @@ void infer(GroundSettings& ground, const EffectContext& context) {
     if (ground.height.value() && ground.radius.value()) return;
     // Below no content there is no ground, at a finite distance.
     constexpr float nowhere = std::numeric_limits<float>::infinity();
-    const Vec3d up = parse_up(context.settings.camera.up);
+    const Vec3d up = up_direction(context.settings.camera);
     if (!ground.height.value())
         fill(ground.height, content.empty() ? nowhere : content.extent_along(up).first);
     if (!ground.radius.value())

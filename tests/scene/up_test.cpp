@@ -1,0 +1,178 @@
+// The inferred up axis: of content that stands on something level, of formats that define it, else +y.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "easypbr/core/error.h"
+#include "easypbr/geometry/primitives.h"
+#include "easypbr/scene/fields.h"
+#include "easypbr/scene/resolve.h"
+#include "point_mesh.h"
+
+namespace easypbr::up_test {
+
+namespace {
+
+const Vec2i size(64, 48);
+
+/// The up axis of one mesh, shown as it is.
+std::string up_of(const Mesh& mesh, const Settings& settings = {}) {
+    Scene scene;
+    scene.show(mesh, "mesh");
+    return resolve(scene.snapshot(), settings, size).settings.camera.up;
+}
+
+/// Points of rectangles: corner, two edges.
+struct Rectangles {
+    std::mt19937 random{3};
+    std::vector<Vec3d> points;
+
+    void add(const Vec3d& corner, const Vec3d& u, const Vec3d& v) {
+        std::uniform_real_distribution<double> part(0, 1);
+        const int count = int(1200 * u.cross(v).norm());
+        for (int i = 0; i < count; ++i) points.push_back(corner + part(random) * u + part(random) * v);
+    }
+    /// As a cloud, turned by R.
+    Mesh turned(const Mat3d& R) const {
+        Array3f::Dense V(Eigen::Index(points.size()), 3);
+        for (size_t i = 0; i < points.size(); ++i)
+            V.row(Eigen::Index(i)) = (R * points[i]).cast<float>().transpose();
+        return cloud(V);
+    }
+};
+
+/// A room of 6 by 4 by 2.5 metres with a table, z up, whose walls face no axis.
+Rectangles room() {
+    Rectangles room;
+    const Mat3d R = Eigen::AngleAxisd(0.5, Vec3d::UnitZ()).toRotationMatrix();
+    const Vec3d u = R * Vec3d(6, 0, 0), v = R * Vec3d(0, 4, 0), h(0, 0, 2.5);
+    room.add(Vec3d::Zero(), u, v);
+    room.add(Vec3d::Zero(), u, h);
+    room.add(Vec3d::Zero(), v, h);
+    room.add(R * Vec3d(2, 1, 0.8), R * Vec3d(2, 0, 0), R * Vec3d(0, 1, 0));
+    return room;
+}
+
+/// Turns +z into an axis.
+Mat3d from_z(const std::string& axis) {
+    return Eigen::Quaterniond::FromTwoVectors(Vec3d::UnitZ(), parse_up(axis)).toRotationMatrix();
+}
+
+Mesh terrain(const Mat3d& R) {
+    Rectangles hills;
+    hills.add(Vec3d(-3, -3, 0), Vec3d(6, 0, 0), Vec3d(0, 6, 0));
+    for (Vec3d& point : hills.points) point.z() = 0.25 * std::sin(point.x()) * std::cos(point.y());
+    return hills.turned(R);
+}
+
+/// A cone that stands on its base, z up.
+Mesh standing(const std::string& axis) {
+    Mesh mesh = make_cone(1, 3, 64);
+    mesh.set_V(Array3f::Dense(mesh.V() * Eigen::Quaterniond::FromTwoVectors(Vec3d::UnitY(), parse_up(axis))
+                                             .toRotationMatrix()
+                                             .cast<float>()
+                                             .transpose()));
+    mesh.set_N({});
+    return mesh;
+}
+
+Mesh with_up(Mesh mesh, const Vec3d& up) {
+    mesh.edit([&](MeshData& data) { data.up = up; });
+    return mesh;
+}
+
+}  // namespace
+
+TEST(Up, OfARoomIsTheNormalOfItsFloor) {
+    const Rectangles walls = room();
+    for (const char* up : {"+z", "-z", "+y", "-y", "+x"}) EXPECT_EQ(up_of(walls.turned(from_z(up))), up);
+}
+
+TEST(Up, OfTerrainIsTheAxisThatItIsThinAlong) {
+    EXPECT_EQ(up_of(terrain(Mat3d::Identity())), "+z");
+    EXPECT_EQ(up_of(terrain(from_z("+y"))), "+y");
+    EXPECT_EQ(up_of(terrain(from_z("+x"))), "+y") << "as a wall";
+}
+
+TEST(Up, OfAMeshIsZWhereItStandsOnIt) {
+    EXPECT_EQ(up_of(standing("+z")), "+z");
+    EXPECT_EQ(up_of(standing("+y")), "+y");
+    EXPECT_EQ(up_of(standing("+x")), "+y");
+    EXPECT_EQ(up_of(standing("-z")), "+y") << "a flat top is no ground";
+}
+
+TEST(Up, IsYWhereNothingSaysOther) {
+    std::mt19937 random(5);
+    std::normal_distribution<float> normal;
+    Array3f::Dense V(20'000, 3);
+    for (auto row : V.rowwise()) row << normal(random), normal(random), normal(random);
+    EXPECT_EQ(up_of(cloud(V)), "+y");
+    V.col(2).setZero();
+    EXPECT_EQ(up_of(cloud(V)), "+y") << "a drawing";
+    EXPECT_EQ(up_of(points({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}})), "+y");
+    EXPECT_EQ(up_of(make_box({1, 1, 1})), "+y");
+    EXPECT_EQ(up_of(make_sphere(1, 32)), "+y");
+    EXPECT_EQ(up_of(make_box({1, 0.1, 2})), "+y");
+    Mesh relief = make_cone(1, 0.5f, 64);
+    relief.set_T_parent_mesh(Eigen::Affine3d(Eigen::AngleAxisd(pi / 2, Vec3d::UnitX())));
+    EXPECT_EQ(up_of(relief), "+y");
+    Mesh tilted = make_box({1, 1, 1});
+    tilted.set_T_parent_mesh(Eigen::Affine3d(Eigen::AngleAxisd(0.3, Vec3d::UnitZ())));
+    EXPECT_EQ(up_of(tilted), "+y");
+    Array3i::Dense F(3, 3);
+    F << 0, 1, 2, 0, 2, 3, 4, 5, 6;
+    const Mesh corners =
+        points({{0, 0, 0}, {2, 0, 0}, {2, 2, 0}, {0, 2, 0}, {0, 0, 1}, {1, 0, 1}, {1, 1, 1}});
+    EXPECT_EQ(up_of(Mesh(corners.V(), Array3i(F))), "+y") << "sheets one behind the other";
+}
+
+TEST(Up, IsTheSameAtAnyScale) {
+    Mesh mesh = room().turned(Mat3d::Identity());
+    mesh.set_V(Array3f::Dense(mesh.V() * 1024.0f));
+    EXPECT_EQ(up_of(mesh), "+z");
+}
+
+TEST(Up, OfAFormatWinsOverTheGround) {
+    const Mesh mesh = room().turned(Mat3d::Identity());
+    EXPECT_EQ(up_of(with_up(mesh, Vec3d::UnitY())), "+y");
+    EXPECT_EQ(up_of(with_up(make_sphere(1, 32), -Vec3d::UnitY())), "-y");
+}
+
+TEST(Up, OfAFormatTurnsWithTheMesh) {
+    Mesh mesh = with_up(make_sphere(1, 32), Vec3d::UnitZ());
+    EXPECT_EQ(up_of(mesh), "+z");
+    mesh.set_T_parent_mesh(Eigen::Affine3d(Eigen::AngleAxisd(-pi / 2, Vec3d::UnitX())));
+    EXPECT_EQ(up_of(mesh), "+y");
+    mesh.set_T_parent_mesh(Eigen::Affine3d(Eigen::AngleAxisd(0.5, Vec3d::UnitX())));
+    EXPECT_EQ(up_of(mesh), "+y") << "no axis";
+}
+
+TEST(Up, OfFormatsThatDisagreeIsY) {
+    Scene scene;
+    scene.show(with_up(make_sphere(1, 32), Vec3d::UnitZ()), "scan");
+    EXPECT_EQ(resolve(scene.snapshot(), {}, size).settings.camera.up, "+z");
+    scene.show(with_up(make_sphere(1, 32), Vec3d::UnitY()), "model");
+    EXPECT_EQ(resolve(scene.snapshot(), {}, size).settings.camera.up, "+y");
+}
+
+TEST(Up, IsPinnedLatchedAndReleased) {
+    const Mesh mesh = room().turned(Mat3d::Identity());
+    Settings settings;
+    settings.camera.up = "-X";
+    EXPECT_EQ(up_direction(settings.camera), Vec3d(-1, 0, 0));
+    EXPECT_EQ(parse_up(up_of(mesh, settings)), Vec3d(-1, 0, 0));
+    settings.camera.up = automatic;
+    EXPECT_EQ(up_direction(settings.camera), Vec3d(0, 1, 0));
+    Scene scene;
+    scene.show(mesh, "room");
+    latch(settings, resolve(scene.snapshot(), settings, size).settings);
+    EXPECT_EQ(settings.camera.up.value(), "+z");
+    EXPECT_FALSE(settings.camera.up.is_pinned());
+    scene.show(make_sphere(1, 32), "room");
+    EXPECT_EQ(resolve(scene.snapshot(), settings, size).settings.camera.up, "+z");
+    release(settings);
+    EXPECT_EQ(resolve(scene.snapshot(), settings, size).settings.camera.up, "+y");
+}
+
+}  // namespace easypbr::up_test
