@@ -5,6 +5,7 @@ list(FILTER sources EXCLUDE REGEX "/(reader|ffmpeg|draco)/")
 # The settings have rows of effects.
 file(GLOB_RECURSE rows CONFIGURE_DEPENDS src/easypbr/render/*_settings.cpp)
 add_executable(fuzz ${sources} ${rows} src/easypbr/remote/messages.cpp tests/fuzz/targets.cpp tests/fuzz/fuzz.cpp)
+embed_texts(fuzz easypbr_presets ${PROJECT_SOURCE_DIR}/src/easypbr/io/settings/presets/*.json)
 target_include_directories(fuzz PRIVATE tests)
 target_link_libraries(fuzz PRIVATE easypbr_options easypbr_dependencies)
 set(sanitizers -fsanitize=fuzzer,address,undefined -fno-sanitize-recover=all)

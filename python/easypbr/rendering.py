@@ -60,6 +60,7 @@ def render(
     background: Any = None,
     settings: Mapping | str | os.PathLike[str] | None = None,
     strict: bool = False,
+    preset: str | os.PathLike[str] | None = None,
     **values: "Unpack[RenderSettings]",
 ) -> NDArray[np.uint8]: ...
 
@@ -77,6 +78,7 @@ def render(
     background: Any = None,
     settings: Mapping | str | os.PathLike[str] | None = None,
     strict: bool = False,
+    preset: str | os.PathLike[str] | None = None,
     **values: "Unpack[RenderSettings]",
 ) -> NDArray[np.float32]: ...
 
@@ -93,6 +95,7 @@ def render(
     background: Any = None,
     settings: Mapping | str | os.PathLike[str] | None = None,
     strict: bool = False,
+    preset: str | os.PathLike[str] | None = None,
     **values: "Unpack[RenderSettings]",
 ) -> NDArray[Any]: ...
 
@@ -108,6 +111,7 @@ def render(
     background: Any = None,
     settings: Mapping | str | os.PathLike | None = None,
     strict: bool = False,
+    preset: str | os.PathLike | None = None,
     **values: Any,
 ) -> np.ndarray:
     """Renders `what`: a Scene, or anything as_mesh() takes: a path, a Mesh, points (n x 3, n x 6 with colours), (V, F), a dict
@@ -119,10 +123,11 @@ def render(
     "left", "right", "top", "bottom", "iso", the name of a camera of the file, a Camera, a dict of settings.camera, a 4 x 4
     camera-to-world matrix with OpenGL axes, or (position, target, up). Points without a finite position are left out with a
     warning, or raise if `strict`. Values that PyVista and VTK colour by get a colour bar. Other keywords are settings by the
-    last part of their name (roughness=0.3, exposure=2); `settings` is a dict or a file of settings."""
+    last part of their name (roughness=0.3, exposure=2); `settings` is a dict or a file of settings. `preset`: "dark", "flat",
+    "paper", "studio" or a file of settings that all others win over."""
     linear_file = out is not None and _check_path(out)
     scene, made = scene_of(what, strict=strict)
-    view = Viewer(size, settings, scene=scene)
+    view = Viewer(size, settings, scene=scene, preset=preset)
     if environment is not None:
         _set_environment(view, environment)
     if background is not None:

@@ -36,8 +36,10 @@ class Viewer(WindowCallbacks):
         settings: Mapping | str | os.PathLike | None = None,
         scene: Scene | None = None,
         device: str = "auto",
+        preset: str | os.PathLike | None = None,
     ) -> None:
-        """`settings`: a file that save_settings() wrote, or a dict of values; `size`: (width, height).
+        """`settings`: a file that save_settings() wrote, or a dict of values; `size`: (width, height). Both win over
+        `preset`, see apply_preset().
 
         `device`: "gl" draws by OpenGL, "cpu" natively, where OpenGL is loaded only for what it alone can draw; "auto"
         is a GPU where there is one, else the CPU. The environment variable EASYPBR_DEVICE stands for "auto".
@@ -50,10 +52,12 @@ class Viewer(WindowCallbacks):
         self._made_at = time.monotonic()
         self._widget: Any = None
         self._init_callbacks()
+        if preset is not None:
+            self.apply_preset(preset)
         if isinstance(settings, Mapping):
             self._settings.update(settings)
         elif settings is not None:
-            self.load_settings(settings)
+            self.load_settings(settings) if preset is None else self.apply_preset(settings)
         if size is not None:
             self._settings["image.size"] = size
 
@@ -274,6 +278,11 @@ class Viewer(WindowCallbacks):
     def load_settings(self, path: str | os.PathLike) -> None:
         """Loads settings and lights from a file of save_settings()."""
         self._handle.load_settings(path)
+
+    def apply_preset(self, preset: str | os.PathLike) -> None:
+        """Sets what a preset says: "dark", "flat", "paper", "studio", or a file of settings, which need not hold all. The
+        rest stays; what was inferred is inferred anew, but for the camera."""
+        self._handle.apply_preset(os.fspath(preset))
 
     @property
     def timing(self) -> dict[str, float]:

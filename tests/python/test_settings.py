@@ -172,3 +172,31 @@ def test_up_is_inferred_and_pinned():
     assert view.settings.resolve("camera.up") == "+z"
     with pytest.raises(easypbr.ArgumentError, match=r"\+x, -x, \+y, -y, \+z, -z.*auto"):
         view.settings.camera.up = "north"
+
+
+def test_presets(size, tmp_path):
+    ball = shapes.sphere(segments=16)
+    white, red = (255, 255, 255, 255), (255, 0, 0, 255)
+    paper = easypbr.render(ball, size=size, samples=1, preset="paper")
+    assert tuple(paper[0, 0]) == white
+    assert tuple(easypbr.render(ball, size=size, samples=1, preset="paper", background="#ff0000")[0, 0]) == red
+    view = Viewer(size, {"background": {"color": "#ff0000"}}, preset="paper")
+    assert view.settings.ground.mode == "shadow" and view.settings.background.color == (1, 0, 0)
+    (tmp_path / "mine.json").write_text('{"easypbr": 1, "settings": {"background": {"color": "#ff0000"}}}')
+    view = Viewer(size, tmp_path / "mine.json", preset="paper")
+    assert view.settings.ground.mode == "shadow" and view.settings.background.color == (1, 0, 0)
+    view.apply_preset(tmp_path / "mine.json")
+    assert view.settings.ground.mode == "shadow"
+    view.apply_preset("dark")
+    assert view.settings.ground.mode == "none"
+    with pytest.raises(easypbr.UnknownNameError, match="did you mean 'paper'"):
+        view.apply_preset("papr")
+
+
+def test_presets_infer_anew_but_for_the_camera(view):
+    view.render(samples=1)
+    position, exposure = view.settings.camera.position.value, view.settings.tonemap.exposure.value
+    view.apply_preset("studio")
+    view.render(samples=1)
+    assert view.settings.camera.position.value == position
+    assert view.settings.tonemap.exposure.value != exposure

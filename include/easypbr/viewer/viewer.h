@@ -125,6 +125,10 @@ class Viewer {
     /// Takes over settings and lights from a file that save_settings() wrote. Files with another content than
     /// then are reported as warnings.
     void load_settings(const std::filesystem::path& path);
+    /// Sets what a preset says: "dark", "flat", "paper", "studio", or a settings file, which need not say
+    /// all. The rest stays; what was inferred is inferred anew, but for the camera. Throws NameError with the
+    /// nearest name, FileError, FormatError.
+    void apply_preset(const std::string& name_or_path);
 
     /// Opens the window at the first call; then shows what has changed and does what mouse and keys ask for.
     /// Waits up to 16 ms for something to happen and draws nothing while nothing changes. False when the

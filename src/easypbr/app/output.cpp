@@ -9,7 +9,9 @@
 #include "easypbr/core/log.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/io/settings/presets.h"
 #include "easypbr/io/settings/settings_io.h"
+#include "easypbr/scene/resolve.h"
 #include "easypbr/scene/setting_files.h"
 #include "easypbr/scene/settings.h"
 
@@ -76,14 +78,38 @@ void save_settings(const Session& session, const std::vector<fs::path>& files, c
     io::save_settings(file, path);
 }
 
+namespace {
+
+void take_over(Session& session, const io::SettingsFile& file) {
+    session.replace_settings(file.settings);
+    for (const auto& [name, light] : file.lights) session.scene().set_light(name, light);
+}
+
+}  // namespace
+
 void load_settings(Session& session, const fs::path& path) {
     const io::SettingsFile file = io::load_settings(path);
     for (const auto& [source, hash] : file.files)
         if (fs::exists(source) && io::hash_file(source) != hash)
             log_warning(fmt::format("{} is not the file that {} was saved with: its content has changed",
                                     source, path.string()));
-    session.replace_settings(file.settings);
-    for (const auto& [name, light] : file.lights) session.scene().set_light(name, light);
+    take_over(session, file);
+}
+
+void apply_settings(Session& session, const fs::path& path) {
+    const FileBytes bytes(path);
+    io::SettingsFile file{session.settings(), {}, {}};
+    io::apply_settings(std::string(bytes.text()), path.string(), file);
+    take_over(session, file);
+}
+
+void apply_preset(Session& session, const std::string& name_or_path) {
+    io::SettingsFile file{session.settings(), {}, {}};
+    const CameraSettings camera = file.settings.camera;
+    release(file.settings);
+    file.settings.camera = camera;
+    io::apply_preset(name_or_path, file);
+    take_over(session, file);
 }
 
 }  // namespace easypbr::app

@@ -38,4 +38,11 @@ void save_settings(const Session& session, const std::vector<std::filesystem::pa
 /// then are reported as warnings.
 void load_settings(Session& session, const std::filesystem::path& path);
 
+/// Sets what a settings file says; the rest stays. Throws FileError, FormatError, NameError.
+void apply_settings(Session& session, const std::filesystem::path& path);
+
+/// The same for a preset, a built-in one's name (io/settings/presets.h) or a settings file. What was inferred
+/// is inferred anew, but for the camera.
+void apply_preset(Session& session, const std::string& name_or_path);
+
 }  // namespace easypbr::app

@@ -63,11 +63,12 @@ std::vector<Picture> pictures_of(const RenderOptions& options) {
     return pictures;
 }
 
-/// Of a picture of these files: the user's defaults, a settings file, options, each before the next.
+/// Of a picture of these files: the user's defaults, a preset, a settings file, options, each before the
+/// next.
 Look look_of(const RenderOptions& options, const std::vector<std::string>& files) {
     app::Session session;
     apply_user_config(files, session.settings());
-    if (!options.settings.empty()) app::load_settings(session, options.settings);
+    apply(options.start, session);
     apply(options, session.settings());
     Look look{session.settings(), {}};
     for (const std::string& name : session.scene().light_names())

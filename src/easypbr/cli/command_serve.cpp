@@ -103,7 +103,7 @@ int run_serve(const ServeCommand& options) {
     check_input("serve", shown.files);
     require(!shown.files.empty(), "serve", "at least one FILE");
     app::Session session;
-    if (!shown.settings.empty()) app::load_settings(session, shown.settings);
+    apply(shown.start, session);
     apply(shown_look(shown), session.settings());
     std::vector<std::pair<std::string, Animations>> animations;
     show_files(shown, session, [&](size_t, const std::string& name, const io::LoadedScene& loaded) {

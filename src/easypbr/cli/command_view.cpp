@@ -74,7 +74,7 @@ int run_view(const ViewOptions& options) {
     check_input("view", shown.files);
     Viewer view{Scene()};
     apply_user_config(shown.files, view.settings());
-    if (!shown.settings.empty()) app::load_settings(view.session(), shown.settings);
+    apply(shown.start, view.session());
     apply(look_of_view(options), view.settings());
     add_passes(options.passes, view.session());
     if (!options.screenshot.empty()) app::encoding_for(options.screenshot);

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "easypbr/app/custom_pass.h"
+#include "easypbr/app/output.h"
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/drawable.h"
 #include "easypbr/cli/object_styles.h"
@@ -17,6 +18,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/io/settings/presets.h"
 #include "easypbr/io/video/video.h"
 #include "easypbr/render/pipeline/renderer.h"
 #include "easypbr/scene/fields.h"
@@ -118,7 +120,7 @@ void declare_look(CLI::App& command, RenderOptions& options) {
         ->option_text("NAME|FILE");
     command.add_flag("--legend", options.legend, "Draw a legend of the labels into the image");
     command.add_flag("--colorbar", options.colorbar, "Draw a colour bar of the values into the image");
-    declare_settings(command, options.settings, options.values);
+    declare_settings(command, options.start, options.values);
     command
         .add_option("--save-settings", options.save_settings,
                     "Write all settings to a JSON file, given and inferred")
@@ -259,12 +261,24 @@ std::optional<Vec2i> parse_focus(const std::string& text) {
     throw UsageError(fmt::format("--focus: expected the pixel X,Y, got '{}'", text));
 }
 
-void declare_settings(CLI::App& command, std::string& settings, std::vector<std::string>& values) {
+void declare_settings(CLI::App& command, StartSettings& start, std::vector<std::string>& values) {
     command.add_option("--set", values, "Any setting, for example tonemap.exposure=2")
         ->allow_extra_args(false)
         ->option_text("KEY=VALUE");
-    command.add_option("--settings", settings, "Start from a file that --save-settings wrote")
+    command
+        .add_option("--preset", start.preset,
+                    fmt::format("Look of the image: {}, or a settings file; other options win over it",
+                                fmt::join(io::preset_names(), ", ")))
+        ->option_text("NAME|FILE");
+    command.add_option("--settings", start.settings, "Start from a file that --save-settings wrote")
         ->option_text("FILE");
+}
+
+void apply(const StartSettings& start, app::Session& session) {
+    if (!start.preset.empty()) app::apply_preset(session, start.preset);
+    if (start.settings.empty()) return;
+    start.preset.empty() ? app::load_settings(session, start.settings)
+                         : app::apply_settings(session, start.settings);
 }
 
 void declare_passes(CLI::App& command, std::vector<std::string>& passes) {

@@ -15,6 +15,12 @@
 
 namespace easypbr::cli {
 
+/// Which settings a command starts from.
+struct StartSettings {
+    std::string preset;    ///< a built-in one's name or a file
+    std::string settings;  ///< file
+};
+
 struct RenderOptions {
     std::vector<std::string> files;
     std::string output, format;
@@ -35,7 +41,8 @@ struct RenderOptions {
     std::string codec;
     std::string animation;                 ///< name or number of one in the files
     std::optional<double> animation_time;  ///< seconds
-    std::string settings, save_settings;
+    StartSettings start;
+    std::string save_settings;
     std::vector<std::string> layers;
     std::vector<std::string> textures;  ///< "base_color=FILE"
     std::vector<std::string> values;    ///< --set: "group.name=value"
@@ -64,8 +71,12 @@ std::string setting_of_shorthand(std::string_view option);
 /// Ties the command's options to `options`, which must outlive the parsing.
 void declare_render_options(CLI::App& command, RenderOptions& options);
 
-/// The options --settings and --set.
-void declare_settings(CLI::App& command, std::string& settings, std::vector<std::string>& values);
+/// The options --preset, --settings and --set.
+void declare_settings(CLI::App& command, StartSettings& start, std::vector<std::string>& values);
+
+/// Sets what --preset says, then what --settings says. Throws as app::load_settings() and
+/// app::apply_preset().
+void apply(const StartSettings& start, app::Session& session);
 
 /// Throws UsageError for options that contradict each other or lack another.
 void check_usage(const RenderOptions& options);

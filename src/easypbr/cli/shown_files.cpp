@@ -15,7 +15,7 @@ void declare_shown_files(CLI::App& command, ShownFiles& options) {
     command.add_option("--variant", options.variant, field("load.variant").doc)->option_text("NAME");
     command.add_option("--env,--hdri-file", options.environment, field("environment.file").doc)
         ->option_text("FILE");
-    declare_settings(command, options.settings, options.values);
+    declare_settings(command, options.start, options.values);
 }
 
 RenderOptions shown_look(const ShownFiles& options) {

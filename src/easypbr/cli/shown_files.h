@@ -16,10 +16,12 @@ namespace easypbr::cli {
 
 struct ShownFiles {
     std::vector<std::string> files, values;
-    std::string environment, settings, format, variant;
+    StartSettings start;
+    std::string environment, format, variant;
 };
 
-/// Ties FILE, --format, --variant, --env, --settings and --set to `options`, which must outlive the parsing.
+/// Ties FILE, --format, --variant, --env, --preset, --settings and --set to `options`, which must outlive the
+/// parsing.
 void declare_shown_files(CLI::App& command, ShownFiles& options);
 
 /// What --variant, --env and --set say.

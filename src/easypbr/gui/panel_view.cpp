@@ -3,8 +3,11 @@
 
 #include <algorithm>
 
+#include "easypbr/app/output.h"
+#include "easypbr/gui/item_places.h"
 #include "easypbr/gui/panels.h"
 #include "easypbr/gui/widgets.h"
+#include "easypbr/io/settings/presets.h"
 
 namespace easypbr::gui {
 namespace {
@@ -28,6 +31,17 @@ constexpr KeyLine key_lines[] = {{"Left drag", "turn about the target"},
                                  {"Ctrl+S", "save the settings"},
                                  {"?", "this list"},
                                  {"Escape", "close"}};
+
+void preset_menu(GuiState& state) {
+    const bool is_open = ImGui::BeginMenu("Preset");
+    note_place("Menu/preset");
+    if (!is_open) return;
+    for (const std::string& name : io::preset_names()) {
+        if (ImGui::MenuItem(readable(name).c_str())) app::apply_preset(state.session(), name);
+        note_place("Menu/preset " + name);
+    }
+    ImGui::EndMenu();
+}
 
 }  // namespace
 
@@ -80,6 +94,7 @@ void menu_bar(GuiState& state) {
             state.live.edits().redo();
         ImGui::EndMenu();
     }
+    preset_menu(state);
     if (ImGui::BeginMenu("Help")) {
         ImGui::MenuItem("Keys", "?", &state.panels.keys);
         ImGui::EndMenu();

@@ -322,7 +322,13 @@ void bind_viewer_settings(ViewerClass& viewer) {
             [](SharedViewer& self, const fs::path& path) {
                 self.run([&](Viewer& viewer) { app::load_settings(viewer.session(), path); });
             },
-            nb::arg("path"));
+            nb::arg("path"))
+        .def(
+            "apply_preset",
+            [](SharedViewer& self, const std::string& preset) {
+                self.run([&](Viewer& viewer) { viewer.apply_preset(preset); });
+            },
+            nb::arg("preset"));
 }
 
 }  // namespace

@@ -329,6 +329,10 @@ void Viewer::load_settings(const std::filesystem::path& path) {
     app::load_settings(parts_->session, path);
 }
 
+void Viewer::apply_preset(const std::string& name_or_path) {
+    app::apply_preset(parts_->session, name_or_path);
+}
+
 std::optional<app::Pick> Viewer::pick(Vec2d pixel, std::optional<Vec2i> size) {
     return parts_->session.pick(pixel, size);
 }

@@ -62,7 +62,7 @@ class SettingsParser {
   public:
     explicit SettingsParser(const std::string& name) : name_(name) {}
 
-    SettingsFile parse(const std::string& text) {
+    void parse(const std::string& text, SettingsFile& file) {
         OrderedJson root;
         try {
             check_json_depth(text, name_);
@@ -73,9 +73,7 @@ class SettingsParser {
         if (!root.is_object() || !root.contains("easypbr")) fail("expected an object with \"easypbr\": 1");
         if (root["easypbr"] != format_version)
             fail(fmt::format("expected \"easypbr\": {}, got {}", format_version, root["easypbr"].dump()));
-        SettingsFile file;
         for (const auto& [key, value] : root.items()) section(key, value, file);
-        return file;
     }
 
   private:
@@ -196,7 +194,13 @@ SettingsFile load_settings(const std::filesystem::path& path) {
 }
 
 SettingsFile parse_settings(const std::string& json, const std::string& name) {
-    return SettingsParser(name).parse(json);
+    SettingsFile file;
+    apply_settings(json, name, file);
+    return file;
+}
+
+void apply_settings(const std::string& json, const std::string& name, SettingsFile& file) {
+    SettingsParser(name).parse(json, file);
 }
 
 void save_settings(const SettingsFile& file, const std::filesystem::path& path) {

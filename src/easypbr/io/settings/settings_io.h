@@ -25,6 +25,9 @@ struct SettingsFile {
 SettingsFile load_settings(const std::filesystem::path& path);
 SettingsFile parse_settings(const std::string& json, const std::string& name);
 
+/// Sets what the text of a settings file says; the rest of `file` stays. Throws as parse_settings().
+void apply_settings(const std::string& json, const std::string& name, SettingsFile& file);
+
 void save_settings(const SettingsFile& file, const std::filesystem::path& path);
 std::string to_json(const SettingsFile& file);
 
