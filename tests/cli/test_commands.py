@@ -152,15 +152,24 @@ def test_without_opengl_clouds_colour_bars_effects_and_lines_are_drawn(without_o
 
 def test_without_opengl_errors_name_the_pass_and_what_to_install(without_opengl, sphere, tmp_path):
     glass = ("--set", "material.opacity=0.5")
-    for name, settings in {"shadows": (*glass, "--mode", "raster"), "transparency": (*glass, "--set", "shadows.enabled=false"),
-                           "materials": ("--set", "material.transmission=1"),
-                           "geometry": ("--set", "material.clearcoat=1")}.items():
+    raster = ("--mode", "raster")
+    for name, settings in {"shadows": (*glass, *raster), "transparency": (*glass, "--set", "shadows.enabled=false"),
+                           "materials": ("--set", "material.transmission=1", *raster),
+                           "geometry": ("--set", "material.clearcoat=1", *raster)}.items():
         done = without_opengl("render", sphere, "-o", tmp_path / "out.png", *settings)
         assert done.returncode == 1 and done.stderr.count("\n") == 1
         assert f"{name}: this needs OpenGL" in done.stderr and "Install" in done.stderr
     assert not (tmp_path / "out.png").exists()
     done = without_opengl("render", sphere, "-o", tmp_path / "out.png", "--device", "gl")
     assert done.returncode == 1 and "libEGL.so.1 is not installed" in done.stderr
+
+
+def test_without_opengl_glass_and_clearcoat_are_path_traced(without_opengl, easypbr, sphere, tmp_path):
+    settings = ("--size", "64x48", "--set", "material.transmission=1", "--set", "material.clearcoat=1")
+    done = without_opengl("render", sphere, "-o", tmp_path / "without.png", *settings)
+    assert done.returncode == 0, done.stderr
+    easypbr("render", sphere, "-o", "with.png", *settings)
+    assert (tmp_path / "without.png").read_bytes() == (tmp_path / "with.png").read_bytes()
 
 
 def test_without_opengl_the_cpu_records(without_opengl, easypbr, box, tmp_path):
