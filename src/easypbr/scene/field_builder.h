@@ -224,7 +224,11 @@ auto place_of(Access access) {
     using Member = std::remove_cvref_t<decltype(access(std::declval<Settings&>()))>;
     using Inferred = std::remove_cvref_t<decltype(access(std::declval<InferredSettings&>()))>;
     if constexpr (std::is_empty_v<Access>)
-        return Place<Member, Inferred>{access, access, access, access};
+        return Place<Member, Inferred>{
+            [](Settings& settings) -> Member& { return Access{}(settings); },
+            [](const Settings& settings) -> const Member& { return Access{}(settings); },
+            [](InferredSettings& settings) -> Inferred& { return Access{}(settings); },
+            [](const InferredSettings& settings) -> const Inferred& { return Access{}(settings); }};
     else
         return access;
 }
