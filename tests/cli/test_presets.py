@@ -1,4 +1,4 @@
-"""--preset: built-in looks and files of one's own, over which everything else wins."""
+"""--preset: built-in presets and settings files. Every option that is given overrides the preset."""
 import json
 
 import numpy as np

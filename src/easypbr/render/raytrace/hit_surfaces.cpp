@@ -29,15 +29,11 @@ HitSurfaces::HitSurfaces(size_t count, bool with_extensions)
 
 native::HitSurfaces HitSurfaces::from(size_t first) {
     native::HitSurfaces to;
-    const auto point = [first](auto& vectors, auto& arrays) {
-        vectors.written_by(arrays);
-        for (float*& array : arrays) array += first;
-    };
-    point(normal, to.normal);
-    point(face, to.face);
-    point(albedo, to.albedo);
-    point(emission, to.emission);
-    point(parameters, to.parameters);
+    normal.written_by(to.normal, first);
+    face.written_by(to.face, first);
+    albedo.written_by(to.albedo, first);
+    emission.written_by(to.emission, first);
+    parameters.written_by(to.parameters, first);
     to.kind = kind.data() + first;
     if (extensions) to.extensions = extensions->written_from(first);
     return to;

@@ -32,8 +32,9 @@ struct PathVectors {
     void read_by(const float* (&arrays)[components]) const {
         for (int c = 0; c < components; ++c) arrays[c] = component[size_t(c)].data();
     }
-    void written_by(float* (&arrays)[components]) {
-        for (int c = 0; c < components; ++c) arrays[c] = component[size_t(c)].data();
+    /// From element `first` on.
+    void written_by(float* (&arrays)[components], size_t first = 0) {
+        for (int c = 0; c < components; ++c) arrays[c] = component[size_t(c)].data() + first;
     }
 
     std::array<std::vector<float>, size_t(components)> component;
@@ -74,17 +75,13 @@ struct PathExtensions {
     /// The arrays from one of them on.
     native::HitExtensions written_from(size_t first) {
         native::HitExtensions to;
-        const auto point = [first](auto& vectors, auto& arrays) {
-            vectors.written_by(arrays);
-            for (float*& array : arrays) array += first;
-        };
-        point(dielectric, to.dielectric);
-        point(coat, to.coat);
-        point(sheen, to.sheen);
-        point(film, to.film);
-        point(tangent, to.tangent);
-        point(volume, to.volume);
-        point(transmittance, to.transmittance);
+        dielectric.written_by(to.dielectric, first);
+        coat.written_by(to.coat, first);
+        sheen.written_by(to.sheen, first);
+        film.written_by(to.film, first);
+        tangent.written_by(to.tangent, first);
+        volume.written_by(to.volume, first);
+        transmittance.written_by(to.transmittance, first);
         return to;
     }
     void copy(size_t to, const PathExtensions& from, size_t i) {

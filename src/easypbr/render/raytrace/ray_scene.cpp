@@ -282,10 +282,14 @@ void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t gen
 
 void RayScene::make_surfaces(const ResolvedSettings& resolved) {
     ++surfaces_generation_;
+    extensions_ = 0;
     if (!scene_) return;
     scene_->surfaces.clear();
-    for (size_t i = 0; i < scene_->elements.size(); ++i)
-        scene_->surfaces.push_back(scene_->kinds[i]->hit_surface(resolved, *scene_->elements[i]->item));
+    for (size_t i = 0; i < scene_->elements.size(); ++i) {
+        const Element& element = *scene_->elements[i];
+        scene_->surfaces.push_back(scene_->kinds[i]->hit_surface(resolved, *element.item));
+        if (element.faces > 0) extensions_ |= element.item->extensions();
+    }
 }
 
 const HitSurface& RayScene::surface(int index) const {
@@ -298,13 +302,6 @@ int RayScene::surface_count() const {
 
 const DrawItem& RayScene::item_of(int surface) const {
     return *scene_->elements[size_t(surface)]->item;
-}
-
-ExtensionSet RayScene::extensions() const {
-    ExtensionSet set = 0;
-    for (int i = 0; i < surface_count(); ++i)
-        if (scene_->elements[size_t(i)]->faces > 0) set |= item_of(i).extensions();
-    return set;
 }
 
 FaceRange RayScene::emissive_faces(int surface) const {

@@ -63,7 +63,7 @@ class RayScene {
     uint64_t surfaces_generation() const { return surfaces_generation_; }
     const DrawItem& item_of(int surface) const;
     /// Of all surfaces together.
-    ExtensionSet extensions() const;
+    ExtensionSet extensions() const { return extensions_; }
     /// The faces of a surface whose material emits; none of surfaces with holes, or that light passes.
     FaceRange emissive_faces(int surface) const;
     /// The corners of a face, relative to centre(), in unit().
@@ -115,6 +115,7 @@ class RayScene {
     Vec3d centre_{0, 0, 0};
     double unit_ = 1;
     float reach_ = 0;
+    ExtensionSet extensions_ = 0;
 };
 
 }  // namespace easypbr::render
