@@ -103,17 +103,104 @@ TEST_F(SessionFiles, SavedSettingsNameEveryFileAbsolutely) {
     EXPECT_EQ(count, 10) << "environment, background, seven textures, shader";
 }
 
-// The camera and lights stay where they were put when the content grows; refit() infers them anew.
+// The camera and lights stay where they were put when an object changes; refit() infers them anew.
 TEST_F(SessionFiles, LatchesUntilRefit) {
     Session session = small_session();
     session.render();
     const Vec3d position = session.camera().position();
-    session.scene().show(make_sphere(10, 16), "large");
+    const std::string name = session.scene().names().at(0);
+    session.scene().show(make_sphere(10, 16), name);
     session.render();
     EXPECT_EQ(session.camera().position(), position);
     session.refit();
     session.render();
     EXPECT_GT(session.camera().position().norm(), 5 * position.norm());
+}
+
+// A further object is in the picture at once, unless it is within the others or the camera is pinned.
+TEST_F(SessionFiles, FitsAgainWhenTheContentGrows) {
+    Session session = small_session();
+    session.render();
+    const Vec3d position = session.camera().position();
+    session.scene().show(make_sphere(0.1f, 16), "small");
+    EXPECT_EQ(session.camera().position(), position);
+    session.scene().show(make_sphere(10, 16), "large");
+    EXPECT_GT(session.camera().position().norm(), 5 * position.norm());
+    session.render();
+    const Camera second = session.camera();
+    EXPECT_TRUE(session.settings().lights.key.position.value());
+    session.scene().remove("large");
+    session.render();
+    EXPECT_EQ(session.camera().position(), second.position()) << "less content";
+    session.set_camera(second);
+    session.scene().show(make_sphere(100, 16), "largest");
+    EXPECT_EQ(session.camera().position(), second.position());
+}
+
+// A ground that was inferred never cuts through content that sinks, and comes back to where it was.
+TEST_F(SessionFiles, TheGroundIsBelowWhatSinks) {
+    Scene scene;
+    Mesh box = make_box();
+    scene.show(box, "box");
+    Session session(scene);
+    const auto height = [&] {
+        session.render({Vec2i(32, 24), 1});
+        return session.resolve(Vec2i(32, 24)).settings.ground.height;
+    };
+    const double first = height();
+    EXPECT_NEAR(first, -0.5, 1e-3);
+    for (const double lift : {2.0, -3.0, 0.0}) {
+        box.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(0, lift, 0)));
+        EXPECT_NEAR(height(), std::min(first, first + lift), 1e-6) << lift;
+    }
+    session.settings().ground.height = 0.25;
+    EXPECT_EQ(height(), 0.25);
+}
+
+// Lit surfaces before one colour stand on a shadow catcher.
+TEST_F(SessionFiles, TheGroundIsInferredFromContentAndBackground) {
+    const auto mode = [&](const Mesh& mesh, const std::function<void(Settings&)>& change) {
+        Scene scene;
+        scene.show(mesh, "mesh");
+        Session session(scene);
+        change(session.settings());
+        return session.resolve(Vec2i(32, 24)).settings.ground.mode;
+    };
+    const auto nothing = [](Settings&) {};
+    const auto points = [](const Mesh& mesh) {
+        MeshData data;
+        data.V = mesh.V();
+        return Mesh(data);
+    };
+    const Mesh box = make_box();
+    EXPECT_EQ(mode(box, nothing), GroundMode::shadow);
+    EXPECT_EQ(mode(points(box), nothing), GroundMode::none) << "points";
+    for (const auto mode_of_background :
+         {BackgroundMode::environment, BackgroundMode::blur, BackgroundMode::transparent})
+        EXPECT_EQ(mode(box, [&](Settings& s) { s.background.mode = mode_of_background; }), GroundMode::none);
+    EXPECT_EQ(mode(box, [](Settings& s) { s.style.lit = false; }), GroundMode::none);
+    EXPECT_EQ(mode(box, [](Settings& s) { s.style.mode = DrawMode::points; }), GroundMode::none);
+    EXPECT_EQ(mode(box, [](Settings& s) { s.shadows.enabled = false; }), GroundMode::none);
+    EXPECT_EQ(mode(box, [](Settings& s) { s.ground.mode = GroundMode::plane; }), GroundMode::plane);
+}
+
+// The key gives most of the light of the default studio, a given environment all of its own.
+TEST_F(SessionFiles, TheStudioIsDimmerThanTheKey) {
+    Scene scene;
+    scene.show(make_box(), "box");
+    Session session(scene);
+    const ResolvedSettings whole = session.resolve(Vec2i(32, 24));
+    EXPECT_EQ(whole.settings.environment.intensity, 0.2f);
+    session.settings().environment.enabled = false;
+    // The exposure is the reciprocal of the light that is metered.
+    EXPECT_GT(whole.exposure / session.resolve(Vec2i(32, 24)).exposure, 0.5f) << "the key's part";
+    session.settings().environment.enabled = automatic;
+    session.settings().environment.intensity = 3.0f;
+    EXPECT_EQ(session.resolve(Vec2i(32, 24)).settings.environment.intensity, 3.0f);
+    session.settings().environment.intensity = automatic;
+    session.render({Vec2i(32, 24), 1});
+    scene.set_environment(Environment(Image(16, 8, 3, PixelType::f32), "black"));
+    EXPECT_EQ(session.resolve(Vec2i(32, 24)).settings.environment.intensity, 1.0f) << "not latched";
 }
 
 TEST_F(SessionFiles, FollowsWhenAskedTo) {

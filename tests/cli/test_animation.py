@@ -7,7 +7,7 @@ import pytest
 
 import png
 
-LOOK = ("--camera-position", "3,2,6", "--camera-target", "0,0,0", "--exposure", "1")
+LOOK = ("--camera-position", "3,2,6", "--camera-target", "0,0,0", "--exposure", "1", "--preset", "dark")
 
 
 @pytest.fixture

@@ -29,10 +29,10 @@ def test_presets_have_their_background(render, sphere, tmp_path, name, backgroun
     assert corner(tmp_path / "out.png") == [background] * 3
 
 
-def test_dark_is_the_default_look(render, sphere, tmp_path):
+def test_studio_is_the_default_look(render, sphere, tmp_path):
     render(sphere, "-o", "default.png")
-    render(sphere, "-o", "dark.png", "--preset", "dark")
-    assert (tmp_path / "default.png").read_bytes() == (tmp_path / "dark.png").read_bytes()
+    render(sphere, "-o", "studio.png", "--preset", "studio")
+    assert (tmp_path / "default.png").read_bytes() == (tmp_path / "studio.png").read_bytes()
 
 
 @pytest.mark.parametrize("name", ["studio", "paper"])
@@ -60,7 +60,7 @@ def test_a_preset_is_a_file_that_says_what_it_wants(render, sphere, tmp_path):
     write_preset(tmp_path / "mine.json", {"background": {"color": "#405060"}})
     render(sphere, "-o", "out.png", "--preset", "mine.json", "--save-settings", "all.json")
     assert corner(tmp_path / "out.png") == [0x40, 0x50, 0x60]
-    assert json.loads((tmp_path / "all.json").read_text())["settings"]["ground"]["mode"] == "none"
+    assert json.loads((tmp_path / "all.json").read_text())["settings"]["ground"]["mode"] == "auto"
 
 
 def test_a_settings_file_wins_over_a_preset(render, sphere, tmp_path):

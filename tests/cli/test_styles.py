@@ -49,7 +49,7 @@ def colors(path):
 def test_label_maps_colour_labels(render, tmp_path):
     cloud = write_labelled(tmp_path / "cloud.ply")
     render(cloud, "-o", "out.png", "--label-map", "semantic_kitti", "--style", "point_size=9")
-    assert colors(tmp_path / "out.png") == {(100, 150, 245), (255, 0, 255), (255, 240, 150), (64, 64, 64)}
+    assert colors(tmp_path / "out.png") == {(100, 150, 245), (255, 0, 255), (255, 240, 150), (217, 217, 217)}
     assert "label 40 in row 1 of 3" in render(cloud, "-o", "out.png", "--label-map", "cityscapes", code=1).stderr
 
 

@@ -40,8 +40,8 @@ def test_example_draws_its_picture(example, tmp_path):
     for name in names:
         picture = easypbr.load_image(tmp_path / name)
         assert picture.shape == (72, 96, 4)
-        # The default background is #404040; something else is drawn on at least a tenth of the picture.
-        drawn = (picture[:, :, :3] != 0x40).any(axis=2)
+        # The default background is #d9d9d9; something else is drawn on at least a tenth of the picture.
+        drawn = (picture[:, :, :3] != 0xd9).any(axis=2)
         assert 0.1 < drawn.mean() < 1, name
         assert np.ptp(picture[drawn][:, :3].astype(int)) > 30, f"{name} is one flat colour"
 
@@ -56,7 +56,7 @@ def test_figure_draws_its_picture(figure, tmp_path):
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
     picture = easypbr.load_image(tmp_path / f"{figure.stem}.png")[:, :, :3].astype(int)
     assert 40 < picture.shape[0] < 160 and 120 < picture.shape[1]
-    drawn = (picture != 0x40).any(axis=2) & (picture != 0xff).any(axis=2)
+    drawn = (picture != 0xd9).any(axis=2) & (picture != 0xff).any(axis=2)
     assert 0.1 < drawn.mean() < 1
     assert np.ptp(picture[drawn]) > 60
 

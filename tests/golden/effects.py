@@ -7,7 +7,8 @@ SIZE = (160, 120)
 SAMPLES = 8
 DARK = {f"lights.{name}.enabled": False for name in ("key", "fill", "rim")}
 LOOK = {"camera.position": (3.2, 2.4, 4.6), "camera.target": (0.1, 0.45, 0.0), "camera.fov_y_deg": 30,
-        "tonemap.exposure": 1.0, "ssao.enabled": False}
+        "tonemap.exposure": 1.0, "ssao.enabled": False, "background.color": (0.25, 0.25, 0.25), "ground.mode": "none",
+        "environment.intensity": 1, "lights.fill.enabled": True, "lights.rim.enabled": True}
 
 
 def moved(mesh, x, y, z):

@@ -388,8 +388,10 @@ TEST_F(MotionPanels, ACameraThatRestsOnItsPathIsBlurred) {
     three_keys();
     session_.settings().motion_blur.enabled = true;
     session_.settings().image.samples = 4;
-    // The cameras come by two ways, and differ in the last bit: a ray may take another course for that.
+    // The cameras come by two ways, and differ in the last bit: a ray may take another course for that, and
+    // a texel of the ground's shadow be another one.
     session_.settings().path.enabled = false;
+    session_.settings().ground.mode = GroundMode::none;
     const CameraPath path = *view_.drawing().path().editor.path();
     view_.drawing().recording_form().fps = 4;
     view_.drawing().path().editor.seek(0.7);

@@ -67,7 +67,7 @@ TEST_F(PresetMenu, ChangesTheLookAndIsUndone) {
     EXPECT_EQ(settings.camera.position.value(), position) << "the camera stays";
     undo();
     EXPECT_EQ(settings.background.color, before);
-    EXPECT_EQ(settings.ground.mode, GroundMode::none);
+    EXPECT_FALSE(settings.ground.mode.is_pinned());
 }
 
 }  // namespace easypbr::gui::preset_menu_test

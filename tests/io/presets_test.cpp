@@ -26,9 +26,9 @@ TEST(Presets, ReplaceEachOther) {
                     << first << ", " << second << ": " << field.name;
 }
 
-TEST(Presets, DarkIsTheDefault) {
+TEST(Presets, StudioIsTheDefault) {
     for (const Field& field : fields())
-        EXPECT_EQ(field.get(after({"dark"}).settings), field.get(Settings())) << field.name;
+        EXPECT_EQ(field.get(after({"studio"}).settings), field.get(Settings())) << field.name;
 }
 
 TEST(Presets, LeaveWhatTheyDoNotSay) {

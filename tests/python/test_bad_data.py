@@ -74,7 +74,7 @@ def drawn_share(mesh: Mesh, samples: int = 1) -> float:
     picture = view.render(samples=samples)
     for name, layer in view.layers(["normal_world", "depth", "albedo"]).items():
         assert np.isfinite(layer).all(), name
-    return (picture[:, :, :3] != 64).any(axis=2).mean()
+    return (picture[:, :, :3] != 217).any(axis=2).mean()
 
 
 @pytest.mark.parametrize("positions", [np.zeros((0, 3)), None])
@@ -85,7 +85,7 @@ def test_an_empty_cloud_is_nothing_to_show(positions):
     scene = Scene()
     scene.show(mesh, "empty")
     scene.show(shapes.box(), "box")
-    assert Viewer((40, 30), scene=scene).render(samples=1)[15, 20, 0] != 64, "beside something else it is no error"
+    assert Viewer((40, 30), scene=scene).render(samples=1)[15, 20, 0] != 217, "beside something else it is no error"
 
 
 @pytest.mark.parametrize("count", [1, 9])

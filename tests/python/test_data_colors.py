@@ -44,7 +44,7 @@ def test_labels_of_points_are_the_tables_colours(samples, tone):
     assert seen.mean() > 0.2
     assert (picture[seen][:, :3] == expected[seen]).all()
     # And nothing is mixed with them where they end.
-    assert (picture[~seen][:, :3] == 64).all()
+    assert (picture[~seen][:, :3] == 217).all()
 
 
 def test_labels_of_faces_are_exact_when_they_are_not_lit():
@@ -110,7 +110,7 @@ def test_labels_of_vertices_are_not_mixed_on_faces():
     generated = {tuple(color) for color in LabelMap([str(i) for i in range(7)]).colors}
     seen = {tuple(color) for color in picture[:, :, :3].reshape(-1, 3)}
     # And the background.
-    assert seen - generated == {(64, 64, 64)}
+    assert seen - generated == {(217, 217, 217)}
 
 
 def test_values_are_mapped_after_they_are_interpolated():

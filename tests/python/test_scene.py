@@ -96,7 +96,7 @@ def test_radius_of_a_light_is_inferred_and_latched(size):
     view.render(samples=1)
     # A twentieth of half the diagonal of a unit cube.
     assert light.radius.value == pytest.approx(3**0.5 / 2 / 20)
-    own.show(shapes.sphere(10, 8), "ball")
+    own.show(shapes.sphere(10, 8), "box")
     view.render(samples=1)
     assert light.radius.value == pytest.approx(3**0.5 / 2 / 20)
     view.refit()

@@ -196,7 +196,7 @@ def test_presets(size, tmp_path):
 def test_presets_infer_anew_but_for_the_camera(view):
     view.render(samples=1)
     position, exposure = view.settings.camera.position.value, view.settings.tonemap.exposure.value
-    view.apply_preset("studio")
+    view.apply_preset("paper")
     view.render(samples=1)
     assert view.settings.camera.position.value == position
     assert view.settings.tonemap.exposure.value != exposure

@@ -120,4 +120,4 @@ def test_voxels_without_a_place_are_refused(arguments):
 def test_shapes_can_be_drawn(size):
     for mesh in (shapes.torus(), shapes.axes(), shapes.capsule()):
         picture = easypbr.render(mesh, size=size, samples=1)
-        assert 0.05 < (picture[:, :, :3] != 0x40).any(axis=2).mean() < 0.9
+        assert 0.05 < (picture[:, :, :3] != 217).any(axis=2).mean() < 0.9

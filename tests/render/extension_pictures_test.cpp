@@ -73,6 +73,7 @@ double difference(const Material& a, const Material& b) {
         scene.set_light("light", light);
         app::Session session = session_of(*m, scene);
         session.settings().environment.enabled = true;
+        session.settings().environment.intensity = 1.0f;
         images[m == &b] = render_linear(session);
     }
     double sum = 0;

@@ -57,7 +57,7 @@ TEST(Resolve, LeavesNothingToInfer) {
         EXPECT_TRUE(value.state != Value::State::given || is_valid(field, value)) << field.name;
     }
     EXPECT_EQ(resolved.camera.position(), resolved.settings.camera.position);
-    EXPECT_EQ(resolved.lights.size(), 3u);
+    EXPECT_EQ(resolved.lights.size(), 1u) << "the key";
     EXPECT_FALSE(resolved.environment.empty());
     EXPECT_GT(resolved.exposure, 0);
 }
@@ -100,6 +100,7 @@ TEST(Resolve, ScalesWithTheScene) {
         Settings settings;
         settings.camera.projection = projection;
         settings.camera.azimuth_deg = 37;
+        settings.lights.fill.enabled = settings.lights.rim.enabled = true;
         const Mesh mesh = blob();
         const ResolvedSettings one = resolve(scene_of(mesh), settings, size);
         for (const float scale : {1024.0f, 1 / 1024.0f}) {
@@ -233,6 +234,7 @@ TEST(Resolve, MetersASunFromTheCamera) {
 TEST(Resolve, PlacesStudioLightsAroundTheContent) {
     Settings settings;
     settings.camera.azimuth_deg = settings.camera.elevation_deg = 0;
+    settings.lights.fill.enabled = settings.lights.rim.enabled = true;
     const ResolvedSettings resolved = resolve(scene_of(points({{-1, -1, -1}, {1, 1, 1}})), settings, size);
     const double d = 3 * std::sqrt(3.0), c = std::cos(radians(40)) * std::sqrt(0.5);
     const Vec3d key(-c * d, std::sin(radians(40)) * d, c * d);
@@ -259,7 +261,7 @@ TEST(Resolve, TakesTheGivenEnvironmentOrTheStudio) {
     settings.environment.enabled = false;
     const ResolvedSettings without = resolve(scene, settings, size);
     EXPECT_TRUE(without.environment.empty());
-    EXPECT_EQ(without.lights.size(), 3u) << "something has to light the scene";
+    EXPECT_EQ(without.lights.size(), 1u) << "something has to light the scene";
 }
 
 TEST(Resolve, TurnsTheEnvironmentAboutUp) {

@@ -87,7 +87,8 @@ def test_a_double_click_focuses(open_page):
     assert position == pytest.approx([float(number) for number in aimed[1].split(",")], abs=0.1)
 
 
-def test_fingers_turn_and_pinch(open_page):
+def test_fingers_turn_and_pinch(view, open_page):
+    view.settings["ground.mode"] = "none"
     page = open_page(width=420, height=700, has_touch=True, is_mobile=True)
     first = page.exact()
     before = page.pixels()

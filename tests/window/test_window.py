@@ -30,6 +30,7 @@ def test_the_screen_shows_what_the_viewer_draws(window):
 
 
 def test_a_left_drag_orbits_and_a_right_drag_pans(window):
+    window.view.settings["ground.mode"] = "none"
     window.key("h")
     before = window.view.camera.position.copy()
     window.mouse("mousemove", *MIDDLE, "mousedown", 1)
@@ -48,7 +49,7 @@ def test_a_left_drag_orbits_and_a_right_drag_pans(window):
     moved = window.view.pick(450, 300, (800, 600)).position
     assert np.linalg.norm(moved - pixel) < 0.05
     window.settle()
-    columns = np.flatnonzero(np.any(np.abs(window.shown().astype(int) - 64).max(axis=2) > 8, axis=0))
+    columns = np.flatnonzero(np.any(np.abs(window.shown().astype(int) - 217).max(axis=2) > 8, axis=0))
     assert abs((columns[0] + columns[-1]) / 2 - 450) < 6
 
 

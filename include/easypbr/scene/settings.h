@@ -57,18 +57,23 @@ using CameraSettings = BasicCameraSettings<Auto>;
 /// Image-based lighting by an equirectangular environment map.
 template <template <class> class MaybeAuto>
 struct BasicEnvironmentSettings {
-    std::string file;           ///< HDR, EXR, PNG or JPEG; empty: a built-in studio
-    MaybeAuto<bool> enabled{};  ///< enables image-based lighting; automatic: on
-    float rotation_deg = 0;     ///< about the up axis, degrees, counter-clockwise seen from above
-    float intensity = 1;        ///< scale factor of the radiance, 0 to 1e6
+    std::string file;              ///< HDR, EXR, PNG or JPEG; empty: a built-in studio
+    MaybeAuto<bool> enabled{};     ///< enables image-based lighting; automatic: on
+    float rotation_deg = 0;        ///< about the up axis, degrees, counter-clockwise seen from above
+    MaybeAuto<float> intensity{};  ///< scale factor of the radiance, 0 to 1e6; automatic: 0.2 of the studio
     MaybeAuto<bool> sun{};  ///< sun as a directional light with shadows; automatic: if a given map has one
 };
 using EnvironmentSettings = BasicEnvironmentSettings<Auto>;
 
+/// A colour of 8 bits per channel.
+inline Vec3 rgb8(int red, int green, int blue) {
+    return Vec3(float(red), float(green), float(blue)) / 255.0f;
+}
+
 /// What is visible where there is no content.
 struct BackgroundSettings {
     BackgroundMode mode = BackgroundMode::color;  ///< transparent: alpha 0
-    Vec3 color{0.25f, 0.25f, 0.25f};              ///< sRGB-encoded; neither exposed nor tone mapped
+    Vec3 color = rgb8(217, 217, 217);             ///< sRGB-encoded; neither exposed nor tone mapped
     std::string image;                            ///< file, for mode image
     float blur = 0.4f;                            ///< of the environment map in mode blur: 0 none, 1 the most
 
@@ -77,11 +82,6 @@ struct BackgroundSettings {
         return mode == BackgroundMode::environment || mode == BackgroundMode::blur;
     }
 };
-
-/// A colour of 8 bits per channel.
-inline Vec3 rgb8(int red, int green, int blue) {
-    return Vec3(float(red), float(green), float(blue)) / 255.0f;
-}
 
 /// Three-point lighting, placed relative to the camera.
 template <template <class> class MaybeAuto>

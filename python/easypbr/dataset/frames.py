@@ -29,7 +29,7 @@ class FrameMaker:
         self._meshes: dict[str, Mesh | None] = {}
         self._skies: dict[int, Environment] = {}
         self._scene = Scene()
-        self._view = Viewer(spec.image.size, scene=self._scene)
+        self._view = Viewer(spec.image.size, {"ground.mode": "none"}, scene=self._scene)
 
     def _mesh(self, path: str) -> Mesh | None:
         """The file's mesh; None when it cannot be read and that is to be skipped."""

@@ -85,12 +85,19 @@ SceneSnapshot Session::snapshot() {
         settings_->tonemap.exposure.release();
     }
     environment_hash_ = hash;
+    if (latched_content_.release_outgrown(scene, *settings_)) {
+        scene_.release_light_radii();
+        for (auto& [name, light] : scene.lights) light.radius.release();
+    }
     return scene;
 }
 
 ResolvedSettings Session::resolve(std::optional<Vec2i> size) {
     check_size(size_or(size));
-    return easypbr::resolve(snapshot(), *settings_, size_or(size));
+    const SceneSnapshot scene = snapshot();
+    ResolvedSettings resolved = easypbr::resolve(scene, *settings_, size_or(size));
+    latched_content_.lower_ground(scene, *settings_, resolved);
+    return resolved;
 }
 
 Prepared Session::prepare(const PictureOptions& options) {
@@ -108,6 +115,7 @@ Prepared Session::prepare(const PictureOptions& options) {
     const Stopwatch watch(timing_.draw);
     prepared.resolved =
         easypbr::resolve(prepared.scene, *settings_, prepared.options.size, prepared.options.samples);
+    latched_content_.lower_ground(prepared.scene, *settings_, prepared.resolved);
     warnings_.check(prepared.scene, *settings_, prepared.resolved);
     for (const render::CustomPass& custom : passes_)
         prepared.passes.emplace_back(custom.pass.get(), custom.pass->revision());
@@ -334,11 +342,13 @@ Vec2i Session::size_or(std::optional<Vec2i> size) const {
 void Session::replace_settings(const Settings& settings) {
     *settings_ = settings;
     environment_hash_.reset();
+    latched_content_ = {};
 }
 
 void Session::latch_from(const Prepared& prepared) {
     if (prepared.scene.objects.empty()) return;
     latch(*settings_, prepared.resolved.settings);
+    latched_content_.keep(prepared.scene);
     for (const auto& [name, radius] : prepared.resolved.light_radii) scene_.latch_light_radius(name, radius);
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "easypbr/app/drawn.h"
+#include "easypbr/app/latched_content.h"
 #include "easypbr/app/lens.h"
 #include "easypbr/app/motion_memory.h"
 #include "easypbr/app/picking.h"
@@ -193,6 +194,7 @@ class Session {
     Timing timing_;
     SettingsFiles files_;
     std::optional<std::string> environment_hash_;  ///< what was latched belongs to this environment
+    LatchedContent latched_content_;
     LensCache lenses_;
     MotionMemory motion_;
     SceneWarnings warnings_;

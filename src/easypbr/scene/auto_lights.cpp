@@ -16,7 +16,8 @@ struct Placement {
     double azimuth_deg, elevation_deg, irradiance;
 };
 
-// Three-point lighting: a key at one side, a fill a quarter as strong opposite, a rim from behind.
+// Three-point lighting: a key at one side, a fill a quarter as strong opposite, a rim from behind. The soft
+// boxes of the built-in studio fill and rim already.
 constexpr Placement key_placement{-45, 40, 2.0};
 constexpr Placement fill_placement{45, 20, 0.5};
 constexpr Placement rim_placement{145, 45, 1.6};
@@ -74,10 +75,10 @@ float plain_light_radius(const Content& content) {
 }
 
 std::vector<ResolvedLight> resolve_studio_lights(const Content& content, const Camera& camera,
-                                                 bool on_by_default, LightsSettings& settings,
+                                                 bool key_by_default, LightsSettings& settings,
                                                  const Vec3d& up) {
     std::vector<ResolvedLight> lights;
-    const auto add = [&](StudioLight& studio, const Placement& placement) {
+    const auto add = [&](StudioLight& studio, const Placement& placement, bool on_by_default) {
         fill(studio.enabled, on_by_default);
         if (!studio.position.value() || !studio.intensity.value()) {
             const double distance = light_distance * content.radius();
@@ -95,9 +96,9 @@ std::vector<ResolvedLight> resolve_studio_lights(const Content& content, const C
         light.radius = *studio.radius;
         lights.push_back(light);
     };
-    add(settings.key, key_placement);
-    add(settings.fill, fill_placement);
-    add(settings.rim, rim_placement);
+    add(settings.key, key_placement, key_by_default);
+    add(settings.fill, fill_placement, false);
+    add(settings.rim, rim_placement, false);
     return lights;
 }
 

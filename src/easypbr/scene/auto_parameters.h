@@ -24,10 +24,10 @@ class Content {
     /// Smallest and largest product of the direction with a corner of the bounding box; not for empty
     /// content.
     std::pair<double, double> extent_along(const Vec3d& direction) const;
-
-  private:
+    /// Empty when there are no vertices.
     const Box3d& bounds() const;
 
+  private:
     const SceneSnapshot& scene_;
     mutable std::optional<Box3d> bounds_;
 };
@@ -63,12 +63,16 @@ double fitted_height(const Content& content, const Eigen::Isometry3d& T_world_ca
 
 Camera resolve_camera(const Content& content, CameraSettings& settings, double aspect);
 
+/// Height of a ground just below the content, so that a floor of its own hides it. Infinite where there is no
+/// content.
+double ground_below(const Box3d& content, const Vec3d& up);
+
 /// The radius of a point or spot light of the scene that names none.
 float plain_light_radius(const Content& content);
 
-/// Key, fill and rim as far as they are on.
+/// Key, fill and rim as far as they are on: automatic ones are off but for the key, by `key_by_default`.
 std::vector<ResolvedLight> resolve_studio_lights(const Content& content, const Camera& camera,
-                                                 bool on_by_default, LightsSettings& settings,
+                                                 bool key_by_default, LightsSettings& settings,
                                                  const Vec3d& up);
 
 /// Exposure by incident light at the content's centre, whatever the content looks like (as a hand-held meter

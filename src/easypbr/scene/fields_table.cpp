@@ -182,8 +182,11 @@ void add_surroundings(Table& table) {
         make("environment.rotation_deg", EASYPBR_AT(environment.rotation_deg),
              "Rotation of the environment map about the up axis, counter-clockwise seen from above.",
              "degrees", {-360, 360}));
-    table.push_back(make("environment.intensity", EASYPBR_AT(environment.intensity),
-                         "Scale factor of the radiance of the environment map.", "", {0, 1e6}));
+    table.push_back(not_kept(
+        make("environment.intensity", EASYPBR_AT(environment.intensity),
+             "Scale factor of the radiance of the environment map; automatic: 1, and 0.2 for the built-in "
+             "studio, so that the key light gives most of the light.",
+             "", {0, 1e6})));
     table.push_back(make("environment.sun", EASYPBR_AT(environment.sun),
                          "Extracts the sun of the environment map as a directional light that casts shadows; "
                          "automatic: on if a given environment map contains a sun."));
@@ -201,7 +204,7 @@ void add_surroundings(Table& table) {
 }
 
 template <class Access>
-void add_studio_light(Table& table, const std::string& name, Access light) {
+void add_studio_light(Table& table, const std::string& name, const std::string& automatic, Access light) {
     const auto field = [light](auto member) {
         return [=](auto& settings) -> auto& {
             return member(light(settings));
@@ -209,7 +212,7 @@ void add_studio_light(Table& table, const std::string& name, Access light) {
     };
     const std::string prefix = "lights." + name + ".", the = "the " + name + " light";
     table.push_back(make(prefix + "enabled", field(EASYPBR_AT(enabled)),
-                         "Enables " + the + "; automatic: on if no environment map is given."));
+                         "Enables " + the + "; automatic: " + automatic + "."));
     table.push_back(
         make(prefix + "position", field(EASYPBR_AT(position)),
              "Position of " + the + " in world space; automatic: placed relative to the first camera.",
@@ -231,9 +234,9 @@ void add_studio_light(Table& table, const std::string& name, Access light) {
 void add_lights(Table& table) {
     table.push_back(make("lights.intensity", EASYPBR_AT(lights.intensity),
                          "Scale factor of the intensity of the key, fill and rim lights.", "", {0, 1e6}));
-    add_studio_light(table, "key", EASYPBR_AT(lights.key));
-    add_studio_light(table, "fill", EASYPBR_AT(lights.fill));
-    add_studio_light(table, "rim", EASYPBR_AT(lights.rim));
+    add_studio_light(table, "key", "on if no environment map is given", EASYPBR_AT(lights.key));
+    add_studio_light(table, "fill", "off", EASYPBR_AT(lights.fill));
+    add_studio_light(table, "rim", "off", EASYPBR_AT(lights.rim));
 }
 
 void add_shadows(Table& table) {

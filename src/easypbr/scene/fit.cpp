@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "easypbr/core/error.h"
 #include "easypbr/scene/auto_parameters.h"
@@ -106,6 +107,13 @@ std::pair<double, double> Content::extent_along(const Vec3d& direction) const {
     const double middle = direction.dot(bounds().center());
     const double half = direction.cwiseAbs().dot(bounds().sizes()) / 2;
     return {middle - half, middle + half};
+}
+
+double ground_below(const Box3d& content, const Vec3d& up) {
+    constexpr double gap_diagonals = 5e-5;
+    if (content.isEmpty()) return std::numeric_limits<double>::infinity();
+    const double half = up.cwiseAbs().dot(content.sizes()) / 2;
+    return up.dot(content.center()) - half - gap_diagonals * content.diagonal().norm();
 }
 
 Vec3d fitted_position(const Content& content, const Mat3d& R_world_cam, const Camera& lens, double margin,

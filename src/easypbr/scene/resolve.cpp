@@ -21,9 +21,14 @@ Mat3 environment_rotation(const Vec3d& up, double rotation_deg) {
     return R.cast<float>();
 }
 
+/// Of the built-in studio: its soft boxes fill and rim, and leave half of the light to the key.
+constexpr float studio_intensity = 0.2f;
+
 void resolve_environment(const SceneSnapshot& scene, Settings& settings, ResolvedSettings& resolved) {
     EnvironmentSettings& environment = settings.environment;
     detail::fill(environment.enabled, true);
+    const bool given = !scene.environment.empty() || !environment.file.empty();
+    if (!environment.intensity.value()) detail::fill(environment.intensity, given ? 1.0f : studio_intensity);
     if (*environment.enabled)
         resolved.environment = scene.environment.empty() ? studio_environment() : scene.environment;
     resolved.seen_environment = resolved.environment;
@@ -42,7 +47,7 @@ void resolve_sun(const SceneSnapshot& scene, EnvironmentSettings& settings, Reso
     light.type = LightType::directional;
     light.direction = -(resolved.R_env_world.transpose() * sun.towards);
     light.color = sun.irradiance / sun.irradiance.maxCoeff();
-    light.intensity = sun.irradiance.maxCoeff() * settings.intensity;
+    light.intensity = sun.irradiance.maxCoeff() * *settings.intensity;
     light.angular_radius_deg = sun.angular_radius_deg;
     resolved.lights.push_back(light);
 }
@@ -69,7 +74,7 @@ void resolve_exposure(const detail::Content& content, Settings& settings, Resolv
     TonemapSettings& tone = settings.tonemap;
     if (!tone.exposure.value())
         detail::fill(tone.exposure,
-                     detail::metered_exposure(content, resolved, settings.environment.intensity));
+                     detail::metered_exposure(content, resolved, *settings.environment.intensity));
     resolved.exposure = *tone.exposure * std::exp2(tone.exposure_compensation);
 }
 
@@ -154,7 +159,8 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& given, Vec2
 void latch(Settings& settings, const InferredSettings& all) {
     for (const Field& field : fields()) {
         if (!field.can_be_automatic || !field.is_kept) continue;
-        if (field.get(settings).state != Value::State::automatic) continue;
+        const Value own = field.get(settings);
+        if (own.state != Value::State::automatic || own.latched) continue;
         Value inferred = field.get_inferred(all);
         if (inferred.state != Value::State::given || !is_valid(field, inferred)) continue;
         inferred.state = Value::State::automatic;

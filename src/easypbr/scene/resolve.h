@@ -37,8 +37,8 @@ struct ResolvedSettings {
 ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, Vec2i size,
                          std::optional<int> samples = std::nullopt);
 
-/// Copies inferred values into the automatic (not pinned, not following) fields of `settings` that keep them,
-/// but those that are not finite or out of the field's range.
+/// Copies inferred values into the automatic (not pinned, not following) fields of `settings` that keep them
+/// and hold none yet, but those that are not finite or out of the field's range.
 void latch(Settings& settings, const InferredSettings& inferred);
 /// Releases all latched values, so that the next image infers them again.
 void release(Settings& settings);

@@ -11,7 +11,7 @@ enum class GroundMode { none, shadow, plane };
 /// A ground plane under the content.
 template <template <class> class MaybeAuto>
 struct BasicGroundSettings {
-    GroundMode mode = GroundMode::none;  ///< shadow: a shadow catcher; plane: a visible surface
+    MaybeAuto<GroundMode> mode{};        ///< shadow: a shadow catcher; plane: a visible surface
     MaybeAuto<double> height{};          ///< along the up axis, world units; automatic: the lowest point
     float shadow_strength = 1;           ///< opacity factor of the shadow catcher, 0 to 1
     Vec3 plane_color{0.5f, 0.5f, 0.5f};  ///< base colour of the plane, sRGB-encoded

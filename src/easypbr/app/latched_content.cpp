@@ -1,0 +1,62 @@
+#include "easypbr/app/latched_content.h"
+
+#include <algorithm>
+
+#include "easypbr/scene/auto_parameters.h"
+
+namespace easypbr::app {
+namespace {
+
+/// Content that reaches less far out of the old bounds, as a part of their diagonal, does not count as
+/// larger.
+constexpr double slack = 0.01;
+
+bool is_larger(const Box3d& now, const Box3d& before) {
+    if (now.isEmpty()) return false;
+    const Vec3d margin = Vec3d::Constant(slack * before.diagonal().norm());
+    return !Box3d(Vec3d(before.min() - margin), Vec3d(before.max() + margin)).contains(now);
+}
+
+}  // namespace
+
+std::vector<LatchedContent::Placed> LatchedContent::placed(const SceneSnapshot& scene) {
+    std::vector<Placed> all;
+    all.reserve(scene.objects.size());
+    for (const SceneSnapshot::Object& object : scene.objects)
+        all.push_back({object.mesh->V.revision(), object.T_world_mesh.matrix()});
+    return all;
+}
+
+bool LatchedContent::has_new_names(const SceneSnapshot& scene) const {
+    return std::ranges::any_of(scene.objects,
+                               [&](const auto& object) { return !names_.contains(object.name); });
+}
+
+bool LatchedContent::release_outgrown(const SceneSnapshot& scene, Settings& settings) {
+    if (names_.empty() || !has_new_names(scene) || !is_larger(scene.bounds(), bounds_)) return false;
+    release(settings);
+    names_.clear();
+    return true;
+}
+
+void LatchedContent::lower_ground(const SceneSnapshot& scene, const Settings& settings,
+                                  ResolvedSettings& resolved) {
+    const auto& given = settings.ground.height;
+    auto& ground = resolved.settings.ground;
+    if (ground.mode == GroundMode::none || given.is_pinned() || !given.value()) return;
+    if (std::vector<Placed> now = placed(scene); now != placed_) {
+        placed_ = std::move(now);
+        placed_bounds_ = scene.bounds();
+    }
+    if (!placed_bounds_.isEmpty())
+        ground.height = std::min(ground.height,
+                                 detail::ground_below(placed_bounds_, parse_up(resolved.settings.camera.up)));
+}
+
+void LatchedContent::keep(const SceneSnapshot& scene) {
+    if (!names_.empty() && !has_new_names(scene)) return;
+    bounds_ = scene.bounds();
+    for (const SceneSnapshot::Object& object : scene.objects) names_.insert(object.name);
+}
+
+}  // namespace easypbr::app

@@ -1,0 +1,42 @@
+// The content that automatic settings were inferred from and are kept for.
+#pragma once
+
+#include <cstdint>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/math.h"
+#include "easypbr/scene/resolve.h"
+#include "easypbr/scene/scene.h"
+#include "easypbr/scene/settings.h"
+
+namespace easypbr::app {
+
+/// Follows what changes after settings were latched.
+class LatchedContent {
+  public:
+    /// Releases all latched settings, and returns true, where an object of a new name makes the content
+    /// larger.
+    bool release_outgrown(const SceneSnapshot& scene, Settings& settings);
+    /// Lowers the ground of one image where the content has sunk below the latched height.
+    void lower_ground(const SceneSnapshot& scene, const Settings& settings, ResolvedSettings& resolved);
+    /// The settings were latched for this content.
+    void keep(const SceneSnapshot& scene);
+
+  private:
+    struct Placed {
+        uint64_t revision;  ///< of the vertices
+        Eigen::Matrix4d T_world_mesh;
+        bool operator==(const Placed&) const = default;
+    };
+    static std::vector<Placed> placed(const SceneSnapshot& scene);
+    bool has_new_names(const SceneSnapshot& scene) const;
+
+    std::set<std::string> names_;
+    Box3d bounds_;                ///< of the content of these names, when it was kept
+    std::vector<Placed> placed_;  ///< content of the next
+    Box3d placed_bounds_;
+};
+
+}  // namespace easypbr::app
