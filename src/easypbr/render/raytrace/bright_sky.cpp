@@ -52,6 +52,14 @@ void BrightSky::prepare(const Image& map) {
     brightness_ = bright_part_ > 0 ? float(bright / 3) : 0;
     for (float& value : density_) value /= float(std::max(bright, 1e-30));
     for (float& value : row_ends_) value /= float(std::max(bright, 1e-30));
+    row_guide_.clear();
+    pixel_guide_.clear();
+    row_cosines_.clear();
+    add_guide(row_ends_, row_guide_);
+    for (int y = 0; y < h; ++y)
+        add_guide(std::span<const float>(pixel_ends_).subspan(size_t(y) * size_t(w), size_t(w)),
+                  pixel_guide_);
+    for (int y = 0; y <= h; ++y) row_cosines_.push_back(std::cos(pi * y / h));
 }
 
 float BrightSky::density(const Vec2& uv) const {
@@ -62,12 +70,19 @@ float BrightSky::density(const Vec2& uv) const {
 BrightSky::Sample BrightSky::sample(const Vec2& u) const {
     float within_row = 0, within_pixel = 0;
     const auto w = size_t(size_.x());
-    const int y = int(step_of(row_ends_, u.y(), within_row));
-    const int x = int(step_of(std::span(pixel_ends_).subspan(size_t(y) * w, w), u.x(), within_pixel));
+    const size_t y = step_of(row_ends_, row_guide_, u.y(), within_row), first = y * w;
+    const size_t x = step_of(std::span(pixel_ends_).subspan(first, w),
+                             std::span(pixel_guide_).subspan(first, w), u.x(), within_pixel);
     // Even over the sphere within a row.
-    const double step = pi / size_.y(), top = std::cos(step * y), bottom = std::cos(step * (y + 1));
-    const double v = std::acos(std::clamp(top + (bottom - top) * within_row, -1.0, 1.0)) / pi;
-    return {{(float(x) + within_pixel) / float(w), float(v)}, density_[size_t(y) * w + size_t(x)]};
+    const double top = row_cosines_[y], bottom = row_cosines_[y + 1];
+    return {(float(x) + within_pixel) / float(w), top + (bottom - top) * within_row, int(y), within_row,
+            density_[first + x]};
+}
+
+Vec3 BrightSky::Sample::direction() const {
+    const float phi = float(2 * pi) * (u - 0.5f);
+    const auto sine = float(std::sqrt(std::max(0.0, (1 - cos_theta) * (1 + cos_theta))));
+    return {sine * std::sin(phi), float(cos_theta), -sine * std::cos(phi)};
 }
 
 }  // namespace easypbr::render

@@ -1,6 +1,7 @@
 // Directions of the light that a sky has beyond its mean.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "easypbr/core/image.h"
@@ -22,11 +23,18 @@ class BrightSky {
     /// Density of sampled directions, per steradian, at a place of the map, 0 to 1 each.
     float density(const Vec2& uv) const;
     struct Sample {
-        Vec2 uv;
-        float density;  ///< per steradian
+        float u;           ///< place across the map, 0 to 1
+        double cos_theta;  ///< of the angle from straight up
+        int row;           ///< of the map
+        float within_row;  ///< by solid angle, 0 to 1
+        float density;     ///< per steradian
+
+        /// Unit direction of the map.
+        Vec3 direction() const;
     };
     /// A place by a point of the unit square. Its density is 0 where the map is even.
     Sample sample(const Vec2& u) const;
+    int rows() const { return size_.y(); }
 
   private:
     Vec2i size_{0, 0};
@@ -34,6 +42,8 @@ class BrightSky {
     std::vector<float> density_;     ///< for each pixel
     std::vector<float> row_ends_;    ///< CDF over the rows
     std::vector<float> pixel_ends_;  ///< and within each of them
+    std::vector<uint16_t> row_guide_, pixel_guide_;
+    std::vector<double> row_cosines_;  ///< of the rows' upper borders and the last one's lower
 };
 
 /// The pixel of a map that a place lies in, 0 to 1 each.

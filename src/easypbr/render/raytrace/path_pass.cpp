@@ -18,6 +18,13 @@ bool is_catcher(uint8_t kind) {
     return kind == uint8_t(SurfaceKind::ground_catcher);
 }
 
+/// Every how many frames a place of a shadow catcher, in radii of the scene from its middle, gets paths:
+/// far away a scene removes little light. By the place alone, so that the mean stays unbiased.
+int catcher_period(const Vec3& place) {
+    const float distance = place.norm();
+    return distance < 2.5f ? 1 : distance < 5 ? 2 : 4;
+}
+
 }  // namespace
 
 void PathPass::Caught::add(const CaughtLight& light) {
@@ -98,6 +105,12 @@ void PathPass::Pixels::add(int x, int y, const Place& place, PathBatch& batch) c
     batch.state[i] = place.state;
 }
 
+bool PathPass::is_due(const Frame& frame, int x, int y, const Vec3& place) const {
+    if (caught_[size_t(y) * size_t(frame.size.x()) + size_t(x)].sum.all <= 0) return true;
+    // Neighbours take turns.
+    return (frame.sample_index + x + 2 * y) % catcher_period(place) == 0;
+}
+
 void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
     const auto count = size_t(block.width) * size_t(block.height);
     PathBatch lit(count), caught(count);
@@ -124,7 +137,10 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
                 return;
             }
         }
-        pixels.add(x, y, place, is_catcher(kind) ? caught : lit);
+        if (!is_catcher(kind))
+            pixels.add(x, y, place, lit);
+        else if (!caught_.empty() && is_due(pixels.frame, x, y, place.position))
+            pixels.add(x, y, place, caught);
     });
     tracer_.trace(lit, hits, radiance);
     tracer_.trace_caught(caught, light);

@@ -21,6 +21,8 @@ class PathPass {
     struct Pixels;
     struct Block;
     void trace_block(const Pixels& pixels, const PixelRect& block);
+    /// Whether a pixel of a shadow catcher gets a path in this frame.
+    bool is_due(const Frame& frame, int x, int y, const Vec3& place) const;
 
     PathTracer tracer_;
     /// The part of a shadow catcher's light that arrives at a pixel: the ratio of sums over all frames so

@@ -154,7 +154,8 @@ Vec3 PathTracer::limited(const Vec3& light, uint32_t bounces) const {
 }
 
 Vec3 PathTracer::escaped(const Vec3& direction, float density, float sky_part) const {
-    return sky_.radiance(direction) * (density / (density + sky_part * sky_.density(direction)));
+    const SkySampler::Sample sky = sky_.seen(direction);
+    return sky.radiance * (density / (density + sky_part * sky.density));
 }
 
 float PathTracer::emission_weight(const RayHit& hit, const Vec3& direction, float density) const {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "easypbr/render/raytrace/ray_surface.h"
+#include "easypbr/render/raytrace/sky_place.h"
 #include "easypbr/scene/light_falloff.h"
 #include "easypbr/scene/resolve.h"
 
@@ -42,7 +43,7 @@ void RayLight::prepare(const ResolvedSettings& resolved, const RayScene& scene) 
 }
 
 Vec3 RayLight::sky(const Vec3& direction) const {
-    const Vec2i at = pixel_at(equirect_uv(resolved_->R_env_world * direction), {sky_.width(), sky_.height()});
+    const Vec2i at = pixel_at(sky_place(resolved_->R_env_world * direction), {sky_.width(), sky_.height()});
     const float* p = sky_.at<float>(at.x(), at.y());
     return resolved_->settings.environment.intensity * Vec3(p[0], p[1], p[2]);
 }
@@ -53,12 +54,11 @@ Vec3 RayLight::even_sky(const Vec3& normal) const {
 }
 
 float RayLight::bright_density(const Vec3& direction) const {
-    return bright_.density(equirect_uv(resolved_->R_env_world * direction));
+    return bright_.density(sky_place(resolved_->R_env_world * direction));
 }
 
 Vec3 RayLight::bright_direction(const Vec2& u) const {
-    const Vec2 uv = bright_.sample(u).uv;
-    return resolved_->R_env_world.transpose() * equirect_direction(uv.x(), uv.y());
+    return resolved_->R_env_world.transpose() * bright_.sample(u).direction();
 }
 
 Vec3 RayLight::from_lights(const Vec3& at, const Vec3& normal) const {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "easypbr/render/raytrace/bright_sky.h"
 #include "easypbr/scene/environment.h"
@@ -30,17 +31,20 @@ class SkySampler {
     };
     /// A direction by a point of the unit square; the brighter the sky is beyond its mean, the likelier.
     Sample sample(const Vec2& u) const;
-    /// Density of such directions, per steradian.
-    float density(const Vec3& direction) const;
+    /// A direction that was chosen in another way, with the density of such directions.
+    Sample seen(const Vec3& direction) const;
 
   private:
-    Vec3 texel_at(const Vec2& uv) const;
+    Vec3 texel(int x, int y) const;
+    /// The row of the environment that holds a sample.
+    int row_of(const BrightSky::Sample& sample) const;
 
     Environment environment_;
     Mat3 R_env_world_ = Mat3::Identity();
     float intensity_ = 1;
     std::string hash_;
     BrightSky bright_;
+    std::vector<double> row_cosines_;  ///< of the lower borders of the environment's rows
 };
 
 }  // namespace easypbr::render

@@ -1,0 +1,92 @@
+// Directions and densities of skies as paths choose them.
+#include "easypbr/render/raytrace/sky_sampler.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "easypbr/render/raytrace/cdf.h"
+#include "easypbr/render/raytrace/sky_place.h"
+
+namespace easypbr::sky_sampler_test {
+
+TEST(SkySampler, TheFastArcTangentIsTheArcTangent) {
+    for (int i = -1000; i <= 1000; ++i) {
+        const double angle = pi * i / 1000;
+        const auto y = float(std::sin(angle)), x = float(std::cos(angle));
+        // Its own error is 2e-8; the rest is rounding of angles up to pi.
+        EXPECT_NEAR(render::fast_atan2(y, x), std::atan2(y, x), 5e-7) << angle;
+    }
+    EXPECT_EQ(render::fast_atan2(0, 0), 0);
+}
+
+TEST(SkySampler, PlacesAreThoseOfTheMap) {
+    std::mt19937 random(1);
+    std::normal_distribution<float> normal;
+    for (int i = 0; i < 1000; ++i) {
+        const Vec3 d = Vec3(normal(random), normal(random), normal(random)).normalized();
+        EXPECT_LT((render::sky_place(d) - equirect_uv(d)).cwiseAbs().maxCoeff(), 3e-7f);
+    }
+}
+
+TEST(SkySampler, AGuideChangesNoStep) {
+    std::mt19937 random(2);
+    for (const size_t count : {1, 2, 7, 64, 500}) {
+        std::vector<float> ends;
+        double sum = 0;
+        for (size_t i = 0; i < count; ++i) {
+            sum +=
+                random() % 3 ? 0 : std::pow(double(random() % 1000), 4);  // many empty steps, few large ones
+            ends.push_back(float(sum));
+        }
+        ends.back() += 1;
+        for (float& end : ends) end /= ends.back();
+        std::vector<uint16_t> guide;
+        render::add_guide(ends, guide);
+        for (int i = 0; i < 4096; ++i) {
+            const float at = float(i) / 4096;
+            float within = 0, guided = 0;
+            const size_t step = render::step_of(ends, at, within);
+            EXPECT_EQ(render::step_of(ends, guide, at, guided), step) << count << ", " << at;
+            EXPECT_EQ(guided, within);
+        }
+    }
+}
+
+// A sample's density and radiance are those that are found in its direction, but beside borders of texels,
+// and the densities are a distribution: their mean reciprocal is the solid angle that they cover.
+TEST(SkySampler, SamplesAreWhatIsSeenInTheirDirection) {
+    const int w = 96, h = 48;
+    Image map(w, h, 3, PixelType::f32);
+    for (int y = 0; y < h; ++y)
+        for (int x = 0; x < w; ++x)
+            for (int c = 0; c < 3; ++c)
+                map.at<float>(x, y)[c] = float((x * 7 + y * 13 + c) % 17) + (x == 40 ? 90.0f : 0.0f);
+    const Environment environment(map, "test");
+    const Mat3 R = Eigen::AngleAxisf(0.7f, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    render::SkySampler sky;
+    sky.prepare(environment, R, 2);
+    const int side = 128;
+    int other = 0;
+    for (int j = 0; j < side; ++j)
+        for (int i = 0; i < side; ++i) {
+            const auto sample = sky.sample(Vec2(float(i) + 0.5f, float(j) + 0.5f) / float(side));
+            EXPECT_NEAR(sample.direction.norm(), 1, 1e-6);
+            const auto seen = sky.seen(sample.direction);
+            other += sample.density != seen.density || sample.radiance != seen.radiance;
+            EXPECT_EQ(seen.radiance, sky.radiance(sample.direction));
+        }
+    EXPECT_LE(other, side * side / 1000) << "single precision, beside borders";
+    double integral = 0;
+    const int rows = 4 * h, columns = 4 * w;
+    for (int y = 0; y < rows; ++y)
+        for (int x = 0; x < columns; ++x) {
+            const float u = (float(x) + 0.5f) / float(columns), v = (float(y) + 0.5f) / float(rows);
+            const double angle = 2 * pi / columns * (std::cos(pi * y / rows) - std::cos(pi * (y + 1) / rows));
+            integral += angle * sky.seen(R.transpose() * equirect_direction(u, v)).density;
+        }
+    EXPECT_NEAR(integral, 1, 1e-4);
+}
+
+}  // namespace easypbr::sky_sampler_test
