@@ -73,7 +73,7 @@ TEST(SkySampler, SamplesAreWhatIsSeenInTheirDirection) {
         for (int i = 0; i < side; ++i) {
             const auto sample = sky.sample(Vec2(float(i) + 0.5f, float(j) + 0.5f) / float(side));
             EXPECT_NEAR(sample.direction.norm(), 1, 1e-6);
-            const auto seen = sky.seen(sample.direction);
+            const auto seen = sky.seen(sample.direction, 1);
             other += sample.density != seen.density || sample.radiance != seen.radiance;
             EXPECT_EQ(seen.radiance, sky.radiance(sample.direction));
         }
@@ -84,7 +84,7 @@ TEST(SkySampler, SamplesAreWhatIsSeenInTheirDirection) {
         for (int x = 0; x < columns; ++x) {
             const float u = (float(x) + 0.5f) / float(columns), v = (float(y) + 0.5f) / float(rows);
             const double angle = 2 * pi / columns * (std::cos(pi * y / rows) - std::cos(pi * (y + 1) / rows));
-            integral += angle * sky.seen(R.transpose() * equirect_direction(u, v)).density;
+            integral += angle * sky.seen(R.transpose() * equirect_direction(u, v), 1).density;
         }
     EXPECT_NEAR(integral, 1, 1e-4);
 }

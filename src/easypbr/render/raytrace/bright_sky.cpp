@@ -33,15 +33,16 @@ void BrightSky::prepare(const Image& map) {
     for (int y = 0; y < h; ++y)
         for (int x = 0; x < w; ++x) all += light_of(x, y) * solid_angle_of(y);
     const double mean = all / (4 * pi);
-    density_.assign(size_t(w) * size_t(h), 0);
+    texels_.assign(size_t(w) * size_t(h), Vec4::Zero());
     row_ends_.assign(size_t(h), 0);
-    pixel_ends_.assign(density_.size(), 0);
+    pixel_ends_.assign(texels_.size(), 0);
     for (int y = 0; y < h; ++y) {
         double row = 0;
         const size_t first = size_t(y) * size_t(w);
         for (size_t i = first; i < first + size_t(w); ++i) {
-            density_[i] = float(std::max(light_of(int(i - first), y) - mean, 0.0));
-            row += density_[i] * solid_angle_of(y);
+            texels_[i].head<3>() = Eigen::Map<const Vec3>(map.at<float>(int(i - first), y));
+            texels_[i].w() = float(std::max(light_of(int(i - first), y) - mean, 0.0));
+            row += texels_[i].w() * solid_angle_of(y);
             pixel_ends_[i] = float(row);
         }
         bright += row;
@@ -50,7 +51,7 @@ void BrightSky::prepare(const Image& map) {
     }
     bright_part_ = bright > least_bright_part * all ? float(bright / all) : 0;
     brightness_ = bright_part_ > 0 ? float(bright / 3) : 0;
-    for (float& value : density_) value /= float(std::max(bright, 1e-30));
+    for (Vec4& texel : texels_) texel.w() /= float(std::max(bright, 1e-30));
     for (float& value : row_ends_) value /= float(std::max(bright, 1e-30));
     row_guide_.clear();
     pixel_guide_.clear();
@@ -62,9 +63,9 @@ void BrightSky::prepare(const Image& map) {
     for (int y = 0; y <= h; ++y) row_cosines_.push_back(std::cos(pi * y / h));
 }
 
-float BrightSky::density(const Vec2& uv) const {
+const Vec4& BrightSky::texel(const Vec2& uv) const {
     const Vec2i at = pixel_at(uv, size_);
-    return density_[size_t(at.y()) * size_t(size_.x()) + size_t(at.x())];
+    return texels_[size_t(at.y()) * size_t(size_.x()) + size_t(at.x())];
 }
 
 BrightSky::Sample BrightSky::sample(const Vec2& u) const {
@@ -75,8 +76,9 @@ BrightSky::Sample BrightSky::sample(const Vec2& u) const {
                              std::span(pixel_guide_).subspan(first, w), u.x(), within_pixel);
     // Even over the sphere within a row.
     const double top = row_cosines_[y], bottom = row_cosines_[y + 1];
-    return {(float(x) + within_pixel) / float(w), top + (bottom - top) * within_row, int(y), within_row,
-            density_[first + x]};
+    const Vec4& texel = texels_[first + x];
+    return {(float(x) + within_pixel) / float(w), top + (bottom - top) * within_row, texel.head<3>(),
+            texel.w()};
 }
 
 Vec3 BrightSky::Sample::direction() const {

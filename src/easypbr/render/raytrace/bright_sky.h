@@ -20,26 +20,24 @@ class BrightSky {
     float bright_part() const { return bright_part_; }
     /// That part's integral over all directions, of the mean of the channels.
     float brightness() const { return brightness_; }
-    /// Density of sampled directions, per steradian, at a place of the map, 0 to 1 each.
-    float density(const Vec2& uv) const;
+    /// At a place of the map, 0 to 1 each: radiance, and the density of sampled directions, per steradian.
+    const Vec4& texel(const Vec2& uv) const;
     struct Sample {
         float u;           ///< place across the map, 0 to 1
         double cos_theta;  ///< of the angle from straight up
-        int row;           ///< of the map
-        float within_row;  ///< by solid angle, 0 to 1
-        float density;     ///< per steradian
+        Vec3 radiance;
+        float density;  ///< per steradian
 
         /// Unit direction of the map.
         Vec3 direction() const;
     };
     /// A place by a point of the unit square. Its density is 0 where the map is even.
     Sample sample(const Vec2& u) const;
-    int rows() const { return size_.y(); }
 
   private:
     Vec2i size_{0, 0};
     float bright_part_ = 0, brightness_ = 0;
-    std::vector<float> density_;     ///< for each pixel
+    std::vector<Vec4> texels_;       ///< radiance and density
     std::vector<float> row_ends_;    ///< CDF over the rows
     std::vector<float> pixel_ends_;  ///< and within each of them
     std::vector<uint16_t> row_guide_, pixel_guide_;

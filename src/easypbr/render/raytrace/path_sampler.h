@@ -27,18 +27,15 @@ inline uint32_t scrambled_reversed(uint32_t x, uint32_t seed) {
     return x ^ x * 0x53a22864u;
 }
 
-inline uint32_t owen_scrambled(uint32_t x, uint32_t seed) {
-    return reversed_bits(scrambled_reversed(reversed_bits(x), seed));
-}
-
-/// Second dimension of Sobol's sequence: a linear function of the bits of the index, for each byte of it.
+/// Second dimension of Sobol's sequence, its bits reversed: a linear function of the bits of the index, for
+/// each byte of it.
 inline const std::array<std::array<uint32_t, 256>, 4>& sobol_table() {
     static const auto table = [] {
         std::array<std::array<uint32_t, 256>, 4> values{};
         uint32_t direction = 1u << 31;
         for (unsigned bit = 0; bit < 32; ++bit, direction ^= direction >> 1)
             for (unsigned byte = 0; byte < 256; ++byte)
-                if (byte >> (bit % 8) & 1u) values[bit / 8][byte] ^= direction;
+                if (byte >> (bit % 8) & 1u) values[bit / 8][byte] ^= reversed_bits(direction);
         return values;
     }();
     return table;
@@ -66,23 +63,24 @@ class PathSampler {
         // As large a square of pixels as 32 bits allow; the next ones have other sequences.
         const uint32_t side = (32 - std::min(bits, 16u)) / 2;
         const uint32_t inside = (1u << side) - 1;
-        sample_ = (spread_bits(x & inside) | spread_bits(y & inside) << 1) << bits | sample;
+        reversed_sample_ =
+            reversed_bits((spread_bits(x & inside) | spread_bits(y & inside) << 1) << bits | sample);
         seed_ = pcg_hash((x >> side) + pcg_hash(y >> side));
     }
 
     /// In [0, 1)^2, of dimension `pair` of the vertex `depth`.
     Vec2 pair(uint32_t depth, uint32_t pair) const {
         const uint32_t seed = pcg_hash(seed_ ^ (depth * 16 + pair) * 0x9e3779b9u);
-        const uint32_t index = owen_scrambled(sample_, seed);
+        const uint32_t index = reversed_bits(scrambled_reversed(reversed_sample_, seed));
         const auto& table = sobol_table();
         const uint32_t y = table[0][index & 255] ^ table[1][index >> 8 & 255] ^ table[2][index >> 16 & 255] ^
                            table[3][index >> 24];
         return {unit_number(reversed_bits(scrambled_reversed(index, pcg_hash(seed + 1)))),
-                unit_number(owen_scrambled(y, pcg_hash(seed + 2)))};
+                unit_number(reversed_bits(scrambled_reversed(y, pcg_hash(seed + 2))))};
     }
 
   private:
-    uint32_t seed_ = 0, sample_ = 0;
+    uint32_t seed_ = 0, reversed_sample_ = 0;
 };
 
 }  // namespace easypbr::render

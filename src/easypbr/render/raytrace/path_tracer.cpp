@@ -154,7 +154,7 @@ Vec3 PathTracer::limited(const Vec3& light, uint32_t bounces) const {
 }
 
 Vec3 PathTracer::escaped(const Vec3& direction, float density, float sky_part) const {
-    const SkySampler::Sample sky = sky_.seen(direction);
+    const SkySampler::Sample sky = sky_.seen(direction, density);
     return sky.radiance * (density / (density + sky_part * sky.density));
 }
 

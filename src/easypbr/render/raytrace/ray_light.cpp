@@ -54,7 +54,7 @@ Vec3 RayLight::even_sky(const Vec3& normal) const {
 }
 
 float RayLight::bright_density(const Vec3& direction) const {
-    return bright_.density(sky_place(resolved_->R_env_world * direction));
+    return bright_.texel(sky_place(resolved_->R_env_world * direction)).w();
 }
 
 Vec3 RayLight::bright_direction(const Vec2& u) const {

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "easypbr/render/raytrace/bright_sky.h"
 #include "easypbr/scene/environment.h"
@@ -31,20 +30,19 @@ class SkySampler {
     };
     /// A direction by a point of the unit square; the brighter the sky is beyond its mean, the likelier.
     Sample sample(const Vec2& u) const;
-    /// A direction that was chosen in another way, with the density of such directions.
-    Sample seen(const Vec3& direction) const;
+    /// A direction that was chosen in another way, with the density of those that are chosen here. The lower
+    /// its own density, per steradian, the less of the sky's detail shows: the radiance is that of a smaller
+    /// map then.
+    Sample seen(const Vec3& direction, float density) const;
 
   private:
-    Vec3 texel(int x, int y) const;
-    /// The row of the environment that holds a sample.
-    int row_of(const BrightSky::Sample& sample) const;
+    Vec3 texel_at(const Vec2& place) const;
 
     Environment environment_;
     Mat3 R_env_world_ = Mat3::Identity();
     float intensity_ = 1;
     std::string hash_;
     BrightSky bright_;
-    std::vector<double> row_cosines_;  ///< of the lower borders of the environment's rows
 };
 
 }  // namespace easypbr::render
