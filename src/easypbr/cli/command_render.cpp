@@ -18,6 +18,7 @@
 #include "easypbr/cli/open_file.h"
 #include "easypbr/cli/render_options.h"
 #include "easypbr/cli/stage_times.h"
+#include "easypbr/cli/terminal_image.h"
 #include "easypbr/cli/truth_layers.h"
 #include "easypbr/cli/user_config.h"
 #include "easypbr/core/error.h"
@@ -90,7 +91,7 @@ void check_files(const Picture& picture, const Settings& settings, const RenderO
         app::check_recording(picture.output, settings, recording_of(options));
     else if (options.is_page())
         remote::check_orbit_page(picture.output, settings, page_options_of(options));
-    else if (picture.output != "-")
+    else if (picture.output != "-" && !picture.output.empty())
         app::check_picture(picture.output, settings);
     for (const std::string& layer : options.layers) check_writable(truth_path(picture.output, layer));
     if (!picture.save_settings.empty()) check_writable(picture.save_settings);
@@ -107,22 +108,27 @@ std::vector<io::LoadedScene> load_all(const std::vector<std::string>& files, con
     return loaded;
 }
 
-void write_to_stdout(const Image& image) {
-    const std::vector<std::byte> png = io::encode_png(image);
-    if (std::fwrite(png.data(), 1, png.size(), stdout) != png.size() || std::fflush(stdout) != 0)
+template <class Bytes>
+void write_to_stdout(const Bytes& bytes) {
+    if (std::fwrite(bytes.data(), 1, bytes.size(), stdout) != bytes.size() || std::fflush(stdout) != 0)
         throw FileError("cannot write the picture to standard output");
 }
 
 class RenderJob {
   public:
-    explicit RenderJob(const RenderOptions& options)
+    RenderJob(const RenderOptions& options, const Terminal& terminal)
         : options_(options),
+          terminal_(terminal),
           look_(look_of(options, options.files)),
           opener_(options.open ? opening_program() : ""),
           styles_(parse_styles(options.styles, unique_names(options.files))),
           label_map_(options.label_map.empty() ? nullptr : io::find_label_map(options.label_map)) {
         add_passes(options.passes, session_);
         if (!options.camera_path.empty()) camera_path_ = io::load_camera_path(options.camera_path);
+        if (options.output.empty()) {
+            Vec2i& size = look_.settings.image.size;
+            size = fitted_to(terminal_, size);
+        }
     }
 
     int run() {
@@ -261,12 +267,15 @@ class RenderJob {
 
     app::Encoding encoding_of(const Picture& picture) const {
         const bool deep = options_.bit_depth == 16;
-        return app::encoding_for(picture.output == "-" ? "-.png" : picture.output, deep);
+        const bool is_file = picture.output != "-" && !picture.output.empty();
+        return app::encoding_for(is_file ? picture.output : "-.png", deep);
     }
 
     void write(const Picture& picture, const Image& image) {
-        if (picture.output == "-")
-            write_to_stdout(image);
+        if (picture.output.empty())
+            write_to_stdout(terminal_text(image, terminal_.protocol));
+        else if (picture.output == "-")
+            write_to_stdout(io::encode_png(image));
         else
             io::save_image(image, picture.output);
         write_layers(picture);
@@ -288,6 +297,7 @@ class RenderJob {
     }
 
     const RenderOptions& options_;
+    Terminal terminal_;  ///< shows what goes to no file
     Look look_;
     std::string opener_;  ///< program of --open
     std::vector<StyleOption> styles_;
@@ -304,7 +314,17 @@ int run_render(const RenderOptions& options) {
     if (options.open && options.output == "-") throw UsageError("render: --open needs a file: -o FILE");
     if (options.output == "-" && ::isatty(STDOUT_FILENO))
         throw UsageError("render: standard output is a terminal; redirect it or name a file");
-    return RenderJob(options).run();
+    Terminal terminal;
+    if (options.output.empty()) {
+        terminal = terminal_of_stdout();
+        if (terminal.protocol == TerminalProtocol::none)
+            throw UsageError(
+                ::isatty(STDOUT_FILENO)
+                    ? "render: this terminal is not known to show images: expected -o OUT.png, or "
+                      "EASYPBR_TERMINAL"
+                    : "render: expected -o OUT.png");
+    }
+    return RenderJob(options, terminal).run();
 }
 
 }  // namespace

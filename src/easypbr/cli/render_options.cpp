@@ -75,10 +75,10 @@ void declare_shorthands(CLI::App& command, RenderOptions& options) {
 
 void declare_output(CLI::App& command, RenderOptions& options) {
     command
-        .add_option(
-            "-o,--output", options.output,
-            "Image file to write: PNG, JPEG, HDR or EXR; '-': PNG to standard output. For several "
-            "frames: MP4, WebM, GIF, or numbered images: frame_%04d.png. HTML: a page to turn the content in")
+        .add_option("-o,--output", options.output,
+                    "Image file to write: PNG, JPEG, HDR or EXR; '-': PNG to standard output; by default the "
+                    "image is shown in the terminal. For several frames: MP4, WebM, GIF, or numbered images: "
+                    "frame_%04d.png. HTML: a page to turn the content in")
         ->option_text("FILE");
     command.add_option("--size,--resolution", options.size, "Width and height in pixels")->option_text("WxH");
     command.add_option("--bit-depth", options.bit_depth, "Bits per channel of a PNG: 8 or 16")
@@ -408,7 +408,7 @@ void check_recording_usage(const RenderOptions& options) {
 
 void check_usage(const RenderOptions& options) {
     require(!options.files.empty(), "render", "at least one FILE");
-    require(!options.output.empty(), "render", "-o OUT.png");
+    require(!options.output.empty() || options.shows_in_terminal(), "render", "-o OUT.png");
     check_input("render", options.files);
     check_recording_usage(options);
     check_page_usage(options);

@@ -59,6 +59,10 @@ struct RenderOptions {
     /// Many frames instead of one picture.
     bool records() const { return turntable || !camera_path.empty(); }
     /// Pictures from all around in one HTML file.
+    /// One image and nothing else, where no file is named for it.
+    bool shows_in_terminal() const {
+        return output.empty() && !records() && !batch && !open && layers.empty() && bit_depth == 8;
+    }
     bool is_page() const { return extension_of(output) == "html"; }
 };
 
