@@ -18,7 +18,7 @@ const float deviations = 3.0;
 
 float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
 
-vec4 mean(vec4 sum, float count) { return sum / max(count, 1.0); }
+vec4 mean(vec4 sum, float count) { return sum * (1.0 / max(count, 1.0)); }
 
 float depth_at(ivec2 texel) { return texelFetch(u_surface, texel, 0).a / max(texelFetch(u_reflectance, texel, 0).a, 1.0); }
 
