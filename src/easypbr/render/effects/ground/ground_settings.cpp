@@ -23,8 +23,8 @@ constexpr double ground_radii = 12;
 bool is_lit_surface(const SceneSnapshot::Object& object, const Style& overrides) {
     const DrawStyle style = resolve_style(*object.mesh, overrides);
     const DrawMode primitive = primitive_of(*object.mesh, style);
-    return style.visible && !style.overlay && style.lit.value_or(true) &&
-           (primitive == DrawMode::mesh || primitive == DrawMode::surfels);
+    return style.visible && !style.overlay && style.lit.value_or(true) && primitive != DrawMode::points &&
+           primitive != DrawMode::lines;
 }
 
 GroundMode inferred_mode(const EffectContext& context) {
@@ -42,7 +42,7 @@ void add_ground(Table& table) {
     table.push_back(not_kept(
         make("ground.mode", EASYPBR_AT(ground.mode),
              "Ground plane under the content: none, a shadow catcher (shadow) over any background, or a "
-             "visible surface (plane); automatic: shadow under lit meshes and surfels before a background "
+             "visible surface (plane); automatic: shadow under lit surfaces before a background "
              "of one colour, else none.")));
     table.push_back(
         make("ground.height", EASYPBR_AT(ground.height),
