@@ -3,6 +3,7 @@
 import json
 import os
 import pathlib
+import re
 import shutil
 import socket
 import subprocess
@@ -101,8 +102,13 @@ class Lab:
 
     def run(self, number):
         """Runs a cell by its place in the notebook, from 0, as by Ctrl+Enter."""
-        self.page.locator(".jp-Notebook .jp-CodeCell").nth(number).locator(".jp-InputArea-editor").click()
+        cell = self.page.locator(".jp-Notebook .jp-CodeCell").nth(number)
+        cell.locator(".jp-InputArea-editor").click()
+        expect(cell).to_have_class(re.compile("jp-mod-active"))
+        self.page.locator(".jp-Notebook.jp-mod-editMode").wait_for()
+        cell.locator(".cm-focused").wait_for()
         self.page.keyboard.press("Control+Enter")
+        expect(cell.locator(".jp-InputArea-prompt")).not_to_have_text("[ ]:")
 
     def canvas(self, number=0):
         return self.page.locator(".jp-OutputArea canvas.picture").nth(number)
