@@ -279,6 +279,15 @@ const Case cases[] = {
          s.ground.mode = GroundMode::shadow;
          s.lights.key.enabled = true;
      }},
+    // Far pixels of the ground get paths in some of the frames.
+    {"ground_by_paths", solids,
+     [](Settings& s) {
+         s.path.enabled = true;
+         s.path.denoise = Denoising::off;
+         s.ground.mode = GroundMode::shadow;
+         s.lights.key.enabled = true;
+     },
+     4},
     {"blurred_background", solids, [](Settings& s) { s.background.mode = BackgroundMode::blur; }},
     {"points", [] { return showing(cloud()); }, [](Settings& s) { s.edl.radius = 8.5f; }},
     // Its widest ring is 93 pixels from the middle, much farther than splats of 3 pixels ask a tile to see.

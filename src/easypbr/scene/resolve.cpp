@@ -21,14 +21,20 @@ Mat3 environment_rotation(const Vec3d& up, double rotation_deg) {
     return R.cast<float>();
 }
 
+/// Whether an environment map is given, which is loaded later where only its file is named.
+bool is_environment_given(const SceneSnapshot& scene, const EnvironmentSettings& environment) {
+    return !scene.environment.empty() || !environment.file.empty();
+}
+
 /// Of the built-in studio: its soft boxes fill and rim, and leave half of the light to the key.
 constexpr float studio_intensity = 0.2f;
 
 void resolve_environment(const SceneSnapshot& scene, Settings& settings, ResolvedSettings& resolved) {
     EnvironmentSettings& environment = settings.environment;
     detail::fill(environment.enabled, true);
-    const bool given = !scene.environment.empty() || !environment.file.empty();
-    if (!environment.intensity.value()) detail::fill(environment.intensity, given ? 1.0f : studio_intensity);
+    if (!environment.intensity.value())
+        detail::fill(environment.intensity,
+                     is_environment_given(scene, environment) ? 1.0f : studio_intensity);
     if (*environment.enabled)
         resolved.environment = scene.environment.empty() ? studio_environment() : scene.environment;
     resolved.seen_environment = resolved.environment;
@@ -63,8 +69,7 @@ void resolve_lights(const detail::Content& content, Settings& settings, Resolved
             {light, inferred != resolved.light_radii.end() ? inferred->second : light.radius.value_or(0)});
     }
     const EnvironmentSettings& environment = settings.environment;
-    const bool given =
-        *environment.enabled && (!content.scene().environment.empty() || !environment.file.empty());
+    const bool given = *environment.enabled && is_environment_given(content.scene(), environment);
     for (const ResolvedLight& light : detail::resolve_studio_lights(
              content, resolved.camera, !given, settings.lights, up_direction(settings.camera)))
         resolved.lights.push_back(light);

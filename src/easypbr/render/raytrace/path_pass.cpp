@@ -19,7 +19,7 @@ bool is_catcher(uint8_t kind) {
 }
 
 /// Every how many frames a place of a shadow catcher, in radii of the scene from its middle, gets paths:
-/// far away a scene removes little light. By the place alone, so that the mean stays unbiased.
+/// far away a scene removes little light. By the place alone, so that the ratio stays consistent.
 int catcher_period(const Vec3& place) {
     const float distance = place.norm();
     return distance < 2.5f ? 1 : distance < 5 ? 2 : 4;
@@ -107,8 +107,9 @@ void PathPass::Pixels::add(int x, int y, const Place& place, PathBatch& batch) c
 
 bool PathPass::is_due(const Frame& frame, int x, int y, const Vec3& place) const {
     if (caught_[size_t(y) * size_t(frame.size.x()) + size_t(x)].sum.all <= 0) return true;
-    // Neighbours take turns.
-    return (frame.sample_index + x + 2 * y) % catcher_period(place) == 0;
+    // Neighbours take turns, by their place in the whole image.
+    const Vec2i pixel = frame.origin + Vec2i(x, y);
+    return (frame.sample_index + pixel.x() + 2 * pixel.y()) % catcher_period(place) == 0;
 }
 
 void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
