@@ -46,7 +46,7 @@ void validate(const Light& light, const std::string& name);
 /// camera.
 template <template <class> class MaybeAuto>
 struct BasicStudioLight {
-    MaybeAuto<bool> enabled{};     ///< automatic: on if no environment map is given
+    MaybeAuto<bool> enabled{};     ///< automatic: the key, where no environment map is given
     MaybeAuto<Vec3> position{};    ///< world units; automatic: 3 content radii away, by the first camera
     Vec3 color{1, 1, 1};           ///< sRGB-encoded
     MaybeAuto<float> intensity{};  ///< candela; automatic: the same irradiance at the content at any scale

@@ -1,4 +1,4 @@
-// Places of directions in equirectangular maps, for every ray: faster than equirect_uv() and exact to 1e-7.
+// Places of directions in equirectangular maps, for every ray: faster than equirect_uv() and as it to 3e-7.
 #pragma once
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 
 namespace easypbr::render {
 
-/// Arc tangent of y / x in the right quadrant, to 3e-7; 0 at the origin (Abramowitz and Stegun 1964, 4.4.49).
+/// Arc tangent of y / x in the right quadrant, to 5e-7; 0 at the origin (Abramowitz and Stegun 1964, 4.4.49).
 inline float fast_atan2(float y, float x) {
     const float ax = std::abs(x), ay = std::abs(y);
     const float most = std::max(ax, ay), least = std::min(ax, ay);
