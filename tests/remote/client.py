@@ -129,10 +129,13 @@ class Client:
     def until_told(self, kind, wanted=lambda message: True):
         return self.until(lambda message: isinstance(message, dict) and message["kind"] == kind and wanted(message))
 
-    def until_exact(self, after=0):
-        """The next exact picture, newer than frame `after`."""
-        return self.until(lambda message: isinstance(message, Frame) and message.is_exact and message.number > after
-                          and message.kind == STILL)
+    def until_exact(self, after=0, shows=0):
+        """The first exact picture newer than frame `after` that shows input `shows`, received now or later."""
+        def is_wanted(message):
+            return (isinstance(message, Frame) and message.kind == STILL and message.is_exact
+                    and message.number > after and message.input >= shows)
+
+        return next(filter(is_wanted, self.frames), None) or self.until(is_wanted)
 
     def until_setting(self, name, value):
         if self.settings.get(name, {}).get("value") != value:

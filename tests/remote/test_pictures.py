@@ -32,8 +32,7 @@ def test_after_a_drag_too(view, connect, tmp_path):
     client = connect(size=(200, 120))
     before = client.until_exact()
     client.drag((100, 60), (150, 40))
-    after = client.until_exact(before.number)
-    assert after.input == client.inputs
+    after = client.until_exact(before.number, shows=client.inputs)
     client.collect(0.3)
     image = after.image(tmp_path)
     assert not np.array_equal(image, before.image(tmp_path))
@@ -91,10 +90,11 @@ def test_a_training_loop_is_followed(view, connect):
     ball = view.scene.get("ball")
     vertices = np.array(ball.V)
     for step in range(10):
+        seen = client.frames[-1].number
         ball.V = vertices * (1 + 0.05 * step)
         client.collect(0.05)
     assert sum(frame.kind != STILL or not frame.is_exact for frame in client.frames) >= 2
-    client.until_exact(client.frames[-1].number)
+    client.until_exact(seen)
 
 
 def test_objects_are_hidden_and_shown(view, connect, tmp_path):
@@ -102,9 +102,11 @@ def test_objects_are_hidden_and_shown(view, connect, tmp_path):
     first = client.until_exact()
     client.send("show", object="ball", visible=False)
     client.until_known("scene", lambda scene: not scene["nodes"][0]["visible"])
+    hidden = client.until_exact(first.number)
+    assert not np.array_equal(first.image(tmp_path), hidden.image(tmp_path))
     client.send("show", object="ball", visible=True)
     client.until_known("scene", lambda scene: scene["nodes"][0]["visible"])
-    again = client.until_exact(first.number)
+    again = client.until_exact(hidden.number)
     assert np.array_equal(first.image(tmp_path), again.image(tmp_path))
     client.send("show", object="nothing", visible=False)
     client.until_told("notice", lambda notice: "nothing" in notice["text"])
@@ -137,10 +139,10 @@ def test_a_still_of_any_size(view, connect, tmp_path):
 
 def test_undo_and_reset(connect):
     client = connect()
-    client.until_exact()
+    first = client.until_exact()
     client.send("set", name="background.color", value="#123456")
     client.until_setting("background.color", "#123456")
-    client.until_exact(client.frames[-1].number)
+    client.until_exact(first.number)
     client.send("act", what="undo")
     client.until_told("settings", lambda message: "background.color" in message["values"])
     assert client.settings["background.color"]["value"] != "#123456"
@@ -218,4 +220,4 @@ def test_the_gil_does_not_matter(connect):
     while time.monotonic() < end:
         sum(range(10000))
     client.drag((80, 60), (120, 60))
-    client.until_exact(client.frames[-1].number)
+    client.until_exact(shows=client.inputs)
