@@ -1,7 +1,9 @@
-# The table of the split sum is integrated when the library is built and embedded.
-add_executable(generate_dfg src/easypbr/gpu/tools/generate_dfg.cpp)
-target_link_libraries(generate_dfg PRIVATE Eigen3::Eigen)
-set(dfg_table ${PROJECT_BINARY_DIR}/generated/easypbr_dfg.inc)
-add_custom_command(OUTPUT ${dfg_table} COMMAND generate_dfg ${dfg_table} DEPENDS generate_dfg
-                   COMMENT "Integrating the DFG table" VERBATIM)
-target_sources(easypbr_gpu PRIVATE ${dfg_table})
+# The tables of the split sum and of linearly transformed cosines are computed when the library is built and embedded.
+foreach(name IN ITEMS dfg ltc)
+  add_executable(generate_${name} src/easypbr/gpu/tools/generate_${name}.cpp)
+  target_link_libraries(generate_${name} PRIVATE Eigen3::Eigen)
+  set(table ${PROJECT_BINARY_DIR}/generated/easypbr_${name}.inc)
+  add_custom_command(OUTPUT ${table} COMMAND generate_${name} ${table} DEPENDS generate_${name}
+                     COMMENT "Computing the table ${name}" VERBATIM)
+  target_sources(easypbr_gpu PRIVATE ${table})
+endforeach()

@@ -12,7 +12,7 @@ mkdir -p "$build"
 # option for them, which clang-tidy does not know.
 cmake --preset release -B "$build" -DCMAKE_UNITY_BUILD_BATCH_SIZE=32 -DCMAKE_DISABLE_PRECOMPILE_HEADERS=ON -DCCACHE=OFF -DEASYPBR_WERROR=OFF \
     -DEASYPBR_BUILD_TESTS=OFF -DPython_EXECUTABLE="$PWD/.venv/bin/python" >"$log" 2>&1 || { cat "$log"; exit 1; }
-ninja -C "$build" -j "$jobs" generated/easypbr_shaders.inc generated/easypbr_dfg.inc generated/easypbr_page.inc generated/easypbr_offline.inc generated/easypbr_presets.inc generated/native/shaders.h >"$log" || { cat "$log"; exit 1; }
+ninja -C "$build" -j "$jobs" generated/easypbr_shaders.inc generated/easypbr_dfg.inc generated/easypbr_ltc.inc generated/easypbr_page.inc generated/easypbr_offline.inc generated/easypbr_presets.inc generated/native/shaders.h >"$log" || { cat "$log"; exit 1; }
 
 # What only GCC knows.
 sed -i 's/ -fira-region=[a-z]*//' "$build/compile_commands.json"

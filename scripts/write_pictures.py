@@ -227,6 +227,22 @@ def lights() -> np.ndarray:
     return row(view.render() for view in views)
 
 
+def area_lights() -> np.ndarray:
+    """Rectangle, disc, sphere: rasterised and path traced."""
+    rows = []
+    for paths in (False, True):
+        views = []
+        for kind in ("rectangle", "disc", "sphere"):
+            values = {"environment.enabled": False, "path.enabled": paths, "background.color": "#303030"}
+            view = Viewer((280, 210), values, on_floor(teapot("#d9b77a", 1, 0.15)))
+            view.lights["key"].enabled = False
+            view.add_light("lamp", kind, position=(-1.0, 1.5, 1.7), direction=(1.0, -1.1, -1.7), size=(0.6, 1.7), width_axis=(1.7, 0, 1.0),
+                           radius=0.56, intensity=8)
+            views.append(view)
+        rows.append(row(view.render(samples=64) for view in views))
+    return np.concatenate(rows)
+
+
 def backgrounds() -> np.ndarray:
     """Colour, environment, environment blurred."""
     return row(
@@ -548,7 +564,7 @@ def outline() -> np.ndarray:
     return view.render()
 
 
-PICTURES = [demo, materials, lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion, rays, modes, paths,
+PICTURES = [demo, materials, lights, area_lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion, rays, modes, paths,
             bloom, outlines, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
             viewer_slices, viewer_path, viewer_animations, viewer_lights, viewer_own, segmentation, detection, own_shading,
             outline]

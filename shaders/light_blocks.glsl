@@ -2,10 +2,11 @@
 // render/frame/shading_inputs.h: all members are of the type vec4, which std140 and C++ lay out alike.
 
 struct Light {
-    vec4 position;   // relative to the camera; w: 0 directional, 1 point, 2 spot
+    vec4 position;   // relative to the camera; w: 0 directional, 1 point, 2 spot, 3 rectangle, 4 disc, 5 sphere
     vec4 color;      // intensity times colour; w: 1 / range^2, or 0
-    vec4 direction;  // unit, where the light goes; w: unused
-    vec4 cone;       // scale and offset of the cosine
+    vec4 direction;  // unit, where the light goes; w: area of an area light
+    vec4 cone;       // spot: scale and offset of the cosine. Rectangle: half the width as a vector, half the height. Disc
+                     // and sphere: the radius as a vector, the radius
 };
 
 struct ShadowMap {

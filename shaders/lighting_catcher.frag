@@ -1,5 +1,6 @@
 // Light on a ground that is not seen itself: what reaches it, and what would reach it if nothing stood there. One block of
 // lights after the other adds to both.
+#include "common_area_light.glsl"
 #include "common_encoding.glsl"
 #include "common_camera.glsl"
 #include "common_environment.glsl"
@@ -23,6 +24,7 @@ layout(location = 0) out vec4 o_light;  // r: with shadows, g: without
 const float inverse_pi = 0.31830988618379067;
 
 float arriving_at(Light light, vec3 position, vec3 normal) {
+    if (has_area_lights && light.position.w > 2.5) return luminance(light.color.rgb) * area_irradiance(light, position, normal);
     vec3 l;
     vec3 arrives = arriving(light, position, l);
     return luminance(arrives) * max(dot(normal, l), 0.0) * inverse_pi;

@@ -1,4 +1,5 @@
 // Lights the G-buffer: analytic lights and the environment.
+#include "common_area_light.glsl"
 #include "common_brdf.glsl"
 #include "common_camera.glsl"
 #include "common_encoding.glsl"
@@ -31,11 +32,11 @@ layout(location = 0) out vec4 o_radiance;
 #include "common_face_normal.glsl"
 #include "lighting_sky.glsl"
 
-// Each model has prepare(), scattered() and indirect().
+// Each model has prepare(), scattered(), area_scattered() and indirect().
 #ifdef EXTENDED  // Compiling the model that no one asks for takes as long as all else.
 #include "lighting_extended_surface.glsl"
 #else
-#include "lighting_plain.glsl"
+#include "lighting_plain_surface.glsl"
 #endif
 #ifdef BEHIND  // As above.
 #include "lighting_transmission.glsl"
@@ -45,6 +46,7 @@ vec4 transmitted(Surface s) { return vec4(0.0, 0.0, 0.0, 1.0); }
 
 // Radiance from one light.
 vec3 direct(Light light, Surface s) {
+    if (has_area_lights && light.position.w > 2.5) return light.color.rgb * area_scattered(light, s);
     vec3 l;
     vec3 arrives = arriving(light, s.position, l);
     return arrives * scattered(l, s);

@@ -73,3 +73,68 @@ vec3 reflected(vec3 l, Surface s) {
     vec3 result = dot(l, v_face) > 0.0 ? light : spread;
     return is_inside() ? vec3(0.0) : result;
 }
+
+// Parts of the directions; the others are those of a cosine.
+struct Lobes {
+    float specular, coat, through;
+};
+
+Lobes lobes_of(Surface s) {
+    Extension e = s.extension;
+    float specular = s.keep * luminance(s.energy.single + s.energy.multiple), coat = 0.0, through = 0.0;
+    float matt = s.keep * luminance(s.diffuse);
+    if (has_sheen) matt += luminance(e.sheen_color) * min(s.sheen_albedo, 1.0);
+    if (has_clearcoat) coat = s.coat_albedo;
+    if (has_transmission) through = s.keep * luminance(s.through);
+    // Where there are several lobes each of them gets some.
+    specular = max(specular, 0.1 * (matt + coat + through));
+    coat = coat > 0.0 ? max(coat, 0.1 * (specular + matt)) : 0.0;
+    matt = matt > 0.0 ? max(matt, 0.1 * specular) : 0.0;
+    float sum = max(specular + coat + through + matt, 1e-6);
+    Lobes lobes;
+    lobes.specular = specular / sum;
+    lobes.coat = coat / sum;
+    lobes.through = through / sum;
+    return lobes;
+}
+
+float specular_density(vec3 h, Surface s) {
+    float n_dot_h = dot(s.normal, h);
+    if (!has_anisotropy) return visible_density(n_dot_h, s.n_dot_v, s.alpha);
+    vec2 alpha = anisotropic_alpha(s, s.alpha);
+    vec3 v = tangent_space(s, s.view, s.n_dot_v);
+    float masked = s.n_dot_v + length(vec3(alpha * v.xy, v.z));
+    return n_dot_h > 0.0 ? D_ggx_anisotropic(tangent_space(s, h, n_dot_h), alpha) / (2.0 * masked) : 0.0;
+}
+
+float density_above(vec3 l, Surface s, Lobes lobes) {
+    vec3 h = normalize(l + s.view);
+    float matt = 1.0 - lobes.specular - lobes.coat - lobes.through;
+    float density = lobes.specular * specular_density(h, s) + matt * max(dot(s.normal, l), 0.0) * inverse_pi;
+    if (has_clearcoat) {
+        Extension e = s.extension;
+        density += lobes.coat * visible_density(dot(e.coat_normal, h), s.coat_n_dot_v, e.coat_roughness * e.coat_roughness);
+    }
+    return density;
+}
+
+float density_below(vec3 l, Surface s) {
+    float roughness = transmitted_roughness(s);
+    vec3 h = normalize(l - 2.0 * dot(s.normal, l) * s.normal + s.view);
+    return visible_density(dot(s.normal, h), s.n_dot_v, roughness * roughness);
+}
+
+// Of directions that could have been found by more than one lobe.
+float density_of(vec3 l, Surface s, Lobes lobes) {
+    vec3 below = mirrored_at_face(l);
+    float above = density_above(l, s, lobes) + density_above(below, s, lobes), through = 0.0;
+    if (has_transmission) through = lobes.through * (density_below(l, s) + density_below(below, s));
+    return dot(l, v_face) > 0.0 ? above : through;
+}
+
+// Roughness of a thin surface spreads what goes through: next-event estimation finds it, too.
+bool is_spreading(Surface s) { return !is_volume(s) && !is_clear(s); }
+
+// As those of path_plain.glsl.
+vec3 bsdf(vec3 l, Surface s) { return dot(l, v_face) > 0.0 || is_spreading(s) ? reflected(l, s) : vec3(0.0); }
+float bsdf_density(vec3 l, Surface s) { return density_of(l, s, lobes_of(s)); }

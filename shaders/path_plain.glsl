@@ -38,6 +38,10 @@ float density_of(vec3 l, Surface s, float part) {
     return lobe_density(l, s, part) + lobe_density(mirrored_at_face(l), s, part);
 }
 
+// For directions that have been found otherwise: what the surface makes of their light, and how likely it samples them.
+vec3 bsdf(vec3 l, Surface s) { return reflected(l, s); }
+float bsdf_density(vec3 l, Surface s) { return density_of(l, s, specular_part(s)); }
+
 // A direction by three numbers in [0, 1).
 vec3 sampled(Surface s, float part, vec3 u) {
     vec3 b1, b2;

@@ -14,64 +14,6 @@ out vec3 o_keep;       // of the light that the surface emits
 
 const float only_direction = 1e30;
 
-// Parts of the directions; the others are those of a cosine.
-struct Lobes {
-    float specular, coat, through;
-};
-
-Lobes lobes_of(Surface s) {
-    Extension e = s.extension;
-    float specular = s.keep * luminance(s.energy.single + s.energy.multiple), coat = 0.0, through = 0.0;
-    float matt = s.keep * luminance(s.diffuse);
-    if (has_sheen) matt += luminance(e.sheen_color) * min(s.sheen_albedo, 1.0);
-    if (has_clearcoat) coat = s.coat_albedo;
-    if (has_transmission) through = s.keep * luminance(s.through);
-    // Where there are several lobes each of them gets some.
-    specular = max(specular, 0.1 * (matt + coat + through));
-    coat = coat > 0.0 ? max(coat, 0.1 * (specular + matt)) : 0.0;
-    matt = matt > 0.0 ? max(matt, 0.1 * specular) : 0.0;
-    float sum = max(specular + coat + through + matt, 1e-6);
-    Lobes lobes;
-    lobes.specular = specular / sum;
-    lobes.coat = coat / sum;
-    lobes.through = through / sum;
-    return lobes;
-}
-
-float specular_density(vec3 h, Surface s) {
-    float n_dot_h = dot(s.normal, h);
-    if (!has_anisotropy) return visible_density(n_dot_h, s.n_dot_v, s.alpha);
-    vec2 alpha = anisotropic_alpha(s, s.alpha);
-    vec3 v = tangent_space(s, s.view, s.n_dot_v);
-    float masked = s.n_dot_v + length(vec3(alpha * v.xy, v.z));
-    return n_dot_h > 0.0 ? D_ggx_anisotropic(tangent_space(s, h, n_dot_h), alpha) / (2.0 * masked) : 0.0;
-}
-
-float density_above(vec3 l, Surface s, Lobes lobes) {
-    vec3 h = normalize(l + s.view);
-    float matt = 1.0 - lobes.specular - lobes.coat - lobes.through;
-    float density = lobes.specular * specular_density(h, s) + matt * max(dot(s.normal, l), 0.0) * inverse_pi;
-    if (has_clearcoat) {
-        Extension e = s.extension;
-        density += lobes.coat * visible_density(dot(e.coat_normal, h), s.coat_n_dot_v, e.coat_roughness * e.coat_roughness);
-    }
-    return density;
-}
-
-float density_below(vec3 l, Surface s) {
-    float roughness = transmitted_roughness(s);
-    vec3 h = normalize(l - 2.0 * dot(s.normal, l) * s.normal + s.view);
-    return visible_density(dot(s.normal, h), s.n_dot_v, roughness * roughness);
-}
-
-// Of directions that could have been found by more than one lobe.
-float density_of(vec3 l, Surface s, Lobes lobes) {
-    vec3 below = mirrored_at_face(l);
-    float above = density_above(l, s, lobes) + density_above(below, s, lobes), through = 0.0;
-    if (has_transmission) through = lobes.through * (density_below(l, s) + density_below(below, s));
-    return dot(l, v_face) > 0.0 ? above : through;
-}
-
 // A facet of a lobe around the normal n, as the view sees it.
 vec3 facet_around(vec3 n, vec3 t, vec3 view, vec2 alpha, vec2 u) {
     vec3 b = cross(n, t);
@@ -108,10 +50,9 @@ vec3 on_side(vec3 l, float side) { return side * dot(l, v_face) > 0.0 ? l : mirr
 void main() {
     Surface s = path_surface();
     Lobes lobes = lobes_of(s);
-    bool spreads = !is_volume(s) && !is_clear(s);
+    bool spreads = is_spreading(s);
     float found = v_light_density + density_of(v_light_direction, s, lobes);
-    vec3 seen = dot(v_light_direction, v_face) > 0.0 || spreads ? reflected(v_light_direction, s) : vec3(0.0);
-    o_light = v_light_density > 0.0 ? v_light * seen / found : vec3(0.0);
+    o_light = v_light_density > 0.0 ? v_light * bsdf(v_light_direction, s) / found : vec3(0.0);
 
     vec3 b1, b2;
     frame_around(s.normal, b1, b2);

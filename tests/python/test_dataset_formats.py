@@ -14,6 +14,7 @@ from easypbr import ArgumentError, Mesh, shapes
 from easypbr.dataset import CameraSpec, DatasetSpec, LightSpec, MotionSpec, ObjectSpec, OcclusionSpec, SensorSpec, generate
 from easypbr.dataset.extents import diameter_of
 from easypbr.dataset.frames import FrameMaker
+from easypbr.dataset.lamps import random_light
 from easypbr.dataset.models import model_ply
 from easypbr.dataset.writers import encode_flow
 
@@ -213,8 +214,37 @@ def test_lights_are_drawn_from_their_distribution():
     assert [tuple(maker._scene.light(name).direction) for name in maker._scene.light_names()][:2] == first
 
 
+@pytest.mark.parametrize("kind", ("point", "rectangle", "disc", "sphere"))
+def test_lamps_give_their_illuminance(kind):
+    """The sum over points of a lamp gives the illuminance that was asked for where it aims. 1e-3: 400 x 400 midpoints."""
+    given = LightSpec(kind, (1, 1), 2.0, azimuth_deg=30.0, elevation_deg=40.0, distance=1.5, size=1.6, saturation=0.0)
+    light = random_light(given, np.random.default_rng(3))
+    position = np.array(light.position)
+    distance = np.linalg.norm(position)
+    assert distance == pytest.approx(1.5)
+    u, v = (axis.ravel() for axis in np.meshgrid(*[(np.arange(400) + 0.5) / 400] * 2))
+    if kind == "point":
+        assert light.intensity / distance**2 == pytest.approx(2)
+        return
+    if kind == "sphere":
+        assert light.radius == pytest.approx(0.8)
+        end = np.sqrt(1 - (0.8 / distance) ** 2)
+        total = np.mean(1 - u * (1 - end)) * 2 * np.pi * (1 - end)
+    else:
+        np.testing.assert_allclose(np.array(light.direction) / np.linalg.norm(light.direction), -position / distance, atol=1e-6)
+        if kind == "disc":
+            assert light.radius == pytest.approx(0.8)
+            squared, area = distance**2 + 0.64 * u, 0.64 * np.pi
+        else:
+            assert tuple(light.size) == pytest.approx((1.6, 1.6))
+            squared, area = distance**2 + (1.6 * (u - 0.5)) ** 2 + (1.6 * (v - 0.5)) ** 2, 1.6**2
+        total = np.mean(distance**2 / squared**2) * area
+    assert light.intensity * total == pytest.approx(2, rel=1e-3)
+
+
 @pytest.mark.parametrize("text, message", [
     ("[[lights]]\ntype = 'spot'\n[[objects]]", r"lights\[0\].type.*directional"),
+    ("[[lights]]\ntype = 'disc'\nsize = 0\n[[objects]]", r"lights\[0\].size"),
     ("[sensor]\njpeg_quality = 0\n[[objects]]", "jpeg_quality.*1 to 100"),
     ("[motion]\nspin = 3", "no 'spin'.*translation"),
 ])

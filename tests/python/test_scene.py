@@ -119,6 +119,35 @@ def test_light_value():
     assert (light.type, light.position, light.outer_cone_deg) == ("spot", (0, 1, 0), 20)
 
 
+def test_area_lights():
+    """Below a disc of radius r at height h a diffuse surface of albedo a shows a L r^2 / (r^2 + h^2). 1 %: in a single frame
+    a disc is a polygon of 12 corners."""
+    scene = Scene()
+    ground = shapes.plane(0.1)
+    ground.material = easypbr.Material(base_color=(0.5, 0.5, 0.5), roughness=1, metallic=0)
+    scene.show(ground, "ground")
+    scene.set_light("disc", Light("disc", position=(0, 1.5, 0), direction=(0, -1, 0), radius=0.5, intensity=4))
+    values = {"camera": {"position": (0, 2, 2.5), "target": (0, 0, 0), "fov_y_deg": 1}, "environment.enabled": False,
+              "lights": {"key": {"enabled": False}}, "shading.dielectric_f0": 0, "ground.mode": "none"}
+    for samples in (1, 64):
+        picture = Viewer((9, 9), values, scene).render(hdr=True, samples=samples)
+        assert picture[4, 4, 0] == pytest.approx(0.5 * 4 * 0.25 / (0.25 + 2.25), rel=0.01)
+
+
+def test_area_lights_have_a_size():
+    light = Light("rectangle", size=(2, 1), width_axis=(0, 0, 1))
+    assert (light.type, light.size, light.width_axis) == ("rectangle", (2, 1), (0, 0, 1))
+    with pytest.raises(ValueError, match="size: expected 2 numbers, each a number of at least"):
+        light.size = (1, 0)
+    with pytest.raises(ValueError, match="size.*2 numbers"):
+        light.size = (1, 2, 3)
+    scene = Scene()
+    scene.show(shapes.sphere(), "ball")
+    scene.set_light("point", Light("sphere", radius=0))
+    with pytest.raises(ValueError, match="light 'point': radius: expected more than 0"):
+        Viewer((8, 8), scene=scene).render()
+
+
 def test_environments(tmp_path):
     picture = np.full((4, 8, 3), 0.5, dtype=np.float32)
     environment = Environment(picture)

@@ -1,4 +1,4 @@
-// Light: point, directional or spot, in photometric units.
+// Light: point, directional, spot, or an area that emits; in photometric units.
 #pragma once
 
 #include <string>
@@ -8,20 +8,33 @@
 
 namespace easypbr {
 
-enum class LightType { point, directional, spot };
+enum class LightType { point, directional, spot, rectangle, disc, sphere };
+
+/// Whether a light is a surface that emits: rectangle, disc, sphere.
+constexpr bool is_area(LightType type) {
+    return type >= LightType::rectangle;
+}
 
 /// What a light in world space is, as in KHR_lights_punctual, but its radius. `color` is linear Rec.709 and
-/// multiplies `intensity`.
+/// multiplies `intensity`. Area lights emit the same radiance from all their points to all directions, from
+/// one side (rectangle, disc) or outwards (sphere). Like the other lights they are not in the picture, and
+/// hide nothing.
 struct LightSource {
     LightType type = LightType::point;
     bool enabled = true;
-    Vec3 position{0, 0, 0};    ///< point and spot
-    Vec3 direction{0, -1, 0};  ///< of propagation; directional and spot; need not be of unit length
+    Vec3 position{0, 0, 0};  ///< all but directional; the centre of area lights
+    /// Of propagation; directional and spot. Rectangle and disc: the normal of the side that emits. Need not
+    /// be of unit length.
+    Vec3 direction{0, -1, 0};
     Vec3 color{1, 1, 1};
-    float intensity = 1;        ///< candela (point, spot) or lux (directional)
+    float intensity = 1;        ///< candela (point, spot), lux (directional) or cd/m2 (area lights)
     float inner_cone_deg = 0;   ///< spot: half angle of full intensity, degrees
     float outer_cone_deg = 45;  ///< spot: half angle of zero intensity, degrees
-    float range = 0;            ///< distance of zero intensity, world units; 0: unlimited
+    float range = 0;            ///< point, spot: distance of zero intensity, world units; 0: unlimited
+    Vec2 size{1, 1};            ///< rectangle: width and height, world units
+    /// Rectangle: the direction of its width, projected onto its plane. One along the normal is replaced by
+    /// any.
+    Vec3 width_axis{1, 0, 0};
     bool casts_shadows = true;
     /// Directional: angular radius of the emitter in degrees; the default is that of the sun.
     float angular_radius_deg = 0.265f;
@@ -31,8 +44,8 @@ struct LightSource {
 
 /// A light of a scene.
 struct Light : LightSource {
-    /// Point and spot: radius of the spherical emitter in world units, which sets the size of penumbrae. 0: a
-    /// point. Automatic: 0.05 of the content's radius.
+    /// World units. Point and spot: of the spherical emitter, which sets the size of penumbrae; 0: a point.
+    /// Disc and sphere: of the light. Automatic: 0.05 of the content's radius.
     Auto<float> radius;
 
     bool operator==(const Light& other) const;

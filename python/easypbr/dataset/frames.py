@@ -10,6 +10,7 @@ from ..viewer import Viewer
 from . import content
 from .extents import bounds, diameter_of, vertices_of
 from .frame import Frame, NextFrame
+from .lamps import random_light
 from .poses import direction, draw, rotation, turn_about
 from .spec import DatasetSpec
 from .tables import ObjectSpec, SensorSpec
@@ -148,16 +149,7 @@ class FrameMaker:
         for given in self.spec.lights:
             low, high = given.count
             for _ in range(int(random.integers(low, high + 1))):
-                azimuth, elevation = np.radians(draw(random, given.azimuth_deg)), np.radians(draw(random, given.elevation_deg))
-                towards = np.array([np.cos(elevation) * np.sin(azimuth), np.sin(elevation), np.cos(elevation) * np.cos(azimuth)])
-                hue = random.random(3)
-                color = 1 + draw(random, given.saturation) * (hue / hue.max() - 1)
-                strength, distance = draw(random, given.illuminance), draw(random, given.distance)
-                place = {"direction": -towards} if given.type == "directional" else {"position": towards * distance}
-                # A lamp's candela fall with the square of the distance.
-                candela = strength * (1 if given.type == "directional" else distance**2)
-                self._scene.set_light(f"light {len(self._scene.light_names())}",
-                                      Light(given.type, intensity=candela, color=color, **place))
+                self._scene.set_light(f"light {len(self._scene.light_names())}", random_light(given, random))
 
     def _place(self, mesh: Mesh, entry: ObjectSpec, camera: Camera, random: np.random.Generator, spheres: list) -> None:
         """Sets the pose so that the mesh has its size and its ball meets no other's."""

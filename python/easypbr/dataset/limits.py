@@ -24,7 +24,7 @@ _LIMITS: dict[str, dict[str, tuple[float, float]]] = {
     "occlusion": {"min_visible": (0, 1), "max_truncation": (0, 1), "tries": (1, _MOST)},
     "background": {"skies": (1, _MOST), "intensity": (0, _LARGE)},
     "lights": {"count": (0, _MOST_LIGHTS), "illuminance": (0, _LARGE), "azimuth_deg": (-_LARGE, _LARGE), "elevation_deg": (-90, 90),
-               "distance": (_TINY, _LARGE), "saturation": (0, 1)},
+               "distance": (_TINY, _LARGE), "size": (_TINY, _LARGE), "saturation": (0, 1)},
     "motion": {"translation": (0, _LARGE), "rotation_deg": (-360, 360), "camera": (0, _LARGE)},
     "sensor": {"exposure": (-30, 30), "blur": (0, 1000), "noise": (0, 10), "jpeg_quality": (1, 100)},
 }

@@ -64,7 +64,7 @@ class DatasetSpec(DatasetTables):
         for i, entry in enumerate(self.objects):
             choices[f"objects[{i}].rotation"] = (entry.rotation, ("upright", "any", "none"))
         for i, light in enumerate(self.lights):
-            choices[f"lights[{i}].type"] = (light.type, ("directional", "point"))
+            choices[f"lights[{i}].type"] = (light.type, ("directional", "point", "rectangle", "disc", "sphere"))
         for name in self.writers:
             choices[f"writers ({name})"] = (name, tuple(WRITERS))
         for key, (value, allowed) in choices.items():

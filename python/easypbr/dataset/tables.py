@@ -104,8 +104,9 @@ class BackgroundSpec:
 
 @dataclasses.dataclass
 class LightSpec:
-    """Lights beside the background: a number of suns, or of lamps `distance` from the origin. `illuminance` (lux) is what
-    each gives there; the hue is random, `saturation` says how far it is from white."""
+    """Lights beside the background: a number of suns (directional), or of lamps `distance` from the origin: point, or area
+    lights that face it (square rectangle, disc, sphere) of a side or diameter `size` in world units. `illuminance` (lux) is
+    what each gives there; the hue is random, `saturation` says how far it is from white."""
 
     type: str = "directional"
     count: tuple[int, int] = (1, 1)
@@ -113,6 +114,7 @@ class LightSpec:
     azimuth_deg: Range = (-180.0, 180.0)
     elevation_deg: Range = (15.0, 75.0)
     distance: Range = 6.0
+    size: Range = 1.0
     saturation: Range = (0.0, 0.3)
 
 

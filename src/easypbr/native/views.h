@@ -82,6 +82,7 @@ using u_normal = Rg16;
 using u_material = Rgba8;
 using u_depth_target = R32f;
 using u_dfg = Rg16fLinear;
+using u_ltc = Rgba32f;
 using u_emission = Rgba32f;
 using u_ambient_occlusion = R16;
 using u_surface = Rgba32f;

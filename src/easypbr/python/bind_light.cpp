@@ -1,4 +1,4 @@
-// Light: point, directional or spot.
+// Light: point, directional, spot, rectangle, disc or sphere.
 #include <fmt/format.h>
 
 #include "easypbr/python/convert.h"
@@ -27,6 +27,8 @@ void vector_property(nb::class_<Light>& light, const LightField& field) {
         field.name.c_str(),
         [&field](const Light& l) { return nb::tuple(value_to_python(field, field.get(l))); },
         [&field](Light& l, const ArrayLike& value) {
+            if (field.sizes != std::vector<size_t>{3})
+                return put_field(l, field, value_from_python(field, value));
             const Vec3d v = to_vector3(value, field.name.c_str());
             put_field(l, field, {std::vector<double>{v.x(), v.y(), v.z()}});
         },

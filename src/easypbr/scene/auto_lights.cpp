@@ -51,7 +51,7 @@ struct Incidence {
     double irradiance;
 };
 
-Incidence incidence_at(const LightSource& light, const Vec3d& point) {
+Incidence incidence_at(const ResolvedLight& light, const Vec3d& point) {
     const double power = light.intensity * luminance_weights.dot(light.color.cast<double>());
     if (light.type == LightType::directional) return {-light.direction.cast<double>().normalized(), power};
     const Vec3d to_light = light.position.cast<double>() - point;
@@ -105,7 +105,7 @@ std::vector<ResolvedLight> resolve_studio_lights(const Content& content, const C
 float metered_exposure(const Content& content, const ResolvedSettings& resolved,
                        float environment_intensity) {
     std::vector<Incidence> incidences;
-    for (const LightSource& light : resolved.lights)
+    for (const ResolvedLight& light : resolved.lights)
         incidences.push_back(incidence_at(light, content.centre()));
     double sum = 0, weights = 0;
     for (int k = 0; k < meter_directions; ++k) {

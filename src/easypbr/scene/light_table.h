@@ -11,7 +11,8 @@ namespace easypbr {
 
 /// Its name is that of the member, of the attribute in Python and of the key in a settings file.
 struct LightField : FieldOf<Light> {
-    std::array<bool, 3> types{true, true, true};  ///< for each LightType whether the field means something
+    std::array<bool, 6> types{true, true, true,
+                              true, true, true};  ///< for each LightType whether it means something
     bool is_color = false;                        ///< the vector is a linear colour
 
     bool concerns(LightType type) const { return types[size_t(type)]; }

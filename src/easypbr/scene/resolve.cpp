@@ -62,7 +62,8 @@ void resolve_lights(const detail::Content& content, Settings& settings, Resolved
     for (const auto& [name, light] : content.scene().lights) {
         validate(light, name);
         if (!light.enabled) continue;
-        if (light.type != LightType::directional && !light.radius.value())
+        if (light.type != LightType::directional && light.type != LightType::rectangle &&
+            !light.radius.value())
             resolved.light_radii[name] = detail::plain_light_radius(content);
         const auto inferred = resolved.light_radii.find(name);
         resolved.lights.push_back(

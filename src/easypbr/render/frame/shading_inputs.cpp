@@ -4,19 +4,41 @@
 #include <cmath>
 
 #include "easypbr/render/frame/screen_shader.h"
+#include "easypbr/scene/light_falloff.h"
 
 namespace easypbr::render {
 
-blocks::Light light_uniform(const LightSource& light, const Vec3d& origin, double unit) {
-    const float kind = light.type == LightType::directional ? 0.0f
-                       : light.type == LightType::point     ? 1.0f
-                                                            : 2.0f;
+namespace {
+
+/// Numbers by which shaders/light_blocks.glsl knows the types.
+float code_of(LightType type) {
+    if (type == LightType::directional) return 0;
+    return type == LightType::point ? 1.0f : float(type);
+}
+
+void add_area(const ResolvedLight& light, double unit, blocks::Light& to) {
+    // A sphere has no direction of its own.
+    ResolvedLight placed = light;
+    if (light.type == LightType::sphere) placed.direction = Vec3(0, 0, 1);
+    const EmitterAxes axes = emitter_axes(placed);
+    to.color << light.color * light.intensity, 0;
+    to.direction << placed.direction.normalized(), float(emitting_area(light) / (unit * unit));
+    to.cone << (axes.x / unit).cast<float>(), float(axes.y.norm() / unit);
+}
+
+}  // namespace
+
+blocks::Light light_uniform(const ResolvedLight& light, const Vec3d& origin, double unit) {
     // Intensities of lights at a place fall with the square of lengths in this unit.
     const auto scale_of_light = float(light.type == LightType::directional ? 1.0 : 1 / (unit * unit));
     const auto range = float(light.range / unit);
     blocks::Light to;
-    to.position << ((light.position.cast<double>() - origin) / unit).cast<float>(), kind;
+    to.position << ((light.position.cast<double>() - origin) / unit).cast<float>(), code_of(light.type);
     to.color << light.color * (light.intensity * scale_of_light), range > 0 ? 1 / (range * range) : 0.0f;
+    if (is_area(light.type)) {
+        add_area(light, unit, to);
+        return to;
+    }
     to.direction << light.direction.normalized(), 0;
     // KHR_lights_punctual: the cone fades from 1 at the inner to 0 at the outer angle.
     const float inner = float(std::cos(radians(light.inner_cone_deg))),

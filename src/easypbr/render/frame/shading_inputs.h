@@ -19,7 +19,7 @@ static_assert(sizeof(vec4) == 16 && alignof(vec4) <= 16);
 }  // namespace blocks
 
 /// A light as shaders see it, in lengths of `unit` world units from an origin.
-blocks::Light light_uniform(const LightSource& light, const Vec3d& origin, double unit = 1);
+blocks::Light light_uniform(const ResolvedLight& light, const Vec3d& origin, double unit = 1);
 
 /// The variant of the BRDF.
 void set_brdf(ShaderInputs& values, const ShadingSettings& shading);

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "easypbr/scene/light_falloff.h"
+
 namespace easypbr::render {
 namespace {
 
@@ -211,6 +213,13 @@ ResolvedLight sampled_light(const ResolvedLight& light, int index, int count) {
         const Vec3d direction = frame.transpose() * Vec3d(radius * std::cos(2 * pi * u.y()),
                                                           radius * std::sin(2 * pi * u.y()), 1);
         sampled.direction = direction.cast<float>();
+    } else if (light.type == LightType::rectangle || light.type == LightType::disc) {
+        const EmitterAxes axes = emitter_axes(light);
+        const Vec3d u = spread_point(index);
+        Vec2d at(2 * u.x() - 1, 2 * u.y() - 1);
+        if (light.type == LightType::disc)
+            at = std::sqrt(u.x()) * Vec2d(std::cos(2 * pi * u.y()), std::sin(2 * pi * u.y()));
+        sampled.position = (light.position.cast<double>() + axes.x * at.x() + axes.y * at.y()).cast<float>();
     } else {
         const Vec3d offset = double(light.radius) * disc_like_point(spread_point(index));
         sampled.position = (light.position.cast<double>() + offset).cast<float>();

@@ -8,6 +8,7 @@
 #include <cmath>
 
 #include "easypbr/gpu/dfg.h"
+#include "easypbr/gpu/ltc.h"
 #include "easypbr/render/frame/shading_inputs.h"
 #include "easypbr/scene/resolve.h"
 
@@ -68,6 +69,7 @@ std::vector<std::string> light_defines(const Frame& frame, const GBuffer& target
         defines.emplace_back("SHADOWS");
         defines.emplace_back(modes[size_t(frame.resolved->settings.shadows.mode)]);
     }
+    if (block.has_area()) defines.emplace_back("AREA_LIGHTS");
     if (block.cubes > 0) defines.emplace_back("SHADOW_CUBES");
     if (!block.shadows.empty() && block.tints) defines.emplace_back("SHADOW_TINTS");
     if (with_environment) defines.emplace_back("ENVIRONMENT");
@@ -191,6 +193,18 @@ void LightingPass::set_extensions(ShaderInputs& values, const Frame& frame, cons
     values.set("u_tap_offset", (float(frame.sample_index) + 0.5f) / float(frame.sample_count));
 }
 
+void LightingPass::set_ltc(ShaderInputs& values, bool native) {
+    if (native) {
+        values.set("u_ltc", gpu::host_ltc());
+        return;
+    }
+    if (!ltc_) {
+        ltc_ = gl::Texture(gl::Format::rgba32f, gpu::ltc_size, gpu::ltc_size);
+        ltc_.upload(std::as_bytes(gpu::ltc_table()));
+    }
+    values.set("u_ltc", ltc_);
+}
+
 ShaderInputs LightingPass::surface_inputs(const Frame& frame, const GBuffer& targets,
                                           const LightInputs& inputs, bool native) {
     const ShadingSettings& shading = frame.resolved->settings.shading;
@@ -201,6 +215,7 @@ ShaderInputs LightingPass::surface_inputs(const Frame& frame, const GBuffer& tar
     set_dfg(values, shading.brdf, native);
     set_brdf(values, shading);
     values.set("u_first_block", inputs.block.first ? 1.0f : 0.0f);
+    if (inputs.block.has_area()) set_ltc(values, native);
     if (inputs.extensions) set_extensions(values, frame, targets);
     if (inputs.transmission) set_transmission(values, frame, *inputs.transmission);
     if (inputs.environment) set_environment(values, frame, inputs, native);

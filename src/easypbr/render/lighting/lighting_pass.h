@@ -56,10 +56,11 @@ class LightingPass {
                                 bool native);
     void set_dfg(ShaderInputs& values, Brdf brdf, bool native);
     void set_extensions(ShaderInputs& values, const Frame& frame, const GBuffer& targets);
+    void set_ltc(ShaderInputs& values, bool native);
 
     ScreenShader surface_{"lighting_surface.frag", native::Shader::lighting_surface};
     ScreenShader catcher_{"lighting_catcher.frag", native::Shader::lighting_catcher};
-    gl::Texture dfg_, sheen_albedo_;
+    gl::Texture dfg_, sheen_albedo_, ltc_;
     Brdf dfg_brdf_{};
 };
 

@@ -9,6 +9,7 @@
 #include "easypbr/render/frame/extensions.h"
 #include "easypbr/render/frame/shading_inputs.h"
 #include "easypbr/render/shadow/light_block.h"
+#include "easypbr/scene/light_falloff.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
@@ -18,10 +19,12 @@ using Uniforms = std::array<blocks::Light, lights_per_block>;
 
 /// What path_lamps has found for each path.
 struct Found {
-    explicit Found(size_t room) : choice(room), light(room), sum(room), number(room) {}
+    explicit Found(size_t room)
+        : choice(room), emitter(room), light(room), way(room), sum(room), number(room) {}
 
     std::vector<float> choice;
-    PathVectors<3> light;
+    PathVectors<2> emitter;
+    PathVectors<3> light, way;
     std::vector<float> sum, number;
 };
 
@@ -30,7 +33,9 @@ Stream stream_of(const PathBatch& batch, Found& found) {
     Stream stream;
     batch.read_by(stream);
     stream.v_choice = found.choice.data();
+    found.emitter.read_by(stream.v_emitter);
     found.light.written_by(stream.o_light);
+    found.way.written_by(stream.o_way);
     stream.o_sum = found.sum.data();
     stream.o_chosen = found.number.data();
     return stream;
@@ -55,7 +60,13 @@ ShaderInputs path_inputs(const ResolvedSettings& resolved, const RayScene& scene
 void PathLights::prepare(const ResolvedSettings& resolved, const RayScene& scene) {
     resolved_ = &resolved;
     blocks_.clear();
+    areas_.clear();
     const auto& lights = resolved.lights;
+    for (const ResolvedLight& light : lights)
+        if (is_area(light.type)) {
+            areas_.push_back(area_of(light, scene));
+            areas_.back().casts_shadows = light.casts_shadows && resolved.settings.shadows.enabled;
+        }
     for (size_t first = 0; first < lights.size(); first += lights_per_block) {
         const size_t count = std::min(lights.size() - first, lights_per_block);
         Uniforms uniforms{};
@@ -65,6 +76,7 @@ void PathLights::prepare(const ResolvedSettings& resolved, const RayScene& scene
             ShaderInputs values = path_inputs(resolved, scene, surfaces);
             values.set_block(0, "u_lights", gl::bytes_of(uniforms));
             values.set("u_light_count", int(count));
+            if (!areas_.empty()) values.define("AREA_LIGHTS");
             Transfers none;
             return native::stream_uniforms(shader, values.native(none));
         };
@@ -82,7 +94,11 @@ void PathLights::choose(const PathBatch& batch, uint32_t depth, bool caught,
     chosen.assign(batch.count, {});
     if (blocks_.empty()) return;
     Found found(PathBatch::rounded_up(batch.count));
-    for (size_t i = 0; i < batch.count; ++i) found.choice[i] = batch.state[i].sampler.pair(depth, 1).x();
+    for (size_t i = 0; i < batch.count; ++i) {
+        const PathSampler& sampler = batch.state[i].sampler;
+        found.choice[i] = sampler.pair(depth, PathSampler::light_and_lobe).x();
+        if (!areas_.empty()) found.emitter.set(i, sampler.pair(depth, PathSampler::emitter_point));
+    }
     for (const Block& block : blocks_) {
         const int count = int(batch.count);
         if (batch.extensions)
@@ -101,17 +117,61 @@ void PathLights::choose(const PathBatch& batch, uint32_t depth, bool caught,
             const float left = taken ? found.choice[i] / part : (found.choice[i] - part) / (1 - part);
             so_far.light =
                 taken ? Vec3(found.light.at(i) * (all / sum)) : Vec3(so_far.light * (all / so_far.all));
-            if (taken) so_far.index = block.first + uint32_t(found.number[i]);
+            if (taken) {
+                so_far.index = block.first + uint32_t(found.number[i]);
+                so_far.way = found.way.at(i);
+            }
             so_far.all = all;
             found.choice[i] = std::min(left, 1 - 0x1p-24f);
         }
     }
 }
 
-PathLights::Towards PathLights::towards(uint32_t index, const Vec3& place, const Vec2& u,
+PathLights::Area PathLights::area_of(const ResolvedLight& light, const RayScene& scene) {
+    const double unit = scene.unit();
+    Area area;
+    area.type = light.type;
+    area.centre = ((light.position.cast<double>() - scene.centre()) / unit).cast<float>();
+    area.radiance = light.color * light.intensity;
+    area.radius = float(double(light.radius) / unit);
+    area.area = float(emitting_area(light) / (unit * unit));
+    if (light.type == LightType::sphere) return area;
+    const EmitterAxes axes = emitter_axes(light);
+    area.x = (axes.x / unit).cast<float>();
+    area.y = (axes.y / unit).cast<float>();
+    area.normal = light.direction.normalized();
+    return area;
+}
+
+PathLights::Met PathLights::met(const Area& area, const Vec3& place, const Vec3& direction) {
+    const Vec3 centre = area.centre - place;
+    if (area.type == LightType::sphere) {
+        const float d2 = centre.squaredNorm(), r2 = area.radius * area.radius, along = centre.dot(direction);
+        // Of the squared distance between the centre and the ray, without cancellation.
+        const float root = r2 - (centre - along * direction).squaredNorm();
+        if (!(d2 > r2) || along <= 0 || root <= 0) return {};
+        const float sine2 = r2 / d2, open = sine2 / (1 + std::sqrt(1 - sine2));
+        return {along - std::sqrt(root), 1 / (2 * float(pi) * open)};
+    }
+    const float cosine = -direction.dot(area.normal);
+    if (cosine <= 0) return {};
+    const float distance = -centre.dot(area.normal) / cosine;
+    if (distance <= 0) return {};
+    const Vec3 at = direction * distance - centre;
+    const float x = at.dot(area.x) / area.x.squaredNorm(), y = at.dot(area.y) / area.y.squaredNorm();
+    const bool inside =
+        area.type == LightType::disc ? x * x + y * y <= 1 : std::abs(x) <= 1 && std::abs(y) <= 1;
+    return {distance, inside ? distance * distance / (area.area * cosine) : 0.0f};
+}
+
+PathLights::Towards PathLights::towards(const ChosenLight& chosen, const Vec3& place, const Vec2& u,
                                         const RayScene& scene) const {
-    const ResolvedLight& light = resolved_->lights[index];
+    const ResolvedLight& light = resolved_->lights[chosen.index];
     if (!light.casts_shadows || !resolved_->settings.shadows.enabled) return {};
+    if (is_area(light.type)) {
+        const float reach = chosen.way.norm();
+        return reach > 0 ? Towards{chosen.way / reach, reach * (1 - 1e-4f), true} : Towards{};
+    }
     const bool parallel = light.type == LightType::directional;
     const double unit = scene.unit();
     const Vec3 middle =
@@ -125,7 +185,7 @@ PathLights::Towards PathLights::towards(uint32_t index, const Vec3& place, const
     const float r = radius * std::sqrt(u.x()), phi = float(2 * pi) * u.y();
     const Vec3 towards = middle + (frame.t * std::cos(phi) + frame.b * std::sin(phi)) * r;
     const float reach = towards.norm();
-    return {towards / reach, parallel ? std::numeric_limits<float>::infinity() : reach * (1 - 1e-4f)};
+    return {towards / reach, parallel ? std::numeric_limits<float>::infinity() : reach * (1 - 1e-4f), false};
 }
 
 }  // namespace easypbr::render

@@ -56,6 +56,10 @@ inline uint32_t spread_bits(uint32_t x) {
 /// "Screen-space blue-noise diffusion of Monte Carlo sampling error via hierarchical ordering of pixels").
 class PathSampler {
   public:
+    /// Dimensions of a vertex, in pairs. Of the second the first number chooses the light, the other the
+    /// lobe.
+    enum Dimension : uint32_t { sky_point, light_and_lobe, lobe_point, emitter_point, roulette };
+
     PathSampler() = default;
     /// The pixel is in the whole picture; `samples`: how many it gets at most.
     PathSampler(uint32_t x, uint32_t y, uint32_t sample, uint32_t samples) {

@@ -28,8 +28,7 @@ constexpr uint16_t sure_passages = 16;
 /// Of directions that are the only ones.
 constexpr float only_direction = 1e30f;
 
-/// Dimensions of PathSampler, in pairs; the first of `lobe_and_light` belongs to PathLights.
-enum Dimension : uint32_t { sky_point, light_and_lobe, lobe_point, emitter_point, roulette };
+using enum PathSampler::Dimension;
 
 float luminance(const Vec3& c) {
     return c.dot(Vec3(0.2126f, 0.7152f, 0.0722f));
@@ -214,7 +213,7 @@ void PathTracer::add_direct(const PathBatch& batch, uint32_t depth, const std::v
         const PathState& state = batch.state[i];
         Vec3 light = Vec3::Zero();
         if (lamps[i].all > 0) {
-            const auto to = lights_.towards(lamps[i].index, batch.position.at(i),
+            const auto to = lights_.towards(lamps[i], batch.position.at(i),
                                             state.sampler.pair(depth, emitter_point), *scene_);
             light += lamps[i].light.cwiseProduct(lamp_transmittance(batch, i, to));
         }
@@ -230,8 +229,9 @@ Vec3 PathTracer::lamp_transmittance(const PathBatch& batch, size_t path,
                                     const PathLights::Towards& to) const {
     if (to.distance <= 0) return Vec3::Ones();
     const Vec3 from = start_towards(batch, path, to.direction);
-    if (transmits_) return scene_->transmittance(from, to.direction, to.distance);
-    return scene_->blocked(from, to.direction, to.distance) ? Vec3(Vec3::Zero()) : Vec3(Vec3::Ones());
+    if (transmits_ && !to.is_area) return scene_->transmittance(from, to.direction, to.distance);
+    const bool hidden = scene_->blocked(from, to.direction, to.distance, Transmissive::met);
+    return hidden ? Vec3(Vec3::Zero()) : Vec3(Vec3::Ones());
 }
 
 void PathTracer::add_emission(const PathBatch& batch, const Scattered& scattered,
@@ -281,6 +281,11 @@ void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered&
         const Vec3 direction = scattered.direction.at(i);
         if (!goes_on(batch, i, depth, direction, state)) continue;
         const auto hit = scene_->trace(start_towards(batch, i, direction), direction, Transmissive::met);
+        lights_.for_each_met(
+            batch.position.at(i), direction, scattered.density[i], [&](const Vec3& light, float distance) {
+                if (hit && hit->distance < distance) return;
+                radiance[state.index] += limited(state.throughput.cwiseProduct(light), bounces);
+            });
         if (hit) {
             absorb(hit->distance, state);
             hits.push_back({state, *hit, direction, scattered.density[i],
@@ -415,8 +420,8 @@ void PathTracer::trace_caught(const PathBatch& batch, std::vector<CaughtLight>& 
             if (arrives) to.arrives += amount;
         };
         if (lamps[i].all > 0) {
-            const auto lamp = lights_.towards(lamps[i].index, place,
-                                              batch.state[i].sampler.pair(0, emitter_point), *scene_);
+            const auto lamp =
+                lights_.towards(lamps[i], place, batch.state[i].sampler.pair(0, emitter_point), *scene_);
             to.all += lamps[i].all;
             to.arrives += lamps[i].all * luminance(lamp_transmittance(batch, i, lamp));
         }
@@ -426,6 +431,10 @@ void PathTracer::trace_caught(const PathBatch& batch, std::vector<CaughtLight>& 
         const float found =
             luminance(Vec3(scattered.weight.at(i).cwiseProduct(escaped(direction, scattered.density[i], 1))));
         if (found > 0) add(found, !scene_->blocked(from, direction, no_end));
+        lights_.for_each_met(place, direction, scattered.density[i], [&](const Vec3& light, float distance) {
+            const Vec3 seen = scattered.weight.at(i).cwiseProduct(light);
+            add(luminance(seen), distance < 0 || !scene_->blocked(from, direction, distance));
+        });
     }
 }
 

@@ -1,6 +1,7 @@
 // Lights that are drawn in one go, and the shadow maps they see.
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "easypbr/gl/texture.h"
@@ -42,6 +43,9 @@ struct LightBlock {
     bool first = true;                   ///< of the frame's blocks
 
     size_t plain() const { return lights.size() - shadows.size(); }
+    bool has_area() const {
+        return std::ranges::any_of(lights, [](const ResolvedLight* light) { return is_area(light->type); });
+    }
 };
 
 }  // namespace easypbr::render

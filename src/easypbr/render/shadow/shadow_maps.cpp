@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "easypbr/core/hash.h"
+#include "easypbr/scene/light_falloff.h"
 #include "easypbr/scene/material_table.h"
 #include "easypbr/scene/resolve.h"
 
@@ -29,13 +30,15 @@ constexpr double slack = 0.01;
 
 /// Whether a light reaches a box at all: beyond its range it is zero.
 bool reaches(const ResolvedLight& light, const Box3d& box) {
-    if (light.type == LightType::directional || !(light.range > 0)) return true;
+    if (light.type == LightType::directional || is_area(light.type) || !(light.range > 0)) return true;
     return box.squaredExteriorDistance(light.position.cast<double>()) <=
            double(light.range) * double(light.range);
 }
 
-/// What softens a light's shadows: its radius, or the tangent of a directional light's.
+/// What softens a light's shadows: its radius, or the tangent of a directional light's; of a rectangle the
+/// radius of a disc of the same area.
 double extent_of(const ResolvedLight& light) {
+    if (light.type == LightType::rectangle) return std::sqrt(emitting_area(light) / pi);
     return light.type == LightType::directional ? std::tan(radians(light.angular_radius_deg))
                                                 : double(light.radius);
 }

@@ -1,0 +1,11 @@
+// Surfaces without extensions, as the G-buffer holds them.
+#include "common_area_light.glsl"
+#include "lighting_plain.glsl"
+
+// What is seen of an area light of radiance 1.
+vec3 area_scattered(Light light, Surface s) {
+    AreaLobe lobe = lobe_around(s.normal, s.view, ltc_at(s.n_dot_v, s.roughness));
+    vec3 specular = s.energy.single * area_form(lobe, light, s.position);
+    if (has_multiple_scattering) specular *= 1.0 + s.f0 * (1.0 / s.energy.e - 1.0);
+    return specular + s.diffuse * area_irradiance(light, s.position, s.normal);
+}
