@@ -4,7 +4,7 @@
 // sphere that of the disc that is seen of it. gpu/ltc.h has the matrices.
 #include "common_arriving.glsl"
 #include "common_brdf.glsl"
-#include "common_extension.glsl"
+#include "common_frame.glsl"
 
 #feature AREA_LIGHTS has_area_lights
 

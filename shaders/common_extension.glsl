@@ -1,4 +1,6 @@
 // What glTF's material extensions add to a pixel of the G-buffer, in 2 x 128 bits (GBuffer::extension).
+#include "common_encoding.glsl"
+#include "common_frame.glsl"
 
 struct Extension {
     vec3 f0;         // of the dielectric: KHR_materials_ior and _specular
@@ -13,15 +15,6 @@ struct Extension {
     float transmission, ior, thickness;  // thickness in world units, 0: thin-walled
     vec3 transmittance;                  // of the volume below the surface
 };
-
-// Any two unit vectors at right angles to n and to each other (Duff et al. 2017).
-void frame_around(vec3 n, out vec3 b1, out vec3 b2) {
-    float s = n.z >= 0.0 ? 1.0 : -1.0;
-    float a = -1.0 / (s + n.z);
-    float b = n.x * n.y * a;
-    b1 = vec3(1.0 + s * n.x * n.x * a, s * b, -s * n.x);
-    b2 = vec3(b, s + n.y * n.y * a, -n.y);
-}
 
 // Square roots keep the relative steps of a few bits below what is seen.
 uint pack_reflectance(vec3 f0) {

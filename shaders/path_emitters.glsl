@@ -2,7 +2,7 @@
 // densities.
 #include "common_arriving.glsl"
 #include "common_brdf.glsl"
-#include "common_extension.glsl"
+#include "common_frame.glsl"
 
 // The way from a place to a point of a rectangle or a disc, by two numbers in [0, 1), and the density of such directions per
 // steradian; 0 behind the light.

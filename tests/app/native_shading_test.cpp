@@ -135,11 +135,15 @@ class Generator {
     Vec3 color() { return Vec3(number(0, 1), number(0, 1), number(0, 1)); }
     Light light() {
         Light light;
-        light.type = LightType(between(0, 2));
+        light.type = LightType(between(0, 5));
         light.position = Vec3(number(-4, 4), number(2, 5), number(-4, 4));
         light.direction = -light.position.normalized();
         light.color = color();
-        light.intensity = light.type == LightType::directional ? 2.0f : 40.0f;
+        const bool small = light.type == LightType::point || light.type == LightType::spot;
+        light.intensity = small ? 40.0f : 2.0f;
+        light.size = Vec2(number(0.1f, 3), number(0.1f, 3));
+        light.width_axis = Vec3(number(-1, 1), 1, number(-1, 1));
+        light.radius = number(0.1f, 2);
         light.casts_shadows = chance(0.7);
         return light;
     }

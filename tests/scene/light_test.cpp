@@ -27,13 +27,14 @@ Value other_value(const FieldInfo& field) {
         case FieldType::choice:
             return {field.choices.back()};
         case FieldType::vector:
-            return {std::vector<double>{0.25, 0.5, 0.75}};
+            return {field.sizes == std::vector<size_t>{2} ? std::vector<double>{0.25, 0.5}
+                                                          : std::vector<double>{0.25, 0.5, 0.75}};
         default:
             return {12.0};
     }
 }
 
-// The twelve members of Light, counted in light.h.
+// The fourteen members of Light, counted in light.h.
 TEST(LightTable, EachMemberHasItsOwnRow) {
     std::set<std::string> names;
     for (const LightField& field : light_fields()) {
@@ -46,7 +47,7 @@ TEST(LightTable, EachMemberHasItsOwnRow) {
             EXPECT_EQ(other.get(light) == other.get(Light()), other.name != field.name)
                 << field.name << ", " << other.name;
     }
-    EXPECT_EQ(names.size(), 12u);
+    EXPECT_EQ(names.size(), 14u);
 }
 
 TEST(LightTable, SaysWhatConcernsWhichLight) {
@@ -64,6 +65,16 @@ TEST(LightTable, SaysWhatConcernsWhichLight) {
                                                   "casts_shadows", "angular_radius_deg"}));
     for (const std::string& name : point) EXPECT_TRUE(spot.contains(name)) << name;
     EXPECT_EQ(spot.size(), point.size() + 3) << "direction and two cones";
+    const std::set<std::string> any{"type",  "enabled",   "position",     "direction",
+                                    "color", "intensity", "casts_shadows"};
+    std::set<std::string> rectangle = any, disc = any, sphere = any;
+    rectangle.insert({"size", "width_axis"});
+    disc.insert("radius");
+    sphere.insert("radius");
+    sphere.erase("direction");
+    EXPECT_EQ(names_for(LightType::rectangle), rectangle);
+    EXPECT_EQ(names_for(LightType::disc), disc);
+    EXPECT_EQ(names_for(LightType::sphere), sphere);
 }
 
 TEST(Light, NumbersOutsideOfTheirRangeAreNamed) {
@@ -90,6 +101,10 @@ TEST(Light, NumbersOutsideOfTheirRangeAreNamed) {
     EXPECT_EQ(message_of(light), "accepted") << "a point light has no direction";
     light.type = LightType::spot;
     EXPECT_EQ(message_of(light), "light 'lamp': direction: expected a vector with a length, got (0, 0, 0)");
+    light.type = LightType::sphere;
+    EXPECT_EQ(message_of(light), "accepted");
+    light.radius = 0.0f;
+    EXPECT_EQ(message_of(light), "light 'lamp': radius: expected more than 0 for a disc or a sphere, got 0");
 }
 
 }  // namespace
