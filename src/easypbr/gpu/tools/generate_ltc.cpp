@@ -10,6 +10,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 #include <thread>
 #include <vector>
 
@@ -18,9 +19,8 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr int size = 32;     // as ltc_size in gpu/ltc.h
-constexpr int samples = 24;  // per axis, of each of the two distributions
-constexpr double pi = 3.14159265358979323846;
+constexpr int nodes = 32;                  // as ltc_size in gpu/ltc.h
+constexpr int samples_per_axis = 24;       // of each of the two distributions
 constexpr double least_roughness = 0.045;  // as shaders/lighting_surface.frag
 
 double squared(double x) {
@@ -39,21 +39,24 @@ struct Lobe {
     double value(const Vector3d& l) const {
         if (l.z() <= 0) return 0;
         const Vector3d h = (view + l).normalized();
-        const double a2 = squared(alpha), d = a2 / (pi * squared(squared(h.z()) * (a2 - 1) + 1));
+        const double a2 = squared(alpha),
+                     d = a2 / (std::numbers::pi * squared(squared(h.z()) * (a2 - 1) + 1));
         const double v = 0.5 / (l.z() * masked(view.z()) + view.z() * masked(l.z()));
         return d * v * l.z();
     }
     double density(const Vector3d& l) const {
         const Vector3d h = (view + l).normalized();
         if (h.z() <= 0) return 0;
-        const double a2 = squared(alpha), d = a2 / (pi * squared(squared(h.z()) * (a2 - 1) + 1));
+        const double a2 = squared(alpha),
+                     d = a2 / (std::numbers::pi * squared(squared(h.z()) * (a2 - 1) + 1));
         return d / (2 * (view.z() + masked(view.z())));
     }
     /// By visible normals (Heitz 2018).
     Vector3d sample(double u1, double u2) const {
         const Vector3d v = Vector3d(alpha * view.x(), 0, view.z()).normalized();
         const Vector3d t1 = Vector3d::UnitY(), t2 = v.cross(t1);
-        const double r = std::sqrt(u1), phi = 2 * pi * u2, p1 = r * std::cos(phi), s = 0.5 * (1 + v.z());
+        const double r = std::sqrt(u1), phi = 2 * std::numbers::pi * u2, p1 = r * std::cos(phi),
+                     s = 0.5 * (1 + v.z());
         const double p2 = (1 - s) * std::sqrt(1 - p1 * p1) + s * r * std::sin(phi);
         const Vector3d n = p1 * t1 + p2 * t2 + std::sqrt(std::max(0.0, 1 - p1 * p1 - p2 * p2)) * v;
         const Vector3d h = Vector3d(alpha * n.x(), alpha * n.y(), std::max(1e-12, n.z())).normalized();
@@ -84,10 +87,11 @@ struct Transformed {
     double density(const Vector3d& l) const {
         const Vector3d before = inverse * l;
         const double length = before.norm();
-        return std::max(before.z() / length, 0.0) / pi / (determinant * length * length * length);
+        return std::max(before.z() / length, 0.0) / std::numbers::pi /
+               (determinant * length * length * length);
     }
     Vector3d sample(double u1, double u2) const {
-        const double r = std::sqrt(u1), phi = 2 * pi * u2;
+        const double r = std::sqrt(u1), phi = 2 * std::numbers::pi * u2;
         return (M * Vector3d(r * std::cos(phi), r * std::sin(phi), std::sqrt(1 - u1))).normalized();
     }
 };
@@ -102,14 +106,14 @@ struct Target {
 Target target_of(const Lobe& lobe) {
     Target target{.lobe = lobe};
     Vector3d sum(0, 0, 0);
-    for (int i = 0; i < samples; ++i)
-        for (int j = 0; j < samples; ++j) {
-            const Vector3d l = lobe.sample((i + 0.5) / samples, (j + 0.5) / samples);
+    for (int i = 0; i < samples_per_axis; ++i)
+        for (int j = 0; j < samples_per_axis; ++j) {
+            const Vector3d l = lobe.sample((i + 0.5) / samples_per_axis, (j + 0.5) / samples_per_axis);
             const double density = lobe.density(l);
             if (density <= 0) continue;
             target.directions.push_back(l);
             const double weight = lobe.value(l) / density;
-            target.albedo += weight / (samples * samples);
+            target.albedo += weight / (samples_per_axis * samples_per_axis);
             sum += weight * l;
         }
     sum.y() = 0;
@@ -127,8 +131,9 @@ double error(const Parameters& p, const Target& target) {
         if (both > 0) sum += std::pow(std::abs(brdf - ltc), 3) / both;
     };
     for (const Vector3d& l : target.directions) add(l);
-    for (int i = 0; i < samples; ++i)
-        for (int j = 0; j < samples; ++j) add(cosine.sample((i + 0.5) / samples, (j + 0.5) / samples));
+    for (int i = 0; i < samples_per_axis; ++i)
+        for (int j = 0; j < samples_per_axis; ++j)
+            add(cosine.sample((i + 0.5) / samples_per_axis, (j + 0.5) / samples_per_axis));
     return sum;
 }
 
@@ -184,13 +189,13 @@ Parameters least(Parameters start, int count, double step, Function&& function) 
 /// The entries of one row of roughness, from the view along the normal on: each fit starts from the one
 /// before it.
 void fit_row(int row, std::vector<float>& table) {
-    const double roughness = std::max(double(row) / (size - 1), least_roughness);
+    const double roughness = std::max(double(row) / (nodes - 1), least_roughness);
     Parameters p{2 * std::log(roughness), 2 * std::log(roughness), 0};
-    for (int i = size - 1; i >= 0; --i) {
-        const double root = std::max(double(i), 0.25) / (size - 1), n_dot_v = root * root;
+    for (int i = nodes - 1; i >= 0; --i) {
+        const double root = std::max(double(i), 0.25) / (nodes - 1), n_dot_v = root * root;
         const Target target =
             target_of({Vector3d(std::sqrt(1 - n_dot_v * n_dot_v), 0, n_dot_v), squared(roughness)});
-        if (i == size - 1) {
+        if (i == nodes - 1) {
             // Along the normal the lobe is isotropic.
             p = least(p, 1, 0.1, [&](Parameters one) { return error({one[0], one[0], 0}, target); });
             p[1] = p[0];
@@ -199,7 +204,7 @@ void fit_row(int row, std::vector<float>& table) {
         }
         Matrix3d inverse = matrix_of(p, target.mean).inverse();
         inverse /= inverse(1, 1);
-        float* to = &table[size_t(4 * (row * size + i))];
+        float* to = &table[size_t(4 * (row * nodes + i))];
         to[0] = float(inverse(0, 0));
         to[1] = float(inverse(0, 2));
         to[2] = float(inverse(2, 0));
@@ -211,9 +216,9 @@ void fit_row(int row, std::vector<float>& table) {
 
 int main(int argc, char** argv) {
     if (argc != 2) return 2;
-    std::vector<float> table(size_t(4 * size * size));
+    std::vector<float> table(size_t(4 * nodes * nodes));
     const auto rows = [&](int first) {
-        for (int row = first; row < size; row += 2) fit_row(row, table);
+        for (int row = first; row < nodes; row += 2) fit_row(row, table);
     };
     std::thread odd(rows, 1);
     rows(0);
