@@ -1,13 +1,12 @@
 // An independent oracle for shadows and occlusion: rays cast by Embree against the triangles of a snapshot.
 #pragma once
 
-#include <embree3/rtcore.h>
-
 #include <cmath>
 #include <limits>
 #include <vector>
 
 #include "easypbr/core/error.h"
+#include "easypbr/render/raytrace/embree.h"
 #include "easypbr/scene/scene.h"
 
 namespace easypbr {
@@ -41,9 +40,9 @@ class RayCaster {
         hit.ray.tfar = std::numeric_limits<float>::infinity();
         hit.ray.mask = ~0u;
         hit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-        RTCIntersectContext context;
-        rtcInitIntersectContext(&context);
-        rtcIntersect1(scene_, &context, &hit);
+        render::embree::Context context;
+        render::embree::begin(context);
+        render::embree::intersect(scene_, context, hit);
         return hit.hit.geomID == RTC_INVALID_GEOMETRY_ID ? std::numeric_limits<float>::infinity()
                                                          : hit.ray.tfar;
     }

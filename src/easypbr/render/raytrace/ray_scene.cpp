@@ -1,7 +1,5 @@
 #include "easypbr/render/raytrace/ray_scene.h"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -15,6 +13,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/interrupt.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/render/raytrace/embree.h"
 #include "easypbr/render/raytrace/ray_random.h"
 #include "easypbr/render/raytrace/ray_surface.h"
 
@@ -60,13 +59,11 @@ bool is_filtered(const DrawItem& item) {
 
 /// What a ray asks of the surfaces that it passes. Embree hands it to the filter.
 struct RayQuery {
-    RTCIntersectContext embree;
+    embree::Context context;
     Transmissive transmissive = Transmissive::passed;
     Vec3* transmittance = nullptr;  ///< of what is passed straight, where it is asked for
 
-    explicit RayQuery(Transmissive transmissive_) : transmissive(transmissive_) {
-        rtcInitIntersectContext(&embree);
-    }
+    explicit RayQuery(Transmissive transmissive_) : transmissive(transmissive_) { embree::begin(context); }
 };
 
 /// Light below this part is none.
@@ -341,7 +338,7 @@ std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction,
     found.ray = ray_of(from, direction, to_ground);
     found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     RayQuery query(transmissive);
-    if (scene_) rtcIntersect1(scene_->scene, &query.embree, &found);
+    if (scene_) embree::intersect(scene_->scene, query.context, found);
     RayHit hit;
     hit.distance = found.ray.tfar;
     hit.position = from + direction * found.ray.tfar;
@@ -384,7 +381,7 @@ bool RayScene::blocked(const Vec3& from, const Vec3& direction, float distance,
     if (!scene_) return false;
     RTCRay ray = ray_of(from, direction, distance);
     RayQuery query(transmissive);
-    rtcOccluded1(scene_->scene, &query.embree, &ray);
+    embree::occlude(scene_->scene, query.context, ray);
     return ray.tfar < 0;
 }
 
@@ -394,7 +391,7 @@ Vec3 RayScene::transmittance(const Vec3& from, const Vec3& direction, float dist
     RTCRay ray = ray_of(from, direction, distance);
     RayQuery query(Transmissive::passed);
     query.transmittance = &left;
-    rtcOccluded1(scene_->scene, &query.embree, &ray);
+    embree::occlude(scene_->scene, query.context, ray);
     return ray.tfar < 0 ? Vec3(Vec3::Zero()) : left;
 }
 
