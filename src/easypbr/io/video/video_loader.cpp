@@ -9,6 +9,7 @@
 #include "easypbr/io/video/ffmpeg/module.h"
 #include "easypbr/io/video/ffmpeg_program.h"
 #include "easypbr/io/video/video.h"
+#include "easypbr/io/video/video_stream.h"
 
 namespace easypbr::io {
 namespace {
@@ -20,6 +21,7 @@ struct VideoModule : RuntimeModule {
         find(open, "easypbr_ffmpeg_open");
         find(check, "easypbr_ffmpeg_check");
         find(encoders, "easypbr_ffmpeg_encoders");
+        find(open_stream, "easypbr_ffmpeg_open_stream");
     }
 
     bool works() const { return reason().empty(); }
@@ -27,6 +29,7 @@ struct VideoModule : RuntimeModule {
     decltype(&easypbr_ffmpeg_open) open = nullptr;
     decltype(&easypbr_ffmpeg_check) check = nullptr;
     decltype(&easypbr_ffmpeg_encoders) encoders = nullptr;
+    decltype(&easypbr_ffmpeg_open_stream) open_stream = nullptr;
 };
 
 const VideoModule& ffmpeg_module() {
@@ -70,6 +73,17 @@ std::unique_ptr<VideoWriter> open_video(const fs::path& path, const VideoOptions
     std::unique_ptr<VideoWriter> writer;
     ffmpeg_module().open(path, options, writer);
     return writer;
+}
+
+std::unique_ptr<VideoStream> open_video_stream(const VideoStreamOptions& options) {
+    if (!ffmpeg_module().works())
+        throw FormatError(
+            fmt::format("no video can be streamed: FFmpeg's libraries cannot be loaded ({}); Debian: apt "
+                        "install libavcodec59 libavformat59 libswscale6",
+                        ffmpeg_module().reason()));
+    std::unique_ptr<VideoStream> stream;
+    ffmpeg_module().open_stream(options, stream);
+    return stream;
 }
 
 std::vector<std::string> video_encoders() {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
@@ -11,11 +12,8 @@
 #include "easypbr/io/video/encoders.h"
 #include "easypbr/io/video/ffmpeg/handles.h"
 #include "easypbr/io/video/ffmpeg/palette.h"
+#include "easypbr/io/video/ffmpeg/planes.h"
 #include "easypbr/io/video/ffmpeg/remux.h"
-
-extern "C" {
-#include <libavutil/pixdesc.h>
-}
 
 namespace easypbr::io {
 
@@ -64,8 +62,7 @@ class FfmpegVideo final : public VideoWriter {
   public:
     FfmpegVideo(const fs::path& path, const VideoOptions& options) : path_(path), size_(options.size) {
         check_video_options(path, options);
-        // FFmpeg would print; what a program has chosen itself stays.
-        if (av_log_get_level() == AV_LOG_INFO) av_log_set_level(AV_LOG_QUIET);
+        silence_ffmpeg();
         const AVCodec& encoder = encoder_for(path, options.codec);
         AVFormatContext* raw = nullptr;
         require_written(avformat_alloc_output_context2(&raw, nullptr, container_of(path).name, path.c_str()),
@@ -93,7 +90,7 @@ class FfmpegVideo final : public VideoWriter {
         if (codec_->pix_fmt == AV_PIX_FMT_PAL8)
             fill_palette(picture);
         else
-            fill_planes(picture);
+            planes_->fill(picture, *frame_);
         frame_->pts = next_++;
         whole_or_none([&] { encode(frame_.get()); });
     }
@@ -137,21 +134,11 @@ class FfmpegVideo final : public VideoWriter {
 
     void describe(const AVCodec& encoder, double fps) {
         AVCodecContext& codec = *codec_;
-        codec.pix_fmt = pixel_format_of(encoder);
-        const AVPixFmtDescriptor& format = *av_pix_fmt_desc_get(codec.pix_fmt);
-        // Planes of half the size need an even one.
-        codec.width = size_.x() + (size_.x() & (format.log2_chroma_w ? 1 : 0));
-        codec.height = size_.y() + (size_.y() & (format.log2_chroma_h ? 1 : 0));
+        describe_pictures(codec, pixel_format_of(encoder), size_);
         codec.framerate = av_d2q(fps, 100000);
         codec.time_base = av_inv_q(codec.framerate);
         codec.gop_size = std::max(1, int(std::lround(fps)));
         codec.max_b_frames = 0;  // Nothing of what was written waits for a frame to come.
-        if (!(format.flags & AV_PIX_FMT_FLAG_RGB) && codec.pix_fmt != AV_PIX_FMT_PAL8) {
-            codec.color_range = codec.pix_fmt == AV_PIX_FMT_YUVJ420P ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
-            codec.color_primaries = AVCOL_PRI_BT709;
-            codec.color_trc = AVCOL_TRC_BT709;
-            codec.colorspace = AVCOL_SPC_BT709;
-        }
         if (output_->oformat->flags & AVFMT_GLOBALHEADER) codec.flags |= AV_CODEC_FLAG_GLOBAL_HEADER;
         codec.thread_count = 0;
     }
@@ -175,23 +162,11 @@ class FfmpegVideo final : public VideoWriter {
     }
 
     void make_frame() {
-        frame_.reset(av_frame_alloc());
-        frame_->format = codec_->pix_fmt;
-        frame_->width = codec_->width;
-        frame_->height = codec_->height;
-        frame_->color_range = codec_->color_range;
-        frame_->color_primaries = codec_->color_primaries;
-        frame_->color_trc = codec_->color_trc;
-        frame_->colorspace = codec_->colorspace;
-        require_written(av_frame_get_buffer(frame_.get(), 0), path_);
+        frame_ = frame_for(*codec_);
+        require_written(frame_ ? 0 : AVERROR(ENOMEM), path_);
         packet_.reset(av_packet_alloc());
-        if (codec_->pix_fmt == AV_PIX_FMT_PAL8) return;
-        scaler_.reset(sws_getContext(
-            codec_->width, codec_->height, AV_PIX_FMT_RGBA, codec_->width, codec_->height, codec_->pix_fmt,
-            SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INP, nullptr, nullptr, nullptr));
-        const int* matrix = sws_getCoefficients(SWS_CS_ITU709);
-        sws_setColorspaceDetails(scaler_.get(), matrix, 1, matrix, codec_->color_range == AVCOL_RANGE_JPEG, 0,
-                                 1 << 16, 1 << 16);
+        if (codec_->pix_fmt != AV_PIX_FMT_PAL8)
+            planes_.emplace(*codec_, SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INP);
     }
 
     void begin_file() {
@@ -224,23 +199,6 @@ class FfmpegVideo final : public VideoWriter {
         }
     }
 
-    void fill_planes(const Image& picture) {
-        const Image* source = &picture;
-        if (codec_->width != size_.x() || codec_->height != size_.y()) {
-            if (padded_.empty()) padded_ = Image(codec_->width, codec_->height, 4, PixelType::u8);
-            for (int y = 0; y < codec_->height; ++y) {
-                uint8_t* to = padded_.at<uint8_t>(0, y);
-                const uint8_t* from = picture.at<uint8_t>(0, std::min(y, size_.y() - 1));
-                std::copy_n(from, 4 * size_.x(), to);
-                if (codec_->width > size_.x()) std::copy_n(from + 4 * (size_.x() - 1), 4, to + 4 * size_.x());
-            }
-            source = &padded_;
-        }
-        const uint8_t* planes[1] = {source->pixels<uint8_t>().data()};
-        const int strides[1] = {4 * codec_->width};
-        sws_scale(scaler_.get(), planes, strides, 0, codec_->height, frame_->data, frame_->linesize);
-    }
-
     void fill_palette(const Image& picture) {
         const Palette palette = median_cut(picture);
         map_to_palette(picture, palette, frame_->data[0], frame_->linesize[0]);
@@ -253,9 +211,8 @@ class FfmpegVideo final : public VideoWriter {
     Codec codec_;
     FrameHandle frame_;
     Packet packet_;
-    Scaler scaler_;
+    std::optional<ToPlanes> planes_;
     AVStream* stream_ = nullptr;
-    Image padded_;
     int64_t next_ = 0;
     bool is_opened_ = false, finished_ = false;
 };

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "easypbr/io/video/video.h"
+#include "easypbr/io/video/video_stream.h"
 
 extern "C" {
 /// Throw as easypbr::io::open_video() does.
@@ -14,4 +15,7 @@ void easypbr_ffmpeg_open(const std::filesystem::path& path, const easypbr::io::V
                          std::unique_ptr<easypbr::io::VideoWriter>& out);
 void easypbr_ffmpeg_check(const std::filesystem::path& path, const std::string& codec);
 void easypbr_ffmpeg_encoders(std::vector<std::string>& out);
+/// Throws as easypbr::io::open_video_stream() does.
+void easypbr_ffmpeg_open_stream(const easypbr::io::VideoStreamOptions& options,
+                                std::unique_ptr<easypbr::io::VideoStream>& out);
 }
