@@ -322,13 +322,17 @@ class Viewer(WindowCallbacks):
         host_names: Sequence[str] = (),
         origins: Sequence[str] = (),
         max_clients: int = 16,
+        codec: str = "auto",
         block: bool = False,
     ) -> Server:
         """Shows the scene in browsers: print(view.serve().url). Returns at once, unless `block`: then when it is closed, by
         Ctrl-C too. `port`: 0 takes any that is free; `socket`: path of a Unix socket to use in its place; `bind`: others
         than loopback are seen by the network; `token_file`: secrets to use, a line to control, a line to watch;
-        `host_names`: other names that the server is reached by; `origins`: pages of other sites that may connect."""
-        handle = self._handle.serve(port, bind, socket, token_file, list(host_names), list(origins), max_clients)
+        `host_names`: other names that the server is reached by; `origins`: pages of other sites that may connect;
+        `codec`: what moving images are sent as, "h264" or "jpeg"; "auto" takes H.264 where FFmpeg's libraries and a
+        client's browser have it."""
+        handle = self._handle.serve(
+            port, bind, socket, token_file, list(host_names), list(origins), max_clients, codec)
         server = Server(handle)
         if block:
             print(server.url, flush=True)

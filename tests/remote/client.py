@@ -13,7 +13,8 @@ import easypbr
 
 HEADER = struct.Struct("<BBHIIHHHHHHIIII")
 MOVING, STILL, SHOT = 1, 2, 3
-LAST, EXACT = 1, 2
+LAST, EXACT, KEY = 1, 2, 8
+JPEG, PNG, H264 = 1, 2, 3
 PATIENCE_S = 60
 
 
@@ -31,6 +32,10 @@ class Frame:
     def is_exact(self):
         return bool(self.flags & EXACT)
 
+    @property
+    def is_key(self):
+        return bool(self.flags & KEY)
+
     def image(self, folder):
         """As an array, height x width x channels."""
         path = folder / ("frame.png" if self.codec == 2 else "frame.jpg")
@@ -44,9 +49,9 @@ def address(url):
 
 
 class Client:
-    """`answers`: whether pictures are acknowledged by themselves."""
+    """`answers`: whether pictures are acknowledged by themselves; `video`: whether it says that it decodes H.264."""
 
-    def __init__(self, url, size=(160, 120), token=None, hello=True, answers=True, **options):
+    def __init__(self, url, size=(160, 120), token=None, hello=True, answers=True, video=False, **options):
         where, secret = address(url)
         self._ends = contextlib.ExitStack()
         self.socket = self._ends.enter_context(websockets.sync.client.connect(
@@ -60,6 +65,8 @@ class Client:
         self._chunks: dict[int, list[bytes]] = {}
         if hello:
             self.send("hello", token=secret if token is None else token, width=size[0], height=size[1])
+        if video:
+            self.send("decodes", h264=True)
 
     def send(self, kind, **members):
         self.socket.send(json.dumps({"kind": kind, **members}))

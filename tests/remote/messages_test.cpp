@@ -30,6 +30,7 @@ TEST(Messages, ReadsWhatIsRight) {
     const Input key = read<Input>(R"({"kind":"key","id":1,"action":"down","key":"W","shift":false})");
     EXPECT_EQ(key.event.key, 'W');
     EXPECT_FALSE(key.event.control);
+    EXPECT_TRUE(read<Decodes>(R"({"kind":"decodes","h264":true})").h264);
     EXPECT_EQ(read<SetField>(R"({"kind":"set","name":"a.b","value":"1"})").value, "1");
     EXPECT_EQ(read<Act>(R"({"kind":"act","what":"undo"})").what, Act::What::undo);
     EXPECT_EQ(read<Shot>(R"({"kind":"shot","id":1,"width":8192,"height":8192})").size, Vec2i(8192, 8192));
@@ -50,7 +51,7 @@ INSTANTIATE_TEST_SUITE_P(
         R"({"kind":"ack","frame":18446744073709551615,"chunk":0})", R"({"kind":"ack","frame":"1","chunk":0})",
         R"({"kind":"ack","frame":1,"chunk":0,"more":1})", R"({"kind":"resize","width":0,"height":1})",
         R"({"kind":"resize","width":4097,"height":1})", R"({"kind":"resize","width":true,"height":1})",
-        R"({"kind":"pause","paused":1})", R"({"kind":"set","name":"x","value":1})",
+        R"({"kind":"pause","paused":1})", R"({"kind":"decodes","h264":"yes"})", R"({"kind":"set","name":"x","value":1})",
         R"({"kind":"set","name":"x\u0000y","value":"1"})", R"({"kind":"act","what":"explode"})",
         R"({"kind":"turn","id":1,"right":1e999,"up":0})", R"({"kind":"turn","id":1,"right":NaN,"up":0})",
         R"({"kind":"turn","id":1,"right":361,"up":0})",

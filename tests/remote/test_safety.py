@@ -295,6 +295,20 @@ def test_frames_that_are_none_end_the_connection(server, connect, data):
     is_alive(connect)
 
 
+def test_asking_for_key_frames_without_end_makes_few(connect):
+    """They cost everybody bits: who has lost its place again and again waits longer each time."""
+    client = connect(video=True)
+    client.until_exact()
+    client.pointer("press", 80, 60)
+    end, step = time.monotonic() + 4, 0
+    while time.monotonic() < end:
+        client.send("decodes", h264=True)
+        client.pointer("move", 80 + (step := step + 1) % 40, 60)
+        client.collect(0.03)
+    keys = [frame for frame in client.frames if frame.codec == 3 and frame.is_key]
+    assert 1 <= len(keys) <= 4  # At the first movement, then 1 s and 2 s later; one more where the picture's size changes.
+
+
 def test_there_is_room_for_so_many_clients(view):
     with view.serve(max_clients=2) as server:
         clients = [Client(server.url), Client(server.url)]

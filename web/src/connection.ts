@@ -3,6 +3,7 @@ import type { Link } from "./link";
 import { Painter } from "./painter";
 import type { ClientMessage, ServerMessage } from "./protocol";
 import { Store } from "./store";
+import { decodesVideo } from "./video";
 import type { Wire } from "./wire";
 
 const FIRST_WAIT = 250;
@@ -10,12 +11,14 @@ const LONGEST_WAIT = 4000;
 const WRONG_TOKEN = 4001;
 const FULL = 1013;
 /** Messages that change nothing for others. */
-const SILENT = new Set(["ack", "pause"]);
+const SILENT = new Set(["ack", "pause", "decodes"]);
 
 export interface Rules {
   needsToken: boolean;
   /** All clients are one person's: who does something controls. */
   takesControl: boolean;
+  /** Pictures reach this client alone, each of them, in order: they may need one another. */
+  takesVideo: boolean;
   keepToken?: (token: string) => void;
 }
 
@@ -30,6 +33,7 @@ export class Connection {
   private controlled = false;
   private holds = false;
   private paused = false;
+  private decodes = false;
   private size = { width: 1, height: 1 };
   /** What this page has set: told to a server that has begun anew. */
   private touched: Record<string, string> = {};
@@ -38,6 +42,10 @@ export class Connection {
   readonly painter = new Painter(this.store, {
     ack: (frame, chunk) => this.send({ kind: "ack", frame, chunk }),
     shot: (_id, picture) => download(picture, "easypbr.png"),
+    decodes: (h264) => {
+      this.decodes = h264;
+      this.send({ kind: "decodes", h264 });
+    },
   });
 
   constructor(
@@ -46,6 +54,7 @@ export class Connection {
     private rules: Rules,
   ) {
     this.touched = { ...link.settings };
+    if (rules.takesVideo) void decodesVideo().then((decodes) => this.take(decodes));
     document.addEventListener("visibilitychange", this.turned);
     window.addEventListener("online", this.retry);
     if (link.token) this.open();
@@ -132,6 +141,12 @@ export class Connection {
     if (!document.hidden) this.retry();
   };
 
+  /** Known before the connection, or after it. */
+  private take(decodes: boolean): void {
+    this.decodes = decodes;
+    if (decodes && this.isLive) this.send({ kind: "decodes", h264: true });
+  }
+
   private open(): void {
     clearTimeout(this.timer);
     this.begun = true;
@@ -193,6 +208,7 @@ export class Connection {
     this.holds = false;
     this.paused = false;
     this.store.update({ phase: "live", reason: "", watches: message.watches, channels: message.channels, fields: message.fields });
+    if (this.decodes) this.send({ kind: "decodes", h264: true });
     // What a link asks for, or what was seen before the server began anew.
     this.restore = isNew ? { camera: isAgain ? this.store.state.camera : this.link.camera, settings: { ...this.touched } } : null;
     this.pause();

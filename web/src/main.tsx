@@ -8,7 +8,7 @@ import { startTheme } from "./theme";
 import { SocketWire } from "./wire";
 
 startTheme();
-const connection = new Connection(new SocketWire(), takeLink(), { needsToken: true, takesControl: false, keepToken });
+const connection = new Connection(new SocketWire(), takeLink(), { needsToken: true, takesControl: false, takesVideo: true, keepToken });
 const page = (
   <StoreContext.Provider value={connection.store}>
     <App connection={connection} />

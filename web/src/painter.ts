@@ -1,11 +1,16 @@
 // Pictures onto the canvas: in order, the newest only, each answered when it is drawn.
-import { FLAG_EXACT, FLAG_LAST, FRAME_MOVING, FRAME_SHOT, HEADER_BYTES, mimeOf, readHeader, type FrameHeader } from "./protocol";
+import { CODEC_H264, CODEC_NAMES, FLAG_EXACT, FLAG_LAST, FRAME_MOVING, FRAME_SHOT, HEADER_BYTES, mimeOf, readHeader, type FrameHeader } from "./protocol";
 import type { Store } from "./store";
+import { VideoPictures } from "./video";
 
 export interface PainterHooks {
   ack(frame: number, chunk: number): void;
   shot(id: number, picture: Blob): void;
+  /** Whether H.264 can be decoded; true, again: its place in the video is lost. */
+  decodes(h264: boolean): void;
 }
+
+type Picture = ImageBitmap | VideoFrame;
 
 /** Chunks of one picture. */
 interface Parts {
@@ -20,6 +25,7 @@ export class Painter {
   private arrivals: { time: number; bytes: number; draws: boolean }[] = [];
   private still: Parts = { frame: 0, chunks: [] };
   private shot: Parts = { frame: 0, chunks: [] };
+  private video: VideoPictures;
   private drawn = 0;
   /** All show the same pictures. */
   private canvases = new Set<HTMLCanvasElement>();
@@ -30,6 +36,7 @@ export class Painter {
     private store: Store,
     private hooks: PainterHooks,
   ) {
+    this.video = new VideoPictures({ lost: () => hooks.decodes(true), failed: () => hooks.decodes(false) });
     setInterval(() => this.tellRates(), 500);
   }
 
@@ -53,6 +60,7 @@ export class Painter {
     this.still = { frame: 0, chunks: [] };
     this.shot = { frame: 0, chunks: [] };
     this.inputs.clear();
+    this.video.reset();
   }
 
   sentInput(id: number): void {
@@ -65,7 +73,8 @@ export class Painter {
     const draws = header.kind !== FRAME_SHOT;
     this.arrivals.push({ time: performance.now(), bytes: data.byteLength, draws: draws && (header.flags & FLAG_LAST) !== 0 });
     try {
-      if (header.kind === FRAME_MOVING) await this.paint(header, [data]);
+      if (header.codec === CODEC_H264) await this.paint(header, await this.video.decode(header, data));
+      else if (header.kind === FRAME_MOVING) await this.paint(header, await bitmapOf(header, [data]));
       else await this.collect(header, data);
     } finally {
       this.hooks.ack(header.frame, header.chunk);
@@ -84,26 +93,27 @@ export class Painter {
     const chunks = parts.chunks;
     parts.chunks = [];
     if (header.kind === FRAME_SHOT) this.hooks.shot(header.input, blobOf(header, chunks));
-    else await this.paint(header, chunks);
+    else await this.paint(header, await bitmapOf(header, chunks));
   }
 
-  private async paint(header: FrameHeader, chunks: ArrayBuffer[]): Promise<void> {
-    const options: ImageBitmapOptions = { colorSpaceConversion: "none", premultiplyAlpha: "none" };
-    const bitmap = await createImageBitmap(blobOf(header, chunks), options);
+  private async paint(header: FrameHeader, picture: Picture | null): Promise<void> {
+    if (!picture) return;
     if (this.canvases.size > 0 && header.frame > this.drawn) {
       this.drawn = header.frame;
       this.last = header;
-      for (const canvas of this.canvases) draw(canvas, bitmap, header);
+      for (const canvas of this.canvases) draw(canvas, picture, header);
       this.measure(header);
     }
-    bitmap.close();
+    picture.close();
   }
 
   private measure(header: FrameHeader): void {
     const exact = (header.flags & FLAG_EXACT) !== 0;
     const note = (values: Record<string, string>) => this.canvases.forEach((canvas) => Object.assign(canvas.dataset, values));
     note({ frame: String(header.frame), input: String(header.input), exact: String(exact) });
-    this.store.update({ exact, drawn: true });
+    const codec = CODEC_NAMES[header.codec] ?? "";
+    if (header.kind === FRAME_MOVING) note({ moving: codec });
+    this.store.update({ exact, drawn: true, ...(header.kind === FRAME_MOVING && { codec }) });
     const sent = this.inputs.get(header.input);
     if (sent === undefined) return;
     const latency = performance.now() - sent;
@@ -128,18 +138,23 @@ function blobOf(header: FrameHeader, chunks: ArrayBuffer[]): Blob {
   return new Blob(chunks.map((chunk) => new Uint8Array(chunk, HEADER_BYTES)), { type: mimeOf(header) });
 }
 
-function draw(canvas: HTMLCanvasElement, bitmap: ImageBitmap, header: FrameHeader): void {
-  fit(canvas, bitmap, header);
+function bitmapOf(header: FrameHeader, chunks: ArrayBuffer[]): Promise<ImageBitmap> {
+  return createImageBitmap(blobOf(header, chunks), { colorSpaceConversion: "none", premultiplyAlpha: "none" });
+}
+
+function draw(canvas: HTMLCanvasElement, picture: Picture, header: FrameHeader): void {
+  fit(canvas, header);
   const context = canvas.getContext("2d") as CanvasRenderingContext2D;
   if (header.kind !== FRAME_MOVING) context.clearRect(0, 0, canvas.width, canvas.height);
-  context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
+  // Videos have even sides.
+  context.drawImage(picture, 0, 0, header.width, header.height, 0, 0, canvas.width, canvas.height);
 }
 
 /** Pictures at rest have a pixel of the canvas for each of theirs; smaller ones that move are stretched over it. */
-function fit(canvas: HTMLCanvasElement, bitmap: ImageBitmap, header: FrameHeader): void {
-  const sameShape = Math.abs(canvas.width / canvas.height - bitmap.width / bitmap.height) < 0.02;
-  if (header.kind === FRAME_MOVING && sameShape && canvas.width >= bitmap.width) return;
-  if (canvas.width === bitmap.width && canvas.height === bitmap.height) return;
-  canvas.width = bitmap.width;
-  canvas.height = bitmap.height;
+function fit(canvas: HTMLCanvasElement, { kind, width, height }: FrameHeader): void {
+  const sameShape = Math.abs(canvas.width / canvas.height - width / height) < 0.02;
+  if (kind === FRAME_MOVING && sameShape && canvas.width >= width) return;
+  if (canvas.width === width && canvas.height === height) return;
+  canvas.width = width;
+  canvas.height = height;
 }

@@ -85,6 +85,8 @@ export const FRAME_STILL = 2;
 export const FRAME_SHOT = 3;
 export const FLAG_LAST = 1;
 export const FLAG_EXACT = 2;
+export const FLAG_KEY = 8;
+export const CODEC_H264 = 3;
 
 export interface FrameHeader {
   kind: number;
@@ -126,5 +128,7 @@ export function readHeader(data: ArrayBuffer): FrameHeader {
     waitUs: long(36),
   };
 }
+
+export const CODEC_NAMES = ["", "JPEG", "PNG", "H.264"];
 
 export const mimeOf = (header: FrameHeader): string => (header.codec === 2 ? "image/png" : "image/jpeg");

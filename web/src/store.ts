@@ -30,6 +30,8 @@ export interface State {
   /** Of the last seconds: what came, and how long an input took to be seen. */
   rate: { fps: number; kbytes: number; inputMs: number };
   exact: boolean;
+  /** Of moving pictures. */
+  codec: string;
   /** A picture has been drawn. */
   drawn: boolean;
 }
@@ -54,6 +56,7 @@ const begin = (): State => ({
   notices: [],
   rate: { fps: 0, kbytes: 0, inputMs: 0 },
   exact: false,
+  codec: "",
   drawn: false,
 });
 

@@ -29,6 +29,9 @@ struct ServeOptions {
     std::vector<std::string>
         origins;           ///< pages of other sites that may connect or show it: "https://hub.org"
     int max_clients = 16;  ///< 1 to 1000
+    /// What moving pictures are sent as: "auto" (H.264 where FFmpeg's libraries and a client's browser have
+    /// it, else JPEG), "jpeg", or "h264" (to those who decode it; an error where it cannot be made).
+    std::string codec = "auto";
 };
 
 struct ServerClient {
@@ -43,7 +46,8 @@ struct ServerClient {
 class Server {
   public:
     /// Shows the scene with these settings. Throws ArgumentError for options out of range, FileError and
-    /// FormatError for the token file and the socket, Error when the port is taken.
+    /// FormatError for the token file and the socket, FormatError for a codec that is not there, Error when
+    /// the port is taken.
     Server(const Scene& scene, const Settings& settings, const ServeOptions& options = {});
     /// Closes.
     ~Server();

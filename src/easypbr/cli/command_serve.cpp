@@ -56,6 +56,11 @@ void declare_serve(CLI::App& command, ServeCommand& options) {
         ->allow_extra_args(false)
         ->option_text("URL");
     command.add_option("--max-clients", options.server.max_clients, "Clients at a time")->option_text("N");
+    command
+        .add_option("--codec", options.server.codec,
+                    "What moving pictures are sent as: auto takes h264 where both sides have it, else jpeg")
+        ->check(CLI::IsMember({"auto", "h264", "jpeg"}))
+        ->option_text("auto|h264|jpeg");
 }
 
 volatile std::sig_atomic_t stopped = 0;

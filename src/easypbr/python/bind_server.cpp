@@ -19,8 +19,10 @@ using remote::ServerClient;
 
 std::shared_ptr<Server> serve(SharedViewer& self, int port, const std::string& bind, const fs::path& socket,
                               const fs::path& token_file, const std::vector<std::string>& host_names,
-                              const std::vector<std::string>& origins, int max_clients) {
-    const remote::ServeOptions options{port, bind, socket, token_file, host_names, origins, max_clients};
+                              const std::vector<std::string>& origins, int max_clients,
+                              const std::string& codec) {
+    const remote::ServeOptions options{port,       bind,    socket,      token_file,
+                                       host_names, origins, max_clients, codec};
     return self.run([&](Viewer& viewer) { return viewer.serve(options); });
 }
 
@@ -79,7 +81,7 @@ void bind_server(nb::module_& module, nb::class_<SharedViewer>& viewer) {
              })
         .def("close", [](Server& self) { released([&] { self.close(); }); });
     viewer.def("serve", serve, nb::arg("port"), nb::arg("bind"), nb::arg("socket"), nb::arg("token_file"),
-               nb::arg("host_names"), nb::arg("origins"), nb::arg("max_clients"));
+               nb::arg("host_names"), nb::arg("origins"), nb::arg("max_clients"), nb::arg("codec"));
     bind_channel(module, viewer);
 }
 

@@ -73,9 +73,11 @@ void Clients::obey(ClientId id, Client& client, ClientMessage message, double no
     if (std::holds_alternative<Hello>(message)) throw ProtocolError("a second token");
     if (const auto* pause = std::get_if<Pause>(&message)) {
         client.paused = pause->paused;
+        if (client.paused) client.seat.leave();
         pump(id, client, now);
         return inbox_.wake();
     }
+    if (const auto* decodes = std::get_if<Decodes>(&message)) return client.seat.decodes(decodes->h264, now);
     const auto* act = std::get_if<Act>(&message);
     if (act && act->what == Act::What::take_control) return take_control(id, client, now);
     if (controller_ != id)
@@ -90,7 +92,7 @@ void Clients::ack(ClientId id, Client& client, const Ack& ack, double now) {
     const size_t before = client.flow.count();
     client.flow.drawn(ack.frame, ack.chunk, now);
     const bool counts = client.flow.count() != before && controller_ == id;
-    if (counts && newest_ && newest_->header.kind == FrameKind::moving)
+    if (counts && newest_ && newest_->moving)
         quality_.drawn(client.flow.latency_s(), client.flow.least_latency_s(), now);
     pump(id, client, now);
     inbox_.wake();
@@ -146,30 +148,87 @@ void Clients::set_welcome(std::string text, std::string watcher_text) {
     watcher_welcome_ = std::move(watcher_text);
 }
 
-void Clients::publish(Picture picture) {
+void Clients::offer_video(bool offered) {
     const std::lock_guard lock(mutex_);
-    if (newest_ && picture.header.frame <= newest_->header.frame) return;
-    newest_ = std::move(picture);
+    offers_video_ = offered;
+}
+
+VideoDemand Clients::demand() {
+    const std::lock_guard lock(mutex_);
+    const double now = now_seconds();
+    const bool may_begin = offers_video_ && now - last_key_s_ >= key_wait_s;
+    VideoDemand demand;
+    for (const auto& [id, client] : clients_) {
+        if (!client.admitted || client.paused) continue;
+        if (offers_video_ && client.seat.is_in())
+            demand.video = true;
+        else if (client.flow.has_room())
+            (may_begin && client.seat.wants_key(now) ? demand.key : demand.jpeg) = true;
+    }
+    if (demand.key) last_key_s_ = now;
+    demand.video |= demand.key;
+    return demand;
+}
+
+bool Clients::publish(Picture picture) {
+    const uint32_t frame = picture.header.frame;
+    return take_newest({frame, false, std::move(picture), {}});
+}
+
+bool Clients::publish(MovingPicture picture) {
+    const FrameHeader& header = picture.video ? picture.video->picture.header : picture.jpeg->header;
+    const uint32_t frame = header.frame;
+    return take_newest({frame, true, std::move(picture.jpeg), std::move(picture.video)});
+}
+
+bool Clients::take_newest(Newest newest) {
+    const std::lock_guard lock(mutex_);
+    if (newest_ && newest.frame <= newest_->frame) return false;
+    newest_ = std::move(newest);
     const double now = now_seconds();
     for (auto& [id, client] : clients_) pump(id, client, now);
+    return true;
 }
 
 void Clients::pump(ClientId id, Client& client, double now) {
     if (!client.admitted) return;
     pump_shot(id, client, now);
     if (!newest_ || client.paused) return;
-    const bool moving = newest_->header.kind == FrameKind::moving;
-    if (client.frame != newest_->header.frame) {
-        if (moving && !client.flow.has_room()) return;
-        client.frame = newest_->header.frame;
+    if (newest_->moving) return pump_moving(id, client, now);
+    if (client.frame != newest_->frame) {
+        client.frame = newest_->frame;
         client.from = 0;
         client.chunk = 0;
         client.done = false;
     }
-    while (!client.done && (moving || client.flow.has_chunk_room())) {
-        send_part(id, client, *newest_, client.from, client.chunk, moving, now);
-        client.done = client.from == newest_->bytes->size();
+    while (!client.done && client.flow.has_chunk_room()) {
+        send_part(id, client, *newest_->picture, client.from, client.chunk, false, now);
+        client.done = client.from == newest_->picture->bytes->size();
     }
+}
+
+/// As a whole: the next one replaces it.
+void Clients::pump_moving(ClientId id, Client& client, double now) {
+    if (client.frame == newest_->frame || !client.flow.has_room()) return;
+    client.frame = newest_->frame;
+    client.done = true;
+    const Picture* picture = version_for(client, now);
+    if (!picture) return;
+    if (controller_ == id) quality_.use_video(picture->header.codec == Codec::h264);
+    size_t from = 0;
+    uint16_t chunk = 0;
+    send_part(id, client, *picture, from, chunk, true, now);
+}
+
+/// Null: it can do nothing with any, and waits for the next.
+const Picture* Clients::version_for(Client& client, double now) {
+    const auto& video = newest_->video;
+    if (video && client.seat.can_take(video->mark)) {
+        client.seat.took(video->mark, now);
+        return &video->picture;
+    }
+    if (video) client.seat.missed(now);
+    return newest_->picture ? &*newest_->picture : nullptr;
 }
 
 void Clients::pump_shot(ClientId id, Client& client, double now) {
@@ -239,11 +298,11 @@ const Clients::Client* Clients::looking_controller() const {
     return client.paused || client.flow.waits_s(now_seconds()) > silent_s ? nullptr : &client;
 }
 
-bool Clients::has_room() const {
+bool Clients::has_room(size_t coming) const {
     const std::lock_guard lock(mutex_);
-    if (const Client* controller = looking_controller()) return controller->flow.has_room();
-    return std::ranges::any_of(clients_, [](const auto& each) {
-        return each.second.admitted && !each.second.paused && each.second.flow.has_room();
+    if (const Client* controller = looking_controller()) return controller->flow.has_room(coming);
+    return std::ranges::any_of(clients_, [&](const auto& each) {
+        return each.second.admitted && !each.second.paused && each.second.flow.has_room(coming);
     });
 }
 
@@ -251,7 +310,7 @@ bool Clients::has_delivered() const {
     const std::lock_guard lock(mutex_);
     if (!newest_) return true;
     const auto has = [&](const Client& client) {
-        return client.frame == newest_->header.frame && client.done && client.flow.count() == 0;
+        return client.frame == newest_->frame && client.done && client.flow.count() == 0;
     };
     if (const Client* controller = looking_controller()) return has(*controller);
     return std::ranges::any_of(clients_, [&](const auto& each) { return has(each.second); });

@@ -11,6 +11,7 @@
 #include "easypbr/remote/gate.h"
 #include "easypbr/remote/inbox.h"
 #include "easypbr/remote/token.h"
+#include "easypbr/remote/video_seat.h"
 #include "easypbr/remote/wire.h"
 
 namespace easypbr::remote {
@@ -19,6 +20,23 @@ namespace easypbr::remote {
 struct Picture {
     FrameHeader header;
     SharedBytes bytes;
+};
+
+/// A picture of something that moves, as the clients need it.
+struct MovingPicture {
+    struct Video {
+        Picture picture;
+        VideoMark mark;
+    };
+    std::optional<Video> video;
+    std::optional<Picture> jpeg;
+};
+
+/// What the next moving picture is needed as.
+struct VideoDemand {
+    bool video = false;
+    bool key = false;  ///< somebody begins with it
+    bool jpeg = false;
 };
 
 /// What a program may ask about a client.
@@ -48,8 +66,13 @@ class Clients : public WireEvents {
 
     /// What a client is told first; the rest follows once it has been told who controls.
     void set_welcome(std::string text, std::string watcher_text);
-    /// The newest picture. One with an older number than the last is dropped.
-    void publish(Picture picture);
+    /// Whether there is a video for those who decode it; at first there is none.
+    void offer_video(bool offered);
+    /// Whoever is told that a key frame is needed makes one.
+    VideoDemand demand();
+    /// The newest picture. One with an older number than the last is dropped; returns whether it was taken.
+    bool publish(Picture picture);
+    bool publish(MovingPicture picture);
     /// Chunks of a still for one client.
     void send_shot(ClientId client, Picture picture);
     void broadcast(const std::string& text);
@@ -59,9 +82,9 @@ class Clients : public WireEvents {
     bool anybody() const;
     /// Somebody is connected and can see the picture.
     bool anybody_looks() const;
-    /// A picture that is drawn now can be sent to who controls, or, when nobody does or it does not answer
-    /// for seconds, to somebody.
-    bool has_room() const;
+    /// A picture that is drawn now, beside so many that are being coded, can be sent to who controls, or,
+    /// when nobody does or it does not answer for seconds, to somebody.
+    bool has_room(size_t coming) const;
     /// Who looks has the newest picture.
     bool has_delivered() const;
     /// Of moving pictures, as the controlling client's line allows.
@@ -71,12 +94,15 @@ class Clients : public WireEvents {
     static constexpr double idle_control_s = 5;
     static constexpr double silent_s = 2;
     static constexpr size_t chunk_bytes = 32 * 1024;
+    /// Key frames for those who come are at least so far apart.
+    static constexpr double key_wait_s = 1;
 
   private:
     struct Client {
         bool admitted = false, may_control = false, paused = false;
         FlowControl flow;
         MessageRate rate;
+        VideoSeat seat;
         uint32_t frame = 0;  ///< newest picture that it was sent, or is being sent
         size_t from = 0;     ///< bytes of it that were sent
         uint16_t chunk = 0;
@@ -84,6 +110,13 @@ class Clients : public WireEvents {
         std::optional<Picture> shot;
         size_t shot_from = 0;
         uint16_t shot_chunk = 0;
+    };
+
+    struct Newest {
+        uint32_t frame = 0;
+        bool moving = false;
+        std::optional<Picture> picture;  ///< for all
+        std::optional<MovingPicture::Video> video;
     };
 
     void handle(ClientId id, Client& client, std::string_view text, double now);
@@ -95,6 +128,9 @@ class Clients : public WireEvents {
     void give_control(ClientId id);
     void tell_control();
     void pump(ClientId id, Client& client, double now);
+    void pump_moving(ClientId id, Client& client, double now);
+    const Picture* version_for(Client& client, double now);
+    bool take_newest(Newest newest);
     void pump_shot(ClientId id, Client& client, double now);
     void send_part(ClientId id, Client& client, const Picture& picture, size_t& from, uint16_t& chunk,
                    bool whole, double now);
@@ -111,7 +147,9 @@ class Clients : public WireEvents {
     std::map<ClientId, Client> clients_;
     std::optional<ClientId> controller_;
     double last_input_s_ = -1e9;
-    std::optional<Picture> newest_;
+    std::optional<Newest> newest_;
+    bool offers_video_ = false;
+    double last_key_s_ = -1e9;
     WireQuality quality_;
     WrongTokens wrong_;
     std::string welcome_, watcher_welcome_;

@@ -25,14 +25,18 @@ Picture encode(EncodeJob job) {
         const Stopwatch watch(seconds);
         picture.bytes = std::make_shared<const std::vector<std::byte>>(bytes_of(job));
     }
-    picture.header.width = uint16_t(job.image.width());
-    picture.header.height = uint16_t(job.image.height());
-    picture.header.bytes = uint32_t(picture.bytes->size());
-    picture.header.encode_us = uint32_t(seconds * 1e6);
+    describe(picture.header, job.image, *picture.bytes, seconds);
     return picture;
 }
 
-Encoder::Encoder(Take take) : take_(std::move(take)), thread_([this] { work(); }) {}
+void describe(FrameHeader& header, const Image& image, const std::vector<std::byte>& bytes, double seconds) {
+    header.width = uint16_t(image.width());
+    header.height = uint16_t(image.height());
+    header.bytes = uint32_t(bytes.size());
+    header.encode_us = uint32_t(seconds * 1e6);
+}
+
+Encoder::Encoder(Work work) : work_(std::move(work)), thread_([this] { run(); }) {}
 
 Encoder::~Encoder() {
     {
@@ -51,12 +55,12 @@ void Encoder::add(EncodeJob job) {
     changed_.notify_all();
 }
 
-bool Encoder::is_busy() const {
+size_t Encoder::pending() const {
     const std::lock_guard lock(mutex_);
-    return working_ || next_;
+    return size_t(working_) + size_t(next_.has_value());
 }
 
-void Encoder::work() {
+void Encoder::run() {
     std::unique_lock lock(mutex_);
     for (;;) {
         changed_.wait(lock, [&] { return closed_ || next_; });
@@ -66,7 +70,7 @@ void Encoder::work() {
         working_ = true;
         lock.unlock();
         try {
-            take_(encode(std::move(job)));
+            work_(std::move(job));
         } catch (const std::exception& error) {
             log_warning(std::string("a picture was not sent: ") + error.what());
         }

@@ -11,7 +11,7 @@ constexpr double decide_s = 0.5;
 constexpr double quick_s = 0.02;  ///< beyond the shortest time: the line has room
 constexpr int best_quality = 80, worst_quality = 40;
 /// Of the bytes: what lowering the quality saves, before the resolution has to go down.
-constexpr double quality_share = 0.4;
+constexpr double quality_share = 0.4, video_share = 0.125;
 
 }  // namespace
 
@@ -68,8 +68,12 @@ int WireQuality::jpeg_quality() const {
     return int(std::lround(best_quality - lost * (best_quality - worst_quality)));
 }
 
+double WireQuality::video_rate(double pixels) const {
+    return std::max(least_rate, share_ * std::min(most_rate, pixels * bits_per_pixel_second));
+}
+
 double WireQuality::resolution() const {
-    return std::clamp(std::sqrt(share_ / quality_share), 0.25, 1.0);
+    return std::clamp(std::sqrt(share_ / (video_ ? video_share : quality_share)), 0.25, 1.0);
 }
 
 }  // namespace easypbr::remote

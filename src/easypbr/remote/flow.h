@@ -14,8 +14,10 @@ class FlowControl {
     /// The client has drawn it, and with it all that was sent before. What was not sent is ignored.
     void drawn(uint32_t frame, uint32_t chunk, double now_s);
 
-    /// Another picture may be sent: so many are on their way that the line does not run dry, and no more.
-    bool has_room() const { return count() < window() && (count() == 0 || bytes_ < most_bytes); }
+    /// Another picture may be sent, beside so many that will be: the line does not run dry, and no more.
+    bool has_room(size_t coming = 0) const {
+        return count() + coming < window() && (count() == 0 || bytes_ < most_bytes);
+    }
     /// Another chunk of a still may: fewer on a line that queues, so that a picture can overtake the rest.
     bool has_chunk_room() const { return count() < chunks_; }
     size_t count() const { return on_way_.size(); }
@@ -48,21 +50,29 @@ class FlowControl {
            epoch_ = -1;  ///< shortest of this half of the 10 s, and of the last
 };
 
-/// How good moving pictures are, by how long they take to a client: the quality of a JPEG goes first, then
-/// the resolution.
+/// How good moving pictures are, by how long they take to a client: the quality of a JPEG or the bit rate of
+/// a video goes first, then the resolution.
 class WireQuality {
   public:
+    /// Which of both the client is sent.
+    void use_video(bool video) { video_ = video; }
     /// To be told about every picture that was drawn.
     void drawn(double latency_s, double least_latency_s, double now_s);
 
     int jpeg_quality() const;
+    /// Bits per second at most of a video whose pictures have that size at the best resolution.
+    double video_rate(double pixels) const;
     /// Share of the resolution, 0.25 to 1.
     double resolution() const;
     double share() const { return share_; }
 
     static constexpr double least_share = 1.0 / 32;
+    /// 4 Mbit/s at 1280x720.
+    static constexpr double bits_per_pixel_second = 4e6 / (1280 * 720);
+    static constexpr double least_rate = 2e5, most_rate = 2e7;
 
   private:
+    bool video_ = false;
     double share_ = 1;  ///< of the bytes that the best picture has
     double decided_ = -1;
     double slowest_ = 0;  ///< beyond the shortest time, since it was decided

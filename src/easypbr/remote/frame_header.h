@@ -12,13 +12,14 @@ enum class FrameKind : uint8_t {
     still = 2,   ///< a chunk of a picture at rest
     shot = 3     ///< a chunk of a still that a client asked for; `input` is its id
 };
-enum class Codec : uint8_t { jpeg = 1, png = 2 };
+enum class Codec : uint8_t { jpeg = 1, png = 2, h264 = 3 };
 
 struct FrameHeader {
     static constexpr size_t size = 40;
     static constexpr uint16_t last = 1;    ///< flag: no chunk of this picture follows
     static constexpr uint16_t exact = 2;   ///< flag: bit for bit what is rendered, refined to its end
     static constexpr uint16_t opaque = 4;  ///< flag: nothing shines through
+    static constexpr uint16_t key = 8;     ///< flag: of a video, which begins here for who has nothing of it
 
     FrameKind kind = FrameKind::moving;  // offset 0
     Codec codec = Codec::jpeg;           // 1

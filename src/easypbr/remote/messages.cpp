@@ -164,6 +164,10 @@ ClientMessage pause_of(Members& members) {
     return Pause{members.flag("paused")};
 }
 
+ClientMessage decodes_of(Members& members) {
+    return Decodes{members.flag("h264")};
+}
+
 ClientMessage set_of(Members& members) {
     const std::string name = members.text("name", name_length);
     return SetField{name, members.text("value", text_length)};
@@ -220,11 +224,11 @@ using Reader = ClientMessage (*)(Members&);
 
 const std::map<std::string, Reader>& readers() {
     static const std::map<std::string, Reader> readers = {
-        {"hello", hello_of},     {"ack", ack_of},   {"pointer", pointer_of}, {"key", key_message_of},
-        {"blur", blur_of},       {"turn", turn_of}, {"resize", resize_of},   {"pause", pause_of},
-        {"set", set_of},         {"show", show_of}, {"select", select_of},   {"pick", pick_of},
-        {"channel", channel_of}, {"shot", shot_of}, {"camera", camera_of},   {"animate", animate_of},
-        {"act", act_of}};
+        {"hello", hello_of},     {"ack", ack_of},         {"pointer", pointer_of}, {"key", key_message_of},
+        {"blur", blur_of},       {"turn", turn_of},       {"resize", resize_of},   {"pause", pause_of},
+        {"decodes", decodes_of}, {"set", set_of},         {"show", show_of},       {"select", select_of},
+        {"pick", pick_of},       {"channel", channel_of}, {"shot", shot_of},       {"camera", camera_of},
+        {"animate", animate_of}, {"act", act_of}};
     return readers;
 }
 

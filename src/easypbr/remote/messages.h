@@ -50,6 +50,10 @@ struct Resize {
 struct Pause {
     bool paused = false;
 };
+/// Whether the client decodes H.264. One that does says so again when it has lost its place in the video.
+struct Decodes {
+    bool h264 = false;
+};
 /// A setting as it is written on the command line.
 struct SetField {
     std::string name, value;
@@ -89,8 +93,8 @@ struct Act {
     enum class What { fit, undo, redo, take_control, leave_control, reset } what = What::fit;
 };
 
-using ClientMessage = std::variant<Hello, Ack, Input, Turn, Resize, Pause, SetField, ShowObject, Select,
-                                   PickAt, SetChannel, Shot, SetCamera, Animate, Act>;
+using ClientMessage = std::variant<Hello, Ack, Input, Turn, Resize, Pause, Decodes, SetField, ShowObject,
+                                   Select, PickAt, SetChannel, Shot, SetCamera, Animate, Act>;
 
 /// Throws ProtocolError for text that is no JSON object, of an unknown kind, or whose members are missing,
 /// unknown, of another type, not finite or out of range.

@@ -7,6 +7,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/log.h"
+#include "easypbr/remote/moving_pictures.h"
 #include "easypbr/remote/network.h"
 #include "easypbr/remote/view.h"
 #include "easypbr/scene/scene.h"
@@ -28,6 +29,15 @@ NetworkOptions network_options(const ServeOptions& options) {
     return network;
 }
 
+bool offers_video(const ServeOptions& options) {
+    if (options.codec == "jpeg") return false;
+    if (options.codec != "auto" && options.codec != "h264")
+        throw ArgumentError(fmt::format("codec '{}': expected auto, h264 or jpeg", options.codec));
+    if (options.codec == "auto") return true;
+    if (const std::string why = video_refusal(); !why.empty()) throw FormatError(why);
+    return true;
+}
+
 void warn_of_strangers(const ServeOptions& options) {
     if (options.socket.empty() && !is_loopback(options.bind))
         log_warning(fmt::format(
@@ -46,6 +56,7 @@ struct Server::Parts {
           view(scene, settings, inbox, clients) {
         const std::string session = random_token().substr(0, 16);
         clients.set_welcome(welcome_text(session, false), welcome_text(session, true));
+        clients.offer_video(offers_video(given));
         view.start();
         network.start(clients);
     }

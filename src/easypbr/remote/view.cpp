@@ -42,7 +42,7 @@ void View::run() {
 }
 
 bool View::waits_for_clients() const {
-    return (inbox_.has_orders() || is_moving()) && !clients_.has_room();
+    return (inbox_.has_orders() || is_moving()) && !clients_.has_room(own_->moving.pending());
 }
 
 void View::step() {
@@ -139,8 +139,10 @@ FrameHeader View::header(FrameKind kind, Codec codec) {
 }
 
 void View::send_moving() {
-    const int quality = clients_.quality().jpeg_quality();
-    own_->moving.add({own_->live.picture().image(), header(FrameKind::moving, Codec::jpeg), quality});
+    Own& own = *own_;
+    const WireQuality quality = clients_.quality();
+    own.moving.add({own.live.picture().image(), header(FrameKind::moving, Codec::jpeg),
+                    quality.jpeg_quality(), quality.video_rate(double(own.size.x()) * own.size.y())});
 }
 
 void View::send_still(bool exact) {

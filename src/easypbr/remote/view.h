@@ -18,8 +18,8 @@ class Animations;
 namespace easypbr::remote {
 
 /// Pictures of a scene that a program may change meanwhile, with settings of its own. While something moves
-/// they are drawn quickly and sent as JPEG; at rest as JPEG of quality 95 while they are refined, and at the
-/// end as PNG, Session::render()'s picture bit for bit.
+/// they are drawn quickly and sent as video or JPEG; at rest as JPEG of quality 95 while they are refined,
+/// and at the end as PNG, Session::render()'s picture bit for bit.
 class View {
   public:
     /// Both must outlive it.
@@ -67,6 +67,7 @@ class View {
     // What the network's side has taken already.
     void obey(ClientId, const Ack&) {}
     void obey(ClientId, const Pause&) {}
+    void obey(ClientId, const Decodes&) {}
 
     void draw();
     void send_picture(bool drew);

@@ -14,8 +14,9 @@ View::Own::Own(const Scene& scene, const Settings& settings, Clients& clients)
     : session(scene),
       first(settings),
       given(settings),
-      moving([&clients](Picture picture) { clients.publish(std::move(picture)); }),
-      stills([&clients](Picture picture) { clients.publish(std::move(picture)); }) {
+      moving_pictures(clients),
+      moving([this](EncodeJob job) { moving_pictures.code(std::move(job)); }),
+      stills([&clients](EncodeJob job) { clients.publish(encode(std::move(job))); }) {
     session.replace_settings(settings);
     clock.on_tick = [this] { player.update(); };
 }

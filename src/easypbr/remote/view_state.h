@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "easypbr/remote/moving_pictures.h"
 #include "easypbr/remote/view.h"
 #include "easypbr/scene/settings.h"
 
@@ -35,6 +36,7 @@ struct View::Own {
     double told_s = -1;
     uint64_t notices = 0;
 
+    MovingPictures moving_pictures;
     // Last, so that they end first.
     Encoder moving, stills;
 };

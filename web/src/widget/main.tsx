@@ -40,7 +40,7 @@ function rootIn(element: HTMLElement, width: number, height: number): ShadowRoot
 export default () => {
   let connection: Connection | null = null;
   const connect = (model: Model): Connection => {
-    const rules = { needsToken: false, takesControl: true };
+    const rules = { needsToken: false, takesControl: true, takesVideo: false };
     connection ??= new Connection(new CommWire(model), { token: "", camera: "", settings: {} }, rules);
     return connection;
   };
