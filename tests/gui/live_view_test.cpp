@@ -90,6 +90,22 @@ TEST_F(Live, ALeftDragTurnsTheCameraAndUndoTurnsItBack) {
     EXPECT_LT((camera_position() - after).norm(), 1e-9);
 }
 
+TEST_F(Live, AQuickDragCountsThoughItIsOverBeforeTheFirstFrame) {
+    // As a window hands it over after a slow frame: all at once.
+    LiveView fresh(session_);
+    const app::ViewPoint begin = session_.view_point(size);
+    session_.set_view_point(begin);
+    const Vec2d half = middle + Vec2d(60, 0), to = middle + Vec2d(120, 0);
+    fresh.update({at(Kind::move, middle), at(Kind::press, middle), at(Kind::move, half), at(Kind::move, to),
+                  at(Kind::release, to)},
+                 size, 1, 0.02);
+    const Vec3d quick = camera_position();
+    EXPECT_GT((quick - begin.camera.position()).norm(), 0.5);
+    session_.set_view_point(begin);
+    drag(middle, to);
+    EXPECT_LT((quick - camera_position()).norm(), 1e-6) << "another way than the slow drag's";
+}
+
 TEST_F(Live, AClickSelectsAndTheWheelZoomsToThePointer) {
     const Vec2d place = middle + Vec2d(60, 30);
     step({at(Kind::move, place)});
