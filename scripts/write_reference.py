@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
-"""Writes the reference pages of the documentation: settings.md from the table of settings, python.md from the
-package's stub and sources.
+"""Writes the generated pages of the documentation: settings.md from the table of settings, python.md from the package's
+stub and sources, cpp.md from the public headers, gallery.md from the sources of the pictures.
 
-usage: write_reference.py OUTPUT_FOLDER      the easypbr package must be importable
+usage: write_reference.py OUTPUT_FOLDER      the easypbr package must be importable, doxygen in PATH
 """
 import ast
 import pathlib
 import sys
+
+import write_cpp_reference
+import write_gallery
 
 import easypbr
 from easypbr import _easypbr
@@ -190,6 +193,8 @@ def write_reference(folder: pathlib.Path) -> None:
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "settings.md").write_text(settings_page(_easypbr.fields()))
     (folder / "python.md").write_text(python_page(pathlib.Path(easypbr.__file__).parent))
+    (folder / "cpp.md").write_text(write_cpp_reference.cpp_page())
+    (folder / "gallery.md").write_text(write_gallery.gallery_page())
 
 
 if __name__ == "__main__":
