@@ -139,6 +139,9 @@ def test_orbits_and_pushes():
 def test_a_camera_that_is_only_read_stays_automatic(view):
     Scene.show(ball(), "ball")
     first = view.m_camera.position()
+    # The ball fills the picture's height but for the margin: its silhouette is asin(1 / d) off the axis.
+    filled = np.arcsin(1 / np.linalg.norm(first)) / np.radians(view.m_camera.m_fov / (64 / 48) / 2)
+    assert filled == pytest.approx(0.95, abs=0.02)
     view.draw()
     Scene.show(ball(4), "larger")
     assert np.linalg.norm(view.m_camera.position()) > 2 * np.linalg.norm(first)

@@ -82,6 +82,9 @@ class Viewer:
             # What is automatic, or was turned in the window.
             target = Scene.get_centroid() if np.allclose(self._sent, np.eye(4)) else self._camera.lookat()
             self._camera._T = seen
+            if not isinstance(self._values.get("cam.fov"), float):
+                width, height = self._size()
+                self._camera.m_fov = self.own.camera.fov_y_deg * width / height
             self._camera._distance = float((target - seen[:3, 3]) @ -seen[:3, 2]) or 1.0
         return self._camera
 
@@ -94,14 +97,21 @@ class Viewer:
 
     def _seen(self) -> np.ndarray | None:
         flush()
+        self._fit_size()
         return None if Scene.nr_meshes() == 0 else np.array(self.own.camera.T_world_cam)
 
     def _size(self) -> tuple[int, int]:
         width, height = (int(side) for side in np.asarray(self.m_viewport_size).ravel())
         return width, height
 
+    def _fit_size(self) -> None:
+        """An automatic camera is fitted to pictures of this size."""
+        if tuple(self.own.settings.image.size) != self._size():
+            self.own.settings.image.size = self._size()
+
     def _hand_over(self) -> None:
         flush()
+        self._fit_size()
         if floor["visible"] is not None and floor["visible"] != self._has_floor:
             self._has_floor = floor["visible"]
             self.own.settings.ground.mode = auto if self._has_floor else "none"
