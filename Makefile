@@ -3,7 +3,7 @@ PYTHON := .venv/bin/python
 BUILD := build
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 
-.PHONY: demo test library build setup setup-tests bench bench-light wheel test-wheel deb check-long check-notebook sanitize fuzz docs format lint clean
+.PHONY: demo test library build setup setup-tests bench bench-light wheel test-wheel deb release-check check-long check-notebook sanitize fuzz docs format lint clean
 
 # Library, command line and Python module, without tests and benchmarks.
 library: setup
@@ -52,6 +52,10 @@ deb: library
 	cmake --build $(BUILD) --target easypbr_shell_pages
 	cd $(BUILD) && cpack -G DEB -B $(CURDIR)/$(BUILD)/packages
 	mkdir -p dist && cp $(BUILD)/packages/*.deb dist/
+
+# What a release needs; `make release-check PARTS="version licenses docs"` checks some of it (scripts/release_check.py).
+release-check: setup-tests build
+	$(PYTHON) scripts/release_check.py $(PARTS)
 
 check-long: setup-tests build
 	scripts/check_long.sh
