@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
 # Soaks: 10,000 updates of a cloud and data sets of 5,000 frames, whose memory must not grow; data sets killed 200 times; all
 # loaders on 10,000 mutated files each, and all C++ tests, under AddressSanitizer and UBSan; a picture of 16384 x 9216 pixels
-# in tiles; native shading against the driver's on 200 random scenes; the library built as a part of another project. usage: check_long.sh
+# in tiles; native shading against the driver's on 200 random scenes; golden scenes on llvmpipe,
+# zink and softpipe; the library built as a part of another project. usage: check_long.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
 .venv/bin/python bench/cloud_updates.py
 .venv/bin/python -m pytest -q -s tests/long
 EASYPBR_TEST_SCENES=200 build/tests/test_app --gtest_filter='NativeShading.*'
+.venv/bin/python tests/golden/compare_drivers.py
 scripts/sanitize.sh -E Fuzz
 EASYPBR_FUZZ_COUNT=10000 scripts/sanitize.sh -R Fuzz --timeout 7200
 cmake -G Ninja -S tests/package/fetched -B build-fetched -DEASYPBR_SOURCE="$PWD" >/dev/null

@@ -16,7 +16,8 @@ packages=(
 )
 requirements=(scripts/requirements.txt)
 if [ "${1:-}" = tests ]; then
-  packages+=(clang-14 libclang-rt-14-dev clang-format clang-tidy ffmpeg xvfb openbox xdotool wmctrl xclip python3-torch groff-base zsh fish chromium debootstrap doxygen abigail-tools)
+  packages+=(clang-14 libclang-rt-14-dev clang-format clang-tidy ffmpeg xvfb openbox xdotool wmctrl xclip python3-torch groff-base zsh fish chromium debootstrap
+    doxygen abigail-tools glslang-tools spirv-tools mesa-vulkan-drivers)
   # The page is built again by a test; Node may come from elsewhere.
   command -v npm >/dev/null || packages+=(nodejs npm)
   requirements+=(scripts/requirements-test.txt)

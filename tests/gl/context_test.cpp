@@ -5,9 +5,14 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <string>
+#include <string_view>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
 #include "easypbr/gl/buffer.h"
 #include "easypbr/gl/texture.h"
 
@@ -48,6 +53,29 @@ TEST(Context, OfTheCpuLoadsTheDriverWhenItIsNeeded) {
     const ContextScope scope(*context);
     EXPECT_TRUE(Context::has_driver());
     EXPECT_NE(glGetString(GL_VERSION), nullptr) << "current again";
+}
+
+TEST(Context, LogsWhatTheDriverSays) {
+    std::vector<std::pair<LogLevel, std::string>> messages;
+    set_log_sink([&](LogLevel level, std::string_view text) { messages.emplace_back(level, text); });
+    const auto context = Context::create();
+    {
+        const ContextScope scope(*context);
+        glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
+        glEnable(GL_TEXTURE_CUBE_MAP_POSITIVE_X);  // nothing that can be enabled
+        EXPECT_EQ(glGetError(), GLenum(GL_INVALID_ENUM));
+        constexpr std::string_view slow = "a slow path", aside = "an aside";
+        glDebugMessageInsert(GL_DEBUG_SOURCE_APPLICATION, GL_DEBUG_TYPE_PERFORMANCE, 1,
+                             GL_DEBUG_SEVERITY_MEDIUM, GLsizei(slow.size()), slow.data());
+        glDebugMessageInsert(GL_DEBUG_SOURCE_APPLICATION, GL_DEBUG_TYPE_OTHER, 1, GL_DEBUG_SEVERITY_MEDIUM,
+                             GLsizei(aside.size()), aside.data());
+    }
+    set_log_sink({});
+    ASSERT_EQ(messages.size(), 2u);
+    EXPECT_EQ(messages[0].first, LogLevel::warning);
+    EXPECT_EQ(messages[0].second.substr(0, 8), "OpenGL: ");
+    EXPECT_EQ(messages[1].first, LogLevel::debug);
+    EXPECT_EQ(messages[1].second, "OpenGL performance: a slow path");
 }
 
 TEST(Context, ScopesNestAndGiveBack) {

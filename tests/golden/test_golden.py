@@ -1,6 +1,8 @@
 """One picture of each effect against the one that was committed (make.py draws them anew)."""
 import json
+import os
 import pathlib
+import subprocess
 import sys
 
 import numpy as np
@@ -11,6 +13,9 @@ import easypbr
 HERE = pathlib.Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 from effects import EFFECTS, SIZE  # noqa: E402
+
+# What drivers say of the speed of calls, and why it is left so.
+KNOWN_PERFORMANCE_MESSAGES: dict[str, str] = {}
 
 MANIFEST = json.loads((HERE / "manifest.json").read_text())
 
@@ -35,6 +40,17 @@ def test_effect(name, tmp_path):
     if not agrees(picture, golden):
         easypbr.save_image(picture, tmp_path / f"{name}.png")
         pytest.fail(f"{name}: mean and part {difference(picture, golden)}; see {tmp_path}")
+
+
+def test_the_driver_has_nothing_to_say():
+    """No error, and no hint at slow calls that is not listed, in a debug context."""
+    environment = {**os.environ, "EASYPBR_DEVICE": "gl", "EASYPBR_NATIVE": "0", "EASYPBR_GL_DEBUG": "1"}
+    command = [sys.executable, HERE / "driver_messages.py"]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
+    said = json.loads(done.stdout.splitlines()[-1])
+    assert said["device"] == "gl"
+    assert said["errors"] == []
+    assert set(said["performance"]) <= set(KNOWN_PERFORMANCE_MESSAGES)
 
 
 def test_all_are_there():

@@ -90,6 +90,12 @@ std::vector<Candidate> candidates() {
     return found;
 }
 
+/// Whether the environment asks for all that drivers say, each message at the call that it is of.
+bool is_debugging() {
+    const char* value = std::getenv("EASYPBR_GL_DEBUG");
+    return value && *value && std::strcmp(value, "0") != 0;
+}
+
 /// Makes a 4.5 core context on the display; returns EGL_NO_CONTEXT and the reason in `error`.
 EGLContext try_display(EGLDisplay display, std::string& error) {
     EGLint major = 0, minor = 0;
@@ -107,13 +113,11 @@ EGLContext try_display(EGLDisplay display, std::string& error) {
         error = egl_error("eglBindAPI(OpenGL)");
         return EGL_NO_CONTEXT;
     }
-    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION,
-                                 4,
-                                 EGL_CONTEXT_MINOR_VERSION,
-                                 5,
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK,
-                                 EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                 EGL_NONE};
+    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
+                                 EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                 // Behind EGL_NONE unless it is asked for: EGL 1.4 may not know it.
+                                 is_debugging() ? EGL_CONTEXT_FLAGS_KHR : EGL_NONE,
+                                 EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR, EGL_NONE};
     const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
     if (context == EGL_NO_CONTEXT) error = egl_error("eglCreateContext for OpenGL 4.5 core");
     return context;
@@ -127,14 +131,16 @@ EGLContext try_display(EGLDisplay display, std::string& error) {
     throw ContextError(message);
 }
 
-/// Errors of the driver become log messages; the exception of the failing operation follows from its own
-/// checks.
+/// Errors of the driver become warnings, what it says of performance messages for developers; the exception
+/// of the failing operation follows from its own checks.
 void GLAPIENTRY debug_message(GLenum source, GLenum type, GLuint, GLenum severity, GLsizei length,
                               const GLchar* text, const void*) {
     // Program throws what compilers say.
     if (source == GL_DEBUG_SOURCE_SHADER_COMPILER) return;
     if (type == GL_DEBUG_TYPE_ERROR || severity == GL_DEBUG_SEVERITY_HIGH)
         log_warning(fmt::format("OpenGL: {}", std::string_view(text, size_t(length))));
+    else if (type == GL_DEBUG_TYPE_PERFORMANCE)
+        log(LogLevel::debug, fmt::format("OpenGL performance: {}", std::string_view(text, size_t(length))));
 }
 
 std::string gl_string(GLenum name) {
@@ -219,6 +225,7 @@ void Context::initialize() {
     info_.max_viewport = std::min(viewport[0], viewport[1]);
     glDebugMessageCallback(debug_message, nullptr);
     glEnable(GL_DEBUG_OUTPUT);
+    if (is_debugging()) glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
     reset_state();
 }
 

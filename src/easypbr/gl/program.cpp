@@ -184,10 +184,14 @@ void check_features(const Expanded (&sources)[2], const std::vector<std::string>
     }
 }
 
-GLuint compile(GLenum stage, const Expanded& source) {
+std::string complete_text(const Expanded& source) {
     std::string text = "#version 450 core\n";
     for (const std::string& define : source.defines) text += "#define " + define + "\n";
-    text += source.text;
+    return text + source.text;
+}
+
+GLuint compile(GLenum stage, const Expanded& source) {
+    const std::string text = complete_text(source);
     Context::with_driver();
     const GLuint shader = glCreateShader(stage);
     const char* pointer = text.c_str();
@@ -222,6 +226,18 @@ std::string shader_source(std::string_view name) {
     for (const EmbeddedShader& shader : embedded_shaders)
         if (shader.name == name) return std::string(shader.text);
     throw ArgumentError(fmt::format("there is no shader file '{}'", name.substr(0, 200)));
+}
+
+std::vector<std::string> shader_names() {
+    std::vector<std::string> names;
+    for (const EmbeddedShader& shader : embedded_shaders) names.emplace_back(shader.name);
+    return names;
+}
+
+ShaderStage shader_stage(std::string_view name, const std::vector<std::string>& defines) {
+    const ShaderTexts none;
+    const Expanded source = expanded(name, none, defines);
+    return {complete_text(source), source.features};
 }
 
 std::vector<fs::path> shader_files(std::string_view name) {

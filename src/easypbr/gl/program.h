@@ -16,6 +16,9 @@ namespace easypbr::gl {
 /// name with a folder in it is the path of a file. Throws ArgumentError when there is none, FileError.
 std::string shader_source(std::string_view name);
 
+/// The names of the embedded shader files.
+std::vector<std::string> shader_names();
+
 /// The files on disk, and not the embedded ones, that a shader is read from, those it includes too. An
 /// included file is looked for beside the one that includes it, then among the embedded ones.
 std::vector<std::filesystem::path> shader_files(std::string_view name);
@@ -26,6 +29,14 @@ struct ShaderText {
 };
 /// They stand in for the shader files of these names.
 using ShaderTexts = std::map<std::string, ShaderText, std::less<>>;
+
+/// What a driver compiles of a shader file with these macros, see Program: all that it includes, complete.
+struct ShaderStage {
+    std::string text;
+    std::vector<std::string> features;  ///< the macros of its lines #feature
+};
+/// Throws as shader_source() does.
+ShaderStage shader_stage(std::string_view name, const std::vector<std::string>& defines = {});
 
 /// A linked vertex and fragment shader. Uniforms that the linker removed are silently ignored when they are
 /// set.

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
+#include <cstring>
 #include <utility>
 
 #include "easypbr/core/error.h"
@@ -70,7 +72,12 @@ struct Renderer::Picture {
     bool holds_surfaces = false;  ///< its only frame is what the pixels' centres see
 };
 
-Renderer::Renderer() = default;
+Renderer::Renderer() {
+    const char* native = std::getenv("EASYPBR_NATIVE");
+    if (!native || std::strcmp(native, "0") != 0) return;
+    allow_native_geometry(false);
+    allow_native_shading(false);
+}
 Renderer::~Renderer() = default;
 
 void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved, const DrawOptions& options,
