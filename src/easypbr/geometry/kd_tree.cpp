@@ -49,6 +49,8 @@ class Collector {
         if (squared < limit_) found_.emplace_back(squared, original_[index]);
         return true;
     }
+    /// nanoflann 1.5 and later ask for it. Who queries sorts.
+    void sort() {}
 
   private:
     float limit_;
