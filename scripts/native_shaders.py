@@ -269,7 +269,8 @@ class Translator:
 class Shader:
     """Declarations at file scope."""
 
-    def __init__(self, text: Text, name: str) -> None:
+    def __init__(self, text: Text, name: str, apart: set[str]) -> None:
+        self.apart = apart
         self.uniforms: list[tuple[str, str, str]] = []  # type, name, array size or ""
         self.uniform_structs: list[str] = []
         self.members: list[str] = []
@@ -292,12 +293,15 @@ class Shader:
             items = []
         if items:
             raise ShaderError(f"{name}: a declaration without its end")
+        if unknown := apart - {function for function, _, _ in self.functions}:
+            raise ShaderError(f"there is no function {', '.join(sorted(unknown))}")
 
     def declaration(self, items: list, structs: dict, translator: Translator) -> None:
-        location = 0
+        location, is_blended = 0, False
         if items[0] == "layout":
             words = items[1][1]
             location = int(words[words.index("location") + 2]) if "location" in words else 0
+            is_blended = "index" in words and words[words.index("index") + 2] != "0"
             items = items[2:]
         if items[0] in INTERPOLATIONS:
             items = items[1:]
@@ -317,7 +321,8 @@ class Shader:
         elif items[0] in ("in", "out"):
             names = [item for item in items[2:-1] if item != ","]
             self.members.append(f"{TYPES.get(items[1], items[1])} {', '.join(names)};")
-            if items[0] == "out":
+            # A second source of blending and integers are not what pixels become.
+            if items[0] == "out" and not is_blended and not items[1].startswith("uvec"):
                 self.outputs[location] = items[2]
             self.streams.append((items[1], items[2], items[0] == "out"))
         elif items[0] == "const":
@@ -325,7 +330,8 @@ class Shader:
         else:
             kind, name, parameters, body = items
             kind = TYPES.get(kind, "auto" if kind == "int" else kind)
-            text = f"INLINE {kind} {name}({translator.parameters(parameters[1])}) {translator.block(body[1])}"
+            how = "APART" if name in self.apart else "INLINE"
+            text = f"{how} {kind} {name}({translator.parameters(parameters[1])}) {translator.block(body[1])}"
             self.functions.append((name, set(re.findall(r"\w+", text)), text))
 
     def called(self) -> list[str]:
@@ -403,11 +409,11 @@ def stream_of(name: str, shader: Shader) -> tuple[str, list[str]]:
 
 
 def translate(
-    name: str, folder: Path, macros: dict[str, str], without: list[str], is_stream: bool
+    name: str, folder: Path, macros: dict[str, str], without: list[str], apart: set[str], is_stream: bool
 ) -> tuple[str, str, str]:
     """The struct of a shader's uniforms, that of the shader, and that of its arrays."""
     text = Text(folder, macros, without)
-    shader = Shader(text, f"{name}.frag")
+    shader = Shader(text, f"{name}.frag", apart)
     kinds = [
         (f"samplers::{uniform}" if kind.startswith(("sampler", "usampler")) else UNIFORM_TYPES.get(kind, kind), uniform, size)
         for kind, uniform, size in shader.uniforms
@@ -431,6 +437,7 @@ def main() -> None:
     parser.add_argument("names", nargs="+", help="fragment shaders, without .frag")
     parser.add_argument("--define", action="append", default=[], metavar="NAME[=VALUE]", help="a macro")
     parser.add_argument("--without", action="append", default=[], metavar="NAME", help="a feature that is left out")
+    parser.add_argument("--apart", action="append", default=[], metavar="NAME.FUNCTION", help="is compiled once, not where it is called")
     parser.add_argument("--stream", action="append", default=[], metavar="NAME", help="one more, that shades arrays")
     arguments = parser.parse_args()
     macros = dict((*macro.split("=", 1), "")[:2] for macro in arguments.define)
@@ -438,7 +445,8 @@ def main() -> None:
     for name in arguments.names + arguments.stream:
         is_stream = name in arguments.stream
         try:
-            parts = translate(name, arguments.folder, macros, arguments.without, is_stream)
+            apart = {word.split(".")[1] for word in arguments.apart if word.split(".")[0] == name}
+            parts = translate(name, arguments.folder, macros, arguments.without, apart, is_stream)
         except ShaderError as error:
             sys.exit(f"{name}: {error}")
         uniforms.append(parts[0])

@@ -13,4 +13,4 @@
 
 uniform int u_plain_lights;   // lights without shadows, the first ones
 uniform int u_single_lights;  // end of those with one shadow map
-uniform int u_cube_lights;    // end of those with a cube
+uniform int u_block_lights;   // end of those with a cube, and of all

@@ -46,7 +46,7 @@ void add_shadowed(inout vec2 light, vec3 position, vec3 normal) {
         light += arrives * vec2(brightness(shadow_single(i - u_plain_lights, position, normal, arrives > 0.0)), 1.0);
     }
     if (!has_shadow_cubes) return;
-    for (int i = u_single_lights; i < u_cube_lights; ++i) {
+    for (int i = u_single_lights; i < u_block_lights; ++i) {
         float arrives = arriving_at(u_lights[i], position, normal);
         light += arrives * vec2(brightness(shadow_cube(i - u_plain_lights, position, normal, arrives > 0.0)), 1.0);
     }

@@ -5,7 +5,9 @@
 vec3 anisotropic_radiance(Surface s) {
     vec2 alpha = anisotropic_alpha(s, s.alpha);
     float spread = sqrt(max(alpha.x * alpha.x - alpha.y * alpha.y, 0.0));
-    if (spread < 0.01) return lobe_radiance(s.normal, s.view, s.n_dot_v, s.roughness, s.alpha);
+    vec3 round_lobe = vec3(0.0);
+    if (any_lane(spread < 0.01)) round_lobe = lobe_radiance(s.normal, s.view, s.n_dot_v, s.roughness, s.alpha);
+    if (!any_lane(spread >= 0.01)) return round_lobe;
     const int taps = 8;
     vec3 sum = vec3(0.0);
     float total = 0.0;
@@ -19,22 +21,25 @@ vec3 anisotropic_radiance(Surface s) {
         sum += weight * prefiltered(l, sqrt(sqrt(min(alpha.y * alpha.y + gap * gap, 1.0))));
         total += weight;
     }
-    return total > 1e-3 ? sum / total : prefiltered(s.normal, 1.0);
+    vec3 along = sum / max(total, 1e-3);
+    if (any_lane(total <= 1e-3)) along = total > 1e-3 ? along : prefiltered(s.normal, 1.0);
+    return spread < 0.01 ? round_lobe : along;
 }
+
+// Cosine, part of the sky, directions.
+const vec3 rings[3] = vec3[](vec3(0.12, 0.25, 6.0), vec3(0.42, 0.35, 6.0), vec3(0.8, 0.4, 3.0));
 
 // Average radiance in the lobe of the sheen, which is as wide as the sky: directions on three rings, each for the part of
 // the sky around it, weighted by the lobe.
 vec3 sheen_radiance(Surface s) {
     vec3 b1, b2;
     frame_around(s.normal, b1, b2);
-    // Cosine, part of the sky, directions.
-    const vec3 rings[3] = vec3[](vec3(0.12, 0.25, 6.0), vec3(0.42, 0.35, 6.0), vec3(0.8, 0.4, 3.0));
     vec3 sum = vec3(0.0);
     float total = 0.0;
     for (int ring = 0; ring < 3; ++ring) {
         float cosine = rings[ring].x, sine = sqrt(1.0 - cosine * cosine);
-        for (float i = 0.0; i < rings[ring].z; ++i) {
-            float angle = full_turn * (i + u_tap_offset + 0.5 * float(ring)) / rings[ring].z;
+        for (int i = 0; i < int(rings[ring].z); ++i) {
+            float angle = full_turn * (float(i) + u_tap_offset + 0.5 * float(ring)) / rings[ring].z;
             vec3 l = s.normal * cosine + (b1 * cos(angle) + b2 * sin(angle)) * sine;
             float n_dot_h = clamp(dot(s.normal, normalize(l + s.view)), 0.0, 1.0);
             float roughness = s.extension.sheen_roughness;
@@ -52,7 +57,7 @@ vec3 indirect(Surface s, float visibility) {
     vec3 result = s.energy.single * mirrored_light(lobe, s.n_dot_v, s.alpha, visibility, s.f0) +
                   (s.energy.multiple + s.diffuse) * diffuse_light(s.normal, visibility, s.diffuse);
     Extension e = s.extension;
-    if (has_sheen && max_channel(e.sheen_color) > 0.0)
+    if (has_sheen && any_lane(max_channel(e.sheen_color) > 0.0))
         result = result * s.sheen_keep + e.sheen_color * min(s.sheen_albedo, 1.0) * sheen_light(sheen_radiance(s), visibility);
     if (has_clearcoat) {
         float coat_alpha = e.coat_roughness * e.coat_roughness;

@@ -1,19 +1,30 @@
 // Surfaces with glTF's material extensions, as the G-buffer holds them.
 #include "common_area_light.glsl"
+#include "common_camera.glsl"
+#include "common_lanes.glsl"
+#include "common_surface.glsl"
+#include "common_surface_kind.glsl"
+#include "lighting_sky.glsl"
 #include "lighting_extended.glsl"
 
+uniform float u_tap_offset;  // in [0, 1), another one in each frame
+uniform float u_tap_gap;     // between the offsets of all frames
 uniform usampler2D u_extension0;
 uniform usampler2D u_extension1;
 
 // As that of lighting_plain.glsl.
 void prepare(inout Surface s, vec3 albedo, float metallic, float kind) {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    if (is_extended(kind))
-        s.extension = unpack_extension(texelFetch(u_extension0, pixel, 0), texelFetch(u_extension1, pixel, 0), s.normal);
-    else
-        s.extension = plain_extension(s.normal, vec3(u_dielectric_f0));
+    s.extension = plain_extension(s.normal, vec3(u_dielectric_f0));
+    if (any_lane(is_extended(kind))) {
+        Extension e = unpack_extension(texelFetch(u_extension0, pixel, 0), texelFetch(u_extension1, pixel, 0), s.normal);
+        s.extension = chosen_extension(is_extended(kind), e, s.extension);
+    }
     prepare_extended(s, albedo, metallic);
 }
+
+// Of what is below all layers: the part that they leave.
+float kept_below(Surface s) { return s.keep; }
 
 // What comes through of an area light of radiance 1, on the other side: the specular lobe around the way straight through.
 vec3 area_transmitted(Light light, Surface s) {
@@ -49,3 +60,8 @@ vec3 area_scattered(Light light, Surface s) {
 }
 
 #include "lighting_extended_sky.glsl"
+#ifdef BEHIND  // As above: only layers are seen through.
+#include "lighting_transmission.glsl"
+#else
+vec4 transmitted(Surface s) { return vec4(0.0, 0.0, 0.0, 1.0); }
+#endif

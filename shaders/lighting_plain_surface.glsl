@@ -1,5 +1,7 @@
 // Surfaces without extensions, as the G-buffer holds them.
 #include "common_area_light.glsl"
+#include "common_surface.glsl"
+#include "lighting_sky.glsl"
 #include "lighting_plain.glsl"
 
 // What is seen of an area light of radiance 1.
@@ -9,3 +11,7 @@ vec3 area_scattered(Light light, Surface s) {
     if (has_multiple_scattering) specular *= 1.0 + s.f0 * (1.0 / s.energy.e - 1.0);
     return specular + s.diffuse * area_irradiance(light, s.position, s.normal);
 }
+
+// As those of lighting_transmission.glsl and lighting_extended_surface.glsl.
+vec4 transmitted(Surface s) { return vec4(0.0, 0.0, 0.0, 1.0); }
+float kept_below(Surface s) { return 1.0; }

@@ -34,6 +34,7 @@ class Generator {
             material.base_color = color();
             material.roughness = chance(0.2) ? 0.0f : number(0, 1);
             material.metallic = chance(0.5) ? 0.0f : number(0, 1);
+            if (chance(0.4)) extend(material);
             mesh.set_material(material);
             Eigen::Affine3d pose = Eigen::Affine3d::Identity();
             pose.translate(Vec3d(1.5 * i, number(-1, 1), number(-1, 1)));
@@ -92,6 +93,21 @@ class Generator {
         s.outline.silhouettes = chance(0.7);
         s.outline.creases = chance(0.7);
         s.outline.objects = chance(0.7);
+    }
+    /// Material extensions of opaque surfaces.
+    void extend(Material& m) {
+        m.clearcoat = chance(0.5) ? number(0, 1) : 0.0f;
+        m.clearcoat_roughness = number(0, 1);
+        if (chance(0.5)) m.sheen_color = color();
+        m.sheen_roughness = number(0, 1);
+        m.ior = chance(0.3) ? 1.5f : number(1, 2.5f);
+        m.specular = chance(0.5) ? 1.0f : number(0, 1);
+        if (chance(0.3)) m.specular_color = color();
+        m.iridescence = chance(0.4) ? number(0, 1) : 0.0f;
+        m.iridescence_thickness_max = number(100, 900);
+        m.anisotropy = chance(0.4) ? number(0, 1) : 0.0f;
+        m.anisotropy_rotation_deg = number(-180, 180);
+        if (chance(0.3)) m.emissive = color();
     }
     /// Points without normals: shaded by eye-dome lighting.
     Mesh cloud_of(const Mesh& mesh) {

@@ -59,6 +59,23 @@ def test_functions_that_nobody_calls_are_left_out(tmp_path: Path) -> None:
     assert "used()" in shader(tmp_path) and "unused" not in shader(tmp_path)
 
 
+def test_functions_are_compiled_apart(tmp_path: Path) -> None:
+    text = "out vec4 o;\nfloat far(float x) { return x; }\nvoid main() { o = vec4(far(1.0)); }\n"
+    assert translate(tmp_path, text, "--apart", "sample.far").returncode == 0
+    assert "APART vfloat far(" in shader(tmp_path) and "INLINE void main()" in shader(tmp_path)
+    done = translate(tmp_path, text, "--apart", "sample.near")
+    assert done.returncode == 1 and "no function near" in done.stderr
+
+
+def test_second_sources_and_integers_are_no_outputs(tmp_path: Path) -> None:
+    text = (
+        "layout(location = 0, index = 0) out vec4 a;\nlayout(location = 0, index = 1) out vec4 b;\n"
+        "layout(location = 1) out uvec4 c;\nvoid main() { a = b = vec4(1.0); }\n"
+    )
+    assert translate(tmp_path, text).returncode == 0
+    assert "output_count = 1" in shader(tmp_path) and "{channels_of(a)}" in shader(tmp_path)
+
+
 def test_outputs_are_listed_by_location(tmp_path: Path) -> None:
     text = "layout(location = 1) out float b;\nlayout(location = 0) out vec2 a;\nvoid main() { a = vec2(1.0); b = 2.0; }\n"
     assert translate(tmp_path, text).returncode == 0

@@ -49,6 +49,10 @@ scene = Scene()
 scene.show(shapes.box(), "box")
 view = Viewer((32, 32), {"image": {"samples": 2}}, scene)
 assert view.device == "cpu" and view.render().shape == (32, 32, 4)
+for name in ("clearcoat", "iridescence", "anisotropy"):
+    setattr(view.settings.material, name, 0.5)
+view.settings.material.sheen_color = (0.2, 0.3, 0.4)
+assert view.render()[16, 16, 3] == 255
 view.settings.material.opacity = 0.5
 try:
     view.render()

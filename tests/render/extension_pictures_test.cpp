@@ -169,7 +169,6 @@ TEST(Extensions, WithoutEffectTheyAreTheCoreModel) {
 
     Scene scene;
     app::Session session = session_of(plain, scene);
-    session.allow_native_geometry(false);  // it does not draw extended surfaces
     session.settings().environment.enabled = true;
     const Image alone = render_linear(session);
     Mesh other = make_sphere(0.2f, 32);
@@ -186,6 +185,7 @@ TEST(Extensions, WithoutEffectTheyAreTheCoreModel) {
 TEST(Extensions, StayWhatTheyAreInAnOverlay) {
     Scene scene;
     app::Session session = session_of(extended(), scene);
+    session.allow_native_geometry(false);  // overlays are the driver's
     session.settings().environment.enabled = true;
     const Image plain = render_linear(session);
     session.settings().style.overlay = true;

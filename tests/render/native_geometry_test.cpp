@@ -216,6 +216,37 @@ TEST(NativeGeometry, AllMaps) {
     expect_agreement(inside_out);
 }
 
+// The pictures must agree too: what lights read of the extensions is packed by both.
+TEST(NativeGeometry, MapsOfExtensions) {
+    Mesh mesh = fine_teapot();
+    Material material = with_all_maps();
+    material.clearcoat = material.sheen_roughness = material.iridescence = material.anisotropy = 0.8f;
+    material.clearcoat_roughness = 0.5f;
+    material.sheen_color = Vec3(0.3f, 0.5f, 0.4f);
+    material.clearcoat_texture = material.clearcoat_roughness_texture = waves(4);
+    material.clearcoat_normal_texture = normals();
+    material.sheen_color_texture = material.sheen_roughness_texture = waves(5, Wrap::mirror);
+    material.specular_texture = material.specular_color_texture = waves(6);
+    material.iridescence_texture = material.iridescence_thickness_texture = waves(7);
+    material.anisotropy_texture = normals();
+    mesh.set_material(material);
+    Scene scene;
+    scene.show(mesh, "teapot");
+    expect_agreement(scene);
+    material.alpha_mode = AlphaMode::mask;
+    material.opacity_texture = waves(8);
+    mesh.set_material(material);
+    Scene cut_out;
+    cut_out.show(mesh, "cut out");
+    const Comparison c = compare_both(cut_out, {});
+    if (!c.software) return;
+    EXPECT_GT(c.covered, 3000);
+    // The borders of the holes are where the driver's level of detail, of 2x2 pixels, says.
+    EXPECT_LE(c.one_sided, 0.01);
+    EXPECT_LE(c.material_off, 0.02);
+    EXPECT_LE(c.picture_off, 0.02);
+}
+
 TEST(NativeGeometry, SeparateMapsWithoutFilter) {
     Mesh mesh = fine_teapot();
     Material material = with_all_maps();

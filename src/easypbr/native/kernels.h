@@ -79,13 +79,15 @@ struct VisibleTriangles {
     uint64_t albedo = 0;                       ///< of all pixels, in the formats of the targets
     uint32_t material = 0, id = 0;
     const void* shader = nullptr;   ///< uniforms of mesh_resolve; null: albedo and material are constants
+    bool extended = false;          ///< uniforms of mesh_extended instead
     TriangleAttributes attributes;  ///< for the shader
 
     int x = 0, y = 0, width = 0;  ///< first pixel that the targets hold, and of how many columns
     uint64_t* albedos = nullptr;
     uint32_t *normals = nullptr, *materials = nullptr, *ids = nullptr, *elements = nullptr;
-    float* depths = nullptr;    ///< ids and elements: null where they are not asked for
-    float* emission = nullptr;  ///< r g b a; null where nothing emits
+    float* depths = nullptr;       ///< ids and elements: null where they are not asked for
+    float* emission = nullptr;     ///< r g b a; null where nothing emits
+    uint32_t* extensions[2] = {};  ///< four values a pixel; null where they are not asked for
 };
 
 /// A pixel that a primitive, as a triangle, was found in.
@@ -169,7 +171,6 @@ struct Kernels {
     ResolveTriangles resolve_triangles;
     AlphaOfTriangles alpha_of_triangles;
     ShadeHits shade_hits;
-    ShadeHits shade_extended_hits;  ///< of triangles whose shader is mesh_hit_extended
     DrawLines draw_lines;
     ShadeRows shade[shader_count];     ///< by Shader
     ShadeStream stream[stream_count];  ///< by Stream

@@ -206,6 +206,10 @@ std::shared_ptr<const void> surface_uniforms(const Inputs& inputs) {
     return filled<mesh_resolve_uniforms>(inputs);
 }
 
+std::shared_ptr<const void> extended_uniforms(const Inputs& inputs) {
+    return filled<mesh_extended_uniforms>(inputs);
+}
+
 void resolve_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels) {
     chosen_set().kernels->resolve_triangles(triangles, pixels.data(), int(pixels.size()));
 }
@@ -218,15 +222,6 @@ void alpha_of_triangles(const VisibleTriangles& triangles, std::span<const Visib
 void shade_hits(const VisibleTriangles& triangles, std::span<const ElementHit> hits,
                 const HitSurfaces& surfaces) {
     chosen_set().kernels->shade_hits(triangles, hits.data(), int(hits.size()), surfaces);
-}
-
-std::shared_ptr<const void> extended_hit_uniforms(const Inputs& inputs) {
-    return filled<mesh_hit_extended_uniforms>(inputs);
-}
-
-void shade_extended_hits(const VisibleTriangles& triangles, std::span<const ElementHit> hits,
-                         const HitSurfaces& surfaces) {
-    chosen_set().kernels->shade_extended_hits(triangles, hits.data(), int(hits.size()), surfaces);
 }
 
 std::shared_ptr<const void> stream_uniforms(Stream shader, const Inputs& inputs) {

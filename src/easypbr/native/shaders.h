@@ -42,6 +42,8 @@ struct Inputs {
 /// The uniforms of mesh_resolve, for VisibleTriangles::shader. Throws Error when a value is not of the
 /// uniform's type.
 std::shared_ptr<const void> surface_uniforms(const Inputs& inputs);
+/// The same of mesh_extended, for triangles that are `extended`.
+std::shared_ptr<const void> extended_uniforms(const Inputs& inputs);
 /// Writes the surfaces of pixels. On the calling thread.
 void resolve_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels);
 /// The opacity of pixels by the triangles' shader, before it is compared with a cutoff. On the calling
@@ -49,17 +51,11 @@ void resolve_triangles(const VisibleTriangles& triangles, std::span<const Visibl
 void alpha_of_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels,
                         std::span<float> alpha);
 
-/// Evaluates the triangles' shader where rays have met them. The arrays have room for a multiple of
+/// Evaluates the triangles' shader where rays have met them, with HitSurfaces::extensions where it is the
+/// extended one. The arrays have room for a multiple of
 /// stream_alignment hits. On the calling thread.
 void shade_hits(const VisibleTriangles& triangles, std::span<const ElementHit> hits,
                 const HitSurfaces& surfaces);
-
-/// The uniforms of mesh_hit_extended, for VisibleTriangles::shader. Throws Error when a value is not of the
-/// uniform's type.
-std::shared_ptr<const void> extended_hit_uniforms(const Inputs& inputs);
-/// shade_hits() with HitSurfaces::extensions, of triangles with these uniforms.
-void shade_extended_hits(const VisibleTriangles& triangles, std::span<const ElementHit> hits,
-                         const HitSurfaces& surfaces);
 
 /// The uniforms of a stream's shader. Throws Error when a value is not of the uniform's type.
 std::shared_ptr<const void> stream_uniforms(Stream shader, const Inputs& inputs);

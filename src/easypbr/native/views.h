@@ -25,6 +25,7 @@ struct Rgba8 : View {};
 struct Rgba16 : View {};
 struct Rgba16f : View {};
 struct Rgba32f : View {};
+struct Rgba32ui : View {};
 // Held whole.
 struct R16fLinear : View {};
 struct Rgba8Linear : View {};
@@ -142,6 +143,8 @@ using u_iridescence_texture = Texture;
 using u_iridescence_thickness_texture = Texture;
 using u_anisotropy_texture = Texture;
 using u_sheen_albedo = R16fLinear;
+using u_extension0 = Rgba32ui;
+using u_extension1 = Rgba32ui;
 }  // namespace samplers
 
 /// Values that are the same for all pixels, as GLSL names their types.

@@ -2,6 +2,7 @@
 // might keep this file's copy of them for processors that cannot run it.
 #include "easypbr/native/kernels.h"
 
+#include "easypbr/native/simd/packing.h"
 #include "easypbr/native/simd/resolve_triangles.h"
 
 namespace easypbr::native {
@@ -318,7 +319,6 @@ extern const Kernels kernels;
 const Kernels kernels{resolve_triangles,
                       alpha_of_triangles,
                       shade_hits,
-                      shade_extended_hits,
                       draw_lines,
                       {EASYPBR_SHADERS(EASYPBR_ROWS)},
                       {EASYPBR_STREAMS(EASYPBR_ARRAYS)}};

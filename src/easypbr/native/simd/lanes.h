@@ -11,6 +11,8 @@
 #endif
 
 #define INLINE inline __attribute__((always_inline))
+/// Of functions that are long, rarely needed and called at several places: compiled once.
+#define APART __attribute__((noinline))
 
 namespace easypbr::native::EASYPBR_ISA {
 
@@ -191,6 +193,9 @@ INLINE vfloat as_float(Ints bits) {
 INLINE vuint floatBitsToUint(vfloat a) {
     return Uints(a.v);
 }
+INLINE vfloat uintBitsToFloat(vuint a) {
+    return Floats(a.v);
+}
 
 INLINE vfloat select(vbool c, vfloat a, vfloat b) {
     return c.v ? a.v : b.v;
@@ -307,6 +312,10 @@ INLINE vint bitCount(vuint a) {
     x = (x & 0x33333333u) + ((x >> 2) & 0x33333333u);
     x = (x + (x >> 4)) & 0x0f0f0f0fu;
     return Ints((x * 0x01010101u) >> 24);
+}
+/// Halves away from minus infinity.
+INLINE vfloat round(vfloat a) {
+    return floor(a + 0.5f);
 }
 INLINE vfloat fract(vfloat a) {
     return a - floor(a);

@@ -121,7 +121,7 @@ INLINE void store_surface(mesh_resolve& s, const vec3& face, const HitSurfaces& 
     store_lanes(to.kind, size_t(at), vfloat(s.u_emissive.w));
 }
 
-INLINE void store_surface(mesh_hit_extended& s, const vec3& face, const HitSurfaces& to, int at) {
+INLINE void store_surface(mesh_extended& s, const vec3& face, const HitSurfaces& to, int at) {
     s.main();
     const auto towards = [&](const vec3& n) __attribute__((always_inline)) {
         return select(dot(n, face) < 0.0f, -n, n);
@@ -156,12 +156,10 @@ INLINE void shade_hits_by(const VisibleTriangles& t, const ElementHit* hits, int
 }
 
 inline void shade_hits(const VisibleTriangles& t, const ElementHit* hits, int count, const HitSurfaces& to) {
-    shade_hits_by<mesh_resolve, mesh_resolve_uniforms>(t, hits, count, to);
-}
-
-inline void shade_extended_hits(const VisibleTriangles& t, const ElementHit* hits, int count,
-                                const HitSurfaces& to) {
-    shade_hits_by<mesh_hit_extended, mesh_hit_extended_uniforms>(t, hits, count, to);
+    if (t.extended)
+        shade_hits_by<mesh_extended, mesh_extended_uniforms>(t, hits, count, to);
+    else
+        shade_hits_by<mesh_resolve, mesh_resolve_uniforms>(t, hits, count, to);
 }
 
 }  // namespace easypbr::native::EASYPBR_ISA

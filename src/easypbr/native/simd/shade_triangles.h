@@ -16,7 +16,8 @@ INLINE void weight_changes(const PixelOnTriangle& hit, const vfloat (&from)[3], 
     for (int k = 0; k < 3; ++k) changes[k] = (b[k] - hit.weight[k] * sum) * scale;
 }
 
-INLINE void set_uv(mesh_resolve& s, const VisibleTriangles& t, const VisiblePixel* pixels,
+template <class Shader>
+INLINE void set_uv(Shader& s, const VisibleTriangles& t, const VisiblePixel* pixels,
                    const VisibleLanes& seen) {
     CornerValues<2> uv;
     seen.each_corner(
@@ -64,7 +65,8 @@ INLINE void set_tangent(Shader& s, const VisibleTriangles& t, const Place* place
 }
 
 /// Everything that the shader interpolates.
-INLINE void set_inputs(mesh_resolve& s, const VisibleTriangles& t, const VisiblePixel* pixels,
+template <class Shader>
+INLINE void set_inputs(Shader& s, const VisibleTriangles& t, const VisiblePixel* pixels,
                        const VisibleLanes& seen) {
     s.gl_FrontFacing = t.mirrored ? !seen.hit.front : seen.hit.front;
     if (s.sees_by_faces) {
@@ -81,40 +83,79 @@ INLINE vint rounded_bits(vfloat c, float most) {
     return to_int(clamp(c, 0.0f, 1.0f) * most + 0.5f);
 }
 
+/// What a pixel holds in the formats of the targets, by its shader.
+struct ShadedLanes {
+    vint normal, red_green, blue_alpha, material;
+    vec3 emission;
+
+    INLINE void set(const vec3& color, const vec2& encoded_normal, const vec4& surface) {
+        normal = rounded_bits(encoded_normal.x, 65535) | rounded_bits(encoded_normal.y, 65535) << 16;
+        red_green = rounded_bits(color.x, 65535) | rounded_bits(color.y, 65535) << 16;
+        blue_alpha = rounded_bits(color.z, 65535) | 65535 << 16;
+        material = rounded_bits(surface.x, 255) | rounded_bits(surface.y, 255) << 8 |
+                   rounded_bits(surface.z, 255) << 16 | rounded_bits(surface.w, 255) << 24;
+    }
+};
+
+INLINE ShadedLanes shaded(mesh_resolve& s, const VisibleTriangles&, const VisiblePixel*, int) {
+    s.main();
+    ShadedLanes lanes_of;
+    lanes_of.set(s.o_albedo.xyz(), s.o_normal, s.o_material);
+    lanes_of.emission = s.o_emission;
+    return lanes_of;
+}
+
+INLINE void write_extension(uint32_t* to, const uvec4& v, const VisibleTriangles& t,
+                            const VisiblePixel* pixels, int used) {
+    for (int k = 0; k < used; ++k) {
+        const size_t at = size_t(pixels[k].y - t.y) * size_t(t.width) + size_t(pixels[k].x - t.x);
+        const uint32_t pixel[4] = {v.x.v[k], v.y.v[k], v.z.v[k], v.w.v[k]};
+        std::memcpy(to + 4 * at, pixel, sizeof pixel);
+    }
+}
+
+INLINE ShadedLanes shaded(mesh_extended& s, const VisibleTriangles& t, const VisiblePixel* pixels, int used) {
+    s.main();
+    ShadedLanes lanes_of;
+    lanes_of.set(s.o_albedo, s.oct_encode(s.o_normal) * 0.5f + vec2(0.5f),
+                 vec4(s.o_parameters, s.u_emissive.w));
+    lanes_of.emission = s.o_emission;
+    write_extension(t.extensions[0], s.o_first, t, pixels, used);
+    write_extension(t.extensions[1], s.o_second, t, pixels, used);
+    return lanes_of;
+}
+
+template <class Shader, class Uniforms>
 inline void resolve_shaded(const VisibleTriangles& t, const VisiblePixel* pixels, int count) {
-    mesh_resolve s;
-    static_cast<mesh_resolve_uniforms&>(s) = *static_cast<const mesh_resolve_uniforms*>(t.shader);
+    Shader s;
+    static_cast<Uniforms&>(s) = *static_cast<const Uniforms*>(t.shader);
     for (int first = 0; first < count; first += lanes, pixels += lanes) {
         const VisibleLanes seen(t, pixels, count - first);
         set_inputs(s, t, pixels, seen);
-        s.main();
-        const vec4 &c = s.o_albedo, &m = s.o_material;
-        write_geometry(t, pixels, seen,
-                       rounded_bits(s.o_normal.x, 65535) | rounded_bits(s.o_normal.y, 65535) << 16);
-        const vint red_green = rounded_bits(c.x, 65535) | rounded_bits(c.y, 65535) << 16,
-                   blue_alpha = rounded_bits(c.z, 65535) | rounded_bits(c.w, 65535) << 16;
-        const vint material = rounded_bits(m.x, 255) | rounded_bits(m.y, 255) << 8 |
-                              rounded_bits(m.z, 255) << 16 | rounded_bits(m.w, 255) << 24;
+        const ShadedLanes c = shaded(s, t, pixels, seen.used);
+        write_geometry(t, pixels, seen, c.normal);
         for (int k = 0; k < seen.used; ++k) {
             const size_t at = size_t(pixels[k].y - t.y) * size_t(t.width) + size_t(pixels[k].x - t.x);
-            t.albedos[at] = uint32_t(red_green.v[k]) | uint64_t(uint32_t(blue_alpha.v[k])) << 32;
-            t.materials[at] = uint32_t(material.v[k]);
+            t.albedos[at] = uint32_t(c.red_green.v[k]) | uint64_t(uint32_t(c.blue_alpha.v[k])) << 32;
+            t.materials[at] = uint32_t(c.material.v[k]);
         }
-        if (t.emission) write_emission(t, pixels, seen.used, s.o_emission);
+        if (t.emission) write_emission(t, pixels, seen.used, c.emission);
     }
 }
 
 inline void resolve_triangles(const VisibleTriangles& t, const VisiblePixel* pixels, int count) {
-    if (t.shader)
-        resolve_shaded(t, pixels, count);
+    if (t.extended)
+        resolve_shaded<mesh_extended, mesh_extended_uniforms>(t, pixels, count);
+    else if (t.shader)
+        resolve_shaded<mesh_resolve, mesh_resolve_uniforms>(t, pixels, count);
     else
         resolve_plain(t, pixels, count);
 }
 
-inline void alpha_of_triangles(const VisibleTriangles& t, const VisiblePixel* pixels, int count,
-                               float* alpha) {
-    mesh_resolve s;
-    static_cast<mesh_resolve_uniforms&>(s) = *static_cast<const mesh_resolve_uniforms*>(t.shader);
+template <class Shader, class Uniforms>
+inline void alpha_by(const VisibleTriangles& t, const VisiblePixel* pixels, int count, float* alpha) {
+    Shader s;
+    static_cast<Uniforms&>(s) = *static_cast<const Uniforms*>(t.shader);
     for (int first = 0; first < count; first += lanes, pixels += lanes) {
         const VisibleLanes seen(t, pixels, count - first);
         if (s.has_uv) set_uv(s, t, pixels, seen);
@@ -122,6 +163,14 @@ inline void alpha_of_triangles(const VisibleTriangles& t, const VisiblePixel* pi
         const vfloat found = s.base_color().w;
         for (int k = 0; k < seen.used; ++k) alpha[first + k] = found.v[k];
     }
+}
+
+inline void alpha_of_triangles(const VisibleTriangles& t, const VisiblePixel* pixels, int count,
+                               float* alpha) {
+    if (t.extended)
+        alpha_by<mesh_extended, mesh_extended_uniforms>(t, pixels, count, alpha);
+    else
+        alpha_by<mesh_resolve, mesh_resolve_uniforms>(t, pixels, count, alpha);
 }
 
 }  // namespace easypbr::native::EASYPBR_ISA

@@ -7,6 +7,7 @@
 namespace easypbr::native::EASYPBR_ISA {
 
 struct ivec2;
+struct uvec3;
 struct vec3;
 
 struct bvec3 {
@@ -37,6 +38,7 @@ struct vec3 {
     INLINE vec3(vfloat a, const vec2& v) : x(a), y(v.x), z(v.y) {}
     INLINE explicit vec3(vfloat a) : x(a), y(a), z(a) {}
     INLINE explicit vec3(const bvec3& v);
+    INLINE explicit vec3(const uvec3& v);
     INLINE vec3(const uni::vec3& v) : x(v.x), y(v.y), z(v.z) {}
     INLINE vfloat operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
     INLINE vec2 xy() const { return {x, y}; }
@@ -99,9 +101,15 @@ struct ivec2 {
 
 struct uvec3 {
     vuint x, y, z;
+    INLINE uvec3(vuint a, vuint b, vuint c) : x(a), y(b), z(c) {}
+    INLINE explicit uvec3(const vec3& v) : x(vuint(v.x)), y(vuint(v.y)), z(vuint(v.z)) {}
+};
+struct uvec4 {
+    vuint x, y, z, w;
 };
 
 INLINE vec2::vec2(const ivec2& v) : x(to_float(v.x)), y(to_float(v.y)) {}
+INLINE vec3::vec3(const uvec3& v) : x(to_float(v.x)), y(to_float(v.y)), z(to_float(v.z)) {}
 INLINE vec3::vec3(const bvec3& v)
     : x(select(v.x, 1.0f, 0.0f)), y(select(v.y, 1.0f, 0.0f)), z(select(v.z, 1.0f, 0.0f)) {}
 INLINE vec4::vec4(const bvec4& v)
@@ -179,6 +187,7 @@ INLINE uvec3 floatBitsToUint(const vec3& a) {
 #define ABS(c) abs(a.c)
 #define FLOOR(c) floor(a.c)
 #define FRACT(c) fract(a.c)
+#define ROUND(c) round(a.c)
 #define SQRT(c) sqrt(a.c)
 #define LOG2(c) log2(a.c)
 #define EXP2(c) exp2(a.c)
@@ -206,6 +215,7 @@ INLINE uvec3 floatBitsToUint(const vec3& a) {
     UNARY(V, EACH, abs, ABS)                                   \
     UNARY(V, EACH, floor, FLOOR)                               \
     UNARY(V, EACH, fract, FRACT)                               \
+    UNARY(V, EACH, round, ROUND)                               \
     UNARY(V, EACH, sqrt, SQRT)                                 \
     UNARY(V, EACH, log2, LOG2)                                 \
     UNARY(V, EACH, exp2, EXP2)                                 \
@@ -252,6 +262,7 @@ VECTOR(vec4, EACH4)
 #undef EXP2
 #undef LOG2
 #undef SQRT
+#undef ROUND
 #undef FRACT
 #undef FLOOR
 #undef ABS

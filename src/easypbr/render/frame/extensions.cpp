@@ -14,8 +14,6 @@ ExtensionSet extensions_of(const Material& m) {
 }
 
 void add_extension_defines(ExtensionSet extensions, std::vector<std::string>& defines) {
-    if (!extensions) return;
-    defines.emplace_back("EXTENDED");
     if (extensions & clearcoat_bit) defines.emplace_back("CLEARCOAT");
     if (extensions & sheen_bit) defines.emplace_back("SHEEN");
     if (extensions & transmission_bit) defines.emplace_back("TRANSMISSION");

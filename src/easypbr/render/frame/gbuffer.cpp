@@ -99,12 +99,16 @@ void GBuffer::clear_layer() const {
     lit().clear_color(0, zero);
 }
 
-void GBuffer::write(const PixelRect& area, bool with_ids, bool with_emission) const {
+void GBuffer::write(const PixelRect& area, SurfaceContents contents) const {
     for (const Target* target : {&albedo, &normal, &material, &depth}) target->write(area);
     radiance.forget();
     emission.forget();
-    if (with_emission) emission.write(area);
-    if (!with_ids) return;
+    if (contents.emission) emission.write(area);
+    for (const Target& target : extension) {
+        target.forget();
+        if (contents.extensions) target.write(area);
+    }
+    if (!contents.ids) return;
     id.write(area);
     element.write(area);
 }
@@ -122,6 +126,7 @@ void GBuffer::upload(Transfers& transfers) const {
     } else {
         radiance.drawn();
         if (emission.is_ahead()) emission.copy_to(radiance.attachment(), transfers);
+        for (const Target& target : extension) target.upload(transfers);
     }
     if (ambient_occlusion && ambient_occlusion.is_ahead()) {
         const float open[4] = {1, 1, 1, 1};

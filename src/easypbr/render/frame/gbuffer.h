@@ -9,6 +9,11 @@
 
 namespace easypbr::render {
 
+/// What is written of surfaces beside albedo, normal, material and depth.
+struct SurfaceContents {
+    bool ids = false, emission = false, extensions = false;
+};
+
 /// Set in GBuffer::element where a vertex is seen; the same number stands in the shaders.
 inline constexpr uint32_t point_element = 1u << 31;
 
@@ -67,10 +72,10 @@ struct GBuffer {
     /// Depths of the depth test, as `depth` holds them.
     const gl::Texture& depth_test() const;
 
-    /// Begins to write surfaces in host memory, ids and emission too where they are asked for: nothing but a
-    /// rectangle, whose pixels are undefined.
-    void write(const PixelRect& area, bool with_ids, bool with_emission) const;
-    /// Brings surfaces that were written in host memory, and their light where they are lit, to the textures.
+    /// Begins to write surfaces in host memory: nothing but a rectangle, whose pixels are undefined.
+    void write(const PixelRect& area, SurfaceContents contents) const;
+    /// Brings surfaces that were written in host memory to the textures: with their light, where they are
+    /// lit, else with what lighting them needs.
     void upload(Transfers& transfers) const;
 
     /// The state of a screen pass that touches the pixels that hold geometry, and no others.

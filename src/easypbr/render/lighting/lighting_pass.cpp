@@ -142,6 +142,7 @@ void set_lights(ShaderInputs& values, const Frame& frame, const LightBlock& bloc
         lights[i] = light_uniform(*block.lights[i], frame.camera.position());
     values.set_block(0, "u_lights", gl::bytes_of(lights));
     values.set("u_plain_lights", int(block.plain()));
+    values.set("u_block_lights", int(block.lights.size()));
     if (block.shadows.empty()) return;
 
     ShadowUniforms shadows{};
@@ -157,7 +158,6 @@ void set_lights(ShaderInputs& values, const Frame& frame, const LightBlock& bloc
         values.set("u_tint_moment", block.tints->moment);
     }
     values.set("u_single_lights", int(block.lights.size() - block.cubes));
-    values.set("u_cube_lights", int(block.lights.size()));
     values.set("u_shadow_resolution", float(block.resolution));
     values.set("u_sample_index", float(frame.sample_index));
     set_noise_uniforms(values, frame);
@@ -180,15 +180,19 @@ void LightingPass::set_dfg(ShaderInputs& values, Brdf brdf, bool native) {
     values.set("u_dfg", dfg_);
 }
 
-void LightingPass::set_extensions(ShaderInputs& values, const Frame& frame, const GBuffer& targets) {
-    if (!sheen_albedo_) {
+void LightingPass::set_extensions(ShaderInputs& values, const Frame& frame, const GBuffer& targets,
+                                  bool native) {
+    if (!native && !sheen_albedo_) {
         sheen_albedo_ = gl::Texture(gl::Format::r16f, gpu::dfg_size, gpu::dfg_size);
         sheen_albedo_.upload(std::as_bytes(gpu::sheen_albedo_table()));
         sheen_albedo_.sampling(gl::Filtering::linear);
     }
     values.set("u_extension0", targets.extension[0]);
     values.set("u_extension1", targets.extension[1]);
-    values.set("u_sheen_albedo", sheen_albedo_);
+    if (native)
+        values.set("u_sheen_albedo", gpu::host_sheen_albedo());
+    else
+        values.set("u_sheen_albedo", sheen_albedo_);
     values.set("u_tap_gap", 1.0f / float(frame.sample_count));
     values.set("u_tap_offset", (float(frame.sample_index) + 0.5f) / float(frame.sample_count));
 }
@@ -216,7 +220,7 @@ ShaderInputs LightingPass::surface_inputs(const Frame& frame, const GBuffer& tar
     set_brdf(values, shading);
     values.set("u_first_block", inputs.block.first ? 1.0f : 0.0f);
     if (inputs.block.has_area()) set_ltc(values, native);
-    if (inputs.extensions) set_extensions(values, frame, targets);
+    if (inputs.extensions) set_extensions(values, frame, targets, native);
     if (inputs.transmission) set_transmission(values, frame, *inputs.transmission);
     if (inputs.environment) set_environment(values, frame, inputs, native);
     set_lights(values, frame, inputs.block, native);
@@ -236,7 +240,7 @@ void LightingPass::draw(const Frame& frame, const GBuffer& targets, const LightI
                                .source_alpha = block.first ? gl::Factor::one : gl::Factor::zero,
                                .target_alpha = block.first ? gl::Factor::zero : gl::Factor::one});
     state.scissor = screen_state(frame.covered).scissor;
-    surface_.draw(values, state);
+    surface_shader(inputs).draw(values, state);
 }
 
 void LightingPass::shade(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
@@ -247,13 +251,13 @@ void LightingPass::shade(const Frame& frame, const GBuffer& targets, const Light
         values.define("EMISSION");
         values.set("u_emission", targets.emission);
     }
-    surface_.shade(values,
-                   {.target = &targets.radiance,
-                    .area = targets.depth.area(),
-                    .store = first ? native::Store::replace : native::Store::add_light,
-                    .where = native::Where::covered,
-                    .depth = &targets.depth},
-                   transfers);
+    surface_shader(inputs).shade(values,
+                                 {.target = &targets.radiance,
+                                  .area = targets.depth.area(),
+                                  .store = first ? native::Store::replace : native::Store::add_light,
+                                  .where = native::Where::covered,
+                                  .depth = &targets.depth},
+                                 transfers);
 }
 
 namespace {

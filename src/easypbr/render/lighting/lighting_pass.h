@@ -45,7 +45,7 @@ class LightingPass {
                      const gl::Framebuffer& light);
 
     /// Lights natively: writes the radiance target in host memory, where the surfaces are. There must be no
-    /// extensions, no transmission and no tinted shadows, and the shadow maps are in host memory.
+    /// transmission and no tinted shadows, and the shadow maps are in host memory.
     void shade(const Frame& frame, const GBuffer& targets, const LightInputs& inputs, Transfers& transfers);
     /// draw_caught() natively: with the first block it writes all of `light`.
     void shade_caught(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
@@ -55,10 +55,14 @@ class LightingPass {
     ShaderInputs surface_inputs(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
                                 bool native);
     void set_dfg(ShaderInputs& values, Brdf brdf, bool native);
-    void set_extensions(ShaderInputs& values, const Frame& frame, const GBuffer& targets);
+    void set_extensions(ShaderInputs& values, const Frame& frame, const GBuffer& targets, bool native);
+    ScreenShader& surface_shader(const LightInputs& inputs) {
+        return inputs.extensions ? extended_ : surface_;
+    }
     void set_ltc(ShaderInputs& values, bool native);
 
     ScreenShader surface_{"lighting_surface.frag", native::Shader::lighting_surface};
+    ScreenShader extended_{"lighting_surface_extended.frag", native::Shader::lighting_surface_extended};
     ScreenShader catcher_{"lighting_catcher.frag", native::Shader::lighting_catcher};
     gl::Texture dfg_, sheen_albedo_, ltc_;
     Brdf dfg_brdf_{};

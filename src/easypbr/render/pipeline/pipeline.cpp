@@ -21,9 +21,8 @@ ShadowMaps::Receivers receivers_of(const DrawList& list, const FrameContents& co
 }
 
 /// What a frame of native surfaces needs the driver for where it is not lit natively.
-std::string lit_by_driver(const DrawList& list, bool native_shading) {
-    if (!native_shading) return "lighting";
-    return list.extensions() ? "materials" : "shadows";
+std::string lit_by_driver(bool native_shading) {
+    return native_shading ? "shadows" : "lighting";
 }
 
 RayGround ray_ground(const ResolvedSettings& resolved) {
@@ -72,9 +71,9 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
     shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
-    const bool native = is_lit_natively(list, contents);
+    const bool native = is_lit_natively(contents);
     shadow_maps_.keep_in_host_memory(native);
-    const std::string pass = native ? first_by_driver(list, contents) : lit_by_driver(list, native_shading_);
+    const std::string pass = native ? first_by_driver(list, contents) : lit_by_driver(native_shading_);
     if (!native && targets_.depth.is_ahead()) timer_.run(pass, [&] { targets_.upload(transfers_); });
     if (contents.ground)
         timer_.run("ground", [&] { native ? ground_.shade(seen, targets_) : ground_.draw(seen, targets_); });
@@ -150,10 +149,10 @@ void Pipeline::occlude(const Frame& frame, bool native, AmbientOcclusionPass::No
     });
 }
 
-bool Pipeline::is_lit_natively(const DrawList& list, const FrameContents& contents) const {
+bool Pipeline::is_lit_natively(const FrameContents& contents) const {
     if (contents.paths) return native_shading_ && targets_.depth.is_ahead();
     const bool has_tints = shadow_maps_.has_shadows() && shadow_maps_.has_tints();
-    return native_shading_ && targets_.depth.is_ahead() && !has_tints && !list.extensions();
+    return native_shading_ && targets_.depth.is_ahead() && !has_tints;
 }
 
 std::string Pipeline::first_by_driver(const DrawList& list, const FrameContents& contents) const {

@@ -39,8 +39,10 @@ class Primitive {
     /// Whether the CPU can draw some items without the driver, where there is no GPU.
     virtual bool is_native(DrawItems) const { return false; }
     /// Adds the nearest primitive of each pixel; false, where anything may have been added, when only the
-    /// driver can draw the items in this frame.
-    virtual bool rasterise(const Frame&, DrawItems, VisibleSurfaces&) { return false; }
+    /// driver can draw the items in this frame. `extensions`: those that the targets hold.
+    virtual bool rasterise(const Frame&, DrawItems, ExtensionSet /*extensions*/, VisibleSurfaces&) {
+        return false;
+    }
     /// The primitives of a pixel are one surface: then add_mean() takes the place of rasterise().
     virtual bool is_mean() const { return false; }
     /// Adds the surface of each pixel of the whole frame where it is nearer than `hides` (reversed depth, row

@@ -32,7 +32,7 @@ bool Surfaces::is_native() const {
     return allow_native_ && gl::Context::current().info().software;
 }
 
-void Surfaces::rasterise(const Frame& frame, std::vector<Group>& groups) {
+void Surfaces::rasterise(const Frame& frame, const SurfaceOutputs& outputs, std::vector<Group>& groups) {
     const auto by_driver = [](const Group& group) { return !group.kind->is_native(group.items); };
     if (std::ranges::all_of(groups, by_driver)) return;
     visible_.clear(frame.size, frame.covered);
@@ -40,7 +40,7 @@ void Surfaces::rasterise(const Frame& frame, std::vector<Group>& groups) {
     std::erase_if(native, by_driver);
     // One that only the driver can draw may have added some of its items.
     for (auto next = native.begin(); next != native.end();) {
-        if (next->kind->rasterise(frame, next->items, visible_)) {
+        if (next->kind->rasterise(frame, next->items, outputs.extensions, visible_)) {
             ++next;
             continue;
         }
@@ -62,13 +62,15 @@ PixelRect Surfaces::draw_groups(const Frame& frame, const DrawList& list, const 
         const auto by_mean = [](const Group& group) { return group.kind->is_mean(); };
         std::ranges::copy_if(groups, std::back_inserter(means), by_mean);
         std::erase_if(groups, by_mean);
-        rasterise(frame, groups);
+        rasterise(frame, outputs, groups);
     }
     const PixelRect seen = visible_.empty() ? PixelRect{} : visible_.crop();
     const bool in_host_memory = native && groups.empty();
+    const SurfaceContents contents{
+        .ids = outputs.ids, .emission = list.has(&DrawItem::emits), .extensions = outputs.extensions != 0};
     if (in_host_memory) {
         const bool whole = outputs.whole || !means.empty();
-        SurfaceWriter writer(targets, whole ? frame.whole() : seen, outputs.ids, list.has(&DrawItem::emits));
+        SurfaceWriter writer(targets, whole ? frame.whole() : seen, contents);
         if (whole) writer.clear();
         visible_.resolve(frame, writer);
         for (const Group& group : means)
@@ -77,8 +79,7 @@ PixelRect Surfaces::draw_groups(const Frame& frame, const DrawList& list, const 
         targets.clear(outputs.ids);
         for (const Group& group : groups) group.kind->draw(frame, group.items, targets, outputs);
         if (!visible_.empty()) {
-            SurfaceWriter writer(composite_.staging(frame, outputs), seen, outputs.ids,
-                                 list.has(&DrawItem::emits));
+            SurfaceWriter writer(composite_.staging(frame, outputs), seen, contents);
             visible_.resolve(frame, writer);
             composite_.draw(frame, targets, outputs, transfers_);
         }
@@ -97,7 +98,7 @@ void Surfaces::draw_means(const Frame& frame, const std::vector<Group>& groups, 
                           const SurfaceOutputs& outputs) {
     for (const Group& group : groups) {
         targets.depth.download(frame.whole(), transfers_);
-        SurfaceWriter writer(composite_.staging(frame, outputs), frame.whole(), outputs.ids);
+        SurfaceWriter writer(composite_.staging(frame, outputs), frame.whole(), {.ids = outputs.ids});
         writer.clear();
         group.kind->add_mean(frame, group.items, targets.depth.pixels<float>(), writer);
         composite_.draw(frame, targets, outputs, transfers_);

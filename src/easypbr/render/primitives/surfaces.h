@@ -50,7 +50,7 @@ class Surfaces {
     std::vector<Group> groups_of(const DrawList& list) const;
     bool is_native() const;
     /// Takes the groups out of the list that are visible natively; the rest is left to others.
-    void rasterise(const Frame& frame, std::vector<Group>& groups);
+    void rasterise(const Frame& frame, const SurfaceOutputs& outputs, std::vector<Group>& groups);
     void draw_means(const Frame& frame, const std::vector<Group>& groups, const GBuffer& targets,
                     const SurfaceOutputs& outputs);
     PixelRect draw_groups(const Frame& frame, const DrawList& list, const GBuffer& targets,

@@ -5,20 +5,22 @@ namespace easypbr::render {
 const GBuffer& SurfaceComposite::staging(const Frame& frame, const SurfaceOutputs& outputs) {
     if (staging_.size() != frame.size) staging_ = GBuffer(frame.size);
     if (outputs.ids) staging_.add_ids();
+    if (outputs.extensions) staging_.add_extensions();
     return staging_;
 }
 
 void SurfaceComposite::draw(const Frame& frame, const GBuffer& targets, const SurfaceOutputs& outputs,
                             Transfers& transfers) {
     const PixelRect area = staging_.depth.area();
-    const bool emission = staging_.emission.is_ahead();
+    const bool emission = staging_.emission.is_ahead(), extensions = staging_.extension[0].is_ahead();
     staging_.upload(transfers);
-    copy(frame, staging_, area, targets, outputs, {.emission = emission});
+    copy(frame, staging_, area, targets, outputs, {.emission = emission, .extensions = extensions});
 }
 
 void SurfaceComposite::draw_over(const Frame& frame, const GBuffer& source, const GBuffer& targets,
                                  const SurfaceOutputs& outputs) {
-    copy(frame, source, frame.whole(), targets, outputs, {.always = true, .emission = true});
+    copy(frame, source, frame.whole(), targets, outputs,
+         {.always = true, .emission = true, .extensions = outputs.extensions != 0});
 }
 
 namespace {
@@ -44,17 +46,15 @@ void SurfaceComposite::copy(const Frame& frame, const GBuffer& source, const Pix
     std::vector<std::string> defines;
     if (outputs.ids) defines.emplace_back("OBJECT_ID");
     if (how.emission) defines.emplace_back("WITH_EMISSION");
-    // What was found natively has no extensions.
-    const bool extended = how.always && outputs.extensions;
-    if (extended) defines.emplace_back("WITH_EXTENSION");
+    if (how.extensions) defines.emplace_back("WITH_EXTENSION");
     const gl::Program& program = programs_.get(defines);
-    (outputs.ids ? targets.surface_ids()
-     : extended  ? targets.surface_extended()
-                 : targets.surface_emission())
+    (outputs.ids      ? targets.surface_ids()
+     : how.extensions ? targets.surface_extended()
+                      : targets.surface_emission())
         .bind();
     program.use();
     bind_surface(program, frame, source, outputs.ids);
-    for (unsigned i = 0; extended && i < 2; ++i) {
+    for (unsigned i = 0; how.extensions && i < 2; ++i) {
         source.extension[i].bind(7 + i);
         program.set(i == 0 ? "u_extension0" : "u_extension1", int(7 + i));
     }

@@ -24,8 +24,9 @@ class SurfaceComposite {
 
   private:
     struct How {
-        bool always = false;    ///< whatever is in front
-        bool emission = false;  ///< the source's radiance counts
+        bool always = false;      ///< whatever is in front
+        bool emission = false;    ///< the source's radiance counts
+        bool extensions = false;  ///< the source holds them
     };
     void copy(const Frame& frame, const GBuffer& source, const PixelRect& area, const GBuffer& targets,
               const SurfaceOutputs& outputs, How how);

@@ -34,15 +34,17 @@ uint32_t packed_material(const SurfacePixel& p) {
 
 }  // namespace
 
-SurfaceWriter::SurfaceWriter(const GBuffer& targets, const PixelRect& area, bool with_ids, bool with_emission)
+SurfaceWriter::SurfaceWriter(const GBuffer& targets, const PixelRect& area, SurfaceContents contents)
     : area_(area) {
-    targets.write(area, with_ids, with_emission);
+    targets.write(area, contents);
     albedo_ = targets.albedo.pixels<uint64_t>();
     normal_ = targets.normal.pixels<uint32_t>();
     material_ = targets.material.pixels<uint32_t>();
     depth_ = targets.depth.pixels<float>();
-    if (with_emission) emission_ = targets.emission.pixels<float>();
-    if (!with_ids) return;
+    if (contents.emission) emission_ = targets.emission.pixels<float>();
+    for (int i = 0; contents.extensions && i < 2; ++i)
+        extensions_[i] = targets.extension[i].pixels<uint32_t>();
+    if (!contents.ids) return;
     id_ = targets.id.pixels<uint32_t>();
     element_ = targets.element.pixels<uint32_t>();
 }
@@ -73,6 +75,7 @@ void SurfaceWriter::set_targets(native::VisibleTriangles& to, const SurfacePixel
     to.ids = id_.data();
     to.elements = element_.data();
     to.emission = emission_.empty() ? nullptr : emission_.data();
+    for (int i = 0; i < 2; ++i) to.extensions[i] = extensions_[i].data();
 }
 
 void SurfaceWriter::clear() {

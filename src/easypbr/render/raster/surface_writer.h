@@ -28,7 +28,7 @@ struct SurfacePixel {
 class SurfaceWriter {
   public:
     /// Begins to write a rectangle (GBuffer::write()), whose pixels are undefined.
-    SurfaceWriter(const GBuffer& targets, const PixelRect& area, bool with_ids, bool with_emission = false);
+    SurfaceWriter(const GBuffer& targets, const PixelRect& area, SurfaceContents contents);
 
     size_t index(int x, int y) const {
         return size_t(y - area_.y) * size_t(area_.width) + size_t(x - area_.x);
@@ -52,8 +52,9 @@ class SurfaceWriter {
     std::span<uint64_t> albedo_;
     std::span<uint32_t> normal_, material_;
     std::span<float> depth_;
-    std::span<uint32_t> id_, element_;  ///< empty where they are not asked for
-    std::span<float> emission_;         ///< the same
+    std::span<uint32_t> id_, element_;   ///< empty where they are not asked for
+    std::span<float> emission_;          ///< the same
+    std::span<uint32_t> extensions_[2];  ///< the same
 };
 
 /// Adds one surface to targets in host memory, pixel by pixel, where it is nearer than what they hold.

@@ -21,8 +21,9 @@ class MeshPrimitive final : public Primitive {
         pass_.draw(frame, items, targets, outputs);
     }
     bool is_native(DrawItems items) const override { return NativeMeshes::draws(items); }
-    bool rasterise(const Frame& frame, DrawItems items, VisibleSurfaces& surfaces) override {
-        return native_.rasterise(frame, items, surfaces);
+    bool rasterise(const Frame& frame, DrawItems items, ExtensionSet extensions,
+                   VisibleSurfaces& surfaces) override {
+        return native_.rasterise(frame, items, extensions, surfaces);
     }
     bool cover(const Frame& frame, DrawItems items, std::span<uint8_t> covered) override {
         return native_.cover(frame, items, covered);

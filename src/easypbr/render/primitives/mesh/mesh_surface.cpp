@@ -28,9 +28,10 @@ native::VisibleTriangles shading_triangles(const DrawItem& item, const MeshFacts
 namespace {
 
 /// See MeshSurface::vary().
-void set_shader(native::VisibleTriangles& triangles, const void* shader,
+void set_shader(native::VisibleTriangles& triangles, const void* shader, bool extended,
                 const native::TriangleAttributes& attributes) {
     triangles.shader = shader;
+    triangles.extended = extended;
     triangles.attributes.uvs = attributes.uvs;
     triangles.attributes.colors = attributes.colors;
     triangles.attributes.tangents = attributes.tangents;
@@ -49,9 +50,10 @@ MeshSurface::MeshSurface(const Frame& frame, const DrawItem& item, const MeshFac
     triangles_.pixel_height = 2.0 / frame.size.y();
 }
 
-void MeshSurface::vary(std::shared_ptr<const void> shader, const native::TriangleAttributes& attributes) {
+void MeshSurface::vary(std::shared_ptr<const void> shader, bool extended,
+                       const native::TriangleAttributes& attributes) {
     shader_ = std::move(shader);
-    set_shader(triangles_, shader_.get(), attributes);
+    set_shader(triangles_, shader_.get(), extended, attributes);
 }
 
 void MeshSurface::alpha(std::span<const native::VisiblePixel> pixels, std::span<float> alpha) const {
@@ -71,15 +73,12 @@ void MeshSurface::resolve(const Frame& frame, const DrawItem& item,
 
 MeshHits::MeshHits(const DrawItem& item, const MeshFacts& facts, std::shared_ptr<const void> shader,
                    const native::TriangleAttributes& attributes)
-    : triangles_(shading_triangles(item, facts)),
-      shader_(std::move(shader)),
-      extended_(item.extensions() != 0) {
-    set_shader(triangles_, shader_.get(), attributes);
+    : triangles_(shading_triangles(item, facts)), shader_(std::move(shader)) {
+    set_shader(triangles_, shader_.get(), item.extensions() != 0, attributes);
 }
 
 void MeshHits::shade(std::span<const native::ElementHit> hits, const native::HitSurfaces& surfaces) const {
-    const auto shade = extended_ ? native::shade_extended_hits : native::shade_hits;
-    shade(triangles_, hits, surfaces);
+    native::shade_hits(triangles_, hits, surfaces);
 }
 
 }  // namespace easypbr::render

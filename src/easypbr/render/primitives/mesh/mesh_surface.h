@@ -25,8 +25,10 @@ class MeshSurface final : public VisibleItem {
     MeshSurface(const Frame& frame, const DrawItem& item, const MeshFacts& facts,
                 const Mat4d& clip_from_mesh);
 
-    /// Surfaces vary by a shader (native::surface_uniforms()) that reads the attributes too.
-    void vary(std::shared_ptr<const void> shader, const native::TriangleAttributes& attributes);
+    /// Surfaces vary by a shader that reads the attributes too: native::surface_uniforms(), or with
+    /// extensions native::extended_uniforms().
+    void vary(std::shared_ptr<const void> shader, bool extended,
+              const native::TriangleAttributes& attributes);
 
     /// The opacity of pixels, for what varies.
     void alpha(std::span<const native::VisiblePixel> pixels, std::span<float> alpha) const;
@@ -42,7 +44,7 @@ class MeshSurface final : public VisibleItem {
 /// The same for rays.
 class MeshHits final : public HitSurface {
   public:
-    /// See MeshSurface::vary(); of items with extensions the shader is native::extended_hit_uniforms().
+    /// See MeshSurface::vary(); of items with extensions the shader is native::extended_uniforms().
     MeshHits(const DrawItem& item, const MeshFacts& facts, std::shared_ptr<const void> shader,
              const native::TriangleAttributes& attributes);
     void shade(std::span<const native::ElementHit> hits, const native::HitSurfaces& surfaces) const override;
@@ -50,7 +52,6 @@ class MeshHits final : public HitSurface {
   private:
     native::VisibleTriangles triangles_;
     std::shared_ptr<const void> shader_;
-    bool extended_;
 };
 
 }  // namespace easypbr::render

@@ -57,9 +57,8 @@ std::vector<int16_t> packed_tangents(const MeshData& mesh, const Array3f& N) {
 }  // namespace
 
 bool NativeMeshes::draws(DrawItems items) {
-    return std::ranges::none_of(items, [](const DrawItem& item) {
-        return item.material.shader || item.extensions() || item.alpha == AlphaMode::blend;
-    });
+    return std::ranges::none_of(
+        items, [](const DrawItem& item) { return item.material.shader || item.alpha == AlphaMode::blend; });
 }
 
 const MeshFacts& NativeMeshes::facts_of(const MeshData& mesh) {
@@ -108,29 +107,33 @@ std::unique_ptr<HitSurface> NativeMeshes::hit_surface(const ResolvedSettings& re
     // What the footprint of a ray blurs is not blurred less for being jittered.
     const ShaderInputs inputs = inputs_of({item.extensions(), 1, &resolved}, plain, known);
     Transfers none;
-    const auto uniforms = item.extensions() ? native::extended_hit_uniforms : native::surface_uniforms;
+    const auto uniforms = item.extensions() ? native::extended_uniforms : native::surface_uniforms;
     return std::make_unique<MeshHits>(item, known, uniforms(inputs.native(none)),
                                       attributes_of(plain, known));
 }
 
 std::unique_ptr<MeshSurface> NativeMeshes::surface_of(const Frame& frame, const DrawItem& item,
-                                                      const MeshFacts& known, const Mat4d& clip_from_mesh) {
+                                                      ExtensionSet extensions, const MeshFacts& known,
+                                                      const Mat4d& clip_from_mesh) {
     auto surface = std::make_unique<MeshSurface>(frame, item, known, clip_from_mesh);
-    const bool is_plain =
-        !item.textured() && !item.with_colors && !item.emits() && item.alpha == AlphaMode::opaque;
+    const bool is_extended = extensions && item.extensions();
+    const bool is_plain = !item.textured() && !item.with_colors && !item.emits() && !is_extended &&
+                          item.alpha == AlphaMode::opaque;
     if (is_plain) return surface;
-    const ShaderInputs inputs = inputs_of({0, frame.sample_count, frame.resolved}, item, known);
+    const ShaderInputs inputs = inputs_of({extensions, frame.sample_count, frame.resolved}, item, known);
     Transfers none;
-    surface->vary(native::surface_uniforms(inputs.native(none)), attributes_of(item, known));
+    const auto uniforms = is_extended ? native::extended_uniforms : native::surface_uniforms;
+    surface->vary(uniforms(inputs.native(none)), is_extended, attributes_of(item, known));
     return surface;
 }
 
-bool NativeMeshes::rasterise(const Frame& frame, DrawItems items, VisibleSurfaces& surfaces) {
+bool NativeMeshes::rasterise(const Frame& frame, DrawItems items, ExtensionSet extensions,
+                             VisibleSurfaces& surfaces) {
     for (const DrawItem& item : items) {
         if (!surfaces.has_room(item.part.face_count)) return false;
         const MeshFacts& known = facts_of(item.mesh());
         const Mat4d clip_from_mesh = clip_from(frame, item);
-        std::unique_ptr<MeshSurface> surface = surface_of(frame, item, known, clip_from_mesh);
+        std::unique_ptr<MeshSurface> surface = surface_of(frame, item, extensions, known, clip_from_mesh);
         const AlphaTest test{[of = surface.get()](std::span<const native::VisiblePixel> pixels,
                                                   std::span<float> alpha) { of->alpha(pixels, alpha); },
                              item.material.alpha_cutoff};

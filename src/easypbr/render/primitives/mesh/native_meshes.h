@@ -21,10 +21,9 @@ class NativeMeshes {
     NativeMeshes(gpu::ClosedMeshes& closed, gpu::TextureCache& textures)
         : closed_(closed), textures_(textures) {}
 
-    // See Primitive. Native are surfaces of glTF's core model that are opaque or have a mask, without shaders
-    // of their own.
+    // See Primitive. Native are surfaces that are opaque or have a mask, without shaders of their own.
     static bool draws(DrawItems items);
-    bool rasterise(const Frame& frame, DrawItems items, VisibleSurfaces& surfaces);
+    bool rasterise(const Frame& frame, DrawItems items, ExtensionSet extensions, VisibleSurfaces& surfaces);
     bool cover(const Frame& frame, DrawItems items, std::span<uint8_t> covered);
 
     /// Of the core model, whatever the material; without its own shader.
@@ -34,11 +33,11 @@ class NativeMeshes {
 
   private:
     const MeshFacts& facts_of(const MeshData& mesh);
-    /// What mesh_resolve reads, and with extensions mesh_hit_extended.
+    /// What mesh_resolve reads, and with extensions mesh_extended.
     ShaderInputs inputs_of(const MaterialContext& context, const DrawItem& item, const MeshFacts& known);
     native::TriangleAttributes attributes_of(const DrawItem& item, const MeshFacts& known);
-    std::unique_ptr<MeshSurface> surface_of(const Frame& frame, const DrawItem& item, const MeshFacts& known,
-                                            const Mat4d& clip_from_mesh);
+    std::unique_ptr<MeshSurface> surface_of(const Frame& frame, const DrawItem& item, ExtensionSet extensions,
+                                            const MeshFacts& known, const Mat4d& clip_from_mesh);
 
     RevisionCache<std::tuple<uint64_t, uint64_t, uint64_t>, MeshFacts> facts_;
     /// Of vertices, linear r g b a.

@@ -22,7 +22,7 @@ bool PointPrimitive::is_native(DrawItems items) const {
     return std::ranges::all_of(items, is_opaque);
 }
 
-bool PointPrimitive::rasterise(const Frame& frame, DrawItems items, VisibleSurfaces& surfaces) {
+bool PointPrimitive::rasterise(const Frame& frame, DrawItems items, ExtensionSet, VisibleSurfaces& surfaces) {
     const auto content = [&](uint32_t id) { return surfaces.content(id); };
     for (const DrawItem& item : items) {
         const Array3f& V = item.mesh().V;
@@ -40,7 +40,7 @@ bool PointPrimitive::cover(const Frame& frame, DrawItems items, std::span<uint8_
     if (std::ranges::any_of(items, has_holes)) return false;
     VisibleSurfaces surfaces;
     surfaces.clear(frame.size, frame.whole());
-    if (!rasterise(frame, items, surfaces)) return false;
+    if (!rasterise(frame, items, 0, surfaces)) return false;
     const auto pixels = surfaces.buffer().pixels();
     for (size_t i = 0; i < covered.size(); ++i) covered[i] |= uint8_t(pixels[i] != 0);
     return true;

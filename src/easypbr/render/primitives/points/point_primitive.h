@@ -18,7 +18,8 @@ class PointPrimitive final : public Primitive {
         pass_.draw(frame, items, targets, outputs);
     }
     bool is_native(DrawItems items) const override;
-    bool rasterise(const Frame& frame, DrawItems items, VisibleSurfaces& surfaces) override;
+    bool rasterise(const Frame& frame, DrawItems items, ExtensionSet extensions,
+                   VisibleSurfaces& surfaces) override;
     bool cover(const Frame& frame, DrawItems items, std::span<uint8_t> covered) override;
     ShadowShape shadow_shape(const DrawItem& item) override;
     void rasterise_shadows(const ShadowView& view, Casters& casters, ShadowDepths& depths) override {

@@ -1,4 +1,6 @@
-// Surfaces of triangles with glTF's material extensions, where rays have met them.
+// Surfaces of triangles with glTF's material extensions that were found natively, for the G-buffer or where rays have met
+// them.
+#include "common_encoding.glsl"
 #include "mesh_surface.glsl"
 #include "geometry_extension.glsl"
 
@@ -13,6 +15,14 @@ layout(location = 7) out vec4 o_film;
 layout(location = 8) out vec4 o_tangent;
 layout(location = 9) out vec3 o_volume;
 layout(location = 10) out vec3 o_transmittance;
+layout(location = 11) out uvec4 o_first;  // of GBuffer::extension
+layout(location = 12) out uvec4 o_second;
+
+// For a reader of the G-buffer.
+void pack_surface(Normals n, Extension e) {
+    vec2 encoded = round((oct_encode(n.shading) * 0.5 + 0.5) * 65535.0) / 65535.0;
+    pack_extension(e, oct_decode(encoded * 2.0 - 1.0), o_first, o_second);
+}
 
 void main() {
     Normals n = read_normals();
@@ -28,4 +38,5 @@ void main() {
     o_tangent = vec4(e.tangent, e.anisotropy);
     o_volume = vec3(e.transmission, e.ior, e.thickness);
     o_transmittance = e.transmittance;
+    pack_surface(n, e);
 }
