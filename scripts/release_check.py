@@ -56,7 +56,7 @@ def require(condition: object, fault: str) -> None:
 
 
 def places_of(version: str, root: pathlib.Path = ROOT) -> list[str]:
-    """Tracked files that state a version as theirs: `version: 0.1.0`, `VERSION 0.1.0`, "version": "0.1.0"."""
+    """Tracked files that state a version as theirs, as JSON, CMake, Python and YAML do."""
     pattern = re.compile(rf"version[\W_]{{1,8}}{re.escape(version)}(?![\d.])", re.IGNORECASE)
     found = []
     for name in run("git", "ls-files", cwd=root).splitlines():
