@@ -34,6 +34,7 @@ from ._easypbr import (
 )
 from .convert import as_mesh
 from .errors import ArgumentError, ContextError, Error, FileError, FormatError, ShaderError, UnknownNameError
+from .gaussians import splats
 from .loader import MeshLoader
 from .panels import Panel
 from .remote import Server
@@ -87,5 +88,6 @@ __all__ = [
     "save_image",
     "shapes",
     "show",
+    "splats",
     "tensor2eigen",
 ]

@@ -89,7 +89,7 @@ TEST(Fields, AreComplete) {
         {"transparency", 2},
         {"tonemap", 3},
         {"material", 4 + 18 + 7 + 1},
-        {"style", 24},
+        {"style", 25},
         {"points", 1},
         {"clip", 2},
         {"annotation", 5},

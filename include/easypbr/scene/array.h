@@ -65,6 +65,7 @@ class Array
 using Array1f = Array<float, 1>;
 using Array2f = Array<float, 2>;
 using Array3f = Array<float, 3>;
+using Array4f = Array<float, 4>;
 using ArrayXf = Array<float, Eigen::Dynamic>;
 using Array1i = Array<int32_t, 1>;
 using Array2i = Array<int32_t, 2>;

@@ -32,6 +32,22 @@ struct ScalarArray {
     bool from_file = false;  ///< one of many that came with a file: colours the mesh only when asked for
 };
 
+/// What makes n vertices the means of 3D Gaussians (Kerbl et al., "3D Gaussian Splatting for Real-Time
+/// Radiance Field Rendering", 2023): all four arrays, or none.
+struct SplatArrays {
+    Array3f scales;     ///< n x 3 standard deviations along the Gaussian's own axes, 0 or more
+    Array4f rotations;  ///< n x 4 quaternions w, x, y, z of those axes, of any length above 0
+    Array1f opacities;  ///< n x 1 opacity at the mean, 0 to 1
+    /// n x 3 (degree + 1)^2 spherical harmonics, degree 0 to 3: red, green, blue of the first, then those of
+    /// the second, ... The colour is 0.5 + their sum, sRGB-encoded, by the direction from camera to mean in
+    /// the mesh's frame; the signs are those of the reference implementation.
+    ArrayXf sh;
+
+    bool empty() const { return scales.empty(); }
+    /// Of the spherical harmonics.
+    int degree() const { return sh.cols() <= 3 ? 0 : sh.cols() <= 12 ? 1 : sh.cols() <= 27 ? 2 : 3; }
+};
+
 /// Handles to meshes: a vector, made and destroyed out of line, so that MeshData can be used where only the
 /// name of Mesh is known. To look into it, include scene/mesh.h.
 class MeshList : public std::vector<Mesh> {
@@ -61,6 +77,8 @@ struct MeshData {
     Array2i E;   ///< k x 2 vertex indices of line segments
     Array1i L;   ///< n x 1 or m x 1 labels; with as many faces as vertices those of the vertices
     Array1f I;   ///< n x 1 intensities
+    /// Of 3D Gaussians whose means are V, or empty.
+    SplatArrays splats;
     std::vector<ScalarArray> scalars;           ///< any number of named values
     std::shared_ptr<const LabelMap> label_map;  ///< what the labels mean; none: generated colours
     /// What was subtracted from positions far from zero, so that float32 holds them (scene/offset.h). Meshes

@@ -53,6 +53,7 @@ std::vector<std::string> attributes_of(const MeshData& data) {
     add("edges", !data.E.empty());
     add("labels", !data.L.empty());
     add("intensities", !data.I.empty());
+    if (!data.splats.empty()) names.push_back(fmt::format("splats of degree {}", data.splats.degree()));
     return names;
 }
 

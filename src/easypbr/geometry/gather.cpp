@@ -48,6 +48,7 @@ void choose_vertices(MeshData& target, const MeshData& mesh, const std::vector<i
     target.T = rows_of(mesh.T, vertices);
     target.B = rows_of(mesh.B, vertices);
     target.I = rows_of(mesh.I, vertices);
+    target.splats = rows_of(mesh.splats, vertices);
     target.source_vertex = chosen_sources(mesh.source_vertex, vertices, mesh.V.rows());
 }
 

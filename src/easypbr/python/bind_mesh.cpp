@@ -34,6 +34,30 @@ std::function<void(MeshData&)> prepare(nb::handle object, const ArrayShape& shap
     return [array](MeshData& data) { data.*member = array; };
 }
 
+/// The same for what makes vertices splats.
+template <int Cols, Array<float, Cols> SplatArrays::*member>
+MeshChange prepare_splats(nb::handle object, const ArrayShape& shape) {
+    Array<float, Cols> array;
+    if (!object.is_none()) array = to_array<float, Cols>(object, shape, false);
+    return [array](MeshData& data) { data.splats.*member = array; };
+}
+
+/// Harmonics may be n x (degree + 1)^2 x 3 too, as gsplat has them.
+MeshChange prepare_sh(nb::handle object) {
+    if (object.is_none()) return prepare_splats<Eigen::Dynamic, &SplatArrays::sh>(object, {"sh", 3, 48});
+    const nb::object rows = numeric_object(nb::borrow(object), "mesh array sh");
+    const size_t count = nb::len(rows);
+    const nb::object flat = count ? rows.attr("reshape")(count, -1) : rows;
+    const int columns = count ? nb::cast<int>(flat.attr("shape")[nb::int_(1)]) : 3;
+    const bool is_known = columns == 3 || columns == 12 || columns == 27;
+    return prepare_splats<Eigen::Dynamic, &SplatArrays::sh>(flat, {"sh", is_known ? columns : 3, 48});
+}
+
+template <int Cols, Array<float, Cols> SplatArrays::*member>
+nb::object view_splats(const MeshData& data) {
+    return view_of(data.splats.*member);
+}
+
 template <class Scalar, int Cols, Array<Scalar, Cols> MeshData::*member>
 nb::object view(const MeshData& data) {
     return view_of(data.*member);
@@ -96,9 +120,28 @@ const std::vector<MeshArray>& mesh_arrays() {
          }},
         {"L", "int32 labels, one per vertex or per face (per vertex if both numbers are equal).",
          view<int32_t, 1, &MeshData::L>, prepare_labels},
-        {"I", "n float32 intensities.", view<float, 1, &MeshData::I>, [](nb::handle o) {
+        {"I", "n float32 intensities.", view<float, 1, &MeshData::I>,
+         [](nb::handle o) {
              return prepare<float, 1, &MeshData::I>(o, {"I", 1, 1}, false);
-         }}};
+         }},
+        {"scales", "n x 3 float32 standard deviations of splats along their own axes.",
+         view_splats<3, &SplatArrays::scales>,
+         [](nb::handle o) {
+             return prepare_splats<3, &SplatArrays::scales>(o, {"scales", 3, 3});
+         }},
+        {"rotations", "n x 4 float32 quaternions w, x, y, z of the axes of splats.",
+         view_splats<4, &SplatArrays::rotations>,
+         [](nb::handle o) {
+             return prepare_splats<4, &SplatArrays::rotations>(o, {"rotations", 4, 4});
+         }},
+        {"opacities", "n float32 opacities of splats, 0 to 1.", view_splats<1, &SplatArrays::opacities>,
+         [](nb::handle o) {
+             return prepare_splats<1, &SplatArrays::opacities>(o, {"opacities", 1, 1});
+         }},
+        {"sh",
+         "n x 3 (degree + 1)^2 float32 spherical harmonics of splats, degree 0 to 3: red, green, blue of the "
+         "first, then of the second, ...",
+         view_splats<Eigen::Dynamic, &SplatArrays::sh>, prepare_sh}};
     return arrays;
 }
 

@@ -280,6 +280,7 @@ template Array1f::Dense to_array<float, 1>(nb::handle, const ArrayShape&, bool);
 template Array2f::Dense to_array<float, 2>(nb::handle, const ArrayShape&, bool);
 template Array3f::Dense to_array<float, 3>(nb::handle, const ArrayShape&, bool);
 template ArrayXf::Dense to_array<float, Eigen::Dynamic>(nb::handle, const ArrayShape&, bool);
+template Array4f::Dense to_array<float, 4>(nb::handle, const ArrayShape&, bool);
 template Array1i::Dense to_array<int32_t, 1>(nb::handle, const ArrayShape&, bool);
 template Array2i::Dense to_array<int32_t, 2>(nb::handle, const ArrayShape&, bool);
 template Array3i::Dense to_array<int32_t, 3>(nb::handle, const ArrayShape&, bool);

@@ -93,6 +93,8 @@ const char* missing(ColorBy by) {
 }
 
 ColorBy natural_choice(const MeshData& mesh, DrawMode mode) {
+    // They have colours of their own, which nothing but a choice replaces.
+    if (mode == DrawMode::splats) return ColorBy::solid;
     if (!mesh.L.empty()) return ColorBy::label;
     if (has_color_texture(mesh)) return ColorBy::texture;
     if (!mesh.C.empty()) return ColorBy::vertex;
@@ -111,7 +113,7 @@ class Planner {
         plan_.by = by.value_or(natural_choice(mesh_, mode_));
         // Nobody chose: textures and vertex colours count together, as glTF has it.
         plan_.textured = !by || plan_.by == ColorBy::texture;
-        plan_.vertex_colors = !by || plan_.by == ColorBy::vertex;
+        plan_.vertex_colors = (!by && mode_ != DrawMode::splats) || plan_.by == ColorBy::vertex;
         switch (plan_.by) {
             case ColorBy::label:
                 decide_labels();

@@ -70,7 +70,9 @@ MeshData cut_points(const MeshData& mesh, const std::vector<uint8_t>& kept, Arra
     for (size_t i = 0; i < kept.size(); ++i)
         if (kept[i]) vertices.push_back({{int32_t(i), 0, 0}, Vec3(1, 0, 0)});
     source = sources_of(vertices);
-    return with_vertices(mesh, vertices);
+    MeshData out = with_vertices(mesh, vertices);
+    out.splats = rows_of(mesh.splats, {source.data(), size_t(source.size())});
+    return out;
 }
 
 /// Cuts faces and edges; own vertices that are kept are shared again.

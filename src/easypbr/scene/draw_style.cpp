@@ -27,6 +27,7 @@ class Choice {
 
 DrawMode natural_mode(const MeshData& mesh) {
     if (mesh.voxel_size > 0) return DrawMode::voxels;
+    if (!mesh.splats.empty()) return DrawMode::splats;
     if (!mesh.F.empty()) return DrawMode::mesh;
     if (!mesh.N.empty() && !mesh.T.empty()) return DrawMode::surfels;
     return mesh.E.empty() ? DrawMode::points : DrawMode::lines;
@@ -41,6 +42,7 @@ DrawStyle resolve_style(const MeshData& mesh, const Style& overrides) {
     style.point_size_unit = choice(&Style::point_size_unit, SizeUnit::pixels);
     style.point_shape = choice(&Style::point_shape, PointShape::round);
     style.surfel_scale = choice(&Style::surfel_scale, 1.0f);
+    style.splat_antialias = choice(&Style::splat_antialias, false);
     style.voxel_size = choice(&Style::voxel_size);
     if (!style.voxel_size && mesh.voxel_size > 0) style.voxel_size = mesh.voxel_size;
     style.line_width = choice(&Style::line_width, style.line_width);
@@ -60,6 +62,7 @@ DrawStyle resolve_style(const MeshData& mesh, const Style& overrides) {
 DrawMode primitive_of(const MeshData& mesh, const DrawStyle& style) {
     if (style.mode == DrawMode::voxels) return DrawMode::mesh;
     if (style.mode == DrawMode::surfels && mesh.N.empty()) return DrawMode::points;
+    if (style.mode == DrawMode::splats && mesh.splats.empty()) return DrawMode::points;
     return style.mode;
 }
 

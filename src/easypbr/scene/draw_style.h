@@ -15,6 +15,7 @@ struct DrawStyle {
     SizeUnit point_size_unit = SizeUnit::pixels;
     PointShape point_shape = PointShape::round;
     float surfel_scale = 1;
+    bool splat_antialias = false;
     std::optional<float> voxel_size;  ///< nothing: from the spacing of the points
     float line_width = 1.5f;
     float line_dash = 0;
@@ -29,15 +30,15 @@ struct DrawStyle {
     bool overlay = false;
 };
 
-/// What the data are drawn as when nobody says: voxels where they have a voxel size, faces as a mesh, normals
-/// with tangents as surfels, edges as lines, vertices alone as points.
+/// What the data are drawn as when nobody says: voxels where they have a voxel size, splats where they have
+/// those, faces as a mesh, normals with tangents as surfels, edges as lines, vertices alone as points.
 DrawMode natural_mode(const MeshData& mesh);
 
 /// The overrides' choice, else the object's own, else what follows from the data.
 DrawStyle resolve_style(const MeshData& mesh, const Style& overrides);
 
-/// The kind of primitive that a mesh is drawn as in a style: voxels are meshes, and surfels without normals
-/// points.
+/// The kind of primitive that a mesh is drawn as in a style: voxels are meshes, surfels without normals
+/// points, and so are vertices that are to be splats and have none.
 DrawMode primitive_of(const MeshData& mesh, const DrawStyle& style);
 
 }  // namespace easypbr

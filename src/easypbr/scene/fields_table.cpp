@@ -59,7 +59,7 @@ const std::vector<std::string>& enum_names<AlphaMode>() {
 }
 template <>
 const std::vector<std::string>& enum_names<DrawMode>() {
-    static const std::vector<std::string> names = {"mesh", "points", "surfels", "lines", "voxels"};
+    static const std::vector<std::string> names = {"mesh", "points", "surfels", "lines", "voxels", "splats"};
     return names;
 }
 template <>
@@ -365,8 +365,9 @@ void add_style(Table& table) {
             doc + " Automatic: the object's own value, else " + inferred + ".", unit, range));
     };
     add("mode", &Style::mode, "Primitive that objects are drawn as.",
-        "voxels for data with a voxel size, a mesh for faces, surfels for normals with tangents, lines for "
-        "edges, and points for vertices alone");
+        "voxels for data with a voxel size, splats for 3D Gaussians, a mesh for faces, surfels for normals "
+        "with "
+        "tangents, lines for edges, and points for vertices alone");
     add("visible", &Style::visible, "Visibility of objects.", "yes");
     add("point_size", &Style::point_size, "Diameter of points, in point_size_unit.",
         "the mean spacing of the points", "", {positive, unlimited});
@@ -375,6 +376,10 @@ void add_style(Table& table) {
     add("point_shape", &Style::point_shape, "Shape of points.", "round");
     add("surfel_scale", &Style::surfel_scale, "Scale factor of the size of surfels.", "1", "",
         {positive, 1e6});
+    add("splat_antialias", &Style::splat_antialias,
+        "Keeps the light of splats that are smaller than a pixel, which are widened to about one: their "
+        "opacity is lowered as they grow. For scenes that were trained this way.",
+        "no");
     add("voxel_size", &Style::voxel_size, "Edge length of voxels.",
         "the voxel size of the data, or the mean spacing of the points", "world units",
         {positive, unlimited});

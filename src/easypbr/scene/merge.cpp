@@ -175,6 +175,16 @@ void join_parts(MeshData& whole, Meshes meshes) {
     }
 }
 
+/// Coefficients of higher degrees than a mesh has are 0.
+SplatArrays joined_splats(Meshes meshes) {
+    const auto join = [&](auto SplatArrays::*member) {
+        return joined<std::remove_cvref_t<decltype(SplatArrays().*member)>>(
+            meshes, PerElement::vertex, 0.0f, [&](const MeshData& mesh) { return mesh.splats.*member; });
+    };
+    return {join(&SplatArrays::scales), join(&SplatArrays::rotations), join(&SplatArrays::opacities),
+            join(&SplatArrays::sh)};
+}
+
 template <class Of>
 bool all_have(Meshes meshes, Of&& of) {
     return std::all_of(meshes.begin(), meshes.end(),
@@ -201,6 +211,8 @@ MeshData merged(Meshes meshes) {
         whole.T = joined(meshes, &MeshData::T, 0.0f);
         whole.B = joined(meshes, &MeshData::B, 0.0f);
     }
+    if (all_have(meshes, [](const MeshData& mesh) { return !mesh.splats.empty(); }))
+        whole.splats = joined_splats(meshes);
     whole.I = joined(meshes, &MeshData::I, 0.0f);
     whole.L = joined_either<Array1i>(meshes, "labels", no_label, [](const MeshData& mesh) { return mesh.L; });
     whole.label_map = first_label_map(meshes);

@@ -2,6 +2,11 @@
 
 namespace easypbr {
 
+SplatArrays rows_of(const SplatArrays& splats, std::span<const int32_t> rows) {
+    return {rows_of(splats.scales, rows), rows_of(splats.rotations, rows), rows_of(splats.opacities, rows),
+            rows_of(splats.sh, rows)};
+}
+
 void choose_vertex_rows(MeshData& mesh, std::span<const int32_t> rows) {
     mesh.V = rows_of(mesh.V, rows);
     mesh.N = rows_of(mesh.N, rows);
@@ -11,6 +16,7 @@ void choose_vertex_rows(MeshData& mesh, std::span<const int32_t> rows) {
     mesh.B = rows_of(mesh.B, rows);
     mesh.L = rows_of(mesh.L, rows);
     mesh.I = rows_of(mesh.I, rows);
+    mesh.splats = rows_of(mesh.splats, rows);
     for (ScalarArray& scalar : mesh.scalars) scalar.values = rows_of(scalar.values, rows);
 }
 
@@ -25,6 +31,7 @@ void replace_arrays(MeshData& mesh, const MeshData& arrays) {
     mesh.E = arrays.E;
     mesh.L = arrays.L;
     mesh.I = arrays.I;
+    mesh.splats = arrays.splats;
     mesh.scalars = arrays.scalars;
     mesh.parts = arrays.parts;
     mesh.voxel_size = arrays.voxel_size;

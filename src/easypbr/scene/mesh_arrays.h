@@ -18,6 +18,9 @@ Array<Scalar, Cols> rows_of(const Array<Scalar, Cols>& array, std::span<const in
     return Array<Scalar, Cols>(std::move(chosen));
 }
 
+/// The same for all that splats have beside their means.
+SplatArrays rows_of(const SplatArrays& splats, std::span<const int32_t> rows);
+
 /// Replaces all that a mesh holds for each vertex by the rows that the indices name. Labels and scalars must
 /// be those of vertices.
 void choose_vertex_rows(MeshData& mesh, std::span<const int32_t> rows);

@@ -69,6 +69,26 @@ void require_scalars(const MeshData& data) {
     }
 }
 
+void require_splat_shapes(const SplatArrays& splats, Eigen::Index n) {
+    require_rows("scales", splats.scales, n, "vertex");
+    require_rows("rotations", splats.rotations, n, "vertex");
+    require_rows("opacities", splats.opacities, n, "vertex");
+    require_rows("sh", splats.sh, n, "vertex");
+    const int given = int(!splats.scales.empty()) + int(!splats.rotations.empty()) +
+                      int(!splats.opacities.empty()) + int(!splats.sh.empty());
+    if (given != 0 && given != 4)
+        throw ArgumentError(
+            fmt::format("mesh splats: expected all of scales, rotations, opacities and sh, or "
+                        "none; got {} of them (assign() sets several at once)",
+                        given));
+    const Eigen::Index cols = splats.sh.cols();
+    if (!splats.sh.empty() && cols != 3 && cols != 12 && cols != 27 && cols != 48)
+        throw ArgumentError(
+            fmt::format("mesh array sh: expected 3, 12, 27 or 48 columns, for spherical "
+                        "harmonics of degree 0 to 3, got {}",
+                        cols));
+}
+
 void require_shapes(const MeshData& data) {
     const Eigen::Index n = data.V.rows(), m = data.F.rows();
     require_rows("N", data.N, n, "vertex");
@@ -79,11 +99,30 @@ void require_shapes(const MeshData& data) {
     require_rows_of_either("L", data.L, data);
     require_rows("I", data.I, n, "vertex");
     require_scalars(data);
+    require_splat_shapes(data.splats, n);
     require_rows("source_vertex", data.source_vertex, n, "vertex");
     require_rows("source_face", data.source_face, m, "face");
     if (!data.C.empty() && data.C.cols() != 3 && data.C.cols() != 4)
         throw ArgumentError(fmt::format("mesh array C: expected {} x 3 or {} x 4, got {} x {}", n, n,
                                         data.C.rows(), data.C.cols()));
+}
+
+void require_splats(const SplatArrays& splats) {
+    const auto require = [](const char* what, Eigen::Index rows, auto&& is_bad) {
+        if (const size_t row = first_bad_row(rows, [&](size_t i) { return is_bad(Eigen::Index(i)); });
+            row != no_row)
+            throw ArgumentError(fmt::format("mesh array {}, got others in row {} of {}", what, row, rows));
+    };
+    const Eigen::Index n = splats.scales.rows();
+    require("scales: expected finite numbers of 0 or more", n, [&](Eigen::Index i) {
+        return !splats.scales.row(i).allFinite() || splats.scales.row(i).minCoeff() < 0;
+    });
+    require("rotations: expected finite quaternions w, x, y, z of a length above 0", n, [&](Eigen::Index i) {
+        return !splats.rotations.row(i).allFinite() || splats.rotations.row(i).isZero(0);
+    });
+    require("opacities: expected numbers from 0 to 1", n,
+            [&](Eigen::Index i) { return !(splats.opacities(i) >= 0 && splats.opacities(i) <= 1); });
+    require("sh: expected finite numbers", n, [&](Eigen::Index i) { return !splats.sh.row(i).allFinite(); });
 }
 
 void require_finite_positions(const Array3f& V) {
@@ -162,6 +201,11 @@ void validate(const MeshData& data, const MeshData& valid) {
     if (!same_V) require_finite_positions(data.V);
     if (!same_count || !same_array(data.F, valid.F)) require_indices("F", data.F, data.V.rows());
     if (!same_count || !same_array(data.E, valid.E)) require_indices("E", data.E, data.V.rows());
+    if (!same_array(data.splats.scales, valid.splats.scales) ||
+        !same_array(data.splats.rotations, valid.splats.rotations) ||
+        !same_array(data.splats.opacities, valid.splats.opacities) ||
+        !same_array(data.splats.sh, valid.splats.sh))
+        require_splats(data.splats);
     const bool same_labels = same_array(data.L, valid.L) && data.label_map == valid.label_map;
     if (data.label_map && !same_labels) require_labels(data.L, *data.label_map);
     require_parts(data);

@@ -4,6 +4,7 @@
 #include "easypbr/scene/directions.h"
 #include "easypbr/scene/merge.h"
 #include "easypbr/scene/principal_axes.h"
+#include "easypbr/scene/splat_transform.h"
 
 namespace easypbr {
 namespace {
@@ -70,6 +71,7 @@ MeshData transformed(const MeshData& mesh, const Eigen::Affine3d& T) {
         result.V = rows(mesh.V.rows(), [&](size_t i) -> Vec3d { return T * row(mesh.V, i); });
     if (!mesh.N.empty()) result.N = turned_normals(mesh.N, M);
     if (!mesh.T.empty()) transform_ellipses(result, mesh, M);
+    if (!mesh.splats.empty()) result.splats = transformed_splats(mesh.splats, M);
     if (determinant < 0 && !mesh.F.empty()) result.F = Array3i::Dense(mesh.F.rowwise().reverse());
     if (!mesh.up.isZero()) result.up = M * mesh.up;
     result.voxel_size = float(mesh.voxel_size * std::cbrt(std::abs(determinant)));

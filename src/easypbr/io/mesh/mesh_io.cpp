@@ -65,7 +65,8 @@ const std::map<std::string, Reader>& readers() {
                                                    {"npz", without_options(read_npz)},
                                                    {"bin", without_options(read_kitti)},
                                                    {"las", without_options(read_las)},
-                                                   {"laz", without_options(read_las)}};
+                                                   {"laz", without_options(read_las)},
+                                                   {"splat", without_options(read_splat)}};
     return all;
 }
 
@@ -106,6 +107,16 @@ void warn_of_faces(const MeshData& mesh, const fs::path& path) {
     if (!mesh.F.empty() || !mesh.E.empty())
         log_warning(fmt::format("{}: the format has points only: {} faces and {} edges are left out",
                                 path.string(), mesh.F.rows(), mesh.E.rows()));
+}
+
+void warn_of_splats(const Mesh& mesh, const fs::path& path) {
+    for_each_node(mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d&) {
+        if (!data->splats.empty())
+            log_warning(
+                fmt::format("{}: the format has no splats: those of '{}' are written as points; PLY "
+                            "has them",
+                            path.string(), data->name));
+    });
 }
 
 std::string encode(const MeshData& mesh, const fs::path& path, const std::string& extension) {
@@ -161,6 +172,7 @@ void save_mesh(const Mesh& mesh, const fs::path& path) {
     if (!contains(writable_extensions, extension))
         fail_extension(path, extension, "written", writable_extensions);
     check_writable(path);
+    if (extension != "ply") warn_of_splats(mesh, path);
     if (extension == "glb") return save_glb(mesh, path);
     if (extension == "obj") return save_obj(mesh, path);
     write_file(path, encode(flatten(mesh), path, extension));

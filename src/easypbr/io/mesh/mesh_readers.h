@@ -26,9 +26,10 @@ MeshData read_npz(const Source& source);
 /// A scan of KITTI; the labels of SemanticKITTI are looked for beside the source's path and in ../labels.
 MeshData read_kitti(const Source& source);
 MeshData read_las(const Source& source);
+MeshData read_splat(const Source& source);
 
-/// Binary little-endian PLY: V, N, C (as uchar), UV (as s, t), L, I, F, E, and the base colour texture of a
-/// mesh with one material, by its path relative to `folder`.
+/// Binary little-endian PLY: V, N, C (as uchar), UV (as s, t), L, I, F, E, splats, and the base colour
+/// texture of a mesh with one material, by its path relative to `folder`. Of splats the up axis is a comment.
 std::string encode_ply(const MeshData& mesh, const fs::path& folder);
 
 /// OBJ, and MTL named `mtl_name`, with the textures' paths relative to `folder`; MTL is empty without

@@ -79,6 +79,15 @@ void add_vertices(const Source& source, DrawMode kind, DrawList& list) {
     list.items[kind].push_back(std::move(item));
 }
 
+/// They are unlit, and reach beyond their means.
+void add_splats(const Source& source, DrawList& list) {
+    if (source.object.mesh->V.empty()) return;
+    DrawItem item = make_item(source, {});
+    item.kind = SurfaceKind::display;
+    item.reaches_beyond = true;
+    list.overlays[DrawMode::splats].push_back(std::move(item));
+}
+
 bool has_lines(const MeshData& mesh, const DrawStyle& style) {
     const bool are_shape = style.mode == DrawMode::lines && !(mesh.E.empty() && mesh.F.empty());
     return are_shape || (style.show_wireframe && !mesh.F.empty()) || (style.show_normals && !mesh.V.empty());
@@ -150,6 +159,7 @@ DrawList DrawList::as_first_hits() const {
 
 DrawList DrawList::as_surfaces() const {
     DrawList surfaces = *this;
+    if (auto splats = surfaces.overlays.extract(DrawMode::splats)) surfaces.items.insert(std::move(splats));
     for (auto& [kind, of_kind] : surfaces.items)
         for (DrawItem& item : of_kind) {
             item.layered = false;
@@ -171,7 +181,10 @@ DrawList draw_list(const DrawableScene& drawable, const InferredSettings& settin
         const DrawMode kind = primitive_of(*object.mesh, style);
         if (kind == DrawMode::mesh) add_mesh(source, list);
         add_lines(source, list);
-        if (kind != DrawMode::mesh && kind != DrawMode::lines) add_vertices(source, kind, list);
+        if (kind == DrawMode::splats)
+            add_splats(source, list);
+        else if (kind != DrawMode::mesh && kind != DrawMode::lines)
+            add_vertices(source, kind, list);
         if (kind != DrawMode::points && style.show_points) add_vertices(source, DrawMode::points, list);
     }
     for (DrawItem& item : list.items[DrawMode::mesh])

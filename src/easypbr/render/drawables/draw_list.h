@@ -104,8 +104,10 @@ struct DrawList {
     /// the paths.
     DrawList as_first_hits() const;
     /// All items as surfaces that hide what is behind them: what depth, ids and labels are of. A blended
-    /// surface is one where its opacity is at least one half.
+    /// surface is one where its opacity is at least one half, and so are splats together.
     DrawList as_surfaces() const;
+    /// Whether some of these surfaces are none in pictures.
+    bool has_soft_surfaces() const { return overlays.contains(DrawMode::splats); }
 };
 
 /// What the files of the materials' shaders hold, by path.

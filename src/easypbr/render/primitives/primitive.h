@@ -45,6 +45,8 @@ class Primitive {
     }
     /// The primitives of a pixel are one surface: then add_mean() takes the place of rasterise().
     virtual bool is_mean() const { return false; }
+    /// The driver can draw them; else add_mean() does so on every device.
+    virtual bool has_driver() const { return true; }
     /// Adds the surface of each pixel of the whole frame where it is nearer than `hides` (reversed depth, row
     /// by row) says; `writer` holds the same frame.
     virtual void add_mean(const Frame&, DrawItems, std::span<const float>, SurfaceWriter&) {}

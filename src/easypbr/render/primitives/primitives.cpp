@@ -1,6 +1,7 @@
 #include "easypbr/render/primitives/lines/line_primitive.h"
 #include "easypbr/render/primitives/mesh/mesh_primitive.h"
 #include "easypbr/render/primitives/points/point_primitive.h"
+#include "easypbr/render/primitives/splats/splat_primitive.h"
 #include "easypbr/render/primitives/surfels/surfel_primitive.h"
 #include "easypbr/render/primitives/vertex_hits.h"
 
@@ -15,6 +16,7 @@ Primitives make_primitives(DataCaches& caches) {
     primitives.push_back(std::make_unique<MeshPrimitive>(caches));
     primitives.push_back(std::make_unique<PointPrimitive>(caches));
     primitives.push_back(std::make_unique<SurfelPrimitive>(caches));
+    primitives.push_back(std::make_unique<SplatPrimitive>());
     primitives.push_back(std::make_unique<LinePrimitive>());
     return primitives;
 }

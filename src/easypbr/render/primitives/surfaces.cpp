@@ -58,12 +58,12 @@ PixelRect Surfaces::draw_groups(const Frame& frame, const DrawList& list, const 
     std::vector<Group> groups = groups_of(list), means;
     const bool native = is_native(), is_empty = groups.empty();
     visible_.clear({0, 0}, {});
-    if (native) {
-        const auto by_mean = [](const Group& group) { return group.kind->is_mean(); };
-        std::ranges::copy_if(groups, std::back_inserter(means), by_mean);
-        std::erase_if(groups, by_mean);
-        rasterise(frame, outputs, groups);
-    }
+    const auto by_mean = [&](const Group& group) {
+        return group.kind->is_mean() && (native || !group.kind->has_driver());
+    };
+    std::ranges::copy_if(groups, std::back_inserter(means), by_mean);
+    std::erase_if(groups, by_mean);
+    if (native) rasterise(frame, outputs, groups);
     const PixelRect seen = visible_.empty() ? PixelRect{} : visible_.crop();
     const bool in_host_memory = native && groups.empty();
     const SurfaceContents contents{

@@ -32,7 +32,8 @@ constexpr std::array<std::pair<std::string_view, ScalarType>, 16> type_names{{
 
 class PlyHeaderParser {
   public:
-    explicit PlyHeaderParser(const Source& source) : source_(source), p_(source.begin()), end_(source.end()) {}
+    explicit PlyHeaderParser(const Source& source)
+        : source_(source), p_(source.begin()), end_(source.end()) {}
 
     PlyHeader parse() {
         if (word() != "ply") fail_here("'ply' expected at the file's begin");
@@ -125,7 +126,13 @@ class PlyHeaderParser {
     }
 
     void parse_comment() {
-        if (word() == "TextureFile") header_.textures.emplace_back(read_rest(p_, end_));
+        const std::string_view what = word();
+        if (what == "TextureFile") header_.textures.emplace_back(read_rest(p_, end_));
+        if (what != "up") return;
+        Vec3d up;
+        bool is_direction = true;
+        for (double& part : up) is_direction &= read_number(p_, end_, part);
+        if (is_direction && up.allFinite()) header_.up = up;
     }
 
     [[noreturn]] void fail_here(std::string_view message) { fail_at_line(source_, p_, message); }

@@ -1,6 +1,7 @@
 // The header of a PLY file (Turk, "The PLY Polygon File Format", 1994).
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct PlyHeader {
     PlyFormat format = PlyFormat::ascii;
     std::vector<Element> elements;      ///< those without properties are left out: they have no bytes
     std::vector<std::string> textures;  ///< names in "comment TextureFile NAME"
+    std::optional<Vec3d> up;            ///< of "comment up X Y Z"; zero: it has none
     const char* body = nullptr;         ///< first byte after the header
 };
 

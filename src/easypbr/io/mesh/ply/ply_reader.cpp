@@ -9,6 +9,7 @@
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/mesh/ply/ply_header.h"
 #include "easypbr/io/tables/attributes.h"
+#include "easypbr/io/tables/splat_columns.h"
 #include "easypbr/io/tables/vertex_arrays.h"
 
 namespace easypbr::io {
@@ -100,6 +101,7 @@ class PlyReader {
             fields.push_back({property, &plan.columns[i]});
             places.push_back({size_t(&element - header_.elements.data()), i});
         }
+        splats_ = SplatColumns(source_, fields, element.count);
         vertices_ = VertexArrays(fields, element.count);
         if (!vertices_.position()) fail(source_, "element 'vertex' has no properties x, y, z");
         std::ranges::transform(*vertices_.position(), position_.begin(),
@@ -156,10 +158,17 @@ class PlyReader {
         check_indices(source_, strip_triangles_, count, "a triangle strip");
     }
 
+    void take_splats() {
+        mesh_.splats = splats_.finish(source_);
+        mesh_.N = {};  // The reference implementation writes zeros.
+        mesh_.up = header_.up.value_or(splat_up);
+    }
+
     /// Where faces carry texture coordinates, makes one vertex of each different (vertex, uv).
     void split_vertices() {
         const bool cloud = is_cloud();
         vertices_.move_into(mesh_);
+        if (!splats_.empty()) take_splats();
         if (cloud) drop_points_without_position(source_, mesh_);
         if (corner_uv_.value_count() == 0) return;
         std::vector<uint64_t> keys(faces_.value_count(), no_key);
@@ -225,6 +234,7 @@ class PlyReader {
     std::vector<ElementPlan> plans_;
 
     VertexArrays vertices_;
+    SplatColumns splats_;
     std::array<PropertyPlace, 3> position_{};  ///< of x, y, z
     Array2i::Dense E_;
     Polygons faces_, strips_;

@@ -24,7 +24,7 @@ bool is_lit_surface(const SceneSnapshot::Object& object, const Style& overrides)
     const DrawStyle style = resolve_style(*object.mesh, overrides);
     const DrawMode primitive = primitive_of(*object.mesh, style);
     return style.visible && !style.overlay && style.lit.value_or(true) && primitive != DrawMode::points &&
-           primitive != DrawMode::lines;
+           primitive != DrawMode::lines && primitive != DrawMode::splats;
 }
 
 GroundMode inferred_mode(const EffectContext& context) {

@@ -1,0 +1,78 @@
+"""3D Gaussian splats from arrays."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from . import _easypbr
+from .errors import ArgumentError
+from .tensors import as_numpy
+
+__all__ = ["splats"]
+
+CONSTANT = 0.28209479177387814
+"""The spherical harmonic of degree 0."""
+
+
+def splats(
+    means: ArrayLike,
+    scales: ArrayLike,
+    quaternions: ArrayLike | None = None,
+    opacities: ArrayLike | float = 1.0,
+    sh: ArrayLike | None = None,
+    colors: ArrayLike | None = None,
+    raw: bool = False,
+) -> "_easypbr.Mesh":
+    """A mesh of n 3D Gaussians, drawn as splats.
+
+    `means` is n x 3. `scales` are standard deviations along the Gaussians' own axes: n x 3, n x 2 of flat ones, or one
+    number for each. `quaternions` (n x 4: w, x, y, z) turn the axes; by default they are those of the world.
+    `opacities` are 0 to 1. `sh` holds spherical harmonics of degree 0 to 3, n x (degree + 1)^2 x 3, as gsplat and the
+    reference implementation have them; or give `colors`, n x 3 sRGB values from 0 to 1, the same from all directions.
+    With `raw`, scales and opacities are what is trained: logarithms, and values before the sigmoid. All may be numpy
+    arrays or tensors.
+    """
+    means = np.asarray(as_numpy(means), dtype=np.float64)
+    if means.ndim != 2 or means.shape[1] != 3:
+        raise ArgumentError(f"splats: expected means of n x 3, got {_shape(means)}")
+    count = len(means)
+    if (sh is None) == (colors is None):
+        raise ArgumentError("splats: expected one of sh and colors")
+    mesh = _easypbr.Mesh()
+    mesh.assign(
+        V=means,
+        scales=_scales(_floats(scales), count, raw),
+        rotations=np.tile([1.0, 0, 0, 0], (count, 1)) if quaternions is None else as_numpy(quaternions),
+        opacities=_opacities(_floats(opacities), count, raw),
+        sh=as_numpy(sh) if sh is not None else (_floats(colors).reshape(count, -1) - 0.5) / CONSTANT,
+    )
+    mesh.name = "splats"
+    return mesh
+
+
+def _floats(values: Any) -> np.ndarray:
+    return np.asarray(as_numpy(values), dtype=np.float64)
+
+
+def _shape(array: np.ndarray) -> str:
+    return " x ".join(map(str, array.shape)) or "one number"
+
+
+def _scales(scales: np.ndarray, count: int, raw: bool) -> np.ndarray:
+    if scales.ndim < 2:
+        scales = np.broadcast_to(scales.reshape(-1, 1), (count, 3)) if scales.size in (1, count) else scales
+    if scales.shape not in ((count, 3), (count, 2)):
+        raise ArgumentError(f"splats: expected scales of {count} x 3, {count} x 2 or {count}, got {_shape(scales)}")
+    if raw:
+        scales = np.exp(scales)
+    return np.pad(scales, ((0, 0), (0, 3 - scales.shape[1])))
+
+
+def _opacities(opacities: np.ndarray, count: int, raw: bool) -> np.ndarray:
+    opacities = opacities.reshape(-1)
+    if opacities.size not in (1, count):
+        raise ArgumentError(f"splats: expected one opacity or {count}, got {opacities.size}")
+    if raw:
+        opacities = 1 / (1 + np.exp(-opacities))
+    return np.broadcast_to(opacities, count)

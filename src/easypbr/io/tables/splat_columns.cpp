@@ -1,0 +1,147 @@
+#include "easypbr/io/tables/splat_columns.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <cstring>
+
+#include "easypbr/core/memory_budget.h"
+#include "easypbr/core/parallel.h"
+#include "easypbr/scene/splat_basis.h"
+
+namespace easypbr::io {
+namespace {
+
+constexpr size_t splat_rows_grain = 1 << 14;
+/// Numbers of f_rest fields for degree 0 to 3.
+constexpr std::array<size_t, 4> rest_counts{0, 9, 24, 45};
+/// The logarithms of what is written are kept finite.
+constexpr float least_scale = 1e-30f, least_opacity = 1e-30f, most_opacity = 1 - 6e-8f;
+
+const VertexField* find(const std::vector<VertexField>& fields, const std::string& name) {
+    const auto found =
+        std::ranges::find_if(fields, [&](const VertexField& field) { return field.property.name == name; });
+    return found == fields.end() ? nullptr : &*found;
+}
+
+const VertexField& require(const Source& source, const std::vector<VertexField>& fields,
+                           const std::string& name) {
+    if (const VertexField* field = find(fields, name)) return *field;
+    fail(source, fmt::format("splats have the properties f_dc_0 to 2, opacity, scale_0 to 2 and rot_0 to 3; "
+                             "'{}' is missing",
+                             name));
+}
+
+size_t count_rest(const Source& source, const std::vector<VertexField>& fields) {
+    const auto count = size_t(std::ranges::count_if(
+        fields, [](const VertexField& field) { return field.property.name.starts_with("f_rest_"); }));
+    if (std::ranges::find(rest_counts, count) == rest_counts.end())
+        fail(source, fmt::format("splats have 0, 9, 24 or 45 properties f_rest_N, for spherical harmonics of "
+                                 "degree 0 to 3; found {}",
+                                 count));
+    return count;
+}
+
+template <class Matrix>
+void set_column(const VertexField& field, Matrix& matrix, Eigen::Index column) {
+    field.column->floats = matrix.data() + column;
+    field.column->stride = size_t(matrix.cols());
+    field.column->scale = field.property.scale;
+    field.column->shift = field.property.shift;
+}
+
+/// Where the k-th harmonic after the first of a channel stands among the columns of sh.
+Eigen::Index harmonic_column(size_t k, size_t channel) {
+    return Eigen::Index(3 * (k + 1) + channel);
+}
+
+}  // namespace
+
+SplatColumns::SplatColumns(const Source& source, const std::vector<VertexField>& fields, size_t count) {
+    if (count == 0 || !find(fields, "f_dc_0") || !(find(fields, "scale_0") || find(fields, "rot_0"))) return;
+    const size_t rest = count_rest(source, fields), rows = rest / 3;
+    is_flat_ = !find(fields, "scale_2");
+    charge_memory(uint64_t(count) * (11 + rest) * sizeof(float), "its splats");
+    scales_.setZero(Eigen::Index(count), 3);
+    rotations_.resize(Eigen::Index(count), 4);
+    opacities_.resize(Eigen::Index(count));
+    sh_.resize(Eigen::Index(count), Eigen::Index(3 + rest));
+    const auto set = [&](const std::string& name, auto& matrix, Eigen::Index column) {
+        set_column(require(source, fields, name), matrix, column);
+    };
+    set("opacity", opacities_, 0);
+    for (int i = 0; i < (is_flat_ ? 2 : 3); ++i) set(fmt::format("scale_{}", i), scales_, i);
+    for (int i = 0; i < 4; ++i) set(fmt::format("rot_{}", i), rotations_, i);
+    for (int i = 0; i < 3; ++i) set(fmt::format("f_dc_{}", i), sh_, i);
+    for (size_t channel = 0; channel < 3; ++channel)
+        for (size_t k = 0; k < rows; ++k)
+            set(fmt::format("f_rest_{}", channel * rows + k), sh_, harmonic_column(k, channel));
+}
+
+SplatArrays SplatColumns::finish(const Source& source) {
+    const auto count = size_t(scales_.rows());
+    std::atomic<size_t> first_bad{count};
+    parallel_chunks(count, splat_rows_grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            const auto row = Eigen::Index(i);
+            for (int k = 0; k < (is_flat_ ? 2 : 3); ++k) scales_(row, k) = std::exp(scales_(row, k));
+            opacities_(row) = 1 / (1 + std::exp(-opacities_(row)));
+            const bool is_good = scales_.row(row).allFinite() && std::isfinite(opacities_(row)) &&
+                                 rotations_.row(row).allFinite() && !rotations_.row(row).isZero(0) &&
+                                 sh_.row(row).allFinite();
+            for (size_t known = first_bad;
+                 !is_good && i < known && !first_bad.compare_exchange_weak(known, i);) {
+            }
+        }
+    });
+    if (first_bad < count)
+        fail(source, fmt::format("splat {} of {} has a value that is not finite, or a rotation of length 0",
+                                 first_bad.load(), count));
+    SplatArrays splats{std::move(scales_), std::move(rotations_), std::move(opacities_), std::move(sh_)};
+    *this = {};
+    return splats;
+}
+
+std::vector<RowPart> splat_row_parts(const SplatArrays& splats) {
+    if (splats.empty()) return {};
+    using Names = std::vector<std::string>;
+    const auto part = [](Names names, auto&& value_of) {
+        const size_t count = names.size();
+        return RowPart{std::move(names), ScalarType::float32, [count, value_of](Eigen::Index row, char* out) {
+                           for (size_t i = 0; i < count; ++i, out += sizeof(float)) {
+                               const float value = value_of(row, Eigen::Index(i));
+                               std::memcpy(out, &value, sizeof value);
+                           }
+                       }};
+    };
+    const auto rows = size_t(splats.sh.cols() / 3 - 1);
+    Names rest;
+    for (size_t i = 0; i < 3 * rows; ++i) rest.push_back(fmt::format("f_rest_{}", i));
+    std::vector<RowPart> parts;
+    parts.push_back(part({"f_dc_0", "f_dc_1", "f_dc_2"},
+                         [sh = splats.sh](Eigen::Index row, Eigen::Index i) { return sh(row, i); }));
+    if (rows > 0)
+        parts.push_back(part(std::move(rest), [sh = splats.sh, rows](Eigen::Index row, Eigen::Index i) {
+            return sh(row, harmonic_column(size_t(i) % rows, size_t(i) / rows));
+        }));
+    parts.push_back(part({"opacity"}, [o = splats.opacities](Eigen::Index row, Eigen::Index) {
+        const float opacity = std::clamp(o(row), least_opacity, most_opacity);
+        return std::log(opacity / (1 - opacity));
+    }));
+    parts.push_back(
+        part({"scale_0", "scale_1", "scale_2"}, [s = splats.scales](Eigen::Index row, Eigen::Index i) {
+            return std::log(std::max(s(row, i), least_scale));
+        }));
+    parts.push_back(part({"rot_0", "rot_1", "rot_2", "rot_3"},
+                         [q = splats.rotations](Eigen::Index row, Eigen::Index i) { return q(row, i); }));
+    return parts;
+}
+
+float constant_of_color(float encoded) {
+    return (encoded - 0.5f) / splat_constant;
+}
+
+}  // namespace easypbr::io

@@ -1,0 +1,191 @@
+#include "easypbr/render/primitives/splats/splat_primitive.h"
+
+#include <algorithm>
+
+#include "easypbr/core/color.h"
+#include "easypbr/core/parallel.h"
+
+namespace easypbr::render {
+namespace {
+
+using OverlayPixel = Eigen::Vector4<Eigen::half>;
+
+std::vector<const DrawItem*> chosen(DrawItems items, bool over) {
+    std::vector<const DrawItem*> chosen;
+    for (const DrawItem& item : items)
+        if (is_over(item) == over) chosen.push_back(&item);
+    return chosen;
+}
+
+std::vector<const DrawItem*> every(DrawItems items) {
+    std::vector<const DrawItem*> every;
+    for (const DrawItem& item : items) every.push_back(&item);
+    return every;
+}
+
+/// The axis of a splat along which it is thinnest, in the world, towards the camera.
+Vec3 normal_of(const Frame& frame, const DrawItem& item, Eigen::Index i) {
+    const SplatArrays& splats = item.mesh().splats;
+    const auto q = splats.rotations.row(i).cast<double>();
+    Eigen::Index thinnest;
+    splats.scales.row(i).minCoeff(&thinnest);
+    const Mat3d axes = Eigen::Quaterniond(q(0), q(1), q(2), q(3)).normalized().toRotationMatrix();
+    const Eigen::Affine3d& T = item.object->T_world_mesh;
+    const Vec3d normal = T.linear().inverse().transpose() * axes.col(thinnest);
+    const Vec3d mean = T * Vec3d(item.mesh().V.row(i).transpose().cast<double>());
+    const Vec3d towards = frame.orthographic() ? Vec3d(frame.camera.T_world_cam.linear().col(2))
+                                               : Vec3d(frame.camera.position() - mean);
+    return (normal.dot(towards) < 0 ? Vec3d(-normal) : normal).stableNormalized().cast<float>();
+}
+
+SurfacePixel surface_of(const Frame& frame, const SplatCompositor& compositor, uint32_t place, int x, int y) {
+    const ProjectedSplat& splat = compositor.splat(place);
+    const DrawItem& item = compositor.item_of(place);
+    SurfacePixel pixel;
+    pixel.albedo = linear_from_srgb(Vec3(Vec3(splat.red, splat.green, splat.blue).cwiseMin(1.0f)));
+    pixel.normal = normal_of(frame, item, Eigen::Index(splat.index));
+    pixel.roughness = 1;
+    pixel.kind = item.kind;
+    pixel.depth = splat.depth + splat.depth_x * (float(x) + 0.5f - splat.x) +
+                  splat.depth_y * (float(y) + 0.5f - splat.y);
+    pixel.object = uint32_t(item.object - frame.scene->objects.data());
+    pixel.element = splat.index;
+    pixel.is_point = true;
+    return pixel;
+}
+
+std::vector<float> read_depths(const gl::Texture& depth) {
+    std::vector<float> depths(size_t(depth.width()) * size_t(depth.height()));
+    gl::Framebuffer({&depth}).read(0, gl::Format::r32f, 0, 0, depth.width(), depth.height(),
+                                   std::as_writable_bytes(std::span(depths)));
+    return depths;
+}
+
+/// The depths of a frame in host memory, which may hold a part of it.
+std::vector<float> whole_depths(const Target& depth) {
+    std::vector<float> depths(size_t(depth.width()) * size_t(depth.height()));
+    const PixelRect& area = depth.area();
+    const std::span<const float> held = depth.pixels<float>();
+    parallel_for(size_t(area.height), 64, [&](size_t y) {
+        std::copy_n(held.data() + y * size_t(area.width), area.width,
+                    depths.data() + (size_t(area.y) + y) * size_t(depth.width()) + size_t(area.x));
+    });
+    return depths;
+}
+
+/// Linear display light, premultiplied. Splats are blended as they are encoded, and what they are together is
+/// blended with the picture as light.
+Vec4 display_light(const SplatTile& tile, size_t pixel) {
+    const float alpha = 1 - tile.through[pixel];
+    if (alpha <= 0) return Vec4::Zero();
+    const Vec3 encoded = Vec3(tile.red[pixel], tile.green[pixel], tile.blue[pixel]) / alpha;
+    Vec4 light;
+    light << alpha * linear_from_srgb(encoded), alpha;
+    return light;
+}
+
+/// Calls body(x, y, place in the tile) for the pixels of a tile that are inside a rectangle.
+template <class Body>
+void for_each_pixel(const SplatTile& tile, const PixelRect& area, Body&& body) {
+    const int x0 = std::max(tile.left, area.x),
+              x1 = std::min(tile.left + SplatTile::size, area.x + area.width),
+              y0 = std::max(tile.top, area.y),
+              y1 = std::min(tile.top + SplatTile::size, area.y + area.height);
+    for (int y = y0; y < y1; ++y)
+        for (int x = x0; x < x1; ++x)
+            body(x, y, size_t(y - tile.top) * SplatTile::size + size_t(x - tile.left));
+}
+
+/// Calls put(pixel, light) for those that show something; pixels count row by row in the rectangle.
+template <class Put>
+void for_each_light(const SplatTile& tile, const PixelRect& area, Put&& put) {
+    for_each_pixel(tile, area, [&](int x, int y, size_t place) {
+        const Vec4 light = display_light(tile, place);
+        if (light.w() > 0) put(size_t(y - area.y) * size_t(area.width) + size_t(x - area.x), light);
+    });
+}
+
+}  // namespace
+
+void SplatPrimitive::add_mean(const Frame& frame, DrawItems items, std::span<const float> hides,
+                              SurfaceWriter& writer) {
+    compositor_.begin(frame, every(items));
+    // What is written hides nothing of what is still to be blended.
+    const std::vector<float> farthest(hides.begin(), hides.end());
+    compositor_.blend({farthest, {}}, [&](const SplatTile& tile) {
+        for_each_pixel(tile, frame.whole(), [&](int x, int y, size_t place) {
+            if (tile.median[place] == SplatTile::no_splat) return;
+            writer.put(writer.index(x, y), surface_of(frame, compositor_, tile.median[place], x, y));
+        });
+    });
+}
+
+void SplatPrimitive::begin_overlay(const Frame& frame, DrawItems items, const GBuffer&,
+                                   const gl::Texture& opaque) {
+    compositor_.begin(frame, chosen(items, false));
+    farthest_ = compositor_.empty() ? std::vector<float>() : read_depths(opaque);
+}
+
+void SplatPrimitive::draw_overlay_behind(const Frame&, DrawItems, const GBuffer& targets,
+                                         const GBuffer& layer) {
+    if (compositor_.empty()) return;
+    const std::vector<float> nearest = read_depths(layer.depth.texture());
+    add(targets, {farthest_, nearest});
+    // Where the layer is, the splats behind it have been drawn.
+    parallel_for(farthest_.size(), 1 << 16,
+                 [&](size_t i) { farthest_[i] = std::max(farthest_[i], nearest[i]); });
+}
+
+void SplatPrimitive::draw_overlay_rest(const Frame&, DrawItems, const GBuffer& targets) {
+    add(targets, {farthest_, {}});
+}
+
+void SplatPrimitive::draw_overlay_over(const Frame& frame, DrawItems items, const GBuffer& targets) {
+    const std::vector<const DrawItem*> over = chosen(items, true);
+    if (over.empty()) return;
+    compositor_.begin(frame, over);
+    add(targets, {});
+}
+
+void SplatPrimitive::shade_overlay(const Frame& frame, DrawItems items, const GBuffer& targets, Transfers&) {
+    compositor_.begin(frame, chosen(items, false));
+    if (!compositor_.empty()) farthest_ = whole_depths(targets.depth);
+    shade(targets, {farthest_, {}});
+    const std::vector<const DrawItem*> over = chosen(items, true);
+    if (over.empty()) return;
+    compositor_.begin(frame, over);
+    shade(targets, {});
+}
+
+void SplatPrimitive::shade(const GBuffer& targets, const SplatCompositor::Limits& limits) {
+    const std::span<OverlayPixel> overlay = targets.overlay.pixels<OverlayPixel>();
+    const PixelRect area = targets.overlay.area();
+    compositor_.blend(limits, [&](const SplatTile& tile) {
+        for_each_light(tile, area, [&](size_t pixel, const Vec4& light) {
+            const Vec4 behind = overlay[pixel].cast<float>();
+            overlay[pixel] = Vec4(light + (1 - light.w()) * behind).cast<Eigen::half>();
+        });
+    });
+}
+
+void SplatPrimitive::add(const GBuffer& targets, const SplatCompositor::Limits& limits) {
+    if (compositor_.empty()) return;
+    if (picture_.size() != compositor_.size()) picture_ = Target(gl::Format::rgba16f, compositor_.size());
+    picture_.write(picture_.whole());
+    const std::span<OverlayPixel> pixels = picture_.pixels<OverlayPixel>();
+    std::ranges::fill(picture_.pixels<std::byte>(), std::byte{0});
+    compositor_.blend(limits, [&](const SplatTile& tile) {
+        for_each_light(tile, picture_.whole(),
+                       [&](size_t pixel, const Vec4& light) { pixels[pixel] = light.cast<Eigen::half>(); });
+    });
+    Transfers transfers;
+    picture_.upload(transfers);
+    targets.display().bind();
+    const gl::Program& program = programs_.get({});
+    program.use();
+    program.set("u_splats", 0);
+    picture_.bind(0);
+    gl::draw_screen({.blending = gl::over});
+}
+
+}  // namespace easypbr::render

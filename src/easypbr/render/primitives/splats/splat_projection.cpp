@@ -1,0 +1,109 @@
+#include "easypbr/render/primitives/splats/splat_projection.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/render/primitives/splats/splat_color.h"
+
+namespace easypbr::render {
+namespace {
+
+/// Variance that training adds to every splat, in square pixels (Kerbl et al. 2023).
+constexpr double low_pass = 0.3;
+/// The projection is replaced by its derivative, which is far off outside of the picture: beyond this part
+/// of its half size the derivative is that at the border (Kerbl et al. 2023).
+constexpr double derivative_limit = 1.3;
+
+/// A centre in normalised device coordinates of the frame, kept to what the whole picture shows and a little
+/// more: the same for all tiles of a picture.
+double limited(double ndc, int size, int origin, int picture_size) {
+    const double pixel = (ndc + 1) / 2 * size + origin, middle = picture_size / 2.0,
+                 reach = derivative_limit * middle;
+    return (std::clamp(pixel, middle - reach, middle + reach) - origin) / size * 2 - 1;
+}
+
+}  // namespace
+
+SplatProjector::SplatProjector(const Frame& frame, const DrawItem& item)
+    : frame_(frame), item_(item), mesh_(item.mesh()), degree_(mesh_.splats.degree()) {
+    const Mat4d view_from_mesh = frame.camera.view() * item.object->T_world_mesh.matrix();
+    view_from_mesh_ = view_from_mesh.topRows<3>();
+    turn_ = view_from_mesh_.leftCols<3>().cast<float>();
+    const Mat3d inverse = view_from_mesh_.leftCols<3>().inverse();
+    eye_ = frame.orthographic() ? Vec3d(inverse * Vec3d(0, 0, -1)) : Vec3d(-inverse * view_from_mesh_.col(3));
+    least_width_ = frame.orthographic() ? 0.5f : float(frame.camera.near);
+}
+
+bool SplatProjector::project(Eigen::Index i, ProjectedSplat& splat) const {
+    splat.opacity = mesh_.splats.opacities(i);
+    if (splat.opacity < least_splat_alpha) return false;
+    Mat3 axes;
+    if (!place(mesh_.V.row(i).transpose().cast<double>(), splat, axes)) return false;
+    const auto& q = mesh_.splats.rotations;
+    const Eigen::Quaternionf rotation(q(i, 0), q(i, 1), q(i, 2), q(i, 3));
+    const Mat3 turned = turn_ * rotation.normalized().toRotationMatrix();
+    axes = Mat3(axes * turned) * mesh_.splats.scales.row(i).transpose().asDiagonal();
+    if (!widen(axes, splat)) return false;
+    const Vec3 seen = color(i);
+    splat.red = seen.x();
+    splat.green = seen.y();
+    splat.blue = seen.z();
+    splat.index = uint32_t(i);
+    return true;
+}
+
+bool SplatProjector::place(const Vec3d& mean, ProjectedSplat& splat, Mat3& derivative) const {
+    const Mat4d& P = frame_.clip_from_view;
+    const Eigen::Vector4d clip = P * (view_from_mesh_ * mean.homogeneous()).homogeneous();
+    if (!(clip.w() >= double(least_width_))) return false;
+    const Vec2d ndc = clip.head<2>() / clip.w();
+    splat.depth = float(clip.z() / clip.w());
+    if (!(splat.depth > 0 && splat.depth <= 1)) return false;
+    const Vec2d half = frame_.size.cast<double>() / 2;
+    splat.x = float((1 + ndc.x()) * half.x());
+    splat.y = float((1 - ndc.y()) * half.y());
+    // Rows count downwards.
+    const double x = limited(ndc.x(), frame_.size.x(), frame_.origin.x(), frame_.picture_size.x()),
+                 y = -limited(-ndc.y(), frame_.size.y(), frame_.origin.y(), frame_.picture_size.y());
+    const Eigen::RowVector3d w = P.block<1, 3>(3, 0);
+    derivative.row(0) = (half.x() / clip.w() * (P.block<1, 3>(0, 0) - x * w)).cast<float>();
+    derivative.row(1) = (-half.y() / clip.w() * (P.block<1, 3>(1, 0) - y * w)).cast<float>();
+    derivative.row(2) = ((P.block<1, 3>(2, 0) - clip.z() / clip.w() * w) / clip.w()).cast<float>();
+    return true;
+}
+
+bool SplatProjector::widen(const Mat3& axes, ProjectedSplat& splat) const {
+    const Mat3d own = axes.cast<double>();
+    const double own_xx = own.row(0).squaredNorm(), own_yy = own.row(1).squaredNorm(),
+                 own_xy = own.row(0).dot(own.row(1));
+    const double xx = own_xx + low_pass, yy = own_yy + low_pass, area = xx * yy - own_xy * own_xy;
+    if (!(area > 0) || !std::isfinite(area)) return false;
+    if (item_.style.splat_antialias)
+        splat.opacity *= float(std::sqrt(std::max(0.0, own_xx * own_yy - own_xy * own_xy) / area));
+    if (splat.opacity < least_splat_alpha) return false;
+    splat.xx = float(yy / area);
+    splat.xy = float(-own_xy / area);
+    splat.yy = float(xx / area);
+    // The mean of a Gaussian's depth where column and row are given.
+    const double x_depth = own.row(0).dot(own.row(2)), y_depth = own.row(1).dot(own.row(2));
+    splat.depth_x = float((yy * x_depth - own_xy * y_depth) / area);
+    splat.depth_y = float((xx * y_depth - own_xy * x_depth) / area);
+    // Where its opacity falls to the least that is seen.
+    const double farthest = 2 * std::log(double(splat.opacity) / double(least_splat_alpha));
+    splat.half_width = float(std::sqrt(farthest * xx));
+    splat.half_height = float(std::sqrt(farthest * yy));
+    return splat.x + splat.half_width > 0 && splat.x - splat.half_width < float(frame_.size.x()) &&
+           splat.y + splat.half_height > 0 && splat.y - splat.half_height < float(frame_.size.y());
+}
+
+Vec3 SplatProjector::color(Eigen::Index i) const {
+    if (item_.with_colors) return mesh_.C.row(i).head<3>().transpose();
+    const ArrayXf& sh = mesh_.splats.sh;
+    const float* const own = sh.data() + i * sh.cols();
+    if (degree_ == 0) return splat_color(own, 0, Vec3(0, 0, 1));
+    const Vec3d mean = mesh_.V.row(i).transpose().cast<double>();
+    const Vec3d direction = frame_.orthographic() ? eye_ : Vec3d(mean - eye_);
+    return splat_color(own, degree_, direction.normalized().cast<float>());
+}
+
+}  // namespace easypbr::render

@@ -1,0 +1,59 @@
+// Splats as they lie on the screen (Zwicker et al., "EWA Splatting", 2002; Kerbl et al. 2023).
+#pragma once
+
+#include <cstdint>
+
+#include "easypbr/render/drawables/draw_list.h"
+#include "easypbr/render/frame/frame.h"
+
+namespace easypbr::render {
+
+/// Nothing that is less opaque is drawn (Kerbl et al. 2023).
+inline constexpr float least_splat_alpha = 1.0f / 255;
+/// No splat hides what is behind it altogether.
+inline constexpr float most_splat_alpha = 0.99f;
+
+/// Its opacity at a pixel's centre p is opacity * exp(-(xx dx^2 + 2 xy dx dy + yy dy^2) / 2), d = p - centre,
+/// and what is seen of it there is where it is densest along the pixel's ray, at depth + depth_x dx + depth_y
+/// dy (Zwicker et al. 2002), to first order. A cache line.
+struct alignas(64) ProjectedSplat {
+    float x, y;                     ///< centre, in pixels of the frame
+    float xx, xy, yy;               ///< inverse of the covariance, per square pixel
+    float opacity;                  ///< at the centre
+    float red, green, blue;         ///< sRGB-encoded, 0 or more
+    float depth;                    ///< of its mean, as GBuffer::depth has it
+    float depth_x, depth_y;         ///< change of the depth, per pixel
+    float half_width, half_height;  ///< of the box, in pixels, outside of which it is not seen
+    uint32_t index;                 ///< of the vertex
+};
+
+/// Projects the splats of an item. The covariance is that of the projection's derivative at the mean, widened
+/// by a low-pass of 0.3 square pixels as in training. Where the style asks for it the opacity falls by as
+/// much as the area grows (the 2D filter of Yu et al., "Mip-Splatting", 2024).
+class SplatProjector {
+  public:
+    /// Both must outlive this.
+    SplatProjector(const Frame& frame, const DrawItem& item);
+
+    /// False for one that is not seen: behind the near plane, outside of the frame or of no opacity.
+    bool project(Eigen::Index i, ProjectedSplat& splat) const;
+
+  private:
+    /// Where a splat's mean is seen, and the derivative of column, row and depth by the place in view space;
+    /// false where it is not.
+    bool place(const Vec3d& mean, ProjectedSplat& splat, Mat3& derivative) const;
+    /// From the semi-axes as columns, row and depth have them.
+    bool widen(const Mat3& axes, ProjectedSplat& splat) const;
+    Vec3 color(Eigen::Index i) const;
+
+    const Frame& frame_;
+    const DrawItem& item_;
+    const MeshData& mesh_;
+    int degree_;
+    Eigen::Matrix<double, 3, 4> view_from_mesh_;
+    Mat3 turn_;          ///< of view_from_mesh_
+    Vec3d eye_;          ///< in the frame of the splats; orthographic: where the camera looks
+    float least_width_;  ///< of clip space at the near plane
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,117 @@
+#include "easypbr/render/primitives/splats/splat_tile.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+
+namespace easypbr::render {
+namespace {
+
+// Neighbouring pixels of a row at once.
+constexpr int width = 4;
+using Floats = float __attribute__((vector_size(4 * width)));
+using Ints = int32_t __attribute__((vector_size(4 * width)));
+
+/// After so many splats a tile is looked at whether anything comes through.
+constexpr size_t splats_between_looks = 16;
+
+Floats same_in_all(float value) {
+    return value - Floats{};
+}
+
+Floats load_pixels(const float* from) {
+    Floats values;
+    std::memcpy(&values, from, sizeof values);
+    return values;
+}
+
+void store_pixels(float* to, Floats values) {
+    std::memcpy(to, &values, sizeof values);
+}
+
+Floats smaller(Floats a, Floats b) {
+    return a < b ? a : b;
+}
+
+bool any_set(Ints mask) {
+    const auto halves = std::bit_cast<std::array<uint64_t, 2>>(mask);
+    return (halves[0] | halves[1]) != 0;
+}
+
+/// exp(-x) for x from 0 to 6, to 3e-7 of the value: a power of two times the Taylor polynomial of the rest.
+Floats falling_exp(Floats x) {
+    const Floats t = x * -1.44269504f;
+    const Ints whole = __builtin_convertvector(t - 0.5f, Ints);
+    const Floats f = (t - __builtin_convertvector(whole, Floats)) * 0.69314718f;
+    const Floats power =
+        1 + f * (1 + f * (1.0f / 2 + f * (1.0f / 6 + f * (1.0f / 24 + f * (1.0f / 120 + f * (1.0f / 720))))));
+    return power * std::bit_cast<Floats>(Ints((whole + 127) << 23));
+}
+
+/// First and one past the last pixel of a tile whose centres lie in [low, high] of the frame.
+std::array<int, 2> tile_span(float low, float high, int first) {
+    const auto clamped = [](float pixel) { return int(std::clamp(pixel, 0.0f, float(SplatTile::size))); };
+    return {clamped(std::ceil(low - 0.5f) - float(first)),
+            clamped(std::floor(high - 0.5f) + 1 - float(first))};
+}
+
+}  // namespace
+
+void SplatTile::clear() {
+    red.fill(0);
+    green.fill(0);
+    blue.fill(0);
+    through.fill(1);
+    median.fill(no_splat);
+}
+
+bool SplatTile::is_opaque() const {
+    return *std::max_element(through.begin(), through.end()) < least_splat_transmittance;
+}
+
+void SplatTile::blend(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places) {
+    for (size_t i = 0; i < places.size(); ++i) {
+        if (i % splats_between_looks == 0 && is_opaque()) return;
+        if (i + 8 < places.size()) __builtin_prefetch(&splats[places[i + 8]]);
+        blend(splats[places[i]], places[i]);
+    }
+}
+
+void SplatTile::blend(const ProjectedSplat& splat, uint32_t place) {
+    const auto [x0, x1] = tile_span(splat.x - splat.half_width, splat.x + splat.half_width, left);
+    const auto [y0, y1] = tile_span(splat.y - splat.half_height, splat.y + splat.half_height, top);
+    const float farthest_power = std::log(splat.opacity / least_splat_alpha);
+    const Floats steps = {0, 1, 2, 3};
+    for (int y = y0; y < y1; ++y) {
+        const float dy = float(top + y) + 0.5f - splat.y;
+        const float own = 0.5f * splat.yy * dy * dy, mixed = splat.xy * dy;
+        for (int x = x0 / width * width; x < x1; x += width) {
+            const size_t at = size_t(y) * size + size_t(x);
+            const Floats dx = steps + (float(left + x) + 0.5f - splat.x);
+            const Floats power = (0.5f * splat.xx * dx + mixed) * dx + own;
+            Floats light = load_pixels(&through[at]);
+            Ints seen = (power <= farthest_power) & (light >= least_splat_transmittance);
+            if (is_limited) {
+                const Floats depth = splat.depth_x * dx + (splat.depth + splat.depth_y * dy);
+                seen &= (load_pixels(&farthest[at]) <= depth) & (load_pixels(&nearest[at]) > depth);
+            }
+            if (!any_set(seen)) continue;
+            // Beyond these bounds are only pixels that are not seen, and rounding.
+            const Floats kept = smaller(power > 0 ? power : same_in_all(0), same_in_all(6));
+            const Floats alpha = smaller(splat.opacity * falling_exp(kept), same_in_all(most_splat_alpha));
+            const Floats part = seen ? light * alpha : same_in_all(0);
+            store_pixels(&red[at], load_pixels(&red[at]) + part * splat.red);
+            store_pixels(&green[at], load_pixels(&green[at]) + part * splat.green);
+            store_pixels(&blue[at], load_pixels(&blue[at]) + part * splat.blue);
+            const Floats rest = light - part;
+            store_pixels(&through[at], rest);
+            const Ints crosses = (light >= 0.5f) & (rest < 0.5f);
+            if (!any_set(crosses)) continue;
+            for (int i = 0; i < width; ++i)
+                if (crosses[i]) median[at + size_t(i)] = place;
+        }
+    }
+}
+
+}  // namespace easypbr::render

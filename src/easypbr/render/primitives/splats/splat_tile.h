@@ -1,0 +1,40 @@
+// A tile of the screen while splats are blended into it.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+
+#include "easypbr/render/primitives/splats/splat_order.h"
+
+namespace easypbr::render {
+
+/// Where less light than this comes through, nothing behind is seen (Kerbl et al. 2023).
+inline constexpr float least_splat_transmittance = 1e-4f;
+
+/// Its pixels, row by row.
+struct alignas(64) SplatTile {
+    static constexpr int size = SplatTiles::tile_size;
+    using Pixels = std::array<float, size_t(size) * size>;
+
+    Pixels red, green, blue;  ///< sRGB-encoded, premultiplied
+    Pixels through;           ///< the part of the light from behind that still comes through
+    /// Reversed depths: splats are seen from `farthest` to before `nearest`, where is_limited.
+    Pixels farthest, nearest;
+    bool is_limited = false;
+    /// Place of the splat behind which less than half of the light comes through; no_splat: there is none.
+    std::array<uint32_t, size_t(size) * size> median;
+    static constexpr uint32_t no_splat = ~0u;
+    int left = 0, top = 0;  ///< its first pixel
+
+    /// Blends splats, of which `places` are those of the tile from the nearest on, behind what it holds.
+    void blend(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places);
+    /// Nothing blended yet.
+    void clear();
+
+  private:
+    void blend(const ProjectedSplat& splat, uint32_t place);
+    bool is_opaque() const;
+};
+
+}  // namespace easypbr::render

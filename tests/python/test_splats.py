@@ -1,0 +1,78 @@
+"""3D Gaussian splats from arrays."""
+
+import numpy as np
+import pytest
+
+from easypbr import ArgumentError, Mesh, render, splats
+
+
+def wide(color=(1.0, 0.0, 0.0), **options):
+    """One splat that fills the picture, three quarters opaque."""
+    return splats([[0, 0, 0]], [[5, 5, 0.01]], opacities=0.75, colors=[color], **options)
+
+
+def picture(mesh, samples=1):
+    camera = {"position": (0, 0, 4), "target": (0, 0, 0)}
+    return render(mesh, size=(32, 32), samples=samples, camera=camera, background="transparent")
+
+
+def test_one_fills_the_picture():
+    middle = picture(wide())[16, 16]
+    # The splat's opacity at its middle; half a code.
+    assert np.abs(middle.astype(int) - [255, 0, 0, round(0.75 * 255)]).max() <= 1
+
+
+def test_layouts():
+    count, random = 5, np.random.default_rng(1)
+    means = random.normal(size=(count, 3))
+    sh = random.normal(size=(count, 16, 3)).astype(np.float32)
+    mesh = splats(means, np.full((count, 2), 0.1), random.normal(size=(count, 4)), np.full(count, 0.5), sh)
+    assert mesh.scales.shape == (count, 3) and (mesh.scales[:, 2] == 0).all()
+    assert np.array_equal(mesh.sh, sh.reshape(count, 48))
+    mesh = splats(means, np.log(0.1), opacities=0.0, colors=np.full((count, 3), 0.5), raw=True)
+    assert np.allclose(mesh.scales, 0.1) and np.allclose(mesh.opacities, 0.5) and np.allclose(mesh.sh, 0)
+    assert np.array_equal(mesh.rotations[0], [1, 0, 0, 0])
+
+
+def test_tensors():
+    torch = pytest.importorskip("torch")
+    mesh = splats(torch.zeros(2, 3, requires_grad=True), torch.ones(2, 3), torch.ones(2, 4), torch.ones(2), torch.zeros(2, 4, 3))
+    assert mesh.sh.shape == (2, 12)
+
+
+@pytest.mark.parametrize(
+    "arguments, message",
+    [
+        (dict(means=[[0, 0]], scales=1, colors=[[1, 1, 1]]), "means of n x 3"),
+        (dict(means=[[0, 0, 0]], scales=[[1, 1, 1, 1]], colors=[[1, 1, 1]]), "scales"),
+        (dict(means=[[0, 0, 0]], scales=1), "one of sh and colors"),
+        (dict(means=[[0, 0, 0]], scales=1, colors=[[1, 1, 1]], opacities=[1, 1]), "one opacity or 1"),
+        (dict(means=[[0, 0, 0]], scales=1, colors=[[1, 1, 1]], opacities=2), "opacities"),
+        (dict(means=[[0, 0, 0]], scales=-1, colors=[[1, 1, 1]]), "scales"),
+        (dict(means=[[0, 0, 0]], scales=1, sh=np.zeros((1, 2, 3))), "sh"),
+        (dict(means=[[0, 0, 0]], scales=1, sh=np.full((1, 3), np.nan)), "sh"),
+        (dict(means=[[0, 0, 0]], scales=1, quaternions=[[0, 0, 0, 0]], colors=[[1, 1, 1]]), "rotations"),
+    ],
+)
+def test_what_is_refused(arguments, message):
+    with pytest.raises(ArgumentError, match=message):
+        splats(**arguments)
+
+
+def test_files(tmp_path):
+    mesh = wide()
+    mesh.save(tmp_path / "a.ply")
+    again = Mesh(tmp_path / "a.ply")
+    assert np.allclose(again.scales, mesh.scales, rtol=1e-6) and np.allclose(again.sh, mesh.sh)
+    assert np.array_equal(picture(again), picture(mesh))
+
+
+
+def test_samples_agree_with_one_frame():
+    random = np.random.default_rng(3)
+    mesh = splats(random.uniform(-0.5, 0.5, (200, 3)), 0.15, opacities=0.5, colors=random.random((200, 3)))
+    one, many = (picture(mesh, n).astype(float) for n in (1, 16))
+    # Colours as they cover: those of a pixel of opacity 1/255 mean nothing. Splats are about as wide as pixels, whose
+    # samples make them a little wider.
+    one, many = (p[:, :, :3] * p[:, :, 3:] / 255 for p in (one, many))
+    assert one.max() > 100 and np.abs(one - many).mean() < 2
