@@ -24,6 +24,7 @@ def write_inputs(folder):
     model = shapes.teapot(0.4, 4)
     for name in ("drone.ply", "drone.glb"):
         model.save(folder / name)
+    easypbr.splats(model.V, 0.02, opacities=0.8, colors=np.full((len(model.V), 3), 0.5)).save(folder / "room.ply")
     write_stl(folder / "part.stl", model)
     rows = np.linspace(1.5, 0.1, 16, dtype=np.float32)[:, None, None]
     easypbr.save_image(np.broadcast_to(rows * np.array([0.6, 0.7, 1], np.float32), (16, 32, 3)), folder / "map.hdr")
