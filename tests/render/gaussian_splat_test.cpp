@@ -6,6 +6,7 @@
 #include <random>
 
 #include "easypbr/core/color.h"
+#include "easypbr/render/pipeline/tiles.h"
 #include "easypbr/scene/merge.h"
 #include "render_test.h"
 
@@ -362,6 +363,26 @@ TEST(GaussianSplats, KeepTheirLightWhereAskedFor) {
     const double own = 2 * pi * 0.9 * pixels * pixels, widened = 2 * pi * 0.9 * (pixels * pixels + 0.3);
     EXPECT_NEAR(sum(true), own, 0.03 * own);
     EXPECT_NEAR(sum(false), widened, 0.03 * widened);
+}
+
+// What is beyond a tile's border is projected as in the whole picture.
+TEST(GaussianSplats, AreSeamlessInTiles) {
+    std::vector<Splat> splats = random_splats(200);
+    // Some are larger than a tile and reach out of the picture.
+    for (size_t i = 0; i < 20; ++i) splats[i].scales *= 30;
+    Scene scene;
+    scene.show(Mesh(mesh_of(splats)), "splats");
+    const Vec2i size(720, 420);
+    app::Session whole = session_of(scene, 64), parts = session_of(scene, 64);
+    for (app::Session* session : {&whole, &parts}) session->settings().image.size = size;
+    const int guard = guard_of(parts.scene().snapshot(), parts.resolve(), size).pixels;
+    const int side = 2 * guard + 2 * tile_grid;
+    const TileLimits limits{side, int64_t(side) * side};
+    ASSERT_GT(tiles_of(size, guard, limits).size(), 4u);
+    parts.limit_tiles(limits);
+    const Image a = render_linear(whole), b = render_linear(parts);
+    for (size_t i = 0; i < a.pixels<float>().size(); ++i)
+        ASSERT_NEAR(a.pixels<float>()[i], b.pixels<float>()[i], code) << i;
 }
 
 TEST(GaussianSplats, MayBeColouredByTheirData) {
