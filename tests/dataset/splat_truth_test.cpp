@@ -80,6 +80,27 @@ TEST(SplatTruth, DepthNormalAndIndexAreThoseOfTheWall) {
     }
 }
 
+// A splat of some opacity a half unit before the wall: it is the surface where it stops half of the light.
+TEST(SplatTruth, IsWhereHalfOfTheLightIsStopped) {
+    for (const float opacity : {0.45f, 0.55f}) {
+        MeshData splat;
+        splat.V = Array3f::Dense(Eigen::RowVector3f(0, 0, 0.5f));
+        splat.splats.scales = Array3f::Dense(Eigen::RowVector3f(2, 2, 0));
+        splat.splats.rotations = Array4f::Dense(Eigen::RowVector4f(1, 0, 0, 0));
+        splat.splats.opacities = Array1f::Dense::Constant(1, opacity);
+        splat.splats.sh = ArrayXf::Dense::Zero(1, 3);
+        Scene scene;
+        scene.show(wall(0), "wall");
+        scene.show(Mesh(splat), "splat");
+        const GroundTruth truth = truth_of(scene, true);
+        const size_t middle = size_t(size) * (size / 2) + size / 2;
+        const double expected = opacity > 0.5f ? distance - 0.5 : distance;
+        EXPECT_NEAR(double(truth.layers.at("depth").floats()[middle]), expected, 1e-4);
+        EXPECT_EQ(truth.layers.at("instance_id").integers()[middle],
+                  named(truth, opacity > 0.5f ? "splat" : "wall").id);
+    }
+}
+
 // A square before the middle of the wall, and one half a unit behind it.
 TEST(SplatTruth, MeshesAndSplatsHideEachOther) {
     Scene scene;
