@@ -4,7 +4,7 @@
 usage: make_splats.py SPLATS OUT.ply
 A ball on a chequered floor, covered by flat splats whose size goes with their number as in a trained scene, so that
 about as many are before each other in a pixel. 1 M splats take 240 MB. Times of a frame:
-bench_frames OUT.ply 20 "" 1280x720
+bench_frames OUT.ply 20 ENVIRONMENT.hdr 1280x720 background.mode=color
 """
 import sys
 
