@@ -1,4 +1,4 @@
-"""Custom panels in the window of a viewer, and callbacks."""
+"""Custom panels in the window and in the browser views of a viewer, and callbacks."""
 
 import sys
 import traceback
@@ -115,10 +115,12 @@ class WindowCallbacks:
         self._panels: dict[str, tuple[Callable[[Panel], object], Panel]] = {}
         self._handlers: list[tuple[Callable[[_easypbr.Event], object], str | None]] = []
         self._handler_number: int | None = None
+        self._front_ends: weakref.WeakSet[Any] = weakref.WeakSet()  # Servers and widgets.
 
     def add_panel(self, name: str, function: Callable[[Panel], object] | None = None) -> Any:
         """Adds a panel to the window, drawn by function(ui) in each frame; see Panel. Exceptions are shown in the panel
-        with their traceback, and the loop continues. Also as a decorator: @view.add_panel("Training")."""
+        with their traceback, and the loop continues. Also as a decorator: @view.add_panel("Training"). Browser views and
+        widgets show it too; they call the function on threads of their own, and share its values with the window."""
         if function is None:
             return lambda decorated: self.add_panel(name, decorated)
         if not callable(function):
@@ -131,12 +133,41 @@ class WindowCallbacks:
             return None if owner is None else owner._draw_panel(name, widgets)
 
         self._handle.add_panel(name, draw)
+        for front_end in list(self._front_ends):
+            self._serve_panel(front_end._panel_handle, name)
         return function
+
+    def _serve_panels(self, front_end: Any) -> None:
+        """Shows the panels in a server or a widget, now and from now on."""
+        self._front_ends.add(front_end)
+        for name in self._panels:
+            self._serve_panel(front_end._panel_handle, name)
+
+    def _serve_panel(self, handle: "_easypbr.ServerHandle | _easypbr.ChannelHandle", name: str) -> None:
+        function, shown = self._panels[name]
+        # Its own widgets, for it may be drawn while the window is; the same values.
+        panel = Panel()
+        panel._memory = shown._memory
+        viewer = weakref.ref(self)
+
+        def draw(widgets: "_easypbr._Widgets") -> str | None:
+            owner = viewer()
+            if owner is None:
+                return None
+            panel._handle = widgets
+            try:
+                return owner._call(function, panel, in_panel=True)[1]
+            finally:
+                panel._handle = None
+
+        handle.add_panel(name, draw)
 
     def remove_panel(self, name: str) -> None:
         """Removes a panel that was added."""
         self._handle.remove_panel(name)
         del self._panels[name]
+        for front_end in list(self._front_ends):
+            front_end._panel_handle.remove_panel(name)
 
     def _draw_panel(self, name: str, widgets: "_easypbr._Widgets") -> str | None:
         function, panel = self._panels[name]

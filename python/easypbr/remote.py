@@ -17,6 +17,10 @@ class Server:
         weakref.finalize(self, handle.close)
 
     @property
+    def _panel_handle(self) -> "_easypbr.ServerHandle":
+        return self._handle
+
+    @property
     def url(self) -> str:
         """What to open in a browser, with the secret that lets it control the view."""
         return self._handle.url

@@ -334,6 +334,7 @@ class Viewer(WindowCallbacks):
         handle = self._handle.serve(
             port, bind, socket, token_file, list(host_names), list(origins), max_clients, codec)
         server = Server(handle)
+        self._serve_panels(server)
         if block:
             print(server.url, flush=True)
             server.wait()

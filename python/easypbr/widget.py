@@ -37,6 +37,8 @@ class View(Protocol):
 
     def render(self, size: Any = None) -> np.ndarray: ...
 
+    def _serve_panels(self, front_end: Any) -> None: ...
+
 
 def can_show() -> bool:
     """Whether this is a notebook's kernel and anywidget is installed."""
@@ -81,8 +83,13 @@ def widget_class() -> type:
             self._channel = view._handle.open_channel()
             # Threads within the library must not outlive the interpreter.
             weakref.finalize(self, self._channel.close)
+            view._serve_panels(self)
             self.on_msg(_receive)
             threading.Thread(target=_carry, args=(weakref.ref(self), self._channel), name="easypbr widget", daemon=True).start()
+
+        @property
+        def _panel_handle(self) -> "_easypbr.ChannelHandle":
+            return self._channel
 
         def keep(self) -> None:
             """Takes the present picture of the view as the one that is saved with the notebook. Cells show it when they run

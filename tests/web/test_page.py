@@ -1,5 +1,7 @@
 """The page in a real browser: pictures, input, settings, pick, links, reconnection, watchers, accessibility."""
 
+import os
+
 import numpy as np
 import pytest
 from axe_playwright_python.sync_playwright import Axe
@@ -402,3 +404,64 @@ def test_the_video_goes_on_after_a_reconnection(view, tmp_path, open_page):
         expect(page.page.get_by_text("Connection lost")).to_be_hidden()
         page.page.wait_for_function("() => document.querySelector('canvas.picture').dataset.exact === 'true'")
         assert moved(page, -50) == "H.264"
+
+
+def test_panels_of_the_program_are_shown_and_used(view, open_page):
+    seen = {}
+    losses = [1 / (k + 1) for k in range(50)]
+
+    @view.add_panel("Training")
+    def panel(ui):
+        ui.text("Runs for a while")
+        seen["rate"] = ui.slider("rate", 0.1, 0, 1)
+        seen["mode"] = ui.combo("mode", "fast", ["fast", "exact"])
+        seen["live"] = ui.checkbox("live", True)
+        seen["color"] = ui.color("tint", (1, 0, 0))
+        if ui.button("Pause"):
+            seen["paused"] = True
+        ui.same_line()
+        if ui.button("Reset all"):
+            seen["reset"] = True
+        ui.progress(0.4, "epoch 2 of 5")
+        ui.plot("loss", losses)
+        if ui.section("More", open=False):
+            seen["note"] = ui.text_field("note", "")
+
+    page = open_page(width=1100, height=800)
+    page.exact()
+    panel = page.page.locator(".user-panel")
+    expect(panel.get_by_role("heading", name="Training")).to_be_visible()
+
+    def until(name, value):
+        for _ in range(100):
+            if seen.get(name) == value:
+                return
+            page.page.wait_for_timeout(100)
+        raise AssertionError(f"{name} is {seen.get(name)}")
+
+    number = panel.get_by_label("rate").last
+    number.fill("0.75")
+    number.press("Enter")
+    until("rate", 0.75)
+    panel.get_by_label("mode").select_option("exact")
+    until("mode", "exact")
+    panel.get_by_label("live").click()
+    until("live", False)
+    panel.locator('input[type="color"]').fill("#0000ff")
+    until("color", (0.0, 0.0, 1.0))
+    panel.get_by_role("button", name="Pause").click()
+    until("paused", True)
+    assert "reset" not in seen
+    assert panel.get_by_label("note").count() == 0
+    panel.get_by_role("button", name="More").click()
+    panel.get_by_label("note").fill("hello")
+    panel.get_by_label("note").press("Enter")
+    until("note", "hello")
+    expect(panel.locator("svg polyline")).to_have_count(1)
+    results = Axe().run(page.page)
+    assert not results.response["violations"], results.generate_report()
+    if folder := os.environ.get("EASYPBR_SCREENSHOTS"):
+        page.page.screenshot(path=f"{folder}/panels.png")
+    view.remove_panel("Training")
+    expect(panel).to_have_count(0)
+    expect(page.page.get_by_role("tab", name="Scene")).to_have_attribute("aria-selected", "true")

@@ -194,6 +194,8 @@ export class Connection {
         return update({ pick: message });
       case "animation":
         return update({ animation: message.names.length ? message : null });
+      case "panels":
+        return update({ panels: message.panels });
       case "statistics":
         return update({ statistics: message });
     }

@@ -55,7 +55,7 @@ function TextControl({ field, id, label, value, disabled, set }: Props) {
 /** Ranges that a slider makes sense for. */
 function hasSlider(field: Field): boolean {
   if (field.min === undefined || field.max === undefined) return false;
-  return field.max - field.min <= (field.type === "integer" || field.whole ? 64 : 720);
+  return field.slider || field.max - field.min <= (field.type === "integer" || field.whole ? 64 : 720);
 }
 
 function short(number: number): string {

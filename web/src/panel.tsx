@@ -3,17 +3,22 @@ import type { Connection } from "./connection";
 import { ScenePanel } from "./scene";
 import { SettingsPanel } from "./settings";
 import { StatisticsPanel } from "./statistics";
+import { useStore } from "./store";
+import { UserPanels } from "./user_panels";
 
-const TABS = ["Scene", "Settings", "Statistics"] as const;
+const TABS = ["Panels", "Scene", "Settings", "Statistics"] as const;
 type Tab = (typeof TABS)[number];
 
 /** Everything beside the picture, in tabs. */
 export function Panel({ connection, hide }: { connection: Connection; hide: () => void }) {
-  const [tab, setTab] = useState<Tab>("Scene");
+  const [chosen, setTab] = useState<Tab | null>(null);
+  const hasPanels = useStore((state) => state.panels.length > 0);
+  const tabs = TABS.filter((name) => hasPanels || name !== "Panels");
+  const tab = chosen && tabs.includes(chosen) ? chosen : (tabs[0] as Tab);
   const move = (event: KeyboardEvent) => {
     const step = event.key === "ArrowRight" ? 1 : event.key === "ArrowLeft" ? -1 : 0;
     if (!step) return;
-    const next = TABS[(TABS.indexOf(tab) + step + TABS.length) % TABS.length] as Tab;
+    const next = tabs[(tabs.indexOf(tab) + step + tabs.length) % tabs.length] as Tab;
     setTab(next);
     (event.currentTarget as HTMLElement).querySelector<HTMLElement>(`#tab-${next}`)?.focus();
   };
@@ -21,7 +26,7 @@ export function Panel({ connection, hide }: { connection: Connection; hide: () =
     <aside class="panel" aria-label="Controls">
       <div class="tabs">
         <div role="tablist" aria-label="Controls" class="tab-list" onKeyDown={move}>
-          {TABS.map((name) => (
+          {tabs.map((name) => (
             <button
               key={name}
               id={`tab-${name}`}
@@ -41,6 +46,7 @@ export function Panel({ connection, hide }: { connection: Connection; hide: () =
         </button>
       </div>
       <div id="tab-content" role="tabpanel" aria-labelledby={`tab-${tab}`} class="tab-content" tabIndex={0}>
+        {tab === "Panels" && <UserPanels connection={connection} />}
         {tab === "Scene" && <ScenePanel connection={connection} />}
         {tab === "Settings" && <SettingsPanel connection={connection} />}
         {tab === "Statistics" && <StatisticsPanel />}

@@ -11,6 +11,8 @@ export interface Field {
   choices?: string[];
   sizes?: number[];
   whole?: boolean;
+  /** However wide its range is. */
+  slider?: boolean;
 }
 
 /** A setting: as it was given ("auto" and "follow" too), and what is in force. */
@@ -60,6 +62,28 @@ export interface Animation {
   speed: number;
 }
 
+/** Of a program's panel. */
+export interface Widget {
+  type: "text" | "separator" | "section" | "button" | "checkbox" | "text_field" | "slider" | "number" | "combo" | "color" | "plot" | "progress";
+  name: string;
+  /** So many of this name come before it. */
+  use?: number;
+  beside?: boolean;
+  value?: string | number | boolean;
+  min?: number;
+  max?: number;
+  whole?: boolean;
+  choices?: string[];
+  values?: (number | null)[];
+  last?: number;
+}
+
+export interface UserPanel {
+  name: string;
+  error?: string;
+  widgets: Widget[];
+}
+
 export interface Control {
   controls: boolean;
   taken: boolean;
@@ -76,6 +100,7 @@ export type ServerMessage =
   | { kind: "notice"; text: string; error: boolean }
   | ({ kind: "pick" } & Pick)
   | ({ kind: "animation" } & Animation)
+  | { kind: "panels"; panels: UserPanel[] }
   | ({ kind: "statistics" } & Statistics);
 
 export type ClientMessage = { kind: string } & Record<string, string | number | boolean>;

@@ -1,7 +1,7 @@
 // What the page knows of a view. One object; parts of the page are drawn again when it changes.
 import { createContext } from "preact";
 import { useContext, useEffect, useState } from "preact/hooks";
-import type { Animation, Control, Field, FieldValue, Pick, SceneNode, Statistics } from "./protocol";
+import type { Animation, Control, Field, FieldValue, Pick, SceneNode, Statistics, UserPanel } from "./protocol";
 
 export type Phase = "connecting" | "live" | "lost" | "denied" | "full";
 
@@ -26,6 +26,7 @@ export interface State {
   statistics: Statistics | null;
   animation: Animation | null;
   pick: Pick | null;
+  panels: UserPanel[];
   notices: Notice[];
   /** Of the last seconds: what came, and how long an input took to be seen. */
   rate: { fps: number; kbytes: number; inputMs: number };
@@ -53,6 +54,7 @@ const begin = (): State => ({
   statistics: null,
   animation: null,
   pick: null,
+  panels: [],
   notices: [],
   rate: { fps: 0, kbytes: 0, inputMs: 0 },
   exact: false,

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -15,6 +16,10 @@ namespace easypbr {
 class Animations;
 class Scene;
 struct Settings;
+
+namespace app {
+class Widgets;
+}
 
 namespace remote {
 
@@ -69,6 +74,13 @@ class Server {
     void take_settings(const Settings& settings);
     /// Lets clients play a file's animations. They then move the meshes of the scene.
     void add_animations(const std::string& name, const Animations& animations);
+    /// A panel of the program's own in the clients' pages. `function` is called on the drawing thread, some
+    /// ten times a second while somebody is connected, and each time that something was done to the panel;
+    /// what it throws is shown there. Clients share it. A panel of the same name is replaced. Throws
+    /// ArgumentError for a name without letters.
+    void add_panel(const std::string& name, std::function<void(app::Widgets&)> function);
+    /// Nothing happens when there is none.
+    void remove_panel(const std::string& name);
 
     /// Says goodbye to all clients and frees the port. Nothing happens the second time.
     void close();
@@ -112,6 +124,13 @@ class Channel {
     void take_settings(const Settings& settings);
     /// Lets clients play a file's animations. They then move the meshes of the scene.
     void add_animations(const std::string& name, const Animations& animations);
+    /// A panel of the program's own in the clients' pages. `function` is called on the drawing thread, some
+    /// ten times a second while somebody is connected, and each time that something was done to the panel;
+    /// what it throws is shown there. Clients share it. A panel of the same name is replaced. Throws
+    /// ArgumentError for a name without letters.
+    void add_panel(const std::string& name, std::function<void(app::Widgets&)> function);
+    /// Nothing happens when there is none.
+    void remove_panel(const std::string& name);
 
     /// Ends the drawing. Nothing happens the second time.
     void close();

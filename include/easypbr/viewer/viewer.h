@@ -151,9 +151,11 @@ class Viewer {
     /// What the window would show: picture and panels, refined; needs no display.
     Image screenshot(std::optional<Vec2i> size = std::nullopt, float scale = 1);
 
-    /// A panel of the user's own in the window, drawn by `function` in each of its frames:
+    /// A panel of the user's own in the window, drawn by `function` in each of its frames, and in the pages
+    /// of servers and channels, on their threads (see remote::Server::add_panel()):
     /// view.add_panel("Training", [&](app::Widgets& ui) { ui.slider("rate", rate, 0, 1); }). What it throws
-    /// is shown in the panel. It may use this viewer, but for update(), show() and screenshot().
+    /// is shown in the panel. In the window it may use this viewer, but for update(), show() and
+    /// screenshot().
     void add_panel(const std::string& name, std::function<void(app::Widgets&)> function);
     void remove_panel(const std::string& name);
 
@@ -197,6 +199,12 @@ class Viewer {
   private:
     bool update_window();
 
+    template <class Front>
+    std::shared_ptr<Front> with_panels(std::shared_ptr<Front> front) const;
+    template <class Work>
+    void for_front_ends(Work&& work);
+
+    std::vector<std::pair<std::string, std::function<void(app::Widgets&)>>> panels_;
     std::vector<std::weak_ptr<remote::Server>> servers_;
     std::vector<std::weak_ptr<remote::Channel>> channels_;
     struct Window;

@@ -6,6 +6,7 @@
 
 #include "easypbr/app/widgets.h"
 #include "easypbr/gui/live_view.h"
+#include "easypbr/python/held.h"
 #include "easypbr/python/shared_viewer.h"
 #include "easypbr/python/text.h"
 #include "easypbr/scene/animation.h"
@@ -16,14 +17,6 @@ namespace {
 using app::InputEvent;
 using app::Widgets;
 using ViewerClass = nb::class_<SharedViewer>;
-
-/// A Python function that C++ may drop on any thread.
-std::shared_ptr<nb::object> held(nb::object function) {
-    return {new nb::object(std::move(function)), [](nb::object* object) {
-                const nb::gil_scoped_acquire gil;
-                delete object;
-            }};
-}
 
 /// Calls a function of the Python package, which has caught all exceptions but those that end a program:
 /// these wait until update() is over. Returns what it returns as a T; nothing when it is None.
@@ -48,7 +41,8 @@ void add_panel(SharedViewer& self, const std::string& name, nb::object function)
         }
         if (traceback) throw Error(*traceback);
     };
-    self.run([&](Viewer& viewer) { viewer.add_panel(name, panel); });
+    // Servers get another one from the Python package: this one ends with the viewer.
+    self.run([&](Viewer& viewer) { viewer.live().add_panel(name, panel); });
 }
 
 /// `function` takes an event and returns whether that is all that shall happen.

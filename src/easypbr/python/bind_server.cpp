@@ -4,7 +4,10 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include "easypbr/app/widgets.h"
+#include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/python/held.h"
 #include "easypbr/python/shared_viewer.h"
 #include "easypbr/python/text.h"
 #include "easypbr/remote/page.h"
@@ -24,6 +27,30 @@ std::shared_ptr<Server> serve(SharedViewer& self, int port, const std::string& b
     const remote::ServeOptions options{port,       bind,    socket,      token_file,
                                        host_names, origins, max_clients, codec};
     return self.run([&](Viewer& viewer) { return viewer.serve(options); });
+}
+
+/// `function` takes the widgets and returns a traceback, or None. It is called on the server's thread.
+template <class Front>
+void add_front_panel(Front& self, const std::string& name, nb::object function) {
+    const auto panel = [function = held(std::move(function))](app::Widgets& widgets) {
+        std::string failure;
+        {
+            const nb::gil_scoped_acquire gil;
+            try {
+                const nb::object told = (*function)(nb::cast(&widgets, nb::rv_policy::reference));
+                if (!told.is_none()) failure = nb::cast<std::string>(told);
+            } catch (const std::exception& error) {
+                failure = error.what();
+            }
+        }
+        if (!failure.empty()) throw Error(failure);
+    };
+    released([&] { self.add_panel(name, panel); });
+}
+
+template <class Front>
+void remove_front_panel(Front& self, const std::string& name) {
+    released([&] { self.remove_panel(name); });
 }
 
 /// Client, words, bytes and code of each message.
@@ -50,6 +77,8 @@ void bind_channel(nb::module_& module, nb::class_<SharedViewer>& viewer) {
              [](Channel& self, const std::string& name, const Animations& animations) {
                  released([&] { self.add_animations(name, animations); });
              })
+        .def("add_panel", add_front_panel<Channel>)
+        .def("remove_panel", remove_front_panel<Channel>)
         .def("close", [](Channel& self) { released([&] { self.close(); }); });
     viewer.def("open_channel",
                [](SharedViewer& self) { return self.run([](Viewer& view) { return view.open_channel(); }); });
@@ -79,6 +108,8 @@ void bind_server(nb::module_& module, nb::class_<SharedViewer>& viewer) {
              [](Server& self, const std::string& name, const Animations& animations) {
                  released([&] { self.add_animations(name, animations); });
              })
+        .def("add_panel", add_front_panel<Server>)
+        .def("remove_panel", remove_front_panel<Server>)
         .def("close", [](Server& self) { released([&] { self.close(); }); });
     viewer.def("serve", serve, nb::arg("port"), nb::arg("bind"), nb::arg("socket"), nb::arg("token_file"),
                nb::arg("host_names"), nb::arg("origins"), nb::arg("max_clients"), nb::arg("codec"));

@@ -101,6 +101,14 @@ void Channel::add_animations(const std::string& name, const Animations& animatio
     if (is_open()) parts_->view.add_animations(name, animations);
 }
 
+void Channel::add_panel(const std::string& name, std::function<void(app::Widgets&)> function) {
+    if (is_open()) parts_->view.add_panel(name, std::move(function));
+}
+
+void Channel::remove_panel(const std::string& name) {
+    if (is_open()) parts_->view.remove_panel(name);
+}
+
 void Channel::close() {
     const std::lock_guard lock(parts_->closing);
     if (!parts_->open.exchange(false)) return;

@@ -83,6 +83,12 @@ struct Shot {
 struct SetCamera {
     std::string text;
 };
+/// Something done to a widget of the program's panel: of those of the same name the one after `use` others.
+struct SetWidget {
+    std::string panel, name;
+    uint32_t use = 0;
+    std::string value;  ///< a number, "true" or "false", "#rrggbb", or text; of a button nothing
+};
 /// Plays an animation of the files that are served.
 struct Animate {
     uint32_t number = 0;
@@ -94,7 +100,7 @@ struct Act {
 };
 
 using ClientMessage = std::variant<Hello, Ack, Input, Turn, Resize, Pause, Decodes, SetField, ShowObject,
-                                   Select, PickAt, SetChannel, Shot, SetCamera, Animate, Act>;
+                                   Select, PickAt, SetChannel, Shot, SetCamera, SetWidget, Animate, Act>;
 
 /// Throws ProtocolError for text that is no JSON object, of an unknown kind, or whose members are missing,
 /// unknown, of another type, not finite or out of range.

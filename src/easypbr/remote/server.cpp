@@ -129,6 +129,14 @@ void Server::add_animations(const std::string& name, const Animations& animation
     if (is_open()) parts_->view.add_animations(name, animations);
 }
 
+void Server::add_panel(const std::string& name, std::function<void(app::Widgets&)> function) {
+    if (is_open()) parts_->view.add_panel(name, std::move(function));
+}
+
+void Server::remove_panel(const std::string& name) {
+    if (is_open()) parts_->view.remove_panel(name);
+}
+
 void Server::close() {
     const std::lock_guard lock(parts_->closing);
     if (!parts_->open.exchange(false)) return;

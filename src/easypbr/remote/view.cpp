@@ -182,6 +182,7 @@ void View::tell_changes() {
     tell(own.told_camera, own.camera_message());
     tell(own.told_scene, own.scene_message());
     tell(own.told_animation, own.animation_message());
+    tell(own.told_panels, panels_text(own.live.panels(), own.panel_memories));
     tell(own.told_statistics, own.statistics_message(clients_));
 }
 
@@ -189,8 +190,8 @@ void View::tell_everything(ClientId client) {
     Own& own = *own_;
     clients_.tell(client, settings_text(texts_of(own.session.settings())));
     for (const std::string& text : {own.camera_message(), own.scene_message(), own.animation_message(),
-                                    own.statistics_message(clients_)})
-        clients_.tell(client, text);
+                                    own.told_panels, own.statistics_message(clients_)})
+        if (!text.empty()) clients_.tell(client, text);
 }
 
 void View::take_settings(const Settings& settings) {
@@ -210,6 +211,21 @@ void View::take_now(const Settings& settings) {
 
 void View::add_animations(const std::string& name, const Animations& animations) {
     inbox_.add([this, name, animations] { own_->player.add(name, animations); });
+}
+
+void View::add_panel(const std::string& name, app::PanelFunction function) {
+    app::UserPanels().add(name, function);  // What is wrong is told here.
+    inbox_.add([this, name, function = std::move(function)] {
+        own_->live.panels().add(name, function);
+        own_->panel_memories.erase(name);
+    });
+}
+
+void View::remove_panel(const std::string& name) {
+    inbox_.add([this, name] {
+        if (own_->live.panels().revision(name) > 0) own_->live.panels().remove(name);
+        own_->panel_memories.erase(name);
+    });
 }
 
 }  // namespace easypbr::remote

@@ -38,6 +38,9 @@ class View {
     void take_settings(const Settings& settings);
     /// Any thread.
     void add_animations(const std::string& name, const Animations& animations);
+    /// Any thread; the function is called on the view's.
+    void add_panel(const std::string& name, app::PanelFunction function);
+    void remove_panel(const std::string& name);
 
     /// Moving pictures are asked for until so long after the last input or change.
     static constexpr double rest_s = 0.15;
@@ -62,6 +65,7 @@ class View {
     void obey(ClientId from, const SetChannel& message);
     void obey(ClientId from, const Shot& message);
     void obey(ClientId from, const SetCamera& message);
+    void obey(ClientId from, const SetWidget& message);
     void obey(ClientId from, const Animate& message);
     void obey(ClientId from, const Act& message);
     // What the network's side has taken already.

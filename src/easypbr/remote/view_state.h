@@ -4,6 +4,7 @@
 #include <string>
 
 #include "easypbr/remote/moving_pictures.h"
+#include "easypbr/remote/recorded_widgets.h"
 #include "easypbr/remote/view.h"
 #include "easypbr/scene/settings.h"
 
@@ -32,7 +33,8 @@ struct View::Own {
     bool owes_still = false;  ///< what is shown at rest has not been sent exactly
 
     FieldTexts told;
-    std::string told_camera, told_scene, told_animation, told_statistics;
+    std::map<std::string, PanelMemory> panel_memories;
+    std::string told_camera, told_scene, told_animation, told_panels, told_statistics;
     double told_s = -1;
     uint64_t notices = 0;
 

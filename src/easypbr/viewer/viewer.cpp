@@ -101,26 +101,37 @@ gui::LiveView& Viewer::live() {
     return window().live;
 }
 
+template <class Front>
+std::shared_ptr<Front> Viewer::with_panels(std::shared_ptr<Front> front) const {
+    for (const auto& [name, function] : panels_) front->add_panel(name, function);
+    return front;
+}
+
+template <class Work>
+void Viewer::for_front_ends(Work&& work) {
+    const auto each = [&](auto& all) {
+        std::erase_if(all, [](const auto& one) { return one.expired(); });
+        for (const auto& reference : all)
+            if (const auto one = reference.lock()) work(*one);
+    };
+    each(servers_);
+    each(channels_);
+}
+
 std::shared_ptr<remote::Server> Viewer::serve(const remote::ServeOptions& options) {
     const auto server = std::make_shared<remote::Server>(scene(), settings(), options);
     servers_.push_back(server);
-    return server;
+    return with_panels(server);
 }
 
 std::shared_ptr<remote::Channel> Viewer::open_channel() {
     const auto channel = std::make_shared<remote::Channel>(scene(), settings());
     channels_.push_back(channel);
-    return channel;
+    return with_panels(channel);
 }
 
 void Viewer::tell_servers() {
-    const auto tell = [&](auto& all) {
-        std::erase_if(all, [](const auto& each) { return each.expired(); });
-        for (const auto& each : all)
-            if (const auto one = each.lock()) one->take_settings(settings());
-    };
-    tell(servers_);
-    tell(channels_);
+    for_front_ends([&](auto& each) { each.take_settings(settings()); });
 }
 
 bool Viewer::update() try { return update_window(); } catch (const Error&) {
@@ -191,11 +202,16 @@ bool Viewer::is_open() const {
 }
 
 void Viewer::add_panel(const std::string& name, std::function<void(app::Widgets&)> function) {
-    live().add_panel(name, std::move(function));
+    live().add_panel(name, function);
+    for_front_ends([&](auto& each) { each.add_panel(name, function); });
+    std::erase_if(panels_, [&](const auto& panel) { return panel.first == name; });
+    panels_.emplace_back(name, std::move(function));
 }
 
 void Viewer::remove_panel(const std::string& name) {
     live().remove_panel(name);
+    std::erase_if(panels_, [&](const auto& panel) { return panel.first == name; });
+    for_front_ends([&](auto& each) { each.remove_panel(name); });
 }
 
 int Viewer::before_draw(std::function<void()> function) {

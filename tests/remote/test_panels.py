@@ -1,0 +1,110 @@
+"""Panels of the program in clients: what they show, what clients do to them."""
+
+import threading
+
+import numpy as np
+import pytest
+
+
+def widget_of(message, panel, name):
+    widgets = next(each["widgets"] for each in message["panels"] if each["name"] == panel)
+    return next((widget for widget in widgets if widget["name"] == name), None)
+
+
+def test_a_panel_is_shown_and_used(view, connect, tmp_path):
+    clicked = threading.Event()
+
+    @view.add_panel("Ball")
+    def panel(ui):
+        size = ui.slider("size", 1.0, 0.5, 2.0)
+        ui.text(f"twice: {2 * size:g}")
+        if ui.button("Stop"):
+            clicked.set()
+
+    client = connect()
+    told = client.until_known("panels", lambda message: message["panels"])
+    assert widget_of(told, "Ball", "size") == {"type": "slider", "name": "size", "value": 1.0, "min": 0.5, "max": 2.0}
+    client.send("widget", panel="Ball", name="size", use=0, value="1.5")
+    told = client.until_known("panels", lambda message: widget_of(message, "Ball", "size")["value"] == 1.5)
+    assert widget_of(told, "Ball", "twice: 3")
+    client.send("widget", panel="Ball", name="Stop", use=0, value="")
+    for _ in range(200):  # It answers pictures meanwhile, as a page does.
+        client.collect(0.1)
+        if clicked.is_set():
+            break
+    assert clicked.is_set()
+
+
+def test_a_panel_changes_the_scene(view, connect, tmp_path):
+    vertices = np.array(view.scene.get("ball").V)
+    view.add_panel("Ball", lambda ui: setattr(view.scene.get("ball"), "V", vertices * 1.4) if ui.button("Grow") else None)
+    client = connect()
+    first = client.until_exact()
+    client.send("widget", panel="Ball", name="Grow", use=0, value="")
+    second = client.until_exact(first.number)
+    assert not np.array_equal(first.image(tmp_path), second.image(tmp_path))
+
+
+def test_panels_come_and_go_while_it_is_served(view, connect):
+    client = connect()
+    client.until_known("panels", lambda message: not message["panels"])
+    view.add_panel("One", lambda ui: ui.text("a"))
+    view.add_panel("Two", lambda ui: ui.text("b"))
+    client.until_known("panels", lambda message: [panel["name"] for panel in message["panels"]] == ["One", "Two"])
+    view.add_panel("One", lambda ui: ui.text("c"))
+    client.until_known("panels", lambda message: widget_of(message, "One", "c"))
+    view.remove_panel("Two")
+    client.until_known("panels", lambda message: [panel["name"] for panel in message["panels"]] == ["One"])
+    client.send("widget", panel="Two", name="b", use=0, value="")
+    client.until_told("notice", lambda notice: "no panel 'Two'" in notice["text"])
+
+
+def test_what_a_panel_raises_is_told_and_nothing_ends(view, connect):
+    def broken(ui):
+        ui.text("before")
+        raise KeyError("lost")
+
+    view.add_panel("Broken", broken)
+    client = connect()
+    told = client.until_known("panels", lambda message: message["panels"])
+    assert "KeyError: 'lost'" in told["panels"][0]["error"]
+    client.until_exact()
+
+
+def test_who_watches_changes_nothing(view, server, connect):
+    view.add_panel("Ball", lambda ui: ui.slider("size", 1, 0, 9))
+    watcher = connect(url=server.watch_url)
+    watcher.until_known("panels", lambda message: message["panels"])
+    watcher.send("widget", panel="Ball", name="size", use=0, value="5")
+    watcher.until_told("notice", lambda notice: notice["error"])
+    client = connect()
+    told = client.until_known("panels", lambda message: message["panels"])
+    assert widget_of(told, "Ball", "size")["value"] == 1
+
+
+def test_the_window_has_the_same_values(view, connect):
+    seen = []
+    view.add_panel("Ball", lambda ui: seen.append(ui.slider("size", 1.0, 0, 9)))
+    client = connect()
+    client.until_known("panels", lambda message: message["panels"])
+    client.send("widget", panel="Ball", name="size", use=0, value="5")
+    client.until_known("panels", lambda message: widget_of(message, "Ball", "size")["value"] == 5)
+    seen.clear()
+    view.screenshot((400, 300))
+    assert seen and set(seen) == {5.0}
+
+
+def test_dropping_everything_while_a_panel_runs_hangs_nowhere(view):
+    for _ in range(3):
+        server = view.serve()
+        view.add_panel("Ball", lambda ui: ui.text("x"))
+        server.close()
+        del server
+
+
+@pytest.mark.parametrize("members", [{"value": 3}, {"use": -1}, {"panel": "x" * 300}, {"more": 1}])
+def test_wrong_messages_end_the_connection(connect, members):
+    client = connect()
+    client.until_told("welcome")
+    client.send("widget", **({"panel": "a", "name": "b", "use": 0, "value": ""} | members))
+    assert client.until_closed()[0] == 1008
