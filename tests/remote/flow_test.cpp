@@ -66,6 +66,14 @@ TEST(FlowControl, ChunksGetFewerOnALineThatQueues) {
     EXPECT_FALSE(flow.has_chunk_room());
 }
 
+/// A page that is busy for a moment is no line that queues: of eight answers in half a second one is late.
+TEST(WireQuality, AMomentChangesNothing) {
+    WireQuality quality;
+    double now = 0;
+    for (int i = 0; i < 200; ++i) quality.drawn(i % 8 == 0 ? 0.17 : 0.05, 0.05, now += 0.06);
+    EXPECT_EQ(quality.share(), 1);
+}
+
 TEST(WireQuality, GoesDownWhereTheLineQueuesAndUpAgain) {
     WireQuality quality;
     EXPECT_EQ(quality.jpeg_quality(), 80);

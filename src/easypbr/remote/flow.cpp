@@ -54,13 +54,17 @@ size_t FlowControl::window() const {
 }
 
 void WireQuality::drawn(double latency_s, double least_latency_s, double now_s) {
-    slowest_ = std::max(slowest_, latency_s - least_latency_s);
+    late_s_ += latency_s - least_latency_s;
+    ++pictures_;
     if (decided_ < 0) decided_ = now_s;
     if (now_s - decided_ < decide_s) return;
-    if (slowest_ > FlowControl::queue_s) share_ = std::max(least_share, share_ * 0.8);
-    if (slowest_ < quick_s) share_ = std::min(1.0, share_ * 1.1);
+    // The mean: a line that queues delays all of them, a page that is busy for a moment one.
+    const double late = late_s_ / pictures_;
+    if (late > FlowControl::queue_s) share_ = std::max(least_share, share_ * 0.8);
+    if (late < quick_s) share_ = std::min(1.0, share_ * 1.1);
     decided_ = now_s;
-    slowest_ = 0;
+    late_s_ = 0;
+    pictures_ = 0;
 }
 
 int WireQuality::jpeg_quality() const {

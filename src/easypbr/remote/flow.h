@@ -75,7 +75,8 @@ class WireQuality {
     bool video_ = false;
     double share_ = 1;  ///< of the bytes that the best picture has
     double decided_ = -1;
-    double slowest_ = 0;  ///< beyond the shortest time, since it was decided
+    double late_s_ = 0;  ///< beyond the shortest time, all pictures since it was decided together
+    int pictures_ = 0;
 };
 
 }  // namespace easypbr::remote
