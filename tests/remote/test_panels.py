@@ -1,6 +1,7 @@
 """Panels of the program in clients: what they show, what clients do to them."""
 
 import threading
+import weakref
 
 import numpy as np
 import pytest
@@ -92,6 +93,21 @@ def test_the_window_has_the_same_values(view, connect):
     seen.clear()
     view.screenshot((400, 300))
     assert seen and set(seen) == {5.0}
+
+
+def test_a_closed_server_keeps_no_function(view):
+    class Owner:
+        def draw(self, ui):
+            ui.text("x")
+
+    owner = Owner()
+    alive = weakref.ref(owner)
+    server = view.serve()
+    server._handle.add_panel("Ball", owner.draw)
+    del owner
+    assert alive() is not None
+    server.close()
+    assert alive() is None
 
 
 def test_dropping_everything_while_a_panel_runs_hangs_nowhere(view):

@@ -26,6 +26,9 @@ void View::start() {
 void View::stop() {
     inbox_.close();
     if (thread_.joinable()) thread_.join();
+    // The program's functions may hold what holds the view.
+    inbox_.take_tasks();
+    own_->live.panels() = {};
 }
 
 void View::run() {
