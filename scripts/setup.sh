@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Installs what the build needs and this machine lacks: Debian packages (as root or with sudo) and .venv. With `tests` also
-# what only tests, documentation and examples need (PyTorch and Ray are large). usage: setup.sh [tests]
+# what only tests, documentation and examples need (PyTorch and Ray are large); `list` names the packages of the build.
+# usage: setup.sh [tests|list]
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -15,6 +16,10 @@ packages=(
   libembree-dev
 )
 requirements=(scripts/requirements.txt)
+if [ "${1:-}" = list ]; then
+  printf '%s\n' "${packages[@]}"
+  exit
+fi
 if [ "${1:-}" = tests ]; then
   packages+=(clang-14 libclang-rt-14-dev clang-format clang-tidy ffmpeg xvfb openbox xdotool wmctrl xclip python3-torch groff-base zsh fish chromium debootstrap
     doxygen abigail-tools glslang-tools spirv-tools mesa-vulkan-drivers)
