@@ -4,7 +4,6 @@
 #include "common_stochastic.glsl"
 #include "mesh_surface.glsl"
 
-#feature ALPHA_BLEND has_alpha_blend
 #feature ALPHA_STOCHASTIC has_stochastic_alpha
 #feature PEEL is_peeling
 #feature EMISSION has_emission
@@ -46,7 +45,7 @@ void main() {
         shade_own(color, n, metallic, roughness, occlusion, emission, kind);
         discard_clear(color.a);
     }
-    o_albedo = has_alpha_blend ? color : vec4(color.rgb, 1.0);
+    o_albedo = albedo_of(color);
     o_normal = oct_encode(n.shading) * 0.5 + 0.5;
     o_material = vec4(metallic, roughness, occlusion, kind);
     o_depth = gl_FragCoord.z;

@@ -4,7 +4,7 @@
 #include "mesh_surface.glsl"
 #include "geometry_extension.glsl"
 
-layout(location = 0) out vec3 o_albedo;
+layout(location = 0) out vec4 o_albedo;
 layout(location = 1) out vec3 o_normal;
 layout(location = 2) out vec3 o_parameters;
 layout(location = 3) out vec3 o_emission;
@@ -27,10 +27,10 @@ void pack_surface(Normals n, Extension e) {
 void main() {
     Normals n = read_normals();
     Extension e = read_extension(n);
-    o_albedo = base_color().rgb;
+    o_albedo = albedo_of(base_color());
     o_normal = n.shading;
     o_parameters = read_parameters();
-    o_emission = emission_of(o_albedo);
+    o_emission = emission_of(o_albedo.rgb);
     o_dielectric = vec4(e.f0, e.f90);
     o_coat = vec4(e.coat_normal, e.clearcoat);
     o_sheen = vec4(e.sheen_color, e.sheen_roughness);

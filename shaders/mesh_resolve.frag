@@ -8,11 +8,10 @@ layout(location = 2) out vec4 o_material;
 layout(location = 3) out vec3 o_emission;
 
 void main() {
-    vec3 color = base_color().rgb;
+    o_albedo = albedo_of(base_color());
     vec3 parameters = read_parameters();
     Normals n = read_normals();
-    o_albedo = vec4(color, 1.0);
     o_normal = oct_encode(n.shading) * 0.5 + 0.5;
     o_material = vec4(parameters, u_emissive.w);
-    o_emission = emission_of(color);
+    o_emission = emission_of(o_albedo.rgb);
 }

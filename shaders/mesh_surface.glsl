@@ -13,6 +13,7 @@
 #feature EMISSIVE_TEXTURE has_emissive_texture
 #feature OPACITY_TEXTURE has_opacity_texture
 #feature ALPHA_MASK has_alpha_mask
+#feature ALPHA_BLEND has_alpha_blend
 
 in vec4 v_color;
 in vec2 v_uv;
@@ -73,6 +74,9 @@ vec4 base_color() {
     if (has_opacity_texture) color.a *= dot(texel_of(u_opacity_texture, 6), u_opacity_channel);
     return color;
 }
+
+// As the G-buffer holds it.
+vec4 albedo_of(vec4 color) { return has_alpha_blend ? color : vec4(color.rgb, 1.0); }
 
 struct Normals {
     vec3 shading, geometric;  // with and without the normal texture, towards the viewer's side

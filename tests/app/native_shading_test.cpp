@@ -27,21 +27,23 @@ class Generator {
         Scene scene;
         if (chance(0.7)) scene.set_environment(sky());
         const int count = between(1, 3);
+        has_layers_ = chance(0.3);
         for (int i = 0; i < count; ++i) {
             Mesh mesh = chance(0.5) ? make_teapot(1, between(2, 12)) : make_sphere(1, between(8, 60));
-            if (chance(0.3)) mesh = cloud_of(mesh);
+            if (chance(0.3) && !has_layers_) mesh = cloud_of(mesh);
             Material material;
             material.base_color = color();
             material.roughness = chance(0.2) ? 0.0f : number(0, 1);
             material.metallic = chance(0.5) ? 0.0f : number(0, 1);
             if (chance(0.4)) extend(material);
+            if (has_layers_ && chance(0.7)) blend(material);
             mesh.set_material(material);
             Eigen::Affine3d pose = Eigen::Affine3d::Identity();
             pose.translate(Vec3d(1.5 * i, number(-1, 1), number(-1, 1)));
             pose.scale(double(number(0.5f, 1.5f)));
             mesh.set_T_world_mesh(pose);
             if (chance(0.3)) color(mesh);
-            if (chance(0.3)) draw_lines(mesh);
+            if (chance(0.3) && !has_layers_) draw_lines(mesh);
             scene.show(mesh, "mesh" + std::to_string(i));
         }
         const int lights = between(0, 3);
@@ -55,7 +57,9 @@ class Generator {
         s.image.size = Vec2i(size[0], size[1]);
         s.image.samples = chance(0.7) ? 1 : between(2, 5);
         s.image.antialias = chance(0.5) ? Antialias::fxaa : Antialias::none;
-        s.shadows.enabled = chance(0.6);
+        // Tinted shadows are the driver's.
+        s.shadows.enabled = chance(0.6) && !has_layers_;
+        s.transparency.max_layers = chance(0.5) ? 8 : between(1, 3);
         s.shadows.mode = ShadowMode(between(0, 2));
         s.shadows.resolution = chance(0.5) ? 256 : 1024;
         s.ssao.enabled = chance(0.5);
@@ -108,6 +112,11 @@ class Generator {
         m.anisotropy = chance(0.4) ? number(0, 1) : 0.0f;
         m.anisotropy_rotation_deg = number(-180, 180);
         if (chance(0.3)) m.emissive = color();
+    }
+    void blend(Material& m) {
+        m.alpha_mode = AlphaMode::blend;
+        m.opacity = number(0, 1);
+        m.unlit = chance(0.2);
     }
     /// Points without normals: shaded by eye-dome lighting.
     Mesh cloud_of(const Mesh& mesh) {
@@ -165,6 +174,7 @@ class Generator {
     }
 
     std::mt19937 random_;
+    bool has_layers_ = false;
 };
 
 /// Pixels by how far apart their largest channels are.

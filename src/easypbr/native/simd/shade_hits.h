@@ -128,7 +128,7 @@ INLINE void store_surface(mesh_extended& s, const vec3& face, const HitSurfaces&
     };
     store_components(to.normal, at, towards(s.o_normal));
     store_components(to.face, at, face);
-    store_components(to.albedo, at, s.o_albedo);
+    store_components(to.albedo, at, s.o_albedo.xyz());
     store_components(to.emission, at, s.o_emission);
     store_lanes(to.parameters[0], size_t(at), s.o_parameters.x);
     store_lanes(to.parameters[1], size_t(at), s.o_parameters.y);

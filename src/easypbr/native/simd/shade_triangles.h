@@ -88,10 +88,10 @@ struct ShadedLanes {
     vint normal, red_green, blue_alpha, material;
     vec3 emission;
 
-    INLINE void set(const vec3& color, const vec2& encoded_normal, const vec4& surface) {
+    INLINE void set(const vec4& color, const vec2& encoded_normal, const vec4& surface) {
         normal = rounded_bits(encoded_normal.x, 65535) | rounded_bits(encoded_normal.y, 65535) << 16;
         red_green = rounded_bits(color.x, 65535) | rounded_bits(color.y, 65535) << 16;
-        blue_alpha = rounded_bits(color.z, 65535) | 65535 << 16;
+        blue_alpha = rounded_bits(color.z, 65535) | rounded_bits(color.w, 65535) << 16;
         material = rounded_bits(surface.x, 255) | rounded_bits(surface.y, 255) << 8 |
                    rounded_bits(surface.z, 255) << 16 | rounded_bits(surface.w, 255) << 24;
     }
@@ -100,7 +100,7 @@ struct ShadedLanes {
 INLINE ShadedLanes shaded(mesh_resolve& s, const VisibleTriangles&, const VisiblePixel*, int) {
     s.main();
     ShadedLanes lanes_of;
-    lanes_of.set(s.o_albedo.xyz(), s.o_normal, s.o_material);
+    lanes_of.set(s.o_albedo, s.o_normal, s.o_material);
     lanes_of.emission = s.o_emission;
     return lanes_of;
 }

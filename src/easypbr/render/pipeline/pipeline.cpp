@@ -63,7 +63,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     const bool with_overlay = list.needs_overlay() || draws_overlay(frame, contents);
     const SurfaceOutputs outputs{.ids = contents.ids,
                                  .extensions = contents.ids || contents.paths ? 0 : opaque.extensions(),
-                                 .whole = contents.ground && native_shading_};
+                                 .whole = (contents.ground || has_layers) && native_shading_};
     if (with_overlay) targets_.add_overlay();
     if (outputs.extensions) targets_.add_extensions();
 
@@ -84,7 +84,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     if (native) shade_surroundings(seen, contents, shows_environment);
     if (native && !pass.empty()) timer_.run(pass, [&] { targets_.upload(transfers_); });
     if (!native && contents.ground) timer_.run("ground", [&] { ground_.finish(seen, targets_, bounds); });
-    if (with_overlay) timer_.run("display", [&] { begin_overlay(seen, contents, pass.empty()); });
+    if (with_overlay) timer_.run("display", [&] { begin_overlay(seen, list, contents, pass.empty()); });
     if (!has_layers) timer_.run("overlays", [&] { draw_overlay_items(seen, list, pass.empty()); });
     if (!native && shows_environment)
         timer_.run("background", [&] { background_.draw(seen, targets_, environment_, contents.ground); });
@@ -94,8 +94,9 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
                    .covered = has_layers ? frame.covered : seen.covered,
                    .partly_covered = contents.ground};
     if (has_layers)
-        lit.partly_covered |=
-            timer_.run("transparency", [&] { return draw_transparent(frame, list, contents, with_overlay); });
+        lit.partly_covered |= timer_.run("transparency", [&] {
+            return draw_transparent(frame, list, contents, {pass.empty(), with_overlay});
+        });
     if (contents.custom) contents.custom->draw_in_frame(frame, targets_, timer_, lit);
     if (!contents.layers) draw_effects(frame, opaque, {.native = pass.empty()}, lit);
     return lit;
@@ -122,8 +123,10 @@ void Pipeline::trace_paths(const Frame& frame, bool native, bool caught) {
     });
 }
 
-void Pipeline::begin_overlay(const Frame& frame, const FrameContents& contents, bool native) {
-    const PixelRect area = draws_overlay(frame, contents) ? frame.whole() : frame.covered;
+void Pipeline::begin_overlay(const Frame& frame, const DrawList& list, const FrameContents& contents,
+                             bool native) {
+    const bool whole = list.has(is_layered) || draws_overlay(frame, contents);
+    const PixelRect area = whole ? frame.whole() : frame.covered;
     if (native)
         display_.shade_overlay(frame, targets_, area, transfers_);
     else
@@ -156,8 +159,8 @@ bool Pipeline::is_lit_natively(const FrameContents& contents) const {
 }
 
 std::string Pipeline::first_by_driver(const DrawList& list, const FrameContents& contents) const {
+    if (list.has(is_layered) && !has_native_layers(list)) return "transparency";
     if (contents.layers) return "";
-    if (list.has(is_layered)) return "transparency";
     if (contents.custom && !contents.custom->empty()) return "custom passes";
     return contents.in_host_memory ? "" : "output";
 }
@@ -173,7 +176,8 @@ void Pipeline::light(const Frame& frame, const GBuffer& targets, const FrameCont
     if (caught && !inputs.native) ground_.begin_light(frame, targets);
     if (!frame.resolved->environment.empty()) inputs.environment = &environment_;
     if (inputs.native) {
-        const bool whole = inputs.environment && frame.resolved->settings.background.shows_environment();
+        const bool whole = &targets == &targets_ && inputs.environment &&
+                           frame.resolved->settings.background.shows_environment();
         targets.radiance.write(whole ? frame.whole() : targets.depth.area());
     }
     bool first = true;

@@ -21,6 +21,7 @@
 #include "easypbr/render/raytrace/path_pass.h"
 #include "easypbr/render/raytrace/ray_pass.h"
 #include "easypbr/render/shadow/shadow_maps.h"
+#include "easypbr/render/transparency/native_layers.h"
 #include "easypbr/render/transparency/transparency_pass.h"
 
 namespace easypbr::render {
@@ -94,10 +95,19 @@ class Pipeline {
     const gl::Texture& hiding_depth(const Frame& frame, const DrawList& list);
     /// Draws the overlays of primitives where there are no layers.
     void draw_overlay_items(const Frame& frame, const DrawList& list, bool native);
+    struct LayerKinds {
+        bool native = false;   ///< from and to host memory
+        bool overlay = false;  ///< something is in the overlay, or may come into it
+    };
     /// Draws the layered items over the picture, before and behind each other and the overlays; whether
     /// there were any.
     bool draw_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
-                          bool with_overlay);
+                          LayerKinds kinds);
+    /// Whether they can be drawn natively where nothing else needs the driver.
+    bool has_native_layers(const DrawList& list) const;
+    /// draw_transparent() natively.
+    bool shade_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
+                           bool with_overlay);
     /// Draws layers, and the overlays between them, before the surfaces of which `opaque` is the depth.
     void draw_layers(const Frame& frame, const DrawList& layers, const ItemsByKind& overlays,
                      const gl::Texture& opaque, const FrameContents& contents, bool with_overlay);
@@ -109,7 +119,7 @@ class Pipeline {
     /// What is around lit surfaces, natively: what the ground shows of itself, and the environment.
     void shade_surroundings(const Frame& frame, const FrameContents& contents, bool environment);
     /// Empties the overlay, and draws the surfaces that are shown past light.
-    void begin_overlay(const Frame& frame, const FrameContents& contents, bool native);
+    void begin_overlay(const Frame& frame, const DrawList& list, const FrameContents& contents, bool native);
     /// The first pass after the lighting that only the driver can do; empty where there is none.
     std::string first_by_driver(const DrawList& list, const FrameContents& contents) const;
     bool draws_overlay(const Shot& shot, const FrameContents& contents) const;
@@ -135,6 +145,7 @@ class Pipeline {
     GroundPass ground_;
     DisplayPass display_;
     TransparencyPass transparency_;
+    NativeLayers native_layers_;
     BackgroundPass background_;
     std::vector<std::unique_ptr<Effect>> effects_ = make_effects();
     GBuffer with_ids_;  ///< for effects that ask for ids

@@ -38,22 +38,42 @@ void Pipeline::draw_overlay_items(const Frame& frame, const DrawList& list, bool
 }
 
 bool Pipeline::draw_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
-                                bool with_overlay) {
+                                LayerKinds kinds) {
+    if (kinds.native) return shade_transparent(frame, list, contents, kinds.overlay);
     const DrawList layers = list.layers();
     const gl::Texture& opaque = hiding_depth(frame, list);
     overlays_.begin(frame, list.overlays, targets_, opaque);
-    draw_layers(frame, layers.without(is_over), list.overlays, opaque, contents, with_overlay);
+    draw_layers(frame, layers.without(is_over), list.overlays, opaque, contents, kinds.overlay);
     bool drawn = transparency_.has_layers();
     if (layers.has(is_over)) {
         // Hidden by what is drawn over everything else too, and by nothing but.
         const GBuffer& over = surfaces_.over(frame);
         if (!list.without_layers().has(is_over)) over.clear(false);
         draw_layers(frame, layers.without(std::not_fn(is_over)), {}, over.depth.texture(), contents,
-                    with_overlay);
+                    kinds.overlay);
         drawn |= transparency_.has_layers();
     }
     overlays_.draw_over(frame, list.overlays, targets_);
     return drawn;
+}
+
+bool Pipeline::has_native_layers(const DrawList& list) const {
+    return list.overlays.empty() && !list.has(is_over) && surfaces_.has_native_layers(list.layers());
+}
+
+bool Pipeline::shade_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
+                                 bool with_overlay) {
+    const DrawList layers = list.layers();
+    const ExtensionSet extensions = layers.extensions();
+    native_layers_.begin(frame, targets_, extensions);
+    const GBuffer& layer = native_layers_.layer();
+    while (native_layers_.open_layer(frame)) {
+        const bool drawn = surfaces_.peel(frame, layers, layer, extensions, native_layers_.limits());
+        if (!native_layers_.close_layer(drawn)) break;
+        light(frame, layer, contents, {.native = true, .extensions = extensions}, false);
+        native_layers_.blend(targets_, with_overlay, transfers_);
+    }
+    return native_layers_.has_layers();
 }
 
 const gl::Texture* Pipeline::shade_points(const Frame& frame, const DrawList& layers,

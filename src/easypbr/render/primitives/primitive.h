@@ -53,8 +53,11 @@ class Primitive {
     /// Sets to 1 what items cover of the frame, row by row; false when only the G-buffer can tell.
     virtual bool cover(const Frame&, DrawItems, std::span<uint8_t>) { return false; }
 
-    // Layers of what light passes. begin_layers() once, then draw_layer() for each that is peeled, and
-    // take_layer() for those that hold something.
+    /// Whether rasterise() draws these items as layers, by the limits of VisibilityBuffer::begin_layer().
+    virtual bool has_native_layers(DrawItems) const { return false; }
+
+    // Layers of what light passes, by the driver. begin_layers() once, then draw_layer() for each that is
+    // peeled, and take_layer() for those that hold something.
 
     /// Nothing behind `opaque` (R32F, reversed depth) is drawn.
     virtual void begin_layers(const Frame&, DrawItems, const gl::Texture&) {}

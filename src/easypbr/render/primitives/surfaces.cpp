@@ -143,6 +143,27 @@ std::vector<uint8_t> Surfaces::coverage(const Frame& frame, const DrawList& list
     return covered;
 }
 
+bool Surfaces::has_native_layers(const DrawList& list) const {
+    return is_native() && std::ranges::all_of(groups_of(list), [](const Group& group) {
+               return group.kind->has_native_layers(group.items);
+           });
+}
+
+bool Surfaces::peel(const Frame& frame, const DrawList& list, const GBuffer& layer, ExtensionSet extensions,
+                    PeelLimits& limits) {
+    visible_.clear(frame.size, frame.covered);
+    visible_.buffer().begin_layer(limits);
+    for (const Group& group : groups_of(list))
+        group.kind->rasterise(frame, group.items, extensions, visible_);
+    visible_.buffer().end_layer(limits);
+    const PixelRect seen = visible_.crop();
+    if (seen.width == 0) return false;
+    SurfaceWriter writer(layer, seen,
+                         {.emission = list.has(&DrawItem::emits), .extensions = extensions != 0});
+    visible_.resolve(frame, writer);
+    return true;
+}
+
 void Surfaces::begin_layers(const Frame& frame, const DrawList& list, const gl::Texture& opaque) {
     for (const Group& group : groups_of(list)) group.kind->begin_layers(frame, group.items, opaque);
 }

@@ -38,6 +38,12 @@ class Surfaces {
     void draw_backs(const Frame& frame, const DrawList& list, const GBuffer& targets,
                     const SurfaceOutputs& outputs);
 
+    /// Whether all items can be layers natively.
+    bool has_native_layers(const DrawList& list) const;
+    /// Writes a layer, nothing but a rectangle of it; false where it would hold nothing.
+    bool peel(const Frame& frame, const DrawList& list, const GBuffer& layer, ExtensionSet extensions,
+              PeelLimits& limits);
+
     /// Without a GPU, surfaces are drawn natively; false leaves them to the driver.
     void allow_native(bool allow) { allow_native_ = allow; }
 

@@ -38,22 +38,37 @@ void raise_point(uint64_t& pixel, uint64_t key, const std::function<uint64_t(uin
     }
 }
 
+/// Which of the triangles of a pixel is kept: the one with the largest key.
+struct KeyOrder {
+    const float* limits = nullptr;  ///< of each pixel: what is not nearer is left out
+    uint32_t flipped = 0;           ///< bits of the depth
+
+    explicit KeyOrder(const PeelLimits* layer) {
+        if (!layer) return;
+        limits = layer->depths.data();
+        if (layer->farthest) flipped = ~0u;
+    }
+    bool takes(size_t pixel, float depth) const { return !limits || depth > limits[pixel]; }
+    uint64_t key(float depth, uint32_t id) const {
+        return uint64_t(std::bit_cast<uint32_t>(depth) ^ flipped) << 32 | uint32_t(~id);
+    }
+};
+
 /// Puts the pixels that pass a test, many at once.
 class TestedPixels {
   public:
-    TestedPixels(const AlphaTest& test, std::vector<uint64_t>& pixels, const PixelRect& area,
-                 uint32_t first_id)
-        : test_(test), pixels_(pixels), area_(area), first_id_(first_id) {}
+    TestedPixels(const KeyOrder& order, const AlphaTest& test, std::vector<uint64_t>& pixels,
+                 const PixelRect& area, uint32_t first_id)
+        : order_(order), test_(test), pixels_(pixels), area_(area), first_id_(first_id) {}
     /// A copy begins with nothing.
     TestedPixels(const TestedPixels& other)
-        : TestedPixels(other.test_, other.pixels_, other.area_, other.first_id_) {}
+        : TestedPixels(other.order_, other.test_, other.pixels_, other.area_, other.first_id_) {}
     TestedPixels& operator=(const TestedPixels&) = delete;
     ~TestedPixels() { flush(); }
 
     void operator()(size_t pixel, float depth, uint32_t face) {
-        if (uint64_t(std::bit_cast<uint32_t>(depth)) <
-            std::atomic_ref(pixels_[pixel]).load(std::memory_order_relaxed) >> 32)
-            return;
+        const uint64_t seen = std::atomic_ref(pixels_[pixel]).load(std::memory_order_relaxed);
+        if (!order_.takes(pixel, depth) || order_.key(depth, 0) >> 32 < seen >> 32) return;
         const int row = int(pixel / size_t(area_.width)), column = int(pixel % size_t(area_.width));
         waiting_[count_] = {area_.x + column, area_.y + row, face, depth};
         places_[count_] = pixel;
@@ -68,11 +83,11 @@ class TestedPixels {
         test_.alpha({waiting_.data(), count_}, {alpha.data(), count_});
         for (size_t i = 0; i < count_; ++i)
             if (alpha[i] >= test_.cutoff)
-                raise(pixels_[places_[i]], uint64_t(std::bit_cast<uint32_t>(waiting_[i].depth)) << 32 |
-                                               uint32_t(~(first_id_ + waiting_[i].face)));
+                raise(pixels_[places_[i]], order_.key(waiting_[i].depth, first_id_ + waiting_[i].face));
         count_ = 0;
     }
 
+    const KeyOrder order_;
     const AlphaTest& test_;
     std::vector<uint64_t>& pixels_;
     const PixelRect& area_;
@@ -87,10 +102,30 @@ class TestedPixels {
 void VisibilityBuffer::clear(Vec2i size, const PixelRect& area) {
     raster_.set_area(size, area);
     pixels_.assign(size_t(area.width) * size_t(area.height), 0);
+    limits_ = nullptr;
+}
+
+void VisibilityBuffer::begin_layer(const PeelLimits& limits) {
+    limits_ = &limits;
+}
+
+void VisibilityBuffer::end_layer(PeelLimits& limits) {
+    constexpr float finished = 2;  // nothing is as near
+    const uint64_t flipped = uint64_t(KeyOrder(limits_).flipped) << 32;
+    parallel_for(pixels_.size(), size_t(1) << 14, [&](size_t i) {
+        if (pixels_[i] != 0) pixels_[i] ^= flipped;
+        limits.depths[i] = pixels_[i] != 0 ? depth_of(pixels_[i]) : finished;
+    });
+    limits_ = nullptr;
 }
 
 bool VisibilityBuffer::draw(const ScreenTriangles& triangles, uint32_t first_id, const AlphaTest* test) {
-    if (test) return raster_.draw(triangles, TestedPixels(*test, pixels_, raster_.area(), first_id));
+    const KeyOrder order(limits_);
+    if (test) return raster_.draw(triangles, TestedPixels(order, *test, pixels_, raster_.area(), first_id));
+    if (limits_)
+        return raster_.draw(triangles, [&](size_t pixel, float depth, uint32_t face) {
+            if (order.takes(pixel, depth)) raise(pixels_[pixel], order.key(depth, first_id + face));
+        });
     return raster_.draw(triangles, [&](size_t pixel, float depth, uint32_t face) {
         raise(pixels_[pixel], uint64_t(std::bit_cast<uint32_t>(depth)) << 32 | uint32_t(~(first_id + face)));
     });

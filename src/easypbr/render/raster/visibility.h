@@ -33,12 +33,25 @@ struct AlphaTest {
     float cutoff = 0.5f;
 };
 
+/// One layer of depth peeling. Only what is nearer than a limit is drawn.
+struct PeelLimits {
+    std::vector<float> depths;  ///< reversed, of the pixels of the area, row by row
+    bool farthest = true;       ///< of what is drawn the farthest is kept, not the nearest
+};
+
 /// The nearest triangle or point of each pixel of a rectangle. Rules as OpenGL's: 8 bits of sub-pixel
 /// precision, top-left. The result does not depend on the number of threads.
 class VisibilityBuffer {
   public:
     /// Nothing is visible. `size` is that of the whole picture, `area` the part that is kept.
     void clear(Vec2i size, const PixelRect& area);
+
+    /// After clear(): what is drawn until end_layer() is one layer. The limits must live until then.
+    void begin_layer(const PeelLimits& limits);
+    /// Makes the layer what is visible. Its depths are the limits of the next one; where it holds nothing the
+    /// pixel is finished.
+    void end_layer(PeelLimits& limits);
+    bool is_layer() const { return limits_ != nullptr; }
 
     /// Draws triangles numbered from `first_id`. Returns false, with nothing drawn, where TriangleRaster
     /// does.
@@ -65,6 +78,7 @@ class VisibilityBuffer {
   private:
     TriangleRaster raster_;
     std::vector<uint64_t> pixels_;  ///< depth in the upper, complement of the id in the lower half
+    const PeelLimits* limits_ = nullptr;
 };
 
 /// The depth of what is nearest in each pixel, and no more: half the memory, and nothing to convert before it

@@ -21,6 +21,7 @@ class MeshPrimitive final : public Primitive {
         pass_.draw(frame, items, targets, outputs);
     }
     bool is_native(DrawItems items) const override { return NativeMeshes::draws(items); }
+    bool has_native_layers(DrawItems items) const override { return NativeMeshes::draws_layers(items); }
     bool rasterise(const Frame& frame, DrawItems items, ExtensionSet extensions,
                    VisibleSurfaces& surfaces) override {
         return native_.rasterise(frame, items, extensions, surfaces);

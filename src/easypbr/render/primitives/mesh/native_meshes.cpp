@@ -1,6 +1,8 @@
 #include "easypbr/render/primitives/mesh/native_meshes.h"
 
 #include <algorithm>
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <utility>
 
@@ -21,9 +23,11 @@ Mat4d clip_from(const Frame& frame, const DrawItem& item) {
 ScreenTriangles triangles_of(const Frame& frame, const DrawItem& item, const MeshFacts& known,
                              const Mat4d& clip_from_mesh) {
     const MeshData& mesh = item.mesh();
-    const bool both_sides =
-        item.two_sided && (item.style.flat || !known.closed_outward ||
-                           !gpu::beyond_near_plane(frame.camera, item.object->T_world_mesh, known.box));
+    const bool hides = item.alpha == AlphaMode::opaque && !item.material.transmits();
+    // Of a volume the back is a part of what happens behind the front.
+    const bool both_sides = item.two_sided && !item.is_volume() &&
+                            (!hides || item.style.flat || !known.closed_outward ||
+                             !gpu::beyond_near_plane(frame.camera, item.object->T_world_mesh, known.box));
     const bool mirrored = item.object->T_world_mesh.linear().determinant() < 0;
     return {mesh.V,
             mesh.F,
@@ -33,6 +37,12 @@ ScreenTriangles triangles_of(const Frame& frame, const DrawItem& item, const Mes
             both_sides,
             mirrored,
             true};
+}
+
+/// Whether pixels of its triangles may be left out.
+bool has_holes(const DrawItem& item) {
+    return item.alpha == AlphaMode::mask ||
+           (item.alpha == AlphaMode::blend && (item.with_colors || item.textured()));
 }
 
 std::vector<float> linear_colors(const ArrayXf& C) {
@@ -59,6 +69,15 @@ std::vector<int16_t> packed_tangents(const MeshData& mesh, const Array3f& N) {
 bool NativeMeshes::draws(DrawItems items) {
     return std::ranges::none_of(
         items, [](const DrawItem& item) { return item.material.shader || item.alpha == AlphaMode::blend; });
+}
+
+bool NativeMeshes::draws_layers(DrawItems items) {
+    int64_t faces = 0;
+    for (const DrawItem& item : items) {
+        if (item.material.shader || item.material.transmits()) return false;
+        faces += item.part.face_count;
+    }
+    return faces < int64_t(UINT32_MAX);
 }
 
 const MeshFacts& NativeMeshes::facts_of(const MeshData& mesh) {
@@ -94,6 +113,7 @@ ShaderInputs NativeMeshes::inputs_of(const MaterialContext& context, const DrawI
     std::vector<std::string> defines;
     add_mesh_defines(item, known.normals_agree, defines);
     add_material_defines(context, item, defines);
+    if (item.alpha == AlphaMode::blend) defines.emplace_back("ALPHA_BLEND");
     values.define(defines);
     return values;
 }
@@ -131,15 +151,17 @@ bool NativeMeshes::rasterise(const Frame& frame, DrawItems items, ExtensionSet e
                              VisibleSurfaces& surfaces) {
     for (const DrawItem& item : items) {
         if (!surfaces.has_room(item.part.face_count)) return false;
+        const bool is_blended = item.alpha == AlphaMode::blend;
+        if (is_blended && !(item.material.opacity > 0)) continue;
         const MeshFacts& known = facts_of(item.mesh());
         const Mat4d clip_from_mesh = clip_from(frame, item);
         std::unique_ptr<MeshSurface> surface = surface_of(frame, item, extensions, known, clip_from_mesh);
         const AlphaTest test{[of = surface.get()](std::span<const native::VisiblePixel> pixels,
                                                   std::span<float> alpha) { of->alpha(pixels, alpha); },
-                             item.material.alpha_cutoff};
+                             is_blended ? std::numeric_limits<float>::min() : item.material.alpha_cutoff};
         const uint32_t first = surfaces.add(item, uint32_t(item.part.face_count), std::move(surface));
         if (!surfaces.buffer().draw(triangles_of(frame, item, known, clip_from_mesh), first,
-                                    item.alpha == AlphaMode::mask ? &test : nullptr))
+                                    has_holes(item) ? &test : nullptr))
             return false;
     }
     return true;

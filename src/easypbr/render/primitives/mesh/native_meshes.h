@@ -23,6 +23,7 @@ class NativeMeshes {
 
     // See Primitive. Native are surfaces that are opaque or have a mask, without shaders of their own.
     static bool draws(DrawItems items);
+    static bool draws_layers(DrawItems items);
     bool rasterise(const Frame& frame, DrawItems items, ExtensionSet extensions, VisibleSurfaces& surfaces);
     bool cover(const Frame& frame, DrawItems items, std::span<uint8_t> covered);
 
