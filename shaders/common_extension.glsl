@@ -23,7 +23,7 @@ uint pack_reflectance(vec3 f0) {
 }
 
 vec3 unpack_reflectance(uint bits) {
-    vec3 root = vec3(bits & 2047u, bits >> 11u & 2047u, bits >> 22u) / vec3(2047.0, 2047.0, 1023.0);
+    vec3 root = vec3(uvec3(bits & 2047u, bits >> 11u & 2047u, bits >> 22u)) / vec3(2047.0, 2047.0, 1023.0);
     return root * root;
 }
 
@@ -71,6 +71,26 @@ Extension unpack_extension(uvec4 first, uvec4 second, vec3 normal) {
     e.transmittance = v.rgb * v.rgb;
     e.transmission = v.a;
     return e;
+}
+
+Extension chosen_extension(bool first, Extension a, Extension b) {
+    a.f0 = first ? a.f0 : b.f0;
+    a.f90 = first ? a.f90 : b.f90;
+    a.coat_normal = first ? a.coat_normal : b.coat_normal;
+    a.clearcoat = first ? a.clearcoat : b.clearcoat;
+    a.coat_roughness = first ? a.coat_roughness : b.coat_roughness;
+    a.sheen_color = first ? a.sheen_color : b.sheen_color;
+    a.sheen_roughness = first ? a.sheen_roughness : b.sheen_roughness;
+    a.iridescence = first ? a.iridescence : b.iridescence;
+    a.film_ior = first ? a.film_ior : b.film_ior;
+    a.film_thickness = first ? a.film_thickness : b.film_thickness;
+    a.anisotropy = first ? a.anisotropy : b.anisotropy;
+    a.tangent = first ? a.tangent : b.tangent;
+    a.transmission = first ? a.transmission : b.transmission;
+    a.ior = first ? a.ior : b.ior;
+    a.thickness = first ? a.thickness : b.thickness;
+    a.transmittance = first ? a.transmittance : b.transmittance;
+    return a;
 }
 
 // Of a surface without extensions.

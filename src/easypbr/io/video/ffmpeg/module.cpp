@@ -44,16 +44,27 @@ const AVCodec& encoder_for(const fs::path& path, const std::string& wanted) {
     return *avcodec_find_encoder_by_name(choose_encoder(path, wanted, there).c_str());
 }
 
+/// The kinds of pictures that an encoder takes, ended by AV_PIX_FMT_NONE; null: it does not say.
+const AVPixelFormat* formats_of(const AVCodec& encoder) {
+#if LIBAVCODEC_VERSION_INT >= AV_VERSION_INT(61, 13, 100)
+    const void* formats = nullptr;
+    avcodec_get_supported_config(nullptr, &encoder, AV_CODEC_CONFIG_PIX_FORMAT, 0, &formats, nullptr);
+    return static_cast<const AVPixelFormat*>(formats);
+#else
+    return encoder.pix_fmts;
+#endif
+}
+
 /// What the encoder takes of the pictures' kinds that we can make: its own first choice among them.
 AVPixelFormat pixel_format_of(const AVCodec& encoder) {
     constexpr AVPixelFormat known[] = {AV_PIX_FMT_YUV420P, AV_PIX_FMT_PAL8,  AV_PIX_FMT_YUVJ420P,
                                        AV_PIX_FMT_YUV444P, AV_PIX_FMT_RGB24, AV_PIX_FMT_RGBA,
                                        AV_PIX_FMT_BGR0,    AV_PIX_FMT_RGB8};
-    for (const AVPixelFormat format : known) {
-        if (!encoder.pix_fmts) return AV_PIX_FMT_YUV420P;
-        for (const AVPixelFormat* taken = encoder.pix_fmts; *taken != AV_PIX_FMT_NONE; ++taken)
+    const AVPixelFormat* all = formats_of(encoder);
+    if (!all) return AV_PIX_FMT_YUV420P;
+    for (const AVPixelFormat format : known)
+        for (const AVPixelFormat* taken = all; *taken != AV_PIX_FMT_NONE; ++taken)
             if (*taken == format) return format;
-    }
     throw ArgumentError(fmt::format(
         "the encoder {} takes none of the kinds of pictures that can be made for it", encoder.name));
 }
