@@ -206,7 +206,7 @@ def test_layers_are_as_large_as_the_driver_draws():
     """Tiles are of pictures: what is beyond one piece is refused with the limit, and what is within is whole."""
     scene = Scene()
     ball = shapes.sphere()
-    ball.material.clearcoat = 1  # which only the driver draws
+    ball.material.shader = "void surface(inout Surface s) { s.roughness = 0.5; }"  # which only the driver draws
     scene.show(ball, "ball")
     view = Viewer((64, 48), scene=scene)
     # Wider than a tile of pictures (8192).

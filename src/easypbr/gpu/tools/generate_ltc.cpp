@@ -204,7 +204,7 @@ void fit_row(int row, std::vector<float>& table) {
         }
         Matrix3d inverse = matrix_of(p, target.mean).inverse();
         inverse /= inverse(1, 1);
-        float* to = &table[size_t(4 * (row * nodes + i))];
+        float* to = &table[size_t(4) * size_t(row * nodes + i)];
         to[0] = float(inverse(0, 0));
         to[1] = float(inverse(0, 2));
         to[2] = float(inverse(2, 0));
@@ -216,7 +216,7 @@ void fit_row(int row, std::vector<float>& table) {
 
 int main(int argc, char** argv) {
     if (argc != 2) return 2;
-    std::vector<float> table(size_t(4 * nodes * nodes));
+    std::vector<float> table(size_t(4) * size_t(nodes * nodes));
     const auto rows = [&](int first) {
         for (int row = first; row < nodes; row += 2) fit_row(row, table);
     };
