@@ -99,7 +99,7 @@ bool read_entry(unzFile file) {
 
 }  // namespace
 
-// From a file, for minizip reads no memory without functions of one's own.
+// From a file, for minizip reads no memory without custom callbacks.
 const Reader zip = [](const std::string& bytes) {
     char name[] = "/tmp/easypbr_bench_XXXXXX";
     const int target = ::mkstemp(name);

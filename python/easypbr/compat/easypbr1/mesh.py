@@ -357,7 +357,7 @@ class Mesh:
         self.D = other.handle().closest_points(self.handle().V)[0].reshape(-1, 1)
         return self.D
 
-    # Fields of one's own.
+    # Custom fields.
 
     def add_extra_field(self, name: str, value: Any) -> None:
         self._fields[name] = value
