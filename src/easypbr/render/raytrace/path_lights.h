@@ -32,8 +32,8 @@ class PathLights {
     void prepare(const ResolvedSettings& resolved, const RayScene& scene);
 
     bool empty() const { return blocks_.empty(); }
-    /// Chooses a light for each path of a batch, by the pair `dimension` of its numbers. `caught`: the
-    /// surfaces catch shadows.
+    /// Chooses a light for each path of a batch, of area lights a point too. `caught`: the surfaces catch
+    /// shadows.
     void choose(const PathBatch& batch, uint32_t depth, bool caught, std::vector<ChosenLight>& chosen) const;
     /// Where the emitter of a chosen light is seen from a place (RayScene's frame). `u` chooses the point of
     /// lights that are not areas.
