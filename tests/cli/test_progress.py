@@ -2,7 +2,11 @@
 import os
 import pty
 import re
+import select
+import signal
 import subprocess
+import time
+from pathlib import Path
 
 import pytest
 
@@ -11,14 +15,22 @@ from binary import BINARY
 
 @pytest.fixture(scope="module")
 def large(tmp_path_factory):
-    """Beyond the 50 MB from which on progress is reported, and long to parse on one core."""
+    """Beyond the 50 MB from which on progress is reported."""
     path = tmp_path_factory.mktemp("large") / "large.obj"
     path.write_bytes(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n" + b"v 0.1234567 0.2345678 0.3456789\n" * 6_000_000)
     yield path
     path.unlink()
 
 
-def said_on_a_terminal(environment, *arguments):
+def hold_up(process, path):
+    """Stops it again and again while it has the file open, so that reading takes seconds on any machine."""
+    if str(path).encode() in Path(f"/proc/{process.pid}/maps").read_bytes():
+        process.send_signal(signal.SIGSTOP)
+        time.sleep(0.3)
+        process.send_signal(signal.SIGCONT)
+
+
+def said_on_a_terminal(environment, *arguments, slow_file=None):
     master, terminal = pty.openpty()
     one_core = {min(os.sched_getaffinity(0))}
     process = subprocess.Popen([str(BINARY), *map(str, arguments)], stderr=terminal, env=environment,
@@ -26,7 +38,13 @@ def said_on_a_terminal(environment, *arguments):
     os.close(terminal)
     said = b""
     try:
-        while piece := os.read(master, 4096):
+        while True:
+            if slow_file and not said:
+                hold_up(process, slow_file)
+            if not select.select([master], [], [], 0.02)[0]:
+                continue
+            if not (piece := os.read(master, 4096)):
+                break
             said += piece
     except OSError:
         pass  # Linux reports the end of a terminal as an error
@@ -36,7 +54,8 @@ def said_on_a_terminal(environment, *arguments):
 
 
 def test_bar_is_shown_on_a_terminal_and_erased(environment, large, tmp_path):
-    said = said_on_a_terminal(environment, "render", large, "-o", tmp_path / "a.png", "--size", "8x8", "--samples", "1")
+    said = said_on_a_terminal(environment, "render", large, "-o", tmp_path / "a.png", "--size", "8x8", "--samples", "1",
+                              slow_file=large)
     assert "%" in said and "large.obj" in said
     assert said.endswith("\r\033[K")
 
