@@ -31,7 +31,7 @@ add_custom_command(
   COMMENT "Translating shaders" VERBATIM)
 add_custom_target(easypbr_native_texts DEPENDS ${native_folder}/shader_uniforms.h ${native_folder}/shaders.h
                                                ${native_folder}/shader_streams.h)
-foreach(room IN ITEMS native gpu render app gui dataset remote viewer)
+foreach(room IN ITEMS native gpu render app gui dataset remote drawing viewer)
   add_dependencies(easypbr_${room} easypbr_native_texts)
 endforeach()
 target_sources(easypbr_native PRIVATE ${native_folder}/shader_uniforms.h)

@@ -24,9 +24,10 @@ ROOMS = {
     "gui": {"core", "scene", "gl", "io", "gpu", "render", "app"},
     "dataset": {"core", "scene", "gl", "io", "gpu", "render", "app"},
     "remote": {"core", "scene", "gl", "io", "gpu", "render", "app"},
-    "viewer": {"core", "scene", "gl", "io", "gpu", "render", "app", "gui", "dataset", "remote"},
-    "cli": {"core", "scene", "geometry", "gl", "native", "io", "gpu", "render", "app", "gui", "dataset", "remote", "viewer"},
-    "python": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "gui", "dataset", "remote", "viewer", "cli"},
+    "drawing": {"core", "scene", "geometry", "io", "gpu", "render", "app"},
+    "viewer": {"core", "scene", "gl", "io", "gpu", "render", "app", "gui", "dataset", "remote", "drawing"},
+    "cli": {"core", "scene", "geometry", "gl", "native", "io", "gpu", "render", "app", "gui", "dataset", "remote", "drawing", "viewer"},
+    "python": {"core", "scene", "geometry", "gl", "io", "gpu", "render", "app", "gui", "dataset", "remote", "drawing", "viewer", "cli"},
 }
 
 # Sub-rooms from the ground up. A sub-room may use those above its own line in this list; folders below one of the

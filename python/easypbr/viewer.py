@@ -6,7 +6,7 @@ import threading
 import time
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -359,6 +359,18 @@ class Viewer(WindowCallbacks):
         down to 40, then their size. `title`: by default the objects' names."""
         columns, rows = orbit
         return self._handle.save_html(path, (columns, rows), row_step, size, samples_of(samples), format, quality, max_mb, title)
+
+    def save_svg(
+        self,
+        path: str | os.PathLike,
+        *,
+        hidden: Literal["none", "dashed", "solid"] = "dashed",
+        size: ArrayLike | None = None,
+    ) -> Path:
+        """Writes the scene, as the camera sees it, as a line drawing: an SVG file with the contours, borders and creases of
+        faces and the lines of what is drawn as lines. `hidden`: how lines are drawn that faces hide. settings.outline has
+        width, colour, kinds of edges and the angle of creases."""
+        return self._handle.save_svg(path, hidden, size)
 
     def show_image(
         self, name: str, image: Any, range: tuple[float, float] | None = None, colormap: str | None = None

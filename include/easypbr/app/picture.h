@@ -51,6 +51,16 @@ struct OrbitPageOptions {
     std::string title = {};       ///< empty: the names of the objects
 };
 
+/// What a line drawing shows of the lines that faces hide.
+enum class HiddenLines { none, dashed, solid };
+
+/// The visible and the hidden edges of a scene as vector graphics; settings.outline has width, colour, kinds
+/// of edges and the angle of creases.
+struct LineDrawingOptions {
+    std::optional<Vec2i> size = {};  ///< none: the settings'
+    HiddenLines hidden = HiddenLines::dashed;
+};
+
 /// How an image is shown beside the scene. Its values are shown as they are: no curve is applied.
 struct ImageLook {
     std::optional<float> min, max;  ///< black and white; none: 0 to 255 of u8, 0 to 65535 of u16, 0 to 1 of

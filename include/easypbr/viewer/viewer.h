@@ -119,6 +119,11 @@ class Viewer {
     std::filesystem::path save_html(const std::filesystem::path& path,
                                     const app::OrbitPageOptions& options = {});
 
+    /// Writes the visible and the hidden edges of the scene, as the camera sees it, as an SVG file. Returns
+    /// the path. Throws as drawing::save_line_drawing() does.
+    std::filesystem::path save_svg(const std::filesystem::path& path,
+                                   const app::LineDrawingOptions& options = {});
+
     /// Every value, chosen and inferred, of the last picture, with the hashes of the files it was made from.
     void save_settings(const std::filesystem::path& path,
                        const std::vector<std::filesystem::path>& files = {});

@@ -23,6 +23,7 @@
 #include "easypbr/cli/user_config.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/drawing/line_drawing.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/settings/camera_path_io.h"
@@ -91,6 +92,8 @@ void check_files(const Picture& picture, const Settings& settings, const RenderO
         app::check_recording(picture.output, settings, recording_of(options));
     else if (options.is_page())
         remote::check_orbit_page(picture.output, settings, page_options_of(options));
+    else if (options.is_line_drawing())
+        drawing::check_line_drawing(picture.output);
     else if (picture.output != "-" && !picture.output.empty())
         app::check_picture(picture.output, settings);
     for (const std::string& layer : options.layers) check_writable(truth_path(picture.output, layer));
@@ -162,9 +165,11 @@ class RenderJob {
         start_look();
         load(picture, times);
         if (const auto pixel = parse_focus(options_.focus)) session_.focus_at(pixel->x(), pixel->y());
-        if (options_.records() || options_.is_page()) {
+        if (options_.records() || options_.is_page() || options_.is_line_drawing()) {
             if (options_.is_page())
                 remote::save_orbit_page(session_, picture.output, page_options_of(options_));
+            else if (options_.is_line_drawing())
+                drawing::save_line_drawing(session_, picture.output, line_drawing_options_of(options_));
             else
                 record(picture);
             times.lap("record");

@@ -18,6 +18,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/drawing/line_drawing.h"
 #include "easypbr/io/settings/presets.h"
 #include "easypbr/io/video/video.h"
 #include "easypbr/render/pipeline/renderer.h"
@@ -78,7 +79,7 @@ void declare_output(CLI::App& command, RenderOptions& options) {
         .add_option("-o,--output", options.output,
                     "Image file to write: PNG, JPEG, HDR or EXR; '-': PNG to standard output; by default the "
                     "image is shown in the terminal. For several frames: MP4, WebM, GIF, or numbered images: "
-                    "frame_%04d.png. HTML: a page to turn the content in")
+                    "frame_%04d.png. HTML: a page to turn the content in. SVG: a line drawing")
         ->option_text("FILE");
     command.add_option("--size,--resolution", options.size, "Width and height in pixels")->option_text("WxH");
     command.add_option("--bit-depth", options.bit_depth, "Bits per channel of a PNG: 8 or 16")
@@ -149,6 +150,10 @@ void declare_camera(CLI::App& command, RenderOptions& options) {
     command.add_option("--page-format", options.page_format, "Pictures of an HTML page: webp or jpeg")
         ->check(CLI::IsMember({"webp", "jpeg"}));
     command.add_option("--page-title", options.page_title, "Title of an HTML page")->option_text("TEXT");
+    command
+        .add_option("--hidden-lines", options.hidden_lines,
+                    "Lines of an SVG file that faces hide: none, dashed (default) or solid")
+        ->check(CLI::IsMember({"none", "dashed", "solid"}));
     command.add_option("--fps", options.fps, "Frames per second of a recording (30)")->option_text("X");
     command.add_option("--codec", options.codec, "Video encoder by its FFmpeg name")->option_text("NAME");
     command
@@ -332,6 +337,12 @@ app::OrbitPageOptions page_options_of(const RenderOptions& options) {
     return page;
 }
 
+app::LineDrawingOptions line_drawing_options_of(const RenderOptions& options) {
+    app::LineDrawingOptions drawing;
+    if (!options.hidden_lines.empty()) drawing.hidden = drawing::hidden_lines_named(options.hidden_lines);
+    return drawing;
+}
+
 std::string shorthand_option(std::string_view setting) {
     // These are read before they become settings.
     if (setting == "image.size") return "--size";
@@ -382,6 +393,16 @@ void check_page_usage(const RenderOptions& options) {
     page_options_of(options);
 }
 
+void check_line_drawing_usage(const RenderOptions& options) {
+    if (!options.is_line_drawing()) {
+        if (!options.hidden_lines.empty())
+            throw UsageError("render: --hidden-lines needs an SVG file: -o FILE.svg");
+        return;
+    }
+    if (options.records()) throw UsageError("render: a line drawing is no recording");
+    if (!options.layers.empty()) throw UsageError("render: --layers are of an image, not of a line drawing");
+}
+
 void check_recording_usage(const RenderOptions& options) {
     if (options.animation_time && options.animation.empty())
         throw UsageError("render: --animation-time needs --animation");
@@ -412,6 +433,7 @@ void check_usage(const RenderOptions& options) {
     check_input("render", options.files);
     check_recording_usage(options);
     check_page_usage(options);
+    check_line_drawing_usage(options);
     parse_styles(options.styles, unique_names(options.files));
     if (options.smooth && options.flat) throw UsageError("render: --smooth and --flat exclude each other");
     if (!options.camera_pose.empty())

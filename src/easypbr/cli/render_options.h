@@ -37,6 +37,7 @@ struct RenderOptions {
     std::string orbit;                 ///< "36x3": columns and rows of a page
     std::optional<double> page_limit;  ///< megabytes
     std::string page_format, page_title;
+    std::string hidden_lines;  ///< of a line drawing
     std::optional<double> fps;
     std::string codec;
     std::string animation;                 ///< name or number of one in the files
@@ -58,12 +59,14 @@ struct RenderOptions {
 
     /// Many frames instead of one picture.
     bool records() const { return turntable || !camera_path.empty(); }
-    /// Pictures from all around in one HTML file.
     /// One image and nothing else, where no file is named for it.
     bool shows_in_terminal() const {
         return output.empty() && !records() && !batch && !open && layers.empty() && bit_depth == 8;
     }
+    /// Pictures from all around in one HTML file.
     bool is_page() const { return extension_of(output) == "html"; }
+    /// Edges as vector graphics.
+    bool is_line_drawing() const { return extension_of(output) == "svg"; }
 };
 
 /// The option of `render` whose value is this setting's, "--color" of material.color; empty: there is none.
@@ -91,6 +94,9 @@ void apply(const RenderOptions& options, Settings& settings);
 
 /// What a page is written with. Throws UsageError.
 app::OrbitPageOptions page_options_of(const RenderOptions& options);
+
+/// What a line drawing is written with.
+app::LineDrawingOptions line_drawing_options_of(const RenderOptions& options);
 
 /// The pixel that --focus names; nothing without it. Throws UsageError when it is not X,Y.
 std::optional<Vec2i> parse_focus(const std::string& text);

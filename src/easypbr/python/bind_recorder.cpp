@@ -6,6 +6,7 @@
 
 #include "easypbr/app/recorder.h"
 #include "easypbr/core/error.h"
+#include "easypbr/drawing/line_drawing.h"
 #include "easypbr/io/video/video.h"
 #include "easypbr/python/shared_viewer.h"
 #include "easypbr/python/text.h"
@@ -43,11 +44,18 @@ fs::path save_html(SharedViewer& self, const fs::path& path, std::pair<int, int>
     return self.run([&](Viewer& viewer) { return viewer.save_html(path, options); });
 }
 
+fs::path save_svg(SharedViewer& self, const fs::path& path, const std::string& hidden,
+                  const nb::object& size) {
+    const app::LineDrawingOptions options{optional_size(size), drawing::hidden_lines_named(hidden)};
+    return self.run([&](Viewer& viewer) { return viewer.save_svg(path, options); });
+}
+
 void bind_recording(nb::class_<SharedViewer>& viewer) {
     viewer
         .def("save_html", save_html, nb::arg("path"), nb::arg("orbit"), nb::arg("row_step"),
              nb::arg("size").none(), nb::arg("samples").none(), nb::arg("format"), nb::arg("quality"),
              nb::arg("max_mb"), nb::arg("title"))
+        .def("save_svg", save_svg, nb::arg("path"), nb::arg("hidden"), nb::arg("size").none())
         .def("record", record, nb::arg("path"), nb::arg("size").none() = nb::none(),
              nb::arg("samples").none() = nb::none(), nb::arg("deep") = false)
         .def("start_recording", start, nb::arg("path"), nb::arg("fps"), nb::arg("size").none(),

@@ -14,6 +14,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
+#include "easypbr/core/markup.h"
 #include "easypbr/core/step_progress.h"
 #include "easypbr/io/image/image_codecs.h"
 #include "easypbr/io/source/base64.h"
@@ -33,23 +34,6 @@ constexpr int least_side = 16;
 constexpr double page_bytes = 10000;
 /// Before the first picture: "data:image/...;base64,".
 constexpr size_t most_prefix = 32;
-
-std::string escaped(std::string_view text) {
-    static const std::map<char, std::string_view> codes{
-        {'&', "&amp;"}, {'<', "&lt;"}, {'>', "&gt;"}, {'"', "&quot;"}, {'\'', "&#39;"}};
-    std::string out;
-    for (const char c : text) {
-        const auto code = codes.find(c);
-        out += code == codes.end() ? std::string_view(&c, 1) : code->second;
-    }
-    return out;
-}
-
-/// Names come from files: what is no UTF-8 is replaced.
-std::string valid_text(const std::string& text) {
-    using Json = nlohmann::json;
-    return Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace)).get<std::string>();
-}
 
 /// The document with its places, {{title}} and so on, filled once.
 std::string filled(std::string_view document, const std::map<std::string_view, std::string>& places) {
@@ -109,7 +93,7 @@ class OrbitPage {
         if (options_.title.empty())
             options_.title = fmt::format("{}", fmt::join(session.scene().names(), ", "));
         if (options_.title.empty()) options_.title = path.stem().string();
-        options_.title = valid_text(options_.title);
+        options_.title = valid_utf8(options_.title);
         const size_t rest = document(std::vector<std::string>(grid_.cameras.size())).size();
         left_ = options.most_megabytes * 1e6 - double(rest + most_prefix);
     }
@@ -187,7 +171,7 @@ class OrbitPage {
                                       {"type", type},
                                       {"pictures", std::move(pictures)}};
         return filled(offline_document("orbit.html"),
-                      {{"title", escaped(options_.title)},
+                      {{"title", markup_escaped(options_.title)},
                        {"width", std::to_string(size_.x())},
                        {"height", std::to_string(size_.y())},
                        {"start", start.empty() ? "" : fmt::format("data:{};base64,{}", type, start)},

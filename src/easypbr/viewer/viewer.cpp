@@ -5,6 +5,7 @@
 #include "easypbr/app/output.h"
 #include "easypbr/app/session.h"
 #include "easypbr/core/error.h"
+#include "easypbr/drawing/line_drawing.h"
 #include "easypbr/gui/display.h"
 #include "easypbr/gui/live_view.h"
 #include "easypbr/gui/window.h"
@@ -334,6 +335,11 @@ void Viewer::refit() {
 std::filesystem::path Viewer::save_html(const std::filesystem::path& path,
                                         const app::OrbitPageOptions& options) {
     return remote::save_orbit_page(parts_->session, path, options);
+}
+
+std::filesystem::path Viewer::save_svg(const std::filesystem::path& path,
+                                       const app::LineDrawingOptions& options) {
+    return drawing::save_line_drawing(parts_->session, path, options);
 }
 
 void Viewer::save_settings(const std::filesystem::path& path,
