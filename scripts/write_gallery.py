@@ -15,7 +15,7 @@ from collections.abc import Callable
 import write_pictures
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
-IMAGE = re.compile(r"!\[([^\]]*)\]\(images/(\w+)\.png\)")
+IMAGE = re.compile(r"!\[([^\]]*)\]\(images/(\w+)\.(?:png|svg)\)")
 #: Pages that stand first: their pictures are those that a reader looks for.
 FIRST = ["materials_and_textures", "lights_and_environment", "light", "effects", "data_kinds", "labels_and_scalars", "geometry"]
 HEAD = """# Gallery
@@ -63,7 +63,7 @@ def entry(name: str, draw: Callable, page: str, caption: str) -> str:
 
 <div class="beside" markdown>
 
-![{caption}](../images/{name}.png)
+![{caption}](../images/{write_pictures.file_name(draw)})
 
 ```py
 {code_of(name, draw)}
@@ -76,7 +76,7 @@ def entry(name: str, draw: Callable, page: str, caption: str) -> str:
 
 
 def gallery_page() -> str:
-    draws = {draw.__name__: draw for draw in write_pictures.PICTURES + write_pictures.FIGURES}
+    draws = {draw.__name__: draw for draw in write_pictures.PICTURES + write_pictures.FIGURES + write_pictures.DRAWINGS}
     places = shown()
     text = HEAD
     for page in dict.fromkeys(page for page, _ in places.values()):

@@ -564,10 +564,37 @@ def outline() -> np.ndarray:
     return view.render()
 
 
+def assembly_drawing() -> str:
+    """A shaft in its bearing, screwed onto a plate: SVG."""
+    scene = Scene()
+
+    def add(name: str, mesh: Mesh, position: tuple[float, float, float]) -> None:
+        mesh.translate(position)
+        scene.show(mesh, name)
+
+    add("plate", shapes.box((4, 0.4, 4)), (0, 0, 0))
+    add("flange", shapes.cylinder(1.5, 0.3), (0, 0.35, 0))
+    add("bearing", shapes.cylinder(0.9, 1.1), (0, 1.05, 0))
+    add("shaft", shapes.cylinder(0.4, 1.4), (0, 2.3, 0))
+    add("journal", shapes.cylinder(0.4, 2.2), (0, 0.5, 0))
+    for i, (x, z) in enumerate([(-1, -1), (-1, 1), (1, -1), (1, 1)]):
+        add(f"head {i}", shapes.cylinder(0.24, 0.25, 6), (1.6 * x, 0.325, 1.6 * z))
+        add(f"screw {i}", shapes.cylinder(0.12, 0.7), (1.6 * x, -0.1, 1.6 * z))
+    view = Viewer((800, 600), {"camera.projection": "orthographic", "camera.elevation_deg": 30}, scene=scene)
+    with tempfile.TemporaryDirectory() as folder:
+        return view.save_svg(pathlib.Path(folder) / "assembly.svg").read_text()
+
+
 PICTURES = [demo, materials, lights, area_lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion, rays, modes, paths,
             bloom, outlines, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
             viewer_slices, viewer_path, viewer_animations, viewer_lights, viewer_own, segmentation, detection, own_shading,
             outline]
+#: Vector graphics.
+DRAWINGS = [assembly_drawing]
+
+
+def file_name(draw) -> str:
+    return f"{draw.__name__}.{'svg' if draw in DRAWINGS else 'png'}"
 
 
 if __name__ == "__main__":
@@ -576,4 +603,6 @@ if __name__ == "__main__":
     folder = pathlib.Path(sys.argv[1]) if len(sys.argv) == 2 else ROOT / "docs/images"
     folder.mkdir(parents=True, exist_ok=True)
     for draw in PICTURES + FIGURES:
-        easypbr.save_image(draw(), folder / f"{draw.__name__}.png")
+        easypbr.save_image(draw(), folder / file_name(draw))
+    for draw in DRAWINGS:
+        (folder / file_name(draw)).write_text(draw())

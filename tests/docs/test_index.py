@@ -100,16 +100,16 @@ def test_the_package_has_the_overview():
 
 def test_each_picture_stands_beside_its_lines():
     page = write_gallery.gallery_page()
-    draws = write_pictures.PICTURES + write_pictures.FIGURES
+    draws = write_pictures.PICTURES + write_pictures.FIGURES + write_pictures.DRAWINGS
     assert page.count("\n### ") == len(draws) == page.count('<div class="beside" markdown>')
     for draw in draws:
-        entry = page.split(f"../images/{draw.__name__}.png)")[1].split("\n### ")[0]
+        entry = page.split(f"../images/{write_pictures.file_name(draw)})")[1].split("\n### ")[0]
         code, link = entry.split("```py\n")[1].split("\n```\n")[0], re.search(r"\]\(\.\./(\w+)\.md\)", entry)
         assert code.splitlines()[-1].startswith(("return", " ")) or ")" in code
         compile("def f():\n" + "\n".join("    " + line for line in code.splitlines()), draw.__name__, "exec")
         source = inspect.getsource(sys.modules[draw.__name__].draw if draw in write_pictures.FIGURES else draw)
         assert code.splitlines()[-1].strip() in source
-        assert f"images/{draw.__name__}.png" in (ROOT / f"docs/{link[1]}.md").read_text()
+        assert f"images/{write_pictures.file_name(draw)}" in (ROOT / f"docs/{link[1]}.md").read_text()
 
 
 def test_the_reference_of_cpp_has_every_header_and_class():

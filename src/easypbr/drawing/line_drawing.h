@@ -29,7 +29,7 @@ struct LineDrawing {
 
 /// Contours, borders and creases of what is drawn as faces, as settings.outline chooses them, and the lines
 /// of what is drawn as lines. Faces hide what lies behind them, but for those whose material lets light pass;
-/// textures count as opaque. What is drawn as points, surfels, voxels or splats has no edges: it is left out,
+/// textures count as opaque. What is drawn as neither faces nor lines has no edges: it is left out,
 /// with a warning.
 LineDrawing line_drawing(const SceneSnapshot& scene, const ResolvedSettings& resolved, const Vec2i& size,
                          bool with_hidden = true);
