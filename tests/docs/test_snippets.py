@@ -71,6 +71,8 @@ def test_commands_succeed_without_a_word(page, work):
             for name in names:
                 if output.suffix == ".mp4":
                     assert (work / output).stat().st_size > 1000
+                elif output.suffix == ".svg":
+                    assert 'viewBox="0 0 64 48"' in (work / output).read_text()
                 elif output.suffix == ".html":
                     assert "<script" in (work / output).read_text()
                 else:
