@@ -5,8 +5,7 @@ import os
 import threading
 import time
 from collections.abc import Mapping, Sequence
-from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,16 +16,15 @@ from .cameras import set_camera
 from .conversions.maker import Maker
 from .errors import ArgumentError
 from .lights import _STUDIO, Lights, SceneLight, StudioLight
-from .panels import WindowCallbacks
 from .recorder import Recorder, watch_recorder
-from .remote import Server
 from .scene import Scene, scene_of
 from .settings import Settings
 from .shapes import camera_frustum
+from .sharing import Sharing
 from .tensors import as_numpy, check_device, converter, from_dlpack, layers_of_targets
 
 
-class Viewer(WindowCallbacks):
+class Viewer(Sharing):
     """Renders a scene, by default the default scene. Nothing is rendered, and OpenGL is not loaded, before the first
     image. Threads may share a viewer; they take turns."""
 
@@ -50,8 +48,8 @@ class Viewer(WindowCallbacks):
         self._settings = Settings(self._handle)
         self._thread: threading.Thread | None = None
         self._made_at = time.monotonic()
-        self._widget: Any = None
         self._init_callbacks()
+        self._init_sharing()
         if preset is not None:
             self.apply_preset(preset)
         if isinstance(settings, Mapping):
@@ -312,66 +310,6 @@ class Viewer(WindowCallbacks):
         self._thread.start()
         atexit.register(self.close)  # A thread within the library must not outlive the interpreter.
 
-    def serve(
-        self,
-        port: int = 0,
-        *,
-        bind: str = "127.0.0.1",
-        socket: str | os.PathLike = "",
-        token_file: str | os.PathLike = "",
-        host_names: Sequence[str] = (),
-        origins: Sequence[str] = (),
-        max_clients: int = 16,
-        codec: str = "auto",
-        block: bool = False,
-    ) -> Server:
-        """Shows the scene in browsers: print(view.serve().url). Returns at once, unless `block`: then when it is closed, by
-        Ctrl-C too. `port`: 0 takes any that is free; `socket`: path of a Unix socket to use in its place; `bind`: others
-        than loopback are seen by the network; `token_file`: secrets to use, a line to control, a line to watch;
-        `host_names`: other names that the server is reached by; `origins`: pages of other sites that may connect;
-        `codec`: what moving images are sent as, "h264" or "jpeg"; "auto" takes H.264 where FFmpeg's libraries and a
-        client's browser have it."""
-        handle = self._handle.serve(
-            port, bind, socket, token_file, list(host_names), list(origins), max_clients, codec)
-        server = Server(handle)
-        self._serve_panels(server)
-        if block:
-            print(server.url, flush=True)
-            server.wait()
-        return server
-
-    def save_html(
-        self,
-        path: str | os.PathLike,
-        orbit: tuple[int, int] = (36, 3),
-        *,
-        row_step: float = 20.0,
-        size: ArrayLike | None = None,
-        samples: int | None = None,
-        format: str = "webp",
-        quality: int = 85,
-        max_mb: float = 20.0,
-        title: str = "",
-    ) -> Path:
-        """Writes images from all around as one HTML file that is turned by dragging, without a server. `orbit`: directions
-        around the content (1 to 360) by elevations (1 to 60), `row_step` degrees apart, the camera's own among them. The images
-        are "webp" or "jpeg" of at most this quality (1 to 100); where they do not fit into `max_mb` megabytes, their quality goes
-        down to 40, then their size. `title`: by default the objects' names."""
-        columns, rows = orbit
-        return self._handle.save_html(path, (columns, rows), row_step, size, samples_of(samples), format, quality, max_mb, title)
-
-    def save_svg(
-        self,
-        path: str | os.PathLike,
-        *,
-        hidden: Literal["none", "dashed", "solid"] = "dashed",
-        size: ArrayLike | None = None,
-    ) -> Path:
-        """Writes the scene, as the camera sees it, as a line drawing: an SVG file with the contours, borders and creases of
-        faces and the lines of what is drawn as lines. `hidden`: how lines are drawn that faces hide. settings.outline has
-        width, colour, kinds of edges and the angle of creases."""
-        return self._handle.save_svg(path, hidden, size)
-
     def show_image(
         self, name: str, image: Any, range: tuple[float, float] | None = None, colormap: str | None = None
     ) -> None:
@@ -488,32 +426,6 @@ class Viewer(WindowCallbacks):
     def screenshot(self, size: ArrayLike | None = None, scale: float = 1) -> np.ndarray:
         """The contents of the window as an image, panels included; needs no display. `scale`: HiDPI scale."""
         return self._handle.screenshot(size, scale)
-
-    def widget(self, size: ArrayLike | None = None) -> Any:
-        """A widget for notebooks (pip install easypbr[jupyter]): the view in a cell, turned with the mouse, over the kernel's
-        own channel. It has a camera of its own, which begins as the view's; what the program changes in the scene and in the
-        settings is seen in it. `size`: (width, height) in CSS pixels, 16 to 4096, by default that of the images, at most 800
-        wide. Members: keep(), add_animations(name, animations), close()."""
-        from .widget import size_for, widget_class
-
-        return widget_class()(self, size_for(self, size))
-
-    def _repr_mimebundle_(self, include: Any = None, exclude: Any = None) -> dict[str, Any] | None:
-        """The widget, one for all cells, with the present image beside it; None: no notebook, or no support for widgets."""
-        from .widget import can_show
-
-        if not self.scene.names() or not can_show():
-            return None
-        if self._widget is None or self._widget.comm is None:
-            self._widget = self.widget()
-        else:
-            self._widget.keep()
-        return self._widget._repr_mimebundle_()
-
-    def _repr_png_(self) -> bytes | None:
-        if not self.scene.names():
-            return None
-        return _easypbr.encode_png(self.render())
 
 
 def show(
