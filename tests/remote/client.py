@@ -58,6 +58,7 @@ class Client:
             where, subprotocols=["easypbr.1"], max_size=None, compression=None, **options))
         self.answers = answers
         self.texts: dict[str, dict] = {}
+        self.tools: dict[str, dict] = {}
         self.settings: dict[str, dict] = {}
         self.notices: list[str] = []
         self.frames: list[Frame] = []
@@ -106,6 +107,8 @@ class Client:
         self.texts[message["kind"]] = message
         if message["kind"] == "settings":
             self.settings |= message["values"]
+        if message["kind"] == "tool":
+            self.tools[message["name"]] = message
         if message["kind"] == "notice":
             self.notices.append(message["text"])
         return message

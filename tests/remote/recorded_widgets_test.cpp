@@ -154,5 +154,53 @@ TEST(RecordedWidgets, WhatAPanelThrowsIsTold) {
     EXPECT_TRUE(memories["Broken"].edits.empty());
 }
 
+TEST(RecordedWidgets, FieldsAreRowsOfTheTable) {
+    PanelMemory memory;
+    FieldInfo info;
+    info.name = "roughness";
+    info.doc = "How rough.";
+    info.min = 0;
+    info.max = 1;
+    Value value{0.5};
+    std::vector<std::string> problems;
+    const auto rows = [&] {
+        RecordedWidgets widgets(memory);
+        if (const auto chosen = widgets.field("rough", info, value)) value = *chosen;
+        problems = widgets.problems();
+        return widgets.take();
+    };
+    const json field = {
+        {"name", "roughness"}, {"doc", "How rough."}, {"type", "number"}, {"min", 0}, {"max", 1}};
+    EXPECT_EQ(rows()[0], json({{"type", "field"}, {"name", "rough"}, {"field", field}, {"value", "0.5"}}));
+    memory.edits = {{{"rough", 0}, "0.25"}};
+    EXPECT_EQ(rows()[0]["value"], "0.25");
+    EXPECT_EQ(std::get<double>(value.data), 0.25);
+    EXPECT_TRUE(problems.empty());
+    for (const char* wrong : {"2", "-1", "nan", "much", ""}) {
+        memory.edits = {{{"rough", 0}, wrong}};
+        EXPECT_EQ(rows()[0]["value"], "0.25") << wrong;
+        ASSERT_EQ(problems.size(), 1u) << wrong;
+        EXPECT_NE(problems[0].find("roughness"), std::string::npos) << problems[0];
+    }
+}
+
+TEST(RecordedWidgets, AutomaticFieldsSayWhatIsInForce) {
+    PanelMemory memory;
+    FieldInfo info;
+    info.name = "radius";
+    info.can_be_automatic = true;
+    Value value{0.0, Value::State::automatic};
+    RecordedWidgets first(memory);
+    EXPECT_FALSE(first.field("radius", info, value, Value{2.0}));
+    const json row = first.take()[0];
+    EXPECT_EQ(row["value"], "auto");
+    EXPECT_EQ(row["latched"], "2");
+    memory.edits = {{{"radius", 0}, "auto"}};
+    RecordedWidgets second(memory);
+    const auto chosen = second.field("radius", info, Value{1.0});
+    ASSERT_TRUE(chosen);
+    EXPECT_EQ(chosen->state, Value::State::automatic);
+}
+
 }  // namespace
 }  // namespace easypbr::remote::recorded_widgets_test

@@ -285,7 +285,7 @@ def test_axe_finds_nothing(open_page, theme):
     page.exact()
     page.page.mouse.click(*page.centre())
     expect(page.page.get_by_label("Picked")).to_be_visible()
-    for tab in ("Scene", "Settings", "Statistics"):
+    for tab in ("Scene", "Camera", "Settings", "Statistics"):
         page.tab(tab)
         if tab == "Settings":
             page.page.get_by_role("button", name="environment", exact=True).click()

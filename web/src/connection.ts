@@ -41,7 +41,7 @@ export class Connection {
   private hidden = new Map<Element, boolean>();
   readonly painter = new Painter(this.store, {
     ack: (frame, chunk) => this.send({ kind: "ack", frame, chunk }),
-    shot: (_id, picture) => download(picture, "easypbr.png"),
+    file: download,
     decodes: (h264) => {
       this.decodes = h264;
       this.send({ kind: "decodes", h264 });
@@ -196,6 +196,8 @@ export class Connection {
         return update({ animation: message.names.length ? message : null });
       case "panels":
         return update({ panels: message.panels });
+      case "tool":
+        return update({ tools: { ...state.tools, [message.name]: message.widgets } });
       case "statistics":
         return update({ statistics: message });
     }

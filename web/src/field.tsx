@@ -58,15 +58,17 @@ function hasSlider(field: Field): boolean {
   return field.slider || field.max - field.min <= (field.type === "integer" || field.whole ? 64 : 720);
 }
 
-function short(number: number): string {
-  return String(Number(number.toPrecision(5)));
+/** What has no end stays a word. */
+function short(value: number | string): string {
+  const number = Number(value);
+  return Number.isFinite(number) ? String(Number(number.toPrecision(5))) : String(value);
 }
 
 function NumberControl(props: Props) {
   const { field, id, value, disabled, set } = props;
   const [draft, setDraft, edit] = useDraft(value);
   const pending = useRef(0);
-  if (!hasSlider(field)) return <TextControl {...props} value={value === "" ? "" : short(Number(value))} />;
+  if (!hasSlider(field)) return <TextControl {...props} value={value === "" ? "" : short(value)} />;
   const low = field.min as number;
   const high = field.max as number;
   const whole = field.type === "integer" || field.whole;
@@ -89,7 +91,7 @@ function NumberControl(props: Props) {
         onInput={(event) => change(short(Number(event.currentTarget.value)))}
         onChange={() => edit(false)}
       />
-      <TextControl {...props} id={`${id}-number`} value={draft === "" ? "" : short(Number(draft))} />
+      <TextControl {...props} id={`${id}-number`} value={draft === "" ? "" : short(draft)} />
     </>
   );
 }

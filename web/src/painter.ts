@@ -1,11 +1,12 @@
 // Pictures onto the canvas: in order, the newest only, each answered when it is drawn.
-import { CODEC_H264, CODEC_NAMES, FLAG_EXACT, FLAG_LAST, FRAME_MOVING, FRAME_SHOT, HEADER_BYTES, mimeOf, readHeader, type FrameHeader } from "./protocol";
+import { CODEC_H264, CODEC_NAMES, FLAG_EXACT, FLAG_LAST, FRAME_MOVING, FRAME_STILL, HEADER_BYTES, fileName, mimeOf, readHeader, type FrameHeader } from "./protocol";
 import type { Store } from "./store";
 import { VideoPictures } from "./video";
 
 export interface PainterHooks {
   ack(frame: number, chunk: number): void;
-  shot(id: number, picture: Blob): void;
+  /** A still or a video that was asked for. */
+  file(content: Blob, name: string): void;
   /** Whether H.264 can be decoded; true, again: its place in the video is lost. */
   decodes(h264: boolean): void;
 }
@@ -24,7 +25,7 @@ export class Painter {
   private latencies: number[] = [];
   private arrivals: { time: number; bytes: number; draws: boolean }[] = [];
   private still: Parts = { frame: 0, chunks: [] };
-  private shot: Parts = { frame: 0, chunks: [] };
+  private file: Parts = { frame: 0, chunks: [] };
   private video: VideoPictures;
   private drawn = 0;
   /** All show the same pictures. */
@@ -58,7 +59,7 @@ export class Painter {
   restart(): void {
     this.drawn = 0;
     this.still = { frame: 0, chunks: [] };
-    this.shot = { frame: 0, chunks: [] };
+    this.file = { frame: 0, chunks: [] };
     this.inputs.clear();
     this.video.reset();
   }
@@ -70,7 +71,7 @@ export class Painter {
 
   async take(data: ArrayBuffer): Promise<void> {
     const header = readHeader(data);
-    const draws = header.kind !== FRAME_SHOT;
+    const draws = header.kind === FRAME_MOVING || header.kind === FRAME_STILL;
     this.arrivals.push({ time: performance.now(), bytes: data.byteLength, draws: draws && (header.flags & FLAG_LAST) !== 0 });
     try {
       if (header.codec === CODEC_H264) await this.paint(header, await this.video.decode(header, data));
@@ -82,7 +83,7 @@ export class Painter {
   }
 
   private async collect(header: FrameHeader, data: ArrayBuffer): Promise<void> {
-    const parts = header.kind === FRAME_SHOT ? this.shot : this.still;
+    const parts = header.kind === FRAME_STILL ? this.still : this.file;
     if (header.chunk === 0) {
       parts.frame = header.frame;
       parts.chunks = [];
@@ -92,8 +93,8 @@ export class Painter {
     if (!(header.flags & FLAG_LAST)) return;
     const chunks = parts.chunks;
     parts.chunks = [];
-    if (header.kind === FRAME_SHOT) this.hooks.shot(header.input, blobOf(header, chunks));
-    else await this.paint(header, await bitmapOf(header, chunks));
+    if (header.kind === FRAME_STILL) await this.paint(header, await bitmapOf(header, chunks));
+    else this.hooks.file(blobOf(header, chunks), fileName(header));
   }
 
   private async paint(header: FrameHeader, picture: Picture | null): Promise<void> {

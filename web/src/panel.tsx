@@ -4,9 +4,9 @@ import { ScenePanel } from "./scene";
 import { SettingsPanel } from "./settings";
 import { StatisticsPanel } from "./statistics";
 import { useStore } from "./store";
-import { UserPanels } from "./user_panels";
+import { Tool, UserPanels } from "./user_panels";
 
-const TABS = ["Panels", "Scene", "Settings", "Statistics"] as const;
+const TABS = ["Panels", "Scene", "Camera", "Settings", "Statistics"] as const;
 type Tab = (typeof TABS)[number];
 
 /** Everything beside the picture, in tabs. */
@@ -47,7 +47,19 @@ export function Panel({ connection, hide }: { connection: Connection; hide: () =
       </div>
       <div id="tab-content" role="tabpanel" aria-labelledby={`tab-${tab}`} class="tab-content" tabIndex={0}>
         {tab === "Panels" && <UserPanels connection={connection} />}
-        {tab === "Scene" && <ScenePanel connection={connection} />}
+        {tab === "Scene" && (
+          <>
+            <ScenePanel connection={connection} />
+            <Tool name="Object" connection={connection} />
+            <Tool name="Lights" connection={connection} />
+          </>
+        )}
+        {tab === "Camera" && (
+          <>
+            <Tool name="Camera path" connection={connection} />
+            <Tool name="Recording" connection={connection} />
+          </>
+        )}
         {tab === "Settings" && <SettingsPanel connection={connection} />}
         {tab === "Statistics" && <StatisticsPanel />}
       </div>

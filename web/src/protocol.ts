@@ -62,9 +62,9 @@ export interface Animation {
   speed: number;
 }
 
-/** Of a program's panel. */
+/** Of a panel of the program's or the server's. */
 export interface Widget {
-  type: "text" | "separator" | "section" | "button" | "checkbox" | "text_field" | "slider" | "number" | "combo" | "color" | "plot" | "progress";
+  type: "text" | "separator" | "section" | "button" | "checkbox" | "text_field" | "slider" | "number" | "combo" | "color" | "plot" | "progress" | "field";
   name: string;
   /** So many of this name come before it. */
   use?: number;
@@ -74,6 +74,9 @@ export interface Widget {
   max?: number;
   whole?: boolean;
   choices?: string[];
+  field?: Field;
+  /** Of a field that is automatic. */
+  latched?: string;
   values?: (number | null)[];
   last?: number;
 }
@@ -101,13 +104,13 @@ export type ServerMessage =
   | ({ kind: "pick" } & Pick)
   | ({ kind: "animation" } & Animation)
   | { kind: "panels"; panels: UserPanel[] }
+  | { kind: "tool"; name: string; widgets: Widget[] }
   | ({ kind: "statistics" } & Statistics);
 
 export type ClientMessage = { kind: string } & Record<string, string | number | boolean>;
 
 export const FRAME_MOVING = 1;
 export const FRAME_STILL = 2;
-export const FRAME_SHOT = 3;
 export const FLAG_LAST = 1;
 export const FLAG_EXACT = 2;
 export const FLAG_KEY = 8;
@@ -156,4 +159,8 @@ export function readHeader(data: ArrayBuffer): FrameHeader {
 
 export const CODEC_NAMES = ["", "JPEG", "PNG", "H.264"];
 
-export const mimeOf = (header: FrameHeader): string => (header.codec === 2 ? "image/png" : "image/jpeg");
+const MIMES = ["", "image/jpeg", "image/png", "", "video/mp4", "video/webm", "image/gif"];
+
+export const mimeOf = (header: FrameHeader): string => MIMES[header.codec] ?? "";
+/** What a file of it is called. */
+export const fileName = (header: FrameHeader): string => `easypbr.${mimeOf(header).split("/")[1]}`;

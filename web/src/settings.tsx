@@ -1,6 +1,6 @@
 import { useMemo, useState } from "preact/hooks";
 import type { Connection } from "./connection";
-import { Control } from "./field";
+import { FieldRow } from "./field_row";
 import { Icon } from "./icons";
 import type { Field } from "./protocol";
 import { useStore } from "./store";
@@ -10,38 +10,9 @@ const readable = (name: string) => name.replaceAll("_", " ");
 function Row({ field, connection }: { field: Field; connection: Connection }) {
   const value = useStore((state) => state.values[field.name]);
   const controls = useStore((state) => state.control.controls);
-  const given = value?.value ?? "";
-  const isAuto = given === "auto" || given === "follow";
-  const shown = isAuto ? (value?.latched ?? "") : given;
   const label = readable(field.name.slice(field.name.indexOf(".") + 1));
-  const id = `field-${field.name}`;
   const set = (text: string) => connection.set(field.name, text);
-  return (
-    <div class={isAuto ? "row automatic" : "row"} title={field.doc}>
-      <label for={id}>
-        {label}
-        {field.unit && <span class="unit"> {field.unit}</span>}
-      </label>
-      <div class="control">
-        <Control field={field} id={id} label={label} value={shown} disabled={!controls} set={set} />
-        {field.auto ? (
-          <button
-            type="button"
-            class="auto"
-            aria-pressed={isAuto}
-            aria-label={`${label}: automatic`}
-            title={isAuto ? "Inferred; click to keep this value" : "Infer it again"}
-            disabled={!controls || (isAuto && !shown)}
-            onClick={() => set(isAuto ? shown : "auto")}
-          >
-            auto
-          </button>
-        ) : (
-          <span class="auto-place" />
-        )}
-      </div>
-    </div>
-  );
+  return <FieldRow field={field} id={`field-${field.name}`} label={label} value={value?.value ?? ""} latched={value?.latched} disabled={!controls} set={set} />;
 }
 
 function Group(props: { name: string; fields: Field[]; open: boolean; connection: Connection }) {

@@ -1,7 +1,7 @@
 // What the page knows of a view. One object; parts of the page are drawn again when it changes.
 import { createContext } from "preact";
 import { useContext, useEffect, useState } from "preact/hooks";
-import type { Animation, Control, Field, FieldValue, Pick, SceneNode, Statistics, UserPanel } from "./protocol";
+import type { Animation, Control, Field, FieldValue, Pick, SceneNode, Statistics, UserPanel, Widget } from "./protocol";
 
 export type Phase = "connecting" | "live" | "lost" | "denied" | "full";
 
@@ -27,6 +27,8 @@ export interface State {
   animation: Animation | null;
   pick: Pick | null;
   panels: UserPanel[];
+  /** Panels of the server's own, by name. */
+  tools: Record<string, Widget[]>;
   notices: Notice[];
   /** Of the last seconds: what came, and how long an input took to be seen. */
   rate: { fps: number; kbytes: number; inputMs: number };
@@ -55,6 +57,7 @@ const begin = (): State => ({
   animation: null,
   pick: null,
   panels: [],
+  tools: {},
   notices: [],
   rate: { fps: 0, kbytes: 0, inputMs: 0 },
   exact: false,

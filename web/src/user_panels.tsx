@@ -1,7 +1,8 @@
-// Panels of the program that serves the view.
+// Panels of the program that serves the view, and those that the server itself has.
 import type { Connection } from "./connection";
 import { Control } from "./field";
-import type { Field, Widget } from "./protocol";
+import { FieldRow } from "./field_row";
+import type { Field, UserPanel, Widget } from "./protocol";
 import { useStore } from "./store";
 
 const PLOT_WIDTH = 300;
@@ -94,6 +95,18 @@ function Shown(props: Props) {
           <span>{widget.name}</span>
         </div>
       );
+    case "field":
+      return (
+        <FieldRow
+          field={widget.field as Field}
+          id={props.id}
+          label={widget.name}
+          value={String(widget.value)}
+          latched={widget.latched}
+          disabled={disabled}
+          set={set}
+        />
+      );
     case "plot":
       return <Plot widget={widget} />;
     default:
@@ -112,30 +125,42 @@ function linesOfWidgets(widgets: Widget[]): { widget: Widget; at: number }[][] {
   return lines;
 }
 
+function Widgets({ panel, kind, connection }: { panel: UserPanel; kind: "widget" | "tool"; connection: Connection }) {
+  const controls = useStore((state) => state.control.controls);
+  return (
+    <section class="user-panel">
+      <h2>{panel.name}</h2>
+      {linesOfWidgets(panel.widgets).map((line) => (
+        <div class={line.length > 1 ? "line" : undefined} key={line[0]?.at}>
+          {line.map(({ widget, at }) => (
+            <Shown
+              key={`${at} ${widget.type} ${widget.name}`}
+              widget={widget}
+              id={`${kind}-${panel.name.replaceAll(" ", "-")}-${at}`}
+              disabled={!controls}
+              set={(value) => connection.send({ kind, panel: panel.name, name: widget.name, use: widget.use ?? 0, value })}
+            />
+          ))}
+        </div>
+      ))}
+      {panel.error && <pre class="failure">{panel.error}</pre>}
+    </section>
+  );
+}
+
 export function UserPanels({ connection }: { connection: Connection }) {
   const panels = useStore((state) => state.panels);
-  const controls = useStore((state) => state.control.controls);
   return (
     <>
       {panels.map((panel) => (
-        <section class="user-panel" key={panel.name}>
-          <h2>{panel.name}</h2>
-          {linesOfWidgets(panel.widgets).map((line) => (
-            <div class={line.length > 1 ? "line" : undefined} key={line[0]?.at}>
-              {line.map(({ widget, at }) => (
-                <Shown
-                  key={`${at} ${widget.type} ${widget.name}`}
-                  widget={widget}
-                  id={`widget-${panel.name}-${at}`}
-                  disabled={!controls}
-                  set={(value) => connection.send({ kind: "widget", panel: panel.name, name: widget.name, use: widget.use ?? 0, value })}
-                />
-              ))}
-            </div>
-          ))}
-          {panel.error && <pre class="failure">{panel.error}</pre>}
-        </section>
+        <Widgets key={panel.name} panel={panel} kind="widget" connection={connection} />
       ))}
     </>
   );
+}
+
+/** One of the server's own. */
+export function Tool({ name, connection }: { name: string; connection: Connection }) {
+  const widgets = useStore((state) => state.tools[name]);
+  return widgets ? <Widgets panel={{ name, widgets }} kind="tool" connection={connection} /> : null;
 }

@@ -232,9 +232,13 @@ const Picture* Clients::version_for(Client& client, double now) {
 }
 
 void Clients::pump_shot(ClientId id, Client& client, double now) {
-    while (client.shot && client.flow.has_chunk_room()) {
-        send_part(id, client, *client.shot, client.shot_from, client.shot_chunk, false, now);
-        if (client.shot_from == client.shot->bytes->size()) client.shot.reset();
+    while (!client.shots.empty() && client.flow.has_chunk_room()) {
+        const Picture& shot = client.shots.front();
+        send_part(id, client, shot, client.shot_from, client.shot_chunk, false, now);
+        if (client.shot_from < shot.bytes->size()) continue;
+        client.shots.pop_front();
+        client.shot_from = 0;
+        client.shot_chunk = 0;
     }
 }
 
@@ -254,9 +258,8 @@ void Clients::send_shot(ClientId id, Picture picture) {
     const std::lock_guard lock(mutex_);
     const auto found = clients_.find(id);
     if (found == clients_.end()) return;
-    found->second.shot = std::move(picture);
-    found->second.shot_from = 0;
-    found->second.shot_chunk = 0;
+    if (found->second.shots.size() >= most_shots) return;
+    found->second.shots.push_back(std::move(picture));
     pump(id, found->second, now_seconds());
 }
 

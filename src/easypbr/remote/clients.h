@@ -1,6 +1,7 @@
 // Clients: who is connected, who controls, and what each is sent.
 #pragma once
 
+#include <deque>
 #include <map>
 #include <mutex>
 #include <optional>
@@ -73,7 +74,7 @@ class Clients : public WireEvents {
     /// The newest picture. One with an older number than the last is dropped; returns whether it was taken.
     bool publish(Picture picture);
     bool publish(MovingPicture picture);
-    /// Chunks of a still for one client.
+    /// Chunks of a still or a file for one client, after those that it waits for already.
     void send_shot(ClientId client, Picture picture);
     void broadcast(const std::string& text);
     void tell(ClientId client, const std::string& text);
@@ -94,6 +95,8 @@ class Clients : public WireEvents {
     static constexpr double idle_control_s = 5;
     static constexpr double silent_s = 2;
     static constexpr size_t chunk_bytes = 32 * 1024;
+    /// That wait for one client; more are dropped.
+    static constexpr size_t most_shots = 8;
     /// Key frames for those who come are at least so far apart.
     static constexpr double key_wait_s = 1;
 
@@ -106,8 +109,8 @@ class Clients : public WireEvents {
         uint32_t frame = 0;  ///< newest picture that it was sent, or is being sent
         size_t from = 0;     ///< bytes of it that were sent
         uint16_t chunk = 0;
-        bool done = true;  ///< all of it was sent
-        std::optional<Picture> shot;
+        bool done = true;           ///< all of it was sent
+        std::deque<Picture> shots;  ///< the first is being sent
         size_t shot_from = 0;
         uint16_t shot_chunk = 0;
     };

@@ -46,31 +46,6 @@ const char* type_name(FieldType type) {
     return "text";
 }
 
-/// JSON has no infinity: a range without an end has no member.
-json description_of(const Field& field) {
-    json row = {{"name", field.name}, {"doc", field.doc}, {"type", type_name(field.type)}};
-    if (!field.unit.empty()) row["unit"] = field.unit;
-    if (field.can_be_automatic) row["auto"] = true;
-    if (std::isfinite(field.min)) row["min"] = field.min;
-    if (std::isfinite(field.max)) row["max"] = field.max;
-    if (!field.choices.empty()) row["choices"] = field.choices;
-    if (!field.sizes.empty()) row["sizes"] = field.sizes;
-    if (field.whole) row["whole"] = true;
-    if (field.name == "image.samples") row["max"] = most_client_samples;
-    return row;
-}
-
-FieldText text_of(const Field& field, const Value& value) {
-    if (value.state == Value::State::given) return {to_text(field, value), {}};
-    FieldText text{value.state == Value::State::follow ? "follow" : "auto", {}};
-    if (value.latched) {
-        Value latched = value;
-        latched.state = Value::State::given;
-        text.latched = to_text(field, latched);
-    }
-    return text;
-}
-
 json node_of(const Mesh& mesh, const std::string& path, size_t& left) {
     const auto data = mesh.snapshot();
     json node = {{"path", path},
@@ -108,6 +83,30 @@ json values_at(const MeshData& data, const app::Pick& pick) {
 }
 
 }  // namespace
+
+json description_of(const FieldInfo& field) {
+    json row = {{"name", field.name}, {"doc", field.doc}, {"type", type_name(field.type)}};
+    if (!field.unit.empty()) row["unit"] = field.unit;
+    if (field.can_be_automatic) row["auto"] = true;
+    if (std::isfinite(field.min)) row["min"] = field.min;
+    if (std::isfinite(field.max)) row["max"] = field.max;
+    if (!field.choices.empty()) row["choices"] = field.choices;
+    if (!field.sizes.empty()) row["sizes"] = field.sizes;
+    if (field.whole) row["whole"] = true;
+    if (field.name == "image.samples") row["max"] = most_client_samples;
+    return row;
+}
+
+FieldText text_of(const FieldInfo& field, const Value& value) {
+    if (value.state == Value::State::given) return {to_text(field, value), {}};
+    FieldText text{value.state == Value::State::follow ? "follow" : "auto", {}};
+    if (value.latched) {
+        Value latched = value;
+        latched.state = Value::State::given;
+        text.latched = to_text(field, latched);
+    }
+    return text;
+}
 
 bool is_open(const FieldInfo& field) {
     static const std::set<std::string> texts = {"style.scalar", "annotation.title"};

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,6 +33,10 @@ bool is_open(const FieldInfo& field);
 void check_client_value(const FieldInfo& field, const Value& value);
 inline constexpr double most_client_samples = 4096;
 
+/// What a field is: type, range, unit, documentation. JSON has no infinity: a range without an end has no
+/// member.
+nlohmann::json description_of(const FieldInfo& field);
+FieldText text_of(const FieldInfo& field, const Value& value);
 FieldTexts texts_of(const Settings& settings);
 /// What `now` has that `before` has not.
 FieldTexts changed(const FieldTexts& before, const FieldTexts& now);

@@ -10,9 +10,10 @@ namespace easypbr::remote {
 enum class FrameKind : uint8_t {
     moving = 1,  ///< a whole picture, drawn quickly
     still = 2,   ///< a chunk of a picture at rest
-    shot = 3     ///< a chunk of a still that a client asked for; `input` is its id
+    shot = 3,    ///< a chunk of a still that a client asked for; `input` is its id
+    file = 4     ///< a chunk of a video that a client has recorded
 };
-enum class Codec : uint8_t { jpeg = 1, png = 2, h264 = 3 };
+enum class Codec : uint8_t { jpeg = 1, png = 2, h264 = 3, mp4 = 4, webm = 5, gif = 6 };
 
 struct FrameHeader {
     static constexpr size_t size = 40;

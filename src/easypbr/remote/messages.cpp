@@ -203,12 +203,22 @@ ClientMessage camera_of(Members& members) {
     return SetCamera{members.text("text", text_length)};
 }
 
-ClientMessage widget_of(Members& members) {
+SetWidget widget_in(Members& members) {
     SetWidget widget;
     widget.panel = members.text("panel", name_length);
     widget.name = members.text("name", text_length);
     widget.use = members.count("use");
     widget.value = members.text("value", text_length);
+    return widget;
+}
+
+ClientMessage widget_of(Members& members) {
+    return widget_in(members);
+}
+
+ClientMessage tool_of(Members& members) {
+    SetWidget widget = widget_in(members);
+    widget.tool = true;
     return widget;
 }
 
@@ -237,7 +247,7 @@ const std::map<std::string, Reader>& readers() {
         {"blur", blur_of},       {"turn", turn_of},       {"resize", resize_of},   {"pause", pause_of},
         {"decodes", decodes_of}, {"set", set_of},         {"show", show_of},       {"select", select_of},
         {"pick", pick_of},       {"channel", channel_of}, {"shot", shot_of},       {"camera", camera_of},
-        {"widget", widget_of},   {"animate", animate_of}, {"act", act_of}};
+        {"widget", widget_of},   {"tool", tool_of},       {"animate", animate_of}, {"act", act_of}};
     return readers;
 }
 

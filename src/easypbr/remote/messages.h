@@ -83,8 +83,9 @@ struct Shot {
 struct SetCamera {
     std::string text;
 };
-/// Something done to a widget of the program's panel: of those of the same name the one after `use` others.
+/// Something done to a widget of a panel: of those of the same name the one after `use` others.
 struct SetWidget {
+    bool tool = false;  ///< of a panel of ToolPanels, else of the program's
     std::string panel, name;
     uint32_t use = 0;
     std::string value;  ///< a number, "true" or "false", "#rrggbb", or text; of a button nothing

@@ -7,6 +7,9 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "easypbr/core/error.h"
+#include "easypbr/remote/describe.h"
+
 namespace easypbr::remote {
 namespace {
 
@@ -190,6 +193,24 @@ void RecordedWidgets::draw_plot(const std::string& name, std::span<const float> 
 
 void RecordedWidgets::draw_progress(double fraction, const std::string& text) {
     add("progress", {text, 0}, {{"value", fraction}});
+}
+
+std::optional<Value> RecordedWidgets::field(const std::string& name, const FieldInfo& info,
+                                            const Value& value, const std::optional<Value>& inferred) {
+    const WidgetPlace place = place_of(name);
+    std::optional<Value> chosen;
+    if (const auto edit = edit_of(place)) try {
+            chosen = checked(info, parse_value(info, *edit));
+        } catch (const Error& error) {
+            problems_.emplace_back(error.what());
+        }
+    const Value& shown = chosen ? *chosen : value;
+    const FieldText text = text_of(info, shown);
+    json widget = {{"field", description_of(info)}, {"value", text.given}};
+    if (!text.latched.empty()) widget["latched"] = text.latched;
+    if (shown.state != Value::State::given && inferred) widget["latched"] = to_text(info, *inferred);
+    add("field", place, std::move(widget));
+    return chosen;
 }
 
 std::string panels_text(app::UserPanels& panels, std::map<std::string, PanelMemory>& memories) {

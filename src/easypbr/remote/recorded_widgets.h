@@ -3,6 +3,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -11,6 +12,7 @@
 
 #include "easypbr/app/user_panels.h"
 #include "easypbr/remote/messages.h"
+#include "easypbr/scene/fields.h"
 
 namespace easypbr::remote {
 
@@ -38,6 +40,12 @@ class RecordedWidgets final : public app::Widgets {
     bool checkbox(const std::string& name, bool& value) override;
     bool text_field(const std::string& name, std::string& value) override;
 
+    /// A row as the settings have them. Returns what a client has chosen, checked; what cannot be taken is
+    /// left out, and one of problems(). `inferred` is shown while the value is automatic.
+    std::optional<Value> field(const std::string& name, const FieldInfo& info, const Value& value,
+                               const std::optional<Value>& inferred = std::nullopt);
+    const std::vector<std::string>& problems() const { return problems_; }
+
     /// A list of widgets, from top to bottom.
     nlohmann::json take();
 
@@ -64,6 +72,7 @@ class RecordedWidgets final : public app::Widgets {
     PanelMemory& memory_;
     std::unique_ptr<Recorded> recorded_;
     std::map<std::string, uint32_t> used_;
+    std::vector<std::string> problems_;
 };
 
 /// What clients are told of a program's panels, each called once.

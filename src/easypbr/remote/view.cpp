@@ -29,6 +29,8 @@ void View::stop() {
     // The program's functions may hold what holds the view.
     inbox_.take_tasks();
     own_->live.panels() = {};
+    own_->live.stop_recording();
+    own_->videos.clear();
 }
 
 void View::run() {
@@ -51,7 +53,7 @@ bool View::waits_for_clients() const {
 void View::step() {
     for (const auto& task : inbox_.take_tasks()) task();
     if (!clients_.anybody()) return inbox_.wait(60);
-    if (!clients_.anybody_looks()) {
+    if (!clients_.anybody_looks() && !own_->live.recording().is_running()) {
         act(inbox_.take());
         tell_changes();
         return inbox_.wait(60);
@@ -62,12 +64,13 @@ void View::step() {
     draw();
     tell_changes();
     Own& own = *own_;
-    const bool waits = is_moving() || own.owes_still;
+    const bool waits = is_moving() || own.owes_still || own.live.recording().is_running();
     if (!own.live.is_busy() && !inbox_.has_orders()) inbox_.wait(waits ? 0.01 : look_s);
 }
 
 bool View::is_moving() const {
-    return now_seconds() - own_->last_change_s < rest_s || own_->player.is_playing();
+    return now_seconds() - own_->last_change_s < rest_s || own_->player.is_playing() ||
+           own_->live.path().editor.is_playing() || own_->live.recording().is_path();
 }
 
 void View::act(const std::vector<Order>& orders) {
@@ -101,7 +104,8 @@ void View::draw() {
     const bool is_new = own.live.picture().statistics().pictures != pictures;
     if (is_new && !moving && own.has_drawn) own.last_change_s = now_seconds();
     own.has_drawn |= is_new;
-    send_picture(drew);
+    send_picture(drew || own.live.picture().shows_other());
+    send_video();
     tell_notices();
 }
 
@@ -157,6 +161,17 @@ void View::send_still(bool exact) {
     own.stills.add({own.live.picture().image(), head, 95});
 }
 
+/// To who asked for it.
+void View::send_video() {
+    Own& own = *own_;
+    const bool is_new = own.videos.advance();
+    if (std::exchange(own.tool_state.wants_video, false) || is_new) try {
+            clients_.send_shot(own.tool_user, own.videos.fetch(++own.frame));
+        } catch (const Error& error) {
+            own.live.notifications().add(error.what(), true);
+        }
+}
+
 void View::tell_notices() {
     Own& own = *own_;
     const app::Notifications& notices = own.live.notifications();
@@ -164,7 +179,8 @@ void View::tell_notices() {
     for (const app::Notification& notice : notices.list()) {
         // Their time left goes down: one that is as new as can be was not told yet.
         const double whole = notice.is_error ? 12.0 : 5.0;
-        if (notice.seconds_left >= whole) clients_.broadcast(notice_text(notice.text, notice.is_error));
+        if (notice.seconds_left >= whole)
+            clients_.broadcast(notice_text(own.videos.plain(notice.text), notice.is_error));
     }
 }
 
@@ -186,6 +202,8 @@ void View::tell_changes() {
     tell(own.told_scene, own.scene_message());
     tell(own.told_animation, own.animation_message());
     tell(own.told_panels, panels_text(own.live.panels(), own.panel_memories));
+    for (const std::string& text : own.tools.news()) clients_.broadcast(text);
+    tell_notices();
     tell(own.told_statistics, own.statistics_message(clients_));
 }
 
@@ -195,6 +213,7 @@ void View::tell_everything(ClientId client) {
     for (const std::string& text : {own.camera_message(), own.scene_message(), own.animation_message(),
                                     own.told_panels, own.statistics_message(clients_)})
         if (!text.empty()) clients_.tell(client, text);
+    for (const std::string& text : own.tools.told()) clients_.tell(client, text);
 }
 
 void View::take_settings(const Settings& settings) {

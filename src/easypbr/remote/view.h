@@ -78,6 +78,7 @@ class View {
     void send_moving();
     void send_still(bool exact);
     FrameHeader header(FrameKind kind, Codec codec);
+    void send_video();
     void tell_changes();
     void tell_everything(ClientId client);
     void tell_notices();

@@ -135,12 +135,16 @@ void View::obey(ClientId, const SetCamera& message) {
     own_->last_change_s = now_seconds();
 }
 
-void View::obey(ClientId, const SetWidget& message) {
+void View::obey(ClientId from, const SetWidget& message) {
     Own& own = *own_;
+    own.told_s = -1;  // It is shown at once.
+    if (message.tool) {
+        own.tool_user = from;
+        return own.tools.edit(message);
+    }
     if (own.live.panels().revision(message.panel) == 0)
         throw ArgumentError(fmt::format("there is no panel '{}'", message.panel));
     own.panel_memories[message.panel].edits[{message.name, message.use}] = message.value;
-    own.told_s = -1;  // It is shown at once.
 }
 
 void View::obey(ClientId, const Animate& message) {

@@ -5,6 +5,7 @@
 
 #include "easypbr/remote/moving_pictures.h"
 #include "easypbr/remote/recorded_widgets.h"
+#include "easypbr/remote/tool_panels.h"
 #include "easypbr/remote/view.h"
 #include "easypbr/scene/settings.h"
 
@@ -37,6 +38,11 @@ struct View::Own {
     std::string told_camera, told_scene, told_animation, told_panels, told_statistics;
     double told_s = -1;
     uint64_t notices = 0;
+
+    VideoDownloads videos{live};
+    ToolState tool_state{live, videos};
+    ToolPanels tools{tool_state};
+    ClientId tool_user = 0;  ///< who used a tool last, and gets what is recorded
 
     MovingPictures moving_pictures;
     // Last, so that they end first.

@@ -1,0 +1,50 @@
+// ToolPanels: the page's own panels, recorded as those of programs are.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "easypbr/remote/recorded_widgets.h"
+#include "easypbr/remote/video_downloads.h"
+
+namespace easypbr::remote {
+
+/// What a tool changes.
+struct ToolState {
+    app::LiveDrawing& live;
+    VideoDownloads& videos;
+    bool wants_video = false;  ///< the last recording shall be sent again
+};
+
+/// Material and style of the selected object.
+void object_tool(RecordedWidgets& ui, ToolState& state);
+/// The three lights of the settings and the scene's own.
+void lights_tool(RecordedWidgets& ui, ToolState& state);
+/// Keys of a camera path, its shape; playing and scrubbing.
+void path_tool(RecordedWidgets& ui, ToolState& state);
+/// What is recorded, and how far it is.
+void recording_tool(RecordedWidgets& ui, ToolState& state);
+
+class ToolPanels {
+  public:
+    /// All of the state must outlive it.
+    explicit ToolPanels(ToolState& state) : state_(state) {}
+
+    /// Throws ArgumentError when there is no such panel.
+    void edit(const SetWidget& message);
+    /// Has each panel do what was done to it. Returns messages for what looks different than before; errors
+    /// become notifications.
+    std::vector<std::string> news();
+    /// What has been told of all of them.
+    std::vector<std::string> told() const;
+
+  private:
+    std::string recorded(const std::string& name);
+
+    ToolState& state_;
+    std::map<std::string, PanelMemory> memories_;
+    std::map<std::string, std::string> told_;
+};
+
+}  // namespace easypbr::remote
