@@ -1,17 +1,25 @@
 """Latencies of the browser view in Debian's Chromium over loopback: from the end of drawing to drawn in the page, and from an
 input to a picture that shows it; and what moves over the wire. Needs `scripts/setup.sh tests`.
 
-usage: remote_view.py [MESH] [--size WxH] [--seconds S]
+usage: remote_view.py [MESH] [--size WxH] [--seconds S] [--line MEGABITS,MILLISECONDS]
+
+`--line`: through a relay of this rate and round trip, see tests/web/lines.py.
 """
 import argparse
+import contextlib
 import shutil
 import statistics
+import sys
 import time
 from collections.abc import Sequence
+from pathlib import Path
 
 from playwright.sync_api import sync_playwright
 
 import easypbr
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tests/web"))
+from lines import SlowLine  # noqa: E402
 
 # Runs in the page: what it measured of each picture that names an input.
 WATCH = """() => {
@@ -27,17 +35,23 @@ def quantiles(values: Sequence[float]) -> str:
     return f"median {statistics.median(ordered):6.1f}   p95 {ordered[int(0.95 * (len(ordered) - 1))]:6.1f}   of {len(ordered)}"
 
 
-def measure(mesh: str | None, size: tuple[int, int], seconds: float) -> None:
+def measure(mesh: str | None, size: tuple[int, int], seconds: float, line: tuple[float, float] | None) -> None:
     scene = easypbr.Scene()
     scene.show(easypbr.shapes.teapot() if mesh is None else mesh, "model")
     view = easypbr.Viewer(size, {"image": {"samples": 8}}, scene=scene)
-    with view.serve() as server, sync_playwright() as playwright:
+    with contextlib.ExitStack() as ends:
+        server = ends.enter_context(view.serve())
+        url = server.url
+        if line:
+            relay = ends.enter_context(SlowLine(server.port, line[0], line[1] / 1000))
+            url = url.replace(f":{server.port}/", f":{relay.port}/")
+        playwright = ends.enter_context(sync_playwright())
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=["--no-sandbox"])
         page = browser.new_page(viewport={"width": size[0], "height": size[1] + 47})
         received = [0, 0]
         page.on("websocket", lambda socket: socket.on("framereceived", lambda data: count(received, data)))
         begun = time.monotonic()
-        page.goto(server.url)
+        page.goto(url)
         page.get_by_role("button", name="Controls", exact=True).click()
         page.wait_for_selector("canvas[data-frame]", timeout=120000)
         print(f"first picture after {time.monotonic() - begun:.2f} s")
@@ -78,6 +92,8 @@ if __name__ == "__main__":
     parser.add_argument("mesh", nargs="?")
     parser.add_argument("--size", default="1280x720")
     parser.add_argument("--seconds", type=float, default=10)
+    parser.add_argument("--line", help="MEGABITS,MILLISECONDS: rate and round trip of a slow line")
     options = parser.parse_args()
     width, height = map(int, options.size.split("x"))
-    measure(options.mesh, (width, height), options.seconds)
+    line = tuple(map(float, options.line.split(","))) if options.line else None
+    measure(options.mesh, (width, height), options.seconds, line)

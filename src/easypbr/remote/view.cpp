@@ -1,5 +1,7 @@
 #include "easypbr/remote/view.h"
 
+#include <pthread.h>
+
 #include <algorithm>
 #include <utility>
 
@@ -21,6 +23,7 @@ View::~View() {
 
 void View::start() {
     thread_ = std::thread([this] { run(); });
+    ::pthread_setname_np(thread_.native_handle(), "easypbr view");
 }
 
 void View::stop() {
