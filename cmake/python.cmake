@@ -38,15 +38,21 @@ foreach(folder dataset conversions compat)
   file(CREATE_LINK ${PROJECT_SOURCE_DIR}/python/easypbr/${folder} ${package}/${folder} SYMBOLIC)
 endforeach()
 
-nanobind_add_stub(easypbr_stub INCLUDE_PRIVATE MODULE easypbr._easypbr OUTPUT ${package}/_easypbr.pyi
+set(raw_stub ${PROJECT_BINARY_DIR}/stubs/_easypbr.pyi)
+file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/stubs)
+nanobind_add_stub(easypbr_stub INCLUDE_PRIVATE MODULE easypbr._easypbr OUTPUT ${raw_stub}
                   PYTHON_PATH ${PROJECT_BINARY_DIR}/python DEPENDS _easypbr)
+add_custom_command(OUTPUT ${package}/_easypbr.pyi
+                   COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/complete_stub.py ${raw_stub} ${package}/_easypbr.pyi
+                   DEPENDS easypbr_stub ${raw_stub} ${PROJECT_SOURCE_DIR}/scripts/complete_stub.py
+                   COMMENT "Completing the types of the module's stub" VERBATIM)
 add_custom_command(OUTPUT ${package}/settings.pyi
                    COMMAND ${Python_EXECUTABLE} ${PROJECT_SOURCE_DIR}/scripts/write_settings_stub.py
                            ${PROJECT_BINARY_DIR}/python
                    DEPENDS _easypbr ${PROJECT_SOURCE_DIR}/scripts/write_settings_stub.py
                    COMMENT "Writing the stub of the settings" VERBATIM)
 # All that the package needs: what a wheel is built from.
-add_custom_target(python_package ALL DEPENDS easypbr_stub ${package}/settings.pyi)
+add_custom_target(python_package ALL DEPENDS ${package}/_easypbr.pyi ${package}/settings.pyi)
 if(TARGET easypbr_read_assimp)
   add_dependencies(python_package easypbr_read_assimp)
 endif()

@@ -1,7 +1,9 @@
 """A mesh, a cloud, surfels, voxels and lines in one scene, whole and cut by a plane. Writes all_kinds.png."""
 import pathlib
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from easypbr import Material, Mesh, Scene, Viewer, shapes
 from figure import main, placed, row, sized
@@ -43,7 +45,7 @@ def camera_with_picture() -> Mesh:
     return shapes.camera_frustum((K, T_world_cam), picture, depth=0.4)
 
 
-def draw(data: pathlib.Path | None, scale: float) -> np.ndarray:
+def draw(data: pathlib.Path | None, scale: float) -> NDArray[Any]:
     scene = Scene()
     teapot = shapes.teapot(0.75)
     teapot.material = Material(base_color="#b03a2e", roughness=0.25)

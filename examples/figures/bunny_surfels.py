@@ -4,8 +4,10 @@ The bunny where there is data, else a lump. The surfels are made from the positi
 sizes come from each point's neighbours.
 """
 import pathlib
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from easypbr import Material, Mesh, Scene, Viewer, shapes
 from figure import main, row, sized
@@ -30,7 +32,7 @@ def surface_of(data: pathlib.Path | None) -> tuple[Mesh, Mesh]:
     return mesh, cloud
 
 
-def draw(data: pathlib.Path | None, scale: float) -> np.ndarray:
+def draw(data: pathlib.Path | None, scale: float) -> NDArray[Any]:
     mesh, cloud = surface_of(data)
     surfels = cloud.estimate_surfels()
     for drawn in mesh, surfels:

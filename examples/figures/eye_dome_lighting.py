@@ -3,15 +3,17 @@
 Writes eye_dome_lighting.png.
 """
 import pathlib
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from easypbr import Material, Mesh, Scene, Viewer
 from figure import main, row, sized
 from street import street
 
 
-def cloud_of(data: pathlib.Path | None) -> tuple[Mesh, dict]:
+def cloud_of(data: pathlib.Path | None) -> tuple[Mesh, dict[str, Any]]:
     if data is not None:
         return Mesh(data / "clouds/lion.ply"), {"up": "z", "azimuth_deg": 150, "elevation_deg": 20}
     cloud = Mesh()
@@ -20,7 +22,7 @@ def cloud_of(data: pathlib.Path | None) -> tuple[Mesh, dict]:
     return cloud, {"position": (-9, 11, 34), "target": (1, 1, 6)}
 
 
-def draw(data: pathlib.Path | None, scale: float) -> np.ndarray:
+def draw(data: pathlib.Path | None, scale: float) -> NDArray[Any]:
     cloud, camera = cloud_of(data)
     scene = Scene()
     scene.show(cloud, "cloud")

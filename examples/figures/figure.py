@@ -4,14 +4,16 @@ import os
 import pathlib
 import sys
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import easypbr
 from easypbr import Mesh
 
 
-def main(draw: Callable[[pathlib.Path | None, float], np.ndarray]) -> None:
+def main(draw: Callable[[pathlib.Path | None, float], NDArray[Any]]) -> None:
     """usage of every figure: FIGURE.py [OUTPUT.png] [--data FOLDER] [--scale X]"""
     script = pathlib.Path(sys.argv[0])
     parser = argparse.ArgumentParser(description=sys.modules["__main__"].__doc__)
@@ -41,7 +43,7 @@ def labelled(mesh: Mesh, label: int) -> Mesh:
     return mesh
 
 
-def row(pictures: list[np.ndarray], gap: int = 6) -> np.ndarray:
+def row(pictures: list[NDArray[Any]], gap: int = 6) -> NDArray[Any]:
     """Pictures side by side with a white gap."""
     white = np.full((len(pictures[0]), gap, 3), 255, np.uint8)
     parts = [part for picture in pictures for part in (picture[:, :, :3], white)]

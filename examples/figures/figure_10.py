@@ -1,7 +1,9 @@
 """The window with a camera path around a statue, and its panels (figure 10 of the paper). Writes figure_10.png."""
 import pathlib
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from easypbr import Camera, CameraPath, Material, Mesh, Scene, Viewer, shapes
 from figure import main, placed, sized
@@ -9,7 +11,7 @@ from figure import main, placed, sized
 STONE = Material(base_color="#c8b89a", roughness=0.6)
 
 
-def lathe(radii: np.ndarray, heights: np.ndarray, segments: int = 160) -> Mesh:
+def lathe(radii: NDArray[Any], heights: NDArray[Any], segments: int = 160) -> Mesh:
     """A profile turned about the y axis, closed at its poles, its radius carved by folds that fade upwards."""
     angles = np.linspace(0, 2 * np.pi, segments, endpoint=False)
     folds = 1 + 0.06 * np.sin(11 * angles)[None] * np.clip(1.1 - heights / heights.max(), 0, 1)[:, None] ** 0.5
@@ -25,7 +27,7 @@ def figure_of_a_robe() -> Mesh:
     """A robed figure with a head, one high."""
     knots = [(0, 0.24), (0.05, 0.235), (0.3, 0.17), (0.52, 0.12), (0.64, 0.15), (0.76, 0.155), (0.82, 0.06), (0.84, 0.05)]
     heights = np.linspace(0, 0.84, 120)
-    radii = np.interp(heights, *zip(*knots))
+    radii = np.interp(heights, *np.transpose(knots))
     radii = np.convolve(np.pad(radii, 6, mode="edge"), np.ones(13) / 13, mode="valid")
     head = shapes.sphere(0.08, 64)
     parts = [lathe(radii, heights), placed(Mesh(head.V, head.F), y=0.895)]
@@ -57,7 +59,7 @@ def path_around(radius: float) -> CameraPath:
     return CameraPath(cameras, segment_s=0.8, ease="in_out")
 
 
-def draw(data: pathlib.Path | None, scale: float) -> np.ndarray:
+def draw(data: pathlib.Path | None, scale: float) -> NDArray[Any]:
     scene = Scene()
     scene.show(statue(data), "statue")
     stone = Material(base_color="#8d8d8d", roughness=0.8)

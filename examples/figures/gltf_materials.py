@@ -2,29 +2,31 @@
 specular, iridescence, anisotropy, emissive strength. Writes gltf_materials.png.
 """
 import pathlib
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from easypbr import Material, Scene, Viewer, shapes
 from figure import main, sized
 
 BALLS = [
-    dict(base_color="#8c1c13", roughness=0.5),
-    dict(base_color="#8c1c13", roughness=0.5, clearcoat=1, clearcoat_roughness=0.03),
-    dict(base_color="#26264d", roughness=0.8, sheen_color=(0.6, 0.6, 0.9), sheen_roughness=0.4),
-    dict(base_color="white", roughness=0, transmission=1),
-    dict(base_color="white", roughness=0.02, transmission=1, thickness=1, ior=1.5, attenuation_color="#2f8f5b",
-         attenuation_distance=0.5),
-    dict(base_color="#202020", roughness=0.1, ior=2.4),
-    dict(base_color="#202020", roughness=0.25, specular=1, specular_color=(1.0, 0.5, 0.15)),
-    dict(base_color="#101010", roughness=0.1, metallic=1, iridescence=1, iridescence_ior=1.8,
-         iridescence_thickness_max=450),
-    dict(base_color="#c8c8c8", metallic=1, roughness=0.35, anisotropy=0.9),
-    dict(base_color="black", emissive=(1.6, 0.5, 0.08)),
+    Material(base_color="#8c1c13", roughness=0.5),
+    Material(base_color="#8c1c13", roughness=0.5, clearcoat=1, clearcoat_roughness=0.03),
+    Material(base_color="#26264d", roughness=0.8, sheen_color=(0.6, 0.6, 0.9), sheen_roughness=0.4),
+    Material(base_color="white", roughness=0, transmission=1),
+    Material(base_color="white", roughness=0.02, transmission=1, thickness=1, ior=1.5, attenuation_color="#2f8f5b",
+             attenuation_distance=0.5),
+    Material(base_color="#202020", roughness=0.1, ior=2.4),
+    Material(base_color="#202020", roughness=0.25, specular=1, specular_color=(1.0, 0.5, 0.15)),
+    Material(base_color="#101010", roughness=0.1, metallic=1, iridescence=1, iridescence_ior=1.8,
+             iridescence_thickness_max=450),
+    Material(base_color="#c8c8c8", metallic=1, roughness=0.35, anisotropy=0.9),
+    Material(base_color="black", emissive=(1.6, 0.5, 0.08)),
 ]
 
 
-def sky() -> np.ndarray:
+def sky() -> NDArray[Any]:
     """Two soft boxes over a grey horizon."""
     height, width = 256, 512
     elevation = np.pi * (0.5 - (np.arange(height) + 0.5) / height)[:, None]
@@ -35,16 +37,16 @@ def sky() -> np.ndarray:
     return np.repeat(light[:, :, None], 3, axis=2).astype(np.float32)
 
 
-def draw(data: pathlib.Path | None, scale: float) -> np.ndarray:
+def draw(data: pathlib.Path | None, scale: float) -> NDArray[Any]:
     scene = Scene()
     checker = (np.indices((512, 512)) // 16).sum(axis=0) % 2
     floor = shapes.plane(16)
     floor.material = Material(base_color="white", roughness=0.7,
                               base_color_texture=np.array([[96, 100, 108], [168, 168, 164]], np.uint8)[checker])
     scene.show(floor, "floor")
-    for number, values in enumerate(BALLS):
+    for number, material in enumerate(BALLS):
         ball = shapes.sphere(0.5, 128)
-        ball.material = Material(**values)
+        ball.material = material
         ball.translate((1.2 * (number % 5 - 2), 0.5, 2.4 * (number // 5) - 1.2))
         scene.show(ball, f"ball {number}")
     camera = {"position": (0, 5.2, 8.8), "target": (0, 0.3, 0.1), "fov_y_deg": 21}

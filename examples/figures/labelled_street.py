@@ -3,15 +3,17 @@
 Writes labelled_street.png.
 """
 import pathlib
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from easypbr import Scene, Viewer
 from figure import main, sized
 from street import street
 
 
-def draw(data: pathlib.Path | None, scale: float) -> np.ndarray:
+def draw(data: pathlib.Path | None, scale: float) -> NDArray[Any]:
     scene = Scene()
     scene.show(street(), "street")
     camera = {"position": (-9, 11, 34), "target": (1, 1, 6)}

@@ -1,7 +1,9 @@
 """Instances of a procedural plant, and the same coloured by leaf (figure 9 of the paper). Writes plants.png."""
 import pathlib
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from easypbr import Material, Mesh, Scene, Viewer, shapes
 from figure import labelled, main, placed, row, sized
@@ -53,12 +55,12 @@ def field(mesh: Mesh, color_by: str) -> Scene:
     return scene
 
 
-def pose(x: float, z: float, turn_deg: float, scale: float) -> np.ndarray:
+def pose(x: float, z: float, turn_deg: float, scale: float) -> NDArray[Any]:
     c, s = np.cos(np.radians(turn_deg)) * scale, np.sin(np.radians(turn_deg)) * scale
     return np.array([[c, 0, s, x], [0, scale, 0, 0], [-s, 0, c, z], [0, 0, 0, 1]])
 
 
-def draw(data: pathlib.Path | None, scale: float) -> np.ndarray:
+def draw(data: pathlib.Path | None, scale: float) -> NDArray[Any]:
     mesh = plant()
     camera = {"position": (1.25, 2.2, 3.6), "target": (1.25, 0.4, -0.75), "fov_y_deg": 31}
     return row([Viewer(sized(450, 340, scale), {"camera": camera}, field(mesh, color_by)).render()

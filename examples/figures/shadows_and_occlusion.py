@@ -3,8 +3,10 @@
 Writes shadows_and_occlusion.png.
 """
 import pathlib
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from easypbr import Material, Mesh, Scene, Viewer, shapes
 from figure import main, sized
@@ -22,7 +24,7 @@ def corner() -> list[Mesh]:
     return meshes
 
 
-def draw(data: pathlib.Path | None, scale: float) -> np.ndarray:
+def draw(data: pathlib.Path | None, scale: float) -> NDArray[Any]:
     scene = Scene()
     for number, mesh in enumerate([Mesh(data / "room_scene.obj")] if data else corner()):
         mesh.material = Material(base_color="#d8d4cc", roughness=0.9)

@@ -1,7 +1,9 @@
 """Figure 2: one picture in slices: metal and roughness, albedo, ambient occlusion, normals, final. Writes slices.png."""
 import pathlib
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from easypbr import Material, Mesh, Scene, Viewer, shapes
 from figure import main, sized
@@ -18,13 +20,13 @@ def content(data: pathlib.Path | None) -> Mesh:
     return mesh
 
 
-def encoded(linear: np.ndarray) -> np.ndarray:
+def encoded(linear: NDArray[Any]) -> NDArray[Any]:
     """8-bit sRGB of linear values (IEC 61966-2-1)."""
     curve = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
     return (np.clip(curve, 0, 1) * 255 + 0.5).astype(np.uint8)
 
 
-def draw(data: pathlib.Path | None, scale: float) -> np.ndarray:
+def draw(data: pathlib.Path | None, scale: float) -> NDArray[Any]:
     scene = Scene()
     scene.show(content(data), "content")
     size = sized(720, 540, scale)
@@ -43,7 +45,7 @@ def draw(data: pathlib.Path | None, scale: float) -> np.ndarray:
     slant = x + 0.25 * (rows - size[1] / 2)
     part = (slant - columns[0]) / (columns[-1] - columns[0]) * (len(slices) + 1)
     index = np.clip(part, 0, len(slices) - 1).astype(int)
-    picture = np.choose(index[:, :, None], slices)
+    picture: NDArray[Any] = np.choose(index[:, :, None], slices)
     width_in_pixels = (columns[-1] - columns[0]) / (len(slices) + 1)
     border = (abs(part - np.round(part)) * width_in_pixels < 1.5) & (part > 0.5) & (part < len(slices) - 0.5) & seen
     picture[border] = 255

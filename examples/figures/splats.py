@@ -3,8 +3,10 @@
 The splats are made here: flat ones for the soil and the pots, long ones for blades of grass, round ones for flowers.
 """
 import pathlib
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 import easypbr
 from easypbr import Material, Mesh, Scene, Viewer, shapes
@@ -13,15 +15,15 @@ from figure import main, placed, row, sized
 random = np.random.default_rng(5)
 
 
-def turns(axes: np.ndarray) -> np.ndarray:
+def turns(axes: NDArray[Any]) -> NDArray[Any]:
     """Quaternions w, x, y, z that turn the z axis to unit vectors."""
     w, x, y = 1 + axes[:, 2], -axes[:, 1], axes[:, 0]
-    quaternions = np.stack([w, x, y, np.zeros(len(axes))], 1)
+    quaternions: NDArray[Any] = np.stack([w, x, y, np.zeros(len(axes))], 1)
     quaternions[w < 1e-6] = (0, 1, 0, 0)
     return quaternions
 
 
-def soil(count: int) -> dict[str, np.ndarray]:
+def soil(count: int) -> dict[str, NDArray[Any]]:
     means = random.uniform((-2.4, -0.02, -2.4), (2.4, 0.02, 2.4), (count, 3))
     means = means[np.hypot(means[:, 0], means[:, 2]) < 2.2]
     count = len(means)
@@ -30,7 +32,7 @@ def soil(count: int) -> dict[str, np.ndarray]:
     return dict(means=means, axes=up, scales=np.tile([0.03, 0.03, 0.006], (count, 1)), colors=tone)
 
 
-def grass(count: int) -> dict[str, np.ndarray]:
+def grass(count: int) -> dict[str, NDArray[Any]]:
     """Blades of four splats each, bent; none near the middle."""
     angle, radius = random.uniform(0, 2 * np.pi, count), 2.1 * np.sqrt(random.uniform(0.08, 1, count))
     root = np.stack([radius * np.cos(angle), np.zeros(count), radius * np.sin(angle)], 1)
@@ -46,7 +48,7 @@ def grass(count: int) -> dict[str, np.ndarray]:
     return dict(means=means, axes=axes, scales=scales, colors=colors)
 
 
-def flowers(count: int) -> dict[str, np.ndarray]:
+def flowers(count: int) -> dict[str, NDArray[Any]]:
     angle, radius = random.uniform(0, 2 * np.pi, count), random.uniform(0.9, 2.0, count)
     middle = np.stack([radius * np.cos(angle), random.uniform(0.25, 0.5, count), radius * np.sin(angle)], 1)
     petal = random.normal(size=(count, 40, 3)) * (1, 0.4, 1)
@@ -65,7 +67,7 @@ def garden(blades: int = 14000) -> Mesh:
     return easypbr.splats(means, scales, turns(axes), opacities, colors=np.clip(colors, 0, 1))
 
 
-def draw(data: pathlib.Path | None, scale: float) -> np.ndarray:
+def draw(data: pathlib.Path | None, scale: float) -> NDArray[Any]:
     scene = Scene()
     scene.show(garden(), "garden")
     ball = placed(shapes.sphere(0.32), 0.55, 0.3, 0.55)

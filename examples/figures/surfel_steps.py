@@ -3,8 +3,10 @@
 Writes surfel_steps.png.
 """
 import pathlib
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from easypbr import Material, Mesh, Scene, Viewer, shapes
 from figure import main, row, sized
@@ -41,7 +43,7 @@ def ellipse() -> Mesh:
     return surfel
 
 
-def draw(data: pathlib.Path | None, scale: float) -> np.ndarray:
+def draw(data: pathlib.Path | None, scale: float) -> NDArray[Any]:
     camera = {"position": (1.2, 2.2, 3.4), "target": (0, 0.12, 0), "fov_y_deg": 31}
     outline = rectangle()
     outline.E = [[0, 1], [1, 2], [2, 3], [3, 0]]

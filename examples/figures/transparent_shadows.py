@@ -3,8 +3,10 @@
 Writes transparent_shadows.png.
 """
 import pathlib
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from easypbr import Light, Material, Mesh, Scene, Viewer, shapes
 from figure import main, sized
@@ -23,7 +25,7 @@ def stained(color: str) -> Material:
     return Material(base_color=color, roughness=0, transmission=1)
 
 
-def draw(data: pathlib.Path | None, scale: float) -> np.ndarray:
+def draw(data: pathlib.Path | None, scale: float) -> NDArray[Any]:
     scene = Scene()
     floor = shapes.plane(4)
     floor.material = Material(base_color="#d8d4cc", roughness=0.9)

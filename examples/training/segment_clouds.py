@@ -5,8 +5,10 @@ usage: segment_clouds.py [--steps N]
 Writes segmentation.png: a new cloud in the colours of the predicted labels. Needs PyTorch; half a minute on a CPU.
 """
 import argparse
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 import torch
 
 from easypbr import LabelMap, Mesh, Scene, Viewer, eigen2tensor, tensor2eigen
@@ -14,7 +16,7 @@ from easypbr import LabelMap, Mesh, Scene, Viewer, eigen2tensor, tensor2eigen
 NAMES = ("ground", "ball", "box")
 
 
-def cloud(random: np.random.Generator, count: int = 1024) -> tuple[np.ndarray, np.ndarray]:
+def cloud(random: np.random.Generator, count: int = 1024) -> tuple[NDArray[Any], NDArray[Any]]:
     """Points with noise on a ground, a ball on its one half and a box on the other, and their labels."""
     labels = random.integers(0, 3, count)
     ball, box = np.array([0.5, 0.3, 0]), np.array([-0.5, 0.25, 0])
@@ -29,12 +31,15 @@ def cloud(random: np.random.Generator, count: int = 1024) -> tuple[np.ndarray, n
     return (points + random.normal(scale=0.005, size=points.shape)).astype(np.float32), labels
 
 
+def layer(before: int, after: int) -> torch.nn.Sequential:
+    return torch.nn.Sequential(torch.nn.Linear(before, after), torch.nn.ReLU())
+
+
 class PointNet(torch.nn.Module):
     """A feature of each point beside the largest of all points' (Qi et al. 2017)."""
 
-    def __init__(self, width: int = 64):
+    def __init__(self, width: int = 64) -> None:
         super().__init__()
-        layer = lambda a, b: torch.nn.Sequential(torch.nn.Linear(a, b), torch.nn.ReLU())  # noqa: E731
         self.point = torch.nn.Sequential(layer(3, width), layer(width, width))
         self.all = layer(width, width)
         self.head = torch.nn.Sequential(layer(2 * width, width), torch.nn.Linear(width, len(NAMES)))
@@ -42,7 +47,8 @@ class PointNet(torch.nn.Module):
     def forward(self, points: torch.Tensor) -> torch.Tensor:
         own = self.point(points)
         whole = self.all(own).amax(dim=-2, keepdim=True).expand_as(own)
-        return self.head(torch.cat([own, whole], dim=-1))
+        scores: torch.Tensor = self.head(torch.cat([own, whole], dim=-1))
+        return scores
 
 
 def main() -> None:
@@ -58,15 +64,15 @@ def main() -> None:
         points, labels = torch.from_numpy(np.stack([b[0] for b in batch])), torch.from_numpy(np.stack([b[1] for b in batch]))
         loss = torch.nn.functional.cross_entropy(net(points).flatten(0, 1), labels.flatten())
         optimizer.zero_grad()
-        loss.backward()
+        torch.autograd.backward(loss)
         optimizer.step()
 
-    points, labels = cloud(np.random.default_rng(1), 6000)
+    new_points, true_labels = cloud(np.random.default_rng(1), 6000)
     shown = Mesh()
-    shown.V = points
+    shown.V = new_points
     shown.label_map = LabelMap(NAMES)
     shown.L = tensor2eigen(net(eigen2tensor(shown.V)).argmax(-1))
-    print(f"{(shown.L == labels).mean():.3f} of the points are right")
+    print(f"{(shown.L == true_labels).mean():.3f} of the points are right")
     scene = Scene()
     scene.show(shown, "cloud")
     view = Viewer((640, 480), {"camera.elevation_deg": 25.0, "style.point_size": 4.0}, scene)

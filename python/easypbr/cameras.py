@@ -71,7 +71,7 @@ def _set_view(handle: "_easypbr.ViewerHandle", name: str, named: "Mapping[str, _
         handle.set_setting(f"camera.{setting}", _easypbr.auto)
 
 
-def _set_values(handle: "_easypbr.ViewerHandle", values: Mapping) -> None:
+def _set_values(handle: "_easypbr.ViewerHandle", values: Mapping[str, Any]) -> None:
     given = {}
     for key, value in values.items():
         name = _KEYS.get(str(key), str(key))

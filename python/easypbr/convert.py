@@ -76,7 +76,7 @@ def _is_array(what: Any) -> bool:
     )
 
 
-def _of_sequence(what: "tuple | list", make: Maker) -> Mesh:
+def _of_sequence(what: "tuple[Any, ...] | list[Any]", make: Maker) -> Mesh:
     """Rows of numbers, (V,), (V, F), or a list of what can be drawn."""
     if len(what) == 0:
         raise ArgumentError(f"an empty {type(what).__name__}: there is nothing to show; expected {ACCEPTED}")
@@ -99,7 +99,7 @@ def _described(part: Any) -> str:
     return type(part).__name__ if shape is None else " x ".join(map(str, shape))
 
 
-def _is_rows(what: "tuple | list") -> bool:
+def _is_rows(what: "tuple[Any, ...] | list[Any]") -> bool:
     """Whether this is the rows of an array, each of three or more numbers."""
     first = what[0]
     if isinstance(first, (str, os.PathLike, Mapping, Mesh)):

@@ -22,8 +22,9 @@ class ArgumentError(Error, ValueError):
 class UnknownNameError(Error, KeyError):
     """A named thing (mesh, light, setting) does not exist."""
 
-    # KeyError would show the message in quotes.
-    __str__ = Exception.__str__
+    def __str__(self) -> str:
+        """The message; KeyError would show it in quotes."""
+        return Exception.__str__(self)
 
 
 class ShaderError(Error, ValueError):

@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _easypbr
 from .errors import ArgumentError
@@ -51,15 +51,15 @@ def splats(
     return mesh
 
 
-def _floats(values: Any) -> np.ndarray:
+def _floats(values: Any) -> NDArray[Any]:
     return np.asarray(as_numpy(values), dtype=np.float64)
 
 
-def _shape(array: np.ndarray) -> str:
+def _shape(array: NDArray[Any]) -> str:
     return " x ".join(map(str, array.shape)) or "one number"
 
 
-def _scales(scales: np.ndarray, count: int, raw: bool) -> np.ndarray:
+def _scales(scales: NDArray[Any], count: int, raw: bool) -> NDArray[Any]:
     if scales.ndim < 2:
         scales = np.broadcast_to(scales.reshape(-1, 1), (count, 3)) if scales.size in (1, count) else scales
     if scales.shape not in ((count, 3), (count, 2)):
@@ -69,7 +69,7 @@ def _scales(scales: np.ndarray, count: int, raw: bool) -> np.ndarray:
     return np.pad(scales, ((0, 0), (0, 3 - scales.shape[1])))
 
 
-def _opacities(opacities: np.ndarray, count: int, raw: bool) -> np.ndarray:
+def _opacities(opacities: NDArray[Any], count: int, raw: bool) -> NDArray[Any]:
     opacities = opacities.reshape(-1)
     if opacities.size not in (1, count):
         raise ArgumentError(f"splats: expected one opacity or {count}, got {opacities.size}")

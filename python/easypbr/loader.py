@@ -22,10 +22,14 @@ class MeshLoader:
     its sample, with its name; `on_error="skip"` skips it. SemanticKITTI's scans (.bin) come with their .label
     files."""
 
+    paths: list[str]
+    workers: int
+    prefetch: int
+
     def __init__(
         self,
-        paths: Iterable[str | os.PathLike],
-        transform: Callable | None = None,
+        paths: Iterable[str | os.PathLike[str]],
+        transform: Callable[..., Any] | None = None,
         workers: int = 2,
         prefetch: int = 4,
         device: str = "cpu",
@@ -47,7 +51,7 @@ class MeshLoader:
     def __len__(self) -> int:
         return len(self.paths)
 
-    def __iter__(self) -> Iterator:
+    def __iter__(self) -> Iterator[Any]:
         queue = _easypbr.MeshQueue(_own_share(self.paths), self.workers, self.prefetch)
         for _ in range(len(queue)):
             try:
@@ -69,14 +73,14 @@ def _with_torch(cls: type) -> type:
     return type(cls.__name__, (cls, data.data.IterableDataset), {"__module__": cls.__module__})
 
 
-def _own_share(paths: list) -> list:
+def _own_share(paths: list[Any]) -> list[Any]:
     """The files of this worker process of a DataLoader."""
     data = getattr(getattr(sys.modules.get("torch"), "utils", None), "data", None)
     worker = data.get_worker_info() if data is not None else None
     return paths if worker is None else paths[worker.id :: worker.num_workers]
 
 
-def _tensors(mesh: "_easypbr.Mesh") -> dict:
+def _tensors(mesh: "_easypbr.Mesh") -> dict[str, Any]:
     if mesh.children:
         mesh = mesh.merge()  # all nodes of a hierarchy
     arrays = {name: getattr(mesh, name) for name in _ARRAYS}

@@ -188,7 +188,7 @@ class WindowCallbacks:
         self._after_draw.append(function)
         return function
 
-    def on_event(self, function: Callable | None = None, kind: str | None = None) -> Any:
+    def on_event(self, function: Callable[..., Any] | None = None, kind: str | None = None) -> Any:
         """Calls function(event) for events of mouse and keyboard, dropped files and resizing, except those consumed
         by panels; see Event. If it returns True the viewer ignores the event. `kind`: only events of this kind. Also
         as a decorator: @view.on_event(kind="key_down")."""
@@ -209,7 +209,7 @@ class WindowCallbacks:
             self._handler_number = self._handle.on_event(dispatch)
         return function
 
-    def remove_callback(self, function: Callable) -> None:
+    def remove_callback(self, function: Callable[..., Any]) -> None:
         """Removes a callback of before_draw(), after_draw() and on_event()."""
         self._before_draw = [known for known in self._before_draw if known is not function]
         self._after_draw = [known for known in self._after_draw if known is not function]
@@ -226,11 +226,11 @@ class WindowCallbacks:
                 handled |= bool(self._call(function, event)[0])
         return handled
 
-    def _run(self, functions: list) -> None:
+    def _run(self, functions: list[Any]) -> None:
         for function in list(functions):
             self._call(function)
 
-    def _call(self, function: Callable, *arguments: object, in_panel: bool = False) -> tuple[Any, str | None]:
+    def _call(self, function: Callable[..., Any], *arguments: object, in_panel: bool = False) -> tuple[Any, str | None]:
         """Calls a user's function: its result, and the traceback of an exception, which is written to stderr and
         shown in the window, once, unless its panel shows it."""
         try:

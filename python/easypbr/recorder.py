@@ -34,14 +34,14 @@ class Recorder:
     def __init__(self, viewer: WindowCallbacks) -> None:
         self._handle = viewer._handle
 
-    def record(self, path: str | os.PathLike, size: ArrayLike | None = None, samples: int | None = None, deep: bool = False) -> Path:
+    def record(self, path: str | os.PathLike[str], size: ArrayLike | None = None, samples: int | None = None, deep: bool = False) -> Path:
         """Writes one image, complete when the call returns: PNG (16 bits with `deep`), JPEG, HDR or EXR, by the
         extension."""
         return self._handle.record(path, size, samples_of(samples), deep)
 
     def start(
         self,
-        path: str | os.PathLike,
+        path: str | os.PathLike[str],
         fps: float = 30.0,
         size: ArrayLike | None = None,
         samples: int | None = None,
@@ -77,7 +77,7 @@ class Recorder:
     def record_path(
         self,
         path: "_easypbr.CameraPath",
-        out: str | os.PathLike,
+        out: str | os.PathLike[str],
         fps: float = 30.0,
         frames: int | None = None,
         size: ArrayLike | None = None,

@@ -58,7 +58,7 @@ def render(
     hdr: Literal[False] = False,
     camera: Any = None,
     background: Any = None,
-    settings: Mapping | str | os.PathLike[str] | None = None,
+    settings: Mapping[str, Any] | str | os.PathLike[str] | None = None,
     strict: bool = False,
     preset: str | os.PathLike[str] | None = None,
     **values: "Unpack[RenderSettings]",
@@ -76,7 +76,7 @@ def render(
     hdr: Literal[True],
     camera: Any = None,
     background: Any = None,
-    settings: Mapping | str | os.PathLike[str] | None = None,
+    settings: Mapping[str, Any] | str | os.PathLike[str] | None = None,
     strict: bool = False,
     preset: str | os.PathLike[str] | None = None,
     **values: "Unpack[RenderSettings]",
@@ -93,7 +93,7 @@ def render(
     hdr: bool = False,
     camera: Any = None,
     background: Any = None,
-    settings: Mapping | str | os.PathLike[str] | None = None,
+    settings: Mapping[str, Any] | str | os.PathLike[str] | None = None,
     strict: bool = False,
     preset: str | os.PathLike[str] | None = None,
     **values: "Unpack[RenderSettings]",
@@ -102,18 +102,18 @@ def render(
 
 def render(
     what: Any,
-    out: str | os.PathLike | None = None,
+    out: str | os.PathLike[str] | None = None,
     size: ArrayLike | None = None,
     samples: int | None = None,
     environment: Any = None,
     hdr: bool = False,
     camera: Any = None,
     background: Any = None,
-    settings: Mapping | str | os.PathLike | None = None,
+    settings: Mapping[str, Any] | str | os.PathLike[str] | None = None,
     strict: bool = False,
-    preset: str | os.PathLike | None = None,
+    preset: str | os.PathLike[str] | None = None,
     **values: Any,
-) -> np.ndarray:
+) -> NDArray[Any]:
     """Renders `what`: a Scene, or anything as_mesh() takes: a path, a Mesh, points (n x 3, n x 6 with colours), (V, F), a dict
     or a table of arrays, an object of trimesh, Open3D, PyVista or VTK, or a list of these.
 

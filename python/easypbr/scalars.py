@@ -1,19 +1,20 @@
 """The scalar fields of a mesh as a dict that writes through to the mesh."""
 from collections.abc import Iterator, MutableMapping
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ._easypbr import Mesh
 
 
-class Scalars(MutableMapping[str, np.ndarray]):
+class Scalars(MutableMapping[str, NDArray[Any]]):
     """The type of `mesh.scalars`: read-only arrays by name; assigning to a name or deleting it changes the mesh."""
 
     def __init__(self, mesh: "Mesh") -> None:
         self._mesh = mesh
 
-    def __getitem__(self, name: str) -> np.ndarray:
+    def __getitem__(self, name: str) -> NDArray[Any]:
         return self._mesh._scalars()[name]
 
     def __setitem__(self, name: str, values: ArrayLike) -> None:

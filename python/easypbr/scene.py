@@ -5,7 +5,7 @@ from collections.abc import Callable
 from typing import Any, Concatenate, Generic, ParamSpec, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _easypbr
 from .conversions.maker import Maker
@@ -17,6 +17,8 @@ Result = TypeVar("Result")
 
 class _OnDefaultScene(Generic[Arguments, Result]):
     """A method that acts on the default scene when it is called on the class."""
+
+    __name__: str
 
     def __init__(self, function: Callable[Concatenate[Any, Arguments], Result]) -> None:
         self.function = function
@@ -106,7 +108,7 @@ class Scene:
         return self._handle.light_names()
 
     @property
-    def origin(self) -> np.ndarray:
+    def origin(self) -> NDArray[Any]:
         """Where the scene's frame has its origin, in the coordinates that meshes were given (mesh.offset + mesh.V):
         cameras, lights and poses are relative to it. It is the offset of the mesh that was shown first, taken when
         something is drawn for the first time; so it is zero unless that mesh lies far from zero."""

@@ -27,8 +27,8 @@ class Sharing(WindowCallbacks):
         port: int = 0,
         *,
         bind: str = "127.0.0.1",
-        socket: str | os.PathLike = "",
-        token_file: str | os.PathLike = "",
+        socket: str | os.PathLike[str] = "",
+        token_file: str | os.PathLike[str] = "",
         host_names: Sequence[str] = (),
         origins: Sequence[str] = (),
         max_clients: int = 16,
@@ -52,7 +52,7 @@ class Sharing(WindowCallbacks):
 
     def save_html(
         self,
-        path: str | os.PathLike,
+        path: str | os.PathLike[str],
         orbit: tuple[int, int] = (36, 3),
         *,
         row_step: float = 20.0,
@@ -72,7 +72,7 @@ class Sharing(WindowCallbacks):
 
     def save_svg(
         self,
-        path: str | os.PathLike,
+        path: str | os.PathLike[str],
         *,
         hidden: Literal["none", "dashed", "solid"] = "dashed",
         size: ArrayLike | None = None,

@@ -4,12 +4,13 @@ from collections.abc import Callable, Iterable
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _easypbr
 from .errors import ArgumentError, ContextError
 
 
-class SharedArray(np.ndarray):
+class SharedArray(NDArray[Any]):
     """A read-only array that a mesh owns, such as mesh.V. Other libraries take it by DLPack: without a copy if they know
     DLPack 1.0, whose flag says that it is read-only, else a copy. What is computed from it is a plain numpy array."""
 
@@ -46,7 +47,7 @@ def _plain(array: Any) -> Any:
     return array.view(np.ndarray) if isinstance(array, SharedArray) else array
 
 
-def converter(name: str, device: str = "cpu") -> Callable:
+def converter(name: str, device: str = "cpu") -> Callable[..., Any]:
     """A function from numpy arrays to those of "numpy" or "torch", without a copy."""
     if name == "numpy":
         if device != "cpu":
@@ -78,7 +79,7 @@ def from_dlpack(capsule: Any) -> Any:
     return _torch().utils.dlpack.from_dlpack(capsule)
 
 
-def layers_of_targets(raw: dict, names: Iterable[str], from_dlpack: Callable) -> dict:
+def layers_of_targets(raw: dict[str, Any], names: Iterable[str], from_dlpack: Callable[..., Any]) -> dict[str, Any]:
     """Layers by name as GPU tensors, computed from the targets; `raw` is the result of cuda_layers()."""
     torch = _torch()
     targets = {name: from_dlpack(target) for name, target in raw["targets"].items()}
@@ -154,6 +155,6 @@ def eigen2tensor(array: Any, device: str | None = None) -> Any:
     return torch.from_numpy(np.array(as_numpy(array))).to(check_device(device or "cpu"))
 
 
-def tensor2eigen(tensor: Any) -> np.ndarray:
+def tensor2eigen(tensor: Any) -> NDArray[Any]:
     """A numpy array of a tensor of any device, with or without gradients: mesh.V = tensor2eigen(t)."""
     return np.ascontiguousarray(as_numpy(tensor))

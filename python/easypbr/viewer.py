@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from . import _easypbr
 from .arguments import samples_of
@@ -28,13 +28,16 @@ class Viewer(Sharing):
     """Renders a scene, by default the default scene. Nothing is rendered, and OpenGL is not loaded, before the first
     image. Threads may share a viewer; they take turns."""
 
+    scene: Scene
+    recorder: Recorder
+
     def __init__(
         self,
         size: ArrayLike | None = None,
-        settings: Mapping | str | os.PathLike | None = None,
+        settings: Mapping[str, Any] | str | os.PathLike[str] | None = None,
         scene: Scene | None = None,
         device: str = "auto",
-        preset: str | os.PathLike | None = None,
+        preset: str | os.PathLike[str] | None = None,
     ) -> None:
         """`settings`: a file that save_settings() wrote, or a dict of values; `size`: (width, height). Both win over
         `preset`, see apply_preset().
@@ -70,7 +73,7 @@ class Viewer(Sharing):
         return self._settings
 
     @settings.setter
-    def settings(self, values: Mapping) -> None:
+    def settings(self, values: Mapping[str, Any]) -> None:
         self._settings.update(values)
 
     def object_names(self) -> list[str]:
@@ -180,11 +183,11 @@ class Viewer(Sharing):
         """Releases latched values, so that the next image infers them again."""
         self._handle.refit()
 
-    def render(self, size: ArrayLike | None = None, samples: int | None = None, hdr: bool = False) -> np.ndarray:
+    def render(self, size: ArrayLike | None = None, samples: int | None = None, hdr: bool = False) -> NDArray[Any]:
         """Renders an image, height x width x 4, row 0 on top: uint8 sRGB, or linear float32 with `hdr`."""
         return self._handle.render(size, samples_of(samples), "linear" if hdr else "srgb8")
 
-    def layers(self, names: Sequence[str] | None = None, size: ArrayLike | None = None) -> dict[str, np.ndarray]:
+    def layers(self, names: Sequence[str] | None = None, size: ArrayLike | None = None) -> dict[str, NDArray[Any]]:
         """Exact values through the pixels' centres, float32, by name: albedo, normal_world, depth, roughness, metallic,
         occlusion, ambient_occlusion, object_id and element_id; all of them unless named. A name that render_layers() has too
         means the same."""
@@ -204,7 +207,7 @@ class Viewer(Sharing):
         amodal: bool = True,
         as_: str = "numpy",
         device: str = "cpu",
-    ) -> dict:
+    ) -> dict[str, Any]:
         """The image and exact ground truth of the same frame by name, all of the same height and width: color, hdr,
         depth, distance, position, normal_world, normal_camera, albedo, roughness, metallic, instance_id, semantic_id,
         object_coordinates, face_id, barycentrics, uv, flow_forward, flow_backward and their occlusion_forward and
@@ -237,7 +240,7 @@ class Viewer(Sharing):
 
     def _layers_on(self, device: str, names: Sequence[str], size: ArrayLike | None, samples: int | None, instances_by: str,
                    classes: Mapping[str, int] | None, previous: "_easypbr.Moment | None", next: "_easypbr.Moment | None",
-                   amodal: bool) -> dict:
+                   amodal: bool) -> dict[str, Any]:
         """render_layers() with tensors of another device."""
         stays = [name for name in names if name in _easypbr.cuda_layer_names()]
         data = {}
@@ -268,16 +271,16 @@ class Viewer(Sharing):
         """Disables motion blur in the next image, as after a cut (settings.motion_blur)."""
         self._handle.forget_motion()
 
-    def save_settings(self, path: str | os.PathLike) -> None:
+    def save_settings(self, path: str | os.PathLike[str]) -> None:
         """Writes all settings, given and inferred, with hashes of the files in use."""
         sources = (self.scene.get(name).source for name in self.scene.names())
         self._handle.save_settings(path, [source for source in sources if source])
 
-    def load_settings(self, path: str | os.PathLike) -> None:
+    def load_settings(self, path: str | os.PathLike[str]) -> None:
         """Loads settings and lights from a file of save_settings()."""
         self._handle.load_settings(path)
 
-    def apply_preset(self, preset: str | os.PathLike) -> None:
+    def apply_preset(self, preset: str | os.PathLike[str]) -> None:
         """Sets what a preset says: "dark", "flat", "paper", "studio", or a file of settings, which need not hold all. The
         rest stays; what was inferred is inferred anew, but for the camera."""
         self._handle.apply_preset(os.fspath(preset))
@@ -403,7 +406,7 @@ class Viewer(Sharing):
         """Whether the window is open."""
         return self._handle.is_open()
 
-    def add_pass(self, name: str, shader: str | os.PathLike, stage: str = "overlay") -> None:
+    def add_pass(self, name: str, shader: str | os.PathLike[str], stage: str = "overlay") -> None:
         """Adds a custom full-screen pass: a fragment shader as GLSL text, or the path of a file (pathlib.Path), which is
         reloaded when it changes. `stage`: "light" (linear radiance, before depth of field and tone mapping), "overlay"
         (linear display colours, after tone mapping) or "picture" (the final image). A pass of the same name is
@@ -414,7 +417,7 @@ class Viewer(Sharing):
         """Removes a custom pass."""
         self._handle.remove_pass(name)
 
-    def open(self, path: str | os.PathLike) -> None:
+    def open(self, path: str | os.PathLike[str]) -> None:
         """Adds the contents of a file, like a file dropped on the window; HDR and EXR become the environment map."""
         self._handle.open(path)
 
@@ -423,7 +426,7 @@ class Viewer(Sharing):
         position. None where there is no surface; lines are none."""
         return self._handle.pick(x, y, size)
 
-    def screenshot(self, size: ArrayLike | None = None, scale: float = 1) -> np.ndarray:
+    def screenshot(self, size: ArrayLike | None = None, scale: float = 1) -> NDArray[Any]:
         """The contents of the window as an image, panels included; needs no display. `scale`: HiDPI scale."""
         return self._handle.screenshot(size, scale)
 
@@ -433,7 +436,7 @@ def show(
     name: str | None = None,
     block: bool = True,
     size: ArrayLike = (1280, 720),
-    settings: Mapping | str | os.PathLike | None = None,
+    settings: Mapping[str, Any] | str | os.PathLike[str] | None = None,
 ) -> Viewer:
     """Shows anything as_mesh() takes or a Scene in a window, until it is closed; with block=False the window
     runs on its own thread. Returns its Viewer; `settings` as for Viewer."""

@@ -11,6 +11,7 @@ import weakref
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _easypbr
 from .errors import ArgumentError
@@ -35,7 +36,7 @@ class View(Protocol):
     @property
     def settings(self) -> Settings: ...
 
-    def render(self, size: Any = None) -> np.ndarray: ...
+    def render(self, size: Any = None) -> NDArray[Any]: ...
 
     def _serve_panels(self, front_end: Any) -> None: ...
 

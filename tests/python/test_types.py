@@ -1,9 +1,11 @@
 """What editors and type checkers read: the package and its generated stubs are clean under mypy and pyright."""
 
 import json
+import os
 import shutil
 import subprocess
 import sys
+import venv
 from pathlib import Path
 
 import pytest
@@ -15,22 +17,24 @@ PACKAGE = Path(easypbr.__file__).parent
 
 #: A user's program; each line marked WRONG is a mistake that the checker must find.
 PROGRAM = """\
+from typing import Any
 import numpy as np
+from numpy.typing import NDArray
 import easypbr
 from easypbr import Mesh, Scene, Viewer
 from easypbr.dataset import DatasetSpec, ObjectSpec, generate
 
 view = Viewer((64, 48), {"camera.fov_y_deg": 30}, scene=Scene())
-picture: np.ndarray = view.render(samples=4)
-depth: np.ndarray = view.layers("depth")["depth"]
+picture: NDArray[Any] = view.render(samples=4)
+depth: NDArray[Any] = view.layers("depth")["depth"]
 mesh: Mesh = Scene.show("drone.ply", "drone")
 fov: float = view.settings.camera.fov_y_deg
 names: list[str] = view.scene.names()
-statistics: dict = generate(DatasetSpec(objects=[ObjectSpec("drone.ply")]), "out", workers=2)
+statistics: dict[str, Any] = generate(DatasetSpec(objects=[ObjectSpec("drone.ply")]), "out", workers=2)
 version: str = easypbr.__version__
 cloud: Mesh = easypbr.as_mesh(np.zeros((3, 3)), strict=True)
-image: np.ndarray = easypbr.render([mesh, np.zeros((3, 3))], camera="front", roughness=0.3, color="red", tonemap="agx")
-shared: np.ndarray = mesh.V
+image: NDArray[Any] = easypbr.render([mesh, np.zeros((3, 3))], camera="front", roughness=0.3, color="red", tonemap="agx")
+shared: NDArray[Any] = mesh.V
 easypbr.render(mesh, roughnes=0.3)  # WRONG
 easypbr.render(mesh, roughness="rough")  # WRONG
 easypbr.render(mesh, samples="4")  # WRONG
@@ -60,6 +64,35 @@ def test_mypy(tmp_path):
     (tmp_path / "program.py").write_text(PROGRAM)
     found = run("mypy", *options, tmp_path / "program.py", cwd=PACKAGE.parent).stdout
     assert sorted({int(line.split(":")[1]) for line in found.splitlines() if ": error:" in line}) == wrong_lines(), found
+
+
+def test_programs_of_users_are_clean_under_mypy_strict(tmp_path):
+    pytest.importorskip("mypy")
+    programs = sorted((ROOT / "examples").rglob("*.py"))
+    assert len(programs) >= 27
+    foreign = tmp_path / "mypy.ini"  # igl has no types, which is not ours to mend.
+    foreign.write_text("[mypy]\nstrict = true\n[mypy-igl.*,torch.*]\nignore_missing_imports = true\n")
+    done = run("mypy", "--config-file", foreign, "--cache-dir", tmp_path / "cache", *programs, cwd=ROOT / "examples/figures")
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_the_public_interface_is_typed(tmp_path):
+    """Of an installed copy: an environment of its own, since pyright looks for py.typed where packages lie."""
+    pytest.importorskip("pyright")
+    venv.create(tmp_path / "venv")
+    python = tmp_path / "venv/bin/python"
+    query = "import sysconfig; print(sysconfig.get_path('purelib'))"
+    packages = Path(subprocess.run([python, "-c", query], check=True, capture_output=True, text=True).stdout.strip())
+    shutil.copytree(PACKAGE, packages / "easypbr", ignore=shutil.ignore_patterns("*.so*", "__pycache__", "easypbr_read_assimp"))
+    (packages / "others.pth").write_text("\n".join(path for path in sys.path if path.endswith("-packages")))
+    environment = {**os.environ, "VIRTUAL_ENV": str(tmp_path / "venv"), "PATH": f"{python.parent}:{os.environ['PATH']}"}
+    done = subprocess.run([sys.executable, "-m", "pyright", "--verifytypes", "easypbr", "--ignoreexternal", "--outputjson"],
+                          cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=600)
+    if not done.stdout.startswith("{"):
+        pytest.skip(f"pyright does not run here: {done.stderr or done.stdout}")
+    report = json.loads(done.stdout)["typeCompleteness"]
+    unknown = [symbol["name"] for symbol in report["symbols"] if symbol["isExported"] and not symbol["isTypeKnown"]]
+    assert report["exportedSymbolCounts"]["withKnownType"] > 1000 and not unknown, unknown
 
 
 def pyright(folder: Path, include: list[str], **settings):

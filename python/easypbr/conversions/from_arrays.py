@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._easypbr import Mesh
 from ..errors import ArgumentError, UnknownNameError
@@ -11,7 +12,7 @@ from ..tensors import as_numpy
 from .maker import Maker, colors, fan, triangles
 
 #: What arrays of a mesh are called: here, in NPZ files, in pandas and in Polyscope. The first is Mesh's own name.
-NAMES = {
+NAMES: dict[str, tuple[str, ...]] = {
     "V": ("V", "v", "points", "xyz", "vertices", "verts", "positions", "position", "pos", "coords", "coordinates", "nodes"),
     "F": ("F", "f", "faces", "triangles", "tris", "simplices"),
     "N": ("N", "normals", "normal", "vertex_normals"),
@@ -68,14 +69,14 @@ def of_dict(arrays: Mapping[str, Any], make: Maker) -> Mesh:
     return make.mesh(scalars=scalars, **given, **named)
 
 
-def _spread(values: Any, count: int, face_of: np.ndarray) -> Any:
+def _spread(values: Any, count: int, face_of: NDArray[Any]) -> Any:
     """Values per polygon as values per triangle."""
     if values is None or len(values) == count:
         return values
     return np.asarray(as_numpy(values))[face_of]
 
 
-def _scalar(word: str, value: Any, count: int, faces: int) -> np.ndarray:
+def _scalar(word: str, value: Any, count: int, faces: int) -> NDArray[Any]:
     array = np.asarray(as_numpy(value)) if not isinstance(value, str) else np.empty(0, str)
     if array.dtype.kind in "biuf" and array.ndim == 1 and len(array) in (count, faces) and len(array):
         return array.astype(np.float32) if array.dtype.kind == "b" else array
@@ -109,7 +110,7 @@ def of_points(array: Any, make: Maker) -> Mesh:
             f"points: expected n x 3 positions, or n x 6 with colours, got {' x '.join(map(str, points.shape)) or 'a number'}"
         )
     found: dict[str, Any] = {"V": points[:, :3]}
-    scalars: dict[str, np.ndarray] = {}
+    scalars: dict[str, NDArray[Any]] = {}
     at, lost = 3, False
     while at < points.shape[1]:
         block = points[:, at : at + 3]
@@ -127,13 +128,13 @@ def of_points(array: Any, make: Maker) -> Mesh:
     return make.mesh(scalars=scalars, **found)
 
 
-def _sample(block: np.ndarray) -> np.ndarray:
+def _sample(block: NDArray[Any]) -> NDArray[Any]:
     step = max(1, len(block) // _SAMPLES)
     sample = np.asarray(block[::step], dtype=np.float64)
     return sample[np.isfinite(sample).all(axis=1)]
 
 
-def _is_normal(block: np.ndarray) -> bool:
+def _is_normal(block: NDArray[Any]) -> bool:
     """Whether three columns are unit vectors, or zero for points without a normal."""
     if block.shape[1] != 3 or block.dtype.kind != "f":
         return False
@@ -141,7 +142,7 @@ def _is_normal(block: np.ndarray) -> bool:
     return bool(length.any() and ((length == 0) | (np.abs(length - 1) < 0.02)).all())
 
 
-def _is_color(block: np.ndarray, alone: bool) -> bool:
+def _is_color(block: NDArray[Any], alone: bool) -> bool:
     """Whether three columns are 0 to 1, or whole numbers from 0 to 255; where there are no others any numbers up to 255."""
     sample = _sample(block)
     if block.shape[1] != 3 or not ((sample >= 0) & (sample <= 255)).all():
@@ -149,7 +150,7 @@ def _is_color(block: np.ndarray, alone: bool) -> bool:
     return alone or bool((sample <= 1).all() or (sample == np.floor(sample)).all())
 
 
-def _is_whole(block: np.ndarray) -> bool:
+def _is_whole(block: NDArray[Any]) -> bool:
     sample = _sample(block)
     return bool(((sample == np.floor(sample)) & (np.abs(sample) < 1e6)).all())
 
@@ -167,8 +168,8 @@ def is_table(what: Any) -> bool:
 def of_table(what: Any, make: Maker) -> Mesh:
     """A cloud of a table's columns x, y and z; r, g, b (0 to 1 or 0 to 255), nx, ny, nz, intensity and label by their names;
     other columns of numbers are scalars."""
-    columns: dict[str, np.ndarray] = {}
-    scalars: dict[str, np.ndarray] = {}
+    columns: dict[str, NDArray[Any]] = {}
+    scalars: dict[str, NDArray[Any]] = {}
     words = []
     for word in what.columns:
         values = np.asarray(what[word])
@@ -186,7 +187,7 @@ def of_table(what: Any, make: Maker) -> Mesh:
     return make.mesh(scalars=scalars | _incomplete(columns), **_arrays(columns))
 
 
-def _arrays(columns: dict[str, np.ndarray]) -> dict[str, Any]:
+def _arrays(columns: dict[str, NDArray[Any]]) -> dict[str, Any]:
     arrays: dict[str, Any] = {"V": np.stack([columns[axis] for axis in "xyz"], axis=1)}
     if all(name in columns for name in ("nx", "ny", "nz")):
         arrays["N"] = np.stack([columns[name] for name in ("nx", "ny", "nz")], axis=1)
@@ -196,9 +197,9 @@ def _arrays(columns: dict[str, np.ndarray]) -> dict[str, Any]:
     return arrays | {name: columns[name] for name in "IL" if name in columns}
 
 
-def _incomplete(columns: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _incomplete(columns: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
     """Parts of colours and normals whose others are missing are scalars like any column."""
-    found: dict[str, np.ndarray] = {}
+    found: dict[str, NDArray[Any]] = {}
     for group in (("r", "g", "b", "a"), ("nx", "ny", "nz")):
         if not all(name in columns for name in group[:3]):
             found.update({name: columns[name] for name in group if name in columns})

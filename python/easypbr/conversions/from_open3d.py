@@ -3,6 +3,7 @@
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._easypbr import Material, Mesh
 from ..errors import ArgumentError
@@ -93,7 +94,7 @@ def of_box(what: Any, make: Maker) -> Mesh:
     return make.mesh(V=corners, E=box_edges(corners), C=C)
 
 
-def box_edges(corners: np.ndarray) -> np.ndarray:
+def box_edges(corners: NDArray[Any]) -> NDArray[Any]:
     """Pairs of the eight corners of a box that are the ends of its edges, in whatever order the corners are."""
     middle = corners.mean(axis=0)
     # From one corner the three nearest of those that edges lead to are the shortest independent directions.
@@ -102,7 +103,7 @@ def box_edges(corners: np.ndarray) -> np.ndarray:
     return np.array([(i, j) for i in range(8) for j in range(i + 1, 8) if (side[i] != side[j]).sum() == 1])
 
 
-def _axes(corners: np.ndarray) -> np.ndarray:
+def _axes(corners: NDArray[Any]) -> NDArray[Any]:
     """Directions along the edges of a box, as columns."""
     away = corners[1:] - corners[0]
     away = away[np.argsort(np.linalg.norm(away, axis=1))]
@@ -164,7 +165,7 @@ def is_tensor_mesh(what: Any) -> bool:
     return all(hasattr(what, name) for name in ("vertex", "triangle", "to_legacy"))
 
 
-def _attribute(attributes: Any, name: str) -> np.ndarray | None:
+def _attribute(attributes: Any, name: str) -> NDArray[Any] | None:
     return np.asarray(_cpu(attributes[name])) if name in attributes else None
 
 
@@ -172,7 +173,7 @@ def _cpu(tensor: Any) -> Any:
     return tensor.cpu().numpy() if hasattr(tensor, "cpu") and hasattr(tensor, "numpy") else as_numpy(tensor)
 
 
-def _scalars(attributes: Any, known: tuple[str, ...], count: int, make: Maker) -> dict[str, np.ndarray]:
+def _scalars(attributes: Any, known: tuple[str, ...], count: int, make: Maker) -> dict[str, NDArray[Any]]:
     """Attributes with a number per row; of others it is said that they are left out."""
     found, others = {}, []
     for name in list(attributes):  # Its keys are attributes, too: "keys" may be one of them.

@@ -6,6 +6,7 @@ VTK is imported here only for objects that it made.
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .._easypbr import Mesh
 from ..errors import ArgumentError
@@ -94,7 +95,7 @@ def _output(name: str, what: Any, **options: Any) -> Any:
     return made.GetOutput()
 
 
-def _triangles(what: Any) -> tuple[np.ndarray, np.ndarray]:
+def _triangles(what: Any) -> tuple[NDArray[Any], NDArray[Any]]:
     """m x 3 vertex indices of the polygons and strips, and the number of each one's polygon or strip."""
     polys = _cells(what.GetPolys())
     if what.GetNumberOfStrips() == 0 and all(len(cell) == 3 for cell in polys):
@@ -140,19 +141,19 @@ def _of_volume(what: Any, active: tuple[str, str] | None, make: Maker) -> Any:
     return joined.GetOutput()
 
 
-def _numpy(array: Any) -> np.ndarray:
+def _numpy(array: Any) -> NDArray[Any]:
     from vtkmodules.util.numpy_support import vtk_to_numpy
 
     return np.asarray(vtk_to_numpy(array))
 
 
-def _points(what: Any) -> np.ndarray:
+def _points(what: Any) -> NDArray[Any]:
     if hasattr(what, "GetPoints") and what.GetPoints() is not None and hasattr(what.GetPoints(), "GetData"):
         return _numpy(what.GetPoints().GetData())
     return np.array([what.GetPoint(i) for i in range(what.GetNumberOfPoints())])
 
 
-def _cells(array: Any) -> list[np.ndarray]:
+def _cells(array: Any) -> list[NDArray[Any]]:
     """Vertex indices of each cell."""
     if array is None or array.GetNumberOfCells() == 0:
         return []
@@ -164,8 +165,8 @@ class _Fields:
     """Colours and scalars of points or cells."""
 
     def __init__(self, data: Any, where: str, active: tuple[str, str] | None, make: Maker) -> None:
-        self.color: np.ndarray | None = None
-        self.scalars: dict[str, np.ndarray] = {}
+        self.color: NDArray[Any] | None = None
+        self.scalars: dict[str, NDArray[Any]] = {}
         self.shown = active[1] if active is not None and active[0] == where else None
         self._make = make
         for i in range(data.GetNumberOfArrays()):
@@ -176,7 +177,7 @@ class _Fields:
             elif name not in _OWN_NAMES:
                 self._take(name, _numpy(array))
 
-    def _take(self, name: str, values: np.ndarray) -> None:
+    def _take(self, name: str, values: NDArray[Any]) -> None:
         is_shown = name == self.shown
         wide = values.ndim == 2 and values.shape[1] > 1
         if values.dtype.kind not in "biuf":
@@ -195,7 +196,7 @@ class _Fields:
                 self.scalars[name] = np.linalg.norm(values, axis=1)
             self.scalars.update({f"{name}_{i}": values[:, i] for i in range(values.shape[1])})
 
-    def of(self, chosen: Any) -> dict[str, np.ndarray]:
+    def of(self, chosen: Any) -> dict[str, NDArray[Any]]:
         return {name: values[chosen] for name, values in self.scalars.items()}
 
 
@@ -239,13 +240,13 @@ def _of_polydata(what: Any, active: tuple[str, str] | None, make: Maker) -> Mesh
 class _Parts:
     """The meshes of one vtkPolyData."""
 
-    def __init__(self, what: Any, points: np.ndarray, on_points: _Fields, on_cells: _Fields, make: Maker) -> None:
+    def __init__(self, what: Any, points: NDArray[Any], on_points: _Fields, on_cells: _Fields, make: Maker) -> None:
         data, count = what.GetPointData(), len(points)
         self._points, self._on_points, self._on_cells, self._make = points, on_points, on_cells, make
         self._N = None if data.GetNormals() is None else rows(_numpy(data.GetNormals()), count)
         self._UV = None if data.GetTCoords() is None else rows(_numpy(data.GetTCoords())[:, :2], count)
 
-    def triangles(self, F: np.ndarray, cells: np.ndarray) -> Mesh:
+    def triangles(self, F: NDArray[Any], cells: NDArray[Any]) -> Mesh:
         C = self._on_points.color
         values = self._on_cells.of(cells)
         cell_color = self._on_cells.color[cells] if self._on_cells.color is not None and C is None else None
@@ -256,7 +257,7 @@ class _Parts:
         mesh = self._make.mesh(V=self._points, F=F, N=self._N, UV=self._UV, C=C, scalars=scalars)
         return self._finished(mesh)
 
-    def _separate(self, F: np.ndarray, values: dict[str, np.ndarray], cell_color: np.ndarray | None) -> Mesh:
+    def _separate(self, F: NDArray[Any], values: dict[str, NDArray[Any]], cell_color: NDArray[Any] | None) -> Mesh:
         """Each corner a vertex of its own, with what belongs to its cell."""
         corners, split, _ = separate_corners(F, np.arange(len(F)))
         cell = np.repeat(np.arange(len(F)), F.shape[1])
@@ -271,7 +272,7 @@ class _Parts:
         )
         return self._finished(mesh)
 
-    def lines(self, lines: list[np.ndarray], cells: slice) -> Mesh:
+    def lines(self, lines: list[NDArray[Any]], cells: slice) -> Mesh:
         E = np.concatenate([np.stack([line[:-1], line[1:]], axis=1) for line in lines])
         cell = np.repeat(np.arange(len(lines)), [len(line) - 1 for line in lines])
         values = self._on_cells.of(cells)
@@ -285,7 +286,7 @@ class _Parts:
             scalars = self._on_points.of(corners) | {name: array[cell] for name, array in values.items()}
         return self._finished(self._make.mesh(V=V, E=E, C=C, scalars=scalars))
 
-    def points(self, verts: list[np.ndarray], cells: slice) -> Mesh:
+    def points(self, verts: list[NDArray[Any]], cells: slice) -> Mesh:
         chosen = np.concatenate(verts)
         cell = np.repeat(np.arange(len(verts)), [len(vert) for vert in verts])
         on_cells = self._on_cells.color

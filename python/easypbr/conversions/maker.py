@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _easypbr
 from .._easypbr import Mesh
@@ -26,6 +27,8 @@ def warn(message: str) -> None:
 class Maker:
     """Makes meshes from arrays. `any_mesh` converts what an object holds, such as the meshes of a scene."""
 
+    has_colorbar: bool
+
     def __init__(self, any_mesh: "Callable[[Any, Maker], Mesh]", strict: bool = False) -> None:
         self._any_mesh = any_mesh
         self.strict = strict
@@ -35,7 +38,7 @@ class Maker:
         self.lights: dict[str, _easypbr.Light] = {}
         self.cameras: dict[str, _easypbr.Camera] = {}
 
-    def file(self, path: str | os.PathLike) -> Mesh:
+    def file(self, path: str | os.PathLike[str]) -> Mesh:
         """The mesh of a file."""
         loaded = _easypbr.load_scene(path, strict=self.strict)
         for name, light in loaded.lights.items():
@@ -96,17 +99,17 @@ def _has(arrays: dict[str, Any], name: str) -> bool:
     return name in arrays and len(arrays[name]) > 0
 
 
-def _counts(value: Any, kept: np.ndarray) -> bool:
+def _counts(value: Any, kept: NDArray[Any]) -> bool:
     return hasattr(value, "__len__") and len(value) == len(kept)
 
 
-def finite_rows(points: Any, strict: bool = False) -> np.ndarray | None:
+def finite_rows(points: Any, strict: bool = False) -> NDArray[Any] | None:
     """Which rows of n x 3 positions are finite, with a warning that counts the others; None: all of them, or the array is of
     another kind. Raises ArgumentError if none is, or if not all are and `strict` is set."""
     points = None if points is None else np.asarray(as_numpy(points))
     if points is None or points.dtype.kind != "f" or points.ndim != 2 or len(points) == 0:
         return None
-    kept: np.ndarray = np.isfinite(points).all(axis=1)
+    kept: NDArray[Any] = np.isfinite(points).all(axis=1)
     lost = int(len(kept) - np.count_nonzero(kept))
     if lost == 0:
         return None
@@ -122,13 +125,13 @@ def finite_rows(points: Any, strict: bool = False) -> np.ndarray | None:
     return kept
 
 
-def rows(array: Any, count: int) -> np.ndarray | None:
+def rows(array: Any, count: int) -> NDArray[Any] | None:
     """The array if it has `count` rows, else None."""
     array = None if array is None else np.asarray(as_numpy(array))
     return array if array is not None and count and array.ndim > 0 and len(array) == count else None
 
 
-def colors(array: Any, count: int) -> np.ndarray | None:
+def colors(array: Any, count: int) -> NDArray[Any] | None:
     """Colours of `count` rows as a mesh takes them: uint8 and uint16 as they are, floats 0 to 1; other integers and floats
     above 1 are 0 to 255. None: the array has another number of rows. Raises ArgumentError for other values."""
     found = rows(array, count)
@@ -149,13 +152,13 @@ def colors(array: Any, count: int) -> np.ndarray | None:
     return found / 255.0 if is_bytes else found
 
 
-def triangles(faces: Any) -> np.ndarray | None:
+def triangles(faces: Any) -> NDArray[Any] | None:
     """m x 3 vertex indices of faces: m x k, or a sequence of polygons of any number of corners, as fans."""
     triangle_of, _ = fan(faces)
     return triangle_of
 
 
-def fan(faces: Any) -> tuple[np.ndarray | None, np.ndarray | None]:
+def fan(faces: Any) -> tuple[NDArray[Any] | None, NDArray[Any] | None]:
     """Triangles of polygons, and the polygon that each belongs to; None: each is a triangle already."""
     if faces is None:
         return None, None
@@ -172,7 +175,7 @@ def fan(faces: Any) -> tuple[np.ndarray | None, np.ndarray | None]:
     return np.stack(split, axis=1).reshape(-1, 3), np.repeat(np.arange(len(array)), corners - 2)
 
 
-def _fan_of_lists(faces: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+def _fan_of_lists(faces: list[NDArray[Any]]) -> tuple[NDArray[Any], NDArray[Any]]:
     if any(face.ndim != 1 or len(face) < 3 for face in faces):
         raise ArgumentError("faces: expected m x 3 vertex indices, or polygons of at least 3 corners each")
     found = [(face[0], face[i], face[i + 1]) for face in faces for i in range(1, len(face) - 1)]
@@ -180,7 +183,7 @@ def _fan_of_lists(faces: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
     return np.array(found), np.array(owner)
 
 
-def separate_corners(faces: np.ndarray, values: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def separate_corners(faces: NDArray[Any], values: Any) -> tuple[NDArray[Any], NDArray[Any], NDArray[Any]]:
     """Of values per face: the vertex of each corner, faces of separate corners, and a value per corner."""
     count = faces.shape[1]
     return faces.ravel(), np.arange(faces.size).reshape(-1, count), np.repeat(np.asarray(values), count, axis=0)

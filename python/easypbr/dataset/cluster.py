@@ -31,7 +31,7 @@ def find_ray() -> Any:
     return ray
 
 
-_worker: tuple | None = None
+_worker: tuple[Any, ...] | None = None
 
 
 def make_range(spec: DatasetSpec, folder: Path, indices: list[int], threads: int, start: Path) -> list[str]:
@@ -115,7 +115,7 @@ def _reach(address: str) -> None:
         socket.create_connection((host, int(port)), timeout=5).close()
 
 
-def _collect(ray: Any, pending: dict, progress: Any) -> set[str]:
+def _collect(ray: Any, pending: dict[str, Any], progress: Any) -> set[str]:
     skipped: set[str] = set()
     missing = sum(pending.values())
     try:

@@ -1,15 +1,16 @@
 """Procedural content: drones of several shapes and materials, simple shapes, skies."""
 
 from collections.abc import Callable, Iterable
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from .. import shapes
 from .._easypbr import Environment, Mesh
 
 
-def _merged(parts: list) -> Mesh:
+def _merged(parts: list[Any]) -> Mesh:
     """One mesh of (mesh, 4 x 4 pose) pairs."""
     V, N, F, first = [], [], [], 0
     for mesh, T in parts:
@@ -26,7 +27,7 @@ def _merged(parts: list) -> Mesh:
     return merged
 
 
-def _placed(position: ArrayLike, scale: ArrayLike = (1, 1, 1), turn_deg: float = 0) -> np.ndarray:
+def _placed(position: ArrayLike, scale: ArrayLike = (1, 1, 1), turn_deg: float = 0) -> NDArray[Any]:
     """Scaled along its own axes, then turned about y, then moved."""
     angle = np.radians(turn_deg)
     c, s = np.cos(angle), np.sin(angle)
@@ -52,7 +53,7 @@ def drone(random: np.random.Generator) -> Mesh:
     arms = int(random.choice([4, 6, 8]))
     reach, thickness = random.uniform(0.36, 0.5), random.uniform(0.012, 0.025)
     height = random.uniform(0.09, 0.16)
-    bodies: list[Callable[[], tuple[Mesh, np.ndarray]]] = [
+    bodies: list[Callable[[], tuple[Mesh, NDArray[Any]]]] = [
         lambda: (shapes.box((0.26, height, 0.3)), np.eye(4)),
         lambda: (shapes.sphere(0.5, 24), _placed((0, 0, 0), (0.3, 1.2 * height, 0.34))),
         lambda: (shapes.cylinder(0.15, height, 24), np.eye(4)),
@@ -81,7 +82,7 @@ def drone(random: np.random.Generator) -> Mesh:
     return root
 
 
-def _rod(start: ArrayLike, end: ArrayLike) -> np.ndarray:
+def _rod(start: ArrayLike, end: ArrayLike) -> NDArray[Any]:
     """Pose of a cylinder of height 1 along y that makes it reach from one point to the other."""
     start, end = np.asarray(start, float), np.asarray(end, float)
     y = end - start
@@ -126,7 +127,7 @@ def sky(random: np.random.Generator, height: int = 128) -> Environment:
     return Environment(np.ascontiguousarray(picture, dtype=np.float32))
 
 
-def _noise(random: np.random.Generator, width: int, height: int, cells: int) -> np.ndarray:
+def _noise(random: np.random.Generator, width: int, height: int, cells: int) -> NDArray[Any]:
     """Values in -1 .. 1 at grid points, interpolated smoothly; periodic around the horizon."""
     grid = random.uniform(-1, 1, (cells + 1, 2 * cells))
     y, x = np.linspace(0, cells, height, endpoint=False), np.linspace(0, 2 * cells, width, endpoint=False)

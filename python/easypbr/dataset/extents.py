@@ -1,11 +1,14 @@
 """The extent of meshes."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from .._easypbr import Mesh
 
 
-def bounds(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
+def bounds(mesh: Mesh) -> tuple[NDArray[Any], NDArray[Any]]:
     """Least and largest coordinates of a mesh and its children in its own frame."""
     low, high = np.full(3, np.inf), np.full(3, -np.inf)
     if len(mesh.V):
@@ -20,7 +23,7 @@ def bounds(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
     return low, high
 
 
-def vertices_of(mesh: Mesh) -> np.ndarray:
+def vertices_of(mesh: Mesh) -> NDArray[Any]:
     """All vertices of a mesh and its children in its own frame."""
     V = [np.asarray(mesh.V, float).reshape(-1, 3)]
     for child in mesh.children:
@@ -28,7 +31,7 @@ def vertices_of(mesh: Mesh) -> np.ndarray:
     return np.concatenate(V)
 
 
-def diameter_of(V: np.ndarray) -> float:
+def diameter_of(V: NDArray[Any]) -> float:
     """The largest distance between two points. Those far from the middle come first, and the search ends when no pair that is
     left can be farther apart, by the triangle inequality."""
     V = np.unique(V, axis=0)

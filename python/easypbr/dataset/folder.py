@@ -31,6 +31,9 @@ def keep_memory() -> None:
 class FolderWriter:
     """All files of a set. A frame's record is written last: a frame without it does not count."""
 
+    base: Writer
+    writers: list[Writer]
+
     def __init__(self, spec: DatasetSpec, folder: Path, classes: list[str]):
         self.folder = folder
         self.base = Writer(spec.image.format, classes, spec)

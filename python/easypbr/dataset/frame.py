@@ -1,8 +1,10 @@
 """A frame of a data set as values: what writers write."""
 
 import dataclasses
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 
 @dataclasses.dataclass
@@ -10,18 +12,18 @@ class Frame:
     """What writers write."""
 
     index: int
-    picture: np.ndarray  #: height x width x 3, uint8
-    depth: np.ndarray
-    normal: np.ndarray
-    instance_id: np.ndarray  #: int32: place in `objects` + 1, 0 for all else
-    K: np.ndarray
-    T_world_cam: np.ndarray  #: OpenCV's axes
-    distortion: list
+    picture: NDArray[Any]  #: height x width x 3, uint8
+    depth: NDArray[Any]
+    normal: NDArray[Any]
+    instance_id: NDArray[Any]  #: int32: place in `objects` + 1, 0 for all else
+    K: NDArray[Any]
+    T_world_cam: NDArray[Any]  #: OpenCV's axes
+    distortion: list[Any]
     distortion_model: str
-    objects: list[dict]
+    objects: list[dict[str, Any]]
     next: "NextFrame | None" = None  #: where things are a moment later, when the spec has motion
 
-    def record(self) -> dict:
+    def record(self) -> dict[str, Any]:
         """All but the pixels, as JSON takes it."""
         height, width = self.depth.shape
         return {"index": self.index, "width": width, "height": height, "K": self.K.tolist(),
@@ -33,6 +35,6 @@ class Frame:
 class NextFrame:
     """The picture a moment later, and how this one's pixels move until then."""
 
-    picture: np.ndarray
-    flow: np.ndarray  #: height x width x 2, pixels
-    occluded: np.ndarray  #: the point is not seen in the next picture
+    picture: NDArray[Any]
+    flow: NDArray[Any]  #: height x width x 2, pixels
+    occluded: NDArray[Any]  #: the point is not seen in the next picture

@@ -1,6 +1,9 @@
 """One frame of a data set: placed, drawn, annotated. Follows from the spec and the frame's number alone."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import shapes
 from .._easypbr import Camera, Environment, Instance, Light, Mesh, decode_image, encode_jpeg, load_image
@@ -20,6 +23,8 @@ _LAYERS = ("color", "depth", "normal_camera", "instance_id", "instances")
 
 class FrameMaker:
     """Draws frames of a spec. Meshes and skies are kept from frame to frame; nothing else is."""
+
+    classes: list[str]
 
     def __init__(self, spec: DatasetSpec) -> None:
         spec.check()
@@ -82,14 +87,14 @@ class FrameMaker:
                 return self._finish(index, random, data, camera, counted)
         raise ArgumentError(f"dataset: frame {index}: {worst} was not met in {limit.tries} tries: relax it, or show fewer objects")
 
-    def _attempt(self, random: np.random.Generator) -> tuple[dict, Camera, dict[str, ObjectSpec]]:
+    def _attempt(self, random: np.random.Generator) -> tuple[dict[str, Any], Camera, dict[str, ObjectSpec]]:
         spec = self.spec
         self._scene.clear()
         camera = self._camera(random)
         self._background(random)
         self._lights(random)
         entries: dict[str, ObjectSpec] = {}
-        spheres: list[tuple[np.ndarray, float]] = []
+        spheres: list[tuple[NDArray[Any], float]] = []
         for number, entry in enumerate(spec.objects):
             low, high = entry.count
             for _ in range(int(random.integers(low, high + 1))):
@@ -123,7 +128,7 @@ class FrameMaker:
             K = np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1]])
         return self._lens(K, camera.opencv_T_world_cam)
 
-    def _lens(self, K: np.ndarray, T_world_cam: np.ndarray) -> Camera:
+    def _lens(self, K: NDArray[Any], T_world_cam: NDArray[Any]) -> Camera:
         given = self.spec.camera
         return Camera.from_opencv(K, T_world_cam, self.spec.image.size, list(given.distortion), given.distortion_model)
 
@@ -151,7 +156,7 @@ class FrameMaker:
             for _ in range(int(random.integers(low, high + 1))):
                 self._scene.set_light(f"light {len(self._scene.light_names())}", random_light(given, random))
 
-    def _place(self, mesh: Mesh, entry: ObjectSpec, camera: Camera, random: np.random.Generator, spheres: list) -> None:
+    def _place(self, mesh: Mesh, entry: ObjectSpec, camera: Camera, random: np.random.Generator, spheres: list[Any]) -> None:
         """Sets the pose so that the mesh has its size and its ball meets no other's."""
         given = self.spec.placement
         size, turn = draw(random, entry.size), rotation(entry, random)
@@ -179,7 +184,7 @@ class FrameMaker:
             "smaller objects"
         )
 
-    def _in_frustum(self, camera: Camera, random: np.random.Generator) -> np.ndarray:
+    def _in_frustum(self, camera: Camera, random: np.random.Generator) -> NDArray[Any]:
         given, size = self.spec.placement, np.array(self.spec.image.size)
         pixel = (given.margin + (1 - 2 * given.margin) * random.random(2)) * size - 0.5
         depth = draw(random, given.distance)
@@ -212,7 +217,7 @@ class FrameMaker:
         data = self._view.render_layers(["flow_forward", "occlusion_forward"], next=moment)
         return NextFrame(sensor(picture, spec.sensor, random), data["flow_forward"], data["occlusion_forward"])
 
-    def _finish(self, index: int, random: np.random.Generator, data: dict, camera: Camera, counted: dict) -> Frame:
+    def _finish(self, index: int, random: np.random.Generator, data: dict[str, Any], camera: Camera, counted: dict[str, Any]) -> Frame:
         size = self.spec.image.size
         picture = sensor(data["color"][..., :3], self.spec.sensor, random)
         wanted = [instance for instance in data["instances"] if instance.name in counted]
@@ -231,7 +236,7 @@ class FrameMaker:
                      self.spec.camera.distortion_model, objects, moved)
 
 
-def sensor(picture: np.ndarray, given: SensorSpec, random: np.random.Generator) -> np.ndarray:
+def sensor(picture: NDArray[Any], given: SensorSpec, random: np.random.Generator) -> NDArray[Any]:
     """The picture blurred, then with noise, then through a JPEG."""
     blur, noise = draw(random, given.blur), draw(random, given.noise)
     values = picture.astype(np.float32)
@@ -252,7 +257,7 @@ def sensor(picture: np.ndarray, given: SensorSpec, random: np.random.Generator) 
     return decode_image(encode_jpeg(picture, round(draw(random, given.jpeg_quality))))[..., :3]
 
 
-def _annotation(instance: Instance, class_name: str) -> dict:
+def _annotation(instance: Instance, class_name: str) -> dict[str, Any]:
     return {
         "class": class_name,
         "category_id": instance.semantic_id,

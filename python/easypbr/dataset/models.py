@@ -1,8 +1,10 @@
 """Models of objects as files, for annotations that refer to them."""
 
 import io
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _easypbr
 from .extents import bounds
@@ -43,7 +45,7 @@ def model_ply(path: str, size: float) -> bytes:
     return text.getvalue().encode()
 
 
-def vertex_normals(V: np.ndarray, F: np.ndarray) -> np.ndarray:
+def vertex_normals(V: NDArray[Any], F: NDArray[Any]) -> NDArray[Any]:
     """Sums of the faces' normals, weighted by their angles at the vertex (Thuermer and Wuethrich 1998)."""
     corners = V[F].astype(float)
     normals = np.zeros((len(V), 3))

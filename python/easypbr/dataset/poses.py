@@ -1,6 +1,9 @@
 """Numbers, directions and rotations drawn at random."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from .tables import ObjectSpec, Range
 
@@ -10,19 +13,19 @@ def draw(random: np.random.Generator, value: Range) -> float:
     return float(random.uniform(*value)) if isinstance(value, tuple) else float(value)
 
 
-def direction(random: np.random.Generator) -> np.ndarray:
+def direction(random: np.random.Generator) -> NDArray[Any]:
     towards = random.normal(size=3)
     return towards / np.linalg.norm(towards)
 
 
-def turn_about(axis: np.ndarray, angle: float) -> np.ndarray:
+def turn_about(axis: NDArray[Any], angle: float) -> NDArray[Any]:
     """The rotation about a unit axis (Rodrigues)."""
     x, y, z = axis
     k = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
     return np.eye(3) + np.sin(angle) * k + (1 - np.cos(angle)) * k @ k
 
 
-def rotation(entry: ObjectSpec, random: np.random.Generator) -> np.ndarray:
+def rotation(entry: ObjectSpec, random: np.random.Generator) -> NDArray[Any]:
     quaternion = random.normal(size=4)
     yaw, tilt, towards = random.uniform(0, 2 * np.pi), np.radians(entry.tilt_deg) * random.uniform(-1, 1), random.uniform(0, 2 * np.pi)
     if entry.rotation == "none":

@@ -3,8 +3,10 @@
 import html
 from collections.abc import Iterable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _easypbr
 from .writers import Writer, decode_rle
@@ -13,7 +15,7 @@ _COLORS = np.array([(230, 80, 60), (60, 160, 230), (90, 200, 90), (240, 180, 40)
 _CELL = 320  #: width of a picture on the sheet
 
 
-def draw_annotations(picture: np.ndarray, objects: list[dict], edges: bool = False) -> np.ndarray:
+def draw_annotations(picture: NDArray[Any], objects: list[dict[str, Any]], edges: bool = False) -> NDArray[Any]:
     """The picture with masks tinted and boxes drawn; with `edges` the boxes in space too."""
     picture = picture[..., :3].copy()
     for entry in objects:
@@ -35,7 +37,7 @@ def draw_annotations(picture: np.ndarray, objects: list[dict], edges: bool = Fal
     return picture
 
 
-def _line(picture: np.ndarray, start: list[float], end: list[float], color: np.ndarray) -> None:
+def _line(picture: NDArray[Any], start: list[float], end: list[float], color: NDArray[Any]) -> None:
     if not np.isfinite([*start, *end]).all():
         return
     height, width = picture.shape[:2]
@@ -46,7 +48,7 @@ def _line(picture: np.ndarray, start: list[float], end: list[float], color: np.n
         picture[y[inside] + dy, x[inside] + dx] = color
 
 
-def _shrunk(picture: np.ndarray, width: int) -> np.ndarray:
+def _shrunk(picture: NDArray[Any], width: int) -> NDArray[Any]:
     """Means of whole blocks of pixels."""
     step = max(1, picture.shape[1] // width)
     height, width = picture.shape[0] // step, picture.shape[1] // step
@@ -54,7 +56,7 @@ def _shrunk(picture: np.ndarray, width: int) -> np.ndarray:
     return blocks.mean((1, 3)).astype(np.uint8)
 
 
-def contact_sheet(records: list[dict], folder: Path, names: Writer, count: int = 20, columns: int = 5) -> np.ndarray:
+def contact_sheet(records: list[dict[str, Any]], folder: Path, names: Writer, count: int = 20, columns: int = 5) -> NDArray[Any]:
     """The first pictures with their annotations, in rows."""
     cells = []
     for record in records[:count]:
@@ -70,10 +72,10 @@ def contact_sheet(records: list[dict], folder: Path, names: Writer, count: int =
     return sheet
 
 
-def statistics_page(records: list[dict], classes: list[str]) -> tuple[str, dict]:
+def statistics_page(records: list[dict[str, Any]], classes: list[str]) -> tuple[str, dict[str, Any]]:
     """A page of HTML, and its numbers: classes, sizes, visibility."""
     entries = [entry for record in records for entry in record["objects"]]
-    statistics: dict = {"images": len(records), "objects": len(entries), "classes": {}}
+    statistics: dict[str, Any] = {"images": len(records), "objects": len(entries), "classes": {}}
     sections = []
     for name in classes:
         own = [entry for entry in entries if entry["class"] == name]

@@ -13,6 +13,7 @@ import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 from .. import _easypbr
 from ..errors import ArgumentError
@@ -28,13 +29,13 @@ _RETRIES = 3
 
 def generate(
     spec: DatasetSpec,
-    folder: str | os.PathLike,
+    folder: str | os.PathLike[str],
     workers: int | None = None,
     quiet: bool = True,
     engine: str = "local",
     address: str | None = None,
     threads: int | None = None,
-) -> dict:
+) -> dict[str, Any]:
     """Makes the data set in a folder, or what is missing of it, and returns its statistics. Worker processes are started
     for more than one worker, so scripts need the usual `if __name__ == "__main__":`. `engine`: "local", or "ray": frames
     are tasks of Ray (pip install 'easypbr[ray]'), on this machine or on the cluster at `address`, whose machines share
@@ -50,7 +51,7 @@ def generate(
 
 
 def _generate(spec: DatasetSpec, folder: Path, workers: int | None, quiet: bool, engine: str, address: str | None,
-              threads: int | None) -> dict:
+              threads: int | None) -> dict[str, Any]:
     claim(spec, folder)
     shutil.rmtree(folder / "unfinished", ignore_errors=True)
     missing = [i for i in range(spec.count) if not (folder / "records" / f"{i:06d}.json").exists()]
@@ -88,13 +89,13 @@ def _make_here(spec: DatasetSpec, folder: Path, missing: list[int], progress: "_
     maker = FrameMaker(spec)
     writer = FolderWriter(spec, folder, maker.classes)
 
-    def finish(frames: list[concurrent.futures.Future]) -> None:
+    def finish(frames: list[concurrent.futures.Future[Any]]) -> None:
         for frame in frames:
             frame.result()
             progress.add()
 
     with concurrent.futures.ThreadPoolExecutor(1) as pool:
-        written: list[concurrent.futures.Future] = []
+        written: list[concurrent.futures.Future[Any]] = []
         for index in missing:
             frame = maker.make(index)
             finish(written)
@@ -187,7 +188,7 @@ def _make_apart(spec: DatasetSpec, folder: Path, missing: list[int], workers: in
     return skipped
 
 
-def _finish(spec: DatasetSpec, folder: Path) -> dict:
+def _finish(spec: DatasetSpec, folder: Path) -> dict[str, Any]:
     """Files of the whole set, made of the records in their order."""
     records = [json.loads((folder / "records" / f"{i:06d}.json").read_text()) for i in range(spec.count)]
     classes = spec.class_names()

@@ -33,7 +33,7 @@ class DatasetSpec(DatasetTables):
         )
 
     @classmethod
-    def from_toml(cls, path: str | os.PathLike) -> "DatasetSpec":
+    def from_toml(cls, path: str | os.PathLike[str]) -> "DatasetSpec":
         """Reads a spec; files in it are relative to the TOML file's folder. Raises ArgumentError naming the key, FileError."""
         path = Path(path)
         try:
@@ -86,7 +86,7 @@ def _nearest(name: str, names: Iterable[str]) -> str:
     return f" (did you mean '{found[0]}'?)" if found else ""
 
 
-def _from_dict(cls: Any, values: dict, where: str) -> Any:
+def _from_dict(cls: Any, values: dict[str, Any], where: str) -> Any:
     """An object of a class of tables; keys are its fields, "class" stands for class_name."""
     hints = typing.get_type_hints(cls)
     result = cls()
@@ -127,7 +127,7 @@ def _range(value: Any, where: str) -> Range:
     return (float(numbers[0]), float(numbers[1])) if len(numbers) == 2 else float(numbers[0])
 
 
-def _tuple(hint: Any, value: Any, where: str) -> tuple:
+def _tuple(hint: Any, value: Any, where: str) -> tuple[Any, ...]:
     kinds = typing.get_args(hint)
     if isinstance(value, int) and kinds == (int, int):
         value = [value, value]

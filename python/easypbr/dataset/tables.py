@@ -4,6 +4,7 @@ import dataclasses
 import glob
 import os
 from pathlib import Path
+from typing import Any
 
 from .._easypbr import readable_mesh_extensions
 from ..errors import ArgumentError
@@ -27,7 +28,7 @@ class CameraSpec:
     """Where the camera stands, looking at the origin, and its lens."""
 
     fov_y_deg: Range = (35.0, 60.0)
-    K: tuple = ()
+    K: tuple[Any, ...] = ()
     distortion: tuple[float, ...] = ()
     distortion_model: str = "brown_conrady"
     distance: Range = 4.0

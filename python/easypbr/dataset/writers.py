@@ -4,9 +4,10 @@ import io
 import json
 import tarfile
 from pathlib import Path
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .. import _easypbr
 from ..errors import ArgumentError
@@ -19,11 +20,11 @@ def _json(value: object) -> bytes:
     return (json.dumps(value, indent=1, allow_nan=True) + "\n").encode()
 
 
-def _png(array: np.ndarray) -> bytes:
+def _png(array: NDArray[Any]) -> bytes:
     return _easypbr.encode_png(array)
 
 
-def _exr(array: np.ndarray) -> bytes:
+def _exr(array: NDArray[Any]) -> bytes:
     return _easypbr.encode_exr(np.ascontiguousarray(array, np.float32))
 
 
@@ -31,7 +32,7 @@ def _refuse(name: str, what: str) -> NoReturn:
     raise ArgumentError(f"dataset: writer {name}: {what}")
 
 
-def decode_rle(rle: dict) -> np.ndarray:
+def decode_rle(rle: dict[str, Any]) -> NDArray[Any]:
     """The mask, height x width, of COCO's compressed run lengths."""
     height, width = rle["size"]
     counts: list[int] = []
@@ -52,6 +53,10 @@ def decode_rle(rle: dict) -> np.ndarray:
 class Writer:
     """The base of all: nothing is written."""
 
+    image_format: str
+    classes: list[str]
+    spec: DatasetTables
+
     def __init__(self, image_format: str, classes: list[str], spec: DatasetTables | None = None) -> None:
         self.image_format, self.classes, self.spec = image_format, classes, spec or DatasetTables()
 
@@ -67,7 +72,7 @@ class Writer:
         """Files of a frame by their path in the set's folder."""
         return {}
 
-    def finish(self, records: list[dict], folder: Path) -> dict[str, bytes]:
+    def finish(self, records: list[dict[str, Any]], folder: Path) -> dict[str, bytes]:
         """Files of the set."""
         return {}
 
@@ -75,9 +80,9 @@ class Writer:
 class Coco(Writer):
     """annotations.json: boxes, masks as run lengths, and the corners of the 3D box as keypoints."""
 
-    def finish(self, records: list[dict], folder: Path) -> dict[str, bytes]:
-        images: list[dict] = []
-        annotations: list[dict] = []
+    def finish(self, records: list[dict[str, Any]], folder: Path) -> dict[str, bytes]:
+        images: list[dict[str, Any]] = []
+        annotations: list[dict[str, Any]] = []
         for record in records:
             size = {"width": record["width"], "height": record["height"]}
             images.append({"id": record["index"], "file_name": self.picture(record["index"]), **size})
@@ -95,7 +100,7 @@ class Coco(Writer):
         return {"annotations.json": _json({"images": images, "categories": categories, "annotations": annotations})}
 
     @staticmethod
-    def _keypoints(entry: dict, record: dict) -> list[float]:
+    def _keypoints(entry: dict[str, Any], record: dict[str, Any]) -> list[float]:
         flat: list[float] = []
         for x, y in entry["corners_px"]:
             inside = -0.5 <= x < record["width"] - 0.5 and -0.5 <= y < record["height"] - 0.5
@@ -117,7 +122,7 @@ class Yolo(Writer):
                 lines.append(f"{entry['category_id'] - 1} " + " ".join(f"{value:.6f}" for value in place))
         return {f"labels/{frame.index:06d}.txt": "".join(line + "\n" for line in lines).encode()}
 
-    def finish(self, records: list[dict], folder: Path) -> dict[str, bytes]:
+    def finish(self, records: list[dict[str, Any]], folder: Path) -> dict[str, bytes]:
         # JSON's texts are YAML's too: a name may look like a number or hold a colon.
         names = "".join(f"  {i}: {json.dumps(name, ensure_ascii=False)}\n" for i, name in enumerate(self.classes))
         return {"data.yaml": f"path: .\ntrain: images\nval: images\nnames:\n{names}".encode()}
@@ -143,7 +148,7 @@ class Kitti(Writer):
                 f"kitti/depth/{name}.png": save16(depth)}
 
     @staticmethod
-    def _line(entry: dict) -> str:
+    def _line(entry: dict[str, Any]) -> str:
         hidden = 1 - entry["pixels"] / max(entry["pixels_amodal_inside"], 1)
         occluded = 0 if hidden < 0.1 else 1 if hidden < 0.5 else 2
         T = np.array(entry["T_cam_obj"])
@@ -161,7 +166,7 @@ class Kitti(Writer):
         return f"{name} {numbers[0]} {occluded} {' '.join(numbers[1:])}\n"
 
 
-def save16(array: np.ndarray) -> bytes:
+def save16(array: NDArray[Any]) -> bytes:
     """A PNG of 16 bits."""
     return _easypbr.encode_png(array, deep=True)
 
@@ -184,7 +189,7 @@ class Flow(Writer):
                 f"{base}/flow_noc/{name}_10.png": save16(encode_flow(frame.next.flow, seen & ~frame.next.occluded))}
 
 
-def encode_flow(flow: np.ndarray, valid: np.ndarray) -> np.ndarray:
+def encode_flow(flow: NDArray[Any], valid: NDArray[Any]) -> NDArray[Any]:
     """height x width x 3 of uint16. What is 512 pixels or more cannot be said and is not valid."""
     values = np.rint(np.asarray(flow, float) * 64 + 32768)
     valid = valid & (values >= 0).all(-1) & (values < 65536).all(-1)
@@ -193,6 +198,8 @@ def encode_flow(flow: np.ndarray, valid: np.ndarray) -> np.ndarray:
 
 class Bop(Writer):
     """A scene of the BOP challenge: rgb, depth, mask, mask_visib, scene_camera, scene_gt, scene_gt_info, models_info."""
+
+    scale: float
 
     scale = 1.0  # millimetres of a unit of depth: up to 65 m
 
@@ -207,7 +214,7 @@ class Bop(Writer):
             files[f"{base}/mask/{name}_{i:06d}.png"] = _png(decode_rle(entry["amodal_rle"]).astype(np.uint8) * 255)
         return files
 
-    def finish(self, records: list[dict], folder: Path) -> dict[str, bytes]:
+    def finish(self, records: list[dict[str, Any]], folder: Path) -> dict[str, bytes]:
         camera, truth, info = {}, {}, {}
         for record in records:
             T_cam_world = np.linalg.inv(record["T_world_cam"])
@@ -223,7 +230,7 @@ class Bop(Writer):
                 f"{base}/scene_gt_info.json": _json(info), **self._models(truth)}
 
     @staticmethod
-    def _pose(entry: dict) -> dict:
+    def _pose(entry: dict[str, Any]) -> dict[str, Any]:
         T = np.array(entry["T_cam_obj"])
         scale = np.linalg.norm(T[:3, :3], axis=0)
         size, centre = 1000 * scale * entry["box3d_size"], 1000 * scale * entry["box3d_center"]
@@ -233,7 +240,7 @@ class Bop(Writer):
         return {"cam_R_m2c": (T[:3, :3] / scale).ravel().tolist(), "cam_t_m2c": (1000 * T[:3, 3]).tolist(),
                 "obj_id": entry["category_id"], "model": {"diameter": 1000 * entry["diameter"], **model}}
 
-    def _models(self, truth: dict[str, list[dict]]) -> dict[str, bytes]:
+    def _models(self, truth: dict[str, list[dict[str, Any]]]) -> dict[str, bytes]:
         """models_info.json and the meshes of the classes whose objects are all of one file and size."""
         info = {entry["obj_id"]: entry["model"] for entries in truth.values() for entry in entries}
         sources = {number: single_model(self.spec, name) for number, name in enumerate(self.classes, 1)}
@@ -242,7 +249,7 @@ class Bop(Writer):
         return {"bop/models/models_info.json": _json(known), **files}
 
     @staticmethod
-    def _info(entry: dict) -> dict:
+    def _info(entry: dict[str, Any]) -> dict[str, Any]:
         def box(xywh: list[int]) -> list[int]:  # BOP's width is the difference of the outermost pixels.
             return [xywh[0], xywh[1], xywh[2] - 1, xywh[3] - 1] if xywh[2] > 0 else [-1, -1, -1, -1]
 
@@ -267,7 +274,7 @@ class Nerfstudio(Writer):
         if _has_skew(spec) or (spec.camera.distortion_model != "fisheye" and len(spec.camera.distortion) > 5):
             _refuse("nerfstudio", "its cameras have no skew and at most k1, k2, p1, p2, k3: choose another camera.K or distortion")
 
-    def finish(self, records: list[dict], folder: Path) -> dict[str, bytes]:
+    def finish(self, records: list[dict[str, Any]], folder: Path) -> dict[str, bytes]:
         frames = []
         for record in records:
             K = np.array(record["K"])
@@ -294,7 +301,7 @@ class Colmap(Writer):
             _refuse("colmap", "its cameras have no skew: expected camera.K with a zero there")
 
     @staticmethod
-    def _model(record: dict) -> tuple[str, list]:
+    def _model(record: dict[str, Any]) -> tuple[str, list[Any]]:
         """COLMAP's name of the camera model, and the coefficients after fx, fy, cx, cy."""
         lens = record["distortion"]
         if not lens:
@@ -303,7 +310,7 @@ class Colmap(Writer):
             return "OPENCV_FISHEYE", lens
         return ("OPENCV", lens) if len(lens) == 4 else ("FULL_OPENCV", lens + [0.0] * (8 - len(lens)))
 
-    def finish(self, records: list[dict], folder: Path) -> dict[str, bytes]:
+    def finish(self, records: list[dict[str, Any]], folder: Path) -> dict[str, bytes]:
         cameras, images = ["# CAMERA_ID, MODEL, WIDTH, HEIGHT, PARAMS[]"], ["# IMAGE_ID, QW, QX, QY, QZ, TX, TY, TZ, CAMERA_ID, NAME"]
         for record in records:
             K, number = np.array(record["K"]), record["index"] + 1
@@ -317,7 +324,7 @@ class Colmap(Writer):
                 "sparse/0/images.txt": "\n".join(images + [""]).encode()}
 
 
-def quaternion(R: np.ndarray) -> np.ndarray:
+def quaternion(R: NDArray[Any]) -> NDArray[Any]:
     """w, x, y, z of a rotation, w not negative: the eigenvector of Bar-Itzhack's matrix (2000)."""
     (a, b, c), (d, e, f), (g, h, i) = R
     M = np.array([[a - e - i, b + d, c + g, h - f], [b + d, e - a - i, f + h, c - g],
@@ -332,7 +339,7 @@ class WebDataset(Writer):
 
     per_shard = 1000
 
-    def finish(self, records: list[dict], folder: Path) -> dict[str, bytes]:
+    def finish(self, records: list[dict[str, Any]], folder: Path) -> dict[str, bytes]:
         files = {}
         for first in range(0, len(records), self.per_shard):
             buffer = io.BytesIO()

@@ -1,14 +1,15 @@
 """Affine3d and Affine3f: poses that say so when they are changed."""
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ...errors import ArgumentError
 
 
-def rotation(axis: ArrayLike, angle_deg: float) -> np.ndarray:
+def rotation(axis: ArrayLike, angle_deg: float) -> NDArray[Any]:
     """3 x 3 rotation, counter-clockwise seen against the axis (Rodrigues' formula)."""
     a = np.asarray(axis, dtype=np.float64).ravel()
     length = np.linalg.norm(a)
@@ -20,7 +21,7 @@ def rotation(axis: ArrayLike, angle_deg: float) -> np.ndarray:
     return np.eye(3) + np.sin(angle) * K + (1 - np.cos(angle)) * K @ K
 
 
-def from_quaternion(q: ArrayLike) -> np.ndarray:
+def from_quaternion(q: ArrayLike) -> NDArray[Any]:
     """3 x 3 rotation of a quaternion x, y, z, w."""
     v = np.asarray(q, dtype=np.float64).ravel()
     length = np.linalg.norm(v)
@@ -32,7 +33,7 @@ def from_quaternion(q: ArrayLike) -> np.ndarray:
                      [2 * (x * z - y * w), 2 * (y * z + x * w), 1 - 2 * (x * x + y * y)]])  # fmt: skip
 
 
-def to_quaternion(R: np.ndarray) -> np.ndarray:
+def to_quaternion(R: NDArray[Any]) -> NDArray[Any]:
     """x, y, z, w of a rotation, w from 0 on: the eigenvector of the largest eigenvalue (Bar-Itzhack 2000)."""
     K = np.array([[R[0, 0] - R[1, 1] - R[2, 2], 0, 0, 0], [R[0, 1] + R[1, 0], R[1, 1] - R[0, 0] - R[2, 2], 0, 0],
                   [R[0, 2] + R[2, 0], R[1, 2] + R[2, 1], R[2, 2] - R[0, 0] - R[1, 1], 0],
@@ -48,16 +49,16 @@ class Affine3d:
         self._m = np.eye(4) if matrix is None else np.array(matrix, dtype=np.float64).reshape(4, 4)
         self._changed = changed or (lambda: None)
 
-    def matrix(self) -> np.ndarray:
+    def matrix(self) -> NDArray[Any]:
         return self._m.copy()
 
-    def translation(self) -> np.ndarray:
+    def translation(self) -> NDArray[Any]:
         return self._m[:3, 3].copy()
 
-    def linear(self) -> np.ndarray:
+    def linear(self) -> NDArray[Any]:
         return self._m[:3, :3].copy()
 
-    def quat(self) -> np.ndarray:
+    def quat(self) -> NDArray[Any]:
         """x, y, z, w."""
         return to_quaternion(self._m[:3, :3])
 
@@ -125,14 +126,14 @@ class Affine3d:
     def __mul__(self, other: "Affine3d") -> "Affine3d":
         return Affine3d(self._m @ other._m)
 
-    def __array__(self, dtype: object = None, copy: object = None) -> np.ndarray:
+    def __array__(self, dtype: object = None, copy: object = None) -> NDArray[Any]:
         return self._m.astype(dtype) if dtype else self._m.copy()  # type: ignore[call-overload]
 
     def __repr__(self) -> str:
         return f"Affine3d({self._m.tolist()})"
 
 
-def pose_from_string(text: str) -> np.ndarray:
+def pose_from_string(text: str) -> NDArray[Any]:
     """4 x 4 of "x y z qx qy qz qw"."""
     numbers = numbers_of(text, 7, "pose")
     T = np.eye(4)

@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ... import _easypbr, shapes
 from ...errors import ArgumentError
@@ -11,7 +11,7 @@ from .affine import Affine3d, from_quaternion, numbers_of, rotation, to_quaterni
 from .mesh import Mesh
 
 
-def _vector(values: ArrayLike) -> np.ndarray:
+def _vector(values: ArrayLike) -> NDArray[Any]:
     found = np.asarray(values, dtype=np.float64).ravel()
     if found.shape != (3,):
         raise ArgumentError(f"expected three numbers, got {values!r}")
@@ -22,6 +22,10 @@ class Camera:
     """A pose that looks at a point `dist_to_lookat()` ahead. m_fov is horizontal, in degrees, and the vertical one is m_fov divided by the
     aspect ratio, as the first EasyPBR had it, so that its saved viewpoints look the same."""
 
+    m_fov: float
+    m_near: float
+    m_far: float
+
     def __init__(self) -> None:
         self._T = np.eye(4)
         self._T[:3, 3] = 0, 0.5, 5
@@ -30,7 +34,7 @@ class Camera:
         self.m_fov, self.m_near, self.m_far = 30.0, 0.01, 5000.0
         self.m_exposure: float | None = None
         self.m_use_fixed_proj_matrix = False
-        self._K: np.ndarray | None = None
+        self._K: NDArray[Any] | None = None
         self._K_size = (1, 1)
 
     # What it is.
@@ -43,47 +47,47 @@ class Camera:
         pose = Affine3d(self._T, changed)
         return pose
 
-    def model_matrix(self) -> np.ndarray:
+    def model_matrix(self) -> NDArray[Any]:
         return self._T.copy()
 
     def model_matrix_affine(self) -> Affine3d:
         return Affine3d(self._T)
 
-    def view_matrix(self) -> np.ndarray:
+    def view_matrix(self) -> NDArray[Any]:
         return np.linalg.inv(self._T)
 
     def view_matrix_affine(self) -> Affine3d:
         return Affine3d(self.view_matrix())
 
-    def position(self) -> np.ndarray:
+    def position(self) -> NDArray[Any]:
         return self._T[:3, 3].copy()
 
-    def direction(self) -> np.ndarray:
+    def direction(self) -> NDArray[Any]:
         return -self._T[:3, 2]
 
-    def up(self) -> np.ndarray:
+    def up(self) -> NDArray[Any]:
         return self._T[:3, 1].copy()
 
-    def cam_axes(self) -> np.ndarray:
+    def cam_axes(self) -> NDArray[Any]:
         return self._T[:3, :3].copy()
 
-    def lookat(self) -> np.ndarray:
+    def lookat(self) -> NDArray[Any]:
         return self.position() + self._distance * self.direction()
 
     def dist_to_lookat(self) -> float:
         return self._distance
 
-    def intrinsics(self, width: float, height: float) -> np.ndarray:
+    def intrinsics(self, width: float, height: float) -> NDArray[Any]:
         """3 x 3, OpenCV's."""
         return self.camera(width / height).opencv_K((int(width), int(height)))
 
     # Changes.
 
-    def _move(self, T: np.ndarray) -> None:
+    def _move(self, T: NDArray[Any]) -> None:
         self._T = np.array(T, dtype=np.float64)
         self._is_changed = True
 
-    def _look(self, position: np.ndarray, target: np.ndarray) -> None:
+    def _look(self, position: NDArray[Any], target: NDArray[Any]) -> None:
         if np.allclose(position, target):
             raise ArgumentError("a camera cannot look at the point where it is")
         up = (0.0, 1.0, 0.0) if abs((target - position)[[0, 2]]).max() > 1e-9 * abs(target - position).max() else (0.0, 0.0, -1.0)
@@ -201,7 +205,7 @@ class SpotLight(Camera):
         if np.linalg.norm(position) > 0:
             self._look(position, target)
 
-    def _move(self, T: np.ndarray) -> None:
+    def _move(self, T: NDArray[Any]) -> None:
         before = self._T[:3, 3].copy()
         super()._move(T)
         if hasattr(self, "_light") and not np.allclose(before, self._T[:3, 3]):
@@ -217,7 +221,7 @@ class SpotLight(Camera):
         self._light.intensity = float(power)
 
     @property
-    def m_color(self) -> np.ndarray:
+    def m_color(self) -> NDArray[Any]:
         return np.asarray(self._light.color)
 
     @m_color.setter

@@ -91,7 +91,7 @@ def flat(table: dict[str, Any], prefix: str = "") -> dict[str, Any]:
     return found
 
 
-def read(path: "str | os.PathLike") -> tuple[dict[str, Any], dict[str, Any]]:
+def read(path: "str | os.PathLike[str]") -> tuple[dict[str, Any], dict[str, Any]]:
     """Settings by their full names, and the values of `visualization` by theirs. What has no counterpart is named once, in the log."""
     try:
         with open(path, encoding="utf-8") as file:

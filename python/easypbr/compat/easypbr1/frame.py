@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ... import _easypbr, shapes
 from ...errors import ArgumentError
@@ -15,9 +15,17 @@ from .mesh import Mesh
 class Frame:
     """A posed image: OpenCV's K, and tf_cam_world, the world in the camera's frame with OpenCV's axes."""
 
+    rgb_32f: Mat
+    rgb_8u: Mat
+    gray_32f: Mat
+    depth: Mat
+    mask: Mat
+    width: int
+    height: int
+
     def __init__(self) -> None:
         self.rgb_32f = self.rgb_8u = self.gray_32f = self.depth = self.mask = Mat()
-        self.K: np.ndarray | None = None
+        self.K: NDArray[Any] | None = None
         self.tf_cam_world: Any = None
         self.width = self.height = 0
         self.cam_id = self.frame_idx = -1
@@ -29,18 +37,18 @@ class Frame:
         axes = np.diag([1.0, -1 if flip_y else 1, -1 if flip_z else 1, 1])
         self.tf_cam_world = np.linalg.inv(camera.model_matrix() @ axes)
 
-    def pos_in_world(self) -> np.ndarray:
+    def pos_in_world(self) -> NDArray[Any]:
         return np.linalg.inv(np.asarray(self.tf_cam_world))[:3, 3]
 
-    def look_dir(self) -> np.ndarray:
+    def look_dir(self) -> NDArray[Any]:
         return np.linalg.inv(np.asarray(self.tf_cam_world))[:3, 2]
 
-    def project(self, point: ArrayLike) -> np.ndarray:
+    def project(self, point: ArrayLike) -> NDArray[Any]:
         """Pixel of a point of the world."""
         p = self._lens() @ (np.asarray(self.tf_cam_world) @ np.append(np.asarray(point, dtype=np.float64), 1))[:3]
         return p[:2] / p[2]
 
-    def unproject(self, x: float, y: float, depth: float) -> np.ndarray:
+    def unproject(self, x: float, y: float, depth: float) -> NDArray[Any]:
         p = np.linalg.solve(self._lens(), [x, y, 1.0]) * depth
         return (np.linalg.inv(np.asarray(self.tf_cam_world)) @ np.append(p, 1))[:3]
 
@@ -69,7 +77,7 @@ class Frame:
                                      size=(self.width, self.height), depth=0.1 * scale_multiplier)  # fmt: skip
         return Mesh._of(made)
 
-    def _lens(self) -> np.ndarray:
+    def _lens(self) -> NDArray[Any]:
         if self.K is None:
             raise ArgumentError("the frame has no K")
         return np.asarray(self.K, dtype=np.float64)

@@ -6,14 +6,14 @@ import time
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ... import _easypbr
 from ...errors import ArgumentError
 from .mat import Mat
 
 
-def _read(path: "str | os.PathLike") -> list[str]:
+def _read(path: "str | os.PathLike[str]") -> list[str]:
     with open(path, encoding="utf-8") as file:
         lines = [line.split("#")[0].strip() for line in file]
     return [line for line in lines if line]
@@ -22,7 +22,7 @@ def _read(path: "str | os.PathLike") -> list[str]:
 class ColorMngr:
     """Colours of numbers by a colour map; "pubu" is drawn as cividis."""
 
-    def eigen2color(self, values: ArrayLike, color_scheme: str = "magma") -> np.ndarray:
+    def eigen2color(self, values: ArrayLike, color_scheme: str = "magma") -> NDArray[Any]:
         """n x 3, 0 to 1, from the least to the largest value."""
         v = np.asarray(values, dtype=np.float64).ravel()
         span = v.max() - v.min() if v.size else 0
@@ -33,26 +33,26 @@ class ColorMngr:
         data = mat.data[:, :, 0]
         return Mat(self.eigen2color(data, color_scheme).reshape(*data.shape, 3).astype(np.float32))
 
-    def magma_color(self, x: float) -> np.ndarray:
+    def magma_color(self, x: float) -> NDArray[Any]:
         return _one(x, "magma")
 
-    def plasma_color(self, x: float) -> np.ndarray:
+    def plasma_color(self, x: float) -> NDArray[Any]:
         return _one(x, "plasma")
 
-    def viridis_color(self, x: float) -> np.ndarray:
+    def viridis_color(self, x: float) -> NDArray[Any]:
         return _one(x, "viridis")
 
 
-def _one(x: float, name: str) -> np.ndarray:
+def _one(x: float, name: str) -> NDArray[Any]:
     return _easypbr.colormap(name)[int(round(min(max(x, 0.0), 1.0) * 255))] / 255
 
 
 class LabelMngr:
     """LabelMngr(labels_file, colors_file, frequency_file, unlabeled), or LabelMngr(classes, unlabeled) with generated colours."""
 
-    def __init__(self, classes: "int | str | os.PathLike", *more: Any) -> None:
-        self._colors: np.ndarray | None = None
-        self._frequencies: np.ndarray = np.zeros(0)
+    def __init__(self, classes: "int | str | os.PathLike[str]", *more: Any) -> None:
+        self._colors: NDArray[Any] | None = None
+        self._frequencies: NDArray[Any] = np.zeros(0)
         if isinstance(classes, int):
             self._names = [str(label) for label in range(classes)]
             self._unlabeled = int(more[0]) if more else None
@@ -70,7 +70,7 @@ class LabelMngr:
     def get_idx_unlabeled(self) -> int | None:
         return self._unlabeled
 
-    def class_frequencies(self) -> np.ndarray:
+    def class_frequencies(self) -> NDArray[Any]:
         return self._frequencies
 
     def idx2label(self, index: int) -> str:

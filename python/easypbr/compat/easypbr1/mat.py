@@ -4,7 +4,7 @@ import os
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ... import _easypbr
 from ...errors import ArgumentError
@@ -14,7 +14,9 @@ class Mat:
     """An image, height x width x channels. Like OpenCV's, its channels are blue, green, red where files are read and written; what
     the renderer returns is red, green, blue, bottom row first, so that scripts call .rgba2bgra().flip_y()."""
 
-    def __init__(self, source: "str | os.PathLike | ArrayLike | None" = None) -> None:
+    data: NDArray[Any]
+
+    def __init__(self, source: "str | os.PathLike[str] | ArrayLike | None" = None) -> None:
         self.data = np.zeros((0, 0, 1), np.uint8)
         if isinstance(source, (str, os.PathLike)):
             self.from_file(source)
@@ -28,11 +30,11 @@ class Mat:
         self.data = np.atleast_3d(data)
         return self
 
-    def from_file(self, path: "str | os.PathLike") -> "Mat":
+    def from_file(self, path: "str | os.PathLike[str]") -> "Mat":
         self.data = _swapped(_easypbr.load_image(path))
         return self
 
-    def to_file(self, path: "str | os.PathLike") -> None:
+    def to_file(self, path: "str | os.PathLike[str]") -> None:
         _easypbr.save_image(np.ascontiguousarray(_swapped(self.data)), path)
 
     def clone(self) -> "Mat":
@@ -55,7 +57,10 @@ class Mat:
     def _swap(self) -> "Mat":
         return Mat(_swapped(self.data))
 
-    rgb2bgr = bgr2rgb = rgba2bgra = bgra2rgba = _swap
+    rgb2bgr = _swap
+    bgr2rgb = _swap
+    rgba2bgra = _swap
+    bgra2rgba = _swap
 
     def bgra2bgr(self) -> "Mat":
         return Mat(self.data[:, :, :3])
@@ -89,11 +94,11 @@ class Mat:
     def to_cv32f(self) -> "Mat":
         return Mat(self.data.astype(np.float32) / 255 if self.data.dtype == np.uint8 else self.data.astype(np.float32))
 
-    def __array__(self, dtype: Any = None, copy: Any = None) -> np.ndarray:
+    def __array__(self, dtype: Any = None, copy: Any = None) -> NDArray[Any]:
         return self.data.astype(dtype) if dtype else self.data.copy()
 
 
-def _swapped(data: np.ndarray) -> np.ndarray:
+def _swapped(data: NDArray[Any]) -> NDArray[Any]:
     """Red and blue exchanged; one channel stays."""
     return data[:, :, [2, 1, 0, 3][: data.shape[2]]] if data.ndim == 3 and data.shape[2] >= 3 else data
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ... import _easypbr, shapes
 from ...errors import ArgumentError
@@ -24,10 +24,14 @@ class Mesh:
     """Arrays are assigned in any order and in steps; they must fit each other when the mesh is drawn, saved or changed by a method,
     else that raises ArgumentError."""
 
-    def __init__(self, path: "str | os.PathLike | None" = None) -> None:
+    m_vis: VisOptions
+    m_disk_path: str
+    name: str
+
+    def __init__(self, path: "str | os.PathLike[str] | None" = None) -> None:
         self._mesh = _easypbr.Mesh() if path is None else _easypbr.Mesh(path)
         self._pending: dict[str, Any] = {}
-        self._labels: dict[str, np.ndarray] = {}
+        self._labels: dict[str, NDArray[Any]] = {}
         self._fields: dict[str, Any] = {}
         self._children: list[Mesh] = []
         self.m_vis = VisOptions()
@@ -100,12 +104,12 @@ class Mesh:
 
     # Files.
 
-    def load_from_file(self, path: "str | os.PathLike") -> None:
+    def load_from_file(self, path: "str | os.PathLike[str]") -> None:
         self._mesh, self._pending, self.m_disk_path = _easypbr.Mesh(path), {}, os.fspath(path)
 
     read_obj = load_from_file
 
-    def save_to_file(self, path: "str | os.PathLike") -> None:
+    def save_to_file(self, path: "str | os.PathLike[str]") -> None:
         """Without the pose, unlike the first EasyPBR, which baked it and dropped vertices at the origin."""
         self.handle().save(path)
 
@@ -223,7 +227,7 @@ class Mesh:
         low, high = self.handle().bounding_box(np.eye(4))
         return float((high - low).max())
 
-    def centroid(self) -> np.ndarray:
+    def centroid(self) -> NDArray[Any]:
         return self.handle().bounding_box(np.eye(4)).mean(axis=0)
 
     def normalize_size(self) -> None:
@@ -240,7 +244,7 @@ class Mesh:
 
     # Normals and tangents.
 
-    def face_normals(self) -> np.ndarray:
+    def face_normals(self) -> NDArray[Any]:
         return self.handle().face_normals()
 
     def recalculate_normals(self) -> None:
@@ -280,24 +284,24 @@ class Mesh:
         y = np.clip(((1 - mesh.UV[:, 1]) * mat.rows).astype(int), 0, mat.rows - 1)
         mesh.assign(C=data[y, x, :3])
 
-    def _texture(self, name: str, source: "str | os.PathLike | Mat") -> None:
+    def _texture(self, name: str, source: "str | os.PathLike[str] | Mat") -> None:
         setattr(self._mesh.material, f"{name}_texture", _swapped(source.data) if isinstance(source, Mat) else os.fspath(source))
 
-    def set_diffuse_tex(self, source: "str | os.PathLike | Mat", subsample: int = 1, read_alpha: bool = False) -> None:
+    def set_diffuse_tex(self, source: "str | os.PathLike[str] | Mat", subsample: int = 1, read_alpha: bool = False) -> None:
         """Textures are used in full; `subsample` has no effect."""
         self._texture("base_color", source)
 
-    def set_metalness_tex(self, source: "str | os.PathLike | Mat", subsample: int = 1, read_alpha: bool = False) -> None:
+    def set_metalness_tex(self, source: "str | os.PathLike[str] | Mat", subsample: int = 1, read_alpha: bool = False) -> None:
         self._texture("metallic", source)
 
-    def set_roughness_tex(self, source: "str | os.PathLike | Mat", subsample: int = 1, read_alpha: bool = False) -> None:
+    def set_roughness_tex(self, source: "str | os.PathLike[str] | Mat", subsample: int = 1, read_alpha: bool = False) -> None:
         self._texture("roughness", source)
 
-    def set_smoothness_tex(self, source: "str | os.PathLike | Mat", subsample: int = 1, read_alpha: bool = False) -> None:
+    def set_smoothness_tex(self, source: "str | os.PathLike[str] | Mat", subsample: int = 1, read_alpha: bool = False) -> None:
         data = source.data if isinstance(source, Mat) else _easypbr.load_image(source)
         self._mesh.material.roughness_texture = (255 if data.dtype == np.uint8 else 1) - data
 
-    def set_normals_tex(self, source: "str | os.PathLike | Mat", subsample: int = 1, read_alpha: bool = False) -> None:
+    def set_normals_tex(self, source: "str | os.PathLike[str] | Mat", subsample: int = 1, read_alpha: bool = False) -> None:
         self._texture("normal", source)
 
     # Topology.
@@ -352,7 +356,7 @@ class Mesh:
         """How many vertices are within the radius."""
         return int((np.linalg.norm(self.V - np.asarray(query).ravel(), axis=1) <= radius).sum())
 
-    def compute_distance_to_mesh(self, other: "Mesh") -> np.ndarray:
+    def compute_distance_to_mesh(self, other: "Mesh") -> NDArray[Any]:
         """Distances of the vertices to the other surface, in D too."""
         self.D = other.handle().closest_points(self.handle().V)[0].reshape(-1, 1)
         return self.D
@@ -370,9 +374,14 @@ class Mesh:
             raise ArgumentError(f"there is no field '{name}'")
         return self._fields[name]
 
-    get_extra_field_int = get_extra_field_float = get_extra_field_double = get_extra_field
-    get_extra_field_string = get_extra_field_mat = get_extra_field
-    get_extra_field_matrixXi = get_extra_field_matrixXf = get_extra_field_matrixXd = get_extra_field
+    get_extra_field_int = get_extra_field
+    get_extra_field_float = get_extra_field
+    get_extra_field_double = get_extra_field
+    get_extra_field_string = get_extra_field
+    get_extra_field_mat = get_extra_field
+    get_extra_field_matrixXi = get_extra_field
+    get_extra_field_matrixXf = get_extra_field
+    get_extra_field_matrixXd = get_extra_field
 
     def preallocate_V(self, count: int) -> None:
         """Without effect."""

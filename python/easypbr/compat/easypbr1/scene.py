@@ -1,6 +1,9 @@
 """Scene: the meshes that all viewers show."""
 
+from typing import Any
+
 import numpy as np
+from numpy.typing import NDArray
 
 from ...errors import UnknownNameError
 from ...scene import Scene as OwnScene
@@ -77,7 +80,7 @@ class Scene:
             mesh.m_vis.m_is_visible = visible
 
     @staticmethod
-    def _box() -> np.ndarray:
+    def _box() -> NDArray[Any]:
         boxes = [mesh.handle().bounding_box() for mesh in _shown.values()]
         return np.array([np.min([box[0] for box in boxes], axis=0), np.max([box[1] for box in boxes], axis=0)]) if boxes else np.zeros((2, 3))
 
@@ -88,7 +91,7 @@ class Scene:
         return float((high - low).max())
 
     @staticmethod
-    def get_centroid() -> np.ndarray:
+    def get_centroid() -> NDArray[Any]:
         return Scene._box().mean(axis=0)
 
     @staticmethod

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ..._easypbr import Automatic, auto
 from ...errors import ArgumentError, UnknownNameError
@@ -36,7 +36,15 @@ _LAYERS = {
 class Viewer:
     """Made by Viewer.create(). `own` is EasyPBR's viewer, with all that it has beyond this interface."""
 
-    def __init__(self, config_file: "str | os.PathLike" = "") -> None:
+    own: OwnViewer
+    m_recorder: "Recorder"
+    m_gui: "Gui"
+    m_nr_drawn_frames: int
+    m_recording_path: str
+    m_record_gui: bool
+    m_record_with_transparency: bool
+
+    def __init__(self, config_file: "str | os.PathLike[str]" = "") -> None:
         settings, values = config.read(config_file) if config_file else ({}, {})
         self.own = OwnViewer((1920, 1080), settings)
         self._camera: Camera | None = None
@@ -47,7 +55,7 @@ class Viewer:
         self.m_recorder, self.m_gui = Recorder(self), Gui()
         self.m_nr_drawn_frames = 0
         self.m_recording_path, self.m_record_gui, self.m_record_with_transparency = "./recordings", False, True
-        self._frame: np.ndarray | None = None
+        self._frame: NDArray[Any] | None = None
         self._is_off_screen = bool(values.get("use_offscreen")) or not any(map(os.environ.get, ("DISPLAY", "WAYLAND_DISPLAY")))
         for index, name in enumerate(_STUDIO):
             self._configure_light(index, name)
@@ -57,7 +65,7 @@ class Viewer:
         _viewers.add(self)
 
     @classmethod
-    def create(cls, config_file: "str | os.PathLike" = "") -> "Viewer":
+    def create(cls, config_file: "str | os.PathLike[str]" = "") -> "Viewer":
         """Paths in the file are relative to the working directory; the environment map is left out where it is not there."""
         return cls(config_file)
 
@@ -95,7 +103,7 @@ class Viewer:
 
     m_default_camera = m_camera
 
-    def _seen(self) -> np.ndarray | None:
+    def _seen(self) -> NDArray[Any] | None:
         flush()
         self._fit_size()
         return None if Scene.nr_meshes() == 0 else np.array(self.own.camera.T_world_cam)
@@ -160,7 +168,7 @@ class Viewer:
             self.m_nr_drawn_frames += 1
         self.m_recorder._add()
 
-    def _picture(self) -> np.ndarray:
+    def _picture(self) -> NDArray[Any]:
         if self._frame is None:
             self.draw()
         assert self._frame is not None
@@ -191,7 +199,7 @@ class Viewer:
 
     # The look.
 
-    def load_environment_map(self, path: "str | os.PathLike") -> None:
+    def load_environment_map(self, path: "str | os.PathLike[str]") -> None:
         self.own.load_environment_map(path)
 
     def spotlight_with_idx(self, index: int) -> SpotLight:
@@ -202,7 +210,7 @@ class Viewer:
         return SpotLight(self.own.lights[_STUDIO[index]])
 
     @property
-    def m_background_color(self) -> np.ndarray:
+    def m_background_color(self) -> NDArray[Any]:
         """sRGB, 0 to 1."""
         return np.asarray(self.own.settings.background.color)
 
@@ -234,7 +242,9 @@ class Viewer:
     def m_enable_edl_lighting(self, on: bool) -> None:
         self.own.settings.edl.enabled = bool(on)
 
-    m_ao_power = m_edl_strength = 1.0  # Their numbers mean nothing to other formulas.
+    # Their numbers mean nothing to other formulas.
+    m_ao_power: float = 1.0
+    m_edl_strength: float = 1.0
     m_enable_culling = m_debug = False
     m_swap_buffers = True
 
@@ -252,7 +262,7 @@ class Recorder:
             raise ArgumentError("the viewer of this recorder is gone")
         return viewer
 
-    def record(self, name: str, folder: "str | os.PathLike" = ".") -> pathlib.Path:
+    def record(self, name: str, folder: "str | os.PathLike[str]" = ".") -> pathlib.Path:
         """Writes what is seen now to folder/name."""
         viewer = self._of()
         viewer._hand_over()
@@ -262,7 +272,7 @@ class Recorder:
 
     snapshot = record
 
-    def write_without_buffering(self, mat: Mat, name: str, folder: "str | os.PathLike" = ".") -> None:
+    def write_without_buffering(self, mat: Mat, name: str, folder: "str | os.PathLike[str]" = ".") -> None:
         pathlib.Path(folder).mkdir(parents=True, exist_ok=True)
         mat.to_file(pathlib.Path(folder) / name)
 

@@ -1,8 +1,10 @@
 """Cameras: they look along -z of their node, as OpenGL's."""
 
 from abc import ABC, abstractmethod
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...errors import ArgumentError
 from .constants import DEFAULT_Z_FAR, DEFAULT_Z_NEAR
@@ -11,16 +13,19 @@ from .constants import DEFAULT_Z_FAR, DEFAULT_Z_NEAR
 class Camera(ABC):
     """What all cameras have: a name and the depths that they see, in metres."""
 
+    znear: float
+    zfar: float | None
+
     def __init__(self, znear: float = DEFAULT_Z_NEAR, zfar: float | None = DEFAULT_Z_FAR, name: str | None = None) -> None:
         self.name = name
         self.znear = float(znear)
         self.zfar = None if zfar is None else float(zfar)
 
     @abstractmethod
-    def get_projection_matrix(self, width: int | None = None, height: int | None = None) -> np.ndarray:
+    def get_projection_matrix(self, width: int | None = None, height: int | None = None) -> NDArray[Any]:
         """OpenGL's 4 x 4 projection matrix for an image of this size."""
 
-    def _depth_rows(self, P: np.ndarray) -> np.ndarray:
+    def _depth_rows(self, P: NDArray[Any]) -> NDArray[Any]:
         """Completes the matrix of a perspective camera."""
         near, far = self.znear, self.zfar
         P[3][2] = -1.0
@@ -35,6 +40,8 @@ class Camera(ABC):
 
 class PerspectiveCamera(Camera):
     """`yfov`: vertical field of view in radians; `aspectRatio`: width / height, by default that of the image."""
+
+    yfov: float
 
     def __init__(
         self,
@@ -55,7 +62,7 @@ class PerspectiveCamera(Camera):
             raise ArgumentError("a PerspectiveCamera without an aspectRatio: expected width and height")
         return width / height
 
-    def get_projection_matrix(self, width: int | None = None, height: int | None = None) -> np.ndarray:
+    def get_projection_matrix(self, width: int | None = None, height: int | None = None) -> NDArray[Any]:
         P = np.zeros((4, 4))
         P[1][1] = 1 / np.tan(self.yfov / 2)
         P[0][0] = P[1][1] / self._aspect(width, height)
@@ -70,6 +77,9 @@ class PerspectiveCamera(Camera):
 class OrthographicCamera(Camera):
     """`ymag`: half of the view volume's height in metres; its width follows from the image."""
 
+    xmag: float
+    ymag: float
+
     def __init__(
         self,
         xmag: float,
@@ -81,7 +91,7 @@ class OrthographicCamera(Camera):
         super().__init__(znear, zfar, name)
         self.xmag, self.ymag = float(xmag), float(ymag)
 
-    def get_projection_matrix(self, width: int | None = None, height: int | None = None) -> np.ndarray:
+    def get_projection_matrix(self, width: int | None = None, height: int | None = None) -> NDArray[Any]:
         xmag = self.xmag if width is None or height is None else width / height * self.ymag
         near, far = self.znear, DEFAULT_Z_FAR if self.zfar is None else self.zfar
         P = np.zeros((4, 4))
@@ -98,6 +108,11 @@ class OrthographicCamera(Camera):
 class IntrinsicsCamera(Camera):
     """A pinhole in pixels: the principal point counts from the corner of the upper left pixel."""
 
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+
     def __init__(
         self,
         fx: float,
@@ -111,7 +126,7 @@ class IntrinsicsCamera(Camera):
         super().__init__(znear, zfar, name)
         self.fx, self.fy, self.cx, self.cy = float(fx), float(fy), float(cx), float(cy)
 
-    def get_projection_matrix(self, width: int | None = None, height: int | None = None) -> np.ndarray:
+    def get_projection_matrix(self, width: int | None = None, height: int | None = None) -> NDArray[Any]:
         if width is None or height is None:
             raise ArgumentError("an IntrinsicsCamera: expected width and height")
         P = np.zeros((4, 4))

@@ -4,6 +4,7 @@ from collections.abc import Container
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import _easypbr
 from ...errors import ArgumentError
@@ -22,7 +23,7 @@ _SHADOWS = ((DirectionalLight, RenderFlags.SHADOWS_DIRECTIONAL), (PointLight, Re
 _SAMPLES = 4
 
 
-def _state(primitive: Primitive) -> tuple[list[Any], tuple]:
+def _state(primitive: Primitive) -> tuple[list[Any], tuple[Any, ...]]:
     """What a primitive was made from: objects that are compared by identity, and values."""
     p, material = primitive, primitive.material
     objects = [p.positions, p.normals, p.indices, p.color_0, p.texcoord_0, p.poses, material, *material.textures()]
@@ -32,18 +33,20 @@ def _state(primitive: Primitive) -> tuple[list[Any], tuple]:
     return objects, values
 
 
-def _is_same(a: tuple[list[Any], tuple], b: tuple[list[Any], tuple]) -> bool:
+def _is_same(a: tuple[list[Any], tuple[Any, ...]], b: tuple[list[Any], tuple[Any, ...]]) -> bool:
     return a[1] == b[1] and len(a[0]) == len(b[0]) and all(x is y for x, y in zip(a[0], b[0]))
 
 
 class Drawing:
     """Draws a pyrender scene with a viewer of its own."""
 
+    view: OwnViewer
+
     def __init__(self) -> None:
         self.view = OwnViewer(scene=OwnScene())
         #: Names of objects: the nodes that they show.
         self.shown: dict[str, Node] = {}
-        self._primitives: dict[Primitive, tuple[tuple[list[Any], tuple], _easypbr.Mesh]] = {}
+        self._primitives: dict[Primitive, tuple[tuple[list[Any], tuple[Any, ...]], _easypbr.Mesh]] = {}
         self._nodes: dict[Node, tuple[str, list[_easypbr.Mesh], _easypbr.Mesh]] = {}
         self._ambient: tuple[float, ...] | None = None
         self._count = 0
@@ -72,7 +75,7 @@ class Drawing:
             del self._primitives[primitive]
         self._light(scene, lights, flags)
 
-    def _show(self, node: Node, mesh: Mesh, pose: np.ndarray, flags: int, point_size: float) -> None:
+    def _show(self, node: Node, mesh: Mesh, pose: NDArray[Any], flags: int, point_size: float) -> None:
         made = [self._made(primitive) for primitive in mesh.primitives]
         name, parts, root = self._nodes.get(node, ("", [], None))
         if root is None or len(parts) != len(made) or any(a is not b for a, b in zip(parts, made)):
@@ -111,7 +114,7 @@ class Drawing:
             if getattr(style, name) != value:
                 setattr(style, name, value)
 
-    def _light(self, scene: Scene, lights: list, flags: int) -> None:
+    def _light(self, scene: Scene, lights: list[Any], flags: int) -> None:
         own, settings = self.view.scene, self.view.settings
         for name in own.light_names():
             own.remove_light(name)
@@ -132,7 +135,7 @@ class Drawing:
         for name, value in values.items():
             settings[name] = value
 
-    def set_camera(self, camera: Camera, pose: np.ndarray, width: int, height: int) -> None:
+    def set_camera(self, camera: Camera, pose: NDArray[Any], width: int, height: int) -> None:
         """Draws from a camera with this pose."""
         intrinsics = camera.intrinsics(width, height)
         if intrinsics is None:

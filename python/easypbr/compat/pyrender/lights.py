@@ -3,13 +3,15 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ... import _easypbr
 
 
 class Light:
     """What all lights have: a linear colour, and an intensity in lux (directional) or candela."""
+
+    intensity: float
 
     _type = "point"
 
@@ -19,7 +21,7 @@ class Light:
         self.intensity = 1.0 if intensity is None else float(intensity)
 
     @property
-    def color(self) -> np.ndarray:
+    def color(self) -> NDArray[Any]:
         return self._color
 
     @color.setter
@@ -27,12 +29,12 @@ class Light:
         values = np.ones(3) if color is None else np.asarray(color, dtype=np.float64)
         self._color = np.full(3, values) if values.ndim == 0 else values[:3]
 
-    def made(self, pose: np.ndarray, casts_shadows: bool) -> "_easypbr.Light":
+    def made(self, pose: NDArray[Any], casts_shadows: bool) -> "_easypbr.Light":
         """The light of a node with this pose."""
         values: dict[str, Any] = {"color": self.color, "intensity": self.intensity, "casts_shadows": casts_shadows}
         return _easypbr.Light(self._type, **values, **self._placed(pose))
 
-    def _placed(self, pose: np.ndarray) -> dict[str, Any]:
+    def _placed(self, pose: NDArray[Any]) -> dict[str, Any]:
         return {"position": pose[:3, 3]}
 
 
@@ -41,7 +43,7 @@ class DirectionalLight(Light):
 
     _type = "directional"
 
-    def _placed(self, pose: np.ndarray) -> dict[str, Any]:
+    def _placed(self, pose: NDArray[Any]) -> dict[str, Any]:
         return {"direction": -pose[:3, 2]}
 
 
@@ -58,12 +60,15 @@ class PointLight(Light):
         super().__init__(color, intensity, name)
         self.range = range
 
-    def _placed(self, pose: np.ndarray) -> dict[str, Any]:
+    def _placed(self, pose: NDArray[Any]) -> dict[str, Any]:
         return {"position": pose[:3, 3], "range": self.range or 0}
 
 
 class SpotLight(Light):
     """A light at a point with a cone; its half angles are in radians."""
+
+    innerConeAngle: float
+    outerConeAngle: float
 
     _type = "spot"
 
@@ -80,6 +85,6 @@ class SpotLight(Light):
         self.range = range
         self.innerConeAngle, self.outerConeAngle = float(innerConeAngle), float(outerConeAngle)
 
-    def _placed(self, pose: np.ndarray) -> dict[str, Any]:
+    def _placed(self, pose: NDArray[Any]) -> dict[str, Any]:
         cone = {"inner_cone_deg": np.degrees(self.innerConeAngle), "outer_cone_deg": np.degrees(self.outerConeAngle)}
         return {"position": pose[:3, 3], "direction": -pose[:3, 2], "range": self.range or 0, **cone}

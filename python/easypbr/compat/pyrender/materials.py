@@ -4,12 +4,19 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ... import _easypbr
 
 
 class Sampler:
     """How a texture is sampled; EasyPBR filters and repeats all of them."""
+
+    name: str | None
+    magFilter: int | None
+    minFilter: int | None
+    wrapS: int
+    wrapT: int
 
     def __init__(
         self,
@@ -24,6 +31,12 @@ class Sampler:
 
 class Texture:
     """An image: an array, or an image of Pillow. `source_channels` says which channels it has: "R", "RG", "RGB", "RGBA"."""
+
+    name: str | None
+    sampler: Sampler | None
+    source_channels: str | None
+    width: int | None
+    height: int | None
 
     def __init__(
         self,
@@ -40,7 +53,7 @@ class Texture:
         self.source = source
 
     @property
-    def pixels(self) -> np.ndarray | None:
+    def pixels(self) -> NDArray[Any] | None:
         """Height x width x channels, uint8; None: there is no image."""
         if self.source is None:
             return None
@@ -57,7 +70,7 @@ def texture_of(given: Any, channels: str) -> Texture | None:
     return Texture(source=given, source_channels=channels)
 
 
-def _color(given: Any, length: int, default: Any) -> np.ndarray:
+def _color(given: Any, length: int, default: Any) -> NDArray[Any]:
     values = np.asarray(default if given is None else given, dtype=np.float64)
     values = np.full(length, values) if values.ndim == 0 else values
     return np.append(values, 1.0) if length == 4 and len(values) == 3 else values[:length]
@@ -91,7 +104,7 @@ class Material:
         self.alphaMode = "OPAQUE" if self.alphaMode is None else self.alphaMode
         self.alphaCutoff = 0.5 if self.alphaCutoff is None else float(self.alphaCutoff)
 
-    def _color_and_numbers(self) -> tuple[np.ndarray, float, float]:
+    def _color_and_numbers(self) -> tuple[NDArray[Any], float, float]:
         """Linear base colour with alpha, metallic, roughness."""
         return np.ones(4), 0.0, 1.0
 
@@ -141,7 +154,7 @@ class MetallicRoughnessMaterial(Material):
         self.roughnessFactor = 1.0 if self.roughnessFactor is None else float(self.roughnessFactor)
         self.metallicRoughnessTexture = texture_of(self.metallicRoughnessTexture, "GB")
 
-    def _color_and_numbers(self) -> tuple[np.ndarray, float, float]:
+    def _color_and_numbers(self) -> tuple[NDArray[Any], float, float]:
         return _color(self.baseColorFactor, 4, (1, 1, 1, 1)), _fraction(self.metallicFactor), _fraction(self.roughnessFactor)
 
     def _color_texture(self) -> Any:
@@ -175,7 +188,7 @@ class SpecularGlossinessMaterial(Material):
         self.glossinessFactor = float(self.glossinessFactor)
         self.specularGlossinessTexture = texture_of(self.specularGlossinessTexture, "RGBA")
 
-    def _color_and_numbers(self) -> tuple[np.ndarray, float, float]:
+    def _color_and_numbers(self) -> tuple[NDArray[Any], float, float]:
         return _color(self.diffuseFactor, 4, (1, 1, 1, 1)), 0.0, _fraction(1 - self.glossinessFactor)
 
     def _color_texture(self) -> Any:

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ... import _easypbr
 from ...conversions.maker import colors
@@ -14,13 +14,27 @@ from .constants import GLTF
 from .materials import Material, MetallicRoughnessMaterial
 
 
-def _floats(array: ArrayLike | None) -> np.ndarray | None:
+def _floats(array: ArrayLike | None) -> NDArray[Any] | None:
     return None if array is None else np.ascontiguousarray(array, dtype=np.float32)
 
 
 class Primitive(Bounded):
     """Arrays that are drawn at once. `indices` are m x 3 of triangles, or flat; `mode` is glTF's; `poses` (k x 4 x 4) draws
     it k times."""
+
+    positions: NDArray[Any]
+    normals: NDArray[Any] | None
+    tangents: NDArray[Any] | None
+    texcoord_0: NDArray[Any] | None
+    texcoord_1: NDArray[Any] | None
+    color_0: NDArray[Any] | None
+    joints_0: ArrayLike | None
+    weights_0: ArrayLike | None
+    targets: Any
+    indices: NDArray[Any] | None
+    material: Material
+    mode: int
+    poses: NDArray[Any] | None
 
     def __init__(
         self,
@@ -49,7 +63,7 @@ class Primitive(Bounded):
         self.poses = None if poses is None else np.asarray(poses, dtype=np.float64).reshape(-1, 4, 4)
 
     @property
-    def bounds(self) -> np.ndarray:
+    def bounds(self) -> NDArray[Any]:
         """Lower and upper corner, 2 x 3."""
         if len(self.positions) == 0:
             return np.zeros((2, 3))
@@ -63,10 +77,10 @@ class Primitive(Bounded):
     def is_transparent(self) -> bool:
         return self.material.alphaMode != "OPAQUE"
 
-    def _order(self) -> np.ndarray:
+    def _order(self) -> NDArray[Any]:
         return np.arange(len(self.positions)) if self.indices is None else self.indices.ravel()
 
-    def elements(self) -> tuple[str, np.ndarray | None]:
+    def elements(self) -> tuple[str, NDArray[Any] | None]:
         """ "F", "E" or "V", and the indices of triangles or lines."""
         order = self._order()
         if self.mode == GLTF.TRIANGLES:
@@ -114,6 +128,11 @@ class Primitive(Bounded):
 class Mesh(Bounded):
     """Primitives under one name."""
 
+    primitives: list[Primitive]
+    name: str | None
+    weights: ArrayLike | None
+    is_visible: bool
+
     def __init__(
         self, primitives: Sequence[Primitive], name: str | None = None, weights: ArrayLike | None = None, is_visible: bool = True
     ) -> None:
@@ -121,7 +140,7 @@ class Mesh(Bounded):
         self.name, self.weights, self.is_visible = name, weights, is_visible
 
     @property
-    def bounds(self) -> np.ndarray:
+    def bounds(self) -> NDArray[Any]:
         """Lower and upper corner, 2 x 3."""
         if not self.primitives:
             return np.zeros((2, 3))

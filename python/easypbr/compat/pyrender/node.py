@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ...errors import ArgumentError
 from .cameras import Camera
@@ -11,7 +11,7 @@ from .lights import Light
 from .mesh import Mesh
 
 
-def _rotation_matrix(quaternion: np.ndarray) -> np.ndarray:
+def _rotation_matrix(quaternion: NDArray[Any]) -> NDArray[Any]:
     """3 x 3 of (x, y, z, w), of length 1."""
     x, y, z, w = quaternion
     return np.array([
@@ -21,7 +21,7 @@ def _rotation_matrix(quaternion: np.ndarray) -> np.ndarray:
     ])  # fmt: skip
 
 
-def _quaternion(R: np.ndarray) -> np.ndarray:
+def _quaternion(R: NDArray[Any]) -> NDArray[Any]:
     """(x, y, z, w) of a rotation: the eigenvector of the largest eigenvalue of Bar-Itzhack's matrix."""
     K = np.array([
         [R[0, 0] - R[1, 1] - R[2, 2], R[0, 1] + R[1, 0], R[0, 2] + R[2, 0], R[2, 1] - R[1, 2]],
@@ -37,6 +37,13 @@ def _quaternion(R: np.ndarray) -> np.ndarray:
 class Node:
     """A pose with a mesh, a camera or a light, and children. The pose is a matrix, or translation, rotation (x, y, z, w) and
     scale."""
+
+    name: str | None
+    camera: Camera | None
+    mesh: Mesh | None
+    light: Light | None
+    skin: Any
+    weights: ArrayLike | None
 
     def __init__(
         self,
@@ -55,7 +62,7 @@ class Node:
         self.name, self.camera, self.mesh, self.light, self.skin, self.weights = name, camera, mesh, light, skin, weights
         self.children: list[Node] = list(children or ())
         self._translation, self._rotation, self._scale = np.zeros(3), np.array([0.0, 0, 0, 1]), np.ones(3)
-        self._matrix: np.ndarray | None = np.eye(4)
+        self._matrix: NDArray[Any] | None = np.eye(4)
         if matrix is not None:
             self.matrix = np.asarray(matrix)
         else:
@@ -64,7 +71,7 @@ class Node:
                     setattr(self, attribute, value)
 
     @property
-    def matrix(self) -> np.ndarray:
+    def matrix(self) -> NDArray[Any]:
         """4 x 4, to the parent's frame."""
         if self._matrix is None:
             T = np.eye(4)
@@ -84,7 +91,7 @@ class Node:
         self._rotation = _quaternion(T[:3, :3] / np.where(self._scale > 0, self._scale, 1))
 
     @property
-    def translation(self) -> np.ndarray:
+    def translation(self) -> NDArray[Any]:
         return self._translation
 
     @translation.setter
@@ -92,7 +99,7 @@ class Node:
         self._translation, self._matrix = np.array(value, dtype=np.float64).reshape(3), None
 
     @property
-    def rotation(self) -> np.ndarray:
+    def rotation(self) -> NDArray[Any]:
         """A quaternion, (x, y, z, w)."""
         return self._rotation
 
@@ -105,7 +112,7 @@ class Node:
         self._rotation, self._matrix = quaternion / length, None
 
     @property
-    def scale(self) -> np.ndarray:
+    def scale(self) -> NDArray[Any]:
         return self._scale
 
     @scale.setter

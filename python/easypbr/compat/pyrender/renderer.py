@@ -4,6 +4,7 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...errors import ArgumentError
 from .constants import RenderFlags
@@ -16,6 +17,10 @@ __all__ = ["OffscreenRenderer", "RenderFlags"]
 
 class OffscreenRenderer:
     """Renders without a window. What was made of a scene is kept for the next image, as long as the renderer lives."""
+
+    viewport_width: int
+    viewport_height: int
+    point_size: float
 
     def __init__(self, viewport_width: int, viewport_height: int, point_size: float = 1.0) -> None:
         self.viewport_width, self.viewport_height = int(viewport_width), int(viewport_height)
@@ -50,7 +55,7 @@ class OffscreenRenderer:
             return _segments(found["object_id"], depth, drawing, dict(seg_node_map or {})), depth
         return self._colors(scene, flags, depth, found["depth"]), depth
 
-    def _colors(self, scene: Scene, flags: int, depth: np.ndarray, seen: np.ndarray) -> np.ndarray:
+    def _colors(self, scene: Scene, flags: int, depth: NDArray[Any], seen: NDArray[Any]) -> NDArray[Any]:
         """The image over the background, which is sRGB as it is given."""
         assert self._drawing is not None
         view = self._drawing.view
@@ -79,7 +84,7 @@ class OffscreenRenderer:
         self._drawing = None
 
 
-def _segments(object_id: np.ndarray, depth: np.ndarray, drawing: Drawing, colors: "Mapping[Node, Any]") -> np.ndarray:
+def _segments(object_id: NDArray[Any], depth: NDArray[Any], drawing: Drawing, colors: "Mapping[Node, Any]") -> NDArray[Any]:
     """Height x width x 3 uint8: the colour of each pixel's node, black where there is none."""
     table = np.zeros((len(drawing.view.object_names()) + 1, 3), np.uint8)
     for place, name in enumerate(drawing.view.object_names(), 1):

@@ -4,7 +4,7 @@ from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from ...errors import ArgumentError
 from .bounded import Bounded
@@ -34,7 +34,7 @@ class Scene(Bounded):
                 self.add_node(node)
 
     @property
-    def bg_color(self) -> np.ndarray:
+    def bg_color(self) -> NDArray[Any]:
         return self._bg_color
 
     @bg_color.setter
@@ -44,7 +44,7 @@ class Scene(Bounded):
         self._bg_color = np.append(color, 1.0) if len(color) == 3 else color[:4]
 
     @property
-    def ambient_light(self) -> np.ndarray:
+    def ambient_light(self) -> NDArray[Any]:
         return self._ambient_light
 
     @ambient_light.setter
@@ -52,9 +52,9 @@ class Scene(Bounded):
         color = np.zeros(3) if value is None else np.asarray(value, dtype=np.float64)
         self._ambient_light = np.full(3, color) if color.ndim == 0 else color[:3]
 
-    def walk(self) -> Iterator[tuple[Node, Node | None, np.ndarray]]:
+    def walk(self) -> Iterator[tuple[Node, Node | None, NDArray[Any]]]:
         """Each node with its parent and its 4 x 4 pose in the world, parents first."""
-        waiting: list[tuple[Node, Node | None, np.ndarray]] = [(node, None, np.eye(4)) for node in reversed(self._roots)]
+        waiting: list[tuple[Node, Node | None, NDArray[Any]]] = [(node, None, np.eye(4)) for node in reversed(self._roots)]
         while waiting:
             node, parent, above = waiting.pop()
             pose = above @ node.matrix
@@ -119,7 +119,7 @@ class Scene(Bounded):
         self._main_camera_node = node
 
     @property
-    def bounds(self) -> np.ndarray:
+    def bounds(self) -> NDArray[Any]:
         """Lower and upper corner of all meshes in the world, 2 x 3."""
         corners = []
         for node, _, pose in self.walk():
@@ -193,7 +193,7 @@ class Scene(Bounded):
                 found.add(known)
         return found
 
-    def get_pose(self, node: Node) -> np.ndarray:
+    def get_pose(self, node: Node) -> NDArray[Any]:
         """The node's 4 x 4 pose in the world."""
         for known, _, pose in self.walk():
             if known is node:

@@ -14,6 +14,10 @@ class Viewer:
     """Shows a scene in EasyPBR's window until it is closed; with `run_in_thread` the window runs on its own thread. Change the
     scene under `render_lock` and call `update()`. Keys, flags of the window and its other options are EasyPBR's own."""
 
+    render_lock: "threading.RLock"
+    render_flags: dict[str, Any]
+    viewer_flags: dict[str, Any]
+
     def __init__(
         self,
         scene: Scene,
