@@ -2,7 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <string>
+
 #include "easypbr/core/error.h"
+#include "easypbr/core/named_colors.h"
 
 namespace easypbr::color_test {
 
@@ -29,6 +33,18 @@ TEST(Color, ReadsEverySpelling) {
     EXPECT_EQ(parse_color("0.25,0.5,1"), Vec3(0.25f, 0.5f, 1));
     EXPECT_EQ(parse_color("white"), Vec3(1, 1, 1));
     EXPECT_EQ(to_hex(parse_color("#12ab9f")), "#12ab9f");
+}
+
+TEST(Color, ReadsNamesOfCss) {
+    // CSS Color Module Level 4, section 6.1: 148 names, of which seven greys are spelt in two ways, as are cyan and magenta.
+    EXPECT_EQ(color_names().size(), 148u);
+    EXPECT_EQ(to_hex(parse_color("tomato")), "#ff6347");
+    EXPECT_EQ(to_hex(parse_color("RebeccaPurple")), "#663399");
+    EXPECT_EQ(to_hex(parse_color("aliceblue")), "#f0f8ff");
+    EXPECT_EQ(to_hex(parse_color("yellowgreen")), "#9acd32");
+    std::map<std::string, int> spellings;
+    for (const std::string& name : color_names()) ++spellings[to_hex(parse_color(name))];
+    EXPECT_EQ(spellings.size(), 148u - 9);
 }
 
 TEST(Color, RefusesWhatIsNoColor) {

@@ -68,3 +68,14 @@ def test_settings_take_the_same_names():
     settings.alpha_mode = "blend"
     with pytest.raises(ValueError):
         settings.ior = 0.5
+
+
+def test_colours_by_all_names_of_css():
+    """Against matplotlib's table. A material's colour is linear: the curve of IEC 61966-2-1, up to the last bits of a float."""
+    from matplotlib.colors import CSS4_COLORS
+
+    assert len(CSS4_COLORS) == 148
+    for name, code in CSS4_COLORS.items():
+        srgb = np.array([int(code[i : i + 2], 16) for i in (1, 3, 5)]) / 255
+        linear = np.where(srgb <= 0.04045, srgb / 12.92, ((srgb + 0.055) / 1.055) ** 2.4)
+        assert np.allclose(easypbr.Material(base_color=name).base_color, linear, rtol=0, atol=1e-6), name

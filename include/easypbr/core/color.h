@@ -37,7 +37,7 @@ inline Rgba8 opaque(const Rgb8& color) {
     return {color[0], color[1], color[2], 255};
 }
 
-/// sRGB colour in [0, 1] from '#rgb', '#rrggbb', 'r,g,b' (numbers in 0..1) or a basic name such as 'white'.
+/// sRGB colour in [0, 1] from '#rgb', '#rrggbb', 'r,g,b' (numbers in 0..1) or a name of CSS such as 'tomato'.
 /// Throws ArgumentError for anything else.
 Vec3 parse_color(std::string_view text);
 

@@ -5,31 +5,23 @@
 #include <algorithm>
 #include <array>
 #include <charconv>
-#include <map>
-#include <vector>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/named_colors.h"
 #include "easypbr/core/suggest.h"
 
 namespace easypbr {
 namespace {
 
-const std::map<std::string, const char*, std::less<>>& named_colors() {
-    static const std::map<std::string, const char*, std::less<>> names = {
-        {"black", "#000000"},   {"white", "#ffffff"},   {"grey", "#808080"},   {"gray", "#808080"},
-        {"red", "#ff0000"},     {"green", "#008000"},   {"blue", "#0000ff"},   {"yellow", "#ffff00"},
-        {"cyan", "#00ffff"},    {"magenta", "#ff00ff"}, {"orange", "#ffa500"}, {"lightgrey", "#d3d3d3"},
-        {"darkgrey", "#a9a9a9"}};
-    return names;
-}
-
 [[noreturn]] void reject(std::string_view text) {
-    std::vector<std::string> names;
-    for (const auto& [name, hex] : named_colors()) names.push_back(name);
     throw ArgumentError(
         fmt::format("colour '{}': expected '#rgb', '#rrggbb', 'r,g,b' with numbers from 0 to 1, or a "
-                    "name such as white{}",
-                    text, did_you_mean(text, names)));
+                    "name of CSS such as white{}",
+                    text, did_you_mean(text, color_names())));
+}
+
+Vec3 of_code(unsigned rgb) {
+    return Vec3((rgb >> 16) & 255, (rgb >> 8) & 255, rgb & 255) / 255.0f;
 }
 
 Vec3 parse_hex(std::string_view text) {
@@ -37,7 +29,7 @@ Vec3 parse_hex(std::string_view text) {
     unsigned value = 0;
     const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value, 16);
     if (error != std::errc() || end != digits.data() + digits.size()) reject(text);
-    if (digits.size() == 6) return Vec3((value >> 16) & 255, (value >> 8) & 255, value & 255) / 255.0f;
+    if (digits.size() == 6) return of_code(value);
     if (digits.size() == 3) return Vec3((value >> 8) & 15, (value >> 4) & 15, value & 15) / 15.0f;
     reject(text);
 }
@@ -84,8 +76,7 @@ Rgb8 to_rgb8(const Vec3& srgb) {
 
 Vec3 parse_color(std::string_view text) {
     if (!text.empty() && text[0] == '#') return parse_hex(text);
-    if (const auto found = named_colors().find(text); found != named_colors().end())
-        return parse_hex(found->second);
+    if (const auto code = named_color(text)) return of_code(*code);
     return parse_numbers(text);
 }
 
