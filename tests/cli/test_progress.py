@@ -84,3 +84,15 @@ def test_a_still_of_more_than_two_seconds_shows_the_time_left(environment, small
 def test_a_quick_still_says_nothing(environment, easypbr, small, tmp_path):
     arguments = ("render", small, "-o", tmp_path / "a.png", "--size", "16x16", "--samples", "1")
     assert said_on_a_terminal(environment, *arguments) == ""
+
+
+def test_convert_says_which_step_runs(environment, tmp_path):
+    grid = tmp_path / "grid.obj"
+    side = 100
+    vertices = "".join(f"v {x} {y} {x * y % 7}\n" for y in range(side) for x in range(side))
+    faces = "".join(f"f {i} {i + 1} {i + side}\n" for i in range(1, side * (side - 1)) if i % side)
+    grid.write_text(vertices + faces)
+    # Several times the two seconds that are silent, on one core.
+    said = said_on_a_terminal(environment, "convert", grid, tmp_path / "a.ply", "--smooth", "30000")
+    assert re.search(r"--smooth, 2 of 3, for 0:\d\d", said) and said.endswith("\r\033[K")
+    assert said_on_a_terminal(environment, "convert", grid, tmp_path / "a.ply", "--smooth", "1") == ""

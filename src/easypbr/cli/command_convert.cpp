@@ -41,7 +41,10 @@ int run_convert(const ConvertOptions& options) {
                                                   .format = options.format,
                                                   .variant = options.variant})
                               .mesh;
-        io::save_mesh(apply_mesh_steps(mesh, options.steps), options.out);
+        Phases phases(options.steps.empty() ? 1 : int(options.steps.size()) + 2);
+        const Mesh changed = apply_mesh_steps(mesh, options.steps, phases);
+        phases.begin("writing " + options.out);
+        io::save_mesh(changed, options.out);
         return 0;
     }
     if (!options.steps.empty())

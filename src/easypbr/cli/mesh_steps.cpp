@@ -123,10 +123,14 @@ void declare_mesh_steps(CLI::App& command, std::vector<MeshStep>& steps) {
     declare_points(options);
 }
 
-Mesh apply_mesh_steps(const Mesh& mesh, const std::vector<MeshStep>& steps) {
+Mesh apply_mesh_steps(const Mesh& mesh, const std::vector<MeshStep>& steps, Phases& phases) {
     if (steps.empty()) return mesh;
+    phases.begin("--merge");
     Mesh result = merge(mesh);
-    for (const MeshStep& step : steps) result = step.apply(result);
+    for (const MeshStep& step : steps) {
+        phases.begin(step.option);
+        result = step.apply(result);
+    }
     return result;
 }
 

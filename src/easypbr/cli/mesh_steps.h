@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "easypbr/cli/command.h"
+#include "easypbr/cli/phases.h"
 #include "easypbr/scene/mesh.h"
 
 namespace easypbr::cli {
@@ -19,7 +20,7 @@ struct MeshStep {
 /// Adds the options; each that is given appends a step, in the order of the command line.
 void declare_mesh_steps(CLI::App& command, std::vector<MeshStep>& steps);
 
-/// The mesh after all steps. When there are any, its children are made part of it first.
-Mesh apply_mesh_steps(const Mesh& mesh, const std::vector<MeshStep>& steps);
+/// The mesh after all steps. When there are any, its children are made part of it first. Each begins a phase.
+Mesh apply_mesh_steps(const Mesh& mesh, const std::vector<MeshStep>& steps, Phases& phases);
 
 }  // namespace easypbr::cli
