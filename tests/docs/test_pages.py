@@ -73,9 +73,9 @@ def test_every_option_is_on_the_page_of_the_command_line():
 
 
 @pytest.mark.parametrize("name, signature", [
-    ("render", "render(what: Any, out: str | os.PathLike | None=None"),
-    ("overloads", "Mesh(path: str | os.PathLike)"),
-    ("attribute", "T_parent_mesh: numpy.ndarray"),
+    ("render", "render(what: Any, out: str | os.PathLike[str] | None=None"),
+    ("overloads", "Mesh(path: str | os.PathLike[str])"),
+    ("attribute", "T_parent_mesh: NDArray[Any]"),
     ("method without self", "clone() -> Mesh"),
     ("property", "camera: Camera"),
 ])
