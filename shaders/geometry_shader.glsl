@@ -1,6 +1,5 @@
 // A material's own shader: what a surface is made of can be read and changed before it goes into the G-buffer.
-uniform vec3 u_eye;        // world
-uniform vec4 u_backwards;  // world, against the direction of view; w: 1 for an orthographic camera
+uniform vec3 u_eye;  // world
 in vec3 v_own_position;
 
 // All vectors are the world's, in the scene's frame, but own_position; colours are linear.

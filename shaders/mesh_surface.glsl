@@ -60,10 +60,13 @@ vec3 seen_face() { return v_face; }
 #else
 vec4 texel_of(sampler2D source, int slot) { return texture(source, uv_of(slot), u_lod_bias); }
 
+uniform vec4 u_backwards;  // world, against the direction of view; w: 1 for an orthographic camera
+
 // Derivatives know which side is seen whatever the winding says. Rows run downwards, so dFdy points down.
 vec3 seen_face() {
     vec3 face = normalize(cross(dFdy(v_position), dFdx(v_position)));
-    return dot(face, v_position) > 0.0 ? -face : face;
+    vec3 view = u_backwards.w > 0.5 ? u_backwards.xyz : -v_position;
+    return dot(face, view) < 0.0 ? -face : face;
 }
 #endif
 

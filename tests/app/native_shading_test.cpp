@@ -252,6 +252,32 @@ TEST(NativeShading, IsTheDrivers) {
     RecordProperty("by_more", int(all.by_more));
 }
 
+// Under an orthographic camera all pixels are looked at from one direction, also those far from the middle.
+TEST(NativeShading, SeesTheDriversSideOfFaces) {
+    if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
+    for (const bool flat : {true, false}) {
+        Mesh mesh = make_teapot(1, 4);
+        mesh.edit([&](MeshData& data) { data.style.flat = flat; });
+        Material material;
+        material.opacity = 0.5f;
+        material.alpha_mode = AlphaMode::blend;
+        mesh.set_material(material);
+        Scene scene;
+        scene.show(mesh, "teapot");
+        const auto draw = [&](bool native) {
+            app::Session session(scene);
+            session.settings().image.size = Vec2i(160, 120);
+            session.settings().image.samples = 1;
+            session.settings().shadows.enabled = false;
+            session.settings().camera.projection = Projection::orthographic;
+            session.allow_native_shading(native);
+            return session.render();
+        };
+        // Depths of two layers meet in single pixels.
+        EXPECT_LE(difference(draw(true), draw(false)).by_more, 10u) << (flat ? "flat" : "smooth");
+    }
+}
+
 TEST(NativeShading, IsTheSameForAllInstructionSets) {
     if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
     const std::string before(native::instruction_set());

@@ -20,7 +20,7 @@ bool is_one_sided(const Frame& frame, const DrawItem& item, const MeshBuffers& b
                                gpu::beyond_near_plane(frame.camera, item.object->T_world_mesh, buffers.box));
 }
 
-void set_shader_uniforms(const gl::Program& program, const Frame& frame) {
+void set_view_uniforms(const gl::Program& program, const Frame& frame) {
     const Vec3 eye = frame.camera.position().cast<float>();
     const Vec3 backwards = frame.camera.T_world_cam.linear().col(2).cast<float>();
     program.set("u_eye", eye);
@@ -76,7 +76,7 @@ void MeshPass::draw_item(const Frame& frame, const DrawItem& item, const MeshBuf
 
     const gl::Program& program = program_of(item, defines);
     program.use();
-    if (item.material.shader) set_shader_uniforms(program, frame);
+    set_view_uniforms(program, frame);
     const Mat4d view_from_mesh = frame.camera.view() * mesh_matrix;
     program.set("u_clip_from_mesh", Mat4((frame.clip_from_view * view_from_mesh).cast<float>()));
     program.set("u_view_from_mesh", Mat4(view_from_mesh.cast<float>()));
