@@ -21,7 +21,9 @@ bool PendingPicture::is_read() const {
 Image PendingPicture::take() {
     if (pixels_.is_pending()) {
         const gl::ContextScope scope(*device_->context);
+        gl::Context::check();
         pixels_.finish(picture_.bytes());
+        gl::Context::check();
     }
     return finish_.apply(std::move(picture_));
 }
@@ -46,7 +48,9 @@ Image Drawn::picture() const {
     if (tiled_) return finish_.apply(*tiled_);
     const render::Renderer& renderer = picture_renderer();
     const gl::ContextScope scope(*device_->context);
-    return finish_.apply(renderer.read_picture());
+    Image picture = renderer.read_picture();
+    gl::Context::check();
+    return finish_.apply(std::move(picture));
 }
 
 PendingPicture Drawn::read_later(gl::Readback memory) const {
@@ -72,13 +76,17 @@ const gl::Texture& Drawn::texture() const {
 render::SurfaceFrame Drawn::surfaces() const {
     const render::Renderer& renderer = surface_renderer();
     const gl::ContextScope scope(*device_->context);
-    return renderer.read_surfaces();
+    render::SurfaceFrame surfaces = renderer.read_surfaces();
+    gl::Context::check();
+    return surfaces;
 }
 
 Image Drawn::layer(render::Layer layer) const {
     const render::Renderer& renderer = surface_renderer();
     const gl::ContextScope scope(*device_->context);
-    return renderer.read_layer(layer);
+    Image pixels = renderer.read_layer(layer);
+    gl::Context::check();
+    return pixels;
 }
 
 std::vector<uint8_t> Drawn::coverage(const render::PixelRect& area,

@@ -54,7 +54,8 @@ class PendingPicture {
 };
 
 /// Camera, lens and annotation are kept here. Pixels are read from the renderer, which keeps them until the
-/// session draws again: what is asked for later, or was not drawn, is an ArgumentError. Surfaces that are
+/// session draws again: what is asked for later, or was not drawn, is an ArgumentError; gl::ContextLost when
+/// they went with the context. Surfaces that are
 /// drawn alone leave the picture that was drawn before.
 class Drawn {
   public:

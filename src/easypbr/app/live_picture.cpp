@@ -42,8 +42,10 @@ bool LivePicture::is_stale(const LiveShot& shot, uint64_t version) const {
 
 bool LivePicture::draw(const LiveShot& shot) {
     const gl::ContextScope scope(session_.context());
+    if (device_ != session_.device_number()) forget_device();
     uint64_t version = 0;
     try {
+        gl::Context::check();
         version = session_.picture_version(shot.size);
         // What failed fails again until something changes.
         if (has_failed() && version == failure_->version && shot.channel == failure_->channel &&
@@ -52,9 +54,21 @@ bool LivePicture::draw(const LiveShot& shot) {
         const bool drew = step(shot, version);
         last_error_.clear();
         return drew;
+    } catch (const gl::ContextLost&) {
+        forget_device();
+        return false;
     } catch (const Error& error) {
         return fail(error.what(), shot, version);
     }
+}
+
+void LivePicture::forget_device() {
+    device_ = session_.device_number();
+    texture_ = gl::Texture();
+    shown_ = {};
+    failure_.reset();
+    frames_ = 0;
+    statistics_.total = std::max(1, statistics_.total);
 }
 
 bool LivePicture::step(const LiveShot& shot, uint64_t version) {
@@ -84,7 +98,7 @@ bool LivePicture::fail(const std::string& what, const LiveShot& shot, uint64_t v
 void LivePicture::finish(LiveShot shot) {
     shot.moving = false;
     do draw(shot);
-    while (!has_failed() && !is_complete());
+    while (!has_failed() && !is_complete() && !session_.is_stuck());
 }
 
 void LivePicture::draw_quickly(const LiveShot& shot, bool adapt) {
@@ -156,6 +170,7 @@ void LivePicture::show_pixels(const Image& image) {
 
 void LivePicture::show(const Image& image) {
     const gl::ContextScope scope(session_.context());
+    if (device_ != session_.device_number()) forget_device();
     show_pixels(image);
     shows_other_ = true;
 }
@@ -163,9 +178,11 @@ void LivePicture::show(const Image& image) {
 Image LivePicture::image() const {
     if (!texture_) throw ArgumentError("nothing has been drawn yet");
     const gl::ContextScope scope(session_.context());
+    if (device_ != session_.device_number()) throw gl::ContextLost("the picture was lost with its context");
     Image image(texture_.width(), texture_.height(), 4, PixelType::u8);
     gl::Framebuffer({&texture_})
         .read(0, gl::Format::rgba8, 0, 0, image.width(), image.height(), image.bytes());
+    gl::Context::check();
     return image;
 }
 

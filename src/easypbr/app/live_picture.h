@@ -49,7 +49,8 @@ class LivePicture {
     /// Takes one step: a new picture, one more frame of it, or, when it is complete, what lies under the
     /// pointer; nothing when there is nothing to do. Returns whether what is shown has changed. What cannot
     /// be drawn becomes failure(), leaves the last picture, and is tried again when something changes: true
-    /// with has_failed() is a failure that is new. Makes the session's context current.
+    /// with has_failed() is a failure that is new. What was lost with the context is drawn again by the next
+    /// steps, unless Session::context() throws. Makes the session's context current.
     bool draw(const LiveShot& shot);
     /// As many steps as it takes, as if nothing moved.
     void finish(LiveShot shot);
@@ -61,7 +62,7 @@ class LivePicture {
     /// What is shown, stretched over the picture's place; empty before there is any. In the session's
     /// context.
     const gl::Texture& texture() const { return texture_; }
-    /// The same, read: RGBA u8, row 0 on top. Throws ArgumentError before there is any.
+    /// The same, read: RGBA u8, row 0 on top. Throws ArgumentError before there is any, gl::ContextLost.
     Image image() const;
     /// Shows another image, RGBA u8, until the next draw(); `draw()` then begins anew.
     void show(const Image& image);
@@ -91,6 +92,8 @@ class LivePicture {
         std::pair<double, double> motion{};
     };
     bool step(const LiveShot& shot, uint64_t version);
+    /// What was drawn is gone with its context.
+    void forget_device();
     bool fail(const std::string& what, const LiveShot& shot, uint64_t version);
     void draw_quickly(const LiveShot& shot, bool adapt);
     bool refine(const LiveShot& shot);
@@ -100,6 +103,7 @@ class LivePicture {
 
     Session& session_;
     gl::Texture texture_;
+    uint64_t device_ = 0;  ///< that it is of, see Session::device_number()
     Key shown_;
     bool shows_other_ = false;
     std::optional<Key> failure_;  ///< what could not be drawn; version 0: nothing had been begun

@@ -11,12 +11,14 @@ void PictureRing::make_room() {
 
 void PictureRing::draw(const PictureOptions& options, int times) {
     make_room();
+    const Drawn drawn = session_.draw(options);
+    if (std::exchange(device_, session_.device_number()) != session_.device_number()) spare_.clear();
     gl::Readback memory;
     if (!spare_.empty()) {
         memory = std::move(spare_.back());
         spare_.pop_back();
     }
-    slots_.push_back({session_.draw(options).read_later(std::move(memory)), times});
+    slots_.push_back({drawn.read_later(std::move(memory)), times});
 }
 
 void PictureRing::take_read() {
@@ -31,7 +33,8 @@ void PictureRing::take_oldest() {
     Slot slot = std::move(slots_.front());
     slots_.pop_front();
     Image picture = slot.pending.take();
-    spare_.push_back(slot.pending.take_memory());
+    gl::Readback memory = slot.pending.take_memory();
+    if (device_ == session_.device_number()) spare_.push_back(std::move(memory));
     take_(std::move(picture), slot.times);
 }
 

@@ -43,6 +43,7 @@ class PictureRing {
     Take take_;
     std::deque<Slot> slots_;
     std::vector<gl::Readback> spare_;
+    uint64_t device_ = 0;  ///< that they are of
 };
 
 }  // namespace easypbr::app

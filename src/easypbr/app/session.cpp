@@ -9,6 +9,7 @@
 #include "easypbr/app/pinned_camera.h"
 #include "easypbr/app/prepared.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/log.h"
 #include "easypbr/core/stopwatch.h"
 #include "easypbr/scene/resolve.h"
 
@@ -65,9 +66,41 @@ render::Renderer& Session::renderer() {
     return *device_->renderer;
 }
 
-gl::Context& Session::context() {
-    renderer();
-    return *device_->context;
+void Session::replace_device(const std::string& reason) {
+    const bool by_gl = !device_->context || device_->context->info().device == DrawDevice::gl;
+    const bool falls_back = ++losses_ == 2 && by_gl && asked_device_ == DrawDevice::automatic;
+    refined_.reset();
+    device_ = std::make_shared<Device>();
+    ++device_number_;
+    if (losses_ > 1 && !falls_back) {
+        losses_ = 0;
+        throw gl::ContextLost(fmt::format("{}, and so was the one made in its place", reason));
+    }
+    if (falls_back) asked_device_ = DrawDevice::cpu;
+    log_warning(
+        fmt::format("{}; {}", reason,
+                    falls_back ? "from now on the CPU draws" : "everything is drawn again in another one"));
+}
+
+template <class Job>
+auto Session::keeping_context(Job&& job) {
+    if (keeps_context_) return job();
+    const bool is_nested = is_current();
+    keeps_context_ = true;
+    const std::unique_ptr<bool, void (*)(bool*)> end(&keeps_context_, [](bool* keeps) { *keeps = false; });
+    for (;;) try {
+            if (!is_nested) replace_lost_device();
+            auto result = job();
+            losses_ = 0;
+            return result;
+        } catch (const Error& error) {
+            // What a driver answers in a lost context may look like another error.
+            const auto* lost = dynamic_cast<const gl::ContextLost*>(&error);
+            const std::string reason = lost ? error.what() : loss(error);
+            if (reason.empty()) throw;
+            if (is_nested) throw gl::ContextLost(reason);
+            replace_device(reason);
+        }
 }
 
 SceneSnapshot Session::snapshot() {
@@ -155,6 +188,10 @@ void Session::annotate(Drawn& drawn, const Prepared& prepared) {
 }
 
 Drawn Session::draw(const PictureOptions& options) {
+    return keeping_context([&] { return draw_once(options); });
+}
+
+Drawn Session::draw_once(const PictureOptions& options) {
     Prepared prepared = prepare(options);
     const std::shared_ptr<const Motion> before = motion_.before(prepared.resolved.camera);
     if (settings_->motion_blur.enabled) prepared.options.motion = before;
@@ -166,6 +203,7 @@ Drawn Session::draw(const PictureOptions& options) {
         device_->renderer->draw(prepared.scene, prepared.resolved, prepared.options, prepared.images);
     else
         drawn.tiled_ = std::make_shared<const Image>(picture.draw(*device_->renderer));
+    gl::Context::check();
     annotate(drawn, prepared);
     motion_.keep(prepared.scene, prepared.resolved.camera);
     latch_from(prepared);
@@ -180,12 +218,19 @@ Drawn Session::draw_frame(const PictureOptions& options) {
 }
 
 Image Session::render(const PictureOptions& options) {
-    const Drawn drawn = draw_frame(options);
-    const Stopwatch watch(timing_.read);
-    return drawn.picture();
+    return keeping_context([&] {
+        const Drawn drawn = draw_frame(options);
+        const Stopwatch watch(timing_.read);
+        return drawn.picture();
+    });
 }
 
 Session::Refinement Session::refine(const PictureOptions& options, bool finish, const RefinedMotion& motion) {
+    return keeping_context([&] { return refine_once(options, finish, motion); });
+}
+
+Session::Refinement Session::refine_once(const PictureOptions& options, bool finish,
+                                         const RefinedMotion& motion) {
     Prepared prepared = prepare(options);
     if (settings_->motion_blur.enabled) prepared.options.motion = motion;
     Refinement done;
@@ -218,6 +263,7 @@ Session::Refinement Session::refine(const PictureOptions& options, bool finish, 
         refined_->drawn = refined_->frames_drawn;
         refined_->drawn.picture_ = ++device_->picture;
     }
+    gl::Context::check();
     done.drawn = refined_->drawn;
     return done;
 }
@@ -232,6 +278,10 @@ uint64_t Session::picture_version(std::optional<Vec2i> size) {
 }
 
 PickBuffer Session::pick_buffer(std::optional<Vec2i> size) {
+    return keeping_context([&] { return pick_once(size); });
+}
+
+PickBuffer Session::pick_once(std::optional<Vec2i> size) {
     Prepared prepared = prepare({size, 1, Encoding::srgb8});
     // A complete picture stays what it is; one that is being refined has to begin again.
     if (refined_ && !refined_->is_complete) refined_.reset();
@@ -240,6 +290,7 @@ PickBuffer Session::pick_buffer(std::optional<Vec2i> size) {
         const gl::ContextScope scope(*device_->context);
         device_->renderer->draw_surfaces(prepared.scene, prepared.resolved, prepared.options.size,
                                          prepared.images);
+        gl::Context::check();
     }
     latch_from(prepared);
     return {drawn.surfaces(), drawn.camera(), drawn.shared_lens()};
@@ -259,6 +310,12 @@ std::map<std::string, Image> Session::render_layers(const std::vector<std::strin
                                                     std::optional<Vec2i> size) {
     std::vector<render::Layer> layers;
     for (const std::string& name : names) layers.push_back(render::layer_named(name));
+    return keeping_context([&] { return render_layers_once(names, layers, size); });
+}
+
+std::map<std::string, Image> Session::render_layers_once(const std::vector<std::string>& names,
+                                                         const std::vector<render::Layer>& layers,
+                                                         std::optional<Vec2i> size) {
     Prepared prepared = prepare({size, 1, Encoding::scene_linear});
     prepared.options.layers = true;
     prepared.options.ids = std::ranges::any_of(layers, [](render::Layer layer) {
@@ -275,6 +332,7 @@ std::map<std::string, Image> Session::render_layers(const std::vector<std::strin
     } else {
         drawn = picture.draw_layers(renderer, layers);
     }
+    gl::Context::check();
     latch_from(prepared);
     std::map<std::string, Image> images;
     for (size_t i = 0; i < names.size(); ++i) images[names[i]] = pick_nearest(drawn[i], begun.lens());
@@ -282,6 +340,10 @@ std::map<std::string, Image> Session::render_layers(const std::vector<std::strin
 }
 
 Drawn Session::draw_surfaces(const PictureOptions& options, bool picture, const Moment* moment) {
+    return keeping_context([&] { return draw_surfaces_once(options, picture, moment); });
+}
+
+Drawn Session::draw_surfaces_once(const PictureOptions& options, bool picture, const Moment* moment) {
     Prepared prepared = prepare(options);
     prepared.options.surfaces = true;
     if (moment) prepared.resolved.camera = moment->camera;
@@ -295,6 +357,7 @@ Drawn Session::draw_surfaces(const PictureOptions& options, bool picture, const 
     else
         device_->renderer->draw_surfaces(moment ? moment->scene : prepared.scene, prepared.resolved,
                                          prepared.options.size, prepared.images);
+    gl::Context::check();
     annotate(drawn, prepared);
     if (!moment) latch_from(prepared);
     return drawn;

@@ -6,13 +6,13 @@
 #include <algorithm>
 
 #include "easypbr/core/error.h"
+#include "easypbr/gl/context.h"
 
 namespace easypbr::gl {
 namespace {
 
 void allocate(GLuint id, size_t size, const void* data, GLbitfield flags) {
-    while (glGetError() != GL_NO_ERROR) {
-    }
+    forget_errors();
     glNamedBufferStorage(id, GLsizeiptr(std::max<size_t>(size, 4)), size ? data : nullptr, flags);
     if (glGetError() == GL_OUT_OF_MEMORY)
         throw ContextError(fmt::format("the device has no memory for a buffer of {} bytes", size));

@@ -96,7 +96,21 @@ bool is_debugging() {
     return value && *value && std::strcmp(value, "0") != 0;
 }
 
-/// Makes a 4.5 core context on the display; returns EGL_NO_CONTEXT and the reason in `error`.
+/// Makes a 4.5 core context; EGL_NO_CONTEXT where the driver does not.
+EGLContext create_context(EGLDisplay display, std::initializer_list<EGLint> more) {
+    std::vector<EGLint> attributes{EGL_CONTEXT_MAJOR_VERSION,       4,
+                                   EGL_CONTEXT_MINOR_VERSION,       5,
+                                   EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT};
+    // Left out unless it is asked for: EGL 1.4 may not know it.
+    if (is_debugging())
+        attributes.insert(attributes.end(), {EGL_CONTEXT_FLAGS_KHR, EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR});
+    attributes.insert(attributes.end(), more);
+    attributes.push_back(EGL_NONE);
+    return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+}
+
+/// Makes a 4.5 core context on the display, that tells of resets if it can; returns EGL_NO_CONTEXT and the
+/// reason in `error`.
 EGLContext try_display(EGLDisplay display, std::string& error) {
     EGLint major = 0, minor = 0;
     if (display == EGL_NO_DISPLAY || !eglInitialize(display, &major, &minor)) {
@@ -113,12 +127,10 @@ EGLContext try_display(EGLDisplay display, std::string& error) {
         error = egl_error("eglBindAPI(OpenGL)");
         return EGL_NO_CONTEXT;
     }
-    const EGLint attributes[] = {EGL_CONTEXT_MAJOR_VERSION, 4, EGL_CONTEXT_MINOR_VERSION, 5,
-                                 EGL_CONTEXT_OPENGL_PROFILE_MASK, EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
-                                 // Behind EGL_NONE unless it is asked for: EGL 1.4 may not know it.
-                                 is_debugging() ? EGL_CONTEXT_FLAGS_KHR : EGL_NONE,
-                                 EGL_CONTEXT_OPENGL_DEBUG_BIT_KHR, EGL_NONE};
-    const EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes);
+    // Not every driver tells of resets.
+    EGLContext context = create_context(
+        display, {EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY_KHR, EGL_LOSE_CONTEXT_ON_RESET_KHR});
+    if (context == EGL_NO_CONTEXT) context = create_context(display, {});
     if (context == EGL_NO_CONTEXT) error = egl_error("eglCreateContext for OpenGL 4.5 core");
     return context;
 }
@@ -141,6 +153,18 @@ void GLAPIENTRY debug_message(GLenum source, GLenum type, GLuint, GLenum severit
         log_warning(fmt::format("OpenGL: {}", std::string_view(text, size_t(length))));
     else if (type == GL_DEBUG_TYPE_PERFORMANCE)
         log(LogLevel::debug, fmt::format("OpenGL performance: {}", std::string_view(text, size_t(length))));
+}
+
+/// Why a context is lost, in words.
+const char* reset_reason(GLenum status) {
+    switch (status) {
+        case GL_GUILTY_CONTEXT_RESET:
+            return "the GPU was reset because of what was drawn";
+        case GL_INNOCENT_CONTEXT_RESET:
+            return "the GPU was reset, and not because of what was drawn";
+        default:
+            return "the GPU was reset";
+    }
 }
 
 std::string gl_string(GLenum name) {
@@ -262,8 +286,23 @@ Context& Context::with_driver() {
     return context;
 }
 
+void Context::check() {
+    if (!has_driver()) return;
+    Context& context = *current_context;
+    const GLenum status = context.lost_ ? GL_UNKNOWN_CONTEXT_RESET : glGetGraphicsResetStatus();
+    if (status == GL_NO_ERROR) return;
+    context.lost_ = true;
+    throw ContextLost(fmt::format("the OpenGL context was lost: {}", reset_reason(status)));
+}
+
 bool Context::has_driver() {
     return current_context && current_context->context_;
+}
+
+void forget_errors() {
+    constexpr int most = 64;  // More than the kinds of errors, each of which is noted once.
+    for (int i = 0; i < most && glGetError() != GL_NO_ERROR; ++i) {
+    }
 }
 
 ContextScope::ContextScope(Context& context) : previous_(current_context) {
@@ -285,8 +324,12 @@ void ContextScope::enter(Context& context) {
     old_draw_ = eglGetCurrentSurface(EGL_DRAW);
     old_read_ = eglGetCurrentSurface(EGL_READ);
     eglBindAPI(EGL_OPENGL_API);
-    if (!eglMakeCurrent(context.display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context.context_))
-        throw ContextError(egl_error("eglMakeCurrent"));
+    if (!eglMakeCurrent(context.display_, EGL_NO_SURFACE, EGL_NO_SURFACE, context.context_)) {
+        const std::string message = egl_error("eglMakeCurrent");
+        if (message.find("EGL_CONTEXT_LOST") == message.npos) throw ContextError(message);
+        context.lost_ = true;
+        throw ContextLost(fmt::format("the OpenGL context was lost: {}", message));
+    }
     entered_ = true;
 }
 

@@ -2,15 +2,24 @@
 // draws natively, the driver is loaded when something needs it.
 #pragma once
 
+#include <atomic>
 #include <memory>
 #include <mutex>
 #include <string>
 #include <vector>
 
+#include "easypbr/core/error.h"
 #include "easypbr/core/picture.h"
 #include "easypbr/gl/buffer.h"
 
 namespace easypbr::gl {
+
+/// The driver has lost a context and all that was in it, as after a reset of the GPU. Another one can be
+/// made.
+class ContextLost : public ContextError {
+  public:
+    using ContextError::ContextError;
+};
 
 /// What was tried on the way to a context, in order; `error` is empty for the one that worked.
 struct Attempt {
@@ -53,6 +62,12 @@ class Context {
     /// Whether OpenGL may be called: the driver of the current context is loaded.
     static bool has_driver();
 
+    /// Asks the driver of the current context whether it is lost. Throws ContextLost that says why; nothing
+    /// without a driver.
+    static void check();
+    /// Whether that has been found out: nothing can be drawn in it any more.
+    bool is_lost() const { return lost_; }
+
     /// GL objects that died while the context was not current wait here.
     const std::shared_ptr<DeletionQueue>& deletions() const { return deletions_; }
 
@@ -68,6 +83,7 @@ class Context {
     void* display_ = nullptr;
     void* context_ = nullptr;
     long process_ = 0;
+    std::atomic<bool> lost_{false};
     ContextInfo info_;
     std::recursive_mutex mutex_;
     ContextScope* scope_ = nullptr;  ///< that made it current
@@ -86,7 +102,7 @@ class ContextScope {
 
   private:
     friend class Context;
-    /// Makes the driver's context current.
+    /// Makes the driver's context current. Throws ContextLost.
     void enter(Context& context);
 
     std::unique_lock<std::recursive_mutex> lock_;
@@ -95,5 +111,8 @@ class ContextScope {
     bool switched_ = false, entered_ = false;
     void *old_display_ = nullptr, *old_context_ = nullptr, *old_draw_ = nullptr, *old_read_ = nullptr;
 };
+
+/// Drops the errors that the driver has noted. A lost context notes them without end.
+void forget_errors();
 
 }  // namespace easypbr::gl

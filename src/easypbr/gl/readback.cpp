@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "easypbr/core/error.h"
+#include "easypbr/gl/context.h"
 
 namespace easypbr::gl {
 namespace {
@@ -20,8 +21,7 @@ GLsync sync_of(const Object& fence) {
 /// A buffer that the driver keeps where the processor reads quickly.
 Object make_buffer(size_t size) {
     Object buffer(ObjectKind::buffer);
-    while (glGetError() != GL_NO_ERROR) {
-    }
+    forget_errors();
     glNamedBufferStorage(buffer.id(), GLsizeiptr(size), nullptr, GL_MAP_READ_BIT | GL_CLIENT_STORAGE_BIT);
     if (glGetError() == GL_OUT_OF_MEMORY)
         throw ContextError(fmt::format("the device has no memory for reading {} bytes of pixels back", size));

@@ -2,6 +2,8 @@
 
 #include <system_error>
 
+#include "easypbr/gl/context.h"
+
 namespace easypbr::gl {
 
 WatchedProgram::WatchedProgram(std::string vertex, std::string fragment, ShaderTexts texts)
@@ -34,6 +36,9 @@ const Program& WatchedProgram::get(const std::vector<std::string>& defines) {
         programs_.clear();
         note_files();
     }
+    const std::shared_ptr<DeletionQueue>& context = Context::current().deletions();
+    if (context_.lock() != context) programs_.clear();
+    context_ = context;
     Program& program = programs_[defines];
     if (!program) program = Program(vertex_, fragment_, defines, texts_);
     return program;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -12,7 +13,7 @@
 namespace easypbr::gl {
 
 /// Compiles its shaders at the first use, and again when a file on disk that they are made of has changed.
-/// Used by one thread at a time.
+/// Used by one thread at a time. What is compiled is of the context that used it last.
 class WatchedProgram {
   public:
     /// As Program takes them; nothing is compiled yet. Throws FileError when a file cannot be read.
@@ -33,6 +34,7 @@ class WatchedProgram {
     std::vector<std::filesystem::path> files_;
     uint64_t revision_ = 0;  ///< of what is compiled
     std::map<std::vector<std::string>, Program> programs_;
+    std::weak_ptr<DeletionQueue> context_;  ///< that they are of
 };
 
 }  // namespace easypbr::gl

@@ -189,6 +189,11 @@ bool Gui::take(const app::InputEvent& event) {
     }
 }
 
+void Gui::forget_device() {
+    renderer_.forget_device();
+    font_scale_ = 0;
+}
+
 void Gui::prepare(const GuiState& state, double seconds) {
     ImGuiIO& io = ImGui::GetIO();
     if (font_scale_ != state.screen.scale) {

@@ -29,6 +29,9 @@ class Gui {
     /// The pointer drags a slider or the like, or a field is typed into.
     bool is_active() const { return active_; }
 
+    /// What was uploaded is gone with its context, and is uploaded again.
+    void forget_device();
+
     /// Lays out everything over the picture (stretched over all of the window; may be empty); `more` adds
     /// windows of its own. Returns whether it looks unlike the last time, but for what is in pictures. The
     /// session's context must be current.

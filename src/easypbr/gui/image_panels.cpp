@@ -126,6 +126,13 @@ const Image& ImagePanels::image(const std::string& name) const {
     return find(name).image;
 }
 
+void ImagePanels::forget_device() {
+    for (auto& [name, panel] : panels_) {
+        panel.texture = gl::Texture();
+        panel.stale = true;
+    }
+}
+
 void ImagePanels::draw(GuiState& state) {
     const bool rescaled = std::exchange(scale_, state.screen.scale) != state.screen.scale;
     const float step = (image_panel_width + gap) * state.screen.scale,

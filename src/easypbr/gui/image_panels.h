@@ -25,6 +25,9 @@ class ImagePanels {
     /// Throws NameError.
     const Image& image(const std::string& name) const;
 
+    /// What was uploaded is gone with its context, and is uploaded again.
+    void forget_device();
+
     /// Draws the windows that are open, between ImGui's beginning and end of a frame. The context must be
     /// current.
     void draw(GuiState& state);

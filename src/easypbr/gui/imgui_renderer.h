@@ -13,6 +13,9 @@ namespace easypbr::gui {
 /// All members need the context current.
 class ImGuiRenderer {
   public:
+    /// What was made is gone with its context.
+    void forget_device() { *this = {}; }
+
     /// Uploads the font's picture and tells the atlas its texture.
     void make_font_texture(ImFontAtlas& atlas);
 

@@ -102,6 +102,7 @@ bool LiveView::update_now(const std::vector<InputEvent>& events, Vec2i size, flo
     live_.begin_frame(size, seconds);
     for (const InputEvent& event : events) handle(event);
     const gl::ContextScope scope(live_.session().context());
+    follow_device();
     const bool drew = live_.draw(needs());
     const app::Notifications& messages = live_.notifications();
     changed |= std::exchange(told_, messages.revision()) != messages.revision();
@@ -117,6 +118,16 @@ bool LiveView::update_now(const std::vector<InputEvent>& events, Vec2i size, flo
     if (live_.recording().is_running()) gui_frames_ = std::max(gui_frames_, 1);
     if (messages.revision() != told) touch();
     return draws;
+}
+
+void LiveView::follow_device() {
+    const uint64_t device = live_.session().device_number();
+    if (std::exchange(device_, device) == device) return;
+    gui_.forget_device();
+    images_.forget_device();
+    screen_ = gl::Texture();
+    screen_framebuffer_ = gl::Framebuffer();
+    touch();
 }
 
 void LiveView::handle(const InputEvent& event) {
@@ -176,8 +187,11 @@ bool LiveView::draw_screen(double seconds, bool always) {
 Image LiveView::screen() {
     if (!screen_) throw ArgumentError("nothing has been drawn yet");
     const gl::ContextScope scope(live_.session().context());
+    if (device_ != live_.session().device_number())
+        throw gl::ContextLost("the screen was lost with its context");
     Image image(screen_.width(), screen_.height(), 4, PixelType::u8);
     screen_framebuffer_.read(0, gl::Format::rgba8, 0, 0, image.width(), image.height(), image.bytes());
+    gl::Context::check();
     return image;
 }
 

@@ -88,6 +88,8 @@ class LiveView {
     app::LiveNeeds needs() const;
     bool draw_screen(double seconds, bool always);
     Image finished_now();
+    /// What was made in a context that is no longer the session's is forgotten.
+    void follow_device();
 
     app::LiveDrawing live_;
     GuiState state_{live_};
@@ -95,6 +97,7 @@ class LiveView {
     UserPanelWindows user_panels_;
     ImagePanels images_;
 
+    uint64_t device_ = 0;  ///< that all here is of, see app::Session::device_number()
     gl::Texture screen_;
     gl::Framebuffer screen_framebuffer_;
     bool updating_ = false;
