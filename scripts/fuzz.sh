@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Coverage-guided fuzzing of all readers, each for its share of the seconds given, by default 10 minutes: libFuzzer with
-# AddressSanitizer and UBSan. Prints executions and covered branches of each; what breaks a reader is kept in
-# build-fuzz/found, and the exit status is 1. A found file that is mended belongs into tests/fuzz/seeds, which the tests read.
+# AddressSanitizer and UBSan. Prints executions and covered branches of each, and which part of the lines of io all of them
+# covered, files below 90 % by name; what breaks a reader is kept in build-fuzz/found, and the exit status is 1. A found file that is mended belongs into tests/fuzz/seeds, which the tests read.
 # usage: fuzz.sh [SECONDS [TARGET...]]
 set -euo pipefail
 cd "$(dirname "$0")/.."
@@ -14,7 +14,8 @@ cmake -G Ninja -B build-fuzz -DEASYPBR_FUZZ=ON -DCMAKE_BUILD_TYPE=None -DCMAKE_C
 cmake --build build-fuzz
 targets=("$@")
 [ ${#targets[@]} -gt 0 ] || mapfile -t targets < <(ls tests/fuzz/seeds)
-mkdir -p build-fuzz/found build-fuzz/log
+mkdir -p build-fuzz/found build-fuzz/log build-fuzz/profile
+rm -f build-fuzz/profile/*
 failed=0 total=0
 printf '%-12s %12s %10s\n' target executions branches
 for target in "${targets[@]}"; do
@@ -22,7 +23,7 @@ for target in "${targets[@]}"; do
   mkdir -p "$corpus"
   status=0
   # LeakSanitizer at the end alone: at every input it costs most of the time.
-  EASYPBR_FUZZ_TARGET=$target EASYPBR_THREADS=1 build-fuzz/fuzz -max_total_time=$((seconds / ${#targets[@]} + 1)) \
+  EASYPBR_FUZZ_TARGET=$target EASYPBR_THREADS=1 LLVM_PROFILE_FILE=/dev/null build-fuzz/fuzz -max_total_time=$((seconds / ${#targets[@]} + 1)) \
       -max_len=16384 -timeout=20 -rss_limit_mb=4096 -print_final_stats=1 -detect_leaks=0 \
       -artifact_prefix="build-fuzz/found/$target-" "$corpus" "tests/fuzz/seeds/$target" >"$log" 2>&1 || status=$?
   runs=$(sed -n 's/^stat::number_of_executed_units: *//p' "$log")
@@ -36,4 +37,15 @@ for target in "${targets[@]}"; do
   fi
 done
 echo "$total executions"
+version=${compiler#clang++}
+if command -v "llvm-cov$version" >/dev/null; then
+  # All that has been found so far is run once more: what a crash covered is not written.
+  for target in "${targets[@]}"; do
+    EASYPBR_FUZZ_TARGET=$target EASYPBR_THREADS=1 LLVM_PROFILE_FILE=build-fuzz/profile/$target.profraw build-fuzz/fuzz \
+        -runs=0 -max_len=16384 -detect_leaks=0 "build-fuzz/corpus/$target" "tests/fuzz/seeds/$target" >/dev/null 2>&1 || true
+  done
+  "llvm-profdata$version" merge -o build-fuzz/profile/all.profdata build-fuzz/profile/*.profraw
+  "llvm-cov$version" export -summary-only -instr-profile build-fuzz/profile/all.profdata build-fuzz/fuzz src/easypbr/io |
+      python3 scripts/fuzz_coverage.py
+fi
 exit $failed

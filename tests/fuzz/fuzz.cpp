@@ -5,6 +5,7 @@
 #include <string>
 
 #include "easypbr/core/log.h"
+#include "easypbr/scene/label_colors.h"
 #include "fuzz/targets.h"
 
 namespace {
@@ -24,7 +25,9 @@ const easypbr::fuzz::Target& chosen() {
 
 extern "C" int LLVMFuzzerInitialize(int*, char***) {
     easypbr::set_log_sink([](easypbr::LogLevel, std::string_view) {});
-    chosen();
+    // They are chosen once, for seconds with sanitizers: no file's fault.
+    if (chosen().name.starts_with("label"))
+        easypbr::GeneratedColors colors(easypbr::generated_color_count - 1);
     return 0;
 }
 

@@ -6,13 +6,20 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
+#include "easypbr/gl/program.h"
 #include "easypbr/io/image/image_io.h"
+#include "easypbr/io/image/texture_loader.h"
+#include "easypbr/io/mesh/assimp/message_decoder.h"
+#include "easypbr/io/mesh/content_format.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/io/mesh/obj/mtl_reader.h"
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/io/settings/label_map_text.h"
 #include "easypbr/io/settings/settings_io.h"
 #include "easypbr/remote/messages.h"
+#include "easypbr/scene/fields.h"
+#include "easypbr/scene/settings.h"
 
 namespace easypbr::fuzz {
 namespace {
@@ -31,13 +38,18 @@ std::string_view text_of(std::span<const std::byte> bytes) {
     return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// The bytes in a file without a name: what readers of files are given.
-FileBytes file_of(std::span<const std::byte> bytes) {
-    const Descriptor file(memfd_create("fuzz", MFD_CLOEXEC));
+/// The bytes in a file without a name.
+Descriptor unnamed_file(std::span<const std::byte> bytes) {
+    Descriptor file(memfd_create("fuzz", MFD_CLOEXEC));
     if (write(file.get(), bytes.data(), bytes.size()) != ssize_t(bytes.size()) ||
         lseek(file.get(), 0, SEEK_SET))
         throw std::runtime_error("no memory for a file");
-    return {file.get(), "fuzz"};
+    return file;
+}
+
+/// What readers of files are given.
+FileBytes file_of(std::span<const std::byte> bytes) {
+    return {unnamed_file(bytes).get(), "fuzz"};
 }
 
 /// The format is the name of the target.
@@ -47,6 +59,44 @@ void read_mesh(std::span<const std::byte> bytes) {
         io::load_scene(file_of(bytes), "/nowhere/fuzz",
                        {.memory_gb = memory_gb, .format = std::string{letters...}});
     });
+}
+
+/// A mesh from standard input.
+void read_any_mesh(std::span<const std::byte> bytes) {
+    refuse_or([&] {
+        io::load_scene(file_of(bytes), "/nowhere/fuzz",
+                       {.memory_gb = memory_gb, .format = io::format_of_content(text_of(bytes))});
+    });
+}
+
+void read_materials(std::span<const std::byte> bytes) {
+    refuse_or([&] {
+        io::TextureLoader textures("/nowhere/fuzz");
+        io::read_mtl({text_of(bytes), "fuzz"}, textures);
+    });
+}
+
+void read_assimp_answer(std::span<const std::byte> bytes) {
+    refuse_or([&] { io::decode_scene(bytes, "/nowhere/fuzz", uint64_t(memory_gb * 1e9)); });
+    refuse_or([&] { io::decode_extensions(bytes, "fuzz"); });
+}
+
+/// A shader of a user's own with all that it includes.
+void read_shader(std::span<const std::byte> bytes) {
+    const Descriptor file = unnamed_file(bytes);
+    refuse_or([&] { gl::shader_stage("/proc/self/fd/" + std::to_string(file.get())); });
+}
+
+/// Lines NAME=VALUE, as --set takes them.
+void read_assignments(std::span<const std::byte> bytes) {
+    Settings settings;
+    for (std::string_view rest = text_of(bytes); !rest.empty();) {
+        const std::string_view line = rest.substr(0, rest.find('\n'));
+        rest.remove_prefix(std::min(line.size() + 1, rest.size()));
+        const size_t equals = line.find('=');
+        if (equals == line.npos) continue;
+        refuse_or([&] { set_from_text(settings, line.substr(0, equals), line.substr(equals + 1)); });
+    }
 }
 
 void read_image(std::span<const std::byte> bytes) {
@@ -96,6 +146,12 @@ const std::vector<Target>& targets() {
         {"npz", read_mesh<'n', 'p', 'z'>},
         {"las", read_mesh<'l', 'a', 's'>},
         {"bin", read_mesh<'b', 'i', 'n'>},
+        {"splat", read_mesh<'s', 'p', 'l', 'a', 't'>},
+        {"content", read_any_mesh},
+        {"mtl", read_materials},
+        {"assimp", read_assimp_answer},
+        {"shader", read_shader},
+        {"set", read_assignments},
         {"image", read_image},
         {"settings", read_settings},
         {"camera_path", read_camera_path},

@@ -139,7 +139,7 @@ class PlyReader {
 
     void plan_edges(ElementPlan& plan) {
         const auto ends = find_scalars(*plan.element, Names{"vertex1", "vertex2"});
-        if (ends.empty()) return;
+        if (ends.empty() || plan.element->count == 0) return;
         E_.resize(Eigen::Index(plan.element->count), 2);
         for (size_t i = 0; i < 2; ++i) {
             plan.columns[ends[i]].integers = E_.data() + i;

@@ -1,0 +1,3 @@
+#include "nowhere.glsl"
+#include ""
+#include "common_brdf.glsl" 
