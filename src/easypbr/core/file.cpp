@@ -1,6 +1,5 @@
 #include "easypbr/core/file.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <sys/mman.h>
@@ -13,6 +12,7 @@
 #include <utility>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/open_file.h"
 
 namespace easypbr {
 namespace {
@@ -52,7 +52,7 @@ Descriptor::~Descriptor() {
 }
 
 InputFile::InputFile(fs::path path)
-    : path_(std::move(path)), file_(::open(path_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {
+    : path_(std::move(path)), file_(open_file(path_.c_str(), O_RDONLY | O_NONBLOCK)) {
     struct stat info {};
     // A socket cannot be opened at all.
     if (file_.get() < 0 && errno == ENXIO && ::stat(path_.c_str(), &info) == 0 && !S_ISREG(info.st_mode))

@@ -1,6 +1,5 @@
 #include "easypbr/core/file_set.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <unistd.h>
 
@@ -10,6 +9,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/open_file.h"
 
 namespace easypbr {
 namespace {
@@ -53,7 +53,7 @@ FileSet::~FileSet() {
 void FileSet::add(const fs::path& path, std::span<const std::byte> bytes) {
     const fs::path target = real_target(path);
     const fs::path& beside = files_.emplace_back(File{temporary_beside(target), target}).beside;
-    const Descriptor file{::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
+    const Descriptor file{open_file(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666)};
     if (file.get() < 0) fail_write(target, errno);
     write_all(file.get(), bytes, target);
 }
@@ -86,7 +86,7 @@ void check_writable(const fs::path& given) {
     const fs::path path = real_target(given);
     require_writable(path);
     const fs::path beside = temporary_beside(path);
-    const Descriptor file{::open(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666)};
+    const Descriptor file{open_file(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666)};
     if (file.get() < 0) fail_write(path, errno);
     ::unlink(beside.c_str());
 }

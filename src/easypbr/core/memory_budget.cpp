@@ -72,9 +72,10 @@ MemoryScope::MemoryScope(std::string name, uint64_t limit)
     : name_(std::move(name)),
       left_(limit),
       limit_(limit),
-      outer_(std::exchange(innermost, this)),
+      outer_(innermost),
       shares_(limit == 0 && outer_) {
     if (limit == 0 && !outer_) limit_ = left_ = automatic_memory_limit();
+    innermost = this;  // Last: what throws before leaves nothing behind.
 }
 
 MemoryScope::~MemoryScope() {
