@@ -18,7 +18,7 @@ from easypbr import _easypbr
 PYTHON_GROUPS = {
     "Drawing": ["render", "Viewer", "Scene", "Settings", "auto", "follow", "Automatic", "Follow",
                 "Server", "ServerClient"],
-    "Content": ["Mesh", "LabelMap", "load_scene", "as_mesh", "splats", "Material", "Style", "Light", "Environment", "Camera", "CameraPath"],
+    "Content": ["Mesh", "LabelMap", "load_scene", "as_mesh", "splats", "splats_of", "Material", "Style", "Light", "Environment", "Camera", "CameraPath"],
     "Geometry": ["KdTree"],
     "Ground truth and tensors": ["Instance", "Moment", "MeshLoader", "eigen2tensor", "tensor2eigen"],
     "Images": ["load_image", "save_image", "compare_images", "colormap"],

@@ -34,7 +34,7 @@ from ._easypbr import (
 )
 from .convert import as_mesh
 from .errors import ArgumentError, ContextError, Error, FileError, FormatError, ShaderError, UnknownNameError
-from .gaussians import splats
+from .gaussians import splats, splats_of
 from .loader import MeshLoader
 from .panels import Panel
 from .remote import Server
@@ -89,5 +89,6 @@ __all__ = [
     "shapes",
     "show",
     "splats",
+    "splats_of",
     "tensor2eigen",
 ]

@@ -1,5 +1,6 @@
 """3D Gaussian splats from arrays."""
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from . import _easypbr
 from .errors import ArgumentError
 from .tensors import as_numpy
 
-__all__ = ["splats"]
+__all__ = ["splats", "splats_of"]
 
 CONSTANT = 0.28209479177387814
 """The spherical harmonic of degree 0."""
@@ -49,6 +50,47 @@ def splats(
     )
     mesh.name = "splats"
     return mesh
+
+
+def splats_of(model: Mapping[str, Any]) -> "_easypbr.Mesh":
+    """A mesh of the 3D Gaussians of a trained model, a dictionary of arrays or tensors as trainers save it.
+
+    gsplat's has `means`, `scales`, `quats`, `opacities`, `sh0` (n x 1 x 3) and `shN` (n x k x 3, k = 0, 3, 8 or 15);
+    that of nerfstudio's splatfacto `features_dc` (n x 3) and `features_rest` in their place. Scales are logarithms, and
+    opacities values before the sigmoid. Names may have any prefix that ends with a dot, as in a `state_dict()`, and the
+    arrays may lie in the members `splats`, `pipeline`, `model` or `state_dict`, one in another. Raises ArgumentError that
+    names what is missing.
+    """
+    model = _parameters(model)
+
+    def find(*names: str) -> Any:
+        for name in names:
+            if name in model:
+                return np.asarray(as_numpy(model[name]), dtype=np.float64)
+        raise ArgumentError(f"splats_of: expected {' or '.join(repr(name) for name in names)} among {sorted(model)}")
+
+    means = find("means")
+    count = len(means)
+    first = find("sh0", "features_dc").reshape(count, 1, 3)
+    rest = find("shN", "features_rest").reshape(count, -1, 3)
+    return splats(
+        means,
+        find("scales"),
+        find("quats"),
+        find("opacities"),
+        sh=np.concatenate([first, rest], axis=1),
+        raw=True,
+    )
+
+
+def _parameters(model: Mapping[str, Any]) -> dict[str, Any]:
+    """The arrays by their names without prefixes."""
+    for member in ("splats", "pipeline", "model", "state_dict"):
+        if isinstance(model, Mapping) and isinstance(model.get(member), Mapping):
+            return _parameters(model[member])
+    if not isinstance(model, Mapping):
+        raise ArgumentError(f"splats_of: expected a dictionary of arrays, got {type(model).__name__}")
+    return {str(name).rpartition(".")[2]: values for name, values in model.items()}
 
 
 def _floats(values: Any) -> NDArray[Any]:

@@ -152,6 +152,7 @@ const std::vector<Target>& targets() {
         {"assimp", read_assimp_answer},
         {"shader", read_shader},
         {"set", read_assignments},
+        {"spz", read_mesh<'s', 'p', 'z'>},
         {"image", read_image},
         {"settings", read_settings},
         {"camera_path", read_camera_path},

@@ -109,7 +109,7 @@ TEST(ContentFormat, MayBeGiven) {
     const std::string scan(32, '\0');
     EXPECT_EQ(message_of(scan),
               "pipe: its format cannot be told from its content; name it, one of gltf, glb, "
-              "asc, bin, csv, las, laz, npy, npz, obj, off, pcd, ply, pts, splat, stl, txt, xyz");
+              "asc, bin, csv, las, laz, npy, npz, obj, off, pcd, ply, pts, splat, spz, stl, txt, xyz");
     EXPECT_EQ(io::load_scene(through_a_pipe(scan), "pipe", {.format = "bin"}).mesh.V().rows(), 2);
     EXPECT_NE(message_of(points, {.format = "plyy"}).find("did you mean 'ply'"), std::string::npos);
     EXPECT_NE(message_of(points, {.format = "dae"}).find("'dae' cannot be read without a file"),

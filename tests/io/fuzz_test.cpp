@@ -7,9 +7,11 @@
 #include <vector>
 
 #include "easypbr/core/error.h"
+#include "easypbr/io/archive/deflate.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/mesh/obj/mtl_reader.h"
+#include "io/bytes.h"
 #include "io/las_builder.h"
 #include "io/npy_builder.h"
 #include "io/ply_builder.h"
@@ -238,6 +240,42 @@ TEST(Fuzz, Kitti) {
     std::string data;
     for (int i = 0; i < 20 * 4; ++i) data += Bytes().add(float(i)).str();
     fuzz(data, [](const io::Source& source) { validate(io::read_kitti(source)); });
+}
+
+TEST(Fuzz, Splat) {
+    std::string data;
+    for (int i = 0; i < 20 * 8; ++i) data += Bytes().add(float(i)).str();
+    fuzz(data, [](const io::Source& source) { validate(io::read_splat(source)); });
+}
+
+TEST(Fuzz, Spz) {
+    Bytes bytes;
+    bytes.add_all<uint32_t>({0x5053474e, 3, 9}).add_all<uint8_t>({1, 12, 0, 0});
+    for (int i = 0; i < 9 * 29; ++i) bytes.add(uint8_t(i));
+    // Mutated before it is packed: the packing notices most of what is done to it.
+    fuzz(bytes.str(), [](const io::Source& source) {
+        const std::string packed = io::gzip(source.bytes);
+        validate(io::read_spz(io::Source(std::string_view(packed), source.path)));
+    });
+    fuzz(io::gzip(bytes.str()), [](const io::Source& source) { validate(io::read_spz(source)); });
+}
+
+TEST(Fuzz, PackedPly) {
+    PlyBuilder ply("binary_little_endian");
+    ply.header("element chunk 1");
+    for (const char* name : {"min_x", "min_y", "min_z", "max_x", "max_y", "max_z", "min_scale_x",
+                             "min_scale_y", "min_scale_z", "max_scale_x", "max_scale_y", "max_scale_z"})
+        ply.header(fmt::format("property float {}", name));
+    ply.header("element vertex 5");
+    for (const char* name : {"position", "rotation", "scale", "color"})
+        ply.header(fmt::format("property uint packed_{}", name));
+    ply.header("element sh 5");
+    for (int i = 0; i < 9; ++i) ply.header(fmt::format("property uchar f_rest_{}", i));
+    ply.end_header();
+    for (int i = 0; i < 12; ++i) ply.value("float", i);
+    for (int i = 0; i < 20; ++i) ply.value("uint", i * 1000003);
+    for (int i = 0; i < 45; ++i) ply.value("uchar", i);
+    fuzz(ply.text(), read_valid_ply);
 }
 
 TEST(Fuzz, Las) {

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from easypbr import ArgumentError, Mesh, render, splats
+from easypbr import ArgumentError, Mesh, render, splats, splats_of
 
 
 def wide(color=(1.0, 0.0, 0.0), **options):
@@ -57,6 +57,55 @@ def test_tensors():
 def test_what_is_refused(arguments, message):
     with pytest.raises(ArgumentError, match=message):
         splats(**arguments)
+
+
+def model(count=4, degree=3):
+    random = np.random.default_rng(2)
+    return {
+        "means": random.normal(size=(count, 3)),
+        "scales": random.normal(size=(count, 3)),
+        "quats": random.normal(size=(count, 4)),
+        "opacities": random.normal(size=count),
+        "sh0": random.normal(size=(count, 1, 3)),
+        "shN": random.normal(size=(count, (degree + 1) ** 2 - 1, 3)),
+    }
+
+
+@pytest.mark.parametrize("degree", range(4))
+def test_models_of_gsplat(degree):
+    trained = model(degree=degree)
+    mesh = splats_of({"step": 7, "splats": trained})
+    # Single precision.
+    assert np.allclose(mesh.V, trained["means"]) and np.allclose(mesh.rotations, trained["quats"])
+    assert np.allclose(mesh.scales, np.exp(trained["scales"]))
+    assert np.allclose(mesh.opacities, 1 / (1 + np.exp(-trained["opacities"])))
+    assert np.allclose(mesh.sh, np.concatenate([trained["sh0"], trained["shN"]], axis=1).reshape(4, -1))
+
+
+def test_models_of_nerfstudio():
+    trained = model()
+    other = dict(trained, features_dc=trained["sh0"][:, 0], features_rest=trained["shN"])
+    del other["sh0"], other["shN"]
+    other["opacities"] = other["opacities"][:, None]
+    saved = {"pipeline": {f"_model.gauss_params.{name}": values for name, values in other.items()}}
+    assert np.array_equal(splats_of(saved).sh, splats_of(trained).sh)
+
+
+def test_models_without_a_part():
+    trained = model()
+    del trained["quats"]
+    with pytest.raises(ArgumentError, match="'quats'"):
+        splats_of(trained)
+    with pytest.raises(ArgumentError, match="dictionary"):
+        splats_of([1, 2])
+
+
+@pytest.mark.parametrize("name", ["a.spz", "a.glb"])
+def test_other_files(tmp_path, name):
+    mesh = wide(color=(0.2, 0.4, 0.6))
+    mesh.save(tmp_path / name)
+    # Codes of colours are 0.028 apart (SPZ), and opacities 1 / 255.
+    assert np.abs(picture(Mesh(tmp_path / name)).astype(int) - picture(mesh)).max() <= 5
 
 
 def test_files(tmp_path):

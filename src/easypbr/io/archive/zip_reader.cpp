@@ -4,16 +4,15 @@
 #include <zlib.h>
 
 #include <cstring>
-#include <limits>
 
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/io/archive/deflate.h"
 
 namespace easypbr::io {
 namespace {
 
 constexpr uint32_t in_zip64_16 = 0xffff, in_zip64_32 = 0xffffffff;  ///< the number stands elsewhere
-constexpr uint64_t best_ratio = 1032;                               ///< of Deflate
 
 /// A place of the directory.
 struct Record {
@@ -116,7 +115,8 @@ class ZipReader {
         const std::string_view packed = bytes_.substr(data, record.compressed);
         ZipEntry entry{record.name, packed, nullptr};
         if (record.method == 8) {
-            if (record.size / best_ratio > record.compressed) refuse("is damaged: its size cannot be");
+            if (record.size / best_deflate_ratio > record.compressed)
+                refuse("is damaged: its size cannot be");
             entry = inflated(record, packed);
         }
         if (entry.bytes.size() != record.size || checksum(entry.bytes) != record.checksum)
@@ -126,26 +126,8 @@ class ZipReader {
 
     ZipEntry inflated(const Record& record, std::string_view packed) const {
         const std::shared_ptr<char[]> out(new char[record.size + 1]);
-        z_stream stream{};
-        if (inflateInit2(&stream, -MAX_WBITS) != Z_OK) fail(source_, "zlib cannot be started");
-        uint64_t written = 0;
-        int state = Z_OK;
-        stream.next_in = reinterpret_cast<Bytef*>(const_cast<char*>(packed.data()));
-        // zlib counts in 32 bits.
-        constexpr uint64_t most = std::numeric_limits<uInt>::max();
-        while (state == Z_OK && written <= record.size) {
-            const uint64_t used = uint64_t(reinterpret_cast<const char*>(stream.next_in) - packed.data());
-            const uInt in = uInt(std::min(most, packed.size() - used));
-            const uInt room = uInt(std::min(most, record.size + 1 - written));
-            stream.avail_in = in;
-            stream.avail_out = room;
-            stream.next_out = reinterpret_cast<Bytef*>(out.get() + written);
-            state = inflate(&stream, Z_NO_FLUSH);
-            written += room - stream.avail_out;
-            if (stream.avail_out == room && stream.avail_in == in) break;
-        }
-        inflateEnd(&stream);
-        if (state != Z_STREAM_END) written = 0;
+        const Inflated inflated = inflate_into(packed, DeflateForm::bare, {out.get(), record.size + 1});
+        const size_t written = inflated.ended ? inflated.written : 0;
         return {record.name, {out.get(), written}, out};
     }
 

@@ -21,8 +21,9 @@
 namespace easypbr::io {
 namespace {
 
-const std::vector<std::string> writable_extensions{"ply", "obj", "glb", "pcd", "xyz",
-                                                   "txt", "asc", "csv", "npy", "npz"};
+const std::vector<std::string> writable_extensions{"ply", "obj", "glb", "pcd", "xyz", "txt",
+                                                   "asc", "csv", "npy", "npz", "spz"};
+const std::vector<std::string> splat_extensions{"ply", "glb", "spz"};
 
 bool contains(const std::vector<std::string>& names, const std::string& name) {
     return std::find(names.begin(), names.end(), name) != names.end();
@@ -66,7 +67,8 @@ const std::map<std::string, Reader>& readers() {
                                                    {"bin", without_options(read_kitti)},
                                                    {"las", without_options(read_las)},
                                                    {"laz", without_options(read_las)},
-                                                   {"splat", without_options(read_splat)}};
+                                                   {"splat", without_options(read_splat)},
+                                                   {"spz", without_options(read_spz)}};
     return all;
 }
 
@@ -113,15 +115,16 @@ void warn_of_splats(const Mesh& mesh, const fs::path& path) {
     for_each_node(mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d&) {
         if (!data->splats.empty())
             log_warning(
-                fmt::format("{}: the format has no splats: those of '{}' are written as points; PLY "
-                            "has them",
-                            path.string(), data->name));
+                fmt::format("{}: the format has no splats: those of '{}' are written as points; {} "
+                            "have them",
+                            path.string(), data->name, fmt::join(splat_extensions, ", ")));
     });
 }
 
 std::string encode(const MeshData& mesh, const fs::path& path, const std::string& extension) {
     if (extension == "ply") return encode_ply(mesh, fs::absolute(path).parent_path());
     if (extension == "npz") return encode_npz(mesh);
+    if (extension == "spz") return encode_spz(mesh);
     warn_of_faces(mesh, path);
     if (extension == "pcd") return encode_pcd(mesh);
     if (extension == "npy") return encode_npy(mesh);
@@ -172,7 +175,7 @@ void save_mesh(const Mesh& mesh, const fs::path& path) {
     if (!contains(writable_extensions, extension))
         fail_extension(path, extension, "written", writable_extensions);
     check_writable(path);
-    if (extension != "ply") warn_of_splats(mesh, path);
+    if (!contains(splat_extensions, extension)) warn_of_splats(mesh, path);
     if (extension == "glb") return save_glb(mesh, path);
     if (extension == "obj") return save_obj(mesh, path);
     write_file(path, encode(flatten(mesh), path, extension));

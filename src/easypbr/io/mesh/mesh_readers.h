@@ -27,10 +27,15 @@ MeshData read_npz(const Source& source);
 MeshData read_kitti(const Source& source);
 MeshData read_las(const Source& source);
 MeshData read_splat(const Source& source);
+MeshData read_spz(const Source& source);
 
 /// Binary little-endian PLY: V, N, C (as uchar), UV (as s, t), L, I, F, E, splats, and the base colour
 /// texture of a mesh with one material, by its path relative to `folder`. Of splats the up axis is a comment.
 std::string encode_ply(const MeshData& mesh, const fs::path& folder);
+
+/// SPZ, version 3: splats alone. Codes of 8 bits and 24 for positions: it loses a little. Throws
+/// ArgumentError for a mesh without splats, and for coordinates beyond 2^23.
+std::string encode_spz(const MeshData& mesh);
 
 /// OBJ, and MTL named `mtl_name`, with the textures' paths relative to `folder`; MTL is empty without
 /// materials.

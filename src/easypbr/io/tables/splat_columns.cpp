@@ -53,12 +53,11 @@ void set_column(const VertexField& field, Matrix& matrix, Eigen::Index column) {
     field.column->shift = field.property.shift;
 }
 
-/// Where the k-th harmonic after the first of a channel stands among the columns of sh.
+}  // namespace
+
 Eigen::Index harmonic_column(size_t k, size_t channel) {
     return Eigen::Index(3 * (k + 1) + channel);
 }
-
-}  // namespace
 
 SplatColumns::SplatColumns(const Source& source, const std::vector<VertexField>& fields, size_t count) {
     if (count == 0 || !find(fields, "f_dc_0") || !(find(fields, "scale_0") || find(fields, "rot_0"))) return;

@@ -37,6 +37,9 @@ std::vector<RowPart> splat_row_parts(const SplatArrays& splats);
 /// The spherical harmonic of degree 0 that gives an sRGB-encoded value.
 float constant_of_color(float encoded);
 
+/// Where the k-th harmonic after the first of a channel stands among the columns of SplatArrays::sh.
+Eigen::Index harmonic_column(size_t k, size_t channel);
+
 /// Scenes are trained on the cameras of COLMAP, whose y axis points down; files do not say.
 inline const Vec3d splat_up(0, -1, 0);
 

@@ -107,6 +107,12 @@ size_t GlbContent::add_view(const void* data, size_t size, int target) {
     return json["bufferViews"].size() - 1;
 }
 
+OrderedJson& GlbContent::extend(OrderedJson& object, const char* extension) {
+    OrderedJson& used = json["extensionsUsed"];
+    if (std::find(used.begin(), used.end(), extension) == used.end()) used.push_back(extension);
+    return object["extensions"][extension];
+}
+
 size_t GlbMaterials::image_index(const std::shared_ptr<const Image>& image) {
     const auto [found, is_new] = images_.try_emplace(image, images_.size());
     if (is_new) {
@@ -137,7 +143,7 @@ size_t GlbMaterials::texture_index(const Texture& texture) {
 OrderedJson GlbMaterials::texture_info(const Texture& texture) {
     OrderedJson info = {{"index", texture_index(texture)}};
     if (texture.uv_transform != Mat3::Identity())
-        extend(info, "KHR_texture_transform") = transform_json(texture.uv_transform);
+        content_.extend(info, "KHR_texture_transform") = transform_json(texture.uv_transform);
     return info;
 }
 
@@ -165,7 +171,7 @@ void GlbMaterials::add_emission(const Material& material, OrderedJson& json) {
     // The factor ends at 1; what is brighter goes into the strength.
     const float strength = std::max(1.0f, material.emissive.maxCoeff());
     json["emissiveFactor"] = color_json(material.emissive / strength);
-    if (strength > 1) extend(json, khr_emissive_strength)["emissiveStrength"] = strength;
+    if (strength > 1) content_.extend(json, khr_emissive_strength)["emissiveStrength"] = strength;
 }
 
 void GlbMaterials::add_texture(OrderedJson& extension, const char* key, const Texture& texture) {
@@ -185,14 +191,14 @@ void GlbMaterials::add_layers(const Material& material, OrderedJson& json) {
         add_texture(e, "clearcoatNormalTexture", material.clearcoat_normal_texture);
         if (material.clearcoat_normal_texture)
             e["clearcoatNormalTexture"]["scale"] = material.clearcoat_normal_scale;
-        extend(json, khr_clearcoat) = std::move(e);
+        content_.extend(json, khr_clearcoat) = std::move(e);
     }
     if (!material.sheen_color.isZero()) {
         OrderedJson e = {{"sheenColorFactor", color_json(material.sheen_color)},
                          {"sheenRoughnessFactor", material.sheen_roughness}};
         add_texture(e, "sheenColorTexture", material.sheen_color_texture);
         add_channel(e, "sheenRoughnessTexture", material.sheen_roughness_texture, 3);
-        extend(json, khr_sheen) = std::move(e);
+        content_.extend(json, khr_sheen) = std::move(e);
     }
     if (material.iridescence > 0) {
         OrderedJson e = {{"iridescenceFactor", material.iridescence},
@@ -201,30 +207,30 @@ void GlbMaterials::add_layers(const Material& material, OrderedJson& json) {
                          {"iridescenceThicknessMaximum", material.iridescence_thickness_max}};
         add_channel(e, "iridescenceTexture", material.iridescence_texture, 0);
         add_channel(e, "iridescenceThicknessTexture", material.iridescence_thickness_texture, 1);
-        extend(json, khr_iridescence) = std::move(e);
+        content_.extend(json, khr_iridescence) = std::move(e);
     }
     if (material.anisotropy > 0) {
         OrderedJson e = {{"anisotropyStrength", material.anisotropy},
                          {"anisotropyRotation", radians(double(material.anisotropy_rotation_deg))}};
         add_texture(e, "anisotropyTexture", material.anisotropy_texture);
-        extend(json, khr_anisotropy) = std::move(e);
+        content_.extend(json, khr_anisotropy) = std::move(e);
     }
 }
 
 void GlbMaterials::add_dielectric(const Material& material, OrderedJson& json) {
-    if (material.names_ior()) extend(json, khr_ior) = {{"ior", material.ior}};
+    if (material.names_ior()) content_.extend(json, khr_ior) = {{"ior", material.ior}};
     if (material.specular != 1 || material.specular_color != Vec3::Ones() || material.specular_texture ||
         material.specular_color_texture) {
         OrderedJson e = {{"specularFactor", material.specular},
                          {"specularColorFactor", color_json(material.specular_color)}};
         add_channel(e, "specularTexture", material.specular_texture, 3);
         add_texture(e, "specularColorTexture", material.specular_color_texture);
-        extend(json, khr_specular) = std::move(e);
+        content_.extend(json, khr_specular) = std::move(e);
     }
     if (material.transmission > 0) {
         OrderedJson e = {{"transmissionFactor", material.transmission}};
         add_channel(e, "transmissionTexture", material.transmission_texture, 0);
-        extend(json, khr_transmission) = std::move(e);
+        content_.extend(json, khr_transmission) = std::move(e);
     }
     if (material.thickness > 0) {
         OrderedJson e = {{"thicknessFactor", material.thickness},
@@ -232,14 +238,8 @@ void GlbMaterials::add_dielectric(const Material& material, OrderedJson& json) {
         if (std::isfinite(material.attenuation_distance))
             e["attenuationDistance"] = material.attenuation_distance;
         add_channel(e, "thicknessTexture", material.thickness_texture, 1);
-        extend(json, khr_volume) = std::move(e);
+        content_.extend(json, khr_volume) = std::move(e);
     }
-}
-
-OrderedJson& GlbMaterials::extend(OrderedJson& json, const char* extension) {
-    OrderedJson& used = content_.json["extensionsUsed"];
-    if (std::find(used.begin(), used.end(), extension) == used.end()) used.push_back(extension);
-    return json["extensions"][extension];
 }
 
 size_t GlbMaterials::add(const Material& material, bool transparent_vertices) {
@@ -249,7 +249,7 @@ size_t GlbMaterials::add(const Material& material, bool transparent_vertices) {
     add_emission(material, json);
     add_layers(material, json);
     add_dielectric(material, json);
-    if (material.unlit) extend(json, khr_unlit) = OrderedJson::object();
+    if (material.unlit) content_.extend(json, khr_unlit) = OrderedJson::object();
     const char* modes[] = {"OPAQUE", "MASK", "BLEND"};
     const AlphaMode mode = material.alpha_mode_for(transparent_vertices);
     json["alphaMode"] = modes[int(mode)];

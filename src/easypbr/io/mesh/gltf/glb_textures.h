@@ -20,6 +20,8 @@ struct GlbContent {
 
     /// Appends bytes, aligned to 4, as a buffer view and returns its index.
     size_t add_view(const void* data, size_t size, int target = 0);
+    /// The object of an extension of `object`, which is noted as used.
+    OrderedJson& extend(OrderedJson& object, const char* extension);
 };
 
 class GlbMaterials {
@@ -38,8 +40,6 @@ class GlbMaterials {
     /// A texture that is read from one channel, which the format fixes.
     void add_channel(OrderedJson& extension, const char* key, const Texture& texture, int channel);
     void add_texture(OrderedJson& extension, const char* key, const Texture& texture);
-    /// The object of an extension of `json`, which is noted as used.
-    OrderedJson& extend(OrderedJson& json, const char* extension);
     OrderedJson texture_info(const Texture& texture);
     size_t image_index(const std::shared_ptr<const Image>& image);
     size_t texture_index(const Texture& texture);

@@ -8,6 +8,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/mesh/gltf/glb_textures.h"
+#include "easypbr/io/mesh/gltf/gltf_splats.h"
 #include "easypbr/scene/merge.h"
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/normals.h"
@@ -81,7 +82,7 @@ class GlbBuilder {
     }
 
     size_t add_mesh(const MeshData& data) {
-        const OrderedJson attributes = add_attributes(data);
+        OrderedJson attributes = add_attributes(data);
         OrderedJson primitives = OrderedJson::array();
         if (!data.F.empty()) add_parts(data, attributes, primitives);
         if (!data.E.empty()) {
@@ -89,10 +90,34 @@ class GlbBuilder {
             primitives.push_back(
                 {{"attributes", attributes}, {"indices", indices}, {"mode", int(mode_lines)}});
         }
-        if (primitives.empty())
-            primitives.push_back({{"attributes", attributes}, {"mode", int(mode_points)}});
+        if (primitives.empty()) primitives.push_back(points(data, std::move(attributes)));
         content_.json["meshes"].push_back({{"name", data.name}, {"primitives", std::move(primitives)}});
         return content_.json["meshes"].size() - 1;
+    }
+
+    OrderedJson points(const MeshData& data, OrderedJson attributes) {
+        if (!data.splats.empty()) add_splats(data.splats, attributes);
+        OrderedJson primitive{{"attributes", std::move(attributes)}, {"mode", int(mode_points)}};
+        if (!data.splats.empty())
+            content_.extend(primitive, khr_gaussian_splatting) = {{"kernel", "ellipse"},
+                                                                  {"colorSpace", "srgb_rec709_display"}};
+        return primitive;
+    }
+
+    void add_splats(const SplatArrays& splats, OrderedJson& attributes) {
+        const auto rows = size_t(splats.scales.rows());
+        Array4f::Dense xyzw(splats.rotations.rows(), 4);
+        xyzw << splats.rotations.rightCols(3), splats.rotations.col(0);
+        xyzw.rowwise().normalize();
+        attributes[splat_rotation_name] = add_floats(xyzw.data(), rows, 4);
+        attributes[splat_scale_name] = add_floats(splats.scales.data(), rows, 3);
+        attributes[splat_opacity_name] = add_floats(splats.opacities.data(), rows, 1);
+        Eigen::Index column = 0;
+        for (int degree = 0; degree <= splats.degree(); ++degree)
+            for (int k = 0; k <= 2 * degree; ++k, column += 3) {
+                const Array3f::Dense harmonic = splats.sh.middleCols(column, 3);
+                attributes[splat_harmonic_name(degree, k)] = add_floats(harmonic.data(), rows, 3);
+            }
     }
 
     void add_parts(const MeshData& data, const OrderedJson& attributes, OrderedJson& primitives) {
@@ -141,7 +166,7 @@ class GlbBuilder {
 
     size_t add_floats(const float* data, size_t rows, int columns) {
         const size_t view = content_.add_view(data, rows * size_t(columns) * sizeof(float), array_buffer);
-        return add_accessor(view, floating, rows, fmt::format("VEC{}", columns));
+        return add_accessor(view, floating, rows, columns == 1 ? "SCALAR" : fmt::format("VEC{}", columns));
     }
 
     size_t add_indices(const int32_t* data, size_t count) {

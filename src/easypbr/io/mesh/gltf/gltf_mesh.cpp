@@ -13,6 +13,8 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh/gltf/gltf_accessor.h"
 #include "easypbr/io/mesh/gltf/gltf_draco.h"
+#include "easypbr/io/mesh/gltf/gltf_splats.h"
+#include "easypbr/scene/mesh.h"
 #include "easypbr/scene/normals.h"
 
 namespace easypbr::io {
@@ -93,6 +95,14 @@ class MeshBuilder {
         if (!primitives || !primitives->is_array() || primitives->empty()) fail("has no primitives");
         out_.name = document_.text(json, "name");
         for (const Json& primitive : *primitives) add(primitive);
+        if (blocks_.empty() && splats_.size() == 1) {
+            splats_[0].name = out_.name;
+            return {std::move(splats_[0]), {}, {}};
+        }
+        for (MeshData& splats : splats_) {
+            splats.name = fmt::format("splats {}", out_.children.size());
+            out_.children.emplace_back(std::move(splats));
+        }
         merge_vertices();
         out_.F = Array3i(Eigen::Map<const Array3i::Dense>(faces_.data(), Eigen::Index(faces_.size() / 3), 3));
         if (!edges_.empty())
@@ -111,6 +121,7 @@ class MeshBuilder {
     void add(const Json& json) {
         const Json* attributes = member(json, "attributes");
         if (!attributes || !member(*attributes, "POSITION")) fail("has a primitive without POSITION");
+        if (has_gltf_splats(json)) return splats_.push_back(read_gltf_splats(document_, json, name_));
         const auto compressed = unpack_draco(document_, json, name_);
         const size_t mode = document_.optional_integer(json, "mode").value_or(size_t(Mode::triangles));
         if (mode > size_t(Mode::triangle_fan)) fail(fmt::format("has a primitive of unknown mode {}", mode));
@@ -299,7 +310,8 @@ class MeshBuilder {
     std::string name_;
     MeshData out_;
     std::vector<VertexBlock> blocks_;
-    ArrayXf::Dense none_;  ///< what a block has of a morph target that it lacks
+    std::vector<MeshData> splats_;  ///< of the primitives that are such
+    ArrayXf::Dense none_;           ///< what a block has of a morph target that it lacks
     std::map<BlockKey, size_t> block_index_;
     std::map<std::optional<size_t>, int> material_index_;
     Eigen::Index vertex_count_ = 0;

@@ -17,6 +17,7 @@
 #include "easypbr/io/mesh/gltf/gltf_materials.h"
 #include "easypbr/io/mesh/gltf/gltf_mesh.h"
 #include "easypbr/io/mesh/gltf/gltf_meshopt.h"
+#include "easypbr/io/mesh/gltf/gltf_splats.h"
 #include "easypbr/io/mesh/gltf/gltf_variants.h"
 #include "easypbr/io/mesh/mesh_io.h"
 
@@ -42,7 +43,9 @@ constexpr std::string_view known_extensions[] = {khr_unlit,
                                                  ext_mesh_gpu_instancing,
                                                  khr_draco,
                                                  ext_meshopt_compression,
-                                                 ext_texture_webp};
+                                                 ext_texture_webp,
+                                                 khr_gaussian_splatting,
+                                                 khr_splats_as_spz};
 
 /// A name that the map does not have yet.
 template <class Value>

@@ -7,6 +7,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/mesh_readers.h"
+#include "easypbr/io/mesh/ply/compressed_splats.h"
 #include "easypbr/io/mesh/ply/ply_header.h"
 #include "easypbr/io/tables/attributes.h"
 #include "easypbr/io/tables/splat_columns.h"
@@ -32,7 +33,7 @@ std::vector<size_t> find_scalars(const Element& element, const Names& names) {
 /// Reads one file.
 class PlyReader {
   public:
-    explicit PlyReader(const Source& source) : source_(source), header_(parse_ply_header(source)) {}
+    PlyReader(const Source& source, PlyHeader header) : source_(source), header_(std::move(header)) {}
 
     MeshData read() {
         check_counts();
@@ -248,7 +249,9 @@ class PlyReader {
 
 MeshData read_ply(const Source& source) {
     if (source.bytes.empty()) fail(source, "the file is empty");
-    return PlyReader(source).read();
+    PlyHeader header = parse_ply_header(source);
+    if (has_compressed_splats(header)) return read_compressed_splats(source, header);
+    return PlyReader(source, std::move(header)).read();
 }
 
 }  // namespace easypbr::io

@@ -4,10 +4,10 @@
 
 #include <cstring>
 
-#include "easypbr/core/memory_budget.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/tables/splat_columns.h"
+#include "easypbr/io/tables/splat_rows.h"
 
 namespace easypbr::io {
 namespace {
@@ -26,14 +26,14 @@ SplatRecord record_at(const Source& source, Eigen::Index i) {
     return record;
 }
 
-void check_records(const Source& source, const MeshData& mesh) {
-    for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) {
-        const auto scales = mesh.splats.scales.row(i);
-        if (!mesh.V.row(i).allFinite() || !scales.allFinite() || scales.minCoeff() < 0)
+void check_records(const Source& source, const SplatRows& rows) {
+    for (Eigen::Index i = 0; i < rows.V.rows(); ++i) {
+        const auto scales = rows.scales.row(i);
+        if (!rows.V.row(i).allFinite() || !scales.allFinite() || scales.minCoeff() < 0)
             fail_at_byte(source, source.begin() + size_t(i) * record_size,
                          fmt::format("splat {} of {} has a position or scale that is not finite, or a scale "
                                      "below 0",
-                                     i, mesh.V.rows()));
+                                     i, rows.V.rows()));
     }
 }
 
@@ -44,34 +44,22 @@ MeshData read_splat(const Source& source) {
     if (source.bytes.size() % record_size)
         fail(source, fmt::format("no .splat file: {} bytes are not a multiple of {}, those of a splat",
                                  source.bytes.size(), record_size));
-    const size_t count = source.bytes.size() / record_size;
-    if (count > INT32_MAX)
-        fail(source, fmt::format("{} splats are more than the {} that are read", count, INT32_MAX));
-    charge_memory(count * 14 * sizeof(float), "its splats");
-    const auto rows = Eigen::Index(count);
-    Array3f::Dense V(rows, 3), scales(rows, 3);
-    Array4f::Dense rotations(rows, 4);
-    Array1f::Dense opacities(rows);
-    ArrayXf::Dense sh(rows, 3);
-    parallel_for(count, splat_grain, [&](size_t row) {
+    SplatRows rows(source, source.bytes.size() / record_size, 0);
+    parallel_for(rows.count(), splat_grain, [&](size_t row) {
         const auto i = Eigen::Index(row);
         const SplatRecord record = record_at(source, i);
         for (int k = 0; k < 3; ++k) {
-            V(i, k) = record.position[k];
-            scales(i, k) = record.scales[k];
-            sh(i, k) = constant_of_color(float(record.color[k]) / 255);
+            rows.V(i, k) = record.position[k];
+            rows.scales(i, k) = record.scales[k];
         }
-        opacities(i) = float(record.color[3]) / 255;
-        for (int k = 0; k < 4; ++k) rotations(i, k) = (float(record.rotation[k]) - 128) / 128;
+        rows.set_color(i, Vec3(record.color[0], record.color[1], record.color[2]) / 255);
+        rows.opacities(i) = float(record.color[3]) / 255;
+        for (int k = 0; k < 4; ++k) rows.rotations(i, k) = (float(record.rotation[k]) - 128) / 128;
         // All bytes 128: nothing was said.
-        if (rotations.row(i).isZero(0)) rotations(i, 0) = 1;
+        if (rows.rotations.row(i).isZero(0)) rows.rotations(i, 0) = 1;
     });
-    MeshData mesh;
-    mesh.V = std::move(V);
-    mesh.splats = {std::move(scales), std::move(rotations), std::move(opacities), std::move(sh)};
-    check_records(source, mesh);
-    mesh.up = splat_up;
-    return mesh;
+    check_records(source, rows);
+    return rows.finish(source, splat_up);
 }
 
 }  // namespace easypbr::io

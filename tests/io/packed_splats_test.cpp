@@ -1,0 +1,445 @@
+// Splats in packed files: SPZ, SuperSplat's compressed PLY, and KHR_gaussian_splatting in glTF. The files are
+// made here, code by code, and the expected values by the formulas of the formats in double precision.
+#include <gtest/gtest.h>
+#include <zlib.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "easypbr/core/error.h"
+#include "easypbr/io/archive/deflate.h"
+#include "easypbr/io/mesh/content_format.h"
+#include "easypbr/io/mesh/gltf/glb_writer.h"
+#include "easypbr/io/mesh/gltf/gltf_reader.h"
+#include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/io/mesh/mesh_readers.h"
+#include "easypbr/scene/mesh.h"
+#include "io/bytes.h"
+#include "io/gltf_builder.h"
+#include "io/temporary_folder.h"
+
+namespace easypbr::packed_splats_test {
+namespace {
+
+constexpr double constant = 0.28209479177387814;
+
+template <class Read>
+std::string message_of(Read&& read) {
+    try {
+        read();
+    } catch (const Error& error) {
+        return error.what();
+    }
+    return {};
+}
+
+bool has(const std::string& text, const std::string& part) {
+    return text.find(part) != std::string::npos;
+}
+
+// SPZ.
+
+Bytes spz_header(uint32_t version, uint32_t count, int degree, int bits = 12, int flags = 0) {
+    Bytes bytes;
+    bytes.add_all<uint32_t>({0x5053474e, version, count});
+    return bytes.add_all<uint8_t>({uint8_t(degree), uint8_t(bits), uint8_t(flags), 0});
+}
+
+void add24(Bytes& bytes, int value) {
+    for (int k = 0; k < 3; ++k) bytes.add(uint8_t(value >> 8 * k));
+}
+
+/// Two splats of degree 1.
+Bytes spz_content(uint32_t version, int flags = 0) {
+    Bytes bytes = spz_header(version, 2, 1, 12, flags);
+    for (const int code : {4096, -4096, 1, -1, 8388607, -8388608}) add24(bytes, code);
+    bytes.add_all<uint8_t>({0, 255});
+    bytes.add_all<uint8_t>({0, 128, 255, 10, 20, 30});
+    bytes.add_all<uint8_t>({0, 160, 255, 80, 90, 100});
+    if (version == 2) {
+        bytes.add_all<uint8_t>({250, 127, 127, 64, 191, 100});
+    } else {
+        // y is the largest; x, z and w have 10 bits each, of which the first is the sign.
+        bytes.add(uint32_t(1u << 30 | 100u << 20 | (512u + 200u) << 10 | 300u));
+        // w is the largest: all others 0.
+        bytes.add(uint32_t(3u << 30));
+    }
+    for (int k = 0; k < 18; ++k) bytes.add(uint8_t(k * 15));
+    return bytes;
+}
+
+MeshData read_spz(const std::string& packed) {
+    MeshData mesh = io::read_spz(io::Source(std::string_view(packed), "test.spz"));
+    validate(mesh);
+    return mesh;
+}
+
+TEST(PackedSplats, SpzOfBothVersions) {
+    for (const uint32_t version : {2u, 3u}) {
+        const MeshData mesh = read_spz(io::gzip(spz_content(version).str()));
+        const SplatArrays& splats = mesh.splats;
+        ASSERT_EQ(mesh.V.rows(), 2);
+        EXPECT_EQ(mesh.up, Vec3d(0, 1, 0));
+        EXPECT_EQ(mesh.V.row(0), Eigen::RowVector3f(1, -1, 1 / 4096.0f));
+        EXPECT_EQ(mesh.V.row(1), Eigen::RowVector3f(-1 / 4096.0f, 8388607 / 4096.0f, -2048));
+        EXPECT_EQ(splats.opacities(0), 0);
+        EXPECT_EQ(splats.opacities(1), 1);
+        // Single precision exp() and quotients of these sizes.
+        const auto near = [](double found, double expected) {
+            EXPECT_NEAR(found, expected, 2e-6 * std::max(1.0, std::abs(expected)));
+        };
+        near(double(splats.scales(0, 0)), std::exp(-10.0));
+        near(double(splats.scales(0, 1)), 1);
+        near(double(splats.scales(1, 2)), std::exp(100 / 16.0 - 10));
+        near(double(splats.sh(0, 0)), -0.5 / 0.15);
+        near(double(splats.sh(1, 2)), (30 / 255.0 - 0.5) / 0.15);
+        ASSERT_EQ(splats.degree(), 1);
+        near(double(splats.sh(0, 3)), -1);
+        near(double(splats.sh(1, 11)), (17 * 15 - 128) / 128.0);
+        EXPECT_NEAR(splats.rotations.row(0).norm(), 1, 1e-5);
+        if (version == 2) {
+            near(double(splats.rotations(0, 1)), 250 / 127.5 - 1);
+            near(double(splats.rotations(1, 2)), 191 / 127.5 - 1);
+        } else {
+            const double unit = std::numbers::sqrt2 / 2 / 511;
+            near(double(splats.rotations(0, 1)), 100 * unit);
+            near(double(splats.rotations(0, 3)), -200 * unit);
+            near(double(splats.rotations(0, 0)), 300 * unit);
+            EXPECT_GT(splats.rotations(0, 2), 0.7f);
+            EXPECT_EQ(splats.rotations.row(1), Eigen::RowVector4f(1, 0, 0, 0));
+        }
+    }
+}
+
+TEST(PackedSplats, DamagedSpzSaysWhy) {
+    const auto said = [](const std::string& packed) { return message_of([&] { read_spz(packed); }); };
+    EXPECT_TRUE(has(said(""), "empty"));
+    EXPECT_TRUE(has(said("no gzip at all, but long enough for one"), "no SPZ file"));
+    EXPECT_TRUE(has(said(io::gzip("something else that is long enough")), "no SPZ file"));
+    EXPECT_TRUE(has(said(io::gzip(spz_header(4, 1, 0).str())), "version 4"));
+    EXPECT_TRUE(has(said(io::gzip(spz_header(3, 1, 5).str())), "degree 5"));
+    EXPECT_TRUE(has(said(io::gzip(spz_header(3, 1, 0, 77).str())), "77 fractional bits"));
+    EXPECT_TRUE(has(said(io::gzip(spz_header(3, 0, 0).str())), "no splats"));
+    // More than the file can hold, however well it is compressed.
+    EXPECT_TRUE(has(said(io::gzip(spz_header(3, 2000000000, 3).str())), "2000000000 splats"));
+    EXPECT_TRUE(has(said(io::gzip(spz_header(3, 3, 1).str() + spz_content(3).str().substr(16))), "3 splats"));
+    const std::string whole = io::gzip(spz_content(3).str());
+    EXPECT_TRUE(has(said(whole.substr(0, whole.size() / 2)), "truncated"));
+    EXPECT_EQ(io::format_of_content(whole), "spz");
+}
+
+/// Splats of degree 3 whose values no code holds exactly.
+MeshData various_splats(int count) {
+    Array3f::Dense V(count, 3), scales(count, 3);
+    Array4f::Dense rotations(count, 4);
+    Array1f::Dense opacities(count);
+    ArrayXf::Dense sh(count, 48);
+    uint32_t state = 1;
+    const auto random = [&] {
+        state = state * 1664525 + 1013904223;
+        return float(state >> 8) / float(1 << 24);
+    };
+    for (int i = 0; i < count; ++i) {
+        for (int k = 0; k < 3; ++k) V(i, k) = 20 * random() - 10;
+        for (int k = 0; k < 3; ++k) scales(i, k) = std::exp(-6 * random());
+        for (int k = 0; k < 4; ++k) rotations(i, k) = random() - 0.5f;
+        opacities(i) = random();
+        for (int k = 0; k < 48; ++k) sh(i, k) = k < 3 ? 4 * random() - 2 : random() - 0.5f;
+    }
+    MeshData mesh;
+    mesh.V = std::move(V);
+    mesh.splats = {std::move(scales), std::move(rotations), std::move(opacities), std::move(sh)};
+    mesh.up = Vec3d(0, 1, 0);
+    return mesh;
+}
+
+/// The largest difference of rotations, which are the same for q and -q.
+float largest_turn(const Array4f& a, const Array4f& b) {
+    float largest = 0;
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+        const Eigen::RowVector4f p = a.row(i).normalized(), q = b.row(i).normalized();
+        largest = std::max(largest, std::min((p - q).cwiseAbs().maxCoeff(), (p + q).cwiseAbs().maxCoeff()));
+    }
+    return largest;
+}
+
+TEST(PackedSplats, WrittenSpzDiffersByItsCodes) {
+    const MeshData mesh = various_splats(1000);
+    const MeshData back = read_spz(io::encode_spz(mesh));
+    ASSERT_EQ(back.V.rows(), 1000);
+    // Half a step: coordinates below 10 leave 19 bits, rounding of floats of that size twice as much again.
+    EXPECT_LE((back.V - mesh.V).cwiseAbs().maxCoeff(), 0.5f / (1 << 19) + 1e-6f);
+    EXPECT_LE((back.splats.opacities - mesh.splats.opacities).cwiseAbs().maxCoeff(), 0.5f / 255 + 1e-6f);
+    EXPECT_LE((back.splats.scales.array().log() - mesh.splats.scales.array().log()).abs().maxCoeff(),
+              0.5f / 16 + 1e-5f);
+    EXPECT_LE((back.splats.sh.leftCols(3) - mesh.splats.sh.leftCols(3)).cwiseAbs().maxCoeff(),
+              0.5f / (0.15f * 255) + 1e-5f);
+    // Steps of 8 and 16 codes of 1/128, and the rounding to a code before.
+    EXPECT_LE((back.splats.sh.middleCols(3, 9) - mesh.splats.sh.middleCols(3, 9)).cwiseAbs().maxCoeff(),
+              4.5f / 128 + 1e-5f);
+    EXPECT_LE((back.splats.sh.rightCols(36) - mesh.splats.sh.rightCols(36)).cwiseAbs().maxCoeff(),
+              8.5f / 128 + 1e-5f);
+    // Half a step of sqrt(1/2) / 511 in each of three; the largest errs by three times as much where all are
+    // as large.
+    EXPECT_LE(largest_turn(back.splats.rotations, mesh.splats.rotations), 3 * 0.5f * 0.7072f / 511);
+}
+
+TEST(PackedSplats, SpzTurnsWhatPointsDown) {
+    MeshData mesh = various_splats(10);
+    mesh.up = Vec3d(0, -1, 0);
+    const MeshData back = read_spz(io::encode_spz(mesh));
+    EXPECT_EQ(back.up, Vec3d(0, 1, 0));
+    for (int i = 0; i < 10; ++i) {
+        EXPECT_NEAR(back.V(i, 0), mesh.V(i, 0), 1e-5);
+        EXPECT_NEAR(back.V(i, 1), -mesh.V(i, 1), 1e-5);
+        EXPECT_NEAR(back.V(i, 2), -mesh.V(i, 2), 1e-5);
+    }
+    // The harmonics of degree 1 are -y, z, -x: the first two change their signs, within the codes' steps.
+    EXPECT_NEAR(back.splats.sh(0, 3), -mesh.splats.sh(0, 3), 4.5 / 128 + 1e-5);
+    EXPECT_NEAR(back.splats.sh(0, 6), -mesh.splats.sh(0, 6), 4.5 / 128 + 1e-5);
+    EXPECT_NEAR(back.splats.sh(0, 9), mesh.splats.sh(0, 9), 4.5 / 128 + 1e-5);
+}
+
+TEST(PackedSplats, SpzHoldsSplatsAlone) {
+    MeshData points;
+    points.V = Array3f(Array3f::Dense::Zero(2, 3));
+    EXPECT_TRUE(has(message_of([&] { io::encode_spz(points); }), "no splats"));
+    MeshData far = various_splats(2);
+    far.offset = Vec3d(1e7, 0, 0);
+    EXPECT_TRUE(has(message_of([&] { io::encode_spz(far); }), "beyond"));
+    const TemporaryFolder folder;
+    io::save_mesh(Mesh(various_splats(3)), folder / "a.spz");
+    EXPECT_EQ(io::load_mesh(folder / "a.spz").snapshot()->V.rows(), 3);
+}
+
+// SuperSplat's PLY.
+
+struct PackedPly {
+    int count = 300;
+    int harmonics = 9;
+    int chunks = 2;
+    bool chunk_colors = true;
+    std::string drop;  ///< a property that is left out of the header
+
+    std::string text() const {
+        std::string out =
+            "ply\nformat binary_little_endian 1.0\nelement chunk " + std::to_string(chunks) + "\n";
+        std::vector<std::string> names{"min_x",       "min_y",       "min_z",       "max_x",
+                                       "max_y",       "max_z",       "min_scale_x", "min_scale_y",
+                                       "min_scale_z", "max_scale_x", "max_scale_y", "max_scale_z"};
+        if (chunk_colors) names.insert(names.end(), {"min_r", "min_g", "min_b", "max_r", "max_g", "max_b"});
+        for (const std::string& name : names)
+            if (name != drop) out += "property float " + name + "\n";
+        out += "element vertex " + std::to_string(count) + "\n";
+        for (const std::string name : {"position", "rotation", "scale", "color"})
+            if ("packed_" + name != drop) out += "property uint packed_" + name + "\n";
+        if (harmonics) out += "element sh " + std::to_string(count) + "\n";
+        for (int k = 0; k < harmonics; ++k) out += "property uchar f_rest_" + std::to_string(k) + "\n";
+        return out + "end_header\n" + body();
+    }
+
+    std::string body() const {
+        Bytes bytes;
+        for (int chunk = 0; chunk < chunks; ++chunk) {
+            bytes.add_all<float>({-1, -2, -3, 1, 2, float(3 + chunk)});
+            bytes.add_all<float>({-5, -6, -7, 0, 0, 0});
+            if (chunk_colors) bytes.add_all<float>({-0.5f, 0, 0, 1.5f, 1, 2});
+        }
+        for (int i = 0; i < count; ++i)
+            // Position and scale 11-10-11, w the largest of the rotation, colour and opacity.
+            bytes.add_all<uint32_t>({2047u << 21 | 0u << 11 | uint32_t(i),
+                                     0u << 30 | 1023u << 20 | 0u << 10 | 600u, 0u << 21 | 1023u << 11 | 1024u,
+                                     0xff804020u});
+        for (int i = 0; i < count * harmonics; ++i) bytes.add(uint8_t(i % 256));
+        return bytes.str();
+    }
+};
+
+MeshData read_ply(const std::string& text) {
+    MeshData mesh = io::read_ply(io::Source(std::string_view(text), "test.ply"));
+    validate(mesh);
+    return mesh;
+}
+
+TEST(PackedSplats, PlyOfSuperSplat) {
+    const MeshData mesh = read_ply(PackedPly().text());
+    ASSERT_EQ(mesh.V.rows(), 300);
+    ASSERT_EQ(mesh.splats.degree(), 1);
+    EXPECT_EQ(mesh.up, Vec3d(0, -1, 0));
+    // The 257th splat is of the second chunk, which reaches to z = 4.
+    for (const int i : {0, 255, 256, 299}) {
+        EXPECT_NEAR(mesh.V(i, 0), 1, 1e-6);
+        EXPECT_NEAR(mesh.V(i, 1), -2, 1e-6);
+        EXPECT_NEAR(mesh.V(i, 2), -3 + (i < 256 ? 6 : 7) * i / 2047.0, 1e-6);
+        EXPECT_NEAR(mesh.splats.scales(i, 0), std::exp(-5.0), 1e-6);
+        EXPECT_NEAR(mesh.splats.scales(i, 1), 1, 1e-6);
+        EXPECT_NEAR(mesh.splats.scales(i, 2), std::exp(-7 * (1 - 1024 / 2047.0)), 1e-6);
+        const double s = std::sqrt(2.0), x = 0.5 * s, y = -0.5 * s, z = (600 / 1023.0 - 0.5) * s;
+        EXPECT_NEAR(mesh.splats.rotations(i, 1), x, 1e-6);
+        EXPECT_NEAR(mesh.splats.rotations(i, 2), y, 1e-6);
+        EXPECT_NEAR(mesh.splats.rotations(i, 3), z, 1e-6);
+        EXPECT_NEAR(mesh.splats.rotations(i, 0), std::sqrt(std::max(0.0, 1 - x * x - y * y - z * z)), 1e-3);
+        EXPECT_NEAR(0.5 + constant * double(mesh.splats.sh(i, 0)), 1.5, 1e-5);
+        EXPECT_NEAR(0.5 + constant * double(mesh.splats.sh(i, 1)), 128 / 255.0, 1e-5);
+        EXPECT_NEAR(0.5 + constant * double(mesh.splats.sh(i, 2)), 2 * 64 / 255.0, 1e-5);
+        EXPECT_NEAR(mesh.splats.opacities(i), 32 / 255.0, 1e-6);
+        // Channel by channel in the file: the second of green is the fifth.
+        EXPECT_NEAR(mesh.splats.sh(i, 7), (i * 9 + 4) % 256 * 8 / 255.0 - 4, 1e-5);
+    }
+}
+
+TEST(PackedSplats, PlyWithoutColorsOfChunksHasThemFrom0To1) {
+    PackedPly ply;
+    ply.chunk_colors = false;
+    ply.harmonics = 0;
+    const MeshData mesh = read_ply(ply.text());
+    EXPECT_EQ(mesh.splats.degree(), 0);
+    EXPECT_NEAR(0.5 + constant * double(mesh.splats.sh(0, 2)), 64 / 255.0, 1e-5);
+}
+
+TEST(PackedSplats, DamagedPlySaysWhy) {
+    const auto said = [](const PackedPly& ply, size_t cut = 0) {
+        const std::string text = ply.text();
+        return message_of([&] { read_ply(text.substr(0, text.size() - cut)); });
+    };
+    EXPECT_EQ(said({}), "");
+    EXPECT_TRUE(has(said({}, 1), "truncated"));
+    EXPECT_TRUE(has(said({.chunks = 1, .drop = {}}), "2 chunks"));
+    EXPECT_TRUE(has(said({.drop = "packed_scale"}), "'packed_scale'"));
+    EXPECT_TRUE(has(said({.drop = "max_y"}), "'max_y'"));
+    EXPECT_TRUE(has(said({.harmonics = 8, .drop = {}}), "found 8"));
+    std::string text = PackedPly().text();
+    const float nan = std::nanf("");
+    std::memcpy(text.data() + text.find("end_header\n") + 11, &nan, sizeof nan);
+    EXPECT_TRUE(has(message_of([&] { read_ply(text); }), "splat 0 of 300"));
+    text = PackedPly().text();
+    text.replace(text.find("little"), 6, "big");
+    EXPECT_TRUE(has(message_of([&] { read_ply(text); }), "little-endian"));
+}
+
+// glTF.
+
+nlohmann::json& splat_primitive(GltfBuilder& builder, int degree) {
+    nlohmann::json attributes;
+    attributes["POSITION"] = builder.floats({1, 2, 3, 4, 5, 6}, 3);
+    const std::string name = "KHR_gaussian_splatting:";
+    attributes[name + "ROTATION"] = builder.floats({1, 0, 0, 0, 0, 0, 0, 1}, 4);
+    attributes[name + "SCALE"] = builder.floats({0.1f, 0.2f, 0.3f, 0, 1, 2}, 3);
+    attributes[name + "OPACITY"] = builder.floats({0.25f, 1}, 1);
+    for (int l = 0; l <= degree; ++l)
+        for (int k = 0; k <= 2 * l; ++k) {
+            const auto value = float(10 * l + k);
+            attributes[name + "SH_DEGREE_" + std::to_string(l) + "_COEF_" + std::to_string(k)] =
+                builder.floats({value, value + 0.1f, value + 0.2f, -value, 0, 0}, 3);
+        }
+    builder.json["extensionsUsed"] = {"KHR_gaussian_splatting"};
+    if (!builder.json.contains("meshes"))
+        builder.json["meshes"] = {{{"name", "m"}, {"primitives", nlohmann::json::array()}}};
+    auto& primitives = builder.json["meshes"][0]["primitives"];
+    primitives.push_back(
+        {{"attributes", attributes},
+         {"mode", 0},
+         {"extensions",
+          {{"KHR_gaussian_splatting", {{"kernel", "ellipse"}, {"colorSpace", "srgb_rec709_display"}}}}}});
+    return primitives.back();
+}
+
+MeshData node_of(const GltfBuilder& builder) {
+    const auto scene = io::decode_gltf(as_span(builder.glb()), "test.glb");
+    return *scene.mesh.snapshot()->children.at(0).snapshot();
+}
+
+TEST(PackedSplats, GltfOfAllDegrees) {
+    for (int degree = 0; degree <= 3; ++degree) {
+        GltfBuilder builder;
+        splat_primitive(builder, degree);
+        const MeshData mesh = node_of(builder);
+        validate(mesh);
+        ASSERT_EQ(mesh.V.rows(), 2);
+        ASSERT_EQ(mesh.splats.degree(), degree);
+        EXPECT_EQ(mesh.V(1, 2), 6);
+        EXPECT_EQ(mesh.splats.scales(0, 2), 0.3f);
+        EXPECT_EQ(mesh.splats.rotations.row(0), Eigen::RowVector4f(0, 1, 0, 0));
+        EXPECT_EQ(mesh.splats.rotations.row(1), Eigen::RowVector4f(1, 0, 0, 0));
+        EXPECT_EQ(mesh.splats.opacities(0), 0.25f);
+        const int last = 3 * (degree + 1) * (degree + 1) - 1;
+        EXPECT_FLOAT_EQ(mesh.splats.sh(0, last), float(12 * degree) + 0.2f);
+    }
+}
+
+TEST(PackedSplats, GltfWithTrianglesHasThemAsChild) {
+    GltfBuilder builder;
+    builder.triangle();
+    splat_primitive(builder, 0);
+    const MeshData mesh = node_of(builder);
+    EXPECT_EQ(mesh.F.rows(), 1);
+    EXPECT_TRUE(mesh.splats.empty());
+    ASSERT_EQ(mesh.children.size(), 1u);
+    EXPECT_EQ(mesh.children.at(0).snapshot()->splats.scales.rows(), 2);
+}
+
+TEST(PackedSplats, GltfOfLinearColorsIsEncoded) {
+    GltfBuilder builder;
+    auto& primitive = splat_primitive(builder, 0);
+    primitive["extensions"]["KHR_gaussian_splatting"]["colorSpace"] = "lin_rec709_display";
+    // 0.5 + constant * 0.1, encoded.
+    const double linear = 0.5 + constant * 0.1, encoded = 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
+    EXPECT_NEAR(0.5 + constant * double(node_of(builder).splats.sh(0, 1)), encoded, 1e-5);
+}
+
+TEST(PackedSplats, GltfMayHoldSpz) {
+    GltfBuilder builder;
+    const std::string spz = io::gzip(spz_content(2).str());
+    auto& primitive = splat_primitive(builder, 0);
+    primitive["attributes"] = {{"POSITION", primitive["attributes"]["POSITION"]}};
+    primitive["extensions"]["KHR_gaussian_splatting"]["extensions"] = {
+        {"KHR_gaussian_splatting_compression_spz_2",
+         {{"bufferView", builder.view(std::vector<char>(spz.begin(), spz.end()))}}}};
+    builder.json["extensionsRequired"] = {"KHR_gaussian_splatting_compression_spz_2"};
+    EXPECT_EQ(node_of(builder).splats.degree(), 1);
+}
+
+TEST(PackedSplats, DamagedGltfSaysWhy) {
+    const auto said = [](auto&& damage) {
+        GltfBuilder builder;
+        damage(splat_primitive(builder, 1), builder);
+        return message_of([&] { node_of(builder); });
+    };
+    const std::string name = "KHR_gaussian_splatting:";
+    using Json = nlohmann::json;
+    EXPECT_TRUE(has(said([](Json& p, GltfBuilder&) { p["mode"] = 4; }), "POINTS"));
+    for (const std::string part :
+         {"ROTATION", "SCALE", "OPACITY", "SH_DEGREE_0_COEF_0", "SH_DEGREE_1_COEF_1"})
+        EXPECT_TRUE(has(said([&](Json& p, GltfBuilder&) { p["attributes"].erase(name + part); }), part))
+            << part;
+    EXPECT_TRUE(has(said([&](Json& p, GltfBuilder& builder) {
+                        p["attributes"][name + "SCALE"] = builder.floats({1, 1, 1}, 3);
+                    }),
+                    "2 splats"));
+    EXPECT_TRUE(has(said([&](Json& p, GltfBuilder& builder) {
+                        p["attributes"][name + "OPACITY"] = builder.floats({1, 1.5f}, 1);
+                    }),
+                    "opacities"));
+    EXPECT_TRUE(has(said([&](Json& p, GltfBuilder& builder) {
+                        p["attributes"][name + "SCALE"] = builder.floats({1, 1, 1, 1, -1, 1}, 3);
+                    }),
+                    "splat 1 of 2"));
+}
+
+TEST(PackedSplats, WrittenGlbIsTheSame) {
+    const MeshData mesh = various_splats(5);
+    const std::string glb = io::encode_glb(Mesh(mesh));
+    const auto scene = io::decode_gltf(as_span(glb), "test.glb");
+    const MeshData back = *scene.mesh.snapshot()->children.at(0).snapshot();
+    EXPECT_EQ(back.V, mesh.V);
+    EXPECT_EQ(back.splats.scales, mesh.splats.scales);
+    EXPECT_EQ(back.splats.opacities, mesh.splats.opacities);
+    EXPECT_EQ(back.splats.sh, mesh.splats.sh);
+    // Normalised in single precision.
+    EXPECT_LE(largest_turn(back.splats.rotations, mesh.splats.rotations), 1e-6f);
+}
+
+}  // namespace
+}  // namespace easypbr::packed_splats_test
