@@ -33,7 +33,7 @@ void Pipeline::draw_overlay_items(const Frame& frame, const DrawList& list, bool
     if (list.overlays.empty()) return;
     if (native) return overlays_.shade(frame, list.overlays, targets_, transfers_);
     overlays_.begin(frame, list.overlays, targets_, hiding_depth(frame, list));
-    overlays_.draw_rest(frame, list.overlays, targets_);
+    overlays_.draw(frame, list.overlays, targets_, nullptr);
     overlays_.draw_over(frame, list.overlays, targets_);
 }
 
@@ -108,7 +108,7 @@ void Pipeline::draw_layers(const Frame& frame, const DrawList& list, const Items
         surfaces_.draw_layer(frame, list, transparency_.layer(), outputs);
         if (!transparency_.close_layer()) break;
         surfaces_.take_layer(list);
-        overlays_.draw_behind(frame, overlays, targets_, transparency_.layer());
+        overlays_.draw(frame, overlays, targets_, &transparency_.layer());
         if (see_through) transparency_.keep_picture(frame, targets_, rough, reach);
         if (volumes) {
             transparency_.open_exits(frame);
@@ -119,7 +119,7 @@ void Pipeline::draw_layers(const Frame& frame, const DrawList& list, const Items
               {.extensions = outputs.extensions, .transmission = transparency_.transmission()}, false);
         transparency_.blend(frame, targets_, shade);
     }
-    overlays_.draw_rest(frame, overlays, targets_);
+    overlays_.draw(frame, overlays, targets_, nullptr);
 }
 
 }  // namespace easypbr::render

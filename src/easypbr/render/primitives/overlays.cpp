@@ -1,7 +1,11 @@
 #include "easypbr/render/primitives/overlays.h"
 
+#include <algorithm>
+
 namespace easypbr::render {
 namespace {
+
+using OverlayPart = OverlayStep::Part;
 
 /// Calls draw(kind, items) for each kind that has items.
 template <class Draw>
@@ -15,34 +19,43 @@ void for_each_kind(const Primitives& primitives, const ItemsByKind& items, Draw&
 
 void Overlays::begin(const Frame& frame, const ItemsByKind& items, const GBuffer& targets,
                      const gl::Texture& opaque) {
-    for_each_kind(primitives_, items, [&](Primitive& kind, DrawItems of_kind) {
-        kind.begin_overlay(frame, of_kind, targets, opaque);
-    });
+    run(frame, items, targets, {.part = OverlayPart::begin, .opaque = &opaque});
 }
 
-void Overlays::draw_behind(const Frame& frame, const ItemsByKind& items, const GBuffer& targets,
-                           const GBuffer& layer) {
-    for_each_kind(primitives_, items, [&](Primitive& kind, DrawItems of_kind) {
-        kind.draw_overlay_behind(frame, of_kind, targets, layer);
-    });
-}
-
-void Overlays::draw_rest(const Frame& frame, const ItemsByKind& items, const GBuffer& targets) {
-    for_each_kind(primitives_, items, [&](Primitive& kind, DrawItems of_kind) {
-        kind.draw_overlay_rest(frame, of_kind, targets);
-    });
+void Overlays::draw(const Frame& frame, const ItemsByKind& items, const GBuffer& targets,
+                    const GBuffer* next) {
+    for (const OverlayPart part : {OverlayPart::behind, OverlayPart::front})
+        run(frame, items, targets, {.part = part, .next = next});
 }
 
 void Overlays::draw_over(const Frame& frame, const ItemsByKind& items, const GBuffer& targets) {
-    for_each_kind(primitives_, items, [&](Primitive& kind, DrawItems of_kind) {
-        kind.draw_overlay_over(frame, of_kind, targets);
-    });
+    run(frame, items, targets, {.part = OverlayPart::over});
 }
 
 void Overlays::shade(const Frame& frame, const ItemsByKind& items, const GBuffer& targets,
                      Transfers& transfers) {
+    for (const OverlayPart part :
+         {OverlayPart::begin, OverlayPart::behind, OverlayPart::front, OverlayPart::over})
+        run(frame, items, targets, {.part = part, .host = &transfers});
+}
+
+void Overlays::run(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, OverlayStep step) {
+    step.others = others_;
     for_each_kind(primitives_, items, [&](Primitive& kind, DrawItems of_kind) {
-        kind.shade_overlay(frame, of_kind, targets, transfers);
+        kind.draw_overlay(frame, of_kind, targets, step);
+    });
+    if (step.part == OverlayPart::begin) find_others(items);
+}
+
+void Overlays::find_others(const ItemsByKind& items) {
+    others_.clear();
+    bool around = false;
+    for_each_kind(primitives_, items, [&](Primitive& kind, DrawItems) { around |= kind.lies_around(); });
+    if (!around) return;
+    for_each_kind(primitives_, items, [&](Primitive& kind, DrawItems) {
+        std::vector<float> depths = kind.overlay_depths();
+        if (others_.empty()) return others_.swap(depths);
+        for (size_t i = 0; i < depths.size(); ++i) others_[i] = std::max(others_[i], depths[i]);
     });
 }
 

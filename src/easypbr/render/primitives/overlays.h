@@ -1,26 +1,33 @@
 // The overlays of all kinds of primitives, between the layers of what light passes.
 #pragma once
 
+#include <vector>
+
 #include "easypbr/render/primitives/primitive.h"
 
 namespace easypbr::render {
 
-/// The steps are those of Primitive. Without items none of them does anything.
+/// The steps are those of OverlayStep. Without items none of them does anything.
 class Overlays {
   public:
     /// The primitives must outlive this.
     explicit Overlays(const Primitives& primitives) : primitives_(primitives) {}
 
+    /// Items, targets and `opaque` stay as they are until draw_over(). See OverlayStep::opaque.
     void begin(const Frame& frame, const ItemsByKind& items, const GBuffer& targets,
                const gl::Texture& opaque);
-    void draw_behind(const Frame& frame, const ItemsByKind& items, const GBuffer& targets,
-                     const GBuffer& layer);
-    void draw_rest(const Frame& frame, const ItemsByKind& items, const GBuffer& targets);
+    /// Adds what lies behind a layer, or all that is left.
+    void draw(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, const GBuffer* next);
     void draw_over(const Frame& frame, const ItemsByKind& items, const GBuffer& targets);
+    /// All steps at once where there are no layers, natively: from and to host memory.
     void shade(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, Transfers& transfers);
 
   private:
+    void run(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, OverlayStep step);
+    void find_others(const ItemsByKind& items);
+
     const Primitives& primitives_;
+    std::vector<float> others_;  ///< OverlayStep::others, since the beginning
 };
 
 }  // namespace easypbr::render

@@ -20,6 +20,27 @@ namespace easypbr::render {
 /// Items of one kind, in the order of the scene.
 using DrawItems = std::span<const DrawItem>;
 
+/// One step of drawing overlays. `begin` comes first. Then `behind` and `front` for each layer of what light
+/// passes, from the farthest on, and once more for what lies before all of them; `over` is the last.
+struct OverlayStep {
+    enum class Part {
+        begin,   ///< finds what is to be drawn
+        behind,  ///< adds what lies behind `next` and has not been drawn, and, where a kind lies_around(),
+                 ///< behind `others` too
+        front,   ///< adds the rest of it, before `others`, when all kinds have done the step before
+        over     ///< adds the items that are drawn over everything else (is_over())
+    };
+    Part part = Part::begin;
+    /// Given for native drawing: the targets are in host memory, and there are no layers.
+    Transfers* host = nullptr;
+    /// By the driver, with `begin`: hidden is what lies behind this (R32F, reversed depth), whose normals are
+    /// those of the targets; both stay as they are until `over`.
+    const gl::Texture* opaque = nullptr;
+    const GBuffer* next = nullptr;  ///< the layer; none: all that is left
+    /// Reversed depths at which kinds that do not lie around others are, 0: nowhere; empty: nowhere at all.
+    std::span<const float> others = {};
+};
+
 /// One kind of primitive; a folder of its own, and a line in primitives.cpp. Its items are surfaces, or
 /// overlays: unlit, hiding no surface, drawn between the layers. The members for what a kind has not are left
 /// as they are and draw nothing. Members that draw need the context current.
@@ -79,20 +100,15 @@ class Primitive {
     /// What rays find that meet an item that add_to() has added. The item must outlive it.
     virtual std::unique_ptr<HitSurface> hit_surface(const ResolvedSettings& resolved, const DrawItem& item);
 
-    // Overlays, which lie between the layers, each where it is: begin_overlay() once, then
-    // draw_overlay_behind() for each layer from the farthest on, draw_overlay_rest() and draw_overlay_over().
+    // Overlays, which lie between the layers, each where it is.
 
-    /// Hidden is what lies behind `opaque` (R32F, reversed depth), whose normals are those of `targets`; both
-    /// stay as they are until the last of the others.
-    virtual void begin_overlay(const Frame&, DrawItems, const GBuffer&, const gl::Texture&) {}
-    /// Adds to the overlay of `targets` what lies behind a layer and has not been drawn.
-    virtual void draw_overlay_behind(const Frame&, DrawItems, const GBuffer&, const GBuffer&) {}
-    /// Adds what lies before all layers so far.
-    virtual void draw_overlay_rest(const Frame&, DrawItems, const GBuffer&) {}
-    /// Adds the items that are drawn over everything else (is_over()).
-    virtual void draw_overlay_over(const Frame&, DrawItems, const GBuffer&) {}
-    /// All steps at once where there are no layers, natively: from and to host memory.
-    virtual void shade_overlay(const Frame&, DrawItems, const GBuffer&, Transfers&) {}
+    /// A step of Overlays.
+    virtual void draw_overlay(const Frame&, DrawItems, const GBuffer& /*targets*/, const OverlayStep&) {}
+    /// After the step `begin`: reversed depth of the nearest item in each pixel of the frame, row by row; 0
+    /// where there is none. Empty: none anywhere, or the items lie around those of other kinds.
+    virtual std::vector<float> overlay_depths() const { return {}; }
+    /// Items lie before and behind those of other kinds in a pixel: they are drawn around them, in two parts.
+    virtual bool lies_around() const { return false; }
 
     // Bounds.
 

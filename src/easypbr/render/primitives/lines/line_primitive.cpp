@@ -7,6 +7,7 @@
 #include "easypbr/core/color.h"
 #include "easypbr/native/shaders.h"
 #include "easypbr/render/primitives/lines/screen_lines.h"
+#include "easypbr/render/primitives/overlay_depths.h"
 
 namespace easypbr::render {
 namespace {
@@ -65,8 +66,21 @@ void set_style(To& to, const DrawItem& item) {
 
 }  // namespace
 
-void LinePrimitive::begin_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
-                                  const gl::Texture& opaque) {
+void LinePrimitive::draw_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
+                                 const OverlayStep& step) {
+    using Part = OverlayStep::Part;
+    if (step.part == Part::begin)
+        return step.host ? begin(frame, items, targets, *step.host)
+                         : begin(frame, items, targets, *step.opaque);
+    if (step.part == Part::front) return;
+    const Kind kind = step.part == Part::over ? Kind::over : Kind::ordered;
+    if (step.host) return shade_items(frame, items, kind, targets, *step.host);
+    add(frame, items, targets, kind, step.next);
+    if (step.next) keep_last(*step.next);
+}
+
+void LinePrimitive::begin(const Frame& frame, DrawItems items, const GBuffer& targets,
+                          const gl::Texture& opaque) {
     if (!depth_ || overlay_id_ != targets.overlay.attachment().id()) {
         depth_ = gl::Texture(gl::Format::depth32f, frame.size.x(), frame.size.y());
         framebuffer_ = gl::Framebuffer({&targets.overlay.drawn()}, &depth_);
@@ -76,29 +90,36 @@ void LinePrimitive::begin_overlay(const Frame& frame, DrawItems items, const GBu
     opaque_ = &opaque;
     normal_ = &targets.normal.texture();
     has_last_ = false;
+    in_host_memory_ = false;
     framebuffer_.bind();
     framebuffer_.clear_depth(0);
     draw_items(frame, items, Kind::nearest);
 }
 
-void LinePrimitive::draw_overlay_behind(const Frame& frame, DrawItems items, const GBuffer& targets,
-                                        const GBuffer& layer) {
-    add(frame, items, targets, Kind::ordered, &layer);
+void LinePrimitive::keep_last(const GBuffer& layer) {
     if (!last_depth_) {
-        last_depth_ = gl::Texture(gl::Format::r32f, frame.size.x(), frame.size.y());
-        last_normal_ = gl::Texture(gl::Format::rg16, frame.size.x(), frame.size.y());
+        const Vec2i size = layer.depth.size();
+        last_depth_ = gl::Texture(gl::Format::r32f, size.x(), size.y());
+        last_normal_ = gl::Texture(gl::Format::rg16, size.x(), size.y());
     }
     gl::copy(layer.depth.texture(), last_depth_);
     gl::copy(layer.normal.texture(), last_normal_);
     has_last_ = true;
 }
 
-void LinePrimitive::draw_overlay_rest(const Frame& frame, DrawItems items, const GBuffer& targets) {
-    add(frame, items, targets, Kind::ordered, nullptr);
-}
-
-void LinePrimitive::draw_overlay_over(const Frame& frame, DrawItems items, const GBuffer& targets) {
-    add(frame, items, targets, Kind::over, nullptr);
+std::vector<float> LinePrimitive::overlay_depths() const {
+    std::vector<float> depths;
+    Vec2i size = nearest_.size();
+    if (in_host_memory_) {
+        depths = whole_depths(nearest_);
+    } else {
+        size = Vec2i(depth_.width(), depth_.height());
+        depths.resize(size_t(size.x()) * size_t(size.y()));
+        framebuffer_.read(0, gl::Format::depth32f, 0, 0, size.x(), size.y(),
+                          std::as_writable_bytes(std::span(depths)));
+    }
+    widen_by_a_pixel(depths, size);
+    return depths;
 }
 
 void LinePrimitive::add(const Frame& frame, DrawItems items, const GBuffer& targets, Kind kind,
@@ -151,13 +172,12 @@ void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, c
     }
 }
 
-void LinePrimitive::shade_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
-                                  Transfers& transfers) {
+void LinePrimitive::begin(const Frame& frame, DrawItems items, const GBuffer& targets, Transfers& transfers) {
+    in_host_memory_ = true;
     if (nearest_.size() != frame.size) nearest_ = Target(gl::Format::r32f, frame.size);
     nearest_.write(targets.overlay.area());
     std::ranges::fill(nearest_.pixels<float>(), 0.0f);
-    for (const Kind kind : {Kind::nearest, Kind::ordered, Kind::over})
-        shade_items(frame, items, kind, targets, transfers);
+    shade_items(frame, items, Kind::nearest, targets, transfers);
 }
 
 void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, const GBuffer& targets,

@@ -14,19 +14,19 @@ namespace easypbr::render {
 class LinePrimitive final : public Primitive {
   public:
     DrawMode mode() const override { return DrawMode::lines; }
-    /// Finds the nearest line of each pixel.
-    void begin_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
-                       const gl::Texture& opaque) override;
-    void draw_overlay_behind(const Frame& frame, DrawItems items, const GBuffer& targets,
-                             const GBuffer& layer) override;
-    void draw_overlay_rest(const Frame& frame, DrawItems items, const GBuffer& targets) override;
-    void draw_overlay_over(const Frame& frame, DrawItems items, const GBuffer& targets) override;
-    void shade_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
-                       Transfers& transfers) override;
+    void draw_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
+                      const OverlayStep& step) override;
+    /// As far as lines reach at all: a pixel farther than those that they cover half of. Of lines thinner
+    /// than a pixel some are missed.
+    std::vector<float> overlay_depths() const override;
     void evict_unused() override { cache_.evict_unused(); }
 
   private:
     enum class Kind { nearest, ordered, over };
+    /// Finds the nearest line of each pixel.
+    void begin(const Frame& frame, DrawItems items, const GBuffer& targets, const gl::Texture& opaque);
+    void begin(const Frame& frame, DrawItems items, const GBuffer& targets, Transfers& transfers);
+    void keep_last(const GBuffer& layer);
     void draw_items(const Frame& frame, DrawItems items, Kind kind, const GBuffer* next = nullptr);
     void add(const Frame& frame, DrawItems items, const GBuffer& targets, Kind kind, const GBuffer* next);
     void bind_surfaces(const gl::Program& program, const GBuffer* next) const;
@@ -39,6 +39,7 @@ class LinePrimitive final : public Primitive {
     gl::Texture depth_;
     gl::Framebuffer framebuffer_;
     uint32_t overlay_id_ = 0;
+    bool in_host_memory_ = false;                              ///< where the nearest depths are
     const gl::Texture *opaque_ = nullptr, *normal_ = nullptr;  ///< since begin_overlay()
     bool has_last_ = false;
     gl::Texture last_depth_, last_normal_;  ///< of the layer that was drawn last

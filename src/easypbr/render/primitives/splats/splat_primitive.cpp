@@ -1,9 +1,12 @@
 #include "easypbr/render/primitives/splats/splat_primitive.h"
 
 #include <algorithm>
+#include <atomic>
+#include <limits>
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/render/primitives/overlay_depths.h"
 
 namespace easypbr::render {
 namespace {
@@ -54,25 +57,6 @@ SurfacePixel surface_of(const Frame& frame, const SplatCompositor& compositor, u
     return pixel;
 }
 
-std::vector<float> read_depths(const gl::Texture& depth) {
-    std::vector<float> depths(size_t(depth.width()) * size_t(depth.height()));
-    gl::Framebuffer({&depth}).read(0, gl::Format::r32f, 0, 0, depth.width(), depth.height(),
-                                   std::as_writable_bytes(std::span(depths)));
-    return depths;
-}
-
-/// The depths of a frame in host memory, which may hold a part of it.
-std::vector<float> whole_depths(const Target& depth) {
-    std::vector<float> depths(size_t(depth.width()) * size_t(depth.height()));
-    const PixelRect& area = depth.area();
-    const std::span<const float> held = depth.pixels<float>();
-    parallel_for(size_t(area.height), 64, [&](size_t y) {
-        std::copy_n(held.data() + y * size_t(area.width), area.width,
-                    depths.data() + (size_t(area.y) + y) * size_t(depth.width()) + size_t(area.x));
-    });
-    return depths;
-}
-
 /// Linear display light, premultiplied. Splats are blended as they are encoded, and what they are together is
 /// blended with the picture as light.
 Vec4 display_light(const SplatTile& tile, size_t pixel) {
@@ -120,44 +104,64 @@ void SplatPrimitive::add_mean(const Frame& frame, DrawItems items, std::span<con
     });
 }
 
-void SplatPrimitive::begin_overlay(const Frame& frame, DrawItems items, const GBuffer&,
-                                   const gl::Texture& opaque) {
-    compositor_.begin(frame, chosen(items, false));
-    farthest_ = compositor_.empty() ? std::vector<float>() : read_depths(opaque);
-}
-
-void SplatPrimitive::draw_overlay_behind(const Frame&, DrawItems, const GBuffer& targets,
-                                         const GBuffer& layer) {
+void SplatPrimitive::draw_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
+                                  const OverlayStep& step) {
+    using Part = OverlayStep::Part;
+    if (step.part == Part::begin) return begin(frame, items, targets, step);
+    if (step.part == Part::over) {
+        const std::vector<const DrawItem*> over = chosen(items, true);
+        if (over.empty()) return;
+        compositor_.begin(frame, over);
+        return blend(targets, {}, step.host != nullptr);
+    }
     if (compositor_.empty()) return;
-    const std::vector<float> nearest = read_depths(layer.depth.texture());
-    add(targets, {farthest_, nearest});
-    // Where the layer is, the splats behind it have been drawn.
-    parallel_for(farthest_.size(), 1 << 16,
-                 [&](size_t i) { farthest_[i] = std::max(farthest_[i], nearest[i]); });
+    step.part == Part::behind ? draw_behind(targets, step) : draw_front(targets, step);
 }
 
-void SplatPrimitive::draw_overlay_rest(const Frame&, DrawItems, const GBuffer& targets) {
-    add(targets, {farthest_, {}});
-}
-
-void SplatPrimitive::draw_overlay_over(const Frame& frame, DrawItems items, const GBuffer& targets) {
-    const std::vector<const DrawItem*> over = chosen(items, true);
-    if (over.empty()) return;
-    compositor_.begin(frame, over);
-    add(targets, {});
-}
-
-void SplatPrimitive::shade_overlay(const Frame& frame, DrawItems items, const GBuffer& targets, Transfers&) {
+void SplatPrimitive::begin(const Frame& frame, DrawItems items, const GBuffer& targets,
+                           const OverlayStep& step) {
     compositor_.begin(frame, chosen(items, false));
-    if (!compositor_.empty()) farthest_ = whole_depths(targets.depth);
-    shade(targets, {farthest_, {}});
-    const std::vector<const DrawItem*> over = chosen(items, true);
-    if (over.empty()) return;
-    compositor_.begin(frame, over);
-    shade(targets, {});
+    farthest_.clear();
+    if (!compositor_.empty()) farthest_ = step.host ? whole_depths(targets.depth) : read_depths(*step.opaque);
 }
 
-void SplatPrimitive::shade(const GBuffer& targets, const SplatCompositor::Limits& limits) {
+void SplatPrimitive::find_limits(const OverlayStep& step) {
+    constexpr float no_limit = std::numeric_limits<float>::infinity();
+    nearest_.clear();
+    if (step.next) nearest_ = read_depths(step.next->depth.texture());
+    // Where the layer is not there is nothing more before the pixel.
+    std::ranges::replace(nearest_, 0.0f, no_limit);
+    is_split_ = false;
+    split_ = nearest_;
+    if (step.others.empty()) return;
+    split_.resize(step.others.size(), no_limit);
+    std::atomic<bool> is_split = false;
+    parallel_for(split_.size(), 1 << 14, [&](size_t i) {
+        const float depth = step.others[i];
+        if (!(depth > farthest_[i] && depth < split_[i])) return;
+        split_[i] = depth;
+        if (!is_split.load(std::memory_order_relaxed)) is_split = true;
+    });
+    is_split_ = is_split;
+}
+
+void SplatPrimitive::draw_behind(const GBuffer& targets, const OverlayStep& step) {
+    find_limits(step);
+    blend(targets, {farthest_, split_}, step.host != nullptr);
+}
+
+void SplatPrimitive::draw_front(const GBuffer& targets, const OverlayStep& step) {
+    if (is_split_) blend(targets, {split_, nearest_}, step.host != nullptr);
+    // Where the layer is, the splats behind it have been drawn.
+    parallel_for(nearest_.size(), 1 << 16,
+                 [&](size_t i) { farthest_[i] = std::max(farthest_[i], nearest_[i]); });
+}
+
+void SplatPrimitive::blend(const GBuffer& targets, const Limits& limits, bool in_host_memory) {
+    in_host_memory ? shade(targets, limits) : add(targets, limits);
+}
+
+void SplatPrimitive::shade(const GBuffer& targets, const Limits& limits) {
     const std::span<OverlayPixel> overlay = targets.overlay.pixels<OverlayPixel>();
     const PixelRect area = targets.overlay.area();
     compositor_.blend(limits, [&](const SplatTile& tile) {
@@ -168,7 +172,7 @@ void SplatPrimitive::shade(const GBuffer& targets, const SplatCompositor::Limits
     });
 }
 
-void SplatPrimitive::add(const GBuffer& targets, const SplatCompositor::Limits& limits) {
+void SplatPrimitive::add(const GBuffer& targets, const Limits& limits) {
     if (compositor_.empty()) return;
     if (picture_.size() != compositor_.size()) picture_ = Target(gl::Format::rgba16f, compositor_.size());
     picture_.write(picture_.whole());

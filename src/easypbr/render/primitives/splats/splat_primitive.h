@@ -20,24 +20,30 @@ class SplatPrimitive final : public Primitive {
     bool has_driver() const override { return false; }
     void add_mean(const Frame& frame, DrawItems items, std::span<const float> hides,
                   SurfaceWriter& writer) override;
-    void begin_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
-                       const gl::Texture& opaque) override;
-    void draw_overlay_behind(const Frame& frame, DrawItems items, const GBuffer& targets,
-                             const GBuffer& layer) override;
-    void draw_overlay_rest(const Frame& frame, DrawItems items, const GBuffer& targets) override;
-    void draw_overlay_over(const Frame& frame, DrawItems items, const GBuffer& targets) override;
-    void shade_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
-                       Transfers& transfers) override;
+    bool lies_around() const override { return true; }
+    void draw_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
+                      const OverlayStep& step) override;
 
   private:
-    /// Blends what lies within the limits into the overlay's texture.
-    void add(const GBuffer& targets, const SplatCompositor::Limits& limits);
-    /// The same in host memory.
-    void shade(const GBuffer& targets, const SplatCompositor::Limits& limits);
+    using Limits = SplatCompositor::Limits;
+
+    void begin(const Frame& frame, DrawItems items, const GBuffer& targets, const OverlayStep& step);
+    /// Blends up to the layer that is next, or to what others draw before it.
+    void draw_behind(const GBuffer& targets, const OverlayStep& step);
+    void draw_front(const GBuffer& targets, const OverlayStep& step);
+    /// Takes note of how far splats are drawn in the step: up to `nearest_`, or to `split_` at first.
+    void find_limits(const OverlayStep& step);
+    /// Blends what lies within the limits into the overlay, which is in host memory or a texture.
+    void blend(const GBuffer& targets, const Limits& limits, bool in_host_memory);
+    void add(const GBuffer& targets, const Limits& limits);
+    void shade(const GBuffer& targets, const Limits& limits);
 
     SplatCompositor compositor_;
-    std::vector<float> farthest_;  ///< reversed depths before which splats are still to be drawn
-    Target picture_;               ///< RGBA16F: what is uploaded
+    // Reversed depths, see SplatCompositor::Limits; those that are empty are no limits.
+    std::vector<float> farthest_;         ///< before which splats are still to be drawn
+    std::vector<float> nearest_, split_;  ///< of the step
+    bool is_split_ = false;               ///< in some pixel others lie between splats of the step
+    Target picture_;                      ///< RGBA16F: what is uploaded
     ProgramVariants programs_{"screen_triangle.vert", "overlay_splats.frag"};
 };
 
