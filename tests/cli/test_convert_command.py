@@ -80,10 +80,50 @@ def test_a_file_of_several_nodes_becomes_one_mesh(easypbr, box, tmp_path):
     (["--estimate-surfels", "2"], 1, "k: expected a whole number from 3 to 256, got 2"),
     (["--decimat", "5"], 2, "did you mean '--decimate'"),
     (["--scale", "0"], 1, "determinant 0"),
+    (["--crop-box", "1,2,3"], 2, "--crop-box"),
+    (["--crop-sphere", "0,0,0,-1"], 1, "radius"),
+    (["--crop-sphere", "99,0,0,1"], 1, "nothing stays"),
+    (["--decimate-splats", "5"], 1, "expected a mesh with splats"),
 ])
 def test_bad_steps_write_nothing(easypbr, box, tmp_path, steps, code, message):
     assert message in easypbr("convert", box, "out.ply", *steps, code=code).stderr
     assert not (tmp_path / "out.ply").exists()
+
+
+@pytest.fixture
+def splats(tmp_path):
+    """100 splats in a row along x at 0, 1, ..., with opacities from 0 to 0.99."""
+    import numpy as np
+
+    import easypbr
+    means = np.arange(100)[:, None] * [1.0, 0, 0]
+    easypbr.splats(means, 0.1, opacities=np.arange(100) / 100, colors=np.full((100, 3), 0.5)).save(tmp_path / "row.ply")
+    return "row.ply"
+
+
+# Opacities are read back to single precision: limits lie between two of them.
+@pytest.mark.parametrize("steps, count", [
+    (["--crop-box", "9.5,-1,-1,20,1,1"], 11),
+    (["--cut-box", "9.5,-1,-1,20,1,1"], 89),
+    (["--crop-sphere", "50,0,0,2.5"], 5),
+    (["--cut-sphere", "50,0,0,2.5"], 95),
+    (["--prune-opacity", "0.895"], 10),
+    (["--prune-size", "1"], 100),
+    (["--decimate-splats", "30"], 30),
+    (["--crop-sphere", "0,0,0,9.5", "--prune-opacity", "0.045", "--decimate-splats", "4"], 4),
+])
+def test_splats_are_edited(easypbr, splats, steps, count):
+    for out in ("out.ply", "out.spz", "out.glb"):
+        easypbr("convert", splats, out, *steps)
+        found = info(easypbr, out)
+        assert found["vertices"] == count and found["attributes"] == ["splats of degree 0"]
+        assert found["bounds"]["max"][0] <= 99.01
+
+
+def test_splats_become_other_data(easypbr, splats):
+    for step, attributes in (("--to-cloud", ["colors"]), ("--to-surfels", ["colors", "normals", "tangents"])):
+        easypbr("convert", splats, "out.ply", step)
+        assert info(easypbr, "out.ply")["attributes"] == attributes
 
 
 def test_steps_are_for_meshes(easypbr, sphere, render, tmp_path):

@@ -108,6 +108,25 @@ def test_other_files(tmp_path, name):
     assert np.abs(picture(Mesh(tmp_path / name)).astype(int) - picture(mesh)).max() <= 5
 
 
+def test_tools():
+    mesh = splats([[float(i), 0, 0] for i in range(10)], [0.1, 0.2, 0.3] * np.ones((10, 1)), opacities=np.arange(10) / 10,
+                  colors=np.full((10, 3), 0.5))
+    assert mesh.crop_box((1.5, -1, -1), (4, 1, 1)).V[:, 0].tolist() == [2, 3, 4]
+    assert mesh.crop_box((1.5, -1, -1), (4, 1, 1), invert=True).V[:, 0].tolist() == [0, 1, 5, 6, 7, 8, 9]
+    assert mesh.crop_sphere((5, 0, 0), 1).V[:, 0].tolist() == [4, 5, 6]
+    assert mesh.prune_splats(min_opacity=0.75).V[:, 0].tolist() == [8, 9]
+    assert len(mesh.decimate_splats(3).scales) == 3
+    cloud, surfels = mesh.to_cloud(), mesh.to_surfels()
+    assert cloud.scales.size == 0 and np.allclose(cloud.C[:, 3], mesh.opacities)
+    # sqrt(2) standard deviations of the two longer axes; across the shortest.
+    assert np.allclose(np.abs(surfels.N), [1, 0, 0]) and np.allclose(surfels.B, np.sqrt(2) * 0.2)
+    assert np.allclose(np.linalg.norm(surfels.T, axis=1), np.sqrt(2) * 0.3)
+    with pytest.raises(ArgumentError, match="nothing stays"):
+        mesh.prune_splats(max_size=0.1)
+    with pytest.raises(ArgumentError, match="mesh with splats"):
+        cloud.decimate_splats(2)
+
+
 def test_files(tmp_path):
     mesh = wide()
     mesh.save(tmp_path / "a.ply")

@@ -1,7 +1,9 @@
-// Points on a surface, and fewer points: a random choice, or one for each cell of a grid.
+// Points on a surface, and fewer points: a random choice, one for each cell of a grid, or those within a
+// shape; fewer 3D Gaussian splats.
 #pragma once
 
 #include <cstdint>
+#include <limits>
 
 #include "easypbr/scene/mesh.h"
 
@@ -30,5 +32,38 @@ Mesh subsample_voxels(const Mesh& mesh, double cell_size);
 /// The same cubes as voxels: V are their centres, and MeshData::voxel_size is their edge, so that they are
 /// drawn as cubes. Normals and texture coordinates are left out. Throws as subsample_voxels() does.
 Mesh voxelize(const Mesh& mesh, double cell_size);
+
+/// What stays of a cut: what lies inside of the shape, its rim included, or what lies outside.
+enum class Keep { inside, outside };
+
+/// The vertices within a box, or a ball, in the mesh's own frame (that of V, plus its offset), with all that
+/// they have, and the faces and edges whose vertices all stay. Splats count by their means. Throws
+/// ArgumentError for a box with a side below 0, a radius that is not above 0, and when no vertex stays.
+Mesh crop_box(const Mesh& mesh, const Box3d& box, Keep keep = Keep::inside);
+Mesh crop_sphere(const Mesh& mesh, const Vec3d& center, double radius, Keep keep = Keep::inside);
+
+/// Which splats stay: those within all limits, which are included.
+struct SplatLimits {
+    double least_opacity = 0;
+    /// Of the standard deviation along the longest axis, in the mesh's units.
+    double least_size = 0;
+    double most_size = std::numeric_limits<double>::infinity();
+};
+
+/// The splats within the limits, in their order. Throws ArgumentError when the mesh has no splats, a limit is
+/// NaN, or no splat stays.
+Mesh prune_splats(const Mesh& mesh, const SplatLimits& limits);
+
+/// At most `count` splats: neighbours along a space-filling curve are merged in pairs, those first whose
+/// union covers least that they do not cover themselves and whose colours differ least. The union of two has
+/// the mean and covariance of both, weighed by what they cover, the mean of their colours, and an opacity
+/// that covers as much as both. Labels, scalars and other values are those of the one that covers more. In
+/// the order of the curve; the mesh itself when it has no more. Throws ArgumentError when it has no splats or
+/// count < 1.
+Mesh decimate_splats(const Mesh& mesh, int64_t count);
+
+/// A cloud of the means, with the colour that all directions see and the opacity as alpha. Throws
+/// ArgumentError when the mesh has no splats.
+Mesh cloud_from_splats(const Mesh& mesh);
 
 }  // namespace easypbr

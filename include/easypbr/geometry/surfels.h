@@ -30,8 +30,13 @@ Mesh estimate_normals(const Mesh& mesh, const NeighborhoodOptions& options = {})
 Mesh estimate_surfels(const Mesh& mesh, const NeighborhoodOptions& options = {}, bool keep_normals = false);
 
 /// One surfel for each vertex that a face uses, with the mesh's normals (computed when it has none) and
-/// ellipses that cover the vertex's share of the faces around it. Throws ArgumentError when there are no
-/// faces.
+/// ellipses that cover the vertex's share of the faces around it; of splats see surfels_from_splats(). Throws
+/// ArgumentError when there are no faces.
 Mesh surfels_from_mesh(const Mesh& mesh);
+
+/// One surfel for each splat: across its shortest axis, with ellipses as large as a disc that covers what the
+/// Gaussian does (semi-axes of sqrt(2) standard deviations), colours and alpha as those of
+/// cloud_from_splats(). Throws ArgumentError when the mesh has no splats.
+Mesh surfels_from_splats(const Mesh& mesh);
 
 }  // namespace easypbr

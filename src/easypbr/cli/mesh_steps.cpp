@@ -1,5 +1,7 @@
 #include "easypbr/cli/mesh_steps.h"
 
+#include <algorithm>
+#include <array>
 #include <utility>
 
 #include "easypbr/geometry/place.h"
@@ -28,6 +30,26 @@ class StepOptions {
                 },
                 doc)
             ->option_text(unit)
+            ->trigger_on_parse();
+    }
+
+    /// An option with so many numbers, separated by commas or blanks.
+    template <size_t count>
+    void numbers(const char* name, const char* unit, const char* doc,
+                 Mesh (*apply)(const Mesh&, const std::array<double, count>&)) {
+        command_
+            .add_option_function<std::vector<double>>(
+                name,
+                [this_steps = &steps_, name, apply](const std::vector<double>& given) {
+                    std::array<double, count> values;
+                    std::ranges::copy(given, values.begin());
+                    this_steps->push_back(
+                        {name, [apply, values](const Mesh& mesh) { return apply(mesh, values); }});
+                },
+                doc)
+            ->option_text(unit)
+            ->delimiter(',')
+            ->expected(int(count))
             ->trigger_on_parse();
     }
 
@@ -110,7 +132,40 @@ void declare_points(StepOptions& steps) {
                       [](const Mesh& mesh, int k) {
                           return estimate_surfels(mesh, {k, {}});
                       });
-    steps.flag("--to-surfels", "Make one surfel per vertex of a mesh", surfels_from_mesh);
+    steps.flag("--to-surfels", "Make one surfel per vertex of a mesh, or per splat", surfels_from_mesh);
+}
+
+template <Keep keep>
+Mesh cut_by_box(const Mesh& mesh, const std::array<double, 6>& v) {
+    return crop_box(mesh, Box3d(Vec3d(v[0], v[1], v[2]), Vec3d(v[3], v[4], v[5])), keep);
+}
+
+template <Keep keep>
+Mesh cut_by_sphere(const Mesh& mesh, const std::array<double, 4>& v) {
+    return crop_sphere(mesh, Vec3d(v[0], v[1], v[2]), v[3], keep);
+}
+
+void declare_cuts(StepOptions& steps) {
+    constexpr const char *box = "X,Y,Z,X,Y,Z", *sphere = "X,Y,Z,RADIUS";
+    steps.numbers<6>("--crop-box", box, "Keep what lies between two corners, the lowest first",
+                     cut_by_box<Keep::inside>);
+    steps.numbers<6>("--cut-box", box, "Remove what lies between two corners, the lowest first",
+                     cut_by_box<Keep::outside>);
+    steps.numbers<4>("--crop-sphere", sphere, "Keep what lies within a sphere", cut_by_sphere<Keep::inside>);
+    steps.numbers<4>("--cut-sphere", sphere, "Remove what lies within a sphere",
+                     cut_by_sphere<Keep::outside>);
+}
+
+void declare_splats(StepOptions& steps) {
+    steps.number<double>(
+        "--prune-opacity", "X", "Remove splats of an opacity below X",
+        [](const Mesh& mesh, double opacity) { return prune_splats(mesh, {.least_opacity = opacity}); });
+    steps.number<double>(
+        "--prune-size", "X", "Remove splats of a standard deviation above X",
+        [](const Mesh& mesh, double size) { return prune_splats(mesh, {.most_size = size}); });
+    steps.number<int64_t>("--decimate-splats", "N", "Merge neighbouring splats until N are left",
+                          [](const Mesh& mesh, int64_t count) { return decimate_splats(mesh, count); });
+    steps.flag("--to-cloud", "Make a cloud of the means of splats", cloud_from_splats);
 }
 
 }  // namespace
@@ -121,6 +176,8 @@ void declare_mesh_steps(CLI::App& command, std::vector<MeshStep>& steps) {
     declare_repairs(options);
     declare_resolutions(options);
     declare_points(options);
+    declare_cuts(options);
+    declare_splats(options);
 }
 
 Mesh apply_mesh_steps(const Mesh& mesh, const std::vector<MeshStep>& steps, Phases& phases) {

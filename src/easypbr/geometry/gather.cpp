@@ -105,6 +105,10 @@ void require_vertices(const char* what, const MeshData& mesh) {
     if (mesh.V.empty()) refuse(what, mesh, "vertices");
 }
 
+void require_splats(const char* what, const MeshData& mesh) {
+    if (mesh.splats.empty()) refuse(what, mesh, "splats");
+}
+
 MeshData clone_without_arrays(const MeshData& mesh) {
     MeshData result = without_arrays(mesh);
     for (Mesh& child : result.children) child = child.clone();

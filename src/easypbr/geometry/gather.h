@@ -8,10 +8,11 @@
 
 namespace easypbr::geometry {
 
-/// Throws ArgumentError "WHAT: expected a mesh with faces ..." (or vertices) when there are none; says what
+/// Throws ArgumentError "WHAT: expected a mesh with faces ..." (or vertices, or splats) when there are none; says what
 /// to do when only the descendants have some.
 void require_faces(const char* what, const MeshData& mesh);
 void require_vertices(const char* what, const MeshData& mesh);
+void require_splats(const char* what, const MeshData& mesh);
 
 /// Name, source, label map, materials, style, pose and clones of the children, but none of the arrays and
 /// parts.

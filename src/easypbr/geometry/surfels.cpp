@@ -137,6 +137,7 @@ Mesh estimate_surfels(const Mesh& mesh, const NeighborhoodOptions& options, bool
 
 Mesh surfels_from_mesh(const Mesh& mesh) {
     const auto data = mesh.snapshot();
+    if (!data->splats.empty()) return surfels_from_splats(mesh);
     geometry::require_faces("surfels_from_mesh", *data);
     const geometry::Adjacency adjacency(*data);
     const std::vector<int32_t>& place = adjacency.weld().place;

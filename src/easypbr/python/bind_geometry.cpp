@@ -178,6 +178,53 @@ void bind_resolution(MeshClass& mesh) {
             "size, 'laplacian' shrinks. Borders are kept.");
 }
 
+Keep keep_of(bool invert) {
+    return invert ? Keep::outside : Keep::inside;
+}
+
+void bind_cuts(MeshClass& mesh) {
+    mesh.def(
+            "crop_box",
+            [](const Mesh& m, const ArrayLike& low, const ArrayLike& high, bool invert) {
+                const Box3d box(to_vector3(low, "crop_box: low"), to_vector3(high, "crop_box: high"));
+                return released([&] { return crop_box(m, box, keep_of(invert)); });
+            },
+            nb::arg("low"), nb::arg("high"), nb::arg("invert") = false,
+            "A new mesh of the vertices between two corners, in the mesh's own frame, and of the faces and "
+            "edges "
+            "whose vertices all stay; with `invert` of those outside. Splats count by their means.")
+        .def(
+            "crop_sphere",
+            [](const Mesh& m, const ArrayLike& center, double radius, bool invert) {
+                const Vec3d c = to_vector3(center, "crop_sphere: center");
+                return released([&] { return crop_sphere(m, c, radius, keep_of(invert)); });
+            },
+            nb::arg("center"), nb::arg("radius"), nb::arg("invert") = false,
+            "A new mesh of the vertices within a sphere, as crop_box().");
+}
+
+void bind_splats(MeshClass& mesh) {
+    const SplatLimits none;
+    mesh.def(
+            "prune_splats",
+            [](const Mesh& m, double opacity, double min_size, double max_size) {
+                return released([&] { return prune_splats(m, {opacity, min_size, max_size}); });
+            },
+            nb::arg("min_opacity") = none.least_opacity, nb::arg("min_size") = none.least_size,
+            nb::arg("max_size") = none.most_size,
+            "A new mesh of the splats of at least this opacity, whose standard deviation along the longest "
+            "axis lies "
+            "within the sizes.")
+        .def(
+            "decimate_splats",
+            [](const Mesh& m, int64_t count) { return released([&] { return decimate_splats(m, count); }); },
+            nb::arg("count"),
+            "A new mesh of at most `count` splats: neighbours are merged, those first that look most alike.")
+        .def(
+            "to_cloud", [](const Mesh& m) { return released([&] { return cloud_from_splats(m); }); },
+            "A new cloud of the means of splats, with their colours and, as alpha, opacities.");
+}
+
 }  // namespace
 
 void bind_geometry(nb::module_&) {
@@ -185,6 +232,8 @@ void bind_geometry(nb::module_&) {
     bind_placing(mesh);
     bind_repair(mesh);
     bind_resolution(mesh);
+    bind_cuts(mesh);
+    bind_splats(mesh);
 }
 
 }  // namespace easypbr::python

@@ -87,7 +87,7 @@ void bind_neighbors(nb::module_& module) {
         .def(
             "to_surfels", [](const Mesh& mesh) { return released([&] { return surfels_from_mesh(mesh); }); },
             "One surfel for each vertex, with the mesh's normals, as large as its share of the faces around "
-            "it.");
+            "it; or for each splat, across its shortest axis, that covers what the splat does.");
 }
 
 }  // namespace easypbr::python
