@@ -16,6 +16,7 @@ from .tables import (
     OcclusionSpec,
     PlacementSpec,
     SensorSpec,
+    SurroundingsSpec,
 )
 
 __all__ = [
@@ -29,5 +30,6 @@ __all__ = [
     "OcclusionSpec",
     "PlacementSpec",
     "SensorSpec",
+    "SurroundingsSpec",
     "generate",
 ]

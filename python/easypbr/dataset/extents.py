@@ -31,6 +31,25 @@ def vertices_of(mesh: Mesh) -> NDArray[Any]:
     return np.concatenate(V)
 
 
+def fitted(mesh: Mesh, size: float, up: str) -> NDArray[Any]:
+    """The 4 x 4 pose that brings a mesh to the origin with an axis of its own ("-y") upwards; the longest side of the box
+    around all but the outermost hundredth of its vertices becomes `size`."""
+    V = vertices_of(mesh)
+    low, high = np.quantile(V, (0.005, 0.995), axis=0)
+    axis = np.zeros(3)
+    axis["xyz".index(up[-1])] = -1.0 if up.startswith("-") else 1.0
+    # The shortest turn, and for what is upside down half a turn about x.
+    turn = np.diag([1.0, -1, -1])
+    if axis[1] > -0.5:
+        across = np.cross(axis, [0.0, 1, 0])
+        K = np.array([[0, -across[2], across[1]], [across[2], 0, -across[0]], [-across[1], across[0], 0]])
+        turn = np.eye(3) + K + K @ K / (1 + axis[1])
+    T = np.eye(4)
+    T[:3, :3] = turn * (size / max(float((high - low).max()), 1e-12))
+    T[:3, 3] = -T[:3, :3] @ ((low + high) / 2)
+    return T
+
+
 def diameter_of(V: NDArray[Any]) -> float:
     """The largest distance between two points. Those far from the middle come first, and the search ends when no pair that is
     left can be farther apart, by the triangle inequality."""

@@ -11,13 +11,15 @@ from ..errors import ArgumentError, Error
 from ..scene import Scene
 from ..viewer import Viewer
 from . import content
-from .extents import bounds, diameter_of, vertices_of
+from .extents import bounds, diameter_of, fitted, vertices_of
 from .frame import Frame, NextFrame
 from .lamps import random_light
 from .poses import direction, draw, rotation, turn_about
 from .spec import DatasetSpec
 from .tables import ObjectSpec, SensorSpec
 
+#: Name of the surroundings in the scene.
+SURROUNDINGS = "surroundings"
 _LAYERS = ("color", "depth", "normal_camera", "instance_id", "instances")
 
 
@@ -34,6 +36,7 @@ class FrameMaker:
         self._files = [entry.files() for entry in spec.objects]
         self._meshes: dict[str, Mesh | None] = {}
         self._skies: dict[int, Environment] = {}
+        self._surroundings: tuple[Mesh, np.ndarray] | None = None
         self._scene = Scene()
         self._view = Viewer(spec.image.size, {"ground.mode": "none"}, scene=self._scene)
 
@@ -93,6 +96,7 @@ class FrameMaker:
         camera = self._camera(random)
         self._background(random)
         self._lights(random)
+        self._surround(random)
         entries: dict[str, ObjectSpec] = {}
         spheres: list[tuple[NDArray[Any], float]] = []
         for number, entry in enumerate(spec.objects):
@@ -148,6 +152,20 @@ class FrameMaker:
                 self._skies[choice] = content.sky(own) if given.mode == "sky" else Environment(load_image(given.files[choice]))
             self._scene.environment = self._skies[choice]
 
+    def _surround(self, random: np.random.Generator) -> None:
+        given = self.spec.surroundings
+        if not given.source:
+            return
+        turn = turn_about(np.array([0.0, 1, 0]), np.radians(draw(random, given.turn_deg)))
+        if self._surroundings is None:
+            mesh = Mesh(given.source)
+            self._surroundings = mesh, fitted(mesh, given.size, given.up)
+        mesh, T = self._surroundings
+        placed = np.eye(4)
+        placed[:3, :3] = turn
+        mesh.T_parent_mesh = placed @ T
+        self._scene.show(mesh, SURROUNDINGS)
+
     def _lights(self, random: np.random.Generator) -> None:
         for name in self._scene.light_names():
             self._scene.remove_light(name)
@@ -199,7 +217,7 @@ class FrameMaker:
             poses[name] = T = mesh.T_parent_mesh
             axis, shift = direction(random), direction(random) * draw(random, spec.motion.translation)
             angle = np.radians(draw(random, spec.motion.rotation_deg))
-            if name == "ground":
+            if name in ("ground", SURROUNDINGS):
                 continue
             moved, centre = T.copy(), T[:3, :3] @ np.mean(bounds(mesh), 0) + T[:3, 3]
             turn = turn_about(axis, angle)

@@ -23,6 +23,7 @@ _LIMITS: dict[str, dict[str, tuple[float, float]]] = {
     "placement": {"distance": (_TINY, _LARGE), "margin": (0, 0.49), "radius": (_TINY, _LARGE), "tries": (1, _MOST)},
     "occlusion": {"min_visible": (0, 1), "max_truncation": (0, 1), "tries": (1, _MOST)},
     "background": {"skies": (1, _MOST), "intensity": (0, _LARGE)},
+    "surroundings": {"size": (_TINY, _LARGE), "turn_deg": (-_LARGE, _LARGE)},
     "lights": {"count": (0, _MOST_LIGHTS), "illuminance": (0, _LARGE), "azimuth_deg": (-_LARGE, _LARGE), "elevation_deg": (-90, 90),
                "distance": (_TINY, _LARGE), "size": (_TINY, _LARGE), "saturation": (0, 1)},
     "motion": {"translation": (0, _LARGE), "rotation_deg": (-360, 360), "camera": (0, _LARGE)},

@@ -51,6 +51,8 @@ class DatasetSpec(DatasetTables):
         for entry in self.objects:
             if not entry.source.startswith("builtin:"):
                 entry.source = str(folder / entry.source)
+        if self.surroundings.source:
+            self.surroundings.source = str(folder / self.surroundings.source)
         self.background.files = tuple(str(folder / file) for file in self.background.files)
 
     def check(self) -> None:
@@ -59,6 +61,7 @@ class DatasetSpec(DatasetTables):
             "image.format": (self.image.format, ("png", "jpg")),
             "placement.mode": (self.placement.mode, ("frustum", "surface")),
             "background.mode": (self.background.mode, ("sky", "environment", "image", "color")),
+            "surroundings.up": (self.surroundings.up, ("x", "y", "z", "-x", "-y", "-z")),
             "on_error": (self.on_error, ("stop", "skip")),
         }
         for i, entry in enumerate(self.objects):

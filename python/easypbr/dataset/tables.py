@@ -104,6 +104,19 @@ class BackgroundSpec:
 
 
 @dataclasses.dataclass
+class SurroundingsSpec:
+    """A file that stands around the objects in every frame, such as a captured room of Gaussian splats: hidden by objects
+    and hiding them, not annotated. Without a source there is none. The box around all but the outermost hundredth of its
+    vertices has its middle at the origin, and a longest side of `size` metres; `up` is the axis of the file that points up:
+    x, y, z, -x, -y or -z. It is turned about the vertical by `turn_deg`."""
+
+    source: str = ""
+    size: float = 8.0
+    up: str = "y"
+    turn_deg: Range = 0.0
+
+
+@dataclasses.dataclass
 class LightSpec:
     """Lights beside the background: a number of suns (directional), or of lamps `distance` from the origin: point, or area
     lights that face it (square rectangle, disc, sphere) of a side or diameter `size` in world units. `illuminance` (lux) is
@@ -156,6 +169,7 @@ class DatasetTables:
     placement: PlacementSpec = dataclasses.field(default_factory=PlacementSpec)
     occlusion: OcclusionSpec = dataclasses.field(default_factory=OcclusionSpec)
     background: BackgroundSpec = dataclasses.field(default_factory=BackgroundSpec)
+    surroundings: SurroundingsSpec = dataclasses.field(default_factory=SurroundingsSpec)
     lights: list[LightSpec] = dataclasses.field(default_factory=list)
     motion: MotionSpec = dataclasses.field(default_factory=MotionSpec)
     sensor: SensorSpec = dataclasses.field(default_factory=SensorSpec)
