@@ -429,7 +429,7 @@ def test_panels_of_the_program_are_shown_and_used(view, open_page):
 
     page = open_page(width=1100, height=800)
     page.exact()
-    panel = page.page.locator(".user-panel")
+    panel = page.page.locator(".user-panel").filter(has=page.page.get_by_role("heading", name="Training"))
     expect(panel.get_by_role("heading", name="Training")).to_be_visible()
 
     def until(name, value):
