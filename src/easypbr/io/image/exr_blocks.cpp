@@ -42,12 +42,13 @@ std::vector<std::byte> unrolled(std::span<const std::byte> packed, size_t size) 
 }
 
 /// Undoes the differences between bytes and joins the halves that hold the even and the odd ones.
-std::vector<std::byte> joined(std::vector<std::byte> bytes) {
-    for (size_t i = 1; i < bytes.size(); ++i)
-        bytes[i] = std::byte(uint8_t(uint8_t(bytes[i - 1]) + uint8_t(bytes[i]) - 128));
+std::vector<std::byte> joined(const std::vector<std::byte>& bytes) {
     std::vector<std::byte> out(bytes.size());
-    const size_t half = (bytes.size() + 1) / 2;
-    for (size_t i = 0; i < out.size(); ++i) out[i] = bytes[i % 2 ? half + i / 2 : i / 2];
+    const auto* from = reinterpret_cast<const uint8_t*>(bytes.data());
+    auto* to = reinterpret_cast<uint8_t*>(out.data());
+    uint8_t last = 128;  // The first byte stands for itself: 128 is taken from each.
+    for (size_t first = 0; first < 2; ++first)
+        for (size_t i = first; i < bytes.size(); i += 2) to[i] = last = uint8_t(last + *from++ - 128);
     return out;
 }
 

@@ -158,12 +158,12 @@ std::vector<int> picture_channels(const ExrHeader& header, const std::string& na
 }
 
 float float_of_half(uint16_t half) {
-    const int exponent = half >> 10 & 31, mantissa = half & 1023;
-    const float sign = half & 0x8000 ? -1.0f : 1.0f;
-    if (exponent == 31)
-        return std::bit_cast<float>(uint32_t(half & 0x8000) << 16 | 0x7f800000u | uint32_t(mantissa) << 13);
-    return sign *
-           (exponent ? std::ldexp(float(mantissa + 1024), exponent - 25) : std::ldexp(float(mantissa), -24));
+    const uint32_t sign = uint32_t(half & 0x8000) << 16, rest = uint32_t(half & 0x7fff) << 13;
+    const int exponent = half >> 10 & 31;
+    if (exponent == 31) return std::bit_cast<float>(sign | 0x7f800000u | rest);
+    if (exponent > 0) return std::bit_cast<float>(sign | (rest + (112u << 23)));
+    const float magnitude = std::ldexp(float(half & 1023), -24);
+    return sign ? -magnitude : magnitude;
 }
 
 /// A rectangle of the picture that is compressed on its own.
@@ -231,19 +231,30 @@ class BlockReader {
             for (size_t c = 0; c < chosen_.size(); ++c) {
                 const size_t channel = size_t(chosen_[c]);
                 const std::byte* from = samples.data() + line_bytes * size_t(y) + starts[channel];
-                const size_t bytes = size_t(planes_[channel].words) * 2;
-                for (int x = 0; x < block.width; ++x)
-                    image_.at<float>(block.x + x, block.y + y)[c] =
-                        value(from + bytes * size_t(x), header_.channels[channel].type);
+                float* to = image_.at<float>(block.x, block.y + y) + c;
+                copy_line(from, header_.channels[channel].type, block.width, to);
             }
     }
 
-    static float value(const std::byte* from, uint32_t type) {
-        uint32_t bits = 0;
-        std::memcpy(&bits, from, type == sample_half ? 2 : 4);
-        return type == sample_half    ? float_of_half(uint16_t(bits))
-               : type == sample_float ? std::bit_cast<float>(bits)
-                                      : float(bits);
+    void copy_line(const std::byte* from, uint32_t type, int count, float* to) const {
+        switch (type) {
+            case sample_half:
+                return copy_line<uint16_t>(from, count, to, float_of_half);
+            case sample_float:
+                return copy_line<float>(from, count, to, [](float value) { return value; });
+            default:
+                return copy_line<uint32_t>(from, count, to, [](uint32_t value) { return float(value); });
+        }
+    }
+
+    template <class T, class Convert>
+    void copy_line(const std::byte* from, int count, float* to, Convert convert) const {
+        const size_t stride = chosen_.size();
+        for (int x = 0; x < count; ++x, to += stride) {
+            T value;
+            std::memcpy(&value, from + sizeof(T) * size_t(x), sizeof(T));
+            *to = convert(value);
+        }
     }
 
     Bytes bytes_;
