@@ -5,7 +5,7 @@ set(native_shaders lighting_surface lighting_surface_extended background_environ
                    lighting_catcher ground_finish occlusion_normals display_surface exact_surface
                    bloom_blocks bloom_gather bloom_resample focus_halve focus_gather focus_compose
                    outline_edges outline_lines denoise_smooth transparency_layer)
-set(native_surface_shaders mesh_resolve mesh_extended)
+set(native_surface_shaders mesh_resolve mesh_extended shadow_depth)
 set(native_stream_shaders path_lamps path_scatter path_lamps_extended path_scatter_extended)
 set(native_line_shaders overlay_lines)
 set(native_folder ${PROJECT_BINARY_DIR}/generated/native)
@@ -18,6 +18,9 @@ set(native_apart mesh_extended.texel_of lighting_surface_extended.prefiltered li
 foreach(shader IN ITEMS lighting_surface_extended path_lamps_extended path_scatter_extended)
   list(APPEND native_apart ${shader}.F_film ${shader}.charlie_lambda)
 endforeach()
+foreach(shader IN ITEMS lighting_surface lighting_surface_extended lighting_catcher)
+  list(APPEND native_apart ${shader}.tint_part)
+endforeach()
 list(TRANSFORM native_apart PREPEND "--apart=")
 list(TRANSFORM native_stream_shaders PREPEND "--stream=" OUTPUT_VARIABLE native_stream_options)
 file(GLOB shader_texts CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/shaders/*.glsl ${PROJECT_SOURCE_DIR}/shaders/*.frag)
@@ -25,7 +28,7 @@ add_custom_command(
   OUTPUT ${native_folder}/shader_uniforms.h ${native_folder}/shaders.h ${native_folder}/shader_streams.h
   COMMAND Python3::Interpreter ${PROJECT_SOURCE_DIR}/scripts/native_shaders.py ${PROJECT_SOURCE_DIR}/shaders
           ${native_folder} --define DFG_SIZE=64 --define LIGHTS_PER_BLOCK=64 --define SHADOWS --define UV_TRANSFORMS=19
-          --define NATIVE --define DEPTH_ONLY --without SHADOW_TINTS ${native_apart} ${native_shaders} ${native_surface_shaders}
+          --define NATIVE --define DEPTH_ONLY ${native_apart} ${native_shaders} ${native_surface_shaders}
           ${native_line_shaders} ${native_stream_options}
   DEPENDS ${shader_texts} ${PROJECT_SOURCE_DIR}/scripts/native_shaders.py
   COMMENT "Translating shaders" VERBATIM)

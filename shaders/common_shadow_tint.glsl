@@ -8,13 +8,14 @@ uniform sampler2DArray u_tint_moment;
 vec3 tint_texel(ivec2 texel, Receiver r, float plane, float least) {
     ivec3 at = ivec3(clamp(texel, ivec2(0), ivec2(int(u_shadow_resolution) - 1)), int(r.at.z));
     vec4 absorption = texelFetch(u_tint_absorption, at, 0);
-    if (absorption.a <= max(plane, least)) return vec3(1.0);
+    bool counts = absorption.a > max(plane, least);
+    if (!any_lane(counts)) return vec3(1.0);
     vec4 moment = texelFetch(u_tint_moment, at, 0);
     float last = -moment.a;
-    if (last > plane) return exp(-absorption.rgb);
     // The casters before the receiver, if there are two: the first one's part of the moment.
     vec3 before = (moment.rgb - last * absorption.rgb) / max(absorption.a - last, 1e-20);
-    return exp(-clamp(before, vec3(0.0), absorption.rgb));
+    vec3 light = exp(-(last > plane ? absorption.rgb : clamp(before, vec3(0.0), absorption.rgb)));
+    return counts ? light : vec3(1.0);
 }
 
 // The surface's depth at the middle of a texel.
@@ -24,7 +25,14 @@ float plane_at(Receiver r, ivec2 texel) {
 
 vec3 tint_hard(Receiver r, bool needed) {
     ivec2 texel = ivec2(floor(r.at.xy * u_shadow_resolution));
-    return needed ? tint_texel(texel, r, plane_at(r, texel), 0.0) : vec3(1.0);
+    vec3 part = tint_texel(texel, r, plane_at(r, texel), 0.0);
+    return needed ? part : vec3(1.0);
+}
+
+// Of a column or row from -1 to 2; `f` is the point's place between the middle ones.
+float tint_weight(int i, float f) {
+    float outer = i < 0 ? 1.0 - f : f;
+    return i < 0 || i > 1 ? outer : 1.0;
 }
 
 // The mean of 3x3 texels, interpolated between texels, as lit_filtered().
@@ -33,8 +41,7 @@ vec3 tint_filtered(Receiver r) {
     vec3 lost = vec3(0.0);  // nothing lost is exactly all light, whatever the weights round to
     for (int y = -1; y <= 2; ++y)
         for (int x = -1; x <= 2; ++x) {
-            vec2 weight = mix(vec2(1.0), mix(1.0 - f, f, lessThan(vec2(0.0), vec2(x, y))),
-                              notEqual(abs(vec2(x, y) - 0.5), vec2(0.5)));
+            vec2 weight = vec2(tint_weight(x, f.x), tint_weight(y, f.y));
             ivec2 texel = ivec2(base) + ivec2(x, y);
             lost += weight.x * weight.y * (1.0 - tint_texel(texel, r, plane_at(r, texel), 0.0));
         }
@@ -48,10 +55,13 @@ vec3 tint_soft(Receiver r, bool needed) {
     float turn = 6.28318531 * frame_noise(gl_FragCoord.xy, u_sample_index);
     float reach = min(r.reach, widest / max(r.light.x, r.light.y));
     float sum = 0.0, count = 0.0;
-    for (int i = 0; needed && i < 4 + search_taps; ++i) {
+    int searched = any_lane(needed) ? 4 + search_taps : 0;
+    for (int i = 0; i < searched; ++i) {
         // The texels around the point, then those of the cone between the point and the light.
-        float rho = max(float(i - 4) + 0.5, 0.0) / float(search_taps), angle = turn + golden_angle * float(i - 4);
-        vec2 at = r.at.xy + (i < 4 ? texel * (vec2(i & 1, i >> 1) - 0.5) : r.light * reach * (rho * vec2(cos(angle), sin(angle))));
+        float tap = float(i - 4);
+        float rho = max(tap + 0.5, 0.0) / float(search_taps), angle = turn + golden_angle * tap;
+        vec2 corner = texel * (vec2(float(i & 1), float(i >> 1)) - 0.5), aside = r.light * reach * (rho * vec2(cos(angle), sin(angle)));
+        vec2 at = r.at.xy + (i < 4 ? corner : aside);
         ivec2 place = clamp(ivec2(floor(at * u_shadow_resolution)), ivec2(0), ivec2(int(u_shadow_resolution) - 1));
         float caster = texelFetch(u_tint_absorption, ivec3(place, int(r.at.z)), 0).a;
         float limit = dot(r.slope, (vec2(place) + 0.5) * texel - r.at.xy);
@@ -59,8 +69,9 @@ vec3 tint_soft(Receiver r, bool needed) {
         sum += blocked * caster;
         count += blocked;
     }
-    if (count == 0.0) return vec3(1.0);
-    float height = sum / count - r.depth;
+    bool found = needed && count > 0.0;
+    if (!any_lane(found)) return vec3(1.0);
+    float height = sum / max(count, 1.0) - r.depth;
     vec2 radius = clamp(r.light * height, vec2(0.5 * texel), vec2(widest));
     vec3 lost = vec3(0.0);
     for (int i = 0; i < tint_taps; ++i) {
@@ -68,13 +79,15 @@ vec3 tint_soft(Receiver r, bool needed) {
         vec2 at = (r.at.xy + radius * (rho * vec2(cos(angle), sin(angle)))) * u_shadow_resolution - 0.5;
         vec2 base = floor(at), f = at - base;
         for (int k = 0; k < 4; ++k) {
-            ivec2 corner = ivec2(k & 1, k >> 1), place = ivec2(base) + corner;
-            vec2 weight = mix(1.0 - f, f, vec2(corner));
+            int column = k & 1, row = k >> 1;
+            ivec2 place = ivec2(base) + ivec2(column, row);
+            vec2 weight = vec2(column == 0 ? 1.0 - f.x : f.x, row == 0 ? 1.0 - f.y : f.y);
             float cone = r.depth + 0.5 * rho * height;
             lost += weight.x * weight.y * (1.0 - tint_texel(place, r, plane_at(r, place), cone));
         }
     }
-    return 1.0 - lost / float(tint_taps);
+    vec3 light = 1.0 - lost / float(tint_taps);
+    return found ? light : vec3(1.0);
 }
 
 vec3 tint_part(Receiver r, bool needed) {

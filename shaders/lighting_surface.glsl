@@ -42,7 +42,8 @@ vec3 light_of_block(Surface s, vec3 view_p) {
     vec3 face = s.normal, radiance = vec3(0.0);
     if (has_shadows) {
         vec3 flat_normal = u_world_from_view * face_normal(gl_FragCoord.xy, view_p);
-        face = dot(flat_normal, s.normal) < 0.3 ? s.normal : flat_normal;
+        // Of a pixel without neighbours it is no number.
+        face = dot(flat_normal, s.normal) >= 0.3 ? flat_normal : s.normal;
     }
     for (int i = 0; i < u_block_lights; ++i) {
         vec3 light = direct(u_lights[i], s);

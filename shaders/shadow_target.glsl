@@ -8,9 +8,11 @@ layout(location = 1) out vec4 o_moment;      // rgb: -ln(transmittance) times de
 
 void write_depth() { o_absorption = vec4(gl_FragCoord.z, 0.0, 0.0, 0.0); }
 
+// e^-16 is nothing.
+vec3 absorption_of(vec3 through) { return -log(clamp(through, 1.125e-7, 1.0)); }
+
 void write_tint(vec3 through) {
-    // e^-16 is nothing.
-    vec3 absorption = -log(clamp(through, 1.125e-7, 1.0));
+    vec3 absorption = absorption_of(through);
     if (absorption == vec3(0.0)) discard;
     o_absorption = vec4(absorption, gl_FragCoord.z);
     o_moment = vec4(absorption * gl_FragCoord.z, -gl_FragCoord.z);

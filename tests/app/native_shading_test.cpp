@@ -1,8 +1,11 @@
 // Shading on the CPU against the driver's: one text, two compilers.
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <random>
 #include <string>
+
+#include <fmt/format.h>
 
 #include "easypbr/app/session.h"
 #include "easypbr/geometry/primitives.h"
@@ -57,8 +60,7 @@ class Generator {
         s.image.size = Vec2i(size[0], size[1]);
         s.image.samples = chance(0.7) ? 1 : between(2, 5);
         s.image.antialias = chance(0.5) ? Antialias::fxaa : Antialias::none;
-        // Tinted shadows are the driver's.
-        s.shadows.enabled = chance(0.6) && !has_layers_;
+        s.shadows.enabled = chance(0.6);
         s.transparency.max_layers = chance(0.5) ? 8 : between(1, 3);
         s.shadows.mode = ShadowMode(between(0, 2));
         s.shadows.resolution = chance(0.5) ? 256 : 1024;
@@ -305,6 +307,80 @@ TEST(NativeShading, LoadsNoDriver) {
         session.render_layers({"depth", "object_id"});
         EXPECT_TRUE(session.context_info().version.empty()) << "scene " << seed;
     }
+}
+
+/// A leaf with holes, or coloured glass, over a floor.
+Scene shadowed(AlphaMode mode, bool textured) {
+    const auto texels = [](int channels, auto value) {
+        Image image(32, 32, channels, PixelType::u8);
+        for (size_t i = 0; i < image.pixels<uint8_t>().size(); ++i)
+            image.pixels<uint8_t>()[i] = uint8_t(value(i / size_t(channels), i % size_t(channels)));
+        return std::make_shared<const Image>(image);
+    };
+    Material material;
+    material.alpha_mode = mode;
+    material.double_sided = true;
+    material.base_color = Vec3(0.9f, 0.3f, 0.2f);
+    material.opacity = mode == AlphaMode::blend ? 0.7f : 1.0f;
+    if (textured)
+        material.base_color_texture.image = texels(4, [](size_t texel, size_t channel) {
+            return channel == 3 ? (texel / 4 % 2 ? 255 : 40) : 60 + 90 * ((texel / 32 / 4 + channel) % 3);
+        });
+    Mesh leaf = make_plane(1);
+    leaf.set_material(material);
+    leaf.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0.5, 0)));
+    Mesh floor = make_plane(3);
+    Scene scene;
+    scene.show(floor, "floor");
+    scene.show(leaf, "leaf");
+    for (const LightType type : {LightType::point, LightType::directional}) {
+        Light light;
+        light.type = type;
+        light.position = Vec3(0.4f, 2.5f, 0.3f);
+        light.direction = Vec3(0.2f, -1, 0.1f);
+        light.intensity = type == LightType::point ? 30.0f : 2.0f;
+        light.radius = 0.1f;
+        scene.set_light(type == LightType::point ? "lamp" : "sun", light);
+    }
+    return scene;
+}
+
+Image drawn(const Scene& scene, ShadowMode mode, bool native, bool shadows, bool* loads_driver = nullptr) {
+    app::Session session(scene);
+    Settings& s = session.settings();
+    s.image.size = Vec2i(160, 120);
+    s.image.samples = 1;
+    s.image.antialias = Antialias::none;
+    s.shadows.mode = mode;
+    s.shadows.enabled = shadows;
+    s.shadows.resolution = 256;
+    if (native) session.use_device(DrawDevice::cpu);
+    session.allow_native_shading(native);
+    const Image picture = session.render();
+    if (loads_driver) *loads_driver = !session.context_info().version.empty();
+    return picture;
+}
+
+// What is seen through, or has holes, casts natively what it casts by the driver. Beyond what its own texture
+// makes (the driver takes levels from 2x2 pixels) three pixels may differ, whose texels lie on the edge of a
+// hole. The shadow is a ninth of the floor, partly behind the leaf: more than a fiftieth of the picture.
+TEST(NativeShading, CastsTheDriversTints) {
+    if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
+    for (const AlphaMode alpha : {AlphaMode::mask, AlphaMode::blend})
+        for (const bool textured : {false, true})
+            for (const ShadowMode mode : {ShadowMode::hard, ShadowMode::pcf, ShadowMode::soft}) {
+                const Scene scene = shadowed(alpha, textured);
+                bool loads_driver = true;
+                const Image native = drawn(scene, mode, true, true, &loads_driver);
+                const std::string name =
+                    fmt::format("alpha {}, textured {}, mode {}", int(alpha), textured, int(mode));
+                EXPECT_FALSE(loads_driver) << name;
+                const Difference d = difference(native, drawn(scene, mode, false, true)),
+                                 own = difference(drawn(scene, mode, true, false),
+                                                  drawn(scene, mode, false, false));
+                EXPECT_LE(d.by_more, own.by_more + d.pixels / 5000) << name << ", largest " << d.most;
+                EXPECT_GT(difference(native, drawn(scene, mode, true, false)).by_more, d.pixels / 50) << name;
+            }
 }
 
 TEST(NativeShading, LoadsNoDriverForMotionBlur) {

@@ -141,7 +141,7 @@ def test_without_opengl_clouds_colour_bars_effects_and_lines_are_drawn(without_o
     effects = [f"{name}.enabled=true" for name in ("bloom", "outline", "depth_of_field")]
     heights = ["style.color_by=height", "annotation.colorbar=true"]
     occlusion, lines = ["ssao.enabled=true"], ["style.show_wireframe=true", "style.line_dash=3"]
-    layers, coat = ["material.opacity=0.5", "shadows.enabled=false"], ["material.clearcoat=1", "path.enabled=false"]
+    layers, coat = ["material.opacity=0.5", "ground.mode=shadow"], ["material.clearcoat=1", "path.enabled=false"]
     pictures = (([cloud], []), ([cloud], heights), ([cloud], occlusion), ([sphere], effects), ([sphere], lines),
                 ([sphere], layers), ([sphere], coat))
     for files, settings in pictures:
@@ -154,10 +154,11 @@ def test_without_opengl_clouds_colour_bars_effects_and_lines_are_drawn(without_o
 
 def test_without_opengl_errors_name_the_pass_and_what_to_install(without_opengl, sphere, tmp_path):
     glass = ("--set", "material.transmission=1", "--mode", "raster")
-    for name, settings in {"shadows": glass, "transparency": (*glass, "--set", "shadows.enabled=false")}.items():
+    for shadows in ("true", "false"):
+        settings = (*glass, "--set", f"shadows.enabled={shadows}")
         done = without_opengl("render", sphere, "-o", tmp_path / "out.png", *settings)
         assert done.returncode == 1 and done.stderr.count("\n") == 1
-        assert f"{name}: this needs OpenGL" in done.stderr and "Install" in done.stderr
+        assert "transparency: this needs OpenGL" in done.stderr and "Install" in done.stderr
     assert not (tmp_path / "out.png").exists()
     done = without_opengl("render", sphere, "-o", tmp_path / "out.png", "--device", "gl")
     assert done.returncode == 1 and "libEGL.so.1 is not installed" in done.stderr

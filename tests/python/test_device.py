@@ -53,7 +53,6 @@ for name in ("clearcoat", "iridescence", "anisotropy"):
     setattr(view.settings.material, name, 0.5)
 view.settings.material.sheen_color = (0.2, 0.3, 0.4)
 assert view.render()[16, 16, 3] == 255
-view.settings.shadows.enabled = False
 view.settings.material.opacity = 0.5
 view.settings.background.mode = "transparent"
 assert 128 < view.render()[16, 16, 3] < 255

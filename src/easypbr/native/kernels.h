@@ -78,7 +78,9 @@ struct VisibleTriangles {
     double pixel_width = 0, pixel_height = 0;  ///< in normalised device coordinates
     uint64_t albedo = 0;                       ///< of all pixels, in the formats of the targets
     uint32_t material = 0, id = 0;
-    const void* shader = nullptr;   ///< uniforms of mesh_resolve; null: albedo and material are constants
+    /// Uniforms of mesh_resolve, or of casters those of shadow_depth; null: albedo and material are
+    /// constants.
+    const void* shader = nullptr;
     bool extended = false;          ///< uniforms of mesh_extended instead
     TriangleAttributes attributes;  ///< for the shader
 
@@ -102,6 +104,10 @@ using ResolveTriangles = void (*)(const VisibleTriangles& triangles, const Visib
 /// The opacity of pixels by the triangles' shader.
 using AlphaOfTriangles = void (*)(const VisibleTriangles& triangles, const VisiblePixel* pixels, int count,
                                   float* alpha);
+
+/// What casters absorb of light, r g b, and their opacity, by the triangles' shader.
+using CastersOfTriangles = void (*)(const VisibleTriangles& triangles, const VisiblePixel* texels, int count,
+                                    float* values);
 
 /// A place on a face or another element of a mesh that a ray has met.
 struct ElementHit {
@@ -170,6 +176,7 @@ inline constexpr int stream_count = EASYPBR_STREAMS(EASYPBR_ONE);
 struct Kernels {
     ResolveTriangles resolve_triangles;
     AlphaOfTriangles alpha_of_triangles;
+    CastersOfTriangles casters_of_triangles;
     ShadeHits shade_hits;
     DrawLines draw_lines;
     ShadeRows shade[shader_count];     ///< by Shader

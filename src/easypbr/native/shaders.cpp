@@ -210,6 +210,10 @@ std::shared_ptr<const void> extended_uniforms(const Inputs& inputs) {
     return filled<mesh_extended_uniforms>(inputs);
 }
 
+std::shared_ptr<const void> caster_uniforms(const Inputs& inputs) {
+    return filled<shadow_depth_uniforms>(inputs);
+}
+
 void resolve_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels) {
     chosen_set().kernels->resolve_triangles(triangles, pixels.data(), int(pixels.size()));
 }
@@ -217,6 +221,11 @@ void resolve_triangles(const VisibleTriangles& triangles, std::span<const Visibl
 void alpha_of_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels,
                         std::span<float> alpha) {
     chosen_set().kernels->alpha_of_triangles(triangles, pixels.data(), int(pixels.size()), alpha.data());
+}
+
+void casters_of_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> texels,
+                          std::span<float> values) {
+    chosen_set().kernels->casters_of_triangles(triangles, texels.data(), int(texels.size()), values.data());
 }
 
 void shade_hits(const VisibleTriangles& triangles, std::span<const ElementHit> hits,

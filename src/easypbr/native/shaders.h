@@ -27,8 +27,8 @@ void use_instruction_set(std::string_view name);
 /// given is 0. Pictures must live until the shader has run.
 struct Inputs {
     using Bytes = std::span<const std::byte>;
-    using Value =
-        std::variant<int, float, Vec2, Vec3, Vec4, Mat3, View, Cube, Panorama, Layers, Texture, Bytes>;
+    using Value = std::variant<int, float, Vec2, Vec3, Vec4, Mat3, View, Cube, Panorama, Layers, Layers4,
+                               Texture, Bytes>;
 
     std::vector<std::string_view> features;
     std::vector<std::pair<std::string_view, Value>> values;
@@ -44,12 +44,19 @@ struct Inputs {
 std::shared_ptr<const void> surface_uniforms(const Inputs& inputs);
 /// The same of mesh_extended, for triangles that are `extended`.
 std::shared_ptr<const void> extended_uniforms(const Inputs& inputs);
+/// The same of shadow_depth, for casters_of_triangles().
+std::shared_ptr<const void> caster_uniforms(const Inputs& inputs);
 /// Writes the surfaces of pixels. On the calling thread.
 void resolve_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels);
 /// The opacity of pixels by the triangles' shader, before it is compared with a cutoff. On the calling
 /// thread.
 void alpha_of_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> pixels,
                         std::span<float> alpha);
+
+/// What casters leave of light at texels of a shadow map, by the triangles' shader shadow_depth: four values
+/// for each, what is absorbed of each channel (-ln(transmittance)), and the opacity. On the calling thread.
+void casters_of_triangles(const VisibleTriangles& triangles, std::span<const VisiblePixel> texels,
+                          std::span<float> values);
 
 /// Evaluates the triangles' shader where rays have met them, with HitSurfaces::extensions where it is the
 /// extended one. The arrays have room for a multiple of

@@ -60,6 +60,12 @@ struct Layers {
     int size = 0;
 };
 
+/// The same of four floats a texel.
+struct Layers4 {
+    const float* data = nullptr;
+    int size = 0;
+};
+
 /// An image of a material with all its mip levels, one after the other: four channels of 8 bits, or of 16
 /// bits for colours, which are linear then. Rows run from the top, each with a texel more, so that the one to
 /// the right of another is always beside it: the first once more where the image repeats, else the last. Each
@@ -91,8 +97,8 @@ using u_light = Rgba32f;
 using u_reflectance = Rgba32f;
 using u_visibility = R16;
 using u_shadow_maps = Layers;
-using u_tint_absorption = Layers;
-using u_tint_moment = Layers;
+using u_tint_absorption = Layers4;
+using u_tint_moment = Layers4;
 using u_prefiltered = Cube;
 using u_irradiance = Cube;
 using u_sky_visibility = Rgba16f;

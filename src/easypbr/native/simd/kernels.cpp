@@ -318,6 +318,7 @@ extern const Kernels kernels;
 #define EASYPBR_ARRAYS(name) shade_stream<name, name##_uniforms, name##_stream>,
 const Kernels kernels{resolve_triangles,
                       alpha_of_triangles,
+                      casters_of_triangles,
                       shade_hits,
                       draw_lines,
                       {EASYPBR_SHADERS(EASYPBR_ROWS)},

@@ -365,6 +365,9 @@ INLINE vfloat log2(vfloat x) {
     p = p * t2 + 2.88539008f;
     return to_float(vint(exponent)) + p * t;
 }
+INLINE vfloat log(vfloat x) {
+    return log2(x) * 0.693147181f;
+}
 /// Of a base that is not negative.
 INLINE vfloat pow(vfloat base, vfloat exponent) {
     return select(base > 0.0f, exp2(exponent * log2(base)), vfloat(0.0f));

@@ -490,6 +490,14 @@ INLINE vec4 textureGather(const Layers& s, const vec3& place) {
             layer_texel(s, x + 1, y, layer), layer_texel(s, x, y, layer)};
 }
 
+/// The first layer is 0; the texel must be inside.
+INLINE vec4 texelFetch(const Layers4& s, const ivec3& p, int) {
+    const vint index = (p.z * s.size + p.y) * s.size + p.x;
+    Floats4 pixels[lanes];
+    for (int k = 0; k < lanes; ++k) pixels[k] = load<Floats4>(s.data + 4 * size_t(index.v[k]));
+    return planar(pixels);
+}
+
 struct CubePlace {
     vint face;
     vfloat s, t;  ///< within the face, in [0, 1]

@@ -1,4 +1,5 @@
-// The surfaces of visible triangles by the shader mesh_resolve. Included after the shaders.
+// The surfaces of visible triangles by the shader mesh_resolve, and their shadows. Included after the
+// shaders.
 #pragma once
 
 #include "easypbr/native/simd/resolve_triangles.h"
@@ -171,6 +172,24 @@ inline void alpha_of_triangles(const VisibleTriangles& t, const VisiblePixel* pi
         alpha_by<mesh_extended, mesh_extended_uniforms>(t, pixels, count, alpha);
     else
         alpha_by<mesh_resolve, mesh_resolve_uniforms>(t, pixels, count, alpha);
+}
+
+inline void casters_of_triangles(const VisibleTriangles& t, const VisiblePixel* texels, int count,
+                                 float* values) {
+    shadow_depth s;
+    static_cast<shadow_depth_uniforms&>(s) = *static_cast<const shadow_depth_uniforms*>(t.shader);
+    for (int first = 0; first < count; first += lanes, texels += lanes) {
+        const VisibleLanes seen(t, texels, count - first);
+        if (s.has_uv) set_uv(s, t, texels, seen);
+        if (s.has_vertex_colors) set_color(s, t, texels, seen);
+        const vec4 color = s.caster_color();
+        vec3 absorbed(vfloat(0.0f));
+        if (s.is_tinting) absorbed = s.absorption_of(s.light_through(color, s.v_uv));
+        for (int k = 0; k < seen.used; ++k) {
+            const Floats4 value = {absorbed.x.v[k], absorbed.y.v[k], absorbed.z.v[k], color.w.v[k]};
+            std::memcpy(values + 4 * size_t(first + k), &value, sizeof value);
+        }
+    }
 }
 
 }  // namespace easypbr::native::EASYPBR_ISA

@@ -99,6 +99,11 @@ struct ivec2 {
     INLINE explicit ivec2(const vec2& v) : x(to_int(v.x)), y(to_int(v.y)) {}
 };
 
+struct ivec3 {
+    vint x, y, z;
+    INLINE ivec3(const ivec2& v, vint c) : x(v.x), y(v.y), z(c) {}
+};
+
 struct uvec3 {
     vuint x, y, z;
     INLINE uvec3(vuint a, vuint b, vuint c) : x(a), y(b), z(c) {}
@@ -192,6 +197,7 @@ INLINE uvec3 floatBitsToUint(const vec3& a) {
 #define LOG2(c) log2(a.c)
 #define EXP2(c) exp2(a.c)
 #define EXP(c) exp(a.c)
+#define LOG(c) log(a.c)
 #define COS(c) cos(a.c)
 #define MIX(c) mix(a.c, b.c, t.c)
 #define SELECT(c) select(condition, a.c, b.c)
@@ -220,6 +226,7 @@ INLINE uvec3 floatBitsToUint(const vec3& a) {
     UNARY(V, EACH, log2, LOG2)                                 \
     UNARY(V, EACH, exp2, EXP2)                                 \
     UNARY(V, EACH, exp, EXP)                                   \
+    UNARY(V, EACH, log, LOG)                                   \
     UNARY(V, EACH, cos, COS)                                   \
     BINARY(V, EACH, min, MIN)                                  \
     BINARY(V, EACH, max, MAX)                                  \
@@ -258,6 +265,7 @@ VECTOR(vec4, EACH4)
 #undef SELECT
 #undef MIX
 #undef COS
+#undef LOG
 #undef EXP
 #undef EXP2
 #undef LOG2
@@ -291,6 +299,9 @@ INLINE vfloat dot(const vec4& a, const vec4& b) {
 }
 INLINE vbool operator==(const vec2& a, const vec2& b) {
     return a.x == b.x && a.y == b.y;
+}
+INLINE vbool operator==(const vec3& a, const vec3& b) {
+    return a.x == b.x && a.y == b.y && a.z == b.z;
 }
 INLINE vfloat length(const vec2& a) {
     return sqrt(dot(a, a));

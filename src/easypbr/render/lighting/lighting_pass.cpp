@@ -71,7 +71,7 @@ std::vector<std::string> light_defines(const Frame& frame, const GBuffer& target
     }
     if (block.has_area()) defines.emplace_back("AREA_LIGHTS");
     if (block.cubes > 0) defines.emplace_back("SHADOW_CUBES");
-    if (!block.shadows.empty() && block.tints) defines.emplace_back("SHADOW_TINTS");
+    if (!block.shadows.empty() && block.has_tints()) defines.emplace_back("SHADOW_TINTS");
     if (with_environment) defines.emplace_back("ENVIRONMENT");
     if (with_environment && inputs.traced)
         defines.emplace_back("TRACED");
@@ -153,7 +153,10 @@ void set_lights(ShaderInputs& values, const Frame& frame, const LightBlock& bloc
         values.set("u_shadow_maps", block.host_maps);
     else
         values.set("u_shadow_maps", *block.maps);
-    if (block.tints) {
+    if (native) {
+        values.set("u_tint_absorption", block.host_absorption);
+        values.set("u_tint_moment", block.host_moment);
+    } else if (block.tints) {
         values.set("u_tint_absorption", block.tints->absorption);
         values.set("u_tint_moment", block.tints->moment);
     }

@@ -155,7 +155,7 @@ void Pipeline::occlude(const Frame& frame, bool native, AmbientOcclusionPass::No
 bool Pipeline::is_lit_natively(const FrameContents& contents) const {
     if (contents.paths) return native_shading_ && targets_.depth.is_ahead();
     const bool has_tints = shadow_maps_.has_shadows() && shadow_maps_.has_tints();
-    return native_shading_ && targets_.depth.is_ahead() && !has_tints;
+    return native_shading_ && targets_.depth.is_ahead() && !(has_tints && !shadow_maps_.has_native_tints());
 }
 
 std::string Pipeline::first_by_driver(const DrawList& list, const FrameContents& contents) const {

@@ -96,6 +96,9 @@ class Primitive {
     /// Rasterises casters that stop light, and takes them out of the list.
     virtual void rasterise_shadows(const ShadowView&, Casters&, ShadowDepths&) {}
     virtual void draw_shadows(const ShadowLayer&, const Casters&) {}
+    /// Whether rasterise_tints() draws casters that weaken light.
+    virtual bool has_native_tints(DrawItems) const { return false; }
+    virtual void rasterise_tints(const ShadowView&, const Casters&, TintLayer&) {}
     virtual void add_to(RayGeometry&, const DrawItem&) {}
     /// What rays find that meet an item that add_to() has added. The item must outlive it.
     virtual std::unique_ptr<HitSurface> hit_surface(const ResolvedSettings& resolved, const DrawItem& item);

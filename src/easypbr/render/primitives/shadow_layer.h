@@ -9,6 +9,7 @@
 #include "easypbr/gl/draw.h"
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/render/frame/shadow_view.h"
+#include "easypbr/render/raster/tint_layer.h"
 #include "easypbr/render/raster/visibility.h"
 
 namespace easypbr::render {

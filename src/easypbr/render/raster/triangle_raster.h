@@ -45,12 +45,17 @@ class TriangleRaster {
     /// plane or so far outside of the picture that triangles would have to be clipped, and they do not.
     template <class Put>
     bool draw(const ScreenTriangles& triangles, const Put& put);
+    /// The same, but the calls for a pixel follow each other in the order of the faces: for what adds up.
+    /// Every band of rows has a copy of `put` of its own.
+    template <class Put>
+    bool draw_in_order(const ScreenTriangles& triangles, const Put& put);
 
   private:
     static constexpr int subpixel_bits = 8, subpixel = 1 << subpixel_bits, half_pixel = subpixel / 2;
     /// Pixels beyond which coordinates are not drawn here; edge functions stay far below 63 bits.
     static constexpr float guard_band = 1 << 15;
-    static constexpr size_t vertex_grain = 1 << 12, face_grain = 1 << 11, prefetch_distance = 24;
+    static constexpr size_t vertex_grain = 1 << 12, face_grain = 1 << 11, row_grain = 64,
+                            prefetch_distance = 24;
     /// Triangles up to this many pixels across have edge functions below 2^31: 2 (64 * 256)^2 = 2^29.
     static constexpr int small_extent = 64;
 
@@ -96,25 +101,37 @@ class TriangleRaster {
         }
     };
 
+    /// Rows of the area, as far as they are drawn by one thread.
+    struct Window {
+        Vec2i size;
+        PixelRect area;
+        int first_row, last_row;
+
+        template <class Put>
+        void draw_face(const ScreenTriangles& t, const std::vector<Vertex>& screen, bool inside, size_t face,
+                       const Put& put) const;
+        template <class Put>
+        void draw_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Put& put) const;
+        /// Of triangles with vertices that project() has marked: cuts off what is before the near plane,
+        /// beyond the far one, or far outside.
+        template <class Put>
+        void draw_clipped(const ScreenTriangles& t, const int32_t* face, const Put& put) const;
+        template <class Put>
+        void draw_faced(const ScreenTriangles& t, const Vertex& a, const Vertex& b, const Vertex& c,
+                        const Put& put) const;
+        template <class Put>
+        void fill_tiny(const Vertex& a, const Vertex& b, const Vertex& c, int x0, int y0, unsigned kept,
+                       const Put& put) const;
+        template <class Integer, class Put>
+        void fill(const Vertex& a, const Vertex& b, const Vertex& c, int x0, int x1, int y0, int y1,
+                  const Put& put) const;
+        size_t index(int x, int y) const {
+            return size_t(y - area.y) * size_t(area.width) + size_t(x - area.x);
+        }
+    };
+
+    Window rows(int first, int last) const { return {size_, area_, first, last}; }
     bool project(const ScreenTriangles& triangles);
-    template <class Put>
-    void draw_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Put& put);
-    /// Of triangles with vertices that project() has marked: cuts off what is before the near plane, beyond
-    /// the far one, or far outside.
-    template <class Put>
-    void draw_clipped(const ScreenTriangles& t, const int32_t* face, const Put& put);
-    template <class Put>
-    void draw_faced(const ScreenTriangles& t, const Vertex& a, const Vertex& b, const Vertex& c,
-                    const Put& put);
-    template <class Put>
-    void fill_tiny(const Vertex& a, const Vertex& b, const Vertex& c, int x0, int y0, unsigned kept,
-                   const Put& put);
-    template <class Integer, class Put>
-    void fill(const Vertex& a, const Vertex& b, const Vertex& c, int x0, int x1, int y0, int y1,
-              const Put& put);
-    size_t index(int x, int y) const {
-        return size_t(y - area_.y) * size_t(area_.width) + size_t(x - area_.x);
-    }
     /// First and last pixel whose centre lies between two sub-pixel coordinates.
     static int first_pixel(int32_t low) { return (low + half_pixel - 1) >> subpixel_bits; }
     static int last_pixel(int32_t high) { return (high - half_pixel) >> subpixel_bits; }
@@ -125,9 +142,22 @@ class TriangleRaster {
 };
 
 template <class Put>
+inline void TriangleRaster::Window::draw_face(const ScreenTriangles& t, const std::vector<Vertex>& screen,
+                                              bool inside, size_t face, const Put& put) const {
+    const int32_t* f = t.F.data() + 3 * (size_t(t.first_face) + face);
+    const Vertex &a = screen[size_t(f[0])], &b = screen[size_t(f[1])], &c = screen[size_t(f[2])];
+    const auto to_pixel = [&](size_t pixel, float depth) { put(pixel, depth, uint32_t(face)); };
+    if (!inside && (a.depth < 0 || b.depth < 0 || c.depth < 0))
+        draw_clipped(t, f, to_pixel);
+    else
+        draw_faced(t, a, b, c, to_pixel);
+}
+
+template <class Put>
 bool TriangleRaster::draw(const ScreenTriangles& t, const Put& put) {
     const bool inside = project(t);
     if (!inside && !t.clips) return false;
+    const Window all = rows(area_.y, area_.y + area_.height - 1);
     parallel_chunks(size_t(t.face_count), face_grain, [&](size_t begin, size_t end) {
         Put own = put;
         for (size_t i = begin; i < end; ++i) {
@@ -136,25 +166,35 @@ bool TriangleRaster::draw(const ScreenTriangles& t, const Put& put) {
             if (i + prefetch_distance < end)
                 for (size_t k = 0; k < 3; ++k)
                     __builtin_prefetch(&screen_[size_t(f[3 * prefetch_distance + k])]);
-            const Vertex &a = screen_[size_t(f[0])], &b = screen_[size_t(f[1])], &c = screen_[size_t(f[2])];
-            const auto to_pixel = [&](size_t pixel, float depth) { own(pixel, depth, uint32_t(i)); };
-            if (!inside && (a.depth < 0 || b.depth < 0 || c.depth < 0))
-                draw_clipped(t, f, to_pixel);
-            else
-                draw_faced(t, a, b, c, to_pixel);
+            all.draw_face(t, screen_, inside, i,
+                          [&](size_t pixel, float depth, uint32_t face) { own(pixel, depth, face); });
         }
     });
     return true;
 }
 
 template <class Put>
-inline void TriangleRaster::draw_faced(const ScreenTriangles& t, const Vertex& a, const Vertex& b,
-                                       const Vertex& c, const Put& put) {
-    const int64_t area = int64_t(b.x - a.x) * (c.y - a.y) - int64_t(c.x - a.x) * (b.y - a.y);
+bool TriangleRaster::draw_in_order(const ScreenTriangles& t, const Put& put) {
+    const bool inside = project(t);
+    if (!inside && !t.clips) return false;
+    parallel_chunks(size_t(area_.height), row_grain, [&](size_t begin, size_t end) {
+        Put own = put;
+        const Window band = rows(area_.y + int(begin), area_.y + int(end) - 1);
+        for (size_t i = 0; i < size_t(t.face_count); ++i)
+            band.draw_face(t, screen_, inside, i,
+                           [&](size_t pixel, float depth, uint32_t face) { own(pixel, depth, face); });
+    });
+    return true;
+}
+
+template <class Put>
+inline void TriangleRaster::Window::draw_faced(const ScreenTriangles& t, const Vertex& a, const Vertex& b,
+                                               const Vertex& c, const Put& put) const {
+    const int64_t doubled = int64_t(b.x - a.x) * (c.y - a.y) - int64_t(c.x - a.x) * (b.y - a.y);
     // y runs downwards: a counter-clockwise triangle has a negative area. Neighbours face the same way, which
     // processors foresee better than whether there is a pixel's centre within.
-    if (area == 0 || (!t.both_sides && (area < 0) == t.mirrored)) return;
-    if (area > 0)
+    if (doubled == 0 || (!t.both_sides && (doubled < 0) == t.mirrored)) return;
+    if (doubled > 0)
         draw_triangle(a, b, c, put);
     else
         draw_triangle(a, c, b, put);
@@ -163,7 +203,8 @@ inline void TriangleRaster::draw_faced(const ScreenTriangles& t, const Vertex& a
 /// Sutherland and Hodgman (1974). Neighbours cut their common edge at the same point: from the end that is
 /// kept.
 template <class Put>
-void TriangleRaster::draw_clipped(const ScreenTriangles& t, const int32_t* face, const Put& put) {
+void TriangleRaster::Window::draw_clipped(const ScreenTriangles& t, const int32_t* face,
+                                          const Put& put) const {
     using Corner = Eigen::Vector4d;
     constexpr size_t most = 9;  // each of six planes adds a corner at most
     std::array<Corner, most> polygon, kept;
@@ -173,7 +214,7 @@ void TriangleRaster::draw_clipped(const ScreenTriangles& t, const int32_t* face,
         polygon[k] = t.clip_from_mesh.cast<double>() * Corner(double(p[0]), double(p[1]), double(p[2]), 1);
         if (!polygon[k].allFinite()) return;
     }
-    const Vec2d half = 0.5 * size_.cast<double>();
+    const Vec2d half = 0.5 * size.cast<double>();
     const double x = (guard_band - 1) / half.x() - 1, y = (guard_band - 1) / half.y() - 1;
     const Corner planes[] = {{0, 0, -1, 1}, {0, 0, 1, 0}, {1, 0, 0, x},
                              {-1, 0, 0, x}, {0, 1, 0, y}, {0, -1, 0, y}};
@@ -203,13 +244,14 @@ void TriangleRaster::draw_clipped(const ScreenTriangles& t, const int32_t* face,
 }
 
 template <class Put>
-void TriangleRaster::draw_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Put& put) {
+void TriangleRaster::Window::draw_triangle(const Vertex& a, const Vertex& b, const Vertex& c,
+                                           const Put& put) const {
     const int left = first_pixel(std::min(std::min(a.x, b.x), c.x)),
               right = last_pixel(std::max(std::max(a.x, b.x), c.x));
     const int top = first_pixel(std::min(std::min(a.y, b.y), c.y)),
               bottom = last_pixel(std::max(std::max(a.y, b.y), c.y));
-    const int x0 = std::max(left, area_.x), x1 = std::min(right, area_.x + area_.width - 1);
-    const int y0 = std::max(top, area_.y), y1 = std::min(bottom, area_.y + area_.height - 1);
+    const int x0 = std::max(left, area.x), x1 = std::min(right, area.x + area.width - 1);
+    const int y0 = std::max(top, first_row), y1 = std::min(bottom, last_row);
     if (x0 > x1 || y0 > y1) return;  // Most triangles of a large mesh lie between the pixels' centres.
     if (right - left < 2 && bottom - top < 2) {
         const unsigned kept = (x1 > x0 ? 0b11u : 0b01u) * (y1 > y0 ? 0b101u : 0b001u);
@@ -224,8 +266,8 @@ void TriangleRaster::draw_triangle(const Vertex& a, const Vertex& b, const Verte
 /// Of four pixels; `kept` has a bit for each that is drawn. Without branches on what is inside: for triangles
 /// of about a pixel, mispredicted ones would cost more than all else.
 template <class Put>
-void TriangleRaster::fill_tiny(const Vertex& a, const Vertex& b, const Vertex& c, int x0, int y0,
-                               unsigned kept, const Put& put) {
+void TriangleRaster::Window::fill_tiny(const Vertex& a, const Vertex& b, const Vertex& c, int x0, int y0,
+                                       unsigned kept, const Put& put) const {
     const Edge<int32_t> ab(a, b, x0, y0), bc(b, c, x0, y0), ca(c, a, x0, y0);
     const auto outside = [&](int32_t e0, int32_t e1, int32_t e2, int bit) {
         return (uint32_t(e0 | e1 | e2) >> 31) << bit;
@@ -244,8 +286,8 @@ void TriangleRaster::fill_tiny(const Vertex& a, const Vertex& b, const Vertex& c
 }
 
 template <class Integer, class Put>
-void TriangleRaster::fill(const Vertex& a, const Vertex& b, const Vertex& c, int x0, int x1, int y0, int y1,
-                          const Put& put) {
+void TriangleRaster::Window::fill(const Vertex& a, const Vertex& b, const Vertex& c, int x0, int x1, int y0,
+                                  int y1, const Put& put) const {
     Edge<Integer> ab(a, b, x0, y0), bc(b, c, x0, y0), ca(c, a, x0, y0);
     const Plane plane(a, b, c);
     for (int y = y0; y <= y1; ++y) {

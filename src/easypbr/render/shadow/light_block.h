@@ -39,9 +39,11 @@ struct LightBlock {
     int resolution = 0;                  ///< of the maps
     const gl::Texture* maps = nullptr;   ///< the driver's
     native::Layers host_maps = {};       ///< those in host memory
-    const ShadowTints* tints = nullptr;  ///< where casters let light through
-    bool first = true;                   ///< of the frame's blocks
+    const ShadowTints* tints = nullptr;  ///< where casters let light through: the driver's
+    native::Layers4 host_absorption = {}, host_moment = {};  ///< the same in host memory
+    bool first = true;                                       ///< of the frame's blocks
 
+    bool has_tints() const { return tints || host_absorption.data; }
     size_t plain() const { return lights.size() - shadows.size(); }
     bool has_area() const {
         return std::ranges::any_of(lights, [](const ResolvedLight* light) { return is_area(light->type); });

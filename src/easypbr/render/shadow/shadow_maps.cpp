@@ -134,6 +134,8 @@ void ShadowMaps::set_resolution(int resolution) {
     tint_framebuffers_.clear();
     maps_ = gl::Texture();
     host_maps_.clear();
+    host_absorption_.clear();
+    host_moment_.clear();
     tints_ = {};
     resolution_ = resolution;
 }
@@ -171,6 +173,15 @@ void ShadowMaps::begin(const Frame& frame, const DrawList& casters, const Box3d&
             found->second.last_frame = frame_;
 }
 
+bool ShadowMaps::has_native_tints() const {
+    return std::ranges::all_of(primitives_, [&](const auto& kind) {
+        std::vector<DrawItem> tinting;
+        for (const DrawItem& item : list_->of(kind->mode()))
+            if (item.casts_tint()) tinting.push_back(item);
+        return tinting.empty() || kind->has_native_tints(tinting);
+    });
+}
+
 LightBlock ShadowMaps::next_block() {
     LightBlock block;
     ++block_;
@@ -188,6 +199,10 @@ LightBlock ShadowMaps::next_block() {
     block.maps = &maps_;
     block.host_maps = {.data = host_maps_.data(), .size = resolution_};
     if (tints_) block.tints = &tints_;
+    if (!host_absorption_.empty()) {
+        block.host_absorption = {.data = host_absorption_.data(), .size = resolution_};
+        block.host_moment = {.data = host_moment_.data(), .size = resolution_};
+    }
     return block;
 }
 
@@ -221,9 +236,7 @@ void ShadowMaps::draw(const Request& request, Entry& entry) {
         const ShadowView& view = request.projection.views[size_t(i)];
         const int layer = entry.first_layer + i;
         if (in_host_memory_) {
-            const size_t texels = size_t(resolution_) * size_t(resolution_);
-            pass_.draw(view, *list_, resolution_,
-                       std::span(host_maps_).subspan(size_t(layer) * texels, texels));
+            draw_in_host_memory(view, layer);
             continue;
         }
         pass_.draw(view, *list_, maps_, layer, framebuffers_[size_t(layer)]);
@@ -231,6 +244,19 @@ void ShadowMaps::draw(const Request& request, Entry& entry) {
     }
     entry.drawn |= missing;
     ++drawn_;
+}
+
+std::span<float> ShadowMaps::host_layer(std::vector<float>& values, int layer, int channels) const {
+    const size_t count = size_t(resolution_) * size_t(resolution_) * size_t(channels);
+    return std::span(values).subspan(size_t(layer) * count, count);
+}
+
+void ShadowMaps::draw_in_host_memory(const ShadowView& view, int layer) {
+    pass_.draw(view, *list_, resolution_, host_layer(host_maps_, layer, 1));
+    if (host_absorption_.empty()) return;
+    TintLayer tints(host_layer(host_absorption_, layer, 4), host_layer(host_moment_, layer, 4), resolution_,
+                    no_shadow_depth);
+    pass_.draw_tints(view, *list_, tints);
 }
 
 int ShadowMaps::allocate(int layers) {
@@ -284,6 +310,7 @@ bool ShadowMaps::grow(int layers) {
     taken_.resize(size_t(after), false);
     if (in_host_memory_) {
         host_maps_.resize(size_t(after) * size_t(resolution_) * size_t(resolution_));
+        prepare_tints();
         return true;
     }
     enlarge(maps_, map_format);
@@ -294,9 +321,12 @@ bool ShadowMaps::grow(int layers) {
 }
 
 void ShadowMaps::prepare_tints() {
+    // What casts has changed, so that all maps are drawn anew.
+    const size_t host_size = tinted_ && in_host_memory_ ? 4 * host_maps_.size() : 0;
+    host_absorption_.resize(host_size);
+    host_moment_.resize(host_size);
     if (!tinted_ || resolution_ == 0) tints_ = {};
     if (tinted_ == bool(tints_) || !maps_) return;
-    // What casts has changed, so that all maps are drawn anew.
     tints_.absorption = gl::Texture::layered(tint_format, resolution_, resolution_, maps_.layers());
     tints_.moment = gl::Texture::layered(tint_format, resolution_, resolution_, maps_.layers());
     make_framebuffers();

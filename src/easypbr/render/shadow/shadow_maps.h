@@ -34,7 +34,9 @@ class ShadowMaps {
 
     /// Whether some casters weaken light instead of stopping it.
     bool has_tints() const { return tinted_; }
-    /// Where the maps of the frame's lights are from now on: in host memory there are no tints.
+    /// Whether these can be drawn natively.
+    bool has_native_tints() const;
+    /// Where the maps of the frame's lights are from now on; with tints in host memory if has_native_tints().
     void keep_in_host_memory(bool host);
 
     /// Goes back to the first block.
@@ -118,6 +120,9 @@ class ShadowMaps {
     /// To what all requests of the frame need, as far as there is memory.
     bool grow(int layers);
     void make_framebuffers();
+    void draw_in_host_memory(const ShadowView& view, int layer);
+    /// A layer of something in host memory, so many floats a texel.
+    std::span<float> host_layer(std::vector<float>& values, int layer, int channels) const;
     /// Keeps tints beside the maps only while something needs them.
     void prepare_tints();
     void take(int first, int layers, bool taken);
@@ -127,7 +132,8 @@ class ShadowMaps {
     bool in_host_memory_ = false;
     gl::Texture maps_;
     std::vector<float> host_maps_;
-    ShadowTints tints_;  ///< beside the maps while some casters weaken light
+    std::vector<float> host_absorption_, host_moment_;  ///< tints_ in host memory
+    ShadowTints tints_;                                 ///< beside the maps while some casters weaken light
     std::vector<gl::Framebuffer> framebuffers_, tint_framebuffers_;  ///< of each layer
     std::vector<bool> taken_;                                        ///< layers
     std::map<LightKey, Entry> entries_;

@@ -82,4 +82,10 @@ void ShadowPass::draw_tints(const ShadowView& view, const DrawList& list,
             kind->draw_shadows({view, framebuffer.width(), true}, casters);
 }
 
+void ShadowPass::draw_tints(const ShadowView& view, const DrawList& list, TintLayer& layer) {
+    for (const auto& kind : primitives_)
+        if (const Casters casters = casters_of(list, *kind, true); !casters.empty())
+            kind->rasterise_tints(view, casters, layer);
+}
+
 }  // namespace easypbr::render

@@ -26,6 +26,9 @@ class ShadowPass {
     /// from the light, and where. `framebuffer` has both as attachments.
     void draw_tints(const ShadowView& view, const DrawList& casters, const gl::Framebuffer& framebuffer);
 
+    /// The same in host memory; the casters' kinds has_native_tints().
+    void draw_tints(const ShadowView& view, const DrawList& casters, TintLayer& layer);
+
     /// Without a GPU, casters are rasterised natively; false leaves them to the driver.
     void allow_native(bool allow) { native_ = allow; }
 

@@ -13,7 +13,7 @@ class MeshPrimitive final : public Primitive {
     explicit MeshPrimitive(DataCaches& caches)
         : pass_(buffers_, caches.textures),
           native_(caches.closed_meshes, caches.textures),
-          shadows_(buffers_, caches) {}
+          shadows_(buffers_, native_, caches) {}
 
     DrawMode mode() const override { return DrawMode::mesh; }
     void draw(const Frame& frame, DrawItems items, const GBuffer& targets,
@@ -36,6 +36,10 @@ class MeshPrimitive final : public Primitive {
     }
     void rasterise_shadows(const ShadowView& view, Casters& casters, ShadowDepths& depths) override {
         shadows_.rasterise(view, casters, depths);
+    }
+    bool has_native_tints(DrawItems items) const override { return MeshShadows::has_native_tints(items); }
+    void rasterise_tints(const ShadowView& view, const Casters& casters, TintLayer& layer) override {
+        shadows_.rasterise_tints(view, casters, layer);
     }
     void draw_shadows(const ShadowLayer& layer, const Casters& casters) override {
         shadows_.draw(layer, casters);

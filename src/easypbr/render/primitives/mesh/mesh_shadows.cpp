@@ -1,6 +1,7 @@
 #include "easypbr/render/primitives/mesh/mesh_shadows.h"
 
 #include <algorithm>
+#include <array>
 #include <span>
 #include <utility>
 
@@ -9,15 +10,6 @@
 
 namespace easypbr::render {
 namespace {
-
-enum Slot { base_color_slot, opacity_slot, transmission_slot };
-
-bool reads_uv(const DrawItem& item) {
-    const Material& m = item.material;
-    const bool any =
-        m.base_color_texture || m.opacity_texture || (item.casts_tint() && m.transmission_texture);
-    return (item.alpha != AlphaMode::opaque || item.casts_tint()) && item.textured() && any;
-}
 
 using Parts = std::span<const DrawItem* const>;
 
@@ -32,17 +24,18 @@ std::vector<Parts> objects_of(const Casters& casters) {
     return objects;
 }
 
-bool parts_suit_native(Parts parts) {
-    const auto opaque = [](const DrawItem* item) {
-        return item->alpha == AlphaMode::opaque && !item->material.shader;
-    };
-    return std::ranges::all_of(parts, opaque);
+bool has_shader(const DrawItem* item) {
+    return item->material.shader.operator bool();
+}
+bool is_solid(const DrawItem* item) {
+    return item->alpha == AlphaMode::opaque;
 }
 
-/// Parts whose faces follow each other, as one.
-std::vector<MeshPart> runs_of(Parts parts) {
+/// Opaque parts whose faces follow each other, as one.
+std::vector<MeshPart> opaque_runs_of(Parts parts) {
     std::vector<MeshPart> runs;
     for (const DrawItem* item : parts) {
+        if (!is_solid(item)) continue;
         const MeshPart& part = item->part;
         if (!runs.empty() && runs.back().first_face + runs.back().face_count == part.first_face)
             runs.back().face_count += part.face_count;
@@ -52,40 +45,92 @@ std::vector<MeshPart> runs_of(Parts parts) {
     return runs;
 }
 
-/// Part of light that goes through what is covered, but for colours that vary over the surface. Light crosses
-/// the faces of a volume twice, and each takes the root.
-Vec3 light_through(const DrawItem& item) {
-    if (item.kind != SurfaceKind::lit) return Vec3::Zero();
-    Material m = item.material;
-    m.thickness *= float(item.scale());
-    const Vec3 through = m.transmittance(AlphaMode::opaque);
-    return m.thickness > 0 ? Vec3(through.cwiseSqrt()) : through;
+}  // namespace
+
+void MeshShadows::rasterise(const ShadowView& view, Casters& casters, ShadowDepths& depths) {
+    Casters left;
+    for (const Parts& parts : objects_of(casters)) {
+        const bool native = std::ranges::none_of(parts, has_shader) && rasterise_opaque(view, parts, depths);
+        if (!native) {
+            left.insert(left.end(), parts.begin(), parts.end());
+            continue;
+        }
+        for (const DrawItem* item : parts)
+            if (!is_solid(item)) rasterise_masked(view, *item, depths);
+    }
+    casters = std::move(left);
+}
+
+bool MeshShadows::rasterise_opaque(const ShadowView& view, std::span<const DrawItem* const> parts,
+                                   ShadowDepths& depths) const {
+    const DrawItem& first = *parts.front();
+    const MeshData& mesh = first.mesh();
+    const ShadowLayer layer{view};
+    // What is closed casts with what faces the light: behind each of its back faces lies nothing nearer.
+    // A light within it has some of its vertices behind it: then both sides cast.
+    const bool both_sides = !closed_.is_known(mesh) || !std::ranges::all_of(parts, is_solid),
+               mirrored = first.object->T_world_mesh.linear().determinant() < 0;
+    return std::ranges::all_of(opaque_runs_of(parts), [&](const MeshPart& run) {
+        ScreenTriangles triangles{
+            mesh.V,     mesh.F,   run.first_face, run.face_count, layer.clip_from_mesh(first),
+            both_sides, mirrored, both_sides};
+        if (depths.buffer().draw(triangles)) return true;
+        triangles.both_sides = triangles.clips = true;
+        return depths.buffer().draw(triangles);
+    });
+}
+
+CasterSurface MeshShadows::surface_of(const ShadowView& view, int resolution, const DrawItem& item) {
+    const float* colors = item.with_colors ? native_.colors_of(item.mesh()) : nullptr;
+    return {view, resolution, item, textures_, colors};
+}
+
+namespace {
+
+/// Both sides of all faces, clipped.
+ScreenTriangles all_triangles(const ShadowView& view, const DrawItem& item) {
+    return {item.mesh().V,
+            item.mesh().F,
+            item.part.first_face,
+            item.part.face_count,
+            ShadowLayer{view}.clip_from_mesh(item),
+            true,
+            false,
+            true};
 }
 
 }  // namespace
 
-void MeshShadows::rasterise(const ShadowView& view, Casters& casters, ShadowDepths& depths) const {
-    Casters left;
-    const ShadowLayer layer{view};
-    for (const Parts& parts : objects_of(casters)) {
-        const DrawItem& first = *parts.front();
-        const MeshData& mesh = first.mesh();
-        // What is closed casts with what faces the light: behind each of its back faces lies nothing nearer.
-        // A light within it has some of its vertices behind it: then both sides cast.
-        const bool both_sides = !closed_.is_known(mesh),
-                   mirrored = first.object->T_world_mesh.linear().determinant() < 0;
-        const auto rasterised = [&](const MeshPart& run) {
-            ScreenTriangles triangles{
-                mesh.V,     mesh.F,   run.first_face, run.face_count, layer.clip_from_mesh(first),
-                both_sides, mirrored, both_sides};
-            if (depths.buffer().draw(triangles)) return true;
-            triangles.both_sides = triangles.clips = true;
-            return depths.buffer().draw(triangles);
+void MeshShadows::rasterise_masked(const ShadowView& view, const DrawItem& item, ShadowDepths& depths) {
+    const int resolution = depths.resolution();
+    const CasterSurface surface = surface_of(view, resolution, item);
+    const AlphaTest test{[&](std::span<const native::VisiblePixel> texels, std::span<float> alpha) {
+                             surface.alpha(texels, alpha);
+                         },
+                         item.material.alpha_cutoff};
+    masked_.clear({resolution, resolution}, {0, 0, resolution, resolution});
+    masked_.draw(all_triangles(view, item), 0, &test);
+    depths.buffer().add(masked_);
+}
+
+void MeshShadows::rasterise_tints(const ShadowView& view, const Casters& casters, TintLayer& layer) {
+    for (const DrawItem* item : casters) {
+        const CasterSurface surface = surface_of(view, layer.resolution(), *item);
+        const auto shade = [&](std::span<const native::VisiblePixel> texels, std::span<float> values) {
+            surface.shade(texels, values);
         };
-        if (!parts_suit_native(parts) || !std::ranges::all_of(runs_of(parts), rasterised))
-            left.insert(left.end(), parts.begin(), parts.end());
+        if (casts_by_texture(*item) || item->with_colors) {
+            layer.draw(all_triangles(view, *item), TexelAbsorption(shade));
+            continue;
+        }
+        std::array<float, 4> same;
+        shade(std::array{native::VisiblePixel{}}, same);
+        layer.draw(all_triangles(view, *item), Vec3(same[0], same[1], same[2]));
     }
-    casters = std::move(left);
+}
+
+bool MeshShadows::has_native_tints(std::span<const DrawItem> items) {
+    return std::ranges::none_of(items, [](const DrawItem& item) { return has_shader(&item); });
 }
 
 void MeshShadows::draw(const ShadowLayer& layer, const Casters& casters) {
@@ -106,40 +151,10 @@ void MeshShadows::draw(const ShadowLayer& layer, const Casters& casters) {
 }
 
 void MeshShadows::use_shader(const ShadowLayer& layer, const DrawItem& item) {
-    const Material& m = item.material;
-    const bool with_uv = reads_uv(item), tints = item.casts_tint();
-    std::vector<std::string> defines;
-    if (item.alpha == AlphaMode::mask) defines.emplace_back("ALPHA_MASK");
-    if (item.alpha == AlphaMode::opaque) defines.emplace_back("COVERS");
-    if (tints) defines.emplace_back("TINT");
-    if ((item.alpha != AlphaMode::opaque || tints) && item.with_colors) defines.emplace_back("VERTEX_COLOR");
-    if (with_uv) defines.emplace_back("UV");
-    if (with_uv && m.base_color_texture) defines.emplace_back("BASE_COLOR_TEXTURE");
-    if (with_uv && m.opacity_texture) defines.emplace_back("OPACITY_TEXTURE");
-    if (with_uv && tints && m.transmission_texture) defines.emplace_back("TRANSMISSION_TEXTURE");
-    const gl::Program& program = programs_.get(defines);
+    const gl::Program& program = programs_.get(mesh_caster_defines(item));
     program.use();
     program.set("u_clip_from_mesh", layer.clip_from_mesh(item));
-    program.set("u_opacity", m.opacity);
-    program.set("u_alpha_cutoff", m.alpha_cutoff);
-    program.set("u_through", light_through(item));
-    program.set("u_root", item.is_volume() ? 0.5f : 1.0f);
-    const auto bind = [&](const Texture& texture, Slot slot, const char* sampler, const char* transform) {
-        textures_.get(texture, slot == base_color_slot).bind(slot);
-        program.set(sampler, int(slot));
-        program.set(transform, texture.uv_transform);
-    };
-    if (with_uv && m.base_color_texture)
-        bind(m.base_color_texture, base_color_slot, "u_base_color_texture", "u_base_color_uv");
-    if (with_uv && m.opacity_texture) {
-        bind(m.opacity_texture, opacity_slot, "u_opacity_texture", "u_opacity_uv");
-        program.set("u_opacity_channel", Vec4(Vec4::Unit(std::clamp(m.opacity_texture.channel, 0, 3))));
-    }
-    if (with_uv && tints && m.transmission_texture) {
-        bind(m.transmission_texture, transmission_slot, "u_transmission_texture", "u_transmission_uv");
-        program.set("u_transmission_channel",
-                    Vec4(Vec4::Unit(std::clamp(m.transmission_texture.channel, 0, 3))));
-    }
+    caster_inputs(item, textures_, false).bind(program);
 }
 
 void MeshShadows::use_own_shader(const ShadowLayer& layer, const DrawItem& item) {

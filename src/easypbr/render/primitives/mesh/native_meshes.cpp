@@ -92,12 +92,15 @@ const MeshFacts& NativeMeshes::facts_of(const MeshData& mesh) {
     return known;
 }
 
+const float* NativeMeshes::colors_of(const MeshData& mesh) {
+    return colors_.get(mesh.C.revision(), [&] { return linear_colors(mesh.C); }).data();
+}
+
 native::TriangleAttributes NativeMeshes::attributes_of(const DrawItem& item, const MeshFacts& known) {
     const MeshData& mesh = item.mesh();
     native::TriangleAttributes attributes;
     if (item.textured()) attributes.uvs = mesh.UV.data();
-    if (item.with_colors)
-        attributes.colors = colors_.get(mesh.C.revision(), [&] { return linear_colors(mesh.C); }).data();
+    if (item.with_colors) attributes.colors = colors_of(mesh);
     if (item.needs_tangents())
         attributes.tangents =
             tangents_

@@ -30,6 +30,9 @@ class NativeMeshes {
     /// Of the core model, whatever the material; without its own shader.
     std::unique_ptr<HitSurface> hit_surface(const ResolvedSettings& resolved, const DrawItem& item);
 
+    /// Of vertices, linear r g b a.
+    const float* colors_of(const MeshData& mesh);
+
     void evict_unused();
 
   private:
