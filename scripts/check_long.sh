@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# Soaks: 10,000 updates of a cloud and data sets of 5,000 frames, whose memory must not grow; data sets killed 200 times; all
+# Soaks: 10,000 updates of a cloud and data sets of 5,000 frames, whose memory must not grow; data sets killed 200 times; 100,000
+# frames of a scene that changes, viewers made and dropped, recorders killed (EASYPBR_LONG_SOAK); many faults of the system; all
 # loaders on 10,000 mutated files each, and all C++ tests, under AddressSanitizer and UBSan; a picture of 16384 x 9216 pixels
 # in tiles; native shading against the driver's on 200 random scenes; golden scenes on llvmpipe,
 # zink and softpipe; the library built as a part of another project. usage: check_long.sh
@@ -7,6 +8,8 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 .venv/bin/python bench/cloud_updates.py
 .venv/bin/python -m pytest -q -s tests/long
+EASYPBR_FAULTS=100 build/tests/test_faults
+EASYPBR_FAULTS=20 .venv/bin/python -m pytest -q tests/faults
 EASYPBR_TEST_SCENES=200 build/tests/test_app --gtest_filter='NativeShading.*'
 .venv/bin/python tests/golden/compare_drivers.py
 scripts/sanitize.sh -E Fuzz

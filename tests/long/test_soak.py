@@ -62,7 +62,8 @@ def test_frames_of_a_scene_that_changes(device, count):
     scene = Scene()
     view = Viewer((48, 36), {"image.samples": 1}, scene=scene, device=device)
     random_numbers = np.random.default_rng(1)
-    scene.show(shapes.sphere(1.0, 12), "sphere")
+    sphere = shapes.sphere(1.0, 12)
+    scene.show(sphere, "sphere")
     meshes = [shapes.box(), shapes.cone(), shapes.torus(segments=12, tube_segments=6)]
 
     def step(i):
@@ -70,7 +71,7 @@ def test_frames_of_a_scene_that_changes(device, count):
         mesh = Mesh(random_numbers.random((50, 3)).astype(np.float32))
         mesh.C = random_numbers.random((50, 3)).astype(np.float32)
         scene.show(mesh, "cloud")
-        scene["sphere"].material.base_color = tuple(random_numbers.random(3))
+        sphere.material.base_color = tuple(random_numbers.random(3))
         if i % 3 == 0:
             scene.show(meshes[i // 3 % 3], f"shape {i // 3 % 2}")
         if i % 7 == 0:

@@ -188,6 +188,16 @@ bool is_valid(const Field& field, const Value& value) {
     return is_allowed(field, value.data);
 }
 
+namespace {
+
+/// A choice in the spelling of the table; other data as they are.
+Value::Data data_as_chosen(const FieldInfo& field, const Value::Data& data) {
+    const auto* text = std::get_if<std::string>(&data);
+    return text && field.type == FieldType::choice ? spelled_as_chosen(field, *text) : data;
+}
+
+}  // namespace
+
 Value checked(const FieldInfo& field, const Value& value, std::string_view owner) {
     const bool has_data = value.state == Value::State::given || value.latched;
     if (value.state != Value::State::given && !field.can_be_automatic) reject(field, value, owner);
@@ -199,11 +209,9 @@ Value checked(const FieldInfo& field, const Value& value, std::string_view owner
         parsed.latched = value.latched;
         return parsed;
     }
-    Value given = value;
-    if (auto* text = std::get_if<std::string>(&given.data); text && field.type == FieldType::choice)
-        *text = spelled_as_chosen(field, *text);
-    if (!is_allowed(field, given.data)) reject(field, value, owner);
-    return given;
+    Value::Data data = data_as_chosen(field, value.data);
+    if (!is_allowed(field, data)) reject(field, value, owner);
+    return {std::move(data), value.state, value.latched};
 }
 
 void set(Settings& settings, std::string_view name, const Value& value) {
