@@ -6,6 +6,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
+#include "easypbr/core/memory_budget.h"
 #include "easypbr/gl/program.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/image/texture_loader.h"
@@ -100,7 +101,10 @@ void read_assignments(std::span<const std::byte> bytes) {
 }
 
 void read_image(std::span<const std::byte> bytes) {
-    refuse_or([&] { io::decode_image(bytes, "fuzz"); });
+    refuse_or([&] {
+        const MemoryScope scope("fuzz", uint64_t(memory_gb * 1e9));
+        io::decode_image(bytes, "fuzz");
+    });
 }
 
 void read_settings(std::span<const std::byte> bytes) {
