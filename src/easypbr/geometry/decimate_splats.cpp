@@ -80,7 +80,7 @@ Union union_of(const Cluster& a, const Cluster& b) {
 
 /// Merges pairs that follow each other, beginning at `first`, the cheapest ones, until `surplus` are gone or
 /// all pairs are merged.
-std::vector<Cluster> merged_pairs(std::vector<Cluster> clusters, size_t first, size_t surplus) {
+void merge_pairs(std::vector<Cluster>& clusters, size_t first, size_t surplus) {
     std::vector<Union> unions((clusters.size() - first) / 2);
     parallel_for(unions.size(), merge_grain, [&](size_t k) {
         unions[k] = union_of(clusters[first + 2 * k], clusters[first + 2 * k + 1]);
@@ -103,7 +103,7 @@ std::vector<Cluster> merged_pairs(std::vector<Cluster> clusters, size_t first, s
         else if ((i - first) % 2 == 0)
             out.push_back(std::move(unions[pair].cluster));
     }
-    return out;
+    clusters.swap(out);
 }
 
 MeshData mesh_of(const MeshData& mesh, const std::vector<Cluster>& clusters) {
@@ -143,7 +143,7 @@ Mesh decimate_splats(const Mesh& mesh, int64_t count) {
     if (data->V.rows() <= count) return mesh.clone();
     std::vector<Cluster> clusters = clusters_of(*data);
     for (size_t first = 0; clusters.size() > size_t(count); first = clusters.size() > 2 ? 1 - first : 0)
-        clusters = merged_pairs(std::move(clusters), first, clusters.size() - size_t(count));
+        merge_pairs(clusters, first, clusters.size() - size_t(count));
     return Mesh(mesh_of(*data, clusters));
 }
 
