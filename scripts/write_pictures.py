@@ -12,6 +12,7 @@ import tempfile
 
 import numpy as np
 
+import compare_devices
 import easypbr
 from easypbr import Material, Mesh, Scene, Viewer, shapes
 
@@ -550,6 +551,11 @@ def own_shading() -> np.ndarray:
         return easypbr.load_image(pathlib.Path(folder) / "own_shading.png")
 
 
+def devices() -> np.ndarray:
+    """Twelve scenes by the CPU, by OpenGL, and 64 times their difference."""
+    return compare_devices.compare()[1]
+
+
 def outline() -> np.ndarray:
     """What examples/cpp/outline.cpp draws, by the same shader."""
     scene = easypbr.Scene()
@@ -588,7 +594,7 @@ def assembly_drawing() -> str:
 PICTURES = [demo, materials, lights, area_lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion, rays, modes, paths,
             bloom, outlines, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
             viewer_slices, viewer_path, viewer_animations, viewer_lights, viewer_own, segmentation, detection, own_shading,
-            outline]
+            outline, devices]
 #: Vector graphics.
 DRAWINGS = [assembly_drawing]
 
