@@ -71,7 +71,10 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
     shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
-    const bool native = is_lit_natively(contents);
+    // Layers by the driver need the maps where it can read them.
+    const bool layers_need_maps =
+        has_layers && !contents.paths && shadow_maps_.has_shadows() && !has_native_layers(list);
+    const bool native = is_lit_natively(contents) && !layers_need_maps;
     shadow_maps_.keep_in_host_memory(native);
     const std::string pass = native ? first_by_driver(list, contents) : lit_by_driver(native_shading_);
     if (!native && targets_.depth.is_ahead()) timer_.run(pass, [&] { targets_.upload(transfers_); });
