@@ -233,6 +233,67 @@ TEST(RayLight, AMirrorShowsTheScene) {
     EXPECT_GT(out, 1000);
 }
 
+/// Part of a hemisphere, weighted by the cosine, that a rectangle from a corner opposite to the surface
+/// covers, of sides a and b at distance 1 (Howell, A Catalog of Radiation Heat Transfer Configuration
+/// Factors, B-4).
+double corner_factor(double a, double b) {
+    const auto half = [](double x, double y) {
+        const double root = std::sqrt(1 + x * x);
+        return x / root * std::atan(y / root);
+    };
+    return (half(a, b) + half(b, a)) / (2 * pi);
+}
+
+// A mirror shows a white card that a large lamp stands before. 0.01: some thousand points of the lamp, whose
+// parts differ by half, and the edges' normals. Its middle alone would give up to 1.4 times as much.
+TEST(RayLight, AMirrorShowsWhatALargeLampLights) {
+    constexpr double half = 0.6, distance = 0.5;
+    Scene scene;
+    scene.show(rectangle(-4, -4, 4, 4, 0, mirror()), "floor");
+    Mesh card = rectangle(-0.75f, -0.5f, 0.75f, 0.5f, 0, diffuse(1));
+    card.set_T_parent_mesh(
+        Eigen::Affine3d(Eigen::Translation3d(0, 1, 1) * Eigen::AngleAxisd(pi / 2, Vec3d::UnitX())));
+    scene.show(card, "card");
+    Light lamp;
+    lamp.type = LightType::rectangle;
+    lamp.position = Vec3(0, float(1 - distance), 1);
+    lamp.direction = Vec3(0, 1, 0);
+    lamp.size = Vec2(float(2 * half), float(2 * half));
+    lamp.intensity = 1;
+    scene.set_light("lamp", lamp);
+    scene.set_environment(constant_environment(1e-4f));  // rays look for one
+    app::Session session = sky_session(scene, 96, 4);
+    Settings& s = session.settings();
+    s.shading.dielectric_f0 = 0;
+    s.rays.enabled = true;
+    s.camera.projection = Projection::perspective;
+    look_from(session, Vec3d(0.3, -4, 2.5), 50);
+    const Image picture = render_linear(session, 64);
+    const Image depth = session.render_layers({"depth"}).at("depth");
+    const LitParts seen{Image(), depth, session.camera()};
+    const Vec3d eye = session.camera().position();
+    double shown = 0, expected = 0;
+    int pixels = 0;
+    for (int y = 1; y < 95; ++y)
+        for (int x = 1; x < 95; ++x) {
+            if (depth.at<float>(x, y)[0] <= 0) continue;
+            const Vec3d p = seen.position(x, y);
+            if (std::abs(p.z()) > 1e-3 || p.y() > 0.4) continue;
+            Vec3d d = (p - eye).normalized();
+            d.z() = -d.z();
+            const Vec3d at = p + d * ((1 - p.y()) / d.y());
+            if (std::min(0.75 - std::abs(at.x()), 0.5 - std::abs(at.z() - 1)) < 0.1) continue;
+            const double left = (half + at.x()) / distance, right = (half - at.x()) / distance,
+                         below = (half + at.z() - 1) / distance, above = (half - at.z() + 1) / distance;
+            shown += double(picture.at<float>(x, y)[0]);
+            expected += corner_factor(left, below) + corner_factor(left, above) +
+                        corner_factor(right, below) + corner_factor(right, above);
+            ++pixels;
+        }
+    EXPECT_GT(pixels, 100);
+    EXPECT_NEAR(shown / expected, 1, 0.01);
+}
+
 /// A floor under a lid at height 1 over the half x > 0, and what becomes of the floor's light in its middle.
 double under_lid(const std::function<void(Scene&)>& add_lid) {
     Scene scene;

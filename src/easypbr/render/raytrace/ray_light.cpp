@@ -29,6 +29,64 @@ RaySurface ground_surface(const RayGround& ground, float dielectric_f0) {
     return s;
 }
 
+/// A point of an area light, seen from a place.
+struct AreaPoint {
+    Vec3 direction{0, 0, 0};  ///< unit
+    double distance = 0;      ///< world units
+    double solid_angle = 0;   ///< that the point stands for; 0: it sends nothing there
+};
+
+/// Of a sphere one in the cone in which it is seen, else one of its area.
+AreaPoint area_point(const ResolvedLight& light, const Vec3d& place, const Vec2& u) {
+    const Vec3d centre = light.position.cast<double>() - place;
+    const double phi = 2 * pi * double(u.y());
+    if (light.type == LightType::sphere) {
+        const double r2 = double(light.radius) * double(light.radius), d2 = centre.squaredNorm();
+        if (!(d2 > r2)) return {};
+        const double sine2 = r2 / d2, open = sine2 / (1 + std::sqrt(1 - sine2));
+        const double c = 1 - double(u.x()) * open, s = std::sqrt(std::max(0.0, 1 - c * c));
+        const RayFrame frame(centre.normalized().cast<float>());
+        const Vec3 direction = frame.to_world(Vec3d(s * std::cos(phi), s * std::sin(phi), c).cast<float>());
+        return {direction, std::sqrt(d2) * c - std::sqrt(std::max(0.0, r2 - d2 * s * s)), 2 * pi * open};
+    }
+    const EmitterAxes axes = emitter_axes(light);
+    const Vec2d at = light.type == LightType::disc
+                         ? Vec2d(std::sqrt(double(u.x())) * Vec2d(std::cos(phi), std::sin(phi)))
+                         : Vec2d(2 * u.cast<double>() - Vec2d(1, 1));
+    const Vec3d way = centre + axes.x * at.x() + axes.y * at.y();
+    const double distance = way.norm(),
+                 cosine = -way.dot(light.direction.cast<double>().normalized()) / distance;
+    if (!(cosine > 0)) return {};
+    return {(way / distance).cast<float>(), distance, emitting_area(light) * cosine / (distance * distance)};
+}
+
+bool has_areas(const ResolvedSettings& resolved) {
+    return std::ranges::any_of(resolved.lights,
+                               [](const ResolvedLight& light) { return is_area(light.type); });
+}
+
+/// Irradiance of area lights, divided by pi, by a point of each.
+Vec3 from_areas(const ResolvedSettings& resolved, const RayScene& scene, const Vec3& at, const Vec3& normal,
+                const Vec2& u) {
+    // Rays to a point of an emitter end before it by this part of their length.
+    constexpr double before_emitter = 1e-4;
+    Vec3 sum = Vec3::Zero();
+    const Vec3d place = at.cast<double>() * scene.unit() + scene.centre();
+    const Vec3 from = RayScene::off_surface(at, normal, scene.reach());
+    for (const ResolvedLight& light : resolved.lights) {
+        if (!is_area(light.type)) continue;
+        const AreaPoint point = area_point(light, place, u);
+        const double cosine = double(normal.dot(point.direction));
+        if (!(point.solid_angle > 0) || cosine <= 0) continue;
+        const auto reach = float(point.distance * (1 - before_emitter) / scene.unit());
+        if (light.casts_shadows && resolved.settings.shadows.enabled &&
+            scene.blocked(from, point.direction, reach))
+            continue;
+        sum += light.color * float(double(light.intensity) * cosine * point.solid_angle / pi);
+    }
+    return sum;
+}
+
 }  // namespace
 
 void RayLight::prepare(const ResolvedSettings& resolved, const RayScene& scene) {
@@ -65,6 +123,7 @@ Vec3 RayLight::from_lights(const Vec3& at, const Vec3& normal) const {
     Vec3 sum = Vec3::Zero();
     const auto unit = float(scene_->unit());
     for (const ResolvedLight& light : resolved_->lights) {
+        if (is_area(light.type)) continue;
         const bool parallel = light.type == LightType::directional;
         const Vec3 towards =
             parallel ? Vec3(-light.direction.normalized())
@@ -95,6 +154,7 @@ Vec3 RayLight::caught(const RayHit& hit, const Vec3& direction, RayRandom& rando
 Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, RayRandom& random) const {
     Vec3 sum = Vec3::Zero(), weight = Vec3::Ones(), direction = along;
     RayHit hit = first;
+    const bool with_areas = has_areas(*resolved_);
     for (int bounce = 0; bounce < bounces; ++bounce) {
         if (!hit.item && scene_->ground()->shadow_catcher)
             return sum + weight.cwiseProduct(caught(hit, direction, random));
@@ -103,7 +163,10 @@ Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, 
             hit.item ? surface_at(hit, dielectric) : ground_surface(*scene_->ground(), dielectric);
         const Vec3 reflects = fresnel(s, -direction.dot(s.normal));
         const Vec3 diffuse = s.diffuse.cwiseProduct(Vec3::Ones() - reflects);
-        sum += weight.cwiseProduct(s.emission + diffuse.cwiseProduct(from_lights(hit.position, s.normal)));
+        Vec3 lit = from_lights(hit.position, s.normal);
+        if (with_areas)
+            lit += from_areas(*resolved_, *scene_, hit.position, s.normal, random.next().tail<2>());
+        sum += weight.cwiseProduct(s.emission + diffuse.cwiseProduct(lit));
         const float mirrors = reflects.mean(), scatters = diffuse.mean();
         if (!(mirrors + scatters > 0)) break;
         // One way goes on, as likely as it brings light.
