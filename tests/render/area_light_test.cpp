@@ -154,6 +154,27 @@ TEST(AreaLights, RasterMetal) {
         }
 }
 
+// Varnish over what is black: GGX of F0 = 0.04. 0.02: noise, and the roughness in 8 bits.
+TEST(AreaLights, PathsVarnish) {
+    Material varnished = surface(0, 1);
+    varnished.base_color = Vec3::Zero();
+    varnished.specular = 0;
+    varnished.clearcoat = 1;
+    for (const float roughness : {0.2f, 0.6f}) {
+        varnished.clearcoat_roughness = roughness;
+        const Vec3d v = eye.normalized();
+        const Brdf lobe = metal(double(roughness));
+        const Brdf varnish = [&](const Vec3d& l) {
+            return lobe(l) * reference::schlick(v.dot((v + l).normalized()), 0.04);
+        };
+        for (const Case& c : cases()) {
+            const double expected = reference_radiance(c.light, varnish);
+            EXPECT_NEAR(seen(c.light, varnished, true, 1024), expected, 0.02 * expected + 0.0005)
+                << c.name << ", roughness " << roughness;
+        }
+    }
+}
+
 TEST(AreaLights, EmitFromOneSide) {
     for (const LightType type : {LightType::rectangle, LightType::disc})
         for (const bool paths : {false, true})
@@ -182,6 +203,60 @@ double left_beside_edge(bool paths, int samples) {
         return double(render_linear(session, samples).at<float>(1, 1)[0]);
     };
     return shown(true) / shown(false);
+}
+
+/// A floor below a square lamp of width 2 at height 1.5, as it shows itself beside what is above it.
+double below_lamp(const Mesh* pane) {
+    Light lamp = area_light(LightType::rectangle, Vec3(0, 0, 1.5f), Vec3(0, 0, -1));
+    lamp.size = Vec2(2, 2);
+    Material matt_floor = surface(0, 1);
+    matt_floor.specular = 0;
+    Scene scene;
+    scene.show(facing_square(0.5f, matt_floor), "floor");
+    if (pane) scene.show(*pane, "pane");
+    scene.set_light("lamp", lamp);
+    app::Session session = plain_session(scene, 3);
+    Settings& s = session.settings();
+    s.path.enabled = true;
+    s.path.clamp = 0;
+    s.path.bounces = 1;  // what goes back and forth between floor and pane is left out
+    s.shadows.enabled = true;
+    look_from(session, Vec3d(-3, 0, 0.7), 1);
+    return double(render_linear(session, 4096).at<float>(1, 1)[0]);
+}
+
+// A pane takes its colour, and 0.04 that it reflects; at the lamp's corners 0.0025 more. What is behind it is
+// found by chance: 0.36 of the hemisphere is the lamp, so that 4096 independent samples would be even within
+// 0.02; Sobol's points are within half of that.
+TEST(AreaLights, ShineThroughPanes) {
+    Material glass = surface(0, 0);
+    glass.base_color = Vec3::Constant(0.5f);
+    glass.transmission = 1;
+    glass.specular = 1;
+    Mesh pane = facing_square(2, glass);
+    pane.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0, 1)));
+    EXPECT_NEAR(below_lamp(&pane) / below_lamp(nullptr), 0.5 * 0.96, 0.48 * 0.015);
+}
+
+// The ground catches half of the light where an edge hides half of the lamp. 0.02: noise of the points.
+TEST(AreaLights, AnEdgeHidesAHalfOfWhatIsCaught) {
+    Light lamp = area_light(LightType::rectangle, Vec3(0, 2, 0), Vec3(0, -1, 0));
+    lamp.size = Vec2(1, 1);
+    lamp.width_axis = Vec3(1, 0, 0);
+    Mesh shade = facing_square(2, surface(0, 1));
+    shade.set_T_world_mesh(
+        Eigen::Affine3d(Eigen::Translation3d(2, 1, 0) * Eigen::AngleAxisd(-pi / 2, Vec3d::UnitX())));
+    Scene scene;
+    scene.show(shade, "shade");
+    scene.set_light("lamp", lamp);
+    app::Session session = plain_session(scene, 3);
+    Settings& s = session.settings();
+    s.path.enabled = true;
+    s.shadows.enabled = true;
+    s.ground.mode = GroundMode::shadow;
+    s.ground.height = 0.0;
+    look_from(session, Vec3d(-3, 0.7, 0), 1);
+    EXPECT_NEAR(double(render_linear(session, 1024).at<float>(1, 1)[3]), 0.5, 0.02);
 }
 
 // 0.02: noise of the points. Of shadow maps of 64 points on the lamp a column may stand at the edge: 0.06.
