@@ -4,7 +4,7 @@
 usage: light.py --data FOLDER [SCENE...]
 FOLDER holds head.obj, env/monument_valley.hdr and env/studio.hdr. `make bench-light` installs what it needs.
 
-Twelve scenes of 256 x 192 pixels, paths of up to 8 reflections. Each renderer's pictures are compared with its own mean of 512 samples:
+Twelve scenes of 256 x 192 pixels, paths of up to 8 reflections. Each renderer's pictures are compared with its own mean of many samples:
 what the two limits differ by, which is their materials, is a column of its own. Seconds are those of the process from the second
 picture on, so that neither loading nor compiling counts; of Mitsuba's variants scalar_rgb and llvm_ad_rgb the quicker one.
 """

@@ -61,7 +61,7 @@ def draw(setup):
     pictures = {(samples, "off"): drawn(samples, "off") for samples in SAMPLES}
     pictures |= {(samples, "filter"): drawn(samples, "filter") for samples in DENOISED_SAMPLES}
     view.settings.path.clamp = 0
-    pictures[0, "off"] = drawn(512, "off")
+    pictures[0, "off"] = drawn(setup.limit_samples, "off")
     return pictures
 
 

@@ -10,7 +10,7 @@ import numpy as np
 import light_scenes
 
 SAMPLES = (1, 2, 4, 8, 16, 36, 64, 144, 256)  # as multijitter takes them
-REFERENCE_PASSES, REFERENCE_SAMPLES = 2, 256
+REFERENCE_SAMPLES = 256  # of a pass
 
 
 def bsdf(shape):
@@ -42,7 +42,7 @@ def mesh(shape):
 def scene_of(setup):
     transform = mi.ScalarTransform4f()
     scene = {
-        "type": "scene", "integrator": {"type": "path", "max_depth": 9, "hide_emitters": True},
+        "type": "scene", "integrator": {"type": "path", "max_depth": 9, "hide_emitters": not setup.shows_emitters},
         "sensor": {
             "type": "perspective", "fov": setup.fov_y_deg, "fov_axis": "y",
             "to_world": transform.look_at(origin=list(setup.position), target=list(setup.target), up=[0, 1, 0]),
@@ -76,7 +76,7 @@ def main():
         render(scene, 1, 0)  # compiles kernels
         drawn = {(samples, "off"): render(scene, samples, 1) for samples in SAMPLES}
         if variant.startswith("llvm"):
-            parts = [render(scene, REFERENCE_SAMPLES, 100 + i)[0] for i in range(REFERENCE_PASSES)]
+            parts = [render(scene, REFERENCE_SAMPLES, 100 + i)[0] for i in range(setup.limit_samples // REFERENCE_SAMPLES)]
             drawn[0, "off"] = np.mean(parts, axis=0), 0
         np.save(folder / f"{variant} {name}.npy", drawn)
         print(f"... {variant}: {name}", file=sys.stderr, flush=True)
