@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 #include "easypbr/core/octahedral.h"
@@ -44,6 +45,17 @@ float display_slope(float radiance) {
     return std::pow(std::max(radiance, darkest), 1 / gamma - 1) / gamma;
 }
 
+/// Tiles end after 4, 6, 8, 12, 16, 24, ... frames, where Sobol's points are even.
+bool may_end(int frames) {
+    return frames >= 4 && std::popcount(unsigned(frames) & ~(std::bit_floor(unsigned(frames)) >> 1)) == 1;
+}
+
+/// A silhouette is smooth with so many.
+constexpr int frames_of_silhouettes = 16;
+
+/// Of fewer pixels of a tile the noise is not known: they are of a silhouette.
+constexpr int least_pixels = 32;
+
 void clear(const Target& target) {
     target.write(target.whole());
     std::ranges::fill(target.pixels<Vec4>(), Vec4::Zero());
@@ -53,6 +65,7 @@ void clear(const Target& target) {
 
 void RadianceMean::begin(Vec2i size, bool with_surfaces) {
     frames_ = 0;
+    tiles_.begin(size);
     overlay_sum_.clear();
     notes_surfaces_ = with_surfaces;
     const auto make = [&](Target& target) {
@@ -77,7 +90,8 @@ void RadianceMean::add(const Frame& frame, const PixelRect& area, const GBuffer&
     const HeldPixels<Vec4> sample(sample_), sum(sum_);
     parallel_for(size_t(area.height), 16, [&](size_t row) {
         const int y = area.y + int(row);
-        for (int x = area.x; x < area.x + area.width; ++x) *sum.at(x, y) += *sample.at(x, y);
+        for (int x = area.x; x < area.x + area.width; ++x)
+            if (!tiles_.has_ended(tiles_.tile_at(x, y))) *sum.at(x, y) += *sample.at(x, y);
     });
     if (!notes_surfaces_) return;
     for (const Target* target : {&surfaces.albedo, &surfaces.normal, &surfaces.material, &surfaces.depth})
@@ -98,7 +112,7 @@ void RadianceMean::add_surfaces(const Frame& frame, const PixelRect& area, const
         const int y = area.y + int(row);
         for (int x = area.x; x < area.x + area.width; ++x) {
             const float* d = depth.at(x, y);
-            if (!d || *d <= 0) continue;
+            if (!d || *d <= 0 || tiles_.has_ended(tiles_.tile_at(x, y))) continue;
             const std::array<uint8_t, 4>& m = *material.at(x, y);
             if (!is_noisy(m[3])) continue;
             const Vec4& of_frame = *sample.at(x, y);
@@ -140,29 +154,37 @@ void RadianceMean::add_overlay(const Frame& frame, const Target& overlay, Transf
     });
 }
 
-float RadianceMean::noise(float exposure) const {
+RadianceMean::TileError RadianceMean::error_of(size_t tile, float exposure) const {
     const auto seen = seen_.pixels<Vec4>(), color = color_.pixels<Vec4>();
-    const int width = sum_.width(), height = sum_.height(), columns = (width + 15) / 16,
-              rows = (height + 15) / 16;
-    std::vector<float> errors(size_t(columns) * size_t(rows), -1.0f);
+    const PixelRect area = tiles_.area_of(tile);
+    const int frames = tiles_.frames_of(tile, frames_);
+    TileError error;
+    for (int y = area.y; y < area.y + area.height; ++y)
+        for (int x = area.x; x < area.x + area.width; ++x) {
+            const size_t i = size_t(y) * size_t(sum_.width()) + size_t(x);
+            const float count = color[i].w();
+            if (!(count > 0)) continue;
+            const float deviation = std::sqrt(variance_of(seen[i], count)),
+                        bright = exposure * luminance_of(seen[i].head<3>()) / count;
+            // A coverage is displayed as it is.
+            const float displayed =
+                noisy_[i] == Noisy::coverage ? deviation : exposure * deviation * display_slope(bright);
+            error.mean += displayed;
+            error.quadratic += displayed * displayed;
+            error.has_silhouette |= int(count) != frames;
+            ++error.pixels;
+        }
+    const float pixels = float(std::max(error.pixels, 1));
+    error.mean /= pixels;
+    error.quadratic = std::sqrt(error.quadratic / pixels);
+    return error;
+}
+
+float RadianceMean::noise(float exposure) const {
+    std::vector<float> errors(tiles_.count(), -1.0f);
     parallel_for(errors.size(), 64, [&](size_t tile) {
-        const int x0 = int(tile) % columns * 16, y0 = int(tile) / columns * 16;
-        float error = 0;
-        int pixels = 0;
-        for (int y = y0; y < std::min(y0 + 16, height); ++y)
-            for (int x = x0; x < std::min(x0 + 16, width); ++x) {
-                const size_t i = size_t(y) * size_t(width) + size_t(x);
-                const float count = color[i].w();
-                if (!(count > 0)) continue;
-                const float deviation = std::sqrt(variance_of(seen[i], count)),
-                            bright = exposure * luminance_of(seen[i].head<3>()) / count;
-                // A coverage is displayed as it is.
-                error +=
-                    noisy_[i] == Noisy::coverage ? deviation : exposure * deviation * display_slope(bright);
-                ++pixels;
-            }
-        // A few pixels of a silhouette say little.
-        if (pixels >= 32) errors[tile] = error / float(pixels);
+        const TileError error = error_of(tile, exposure);
+        if (error.pixels >= least_pixels) errors[tile] = error.mean;
     });
     std::erase(errors, -1.0f);
     if (errors.empty()) return 0;
@@ -171,16 +193,30 @@ float RadianceMean::noise(float exposure) const {
     return *at;
 }
 
+void RadianceMean::end_tiles(float noise, float exposure) {
+    if (!may_end(frames_)) return;
+    parallel_for(tiles_.count(), 64, [&](size_t tile) {
+        if (tiles_.has_ended(tile)) return;
+        const TileError error = error_of(tile, exposure);
+        const bool is_edge = error.has_silhouette || error.pixels < least_pixels;
+        if (error.pixels == 0 || (is_edge && frames_ < frames_of_silhouettes)) return;
+        if (error.quadratic < noise) tiles_.end(tile, frames_);
+    });
+}
+
 const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
     const bool finds_oidn = denoising == Denoising::best && !OpenImageDenoise::version().empty();
     if (denoising == Denoising::best) denoising = finds_oidn ? Denoising::oidn : Denoising::filter;
-    const float scale = 1 / float(frames_);
     const auto sum = sum_.pixels<Vec4>();
+    const auto scale_of = [&](size_t i) {
+        const size_t tile = tiles_.tile_at(int(i) % sum_.width(), int(i) / sum_.width());
+        return 1 / float(tiles_.frames_of(tile, frames_));
+    };
     // One frame alone says nothing about its noise.
     if (denoising == Denoising::off || !notes_surfaces_ || frames_ < 2) {
         light_.write(light_.whole());
         const auto to = light_.pixels<Vec4>();
-        parallel_for(to.size(), grain, [&](size_t i) { to[i] = sum[i] * scale; });
+        parallel_for(to.size(), grain, [&](size_t i) { to[i] = sum[i] * scale_of(i); });
         return light_;
     }
     const Target& result = denoised(denoising, transfers);
@@ -190,7 +226,7 @@ const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
         to[i] = sum[i];
         if (noisy_[i] == Noisy::radiance) to[i].head<3>() += changed;
         if (noisy_[i] == Noisy::coverage) to[i].w() += luminance_of(changed);
-        to[i] *= scale;
+        to[i] *= scale_of(i);
     });
     return result;
 }

@@ -7,6 +7,7 @@
 #include "easypbr/render/denoise/open_image_denoise.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
+#include "easypbr/render/frame/sampled_tiles.h"
 #include "easypbr/scene/effects/ray_tracing.h"
 
 namespace easypbr::render {
@@ -20,8 +21,8 @@ class RadianceMean {
 
     /// Takes a frame's radiance, RGBA32F: written before add(), in either memory.
     const Target& sample() const { return sample_; }
-    /// Adds what sample() holds in a rectangle of a frame with these surfaces. Downloads what is not in host
-    /// memory.
+    /// Adds what sample() holds in a rectangle of a frame with these surfaces, but for tiles that have ended.
+    /// Downloads what is not in host memory.
     void add(const Frame& frame, const PixelRect& area, const GBuffer& surfaces, Transfers& transfers);
     /// Adds a frame's overlay, RGBA16F.
     void add_overlay(const Frame& frame, const Target& overlay, Transfers& transfers);
@@ -29,6 +30,12 @@ class RadianceMean {
     /// Of the frames so far: the standard error of what is displayed with an exposure, of white, that 95 of
     /// 100 squares of 16 x 16 pixels are below; 0 where no surface is. Surfaces must be taken note of.
     float noise(float exposure) const;
+
+    /// Ends tiles whose pixels' standard error is below `noise` by its quadratic mean, which few bright
+    /// pixels raise more than the mean that noise() is of. Asks for surfaces, too. Does so after few frames
+    /// only: each look at the noise is a chance to end by luck.
+    void end_tiles(float noise, float exposure);
+    const SampledTiles& tiles() const { return tiles_; }
 
     /// The means so far, in host memory; they live until the next call of a member. Throws Error when a
     /// denoiser that is asked for by name fails.
@@ -38,10 +45,18 @@ class RadianceMean {
 
   private:
     void add_surfaces(const Frame& frame, const PixelRect& area, const GBuffer& surfaces);
+    /// Standard errors of what is displayed, over the pixels of a tile that show a surface.
+    struct TileError {
+        float mean = 0, quadratic = 0;
+        int pixels = 0;
+        bool has_silhouette = false;  ///< some frames show a surface at a pixel, and others none
+    };
+    TileError error_of(size_t tile, float exposure) const;
     void write_noisy_light();
     const Target& denoised(Denoising denoising, Transfers& transfers);
 
     int frames_ = 0;
+    SampledTiles tiles_;
     bool notes_surfaces_ = false;
     Target sum_;  ///< of all frames
     /// Of frames that show a surface: its radiance, of a shadow catcher over nothing its coverage; a: the sum

@@ -231,6 +231,11 @@ float OutputPass::noise(const Frame& frame) const {
     return frame.averages_radiance ? mean_.noise(exposure_of(frame, Encoding::srgb8)) : 0;
 }
 
+void OutputPass::end_tiles(const Frame& frame) {
+    const float noise = frame.resolved->settings.image.noise;
+    if (noise > 0) mean_.end_tiles(noise, exposure_of(frame, Encoding::srgb8));
+}
+
 Denoising OutputPass::denoising_of(const Frame& frame) const {
     const Denoising asked = frame.resolved->settings.path.denoise;
     const bool is_reference = encoding_ == Encoding::scene_linear && frame.resolved->asks_for_paths;

@@ -30,6 +30,10 @@ class OutputPass {
     void accumulate(const Frame& frame, const LitPicture& lit, const GBuffer& surfaces);
     /// See RadianceMean::noise(); 0 where frames are not of noisy light.
     float noise(const Frame& frame) const;
+    /// Ends tiles of noisy light that are as good as image.noise asks. See RadianceMean::end_tiles().
+    void end_tiles(const Frame& frame);
+    /// Which still get samples.
+    const SampledTiles& tiles() const { return mean_.tiles(); }
     /// Writes the picture from the sum of the frames so far, or from the radiance of the only one.
     /// `exact`: the G-buffer whose exact colours anti-aliasing leaves alone, where there are some.
     void finish(const Frame& frame, const LitPicture& lit, const gl::Texture* background_image,

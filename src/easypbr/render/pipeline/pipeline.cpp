@@ -111,15 +111,16 @@ void Pipeline::light_surfaces(const Frame& frame, const DrawList& casters, const
     const bool caught = contents.ground && GroundPass::is_shadow_catcher(resolved);
     if (contents.traced || contents.paths)
         timer_.run("rays", [&] { update_ray_scene(frame, casters, contents.ground); });
-    if (contents.paths) return trace_paths(frame, inputs.native, caught);
+    if (contents.paths) return trace_paths(frame, contents.tiles, inputs.native, caught);
     if (resolved.settings.ssao.enabled && !contents.traced) occlude(frame, inputs.native, normals);
     light(frame, targets_, contents, inputs, caught);
 }
 
-void Pipeline::trace_paths(const Frame& frame, bool native, bool caught) {
+void Pipeline::trace_paths(const Frame& frame, const SampledTiles* tiles, bool native, bool caught) {
     timer_.run("paths", [&] {
         if (frame.sample_index == 0 || frame.motion) ray_scene_.make_surfaces(*frame.resolved);
-        paths_.draw(frame, targets_, ray_scene_, caught ? &ground_.caught_light(frame) : nullptr, transfers_);
+        paths_.draw(frame, targets_, ray_scene_, caught ? &ground_.caught_light(frame) : nullptr, tiles,
+                    transfers_);
         if (native) return;
         targets_.radiance.upload(transfers_);
         if (caught) ground_.caught_light(frame).upload(transfers_);
@@ -217,6 +218,12 @@ bool Pipeline::draws_overlay(const Shot& shot, const FrameContents& contents) co
     return !contents.layers && std::ranges::any_of(effects_, [&](const auto& effect) {
         return effect->draws_overlay() && effect->is_on(shot);
     });
+}
+
+bool Pipeline::spreads_light(const Shot& shot) const {
+    return shot.through_lens || shot.motion || std::ranges::any_of(effects_, [&](const auto& effect) {
+               return !effect->draws_overlay() && effect->is_on(shot);
+           });
 }
 
 void Pipeline::draw_effects(const Frame& frame, const DrawList& opaque, EffectKinds kinds, LitPicture& lit) {

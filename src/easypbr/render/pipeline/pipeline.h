@@ -11,6 +11,7 @@
 #include "easypbr/render/effects/effect.h"
 #include "easypbr/render/effects/ground/ground_pass.h"
 #include "easypbr/render/frame/pass_timer.h"
+#include "easypbr/render/frame/sampled_tiles.h"
 #include "easypbr/render/lighting/background_pass.h"
 #include "easypbr/render/lighting/lighting_pass.h"
 #include "easypbr/render/output/display_pass.h"
@@ -28,11 +29,13 @@ namespace easypbr::render {
 
 /// What the frames of a picture are drawn for.
 struct FrameContents {
-    bool ids = false;                ///< the id targets are filled; surfaces are of the core model
-    bool ground = false;             ///< a plane under the content belongs to the picture
-    bool traced = false;             ///< rays look for the environment's light, in place of ambient occlusion
-    bool paths = false;              ///< opaque surfaces are lit by path tracing
-    bool layers = false;             ///< targets are read, no picture: nothing follows the lit surfaces
+    bool ids = false;     ///< the id targets are filled; surfaces are of the core model
+    bool ground = false;  ///< a plane under the content belongs to the picture
+    bool traced = false;  ///< rays look for the environment's light, in place of ambient occlusion
+    bool paths = false;   ///< opaque surfaces are lit by path tracing
+    bool layers = false;  ///< targets are read, no picture: nothing follows the lit surfaces
+    /// Those that have ended get no paths; null: all get some.
+    const SampledTiles* tiles = nullptr;
     CustomPasses* custom = nullptr;  ///< a program's own passes, where it is a picture
     bool in_host_memory = false;     ///< whatever follows can take the radiance from host memory
 };
@@ -63,6 +66,10 @@ class Pipeline {
     const Target* draw_overlay(const Frame& frame, const DrawList& list, const FrameContents& contents,
                                bool native);
 
+    /// Whether light of a pixel comes to others, in frames of a shot: through a lens, by motion, or by
+    /// effects.
+    bool spreads_light(const Shot& shot) const;
+
     GBuffer& targets() { return targets_; }
     const GBuffer& targets() const { return targets_; }
     Surfaces& surfaces() { return surfaces_; }
@@ -89,7 +96,7 @@ class Pipeline {
     /// Finds the light of all surfaces that are not layers, by the way that the contents ask for.
     void light_surfaces(const Frame& frame, const DrawList& casters, const FrameContents& contents,
                         const LightInputs& inputs, AmbientOcclusionPass::Normals normals);
-    void trace_paths(const Frame& frame, bool native, bool caught);
+    void trace_paths(const Frame& frame, const SampledTiles* tiles, bool native, bool caught);
     void update_ray_scene(const Frame& frame, const DrawList& casters, bool ground);
     /// Depth that hides overlays and layers: of what is drawn over everything else too.
     const gl::Texture& hiding_depth(const Frame& frame, const DrawList& list);

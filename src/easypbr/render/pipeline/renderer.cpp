@@ -68,6 +68,7 @@ struct Renderer::Picture {
     int frames = 0;               ///< so far
     double seconds = 0;           ///< that the frames took so far
     bool with_exact = false;      ///< colours of tables, which nothing may mix with others
+    bool ends_tiles = false;      ///< each once its light is good enough
     bool is_finished = false;     ///< at least once
     bool holds_surfaces = false;  ///< its only frame is what the pixels' centres see
 };
@@ -154,6 +155,9 @@ void Renderer::prepare(Picture& picture) {
     picture.averaged = apart ? picture.list.without_exact() : picture.list;
     if (picture.contents.paths) picture.averaged = picture.averaged.as_first_hits();
     if (picture.contents.ids) pipeline_.targets().add_ids();
+    // Where tiles do not depend on each other.
+    picture.ends_tiles = picture.shot.averages_radiance && custom_.empty() &&
+                         !pipeline_.spreads_light(picture.shot) && !picture.list.has(&DrawItem::layered);
 }
 
 int Renderer::add_sample() {
@@ -189,9 +193,13 @@ void Renderer::draw_sample(Picture& picture) {
     const bool reaches_beyond = picture.averaged.reaches_beyond_vertices() || picture.contents.ground;
     picture.frame = make_frame(shot, picture.frames, camera, bounds, reaches_beyond);
     picture.lit = pipeline_.draw(picture.frame, picture.averaged, picture.list, picture.contents);
-    if (shot.sample_count > 1)
-        pipeline_.timer().run("accumulate",
-                              [&] { output_.accumulate(picture.frame, picture.lit, pipeline_.targets()); });
+    if (shot.sample_count == 1) return;
+    pipeline_.timer().run("accumulate", [&] {
+        output_.accumulate(picture.frame, picture.lit, pipeline_.targets());
+        if (!picture.ends_tiles) return;
+        output_.end_tiles(picture.frame);
+        picture.contents.tiles = &output_.tiles();
+    });
 }
 
 void Renderer::finish() {

@@ -38,9 +38,11 @@ void PathPass::Caught::add(const CaughtLight& light) {
 
 /// The targets in host memory, and how pixels become places.
 struct PathPass::Pixels {
-    Pixels(const Frame& frame_, const GBuffer& targets, const Target& emission_, const RayScene& scene_)
+    Pixels(const Frame& frame_, const GBuffer& targets, const Target& emission_, const RayScene& scene_,
+           const SampledTiles* tiles_)
         : frame(frame_),
           scene(scene_),
+          tiles(tiles_),
           albedo(targets.albedo),
           normal(targets.normal),
           material(targets.material),
@@ -56,6 +58,11 @@ struct PathPass::Pixels {
         float footprint;  ///< width of the pixel there, RayScene::unit()
         PathState state;
     };
+    /// Whether a surface is there that gets a sample.
+    bool is_traced(int x, int y) const {
+        const float* d = depth.at(x, y);
+        return d && *d > 0 && !(tiles && tiles->has_ended(tiles->tile_at(x, y)));
+    }
     /// `index` is that of the pixel's radiance.
     Place place_of(int x, int y, uint32_t index) const;
     /// Adds the path of a pixel to a batch.
@@ -63,6 +70,7 @@ struct PathPass::Pixels {
 
     const Frame& frame;
     const RayScene& scene;
+    const SampledTiles* tiles;
     HeldPixels<std::array<uint16_t, 4>> albedo;
     HeldPixels<std::array<uint16_t, 2>> normal;
     HeldPixels<std::array<uint8_t, 4>> material;
@@ -125,8 +133,7 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
                 visit(x, y, uint32_t((y - block.y) * block.width + x - block.x));
     };
     each([&](int x, int y, uint32_t index) {
-        const float* depth = pixels.depth.at(x, y);
-        if (!depth || *depth <= 0) return;
+        if (!pixels.is_traced(x, y)) return;
         const uint8_t kind = (*pixels.material.at(x, y))[3];
         if (!is_catcher(kind) && !is_lit_by_scene(kind)) return;
         const Pixels::Place place = pixels.place_of(x, y, index);
@@ -146,9 +153,8 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
     tracer_.trace(lit, hits, radiance);
     tracer_.trace_caught(caught, light);
     each([&](int x, int y, uint32_t index) {
-        const float* depth = pixels.depth.at(x, y);
         Vec4* to = pixels.radiance.at(x, y);
-        if (!to || !depth || *depth <= 0) return;
+        if (!to || !pixels.is_traced(x, y)) return;
         const Vec4* emission = is_hit[index] ? nullptr : pixels.emission.at(x, y);
         to->head<3>() = radiance[index] + (emission ? Vec3(emission->head<3>()) : Vec3(Vec3::Zero()));
         to->w() = 1;
@@ -159,7 +165,7 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
 }
 
 void PathPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Target* caught,
-                    Transfers& transfers) {
+                    const SampledTiles* tiles, Transfers& transfers) {
     // The driver keeps emission where light is added to it.
     Target of_driver;
     if (!targets.depth.is_ahead()) {
@@ -179,7 +185,7 @@ void PathPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& 
         caught_.assign(size_t(frame.size.prod()), {});
     if (!caught) caught_.clear();
     tracer_.prepare(*frame.resolved, scene);
-    const Pixels pixels(frame, targets, emission, scene);
+    const Pixels pixels(frame, targets, emission, scene, tiles);
     const PixelRect& area = frame.covered;
     const int columns = (area.width + block_width - 1) / block_width,
               rows = (area.height + block_height - 1) / block_height;

@@ -5,6 +5,7 @@
 
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
+#include "easypbr/render/frame/sampled_tiles.h"
 #include "easypbr/render/raytrace/path_tracer.h"
 
 namespace easypbr::render {
@@ -14,8 +15,9 @@ class PathPass {
   public:
     /// Writes the radiance of all that the G-buffer holds, in host memory: emission and what paths bring.
     /// `caught`, unless it is null: of a ground that catches shadows, see GroundPass::caught_light().
+    /// `tiles`, unless it is null: no path starts in those that have ended, whose radiance is 0.
     void draw(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Target* caught,
-              Transfers& transfers);
+              const SampledTiles* tiles, Transfers& transfers);
 
   private:
     struct Pixels;
