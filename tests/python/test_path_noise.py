@@ -42,6 +42,21 @@ except easypbr.Error as error:
     assert "pip install pyoidn" in done.stdout
 
 
+def test_squares_that_end_by_their_noise_do_not_depend_on_threads() -> None:
+    program = """import hashlib, os, sys
+if sys.argv[1] == "one":
+    os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+import easypbr
+scene = easypbr.Scene()
+scene.show(easypbr.shapes.sphere(1), "ball")
+view = easypbr.Viewer((96, 64), {"ground": {"mode": "plane"}, "image": {"noise": 0.05}}, scene=scene)
+print(hashlib.sha256(view.render(samples=32).tobytes()).hexdigest())
+"""
+    one, all_of_them = (subprocess.run([sys.executable, "-c", program, threads], capture_output=True, text=True, check=True).stdout
+                        for threads in ("one", "all"))
+    assert one == all_of_them
+
+
 def test_an_unknown_denoiser_is_refused() -> None:
     with pytest.raises(easypbr.ArgumentError, match="denoise.*best, oidn, filter"):
         view(denoise="median")
