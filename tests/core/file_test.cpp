@@ -91,6 +91,18 @@ TEST_F(File, LeavesTheOldFileWhenWritingFails) {
     EXPECT_EQ(file_count(), 1u);
 }
 
+TEST_F(File, NeverTakesThePlaceOfASpecialFile) {
+    const fs::path pipe = folder_ / "pipe", link = folder_ / "link";
+    ASSERT_EQ(::mkfifo(pipe.c_str(), 0666), 0);
+    fs::create_symlink(pipe, link);
+    for (const fs::path& path : {pipe, link}) {
+        EXPECT_NE(message_of([&] { write_file(path, "text"); }).find("a pipe"), std::string::npos);
+        EXPECT_THROW(check_writable(path), FileError);
+        EXPECT_TRUE(fs::is_fifo(path));
+    }
+    EXPECT_EQ(file_count(), 2u);
+}
+
 TEST_F(File, TellsBeforehandWhetherItCanWrite) {
     EXPECT_NO_THROW(check_writable(folder_ / "new.png"));
     EXPECT_THROW(check_writable(folder_), FileError);

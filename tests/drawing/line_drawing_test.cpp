@@ -14,6 +14,7 @@
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/resolve.h"
 #include "easypbr/scene/settings.h"
+#include "io/temporary_folder.h"
 
 namespace easypbr::line_drawing_test {
 namespace {
@@ -251,14 +252,12 @@ TEST(LineDrawing, CloudIsLeftOutWithAWarning) {
 
 class SvgFile : public testing::Test {
   protected:
-    std::filesystem::path folder = std::filesystem::temp_directory_path() / "easypbr_line_drawing_test";
+    TemporaryFolder folder;
     app::Session session;
 
     void SetUp() override {
-        std::filesystem::create_directories(folder);
         session.scene().show(make_box(), "a <b> & \"c\" \xff");
     }
-    void TearDown() override { std::filesystem::remove_all(folder); }
     std::string saved(app::HiddenLines hidden) {
         drawing::save_line_drawing(session, folder / "a.svg", {size, hidden});
         std::ostringstream text;
@@ -286,7 +285,7 @@ TEST_F(SvgFile, IsRefusedWhereItCannotBe) {
     EXPECT_THROW(drawing::save_line_drawing(session, folder / "a.png"), ArgumentError);
     EXPECT_THROW(drawing::save_line_drawing(session, folder / "no/such/a.svg"), FileError);
     EXPECT_THROW(drawing::save_line_drawing(session, folder / "a.svg", {Vec2i(0, 5), {}}), ArgumentError);
-    EXPECT_TRUE(std::filesystem::is_empty(folder));
+    EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
     EXPECT_THROW(drawing::hidden_lines_named("dasht"), NameError);
     EXPECT_EQ(drawing::hidden_lines_named("solid"), app::HiddenLines::solid);
 }

@@ -36,7 +36,7 @@ class FrameMaker:
         self._files = [entry.files() for entry in spec.objects]
         self._meshes: dict[str, Mesh | None] = {}
         self._skies: dict[int, Environment] = {}
-        self._surroundings: tuple[Mesh, np.ndarray] | None = None
+        self._surroundings: tuple[Mesh, NDArray[Any]] | None = None
         self._scene = Scene()
         self._view = Viewer(spec.image.size, {"ground.mode": "none"}, scene=self._scene)
 

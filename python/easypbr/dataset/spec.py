@@ -138,7 +138,7 @@ def _tuple(hint: Any, value: Any, where: str) -> tuple[Any, ...]:
         raise ArgumentError(f"{where}: expected a list, got {value!r}")
     if kinds and kinds[-1] is not Ellipsis and len(kinds) != len(value):
         raise ArgumentError(f"{where}: expected {len(kinds)} values, got {len(value)}")
-    if kinds:
+    if kinds and kinds[0] is not Any:
         kind = kinds[0]
         return tuple(_value(kind, item, where) for item in value)
     try:

@@ -95,7 +95,8 @@ class FileBytes {
 /// Throws FileError unless the file can be opened for reading and is a regular one.
 void check_readable(const fs::path& path);
 
-/// Writes beside the target, then renames: a reader sees the old file or the whole new one. Throws FileError.
+/// Writes beside the target, then renames: a reader sees the old file or the whole new one. Throws FileError,
+/// among others where a device, a pipe or a socket is there.
 void write_file(const fs::path& path, std::span<const std::byte> bytes);
 void write_file(const fs::path& path, std::string_view text);
 

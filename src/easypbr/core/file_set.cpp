@@ -39,7 +39,16 @@ fs::path real_target(const fs::path& path) {
     return real.empty() ? path : real;
 }
 
+/// A file that is renamed over a device or a pipe would take its place.
+void require_no_special_file(const fs::path& target) {
+    std::error_code ignored;
+    const fs::file_status status = fs::status(target, ignored);
+    if (fs::exists(status) && !fs::is_regular_file(status) && !fs::is_directory(status))
+        throw FileError(fmt::format("cannot write {}: it is a device, a pipe or a socket", target.string()));
+}
+
 void require_writable(const fs::path& target) {
+    require_no_special_file(target);
     if (fs::exists(target) && ::access(target.c_str(), W_OK) != 0) fail_write(target, errno);
     if (target.filename().empty() || fs::is_directory(target)) fail_write(target, EISDIR);
 }
@@ -52,6 +61,7 @@ FileSet::~FileSet() {
 
 void FileSet::add(const fs::path& path, std::span<const std::byte> bytes) {
     const fs::path target = real_target(path);
+    require_no_special_file(target);
     const fs::path& beside = files_.emplace_back(File{temporary_beside(target), target}).beside;
     const Descriptor file{open_file(beside.c_str(), O_WRONLY | O_CREAT | O_EXCL, 0666)};
     if (file.get() < 0) fail_write(target, errno);

@@ -71,10 +71,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
         timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
     shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
-    // Layers by the driver need the maps where it can read them.
-    const bool layers_need_maps =
-        has_layers && !contents.paths && shadow_maps_.has_shadows() && !has_native_layers(list);
-    const bool native = is_lit_natively(contents) && !layers_need_maps;
+    const bool native = is_lit_natively(list, contents);
     shadow_maps_.keep_in_host_memory(native);
     const std::string pass = native ? first_by_driver(list, contents) : lit_by_driver(native_shading_);
     if (!native && targets_.depth.is_ahead()) timer_.run(pass, [&] { targets_.upload(transfers_); });
@@ -156,10 +153,12 @@ void Pipeline::occlude(const Frame& frame, bool native, AmbientOcclusionPass::No
     });
 }
 
-bool Pipeline::is_lit_natively(const FrameContents& contents) const {
-    if (contents.paths) return native_shading_ && targets_.depth.is_ahead();
-    const bool has_tints = shadow_maps_.has_shadows() && shadow_maps_.has_tints();
-    return native_shading_ && targets_.depth.is_ahead() && !(has_tints && !shadow_maps_.has_native_tints());
+bool Pipeline::is_lit_natively(const DrawList& list, const FrameContents& contents) const {
+    if (!native_shading_ || !targets_.depth.is_ahead()) return false;
+    if (contents.paths || !shadow_maps_.has_shadows()) return true;
+    if (shadow_maps_.has_tints() && !shadow_maps_.has_native_tints()) return false;
+    // Layers by the driver need the maps where it can read them.
+    return !list.has(is_layered) || has_native_layers(list);
 }
 
 std::string Pipeline::first_by_driver(const DrawList& list, const FrameContents& contents) const {

@@ -121,7 +121,7 @@ class Pipeline {
     /// The eye-dome lighting of the layers' points; nothing where there are none.
     const gl::Texture* shade_points(const Frame& frame, const DrawList& layers, const gl::Texture& opaque);
     /// Whether a frame is lit natively: its surfaces are in host memory, and nothing of it needs the driver.
-    bool is_lit_natively(const FrameContents& contents) const;
+    bool is_lit_natively(const DrawList& list, const FrameContents& contents) const;
     void occlude(const Frame& frame, bool native, AmbientOcclusionPass::Normals normals);
     /// What is around lit surfaces, natively: what the ground shows of itself, and the environment.
     void shade_surroundings(const Frame& frame, const FrameContents& contents, bool environment);
