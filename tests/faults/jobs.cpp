@@ -150,6 +150,7 @@ std::vector<Job> make_computing_jobs() {
          [sphere](const fs::path&) { return hash_of(estimate_surfels(sample_surface(sphere, 200))); }},
         {"voxels", [sphere](const fs::path&) { return hash_of(voxelize(sphere, 0.25)); }},
         {"a frame", [sphere](const fs::path&) { return picture_of(sphere, 1); }},
+        {"a picture by paths", [sphere](const fs::path&) { return picture_of(sphere, 2); }},
     };
 }
 
