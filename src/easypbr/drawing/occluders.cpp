@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "easypbr/core/parallel.h"
-#include "easypbr/render/raytrace/embree.h"
+#include "easypbr/render/raytrace/embree_scene.h"
 
 namespace easypbr::drawing {
 namespace {
@@ -31,13 +31,7 @@ struct Occluders::Tree {
     std::vector<std::vector<Eigen::Index>> faces;  ///< of each occluder, those in the tree
     Vec3d centre{0, 0, 0};
     double unit = 1;
-    RTCDevice device = rtcNewDevice(nullptr);
-    RTCScene scene = rtcNewScene(device);
-
-    ~Tree() {
-        rtcReleaseScene(scene);
-        rtcReleaseDevice(device);
-    }
+    embree::Scene scene;
 
     Vec3d local(const Vec3d& world) const { return (world - centre) / unit; }
 
@@ -45,22 +39,19 @@ struct Occluders::Tree {
         const auto id = unsigned(faces.size());
         faces.push_back(occluder.faces);
         if (occluder.faces.empty()) return;
-        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-        const auto vertices = size_t(occluder.mesh->V.rows());
-        auto* V = static_cast<float*>(rtcSetNewGeometryBuffer(
-            geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), vertices));
-        parallel_for(vertices, 1 << 14, [&](size_t i) {
+        const embree::Geometry geometry = scene.make(RTC_GEOMETRY_TYPE_TRIANGLE);
+        const auto V = scene.buffer<std::array<float, 3>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3,
+                                                          size_t(occluder.mesh->V.rows()));
+        parallel_for(V.size(), 1 << 14, [&](size_t i) {
             const Vec3 place = local(vertex(occluder, Eigen::Index(i))).cast<float>();
-            std::copy_n(place.data(), 3, V + 3 * i);
+            V[i] = {place.x(), place.y(), place.z()};
         });
-        auto* F = static_cast<uint32_t*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_INDEX, 0,
-                                                                 RTC_FORMAT_UINT3, 3 * sizeof(uint32_t),
-                                                                 occluder.faces.size()));
-        for (const Eigen::Index face : occluder.faces)
-            for (int corner = 0; corner < 3; ++corner) *F++ = uint32_t(occluder.mesh->F(face, corner));
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometryByID(scene, geometry, id);
-        rtcReleaseGeometry(geometry);
+        const auto F = scene.buffer<std::array<uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX,
+                                                             RTC_FORMAT_UINT3, occluder.faces.size());
+        for (size_t i = 0; i < F.size(); ++i)
+            for (int corner = 0; corner < 3; ++corner)
+                F[i][size_t(corner)] = uint32_t(occluder.mesh->F(occluder.faces[i], corner));
+        scene.attach(geometry, id);
     }
 };
 
@@ -69,8 +60,7 @@ Occluders::Occluders(std::span<const Occluder> occluders) : tree_(std::make_uniq
     if (!bounds.isEmpty()) tree_->centre = bounds.center();
     if (bounds.diagonal().norm() > 0) tree_->unit = bounds.diagonal().norm() / 2;
     for (const Occluder& occluder : occluders) tree_->add(occluder);
-    rtcSetSceneFlags(tree_->scene, RTC_SCENE_FLAG_ROBUST);
-    rtcCommitScene(tree_->scene);
+    tree_->scene.build();
 }
 
 Occluders::~Occluders() = default;
@@ -92,7 +82,7 @@ bool Occluders::hide(const Vec3d& point, const Eye& eye, size_t occluder,
         ray.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         embree::Context context;
         embree::begin(context);
-        embree::intersect(tree_->scene, context, ray);
+        embree::intersect(tree_->scene.get(), context, ray);
         if (ray.hit.geomID == RTC_INVALID_GEOMETRY_ID) return false;
         const Eigen::Index face = tree_->faces[ray.hit.geomID][ray.hit.primID];
         if (ray.hit.geomID != occluder || std::ranges::find(faces, face) == faces.end()) return true;

@@ -20,6 +20,7 @@ struct Occluder {
 
 class Occluders {
   public:
+    /// Throws Error where there is not enough memory.
     explicit Occluders(std::span<const Occluder> occluders);
     ~Occluders();
     Occluders(const Occluders&) = delete;

@@ -2,18 +2,14 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <thread>
 #include <utility>
 
-#include "easypbr/core/error.h"
-#include "easypbr/core/interrupt.h"
 #include "easypbr/core/parallel.h"
-#include "easypbr/render/raytrace/embree.h"
+#include "easypbr/render/raytrace/embree_scene.h"
 #include "easypbr/render/raytrace/ray_random.h"
 #include "easypbr/render/raytrace/ray_surface.h"
 
@@ -89,32 +85,6 @@ void filter(const RTCFilterFunctionNArguments* args) {
     if (stops < 1 && (stops <= 0 || hash_of(ray, hit.primID) >= stops)) args->valid[0] = 0;
 }
 
-/// Whether a tree is to be built on. Embree asks on all threads that build; only the one that has begun can
-/// be interrupted, and nothing may be thrown through Embree.
-struct Building {
-    std::thread::id owner = std::this_thread::get_id();
-    std::atomic<bool> stopped = false;
-
-    static bool goes_on(void* pointer, double) {
-        auto& self = *static_cast<Building*>(pointer);
-        if (std::this_thread::get_id() == self.owner) try {
-                check_interrupt();
-            } catch (const Interrupted&) {
-                self.stopped = true;
-            }
-        return !self.stopped;
-    }
-};
-
-/// Builds the tree.
-void commit(RTCScene scene) {
-    Building building;
-    rtcSetSceneProgressMonitorFunction(scene, Building::goes_on, &building);
-    rtcCommitScene(scene);
-    rtcSetSceneProgressMonitorFunction(scene, nullptr, nullptr);
-    if (building.stopped) throw Interrupted();
-}
-
 /// What a place that comes from a pixel may be off by.
 float rounding_at(const Vec3& place) {
     return 1e-4f * std::max(1.0f, place.norm());
@@ -124,42 +94,21 @@ float rounding_at(const Vec3& place) {
 
 struct RayScene::Scene final : RayGeometry {
     Scene(const Vec3d& centre, double unit_)
-        : world_scale(1 / unit_),
-          from_world(Eigen::Scaling(1 / unit_) * Eigen::Translation3d(-centre)),
-          device(rtcNewDevice(nullptr)) {
-        if (!device) throw Error("rays: Embree gives no device");
-        scene = rtcNewScene(device);
-        rtcSetSceneFlags(scene, RTC_SCENE_FLAG_ROBUST);
-    }
-    ~Scene() override {
-        rtcReleaseScene(scene);
-        rtcReleaseDevice(device);
-    }
-    Scene(const Scene&) = delete;
-    Scene& operator=(const Scene&) = delete;
-
-    template <class T>
-    std::span<T> buffer(RTCGeometry geometry, RTCBufferType type, RTCFormat format, size_t count) {
-        void* data = rtcSetNewGeometryBuffer(geometry, type, 0, format, sizeof(T), count);
-        if (!data) throw Error("rays: no memory for what casts shadows");
-        return {static_cast<T*>(data), count};
-    }
+        : world_scale(1 / unit_), from_world(Eigen::Scaling(1 / unit_) * Eigen::Translation3d(-centre)) {}
 
     Eigen::Affine3d placed(const DrawItem& item) const {
         return Eigen::Affine3d(from_world * item.object->T_world_mesh);
     }
 
-    void attach(RTCGeometry geometry, const Element& element) {
+    void attach(const embree::Geometry& geometry, const Element& element) {
         const DrawItem& item = *element.item;
         elements.push_back(std::make_unique<Element>(element));
-        rtcSetGeometryUserData(geometry, elements.back().get());
+        rtcSetGeometryUserData(geometry.get(), elements.back().get());
         if (is_filtered(item)) {
-            rtcSetGeometryIntersectFilterFunction(geometry, filter);
-            rtcSetGeometryOccludedFilterFunction(geometry, filter);
+            rtcSetGeometryIntersectFilterFunction(geometry.get(), filter);
+            rtcSetGeometryOccludedFilterFunction(geometry.get(), filter);
         }
-        rtcCommitGeometry(geometry);
-        rtcAttachGeometryByID(scene, geometry, unsigned(elements.size() - 1));
-        rtcReleaseGeometry(geometry);
+        tree.attach(geometry, unsigned(elements.size() - 1));
     }
 
     /// Of the parts of an object the same.
@@ -176,12 +125,12 @@ struct RayScene::Scene final : RayGeometry {
 
     void add_faces(const DrawItem& item) override {
         const MeshData& mesh = item.mesh();
-        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        const embree::Geometry geometry = tree.make(RTC_GEOMETRY_TYPE_TRIANGLE);
         const auto& V = vertices_of(item, placed(item));
-        rtcSetSharedGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, V.data(), 0,
+        rtcSetSharedGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, V.data(), 0,
                                    sizeof(Vec3), size_t(mesh.V.rows()));
-        const auto F = buffer<std::array<uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
-                                                       size_t(item.part.face_count));
+        const auto F = tree.buffer<std::array<uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
+                                                            size_t(item.part.face_count));
         for (size_t i = 0; i < F.size(); ++i)
             for (int c = 0; c < 3; ++c)
                 F[i][size_t(c)] = uint32_t(mesh.F(item.part.first_face + Eigen::Index(i), c));
@@ -193,17 +142,17 @@ struct RayScene::Scene final : RayGeometry {
         const Eigen::Affine3d T = placed(item);
         const auto radius = float(world_radius * world_scale);
         const bool oriented = !mesh.N.empty();
-        RTCGeometry geometry = rtcNewGeometry(
-            device, oriented ? RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT : RTC_GEOMETRY_TYPE_DISC_POINT);
-        const auto V = buffer<std::array<float, 4>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4,
-                                                    size_t(mesh.V.rows()));
+        const embree::Geometry geometry =
+            tree.make(oriented ? RTC_GEOMETRY_TYPE_ORIENTED_DISC_POINT : RTC_GEOMETRY_TYPE_DISC_POINT);
+        const auto V = tree.buffer<std::array<float, 4>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT4,
+                                                         size_t(mesh.V.rows()));
         for (size_t i = 0; i < V.size(); ++i) {
             const Vec3 p = (T * Vec3d(mesh.V.row(Eigen::Index(i)).transpose().cast<double>())).cast<float>();
             V[i] = {p.x(), p.y(), p.z(), radius};
         }
         if (oriented) {
-            const auto N = buffer<std::array<float, 3>>(geometry, RTC_BUFFER_TYPE_NORMAL, RTC_FORMAT_FLOAT3,
-                                                        size_t(mesh.V.rows()));
+            const auto N = tree.buffer<std::array<float, 3>>(geometry, RTC_BUFFER_TYPE_NORMAL,
+                                                             RTC_FORMAT_FLOAT3, size_t(mesh.V.rows()));
             const Mat3 normal_matrix = T.linear().inverse().transpose().cast<float>();
             for (size_t i = 0; i < N.size(); ++i) {
                 const Vec3 n = (normal_matrix * mesh.N.row(Eigen::Index(i)).transpose()).normalized();
@@ -217,11 +166,11 @@ struct RayScene::Scene final : RayGeometry {
                       const std::function<void(Eigen::Index, std::span<Vec3d>)>& polygon) override {
         const Eigen::Affine3d T = placed(item);
         const auto count = size_t(item.mesh().V.rows()), n = size_t(corners), triangles = n - 2;
-        RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+        const embree::Geometry geometry = tree.make(RTC_GEOMETRY_TYPE_TRIANGLE);
         const auto V =
-            buffer<std::array<float, 3>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, count * n);
-        const auto F = buffer<std::array<uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
-                                                       count * triangles);
+            tree.buffer<std::array<float, 3>>(geometry, RTC_BUFFER_TYPE_VERTEX, RTC_FORMAT_FLOAT3, count * n);
+        const auto F = tree.buffer<std::array<uint32_t, 3>>(geometry, RTC_BUFFER_TYPE_INDEX, RTC_FORMAT_UINT3,
+                                                            count * triangles);
         parallel_for(count, 1 << 10, [&](size_t i) {
             std::array<Vec3d, most_corners> places;
             polygon(Eigen::Index(i), std::span(places.data(), n));
@@ -239,8 +188,7 @@ struct RayScene::Scene final : RayGeometry {
     static constexpr size_t most_corners = 16;
     double world_scale;
     Eigen::Affine3d from_world;
-    RTCDevice device;
-    RTCScene scene = nullptr;
+    embree::Scene tree;
     std::vector<std::unique_ptr<Element>> elements;
     std::vector<Primitive*> kinds;                      ///< of the elements
     std::vector<std::unique_ptr<HitSurface>> surfaces;  ///< likewise, once they are made
@@ -273,7 +221,7 @@ void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t gen
         kind->add_to(*made, *item);
         made->kinds.resize(made->elements.size(), kind);
     }
-    commit(made->scene);
+    made->tree.build();
     scene_ = std::move(made);
 }
 
@@ -338,7 +286,7 @@ std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction,
     found.ray = ray_of(from, direction, to_ground);
     found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     RayQuery query(transmissive);
-    if (scene_) embree::intersect(scene_->scene, query.context, found);
+    if (scene_) embree::intersect(scene_->tree.get(), query.context, found);
     RayHit hit;
     hit.distance = found.ray.tfar;
     hit.position = from + direction * found.ray.tfar;
@@ -381,7 +329,7 @@ bool RayScene::blocked(const Vec3& from, const Vec3& direction, float distance,
     if (!scene_) return false;
     RTCRay ray = ray_of(from, direction, distance);
     RayQuery query(transmissive);
-    embree::occlude(scene_->scene, query.context, ray);
+    embree::occlude(scene_->tree.get(), query.context, ray);
     return ray.tfar < 0;
 }
 
@@ -391,7 +339,7 @@ Vec3 RayScene::transmittance(const Vec3& from, const Vec3& direction, float dist
     RTCRay ray = ray_of(from, direction, distance);
     RayQuery query(Transmissive::passed);
     query.transmittance = &left;
-    embree::occlude(scene_->scene, query.context, ray);
+    embree::occlude(scene_->tree.get(), query.context, ray);
     return ray.tfar < 0 ? Vec3(Vec3::Zero()) : left;
 }
 
