@@ -1,19 +1,11 @@
 """The command line is tested as a user runs it: the built executable in a process of its own."""
-import os
 import subprocess
 
 import pytest
 
 import shapes
 from binary import BINARY
-
-
-
-@pytest.fixture(scope="session")
-def environment(tmp_path_factory):
-    """A cache and a configuration of our own, so that runs neither use nor fill the user's."""
-    folders = {name: str(tmp_path_factory.mktemp(name)) for name in ("EASYPBR_CACHE_DIR", "XDG_CONFIG_HOME")}
-    return {**os.environ, **folders}
+from own_environment import environment  # noqa: F401
 
 
 @pytest.fixture

@@ -1,6 +1,5 @@
 """Programs in a folder of their own, with a cache of their own."""
 
-import os
 import pathlib
 import subprocess
 import sys
@@ -11,12 +10,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 sys.path.insert(0, str(ROOT / "tests/cli"))
 
 from binary import BINARY  # noqa: E402
-
-
-@pytest.fixture(scope="session")
-def environment(tmp_path_factory):
-    folders = {name: str(tmp_path_factory.mktemp(name)) for name in ("EASYPBR_CACHE_DIR", "XDG_CONFIG_HOME")}
-    return {**os.environ, **folders}
+from own_environment import environment  # noqa: E402, F401
 
 
 @pytest.fixture

@@ -12,8 +12,8 @@ from pathlib import Path
 
 
 class SlowLine:
-    """A TCP relay of one's own port: `megabits` a second and half of `round_trip_s` each way, in order, as a queue of a
-    router has it. Use as a context; `port` is where it listens."""
+    """A TCP proxy with limited bandwidth and latency: `megabits` per second and half of `round_trip_s` in each direction,
+    first in, first out, as a router's queue. A context manager; it listens on `port` of the loopback interface."""
 
     def __init__(self, target: int, megabits: float, round_trip_s: float) -> None:
         self.target, self.bytes_a_second, self.delay_s = target, megabits * 1e6 / 8, round_trip_s / 2

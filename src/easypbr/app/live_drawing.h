@@ -33,6 +33,9 @@ struct PathPlan {
     PathEditor editor;
     std::optional<size_t> key;          ///< the chosen one
     std::optional<size_t> look_at_key;  ///< the camera goes there with the next frame
+
+    /// Chooses a key, and looks from it with the next frame.
+    void look_from(size_t key);
 };
 
 /// What is asked for, to be done with the next frame.

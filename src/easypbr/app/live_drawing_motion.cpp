@@ -33,6 +33,15 @@ Eigen::Affine3d pose_before(const Scene& scene, const std::string& name, const E
 
 }  // namespace
 
+void PathPlan::look_from(size_t chosen) {
+    key = chosen;
+    editor.pause();
+    if (editor.path() && chosen < editor.path()->key_times_s().size())
+        editor.seek(editor.path()->key_times_s()[chosen]);
+    else
+        look_at_key = chosen;
+}
+
 void LiveDrawing::move_along_path(double seconds) {
     const bool moves = path_.editor.advance(seconds);
     const auto key = std::exchange(path_.look_at_key, {});

@@ -27,13 +27,7 @@ void do_wish(GuiState& state, const KeyWish& wish) {
         case KeyWish::What::none:
             return;
         case KeyWish::What::look:
-            state.path().key = key;
-            path.pause();
-            if (path.path() && key < path.path()->key_times_s().size())
-                path.seek(path.path()->key_times_s()[key]);
-            else
-                state.path().look_at_key = key;
-            return;
+            return state.path().look_from(key);
         case KeyWish::What::replace:
             return path.replace(key, state.session().camera());
         case KeyWish::What::up:

@@ -14,16 +14,6 @@ using Recording = app::LiveWishes::Recording;
 
 // ---- path
 
-void look_from(app::LiveDrawing& live, size_t key) {
-    app::PathEditor& path = live.path().editor;
-    live.path().key = key;
-    path.pause();
-    if (path.path() && key < path.path()->key_times_s().size())
-        path.seek(path.path()->key_times_s()[key]);
-    else
-        live.path().look_at_key = key;
-}
-
 /// Of the chosen key.
 void key_rows(RecordedWidgets& ui, app::LiveDrawing& live, size_t key) {
     app::PathEditor& path = live.path().editor;
@@ -51,7 +41,7 @@ void key_list(RecordedWidgets& ui, app::LiveDrawing& live) {
     for (size_t key = 0; key < path.keys().size(); ++key) {
         std::string label = fmt::format("Key {}", key + 1);
         if (key < times.size()) label += fmt::format(", at {:.2f} s", times[key]);
-        if (ui.button(label)) look_from(live, key);
+        if (ui.button(label)) live.path().look_from(key);
         if (live.path().key == key) key_rows(ui, live, key);
     }
 }
