@@ -9,7 +9,6 @@
 #include "easypbr/app/pinned_camera.h"
 #include "easypbr/app/prepared.h"
 #include "easypbr/core/error.h"
-#include "easypbr/core/log.h"
 #include "easypbr/core/stopwatch.h"
 #include "easypbr/scene/resolve.h"
 
@@ -34,6 +33,7 @@ struct Session::Refined {
     Drawn drawn;         ///< finished last
     int frames = 0;
     bool is_complete = false;  ///< maybe with fewer frames than asked for
+    uint64_t device = 0;       ///< KeptDevice::number()
 };
 
 Session::Session(Scene scene) : scene_(std::move(scene)), settings_(std::make_unique<Settings>()) {}
@@ -42,17 +42,13 @@ Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
 
 const gl::ContextInfo& Session::context_info() {
-    if (!device_->context) device_->context = gl::Context::create(asked_device_);
-    return device_->context->info();
+    return device_.info();
 }
 
-void Session::use_device(DrawDevice device) {
-    if (device_->context && device != DrawDevice::automatic && device != context_info().device)
-        throw ArgumentError(
-            fmt::format("device: pictures have been drawn by {} already; expected it to be set "
-                        "before the first one",
-                        draw_device_names()[size_t(context_info().device)]));
-    asked_device_ = device;
+gl::Context& Session::context() {
+    device_.replace_lost();
+    renderer();
+    return *device_->context;
 }
 
 render::Renderer& Session::renderer() {
@@ -64,43 +60,6 @@ render::Renderer& Session::renderer() {
         device_->renderer->set_passes(passes_);
     }
     return *device_->renderer;
-}
-
-void Session::replace_device(const std::string& reason) {
-    const bool by_gl = !device_->context || device_->context->info().device == DrawDevice::gl;
-    const bool falls_back = ++losses_ == 2 && by_gl && asked_device_ == DrawDevice::automatic;
-    refined_.reset();
-    device_ = std::make_shared<Device>();
-    ++device_number_;
-    if (losses_ > 1 && !falls_back) {
-        losses_ = 0;
-        throw gl::ContextLost(fmt::format("{}, and so was the one made in its place", reason));
-    }
-    if (falls_back) asked_device_ = DrawDevice::cpu;
-    log_warning(
-        fmt::format("{}; {}", reason,
-                    falls_back ? "from now on the CPU draws" : "everything is drawn again in another one"));
-}
-
-template <class Job>
-auto Session::keeping_context(Job&& job) {
-    if (keeps_context_) return job();
-    const bool is_nested = is_current();
-    keeps_context_ = true;
-    const std::unique_ptr<bool, void (*)(bool*)> end(&keeps_context_, [](bool* keeps) { *keeps = false; });
-    for (;;) try {
-            if (!is_nested) replace_lost_device();
-            auto result = job();
-            losses_ = 0;
-            return result;
-        } catch (const Error& error) {
-            // What a driver answers in a lost context may look like another error.
-            const auto* lost = dynamic_cast<const gl::ContextLost*>(&error);
-            const std::string reason = lost ? error.what() : loss(error);
-            if (reason.empty()) throw;
-            if (is_nested) throw gl::ContextLost(reason);
-            replace_device(reason);
-        }
 }
 
 SceneSnapshot Session::snapshot() {
@@ -170,7 +129,7 @@ Drawn Session::begin(Prepared& prepared, bool picture, bool surfaces) {
         prepared.resolved.camera.intrinsics = drawn.lens().drawn.intrinsics;
     }
     renderer();
-    drawn.device_ = device_;
+    drawn.device_ = device_.shared();
     // Numbers are taken before anything is drawn: a drawing that fails outdates what was there as well.
     ++device_->surfaces;
     if (picture) drawn.picture_ = ++device_->picture;
@@ -188,7 +147,7 @@ void Session::annotate(Drawn& drawn, const Prepared& prepared) {
 }
 
 Drawn Session::draw(const PictureOptions& options) {
-    return keeping_context([&] { return draw_once(options); });
+    return device_.keep([&] { return draw_once(options); });
 }
 
 Drawn Session::draw_once(const PictureOptions& options) {
@@ -218,7 +177,7 @@ Drawn Session::draw_frame(const PictureOptions& options) {
 }
 
 Image Session::render(const PictureOptions& options) {
-    return keeping_context([&] {
+    return device_.keep([&] {
         const Drawn drawn = draw_frame(options);
         const Stopwatch watch(timing_.read);
         return drawn.picture();
@@ -226,7 +185,7 @@ Image Session::render(const PictureOptions& options) {
 }
 
 Session::Refinement Session::refine(const PictureOptions& options, bool finish, const RefinedMotion& motion) {
-    return keeping_context([&] { return refine_once(options, finish, motion); });
+    return device_.keep([&] { return refine_once(options, finish, motion); });
 }
 
 Session::Refinement Session::refine_once(const PictureOptions& options, bool finish,
@@ -235,7 +194,8 @@ Session::Refinement Session::refine_once(const PictureOptions& options, bool fin
     if (settings_->motion_blur.enabled) prepared.options.motion = motion;
     Refinement done;
     done.total = prepared.options.samples;
-    done.began = !refined_ || !same_picture(refined_->prepared, prepared);
+    done.began =
+        !refined_ || refined_->device != device_.number() || !same_picture(refined_->prepared, prepared);
     if (!done.began && refined_->is_complete) {
         done.frames = done.total = refined_->frames;
         done.drawn = refined_->drawn;
@@ -252,7 +212,8 @@ Session::Refinement Session::refine_once(const PictureOptions& options, bool fin
         annotate(drawn, prepared);
         latch_from(prepared);
         prepared.options.size = asked;  // What the next call compares with.
-        refined_ = std::make_unique<Refined>(Refined{std::move(prepared), std::move(drawn), {}, 0, false});
+        refined_ = std::make_unique<Refined>(
+            Refined{std::move(prepared), std::move(drawn), {}, 0, false, device_.number()});
     }
     done.drew = true;
     done.frames = refined_->frames = renderer.add_sample();
@@ -278,7 +239,7 @@ uint64_t Session::picture_version(std::optional<Vec2i> size) {
 }
 
 PickBuffer Session::pick_buffer(std::optional<Vec2i> size) {
-    return keeping_context([&] { return pick_once(size); });
+    return device_.keep([&] { return pick_once(size); });
 }
 
 PickBuffer Session::pick_once(std::optional<Vec2i> size) {
@@ -310,7 +271,7 @@ std::map<std::string, Image> Session::render_layers(const std::vector<std::strin
                                                     std::optional<Vec2i> size) {
     std::vector<render::Layer> layers;
     for (const std::string& name : names) layers.push_back(render::layer_named(name));
-    return keeping_context([&] { return render_layers_once(names, layers, size); });
+    return device_.keep([&] { return render_layers_once(names, layers, size); });
 }
 
 std::map<std::string, Image> Session::render_layers_once(const std::vector<std::string>& names,
@@ -340,7 +301,7 @@ std::map<std::string, Image> Session::render_layers_once(const std::vector<std::
 }
 
 Drawn Session::draw_surfaces(const PictureOptions& options, bool picture, const Moment* moment) {
-    return keeping_context([&] { return draw_surfaces_once(options, picture, moment); });
+    return device_.keep([&] { return draw_surfaces_once(options, picture, moment); });
 }
 
 Drawn Session::draw_surfaces_once(const PictureOptions& options, bool picture, const Moment* moment) {

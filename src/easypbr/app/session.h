@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "easypbr/app/drawn.h"
+#include "easypbr/app/kept_device.h"
 #include "easypbr/app/latched_content.h"
 #include "easypbr/app/lens.h"
 #include "easypbr/app/motion_memory.h"
@@ -42,9 +43,8 @@ struct Timing {
 };
 
 /// May be used from any thread, by one at a time; load_environment() alone may run beside context_info().
-/// The GL context is made at the first picture. One that is lost is replaced: everything is uploaded and
-/// drawn again, and nothing is seen of it but a warning. If that is lost too, the CPU draws from then on,
-/// unless use_device() asked for OpenGL; if the third is, gl::ContextLost is thrown.
+/// The GL context is made at the first picture. One that is lost is replaced, and everything is uploaded and
+/// drawn again: see KeptDevice.
 class Session {
   public:
     explicit Session(Scene scene = {});
@@ -141,9 +141,9 @@ class Session {
     /// that is lost is replaced first, unless it is current: objects made in it are void then.
     gl::Context& context();
     /// Another number for another context.
-    uint64_t device_number() const { return device_number_; }
+    uint64_t device_number() const { return device_.number(); }
     /// The context is lost and current, so that it cannot be replaced yet.
-    bool is_stuck() const;
+    bool is_stuck() const { return device_.is_stuck(); }
     render::Renderer& renderer();
 
     /// Everything that the next picture would be drawn with. Nothing is latched.
@@ -163,7 +163,7 @@ class Session {
 
     /// Which device draws, from the first picture on. Throws ArgumentError when another one was drawn by
     /// already.
-    void use_device(DrawDevice device);
+    void use_device(DrawDevice device) { device_.ask_for(device); }
     /// What draws; made when there is nothing yet.
     const gl::ContextInfo& context_info();
 
@@ -195,15 +195,6 @@ class Session {
     /// Keeps what was inferred, unless there was nothing to infer it from.
     void latch_from(const Prepared& prepared);
     Vec2i size_or(std::optional<Vec2i> size) const;
-    /// What a job returns that draws; it is done again when the context was lost, see above. Where that is
-    /// current already, gl::ContextLost is left to who made it so.
-    template <class Job>
-    auto keeping_context(Job&& job);
-    bool is_current() const;
-    /// Why the context is lost, which the driver is asked about, when a drawing failed; empty: it is not.
-    std::string loss(const Error& error) const;
-    void replace_lost_device();
-    void replace_device(const std::string& reason);
     Drawn draw_once(const PictureOptions& options);
     Refinement refine_once(const PictureOptions& options, bool finish, const RefinedMotion& motion);
     std::map<std::string, Image> render_layers_once(const std::vector<std::string>& names,
@@ -223,11 +214,7 @@ class Session {
     SceneWarnings warnings_;
     std::vector<render::CustomPass> passes_;
     std::optional<render::TileLimits> tile_limits_;
-    std::shared_ptr<Device> device_ = std::make_shared<Device>();
-    uint64_t device_number_ = 1;
-    bool keeps_context_ = false;
-    int losses_ = 0;  ///< of contexts, since a drawing succeeded
-    DrawDevice asked_device_ = DrawDevice::automatic;
+    KeptDevice device_;
 
     /// What refine() adds frames to; nothing: it has to begin.
     struct Refined;
