@@ -68,7 +68,12 @@ void View::step() {
     tell_changes();
     Own& own = *own_;
     const bool waits = is_moving() || own.owes_still || own.live.recording().is_running();
-    if (!own.live.is_busy() && !inbox_.has_orders()) inbox_.wait(waits ? 0.01 : look_s);
+    if (!own.live.is_busy() && !inbox_.has_orders())
+        inbox_.wait(waits ? 0.01 : rests() ? 2 * look_s : look_s);
+}
+
+bool View::rests() const {
+    return now_seconds() - std::max(own_->acted_s, own_->last_change_s) > 1;
 }
 
 bool View::is_moving() const {
@@ -90,6 +95,7 @@ void View::act(const std::vector<Order>& orders) {
 
 void View::obey(const Order& order) {
     own_->waits_since_s = order.arrived_s;
+    own_->acted_s = now_seconds();
     std::visit([&](const auto& message) { obey(order.from, message); }, order.message);
 }
 
@@ -190,7 +196,8 @@ void View::tell_notices() {
 void View::tell_changes() {
     Own& own = *own_;
     const double now = now_seconds();
-    if (now - own.told_s < 0.1 && !own.told.empty()) return;
+    // At rest only what leaves the picture as it is can have changed.
+    if (now - own.told_s < (rests() ? 0.5 : 0.1) && !own.told.empty()) return;
     own.told_s = now;
     const FieldTexts texts = texts_of(own.session.settings());
     if (const FieldTexts news = changed(own.told, texts); !news.empty())

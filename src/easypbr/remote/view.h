@@ -52,6 +52,8 @@ class View {
     void run();
     void step();
     bool waits_for_clients() const;
+    /// Nothing has been asked for and nothing has changed for a second: the scene is looked at less often.
+    bool rests() const;
     void act(const std::vector<Order>& orders);
     void obey(const Order& order);
     void obey(ClientId from, const Hello& message);

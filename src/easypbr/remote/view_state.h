@@ -36,6 +36,7 @@ struct View::Own {
     FieldTexts told;
     std::map<std::string, PanelMemory> panel_memories;
     std::string told_camera, told_scene, told_animation, told_panels, told_statistics;
+    double acted_s = 0;  ///< when a client asked for something last
     double told_s = -1;
     uint64_t notices = 0;
 
