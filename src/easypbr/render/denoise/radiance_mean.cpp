@@ -67,6 +67,7 @@ void RadianceMean::begin(Vec2i size, bool with_surfaces) {
     frames_ = 0;
     tiles_.begin(size);
     overlay_sum_.clear();
+    coverage_.clear();
     notes_surfaces_ = with_surfaces;
     const auto make = [&](Target& target) {
         if (target.size() != size) target = Target(gl::Format::rgba32f, size);
@@ -83,7 +84,7 @@ void RadianceMean::begin(Vec2i size, bool with_surfaces) {
     }
 }
 
-void RadianceMean::add(const Frame& frame, const PixelRect& area, const GBuffer& surfaces,
+void RadianceMean::add(const Frame& frame, const PixelRect& area, const GBuffer& surfaces, bool see_through,
                        Transfers& transfers) {
     ++frames_;
     sample_.download(area, transfers);
@@ -96,6 +97,8 @@ void RadianceMean::add(const Frame& frame, const PixelRect& area, const GBuffer&
     if (!notes_surfaces_) return;
     for (const Target* target : {&surfaces.albedo, &surfaces.normal, &surfaces.material, &surfaces.depth})
         target->download(area, transfers);
+    if (see_through && !frame.resolved->settings.background.shows_environment())
+        coverage_.resize(noisy_.size(), Vec2::Zero());
     add_surfaces(frame, area, surfaces);
 }
 
@@ -133,6 +136,9 @@ void RadianceMean::add_surfaces(const Frame& frame, const PixelRect& area, const
                 is_caught ? Vec3(Vec3::Ones())
                           : Vec3(reflectance(Vec3(a[0], a[1], a[2]) / 65535.0f, float(m[0]) / 255) *
                                  std::clamp(of_frame.w(), 0.0f, 1.0f));
+            if (!coverage_.empty() && kind == Noisy::radiance)
+                coverage_[size_t(y) * size_t(sum_.width()) + size_t(x)] +=
+                    Vec2(of_frame.w(), of_frame.w() * of_frame.w());
             *seen.at(x, y) += Vec4(light.x(), light.y(), light.z(), bright * bright);
             *surface.at(x, y) +=
                 Vec4(direction.x(), direction.y(), direction.z(), orthographic ? *d : std::log2(*d));
@@ -219,22 +225,54 @@ const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
         parallel_for(to.size(), grain, [&](size_t i) { to[i] = sum[i] * scale_of(i); });
         return light_;
     }
-    const Target& result = denoised(denoising, transfers);
+    const std::vector<float> coverage = denoised_coverage(denoising, transfers);
+    write_noisy_light();
+    const Target& result = denoised(denoising, color_, transfers);
     const auto to = result.pixels<Vec4>(), seen = seen_.pixels<Vec4>(), color = color_.pixels<Vec4>();
     parallel_for(to.size(), grain, [&](size_t i) {
         const Vec3 changed = to[i].head<3>() * color[i].w() - seen[i].head<3>();
         to[i] = sum[i];
         if (noisy_[i] == Noisy::radiance) to[i].head<3>() += changed;
         if (noisy_[i] == Noisy::coverage) to[i].w() += luminance_of(changed);
+        if (!coverage.empty()) to[i].w() += coverage[i];
         to[i] *= scale_of(i);
     });
     return result;
 }
 
-const Target& RadianceMean::denoised(Denoising denoising, Transfers& transfers) {
-    write_noisy_light();
-    const NoisyLight noisy{light_, surface_, color_, sample_};
+const Target& RadianceMean::denoised(Denoising denoising, const Target& color, Transfers& transfers) {
+    const NoisyLight noisy{light_, surface_, color, sample_};
     return denoising == Denoising::oidn ? oidn_.denoise(noisy) : filter_.smooth(noisy, transfers);
+}
+
+std::vector<float> RadianceMean::denoised_coverage(Denoising denoising, Transfers& transfers) {
+    if (coverage_.empty()) return {};
+    write_noisy_coverage();
+    // Nothing of it is reflected.
+    const Target white(gl::Format::rgba32f, color_.size());
+    white.write(white.whole());
+    const auto color = color_.pixels<Vec4>();
+    std::ranges::transform(color, white.pixels<Vec4>().begin(),
+                           [](const Vec4& sum) { return Vec4(Vec4::Constant(sum.w())); });
+    const auto result = denoised(denoising, white, transfers).pixels<Vec4>();
+    std::vector<float> changes(result.size());
+    parallel_for(changes.size(), grain, [&](size_t i) {
+        if (noisy_[i] == Noisy::radiance)
+            changes[i] = luminance_of(result[i].head<3>()) * color[i].w() - coverage_[i].x();
+    });
+    return changes;
+}
+
+void RadianceMean::write_noisy_coverage() {
+    write_noisy_light();
+    const auto to = light_.pixels<Vec4>(), color = color_.pixels<Vec4>();
+    parallel_for(to.size(), grain, [&](size_t i) {
+        const float count = color[i].w();
+        if (noisy_[i] != Noisy::radiance || !(count > 0)) return;
+        const float mean = coverage_[i].x() / count, squares = coverage_[i].y() / count;
+        const float variance = count > 1 ? std::max(0.0f, squares - mean * mean) / (count - 1) : squares;
+        to[i] = Vec4(mean, mean, mean, variance);
+    });
 }
 
 void RadianceMean::write_noisy_light() {

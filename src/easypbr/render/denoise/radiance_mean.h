@@ -22,8 +22,10 @@ class RadianceMean {
     /// Takes a frame's radiance, RGBA32F: written before add(), in either memory.
     const Target& sample() const { return sample_; }
     /// Adds what sample() holds in a rectangle of a frame with these surfaces, but for tiles that have ended.
-    /// Downloads what is not in host memory.
-    void add(const Frame& frame, const PixelRect& area, const GBuffer& surfaces, Transfers& transfers);
+    /// Downloads what is not in host memory. `see_through`: what surfaces cover may be noisy as well as their
+    /// light, since a shadow catcher is seen through them.
+    void add(const Frame& frame, const PixelRect& area, const GBuffer& surfaces, bool see_through,
+             Transfers& transfers);
     /// Adds a frame's overlay, RGBA16F.
     void add_overlay(const Frame& frame, const Target& overlay, Transfers& transfers);
 
@@ -53,7 +55,11 @@ class RadianceMean {
     };
     TileError error_of(size_t tile, float exposure) const;
     void write_noisy_light();
-    const Target& denoised(Denoising denoising, Transfers& transfers);
+    void write_noisy_coverage();
+    const Target& denoised(Denoising denoising, const Target& color, Transfers& transfers);
+    /// What denoising adds to the sum of the coverages of pixels whose light is denoised; empty where none
+    /// has noise.
+    std::vector<float> denoised_coverage(Denoising denoising, Transfers& transfers);
 
     int frames_ = 0;
     SampledTiles tiles_;
@@ -67,6 +73,8 @@ class RadianceMean {
     /// What of each pixel is taken note of: that of its first frame with noise.
     enum class Noisy : uint8_t { nothing, radiance, coverage };
     std::vector<Noisy> noisy_;
+    /// Of pixels that note radiance: sums of the coverage and of its square. Empty where it has no noise.
+    std::vector<Vec2> coverage_;
     std::vector<Vec4> overlay_sum_;
     Target overlay_mean_;
     EdgeAvoidingFilter filter_;

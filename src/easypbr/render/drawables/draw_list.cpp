@@ -149,9 +149,9 @@ DrawList DrawList::as_first_hits() const {
     const auto meshes = list.items.find(DrawMode::mesh);
     if (meshes == list.items.end()) return list;
     for (DrawItem& item : meshes->second) {
-        // A shader of its own is for pixels; blended surfaces are mixed with what is behind them.
-        if (!item.extensions() || item.material.shader || item.alpha == AlphaMode::blend) continue;
-        item.layered = false;
+        // A shader of its own is for pixels.
+        if (!item.extensions() || item.material.shader) continue;
+        item.layered = item.layered && item.alpha == AlphaMode::blend;
         item.kind = SurfaceKind::extended;
     }
     return list;

@@ -113,6 +113,16 @@ void GBuffer::write(const PixelRect& area, SurfaceContents contents) const {
     element.write(area);
 }
 
+void GBuffer::download(Transfers& transfers) const {
+    if (depth.is_ahead()) return;
+    for (const Target* target : {&albedo, &normal, &material, &depth})
+        target->download(target->whole(), transfers);
+    // The driver keeps emission where light is added to it.
+    const auto emitted = radiance.read<Vec4>(transfers);
+    emission.write(emission.whole());
+    std::ranges::copy(emitted, emission.pixels<Vec4>().begin());
+}
+
 void GBuffer::upload(Transfers& transfers) const {
     if (!depth.is_ahead()) return;
     const float zero[4] = {0, 0, 0, 0};

@@ -74,6 +74,8 @@ struct GBuffer {
 
     /// Begins to write surfaces in host memory: nothing but a rectangle, whose pixels are undefined.
     void write(const PixelRect& area, SurfaceContents contents) const;
+    /// Brings surfaces, and what they emit, to host memory, unless they are there already.
+    void download(Transfers& transfers) const;
     /// Brings surfaces that were written in host memory to the textures: with their light, where they are
     /// lit, else with what lighting them needs.
     void upload(Transfers& transfers) const;

@@ -224,7 +224,7 @@ void OutputPass::add_radiance(const Frame& frame, const LitPicture& lit_frame, c
         sample_framebuffer_.bind();
         accumulate_.draw(values, screen_state(area));
     }
-    mean_.add(frame, area, surfaces, transfers_);
+    mean_.add(frame, area, lit.guides ? *lit.guides : surfaces, lit.guides != nullptr, transfers_);
 }
 
 float OutputPass::noise(const Frame& frame) const {

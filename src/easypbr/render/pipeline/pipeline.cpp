@@ -94,8 +94,8 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
                    .covered = has_layers ? frame.covered : seen.covered,
                    .partly_covered = contents.ground};
     if (has_layers)
-        lit.partly_covered |= timer_.run("transparency", [&] {
-            return draw_transparent(frame, list, contents, {pass.empty(), with_overlay});
+        timer_.run("transparency", [&] {
+            draw_transparent(frame, list, contents, {pass.empty(), with_overlay}, lit);
         });
     if (contents.custom) contents.custom->draw_in_frame(frame, targets_, timer_, lit);
     if (!contents.layers) draw_effects(frame, opaque, {.native = pass.empty()}, lit);

@@ -22,6 +22,7 @@
 #include "easypbr/render/raytrace/path_pass.h"
 #include "easypbr/render/raytrace/ray_pass.h"
 #include "easypbr/render/shadow/shadow_maps.h"
+#include "easypbr/render/transparency/layer_guides.h"
 #include "easypbr/render/transparency/native_layers.h"
 #include "easypbr/render/transparency/transparency_pass.h"
 
@@ -32,7 +33,7 @@ struct FrameContents {
     bool ids = false;     ///< the id targets are filled; surfaces are of the core model
     bool ground = false;  ///< a plane under the content belongs to the picture
     bool traced = false;  ///< rays look for the environment's light, in place of ambient occlusion
-    bool paths = false;   ///< opaque surfaces are lit by path tracing
+    bool paths = false;   ///< surfaces are lit by path tracing
     bool layers = false;  ///< targets are read, no picture: nothing follows the lit surfaces
     /// Those that have ended get no paths; null: all get some.
     const SampledTiles* tiles = nullptr;
@@ -106,13 +107,18 @@ class Pipeline {
         bool native = false;   ///< from and to host memory
         bool overlay = false;  ///< something is in the overlay, or may come into it
     };
-    /// Draws the layered items over the picture, before and behind each other and the overlays; whether
-    /// there were any.
-    bool draw_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
-                          LayerKinds kinds);
+    /// Draws the layered items over the picture, before and behind each other and the overlays.
+    void draw_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
+                          LayerKinds kinds, LitPicture& lit);
+    /// Whether there were any, by the driver.
+    bool draw_transparent_by_driver(const Frame& frame, const DrawList& list, const FrameContents& contents,
+                                    bool with_overlay);
     /// Whether they can be drawn natively where nothing else needs the driver.
     bool has_native_layers(const DrawList& list) const;
-    /// draw_transparent() natively.
+    /// Finds the light of a layer, by the way that the contents ask for.
+    void light_layer(const Frame& frame, const GBuffer& layer, const FrameContents& contents,
+                     const LightInputs& inputs);
+    /// The same natively.
     bool shade_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
                            bool with_overlay);
     /// Draws layers, and the overlays between them, before the surfaces of which `opaque` is the depth.
@@ -153,6 +159,7 @@ class Pipeline {
     DisplayPass display_;
     TransparencyPass transparency_;
     NativeLayers native_layers_;
+    LayerGuides layer_guides_;
     BackgroundPass background_;
     std::vector<std::unique_ptr<Effect>> effects_ = make_effects();
     GBuffer with_ids_;  ///< for effects that ask for ids

@@ -37,20 +37,29 @@ void Pipeline::draw_overlay_items(const Frame& frame, const DrawList& list, bool
     overlays_.draw_over(frame, list.overlays, targets_);
 }
 
-bool Pipeline::draw_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
-                                LayerKinds kinds) {
-    if (kinds.native) return shade_transparent(frame, list, contents, kinds.overlay);
+void Pipeline::draw_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
+                                LayerKinds kinds, LitPicture& lit) {
+    if (contents.paths) {
+        layer_guides_.begin(targets_, transfers_);
+        lit.guides = &layer_guides_.surfaces();
+    }
+    lit.partly_covered |= kinds.native ? shade_transparent(frame, list, contents, kinds.overlay)
+                                       : draw_transparent_by_driver(frame, list, contents, kinds.overlay);
+}
+
+bool Pipeline::draw_transparent_by_driver(const Frame& frame, const DrawList& list,
+                                          const FrameContents& contents, bool with_overlay) {
     const DrawList layers = list.layers();
     const gl::Texture& opaque = hiding_depth(frame, list);
     overlays_.begin(frame, list.overlays, targets_, opaque);
-    draw_layers(frame, layers.without(is_over), list.overlays, opaque, contents, kinds.overlay);
+    draw_layers(frame, layers.without(is_over), list.overlays, opaque, contents, with_overlay);
     bool drawn = transparency_.has_layers();
     if (layers.has(is_over)) {
         // Hidden by what is drawn over everything else too, and by nothing but.
         const GBuffer& over = surfaces_.over(frame);
         if (!list.without_layers().has(is_over)) over.clear(false);
         draw_layers(frame, layers.without(std::not_fn(is_over)), {}, over.depth.texture(), contents,
-                    kinds.overlay);
+                    with_overlay);
         drawn |= transparency_.has_layers();
     }
     overlays_.draw_over(frame, list.overlays, targets_);
@@ -70,10 +79,18 @@ bool Pipeline::shade_transparent(const Frame& frame, const DrawList& list, const
     while (native_layers_.open_layer(frame)) {
         const bool drawn = surfaces_.peel(frame, layers, layer, extensions, native_layers_.limits());
         if (!native_layers_.close_layer(drawn)) break;
-        light(frame, layer, contents, {.native = true, .extensions = extensions}, false);
+        light_layer(frame, layer, contents, {.native = true, .extensions = extensions});
         native_layers_.blend(targets_, with_overlay, transfers_);
     }
     return native_layers_.has_layers();
+}
+
+void Pipeline::light_layer(const Frame& frame, const GBuffer& layer, const FrameContents& contents,
+                           const LightInputs& inputs) {
+    if (!contents.paths) return light(frame, layer, contents, inputs, false);
+    timer_.run("paths", [&] { paths_.draw_layer(frame, layer, ray_scene_, contents.tiles, transfers_); });
+    layer_guides_.add(layer);
+    if (!inputs.native) layer.radiance.upload(transfers_);
 }
 
 const gl::Texture* Pipeline::shade_points(const Frame& frame, const DrawList& layers,
@@ -97,7 +114,7 @@ void Pipeline::draw_layers(const Frame& frame, const DrawList& list, const Items
     const bool see_through = outputs.extensions & transmission_bit;
     const auto meshes = list.of(DrawMode::mesh);
     const bool rough = std::ranges::any_of(meshes, &DrawItem::blurs_behind);
-    const bool volumes = std::ranges::any_of(meshes, &DrawItem::is_volume);
+    const bool volumes = see_through && std::ranges::any_of(meshes, &DrawItem::is_volume);
     const Box3d& bounds = bounds_of(*frame.scene);
     const double reach = (bounds.center() - frame.camera.position()).norm() + bounds.diagonal().norm() / 2;
     transparency_.begin(frame, targets_, opaque, outputs.extensions, with_overlay);
@@ -115,8 +132,8 @@ void Pipeline::draw_layers(const Frame& frame, const DrawList& list, const Items
             surfaces_.draw_backs(frame, list, transparency_.exits(), outputs);
             transparency_.close_exits();
         }
-        light(frame, transparency_.layer(), contents,
-              {.extensions = outputs.extensions, .transmission = transparency_.transmission()}, false);
+        light_layer(frame, transparency_.layer(), contents,
+                    {.extensions = outputs.extensions, .transmission = transparency_.transmission()});
         transparency_.blend(frame, targets_, shade);
     }
     overlays_.draw(frame, overlays, targets_, nullptr);

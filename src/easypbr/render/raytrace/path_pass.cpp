@@ -39,10 +39,10 @@ void PathPass::Caught::add(const CaughtLight& light) {
 /// The targets in host memory, and how pixels become places.
 struct PathPass::Pixels {
     Pixels(const Frame& frame_, const GBuffer& targets, const Target& emission_, const RayScene& scene_,
-           const SampledTiles* tiles_)
+           const Starts& starts_)
         : frame(frame_),
           scene(scene_),
-          tiles(tiles_),
+          starts(starts_),
           albedo(targets.albedo),
           normal(targets.normal),
           material(targets.material),
@@ -61,7 +61,7 @@ struct PathPass::Pixels {
     /// Whether a surface is there that gets a sample.
     bool is_traced(int x, int y) const {
         const float* d = depth.at(x, y);
-        return d && *d > 0 && !(tiles && tiles->has_ended(tiles->tile_at(x, y)));
+        return d && *d > 0 && !(starts.tiles && starts.tiles->has_ended(starts.tiles->tile_at(x, y)));
     }
     /// `index` is that of the pixel's radiance.
     Place place_of(int x, int y, uint32_t index) const;
@@ -70,7 +70,7 @@ struct PathPass::Pixels {
 
     const Frame& frame;
     const RayScene& scene;
-    const SampledTiles* tiles;
+    const Starts starts;
     HeldPixels<std::array<uint16_t, 4>> albedo;
     HeldPixels<std::array<uint16_t, 2>> normal;
     HeldPixels<std::array<uint8_t, 4>> material;
@@ -100,13 +100,13 @@ void PathPass::Pixels::add(int x, int y, const Place& place, PathBatch& batch) c
     const std::array<uint16_t, 2>& n = *normal.at(x, y);
     const Vec3 mapped = oct_decode(Vec2(n[0], n[1]) / 32767.5f - Vec2(1, 1));
     const std::array<uint16_t, 4>& color = *albedo.at(x, y);
-    const RayScene::Seen seen = is_catcher(m[3]) ? RayScene::Seen{place.position, mapped, mapped}
-                                                 : scene.seen_at(place.position, mapped, place.view,
-                                                                 place.footprint, Transmissive::met);
+    const RayScene::Seen at =
+        is_catcher(m[3]) ? RayScene::Seen{place.position, mapped, mapped}
+                         : scene.seen_at(place.position, mapped, place.view, place.footprint, starts.seen);
     const size_t i = batch.count++;
-    batch.position.set(i, seen.position);
-    batch.normal.set(i, seen.normal);
-    batch.face.set(i, seen.face);
+    batch.position.set(i, at.position);
+    batch.normal.set(i, at.normal);
+    batch.face.set(i, at.face);
     batch.view.set(i, place.view);
     batch.albedo.set(i, Vec3(color[0], color[1], color[2]) / 65535.0f);
     batch.parameters.set(i, Vec2(m[0], m[1]) / 255.0f);
@@ -138,7 +138,8 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
         if (!is_catcher(kind) && !is_lit_by_scene(kind)) return;
         const Pixels::Place place = pixels.place_of(x, y, index);
         if (kind == uint8_t(SurfaceKind::extended)) {
-            if (const auto hit = pixels.scene.hit_at(place.position, place.view, place.footprint)) {
+            if (const auto hit =
+                    pixels.scene.hit_at(place.position, place.view, place.footprint, pixels.starts.seen)) {
                 const float width = place.footprint * float(pixels.scene.unit());
                 hits.push_back(PathTracer::camera_hit(place.state, *hit, -place.view, width));
                 is_hit[index] = true;
@@ -147,7 +148,7 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
         }
         if (!is_catcher(kind))
             pixels.add(x, y, place, lit);
-        else if (!caught_.empty() && is_due(pixels.frame, x, y, place.position))
+        else if (pixels.starts.catches && is_due(pixels.frame, x, y, place.position))
             pixels.add(x, y, place, caught);
     });
     tracer_.trace(lit, hits, radiance);
@@ -158,7 +159,7 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
         const Vec4* emission = is_hit[index] ? nullptr : pixels.emission.at(x, y);
         to->head<3>() = radiance[index] + (emission ? Vec3(emission->head<3>()) : Vec3(Vec3::Zero()));
         to->w() = 1;
-        if (caught_.empty()) return;
+        if (!pixels.starts.catches) return;
         if (is_catcher((*pixels.material.at(x, y))[3]))
             caught_[size_t(y) * size_t(pixels.frame.size.x()) + size_t(x)].add(light[index]);
     });
@@ -166,26 +167,32 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
 
 void PathPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Target* caught,
                     const SampledTiles* tiles, Transfers& transfers) {
-    // The driver keeps emission where light is added to it.
-    Target of_driver;
-    if (!targets.depth.is_ahead()) {
-        for (const Target* target : {&targets.albedo, &targets.normal, &targets.material, &targets.depth})
-            target->download(frame.whole(), transfers);
-        of_driver = Target(gl::Format::rgba32f, frame.size);
-        of_driver.write(frame.whole());
-        const auto emission = targets.radiance.read<Vec4>(transfers);
-        std::ranges::copy(emission, of_driver.pixels<Vec4>().begin());
-    }
-    const bool emits = of_driver || targets.emission.is_ahead();
-    const Target nothing(gl::Format::rgba32f, frame.size);
-    const Target& emission = of_driver ? of_driver : emits ? targets.emission : nothing;
-    targets.radiance.write(frame.whole());
-    std::ranges::fill(targets.radiance.pixels<Vec4>(), Vec4::Zero());
     if (caught && (frame.sample_index == 0 || caught_.size() != size_t(frame.size.prod())))
         caught_.assign(size_t(frame.size.prod()), {});
     if (!caught) caught_.clear();
     tracer_.prepare(*frame.resolved, scene);
-    const Pixels pixels(frame, targets, emission, scene, tiles);
+    const bool has_blended = frame.resolved->settings.transparency.mode == TransparencyMode::stochastic;
+    const Transmissive seen = has_blended ? Transmissive::met : Transmissive::opaque;
+    trace(frame, targets, scene, {tiles, seen, caught != nullptr}, transfers);
+    if (!caught) return;
+    caught->write(frame.whole());
+    const auto light = caught->pixels<Vec4>();
+    for (size_t i = 0; i < light.size(); ++i) light[i] = Vec4(caught_[i].of_frame, 1, 0, 0);
+}
+
+void PathPass::draw_layer(const Frame& frame, const GBuffer& layer, const RayScene& scene,
+                          const SampledTiles* tiles, Transfers& transfers) {
+    trace(frame, layer, scene, {tiles, Transmissive::layers, false}, transfers);
+}
+
+void PathPass::trace(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Starts& starts,
+                     Transfers& transfers) {
+    targets.download(transfers);
+    const Target nothing(gl::Format::rgba32f, frame.size);
+    const Target& emission = targets.emission.is_ahead() ? targets.emission : nothing;
+    targets.radiance.write(frame.whole());
+    std::ranges::fill(targets.radiance.pixels<Vec4>(), Vec4::Zero());
+    const Pixels pixels(frame, targets, emission, scene, starts);
     const PixelRect& area = frame.covered;
     const int columns = (area.width + block_width - 1) / block_width,
               rows = (area.height + block_height - 1) / block_height;
@@ -194,10 +201,6 @@ void PathPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& 
         trace_block(pixels, {x, y, std::min(block_width, area.x + area.width - x),
                              std::min(block_height, area.y + area.height - y)});
     });
-    if (!caught) return;
-    caught->write(frame.whole());
-    const auto light = caught->pixels<Vec4>();
-    for (size_t i = 0; i < light.size(); ++i) light[i] = Vec4(caught_[i].of_frame, 1, 0, 0);
 }
 
 }  // namespace easypbr::render

@@ -18,10 +18,21 @@ class PathPass {
     /// `tiles`, unless it is null: no path starts in those that have ended, whose radiance is 0.
     void draw(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Target* caught,
               const SampledTiles* tiles, Transfers& transfers);
+    /// The same of surfaces in front of those of the last draw(), which light passes.
+    void draw_layer(const Frame& frame, const GBuffer& layer, const RayScene& scene,
+                    const SampledTiles* tiles, Transfers& transfers);
 
   private:
     struct Pixels;
+    /// Of which pixels paths begin, and at what.
+    struct Starts {
+        const SampledTiles* tiles = nullptr;
+        Transmissive seen = Transmissive::opaque;  ///< how rays find what a pixel shows
+        bool catches = false;                      ///< a shadow catcher's light is wanted
+    };
     struct Block;
+    void trace(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Starts& starts,
+               Transfers& transfers);
     void trace_block(const Pixels& pixels, const PixelRect& block);
     /// Whether a pixel of a shadow catcher gets a path in this frame.
     bool is_due(const Frame& frame, int x, int y, const Vec3& place) const;

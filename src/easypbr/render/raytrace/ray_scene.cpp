@@ -78,9 +78,14 @@ void filter(const RTCFilterFunctionNArguments* args) {
         if (left.maxCoeff() > least_transmittance) args->valid[0] = 0;
         return;
     }
-    const float stops = query.transmissive == Transmissive::met
-                            ? coverage_at(*element.item, index, hit.u, hit.v)
-                            : opacity_at(*element.item, index, hit.u, hit.v);
+    if (query.transmissive == Transmissive::opaque && element.item->alpha == AlphaMode::blend) {
+        args->valid[0] = 0;
+        return;
+    }
+    const float stops = query.transmissive == Transmissive::passed
+                            ? opacity_at(*element.item, index, hit.u, hit.v)
+                            : coverage_at(*element.item, index, hit.u, hit.v);
+    if (query.transmissive == Transmissive::layers && stops > 0) return;
     const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);
     if (stops < 1 && (stops <= 0 || hash_of(ray, hit.primID) >= stops)) args->valid[0] = 0;
 }
@@ -316,9 +321,10 @@ RayScene::Seen RayScene::seen_at(const Vec3& place, const Vec3& normal, const Ve
     return stands_before ? Seen{hit->position, hit->normal, hit->normal} : Seen{place, normal, normal};
 }
 
-std::optional<RayHit> RayScene::hit_at(const Vec3& place, const Vec3& view, float footprint) const {
+std::optional<RayHit> RayScene::hit_at(const Vec3& place, const Vec3& view, float footprint,
+                                       Transmissive transmissive) const {
     const float near = std::max(rounding_at(place), footprint);
-    auto hit = trace(place + near * view, -view, Transmissive::met);
+    auto hit = trace(place + near * view, -view, transmissive);
     // At a silhouette the surface may go on behind the place, by more than a pixel.
     if (!hit || hit->surface < 0 || hit->distance > 16 * near) return std::nullopt;
     return hit;

@@ -37,10 +37,12 @@ struct RayHit {
     float distance = 0;              ///< in RayScene::unit()
 };
 
-/// What surfaces that transmit light are to rays. Blended ones let a part of the rays through in any case.
+/// What surfaces that transmit light are to rays.
 enum class Transmissive {
     passed,  ///< they stop the part of the rays that they take from light, chosen by a hash of the ray
-    met      ///< they are surfaces like others
+    met,     ///< they are surfaces like others, but blended ones let a part of the rays through, as above
+    opaque,  ///< they are surfaces like others; blended ones let all rays through
+    layers   ///< all are surfaces like others, wherever anything of them is seen
 };
 
 /// Positions are relative to the casters' centre and in units of half their diagonal, so that single
@@ -95,9 +97,9 @@ class RayScene {
     /// pixel there, moves onto that face.
     Seen seen_at(const Vec3& place, const Vec3& normal, const Vec3& view, float footprint = 0,
                  Transmissive transmissive = Transmissive::passed) const;
-    /// The surface at a place that is seen along `view`, transmissive ones too; none where its edges are
-    /// rounded away.
-    std::optional<RayHit> hit_at(const Vec3& place, const Vec3& view, float footprint) const;
+    /// The surface at a place that is seen along `view`; none where its edges are rounded away.
+    std::optional<RayHit> hit_at(const Vec3& place, const Vec3& view, float footprint,
+                                 Transmissive transmissive) const;
     /// Whether any caster lies nearer than `distance` (RayScene::unit()).
     bool blocked(const Vec3& from, const Vec3& direction, float distance,
                  Transmissive transmissive = Transmissive::passed) const;

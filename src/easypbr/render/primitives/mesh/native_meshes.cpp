@@ -74,7 +74,7 @@ bool NativeMeshes::draws(DrawItems items) {
 bool NativeMeshes::draws_layers(DrawItems items) {
     int64_t faces = 0;
     for (const DrawItem& item : items) {
-        if (item.material.shader || item.material.transmits()) return false;
+        if (item.material.shader || item.extensions() & transmission_bit) return false;
         faces += item.part.face_count;
     }
     return faces < int64_t(UINT32_MAX);
