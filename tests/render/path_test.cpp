@@ -236,6 +236,30 @@ TEST(Paths, EmissiveSquareUnderASky) {
     EXPECT_NEAR(of_both / (of_lamp + of_sky), 1, 0.015);
 }
 
+// A cube that emits, above a small matt square: of its faces the lower one alone is seen, whose light by the
+// form factor of parallel squares' centres is known. 0.02 with 64 samples: were the cube's other faces chosen
+// as often, it would be 0.3.
+TEST(Paths, HiddenFacesGetNoSamples) {
+    constexpr double half = 0.5, height = 2;
+    Mesh cube = make_box(Vec3::Constant(2 * half));
+    Material material = surface(0, 0, 1);
+    material.emissive = Vec3::Ones();
+    cube.set_material(material);
+    Eigen::Affine3d pose = Eigen::Affine3d::Identity();
+    pose.translation() = Vec3d(0, 0, height + half);
+    cube.set_T_world_mesh(pose);
+    Scene scene;
+    scene.show(cube, "cube");
+    scene.show(facing_square(0.1f, surface(1, 0, 1)), "square");
+    app::Session session = path_session(scene, 3);
+    session.settings().shading.dielectric_f0 = 0;
+    session.settings().path.bounces = 1;
+    look_from(session, Vec3d(1, 0, 0.2), 1);
+    const double side = half / std::hypot(half, height);
+    const double form_factor = 4 / (2 * pi) * 2 * side * std::atan(side);
+    EXPECT_NEAR(render_linear(session, 64).at<float>(1, 1)[0] / form_factor, 1, 0.02);
+}
+
 // A half of an even sky lies below a wall's horizon: on a floor beside a wall without end the other half
 // arrives. A wall of albedo 0. 0.02: 1024 samples of one pixel are even within 0.015.
 TEST(Paths, SkyBesideAWall) {

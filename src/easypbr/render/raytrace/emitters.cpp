@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <span>
 
+#include "easypbr/gpu/facing.h"
 #include "easypbr/render/raytrace/cdf.h"
 #include "easypbr/render/raytrace/hit_surfaces.h"
 
@@ -13,6 +15,26 @@ namespace {
 /// Barycentric coordinates where a triangle's emission is looked at.
 constexpr std::array<std::array<float, 2>, 4> looked_at{
     {{1.0f / 3, 1.0f / 3}, {0.6f, 0.2f}, {0.2f, 0.6f}, {0.2f, 0.2f}}};
+
+/// So many triangles are weighed against each other for each place.
+constexpr size_t few = 64;
+
+/// Meshes with more faces are taken for open ones: looking takes time.
+constexpr Eigen::Index most_faces = 1 << 14;
+
+Eigen::AlignedBox3f solid_of(const RayScene& scene, int surface) {
+    Eigen::AlignedBox3f box;
+    const MeshData& mesh = scene.item_of(surface).mesh();
+    const Eigen::Affine3d& T = scene.item_of(surface).object->T_world_mesh;
+    const bool is_solid =
+        mesh.F.rows() <= most_faces && T.linear().determinant() > 0 && gpu::is_closed_outward(mesh.V, mesh.F);
+    if (!is_solid) return box;
+    for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) {
+        const Vec3d world = T * Vec3d(mesh.V.row(i).transpose().cast<double>());
+        box.extend(Vec3(((world - scene.centre()) / scene.unit()).cast<float>()));
+    }
+    return box;
+}
 
 }  // namespace
 
@@ -27,7 +49,7 @@ void Emitters::prepare(const RayScene& scene) {
     for (int surface = 0; surface < scene.surface_count(); ++surface) add_surface(scene, surface);
     double sum = 0;
     for (const Triangle& triangle : triangles_) {
-        sum += double(triangle.weight) * triangle.edge1.cross(triangle.edge2).norm() / 2;
+        sum += double(triangle.weight) * triangle.area;
         ends_.push_back(float(sum));
     }
     // Half of the area, on average over the directions that it is seen from.
@@ -41,7 +63,7 @@ void Emitters::prepare(const RayScene& scene) {
 void Emitters::add_surface(const RayScene& scene, int surface) {
     const FaceRange faces = scene.emissive_faces(surface);
     if (faces.count == 0) return;
-    elements_[size_t(surface)] = {faces.first, faces.count, chances_.size()};
+    elements_[size_t(surface)] = {faces.first, faces.count, chances_.size(), solid_of(scene, surface)};
     std::vector<native::ElementHit> hits;
     for (int i = 0; i < faces.count; ++i) {
         const auto corners = scene.triangle(surface, faces.first + i);
@@ -64,16 +86,51 @@ void Emitters::add_surface(const RayScene& scene, int surface) {
             emission += found.emission.at(size_t(i) * looked_at.size() + k).mean() / float(looked_at.size());
         const auto corners = scene.triangle(surface, faces.first + i);
         const Vec3 edge1 = corners[1] - corners[0], edge2 = corners[2] - corners[0];
-        const bool shines = emission > 0 && std::isfinite(emission) && edge1.cross(edge2).norm() > 0;
+        const Vec3 normal = edge1.cross(edge2);
+        const float size = normal.norm();
+        const bool shines = emission > 0 && std::isfinite(emission) && size > 0;
         chances_.push_back(shines ? emission : 0);
-        if (shines) triangles_.push_back({corners[0], edge1, edge2, surface, faces.first + i, emission});
+        if (!shines) continue;
+        const Vec3 centre = (corners[0] + corners[1] + corners[2]) / 3;
+        triangles_.push_back(
+            {corners[0], edge1, edge2, centre, normal / size, size / 2, surface, faces.first + i, emission});
     }
+}
+
+bool Emitters::are_few() const {
+    return triangles_.size() <= few;
+}
+
+float Emitters::importance(const Triangle& triangle, const Vec3& from) const {
+    const Vec3 offset = triangle.centre - from;
+    const float apart = offset.squaredNorm(), facing = -triangle.normal.dot(offset);
+    const Eigen::AlignedBox3f& solid = elements_[size_t(triangle.surface)].solid;
+    if (facing < 0 && !solid.isEmpty() && !solid.contains(from)) return 0;
+    // The least is for what is seen of a triangle beside its centre.
+    constexpr float least_cosine = 0.05f;
+    const float cosine = std::abs(facing) / std::sqrt(std::max(apart, 1e-30f));
+    return triangle.weight * triangle.area * (least_cosine + cosine) / std::max(apart, triangle.area);
 }
 
 Emitters::Sample Emitters::sample(const Vec3& from, const Vec2& u) const {
     float within = 0;
-    const Triangle& triangle = triangles_[step_of(ends_, u.x(), within)];
-    const float root = std::sqrt(within);
+    if (!are_few()) {
+        const Triangle& triangle = triangles_[step_of(ends_, u.x(), within)];
+        return sample_on(triangle, from, {within, u.y()}, triangle.weight);
+    }
+    std::array<float, few> ends;
+    float sum = 0;
+    for (size_t i = 0; i < triangles_.size(); ++i) ends[i] = sum += importance(triangles_[i], from);
+    if (!(sum > 0)) return {.hit = {}, .surface = triangles_.front().surface, .direction = Vec3::UnitZ()};
+    const size_t chosen = step_of(std::span(ends).first(triangles_.size()), u.x() * sum, within);
+    const float weight = ends[chosen] - (chosen > 0 ? ends[chosen - 1] : 0);
+    const Triangle& triangle = triangles_[chosen];
+    return sample_on(triangle, from, {within, u.y()}, weight / (sum * triangle.area));
+}
+
+Emitters::Sample Emitters::sample_on(const Triangle& triangle, const Vec3& from, const Vec2& u,
+                                     float density) const {
+    const float root = std::sqrt(u.x());
     Sample sample;
     sample.hit.element = uint32_t(triangle.element);
     sample.hit.u = root * (1 - u.y());
@@ -82,12 +139,12 @@ Emitters::Sample Emitters::sample(const Vec3& from, const Vec2& u) const {
     const Vec3 step = triangle.corner + sample.hit.u * triangle.edge1 + sample.hit.v * triangle.edge2 - from;
     sample.distance = step.norm();
     sample.direction = step / std::max(sample.distance, 1e-30f);
-    Vec3 normal = triangle.edge1.cross(triangle.edge2).normalized();
+    Vec3 normal = triangle.normal;
     const float cosine = -normal.dot(sample.direction);
     if (cosine < 0) normal = -normal;
     std::copy_n(normal.data(), 3, sample.hit.normal);
     if (std::abs(cosine) > 1e-6f)
-        sample.density = triangle.weight * sample.distance * sample.distance / std::abs(cosine);
+        sample.density = density * sample.distance * sample.distance / std::abs(cosine);
     return sample;
 }
 
@@ -96,7 +153,18 @@ float Emitters::density(const RayHit& hit, const Vec3& direction) const {
     const Elements& elements = elements_[size_t(hit.surface)];
     const int element = hit.element - elements.first;
     if (element < 0 || element >= elements.count) return 0;
-    const float chance = chances_[elements.at + size_t(element)];
+    float chance = chances_[elements.at + size_t(element)];
+    if (chance > 0 && are_few()) {
+        const Vec3 from = hit.position - direction * hit.distance;
+        float sum = 0, own = 0;
+        for (const Triangle& triangle : triangles_) {
+            const float weight = importance(triangle, from);
+            sum += weight;
+            if (triangle.surface == hit.surface && triangle.element == hit.element)
+                own = weight / triangle.area;
+        }
+        chance = sum > 0 ? own / sum : 0;
+    }
     const float cosine = std::abs(hit.normal.dot(direction));
     return cosine > 1e-6f ? chance * hit.distance * hit.distance / cosine : 0;
 }

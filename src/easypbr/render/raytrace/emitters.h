@@ -9,8 +9,8 @@
 namespace easypbr::render {
 
 /// The emissive triangles of a scene: opaque meshes whose material emits. Each is chosen by its share of
-/// their light. What emits and is not among them (discs and polygons around vertices, surfaces with holes) is
-/// found by chance alone.
+/// their light: of few triangles, of that which falls on the place if nothing is in between. What emits and
+/// is not among them (discs and polygons around vertices, surfaces with holes) is found by chance alone.
 class Emitters {
   public:
     /// Keeps what it makes of a scene until its surfaces are made anew; the scene must outlive the other
@@ -27,7 +27,7 @@ class Emitters {
         int surface = 0;         ///< for RayScene::surface()
         Vec3 direction;          ///< unit
         float distance = 0;      ///< in RayScene::unit()
-        float density = 0;       ///< per steradian; 0: seen from its edge
+        float density = 0;       ///< per steradian; 0: nothing of them is seen
     };
     /// A point of a triangle by a point of the unit square. `from` in RayScene's frame. There must be one.
     Sample sample(const Vec3& from, const Vec2& u) const;
@@ -38,10 +38,18 @@ class Emitters {
   private:
     struct Triangle {
         Vec3 corner, edge1, edge2;
+        Vec3 centre, normal;
+        float area = 0;
         int surface = 0, element = 0;
         float weight = 0;  ///< chance per area
     };
     void add_surface(const RayScene& scene, int surface);
+    bool are_few() const;
+    /// What a triangle sends to a place, about and relative to the others; 0 where it is hidden by the mesh
+    /// that it belongs to.
+    float importance(const Triangle& triangle, const Vec3& from) const;
+    /// Sets what sample() returns for a point of a triangle that is chosen with a density per area.
+    Sample sample_on(const Triangle& triangle, const Vec3& from, const Vec2& u, float density) const;
 
     uint64_t generation_ = 0;
     std::vector<Triangle> triangles_;
@@ -50,6 +58,8 @@ class Emitters {
     struct Elements {
         int first = 0, count = 0;
         size_t at = 0;
+        /// Of a closed mesh: outside of it back faces are not seen. Empty for others.
+        Eigen::AlignedBox3f solid;
     };
     std::vector<Elements> elements_;  ///< for each surface
     std::vector<float> chances_;      ///< chance per area

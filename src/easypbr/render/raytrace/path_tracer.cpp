@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "easypbr/render/frame/surface_kind.h"
 #include "easypbr/render/raytrace/hit_surfaces.h"
@@ -52,6 +53,21 @@ Vec3 absorption_of(const Material& material) {
 
 bool is_lit_kind(float code) {
     return code < code_of(SurfaceKind::display) - 0.05f;
+}
+
+/// The numbers below `count`, those of a surface together, in order within it. Surfaces are -1 or more.
+template <class SurfaceOf>
+std::vector<uint32_t> sorted_by_surface(size_t count, SurfaceOf&& surface_of) {
+    std::vector<uint32_t> begins;
+    for (size_t i = 0; i < count; ++i) {
+        const auto after = size_t(surface_of(i) + 2);
+        if (begins.size() <= after) begins.resize(after + 1);
+        ++begins[after];
+    }
+    std::partial_sum(begins.begin(), begins.end(), begins.begin());
+    std::vector<uint32_t> sorted(count);
+    for (size_t i = 0; i < count; ++i) sorted[begins[size_t(surface_of(i) + 1)]++] = uint32_t(i);
+    return sorted;
 }
 
 }  // namespace
@@ -164,29 +180,34 @@ float PathTracer::emission_weight(const RayHit& hit, const Vec3& direction, floa
 
 void PathTracer::choose_directions(const PathBatch& batch, uint32_t depth, bool caught, Scattered& to) const {
     const float emitter_part = caught ? 0 : emitter_part_;
-    std::vector<std::pair<Emitters::Sample, size_t>> chosen;
+    std::vector<Emitters::Sample> chosen;
+    std::vector<size_t> paths;
     for (size_t i = 0; i < batch.count; ++i) {
         Vec2 u = batch.state[i].sampler.pair(depth, sky_point);
         if (u.x() < emitter_part) {
             u.x() = std::min(u.x() / emitter_part, below_one);
-            chosen.emplace_back(emitters_.sample(start_of(batch, i), u), i);
+            chosen.push_back(emitters_.sample(start_of(batch, i), u));
+            paths.push_back(i);
         } else if (sky_.is_sampled()) {
             u.x() = std::min((u.x() - emitter_part) / (1 - emitter_part), below_one);
             const SkySampler::Sample sky = sky_.sample(u);
             to.set_direction(i, sky.direction, sky.radiance, (1 - emitter_part) * sky.density);
         }
     }
-    std::ranges::stable_sort(chosen, {}, [](const auto& one) { return one.first.surface; });
-    std::vector<native::ElementHit> hits;
-    std::vector<int> surfaces;
-    for (auto& [sample, path] : chosen) {
-        sample.hit.footprint = sample.distance * float(scene_->unit()) * widening;
-        hits.push_back(sample.hit);
-        surfaces.push_back(sample.surface);
+    const std::vector<uint32_t> sorted =
+        sorted_by_surface(chosen.size(), [&](size_t i) { return chosen[i].surface; });
+    std::vector<native::ElementHit> hits(chosen.size());
+    std::vector<int> surfaces(chosen.size());
+    for (size_t i = 0; i < chosen.size(); ++i) {
+        const Emitters::Sample& sample = chosen[sorted[i]];
+        hits[i] = sample.hit;
+        hits[i].footprint = sample.distance * float(scene_->unit()) * widening;
+        surfaces[i] = sample.surface;
     }
     const HitSurfaces found = evaluate(*scene_, hits, surfaces);
     for (size_t i = 0; i < chosen.size(); ++i) {
-        const auto& [sample, path] = chosen[i];
+        const Emitters::Sample& sample = chosen[sorted[i]];
+        const size_t path = paths[sorted[i]];
         to.set_direction(path, sample.direction, found.emission.at(i), emitter_part * sample.density);
         to.distance[path] = sample.distance * (1 - before_emitter) - before_emitter;
     }
@@ -351,18 +372,19 @@ size_t add_path(const PathTracer::Hit& hit, const HitSurfaces& surfaces, size_t 
 PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth,
                                        std::vector<Vec3>& radiance) const {
     // Surfaces are evaluated item by item.
-    std::ranges::stable_sort(hits, {}, [](const Hit& hit) { return hit.hit.surface; });
-    std::vector<native::ElementHit> elements;
-    std::vector<int> order;
-    for (const Hit& hit : hits) {
-        elements.push_back(native_hit(hit));
-        order.push_back(hit.hit.surface);
+    const std::vector<uint32_t> sorted =
+        sorted_by_surface(hits.size(), [&](size_t i) { return hits[i].hit.surface; });
+    std::vector<native::ElementHit> elements(hits.size());
+    std::vector<int> order(hits.size());
+    for (size_t i = 0; i < hits.size(); ++i) {
+        elements[i] = native_hit(hits[sorted[i]]);
+        order[i] = hits[sorted[i]].hit.surface;
     }
     const HitSurfaces surfaces = evaluate(*scene_, elements, order);
     const bool with_extensions = extended_ != nullptr;
     Batches next{PathBatch(hits.size()), PathBatch(with_extensions ? hits.size() : 0, with_extensions)};
     for (size_t i = 0; i < hits.size(); ++i) {
-        const Hit& hit = hits[i];
+        const Hit& hit = hits[sorted[i]];
         if (is_caught(hit, depth, radiance)) continue;
         const Vec3 emission = hit.state.throughput.cwiseProduct(surfaces.emission.at(i)) *
                               emission_weight(hit.hit, hit.direction, hit.density);
