@@ -293,6 +293,48 @@ TEST_F(SessionFiles, Threads) {
     for (const Image& image : images) EXPECT_EQ(compare(expected, image).different, 0u);
 }
 
+// Two sessions by one device, in turns: the same pictures as alone, at every size.
+TEST_F(SessionFiles, BesideAnotherOneByTheSameDevice) {
+    Session session = small_session();
+    session.settings().background.color = Vec3(1, 0, 0);
+    const Image expected = session.render();
+    Session other = session.beside();
+    EXPECT_EQ(&other.renderer(), &session.renderer());
+    EXPECT_EQ(compare(expected, other.render()).different, 0u);
+    other.settings().background.color = Vec3(0, 0, 1);
+    const Image blue = other.render({Vec2i(40, 40), std::nullopt});
+    EXPECT_EQ(blue.width(), 40);
+    EXPECT_EQ(compare(expected, session.render()).different, 0u);
+    EXPECT_EQ(compare(blue, other.render({Vec2i(40, 40), std::nullopt})).different, 0u);
+    // What is shown is shown in both.
+    session.scene().show(make_sphere(0.5f, 8), "another");
+    EXPECT_EQ(other.object_names().size(), 2u);
+}
+
+// What the other one draws between two frames ends the sum: it begins again, and is the same in the end.
+TEST_F(SessionFiles, RefinementBeginsAgainAfterAnotherSessionDrew) {
+    Session session = small_session();
+    session.settings().image.samples = 4;
+    const Image expected = session.render();
+    Session other = session.beside();
+    other.settings().background.color = Vec3(0, 0, 1);
+    EXPECT_TRUE(session.refine().began);
+    EXPECT_FALSE(session.refine().began);
+    other.refine();
+    EXPECT_TRUE(session.refine().began);
+    other.pick_buffer();
+    EXPECT_TRUE(session.refine().began);
+    Session::Refinement done;
+    do done = session.refine();
+    while (done.frames < done.total);
+    EXPECT_EQ(compare(expected, done.drawn.picture()).different, 0u);
+    EXPECT_FALSE(session.refine().drew);  // It is complete.
+    other.pick_buffer();
+    EXPECT_FALSE(session.refine().drew);  // Surfaces leave the picture.
+    other.render();
+    EXPECT_TRUE(session.refine().began);
+}
+
 // An edit while a picture is drawn: the picture is that of before or after, never a mixture or a crash.
 TEST_F(SessionFiles, EditsWhileDrawing) {
     Session session = small_session();

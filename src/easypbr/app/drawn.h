@@ -19,6 +19,7 @@ struct Device {
     std::unique_ptr<gl::Context> context;
     std::unique_ptr<render::Renderer> renderer;
     uint64_t picture = 0, surfaces = 0;  ///< drawn last; another number is another drawing
+    uint64_t sum = 0;                    ///< that frames are added to; another number is another one
 };
 
 /// What becomes of a picture's pixels once they are read: the lens, then the annotation.

@@ -14,13 +14,14 @@ namespace easypbr::app {
 
 /// After one loss another context takes the place of the lost one, with a warning; after a second one the CPU
 /// draws, unless OpenGL was asked for; after a third, or else after the second, gl::ContextLost is thrown.
-/// A drawing that succeeds makes up for the losses before it.
+/// A drawing that succeeds makes up for the losses before it. Copies are handles of one device, for one
+/// thread at a time.
 class KeptDevice {
   public:
-    Device* operator->() const { return device_.get(); }
-    const std::shared_ptr<Device>& shared() const { return device_; }
+    Device* operator->() const { return state_->device.get(); }
+    const std::shared_ptr<Device>& shared() const { return state_->device; }
     /// Another number for another device.
-    uint64_t number() const { return number_; }
+    uint64_t number() const { return state_->number; }
 
     /// Makes the context when there is none yet. Throws ContextError.
     const gl::ContextInfo& info();
@@ -36,14 +37,14 @@ class KeptDevice {
     /// already, gl::ContextLost is left to who made it so.
     template <class Job>
     auto keep(Job&& job) {
-        if (keeps_) return job();
+        if (state_->keeps) return job();
         const bool is_nested = is_current();
-        keeps_ = true;
-        const std::unique_ptr<bool, void (*)(bool*)> end(&keeps_, [](bool* keeps) { *keeps = false; });
+        state_->keeps = true;
+        const std::unique_ptr<bool, void (*)(bool*)> end(&state_->keeps, [](bool* keeps) { *keeps = false; });
         for (;;) try {
                 replace_lost();
                 auto result = job();
-                losses_ = 0;
+                state_->losses = 0;
                 return result;
             } catch (const Error& error) {
                 const std::string reason = loss(error);
@@ -60,11 +61,14 @@ class KeptDevice {
     std::string loss(const Error& error) const;
     void replace(const std::string& reason);
 
-    std::shared_ptr<Device> device_ = std::make_shared<Device>();
-    uint64_t number_ = 1;
-    bool keeps_ = false;
-    int losses_ = 0;  ///< since a drawing succeeded
-    DrawDevice asked_ = DrawDevice::automatic;
+    struct State {
+        std::shared_ptr<Device> device = std::make_shared<Device>();
+        uint64_t number = 1;
+        bool keeps = false;
+        int losses = 0;  ///< since a drawing succeeded
+        DrawDevice asked = DrawDevice::automatic;
+    };
+    std::shared_ptr<State> state_ = std::make_shared<State>();
 };
 
 }  // namespace easypbr::app

@@ -63,6 +63,7 @@ struct LiveNeeds {
     bool pass_times = false;  ///< see LiveShot
     bool surfaces = false;    ///< see LiveShot
     double resolution = 1;    ///< see LiveShot
+    bool refines = true;      ///< see LiveShot
 };
 
 /// What a client shows, panels and all: for recordings with panels. A client without panels has none.

@@ -80,7 +80,7 @@ bool LivePicture::step(const LiveShot& shot, uint64_t version) {
         draw_quickly(shot, reduces);
         return true;
     }
-    if (shot.moving) return false;
+    if (shot.moving || !shot.refines) return false;
     if (!is_complete()) return refine(shot);
     if (!std::exchange(wants_surfaces_, false)) return false;
     hovered_ = surfaces(shot.size).at(pointer_);

@@ -31,6 +31,7 @@ struct LiveShot {
     double resolution = 1;            ///< share of `size` that moving pictures have at most
     bool pass_times = false;          ///< measure LiveStatistics::passes
     bool surfaces = false;            ///< known_surfaces() is asked for at rest
+    bool refines = true;              ///< at rest it gets better; else the single frame stays
     /// What motion_blur.enabled shows: asked with the camera of each new picture. Another `motion_key` is
     /// another motion.
     std::function<Session::RefinedMotion(const Camera& now)> motion = {};

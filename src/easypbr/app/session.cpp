@@ -34,12 +34,31 @@ struct Session::Refined {
     int frames = 0;
     bool is_complete = false;  ///< maybe with fewer frames than asked for
     uint64_t device = 0;       ///< KeptDevice::number()
+    uint64_t sum = 0;          ///< Device::sum
+
+    /// Nothing else was drawn that it is lost by.
+    bool is_there(const KeptDevice& now) const {
+        if (device != now.number()) return false;
+        return is_complete ? drawn.picture_ == now->picture : sum == now->sum;
+    }
 };
 
 Session::Session(Scene scene) : scene_(std::move(scene)), settings_(std::make_unique<Settings>()) {}
 Session::~Session() = default;
 Session::Session(Session&&) noexcept = default;
 Session& Session::operator=(Session&&) noexcept = default;
+
+Session Session::beside() const {
+    Session other(scene_);
+    *other.settings_ = *settings_;
+    other.files_ = files_;
+    other.environment_hash_ = environment_hash_;
+    other.latched_content_ = latched_content_;
+    other.passes_ = passes_;
+    other.tile_limits_ = tile_limits_;
+    other.device_ = device_;
+    return other;
+}
 
 const gl::ContextInfo& Session::context_info() {
     return device_.info();
@@ -132,6 +151,7 @@ Drawn Session::begin(Prepared& prepared, bool picture, bool surfaces) {
     drawn.device_ = device_.shared();
     // Numbers are taken before anything is drawn: a drawing that fails outdates what was there as well.
     ++device_->surfaces;
+    ++device_->sum;
     if (picture) drawn.picture_ = ++device_->picture;
     if (surfaces) drawn.surfaces_ = device_->surfaces;
     return drawn;
@@ -194,8 +214,7 @@ Session::Refinement Session::refine_once(const PictureOptions& options, bool fin
     if (settings_->motion_blur.enabled) prepared.options.motion = motion;
     Refinement done;
     done.total = prepared.options.samples;
-    done.began =
-        !refined_ || refined_->device != device_.number() || !same_picture(refined_->prepared, prepared);
+    done.began = !refined_ || !refined_->is_there(device_) || !same_picture(refined_->prepared, prepared);
     if (!done.began && refined_->is_complete) {
         done.frames = done.total = refined_->frames;
         done.drawn = refined_->drawn;
@@ -213,7 +232,7 @@ Session::Refinement Session::refine_once(const PictureOptions& options, bool fin
         latch_from(prepared);
         prepared.options.size = asked;  // What the next call compares with.
         refined_ = std::make_unique<Refined>(
-            Refined{std::move(prepared), std::move(drawn), {}, 0, false, device_.number()});
+            Refined{std::move(prepared), std::move(drawn), {}, 0, false, device_.number(), device_->sum});
     }
     done.drew = true;
     done.frames = refined_->frames = renderer.add_sample();
@@ -244,8 +263,6 @@ PickBuffer Session::pick_buffer(std::optional<Vec2i> size) {
 
 PickBuffer Session::pick_once(std::optional<Vec2i> size) {
     Prepared prepared = prepare({size, 1, Encoding::srgb8});
-    // A complete picture stays what it is; one that is being refined has to begin again.
-    if (refined_ && !refined_->is_complete) refined_.reset();
     const Drawn drawn = begin(prepared, false, true);
     {
         const gl::ContextScope scope(*device_->context);

@@ -52,6 +52,11 @@ class Session {
     Session(Session&&) noexcept;
     Session& operator=(Session&&) noexcept;
 
+    /// Another session of the same scene and, so far, the same settings, that draws by the same device: what
+    /// is uploaded and the targets are there once. All that share a device are used by one thread at a time;
+    /// what one draws ends the refinement of the others.
+    Session beside() const;
+
     Scene& scene() { return scene_; }
     const Scene& scene() const { return scene_; }
     Settings& settings() { return *settings_; }
