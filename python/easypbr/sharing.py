@@ -33,6 +33,8 @@ class Sharing(WindowCallbacks):
         origins: Sequence[str] = (),
         max_clients: int = 16,
         codec: str = "auto",
+        own_views: int = 4,
+        own_views_for_watchers: bool = False,
         block: bool = False,
     ) -> Server:
         """Shows the scene in browsers: print(view.serve().url). Returns at once, unless `block`: then when it is closed, by
@@ -40,9 +42,11 @@ class Sharing(WindowCallbacks):
         than loopback are seen by the network; `token_file`: secrets to use, a line to control, a line to watch;
         `host_names`: other names that the server is reached by; `origins`: pages of other sites that may connect;
         `codec`: what moving images are sent as, "h264" or "jpeg"; "auto" takes H.264 where FFmpeg's libraries and a
-        client's browser have it."""
+        client's browser have it; `own_views`: clients, 0 to 64, that may have a camera and settings of their own at a time;
+        `own_views_for_watchers`: those who came by watch_url too."""
         handle = self._handle.serve(
-            port, bind, socket, token_file, list(host_names), list(origins), max_clients, codec)
+            port, bind, socket, token_file, list(host_names), list(origins), max_clients, codec, own_views,
+            own_views_for_watchers)
         server = Server(handle)
         self._serve_panels(server)
         if block:

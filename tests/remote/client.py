@@ -84,7 +84,7 @@ class Client:
         self.pointer("release", *end)
 
     def ack(self, frame):
-        self.send("ack", frame=frame.number, chunk=frame.chunk)
+        self.send("ack", frame=frame.number, chunk=frame.chunk, busy=0)
 
     def receive(self, timeout=PATIENCE_S):
         """The next message: a dict, or a whole Frame; None for a chunk. Raises TimeoutError, ConnectionClosed."""

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <deque>
+
 #include "easypbr/remote/frame_header.h"
 #include "easypbr/remote/inbox.h"
 
@@ -36,12 +39,66 @@ TEST(FlowControl, TheWindowGrowsWithTheLine) {
     FlowControl flow;
     double now = 0;
     for (uint32_t frame = 1; frame < 100; ++frame) {
-        flow.sent(frame, 0, 10, now);
+        flow.sent(frame, 0, 10, now, 1.0 / 30);
         flow.drawn(frame, 0, now + 0.15);
         now += 1.0 / 30;
     }
-    EXPECT_GE(flow.window(), 5u);
-    EXPECT_LE(flow.window(), FlowControl::most_window);
+    EXPECT_EQ(flow.window(), 6u);  // ceil(0.15 * 30) + 1
+}
+
+/// What the window held back before does not count: 200 ms and pictures that take 30 ms to make.
+TEST(FlowControl, TheWindowFollowsWhatPicturesTakeNotHowOftenTheyWereSent) {
+    FlowControl flow;
+    double now = 0;
+    for (uint32_t frame = 1; frame < 100; ++frame) {
+        flow.sent(frame, 0, 10, now, 0.03);
+        flow.drawn(frame, 0, now += 0.2);
+    }
+    EXPECT_EQ(flow.window(), 8u);  // ceil(0.2 / 0.03) + 1
+}
+
+/// A line of `rate` bytes a second and `delay_s` there and back, and what comes between before and after it.
+struct Simulation {
+    double rate, delay_s, server_s, page_s;
+
+    /// A minute of pictures of 16 kB at full quality, 30 a second as far as the window allows. The share of
+    /// the quality that is left.
+    double share() const {
+        FlowControl flow;
+        WireQuality quality;
+        struct Coming {
+            uint32_t frame;
+            double at_s;
+            OffTheLine off;
+        };
+        std::deque<Coming> coming;
+        double free_s = 0;
+        uint32_t frame = 0;
+        for (double now = 0; now < 60; now += 1.0 / 30) {
+            for (; !coming.empty() && coming.front().at_s <= now; coming.pop_front()) {
+                flow.drawn(coming.front().frame, 0, coming.front().at_s, coming.front().off);
+                quality.drawn(flow.queued_s(), now);
+            }
+            if (!flow.has_room()) continue;
+            const double bytes = 16000 * quality.share();
+            flow.sent(++frame, 0, size_t(bytes), now, 1.0 / 30);
+            free_s = std::max(free_s, now) + bytes / rate;
+            const bool busy = std::fmod(now, 4) < 2;  // Two seconds of four.
+            const OffTheLine off = busy ? OffTheLine{page_s, server_s} : OffTheLine();
+            coming.push_back({frame, free_s + delay_s + off.page_s + off.server_s, off});
+        }
+        return quality.share();
+    }
+};
+
+TEST(WireQuality, ABusyServerOrPageIsNoSlowLine) {
+    const double fast = 1e8 / 8;
+    EXPECT_EQ((Simulation{fast, 0.02, 0, 0}.share()), 1);
+    EXPECT_EQ((Simulation{fast, 0.02, 0.15, 0}.share()), 1);
+    EXPECT_EQ((Simulation{fast, 0.02, 0, 0.15}.share()), 1);
+    // 1 Mbit/s for 3.84: a quarter gets through.
+    EXPECT_LT((Simulation{1e6 / 8, 0.02, 0, 0}.share()), 0.4);
+    EXPECT_LT((Simulation{1e6 / 8, 0.02, 0.05, 0.05}.share()), 0.4);
 }
 
 TEST(FlowControl, AMegabyteIsEnough) {
@@ -70,7 +127,7 @@ TEST(FlowControl, ChunksGetFewerOnALineThatQueues) {
 TEST(WireQuality, AMomentChangesNothing) {
     WireQuality quality;
     double now = 0;
-    for (int i = 0; i < 200; ++i) quality.drawn(i % 8 == 0 ? 0.17 : 0.05, 0.05, now += 0.06);
+    for (int i = 0; i < 200; ++i) quality.drawn(i % 8 == 0 ? 0.12 : 0, now += 0.06);
     EXPECT_EQ(quality.share(), 1);
 }
 
@@ -79,21 +136,21 @@ TEST(WireQuality, GoesDownWhereTheLineQueuesAndUpAgain) {
     EXPECT_EQ(quality.jpeg_quality(), 80);
     EXPECT_EQ(quality.resolution(), 1);
     double now = 0;
-    const auto pass = [&](double latency, double seconds) {
-        for (const double end = now + seconds; now < end; now += 0.1) quality.drawn(latency, 0.1, now);
+    const auto pass = [&](double queued, double seconds) {
+        for (const double end = now + seconds; now < end; now += 0.1) quality.drawn(queued, now);
     };
-    pass(0.4, 2.6);
+    pass(0.3, 2.6);
     EXPECT_LT(quality.jpeg_quality(), 80);
     EXPECT_EQ(quality.resolution(), 1);  // The quality goes first.
-    pass(0.4, 20);
+    pass(0.3, 20);
     EXPECT_EQ(quality.jpeg_quality(), 40);
     EXPECT_LT(quality.resolution(), 0.5);
     EXPECT_GE(quality.resolution(), 0.25);
-    pass(0.13, 5);  // Between the two thresholds it stays.
+    pass(0.03, 5);  // Between the two thresholds it stays.
     const double kept = quality.share();
-    pass(0.13, 5);
+    pass(0.03, 5);
     EXPECT_EQ(quality.share(), kept);
-    pass(0.105, 60);
+    pass(0.005, 60);
     EXPECT_EQ(quality.jpeg_quality(), 80);
     EXPECT_EQ(quality.resolution(), 1);
 }
@@ -152,6 +209,23 @@ TEST(Inbox, MergesMovesAndNothingElse) {
     EXPECT_EQ(std::get<Input>(orders[0].message).id, 2u);
     EXPECT_EQ(orders[0].arrived_s, 2);
     EXPECT_FALSE(inbox.has_orders());
+}
+
+TEST(Inbox, KeepsTheViewsApart) {
+    using Kind = app::InputEvent::Kind;
+    Inbox inbox;
+    for (uint32_t id = 1; id < 7; ++id) {
+        Order order = pointer_order(id % 2, Kind::move, id, id);
+        order.view = ViewId(id % 2);
+        inbox.add(order);
+    }
+    EXPECT_TRUE(inbox.has_orders(0));
+    const std::vector<Order> shared = inbox.take(0);
+    ASSERT_EQ(shared.size(), 1u);  // What came between was another view's.
+    EXPECT_EQ(std::get<Input>(shared[0].message).id, 6u);
+    EXPECT_FALSE(inbox.has_orders(0));
+    ASSERT_EQ(inbox.take(1).size(), 1u);
+    EXPECT_FALSE(inbox.has_orders(2));
 }
 
 TEST(Inbox, IsBounded) {

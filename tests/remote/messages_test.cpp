@@ -20,7 +20,9 @@ const std::string pointer =
 TEST(Messages, ReadsWhatIsRight) {
     EXPECT_EQ(read<Hello>(R"({"kind":"hello","token":"abc","width":640,"height":480})").token, "abc");
     EXPECT_EQ(read<Hello>(R"({"kind":"hello","token":"","width":640,"height":480})").size, Vec2i(640, 480));
-    EXPECT_EQ(read<Ack>(R"({"kind":"ack","frame":4294967295,"chunk":2})").frame, 4294967295u);
+    EXPECT_EQ(read<Ack>(R"({"kind":"ack","frame":4294967295,"chunk":2,"busy":0})").frame, 4294967295u);
+    EXPECT_EQ(read<Ack>(R"({"kind":"ack","frame":1,"chunk":2,"busy":0.25})").busy_s, 0.25);
+    EXPECT_TRUE(read<OwnView>(R"({"kind":"view","own":true,"width":4,"height":3})").own);
     const Input input = read<Input>(pointer);
     EXPECT_EQ(input.id, 7u);
     EXPECT_EQ(input.event.kind, app::InputEvent::Kind::press);
@@ -46,15 +48,19 @@ INSTANTIATE_TEST_SUITE_P(
     All, WrongMessage,
     testing::Values(
         "", "null", "[]", "7", "\"hello\"", "{", "{}", R"({"kind":7})", R"({"kind":"unknown"})",
-        R"({"kind":"ack","frame":1})", R"({"kind":"ack","frame":-1,"chunk":0})",
-        R"({"kind":"ack","frame":1.5,"chunk":0})", R"({"kind":"ack","frame":4294967296,"chunk":0})",
-        R"({"kind":"ack","frame":18446744073709551615,"chunk":0})", R"({"kind":"ack","frame":"1","chunk":0})",
-        R"({"kind":"ack","frame":1,"chunk":0,"more":1})", R"({"kind":"resize","width":0,"height":1})",
-        R"({"kind":"resize","width":4097,"height":1})", R"({"kind":"resize","width":true,"height":1})",
-        R"({"kind":"pause","paused":1})", R"({"kind":"decodes","h264":"yes"})",
-        R"({"kind":"set","name":"x","value":1})", R"({"kind":"set","name":"x\u0000y","value":"1"})",
-        R"({"kind":"act","what":"explode"})", R"({"kind":"turn","id":1,"right":1e999,"up":0})",
-        R"({"kind":"turn","id":1,"right":NaN,"up":0})", R"({"kind":"turn","id":1,"right":361,"up":0})",
+        R"({"kind":"ack","frame":1})", R"({"kind":"ack","frame":1,"chunk":0,"busy":-1})",
+        R"({"kind":"view","own":true})", R"({"kind":"view","own":1,"width":4,"height":3})",
+        R"({"kind":"ack","frame":-1,"chunk":0,"busy":0})", R"({"kind":"ack","frame":1.5,"chunk":0,"busy":0})",
+        R"({"kind":"ack","frame":4294967296,"chunk":0,"busy":0})",
+        R"({"kind":"ack","frame":18446744073709551615,"chunk":0,"busy":0})",
+        R"({"kind":"ack","frame":"1","chunk":0,"busy":0})",
+        R"({"kind":"ack","frame":1,"chunk":0,"busy":0,"more":1})",
+        R"({"kind":"resize","width":0,"height":1})", R"({"kind":"resize","width":4097,"height":1})",
+        R"({"kind":"resize","width":true,"height":1})", R"({"kind":"pause","paused":1})",
+        R"({"kind":"decodes","h264":"yes"})", R"({"kind":"set","name":"x","value":1})",
+        R"({"kind":"set","name":"x\u0000y","value":"1"})", R"({"kind":"act","what":"explode"})",
+        R"({"kind":"turn","id":1,"right":1e999,"up":0})", R"({"kind":"turn","id":1,"right":NaN,"up":0})",
+        R"({"kind":"turn","id":1,"right":361,"up":0})",
         R"({"kind":"key","id":1,"action":"down","key":"w","shift":false})",
         R"({"kind":"key","id":1,"action":"down","key":"F1","shift":false})",
         R"({"kind":"shot","id":1,"width":16384,"height":16384})",

@@ -201,7 +201,7 @@ def test_wrong_values_are_told_and_change_nothing(connect, name, value):
 
 
 HOSTILE = ["", "{", "[]", "null", '{"kind":"explode"}', '{"kind":"resize","width":1e99,"height":1}', "[" * 3000,
-           '{"kind":"ack","frame":-1,"chunk":0}', '{"kind":"set","name":"a"}']
+           '{"kind":"ack","frame":-1,"chunk":0,"busy":0}', '{"kind":"set","name":"a"}']
 
 
 @pytest.mark.parametrize("text", HOSTILE)

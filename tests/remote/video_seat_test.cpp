@@ -74,10 +74,10 @@ TEST(VideoQuality, GivesBitsBeforePixels) {
     EXPECT_EQ(quality.video_rate(16 * 16), WireQuality::least_rate);
     EXPECT_EQ(quality.video_rate(7680 * 4320), WireQuality::most_rate);
     double now = 0;
-    while (quality.share() > 0.14) quality.drawn(0.4, 0.1, now += 0.6);
+    while (quality.share() > 0.14) quality.drawn(0.3, now += 0.6);
     EXPECT_EQ(quality.resolution(), 1);
     EXPECT_NEAR(quality.video_rate(1280 * 720), 4e6 * quality.share(), 1);
-    while (quality.share() > WireQuality::least_share) quality.drawn(0.4, 0.1, now += 0.6);
+    while (quality.share() > WireQuality::least_share) quality.drawn(0.3, now += 0.6);
     EXPECT_NEAR(quality.resolution(), 0.5, 1e-9);  // sqrt((1/32) / (1/8))
 }
 

@@ -11,6 +11,46 @@ import easypbr
 from conftest import Page
 
 
+def test_a_view_of_its_own_and_back(view, tmp_path, open_page):
+    secret = tmp_path / "token"
+    secret.write_text("v" * 40)
+    secret.chmod(0o600)
+    server = view.serve(token_file=secret)
+    shared, page = open_page(server.url, width=1100), open_page(server.url, width=1100)
+    before, pixels = shared.exact(), shared.pixels()
+    page.until_shows(pixels)
+    button = page.page.get_by_role("button", name="Own view")
+    button.click()
+    expect(button).to_have_attribute("aria-pressed", "true")
+    page.tab("Scene")
+    # What all see is not changed from it.
+    expect(page.page.get_by_role("button", name="Show ball")).to_be_disabled()
+    first = page.exact()
+    page.drag(80, 30)
+    turned = page.exact(first)
+    assert not np.array_equal(page.pixels(), pixels)
+    # What is shown comes to both.
+    view.scene.show(easypbr.shapes.box((0.5, 3, 0.5)), "bar")
+    shared.exact(before)
+    page.exact(turned)
+    # After another server has begun at the same place it is a view of its own again, with the same camera.
+    own, common, port = page.pixels(), shared.pixels(), server.port
+    server.close()
+    for each in (page, shared):
+        expect(each.page.get_by_text("Connection lost")).to_be_visible()
+    with view.serve(port=port, token_file=secret):
+        for each in (page, shared):
+            expect(each.page.get_by_text("Connection lost")).to_be_hidden()
+        expect(button).to_have_attribute("aria-pressed", "true")
+        shared.until_shows(common, 2)
+        page.until_shows(own, 2)
+        button.click()
+        expect(button).to_have_attribute("aria-pressed", "false")
+        shared.exact()
+        page.until_shows(shared.pixels(), 2)
+        assert not page.page.get_by_role("button", name="Show ball").is_enabled()
+
+
 def test_the_picture_at_rest_is_the_rendered_one(view, open_page):
     page = open_page()
     page.exact()

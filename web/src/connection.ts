@@ -32,6 +32,8 @@ export class Connection {
   /** The server has said so; it has, or it will when what was sent arrives. */
   private controlled = false;
   private holds = false;
+  /** The view is the page's own. */
+  private own = false;
   private paused = false;
   private decodes = false;
   private size = { width: 1, height: 1 };
@@ -40,7 +42,7 @@ export class Connection {
   /** Canvases that can be seen, as far as is known. */
   private hidden = new Map<Element, boolean>();
   readonly painter = new Painter(this.store, {
-    ack: (frame, chunk) => this.send({ kind: "ack", frame, chunk }),
+    ack: (frame, chunk, busy) => this.send({ kind: "ack", frame, chunk, busy }),
     file: download,
     decodes: (h264) => {
       this.decodes = h264;
@@ -120,6 +122,11 @@ export class Connection {
     // Without a secret it begins with the first canvas.
     if (!this.begun && !this.rules.needsToken) this.open();
     if (this.isLive && this.store.state.control.controls) this.send({ kind: "resize", ...this.size });
+  }
+
+  /** A view of the page's own, or the shared one. */
+  lookAt(own: boolean): void {
+    this.send({ kind: "view", own, ...this.size });
   }
 
   /** A canvas has come into sight, or has gone out of it; undefined: it is no more. */
@@ -214,21 +221,28 @@ export class Connection {
     this.store.update({ phase: "live", reason: "", watches: message.watches, channels: message.channels, fields: message.fields });
     if (this.decodes) this.send({ kind: "decodes", h264: true });
     // What a link asks for, or what was seen before the server began anew.
-    this.restore = isNew ? { camera: isAgain ? this.store.state.camera : this.link.camera, settings: { ...this.touched } } : null;
+    // A view of its own went with the connection.
+    const returns = isAgain && this.own;
+    this.own = false;
+    if (returns) this.send({ kind: "view", own: true, ...this.size });
+    this.restore = isNew || returns ? { camera: isAgain ? this.store.state.camera : this.link.camera, settings: { ...this.touched }, own: returns } : null;
     this.pause();
   }
 
-  private restore: { camera: string; settings: Record<string, string> } | null = null;
+  private restore: { camera: string; settings: Record<string, string>; own: boolean } | null = null;
 
   private control(control: ServerMessage & { kind: "control" }): void {
     const gained = control.controls && !this.controlled;
     this.controlled = this.holds = control.controls;
+    const isOther = this.painter.look(control.view);
+    if (isOther) this.store.update({ pick: null, tools: {}, panels: [] });
+    this.own = control.view !== 0;
     this.store.update({ control: { ...control, controls: control.controls || this.rules.takesControl } });
     if (!control.controls) return;
-    if (gained || this.restore) this.send({ kind: "resize", ...this.size });
+    if (gained || isOther || this.restore) this.send({ kind: "resize", ...this.size });
     const restore = this.restore;
+    if (!restore || (restore.own && !this.own)) return;
     this.restore = null;
-    if (!restore) return;
     for (const [name, value] of Object.entries(restore.settings)) this.send({ kind: "set", name, value });
     if (restore.camera) this.send({ kind: "camera", text: restore.camera });
   }

@@ -4,7 +4,8 @@ import type { Store } from "./store";
 import { VideoPictures } from "./video";
 
 export interface PainterHooks {
-  ack(frame: number, chunk: number): void;
+  /** `busy`: seconds since it came. */
+  ack(frame: number, chunk: number, busy: number): void;
   /** A still or a video that was asked for. */
   file(content: Blob, name: string): void;
   /** Whether H.264 can be decoded; true, again: its place in the video is lost. */
@@ -28,6 +29,7 @@ export class Painter {
   private file: Parts = { frame: 0, chunks: [] };
   private video: VideoPictures;
   private drawn = 0;
+  private view = 0;
   /** All show the same pictures. */
   private canvases = new Set<HTMLCanvasElement>();
   /** Of the picture on the canvas. */
@@ -64,6 +66,14 @@ export class Painter {
     this.video.reset();
   }
 
+  /** Which view's pictures are shown from now on. Returns whether it is another one. */
+  look(view: number): boolean {
+    if (view === this.view) return false;
+    this.view = view;
+    this.restart();
+    return true;
+  }
+
   sentInput(id: number): void {
     this.inputs.set(id, performance.now());
     if (this.inputs.size > 200) this.inputs.delete(this.inputs.keys().next().value as number);
@@ -71,14 +81,15 @@ export class Painter {
 
   async take(data: ArrayBuffer): Promise<void> {
     const header = readHeader(data);
+    const came = performance.now();
     const draws = header.kind === FRAME_MOVING || header.kind === FRAME_STILL;
-    this.arrivals.push({ time: performance.now(), bytes: data.byteLength, draws: draws && (header.flags & FLAG_LAST) !== 0 });
+    this.arrivals.push({ time: came, bytes: data.byteLength, draws: draws && (header.flags & FLAG_LAST) !== 0 });
     try {
       if (header.codec === CODEC_H264) await this.paint(header, await this.video.decode(header, data));
       else if (header.kind === FRAME_MOVING) await this.paint(header, await bitmapOf(header, [data]));
       else await this.collect(header, data);
     } finally {
-      this.hooks.ack(header.frame, header.chunk);
+      this.hooks.ack(header.frame, header.chunk, (performance.now() - came) / 1000);
     }
   }
 
@@ -99,7 +110,7 @@ export class Painter {
 
   private async paint(header: FrameHeader, picture: Picture | null): Promise<void> {
     if (!picture) return;
-    if (this.canvases.size > 0 && header.frame > this.drawn) {
+    if (this.canvases.size > 0 && header.view === this.view && header.frame > this.drawn) {
       this.drawn = header.frame;
       this.last = header;
       for (const canvas of this.canvases) draw(canvas, picture, header);

@@ -92,6 +92,10 @@ export interface Control {
   taken: boolean;
   may: boolean;
   clients: number;
+  /** That the page shows, as pictures name it; 0: the shared one. */
+  view: number;
+  /** It may ask for a view of its own. */
+  own: boolean;
 }
 
 export type ServerMessage =
@@ -122,6 +126,7 @@ export interface FrameHeader {
   flags: number;
   frame: number;
   input: number;
+  view: number;
   width: number;
   height: number;
   refined: number;
@@ -145,6 +150,7 @@ export function readHeader(data: ArrayBuffer): FrameHeader {
     flags: short(2),
     frame: long(4),
     input: long(8),
+    view: short(12),
     width: short(14),
     height: short(16),
     refined: short(18),

@@ -17,6 +17,7 @@ function sizeText(node: SceneNode): string {
 function Node({ node, depth, connection }: { node: SceneNode; depth: number; connection: Connection }) {
   const selected = useStore((state) => state.selected);
   const controls = useStore((state) => state.control.controls);
+  const shared = useStore((state) => state.control.view === 0);
   const [open, setOpen] = useState(depth < OPEN_DEPTH);
   const name = nameOf(node.path);
   const isSelected = selected === node.path;
@@ -46,7 +47,8 @@ function Node({ node, depth, connection }: { node: SceneNode; depth: number; con
           class="eye"
           aria-label={`Show ${name}`}
           aria-pressed={node.visible}
-          disabled={!controls}
+          title={shared ? undefined : "What all see is changed in the shared view"}
+          disabled={!controls || !shared}
           onClick={() => connection.send({ kind: "show", object: node.path, visible: !node.visible })}
         >
           <Icon name={node.visible ? "eye" : "hidden"} />

@@ -45,7 +45,7 @@ const begin = (): State => ({
   phase: "connecting",
   reason: "",
   watches: false,
-  control: { controls: false, taken: false, may: false, clients: 0 },
+  control: { controls: false, taken: false, may: false, clients: 0, view: 0, own: false },
   fields: [],
   values: {},
   channels: [],

@@ -32,6 +32,7 @@ function Channels({ connection }: { connection: Connection }) {
 function ControlButton({ connection }: { connection: Connection }) {
   const control = useStore((state) => state.control);
   const others = control.clients > 1 ? `${control.clients} clients` : "";
+  if (control.view) return null;
   if (control.controls)
     return others ? (
       <button type="button" class="pill" title="Let somebody else control" onClick={() => connection.send({ kind: "act", what: "leave" })}>
@@ -42,6 +43,24 @@ function ControlButton({ connection }: { connection: Connection }) {
   return (
     <button type="button" class="pill" onClick={() => connection.send({ kind: "act", what: "take" })}>
       {control.taken ? "Ask for control" : "Take control"}
+    </button>
+  );
+}
+
+/** Another camera and other settings for this page alone, and back. */
+function OwnViewButton({ connection }: { connection: Connection }) {
+  const control = useStore((state) => state.control);
+  if (!control.own) return null;
+  const isOwn = control.view !== 0;
+  return (
+    <button
+      type="button"
+      class="pill own"
+      aria-pressed={isOwn}
+      title={isOwn ? "Back to the view that all share" : "A camera and settings for this page alone"}
+      onClick={() => connection.lookAt(!isOwn)}
+    >
+      Own view
     </button>
   );
 }
@@ -72,6 +91,7 @@ export function Toolbar(props: {
       <span class="brand">EasyPBR</span>
       <span class="title">{props.title}</span>
       <ControlButton connection={connection} />
+      <OwnViewButton connection={connection} />
       <Channels connection={connection} />
       <nav class="tools" aria-label="Tools">
         <IconButton icon="fit" label="Show everything" keys="F" disabled={!controls} onClick={act("fit")} />

@@ -37,13 +37,18 @@ struct ServeOptions {
     /// What moving pictures are sent as: "auto" (H.264 where FFmpeg's libraries and a client's browser have
     /// it, else JPEG), "jpeg", or "h264" (to those who decode it; an error where it cannot be made).
     std::string codec = "auto";
+    /// Clients that may have a camera and settings of their own at a time, of the same scene: 0 to 64. Each
+    /// takes up to 48 MB at 1280x720.
+    int own_views = 4;
+    bool own_views_for_watchers = false;  ///< those who came by watch_url() may have one too
 };
 
 struct ServerClient {
     uint64_t id = 0;
-    bool controls = false;
+    bool controls = false;  ///< the shared view, or its own
     bool watches_only = false;
     double latency_s = 0;  ///< from sending a picture to its being drawn; 0 before the first
+    bool has_own = false;  ///< looks through a camera of its own
 };
 
 /// Answers on a thread of its own, and draws on another one, in a context of its own: the program goes on,

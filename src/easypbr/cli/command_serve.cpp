@@ -61,6 +61,12 @@ void declare_serve(CLI::App& command, ServeCommand& options) {
                     "What moving pictures are sent as: auto takes h264 where both sides have it, else jpeg")
         ->check(CLI::IsMember({"auto", "h264", "jpeg"}))
         ->option_text("auto|h264|jpeg");
+    command
+        .add_option("--own-views", options.server.own_views,
+                    "Clients that may have a camera and settings of their own at a time, 0 to 64")
+        ->option_text("N");
+    command.add_flag("--own-views-for-watchers", options.server.own_views_for_watchers,
+                     "Clients that came by the watch link may have one too");
 }
 
 volatile std::sig_atomic_t stopped = 0;

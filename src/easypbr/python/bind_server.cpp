@@ -23,9 +23,19 @@ using remote::ServerClient;
 std::shared_ptr<Server> serve(SharedViewer& self, int port, const std::string& bind, const fs::path& socket,
                               const fs::path& token_file, const std::vector<std::string>& host_names,
                               const std::vector<std::string>& origins, int max_clients,
-                              const std::string& codec) {
-    const remote::ServeOptions options{port,       bind,    socket,      token_file,
-                                       host_names, origins, max_clients, codec};
+                              const std::string& codec, int own_views, bool own_views_for_watchers) {
+    const remote::ServeOptions options{
+        .port = port,
+        .bind = bind,
+        .socket = socket,
+        .token_file = token_file,
+        .host_names = host_names,
+        .origins = origins,
+        .max_clients = max_clients,
+        .codec = codec,
+        .own_views = own_views,
+        .own_views_for_watchers = own_views_for_watchers,
+    };
     return self.run([&](Viewer& viewer) { return viewer.serve(options); });
 }
 
@@ -90,8 +100,10 @@ void bind_channel(nb::module_& module, nb::class_<SharedViewer>& viewer) {
 void bind_server(nb::module_& module, nb::class_<SharedViewer>& viewer) {
     nb::class_<ServerClient>(module, "ServerClient", "A browser that looks at a served view.")
         .def_ro("id", &ServerClient::id, "Number of the connection.")
-        .def_ro("controls", &ServerClient::controls, "Whether it moves the camera.")
+        .def_ro("controls", &ServerClient::controls,
+                "Whether it moves the camera, the shared one or its own.")
         .def_ro("watches_only", &ServerClient::watches_only, "Whether it came by watch_url.")
+        .def_ro("has_own", &ServerClient::has_own, "Whether it looks through a camera of its own.")
         .def_ro("latency_s", &ServerClient::latency_s,
                 "Seconds from sending an image to its being drawn; 0 before the first.")
         .def("__repr__", [](const ServerClient& client) {
@@ -112,7 +124,8 @@ void bind_server(nb::module_& module, nb::class_<SharedViewer>& viewer) {
         .def("remove_panel", remove_front_panel<Server>)
         .def("close", [](Server& self) { released([&] { self.close(); }); });
     viewer.def("serve", serve, nb::arg("port"), nb::arg("bind"), nb::arg("socket"), nb::arg("token_file"),
-               nb::arg("host_names"), nb::arg("origins"), nb::arg("max_clients"), nb::arg("codec"));
+               nb::arg("host_names"), nb::arg("origins"), nb::arg("max_clients"), nb::arg("codec"),
+               nb::arg("own_views"), nb::arg("own_views_for_watchers"));
     bind_channel(module, viewer);
 }
 

@@ -4,7 +4,7 @@
 #include <mutex>
 
 #include "easypbr/remote/mailbox.h"
-#include "easypbr/remote/view.h"
+#include "easypbr/remote/views.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/scene/settings.h"
 
@@ -19,10 +19,10 @@ struct Channel::Parts {
     Parts(const Scene& scene, const Settings& settings)
         : clients(mailbox, inbox, {random_token(), random_token(), false}, most_channel_clients,
                   HandOver::at_once),
-          view(scene, settings, inbox, clients) {
+          views(scene, settings, inbox, clients) {
         const std::string text = welcome_text(random_token().substr(0, 16), false);
         clients.set_welcome(text, text);
-        view.start();
+        views.start();
     }
 
     /// Whether it was there.
@@ -47,7 +47,7 @@ struct Channel::Parts {
     Inbox inbox;
     Mailbox mailbox;
     Clients clients;
-    View view;
+    Views views;
     mutable std::mutex mutex;  ///< of `attendance`
     Attendance attendance;
     std::mutex closing;
@@ -94,26 +94,26 @@ size_t Channel::client_count() const {
 }
 
 void Channel::take_settings(const Settings& settings) {
-    if (is_open()) parts_->view.take_settings(settings);
+    if (is_open()) parts_->views.take_settings(settings);
 }
 
 void Channel::add_animations(const std::string& name, const Animations& animations) {
-    if (is_open()) parts_->view.add_animations(name, animations);
+    if (is_open()) parts_->views.add_animations(name, animations);
 }
 
 void Channel::add_panel(const std::string& name, std::function<void(app::Widgets&)> function) {
-    if (is_open()) parts_->view.add_panel(name, std::move(function));
+    if (is_open()) parts_->views.add_panel(name, std::move(function));
 }
 
 void Channel::remove_panel(const std::string& name) {
-    if (is_open()) parts_->view.remove_panel(name);
+    if (is_open()) parts_->views.remove_panel(name);
 }
 
 void Channel::close() {
     const std::lock_guard lock(parts_->closing);
     if (!parts_->open.exchange(false)) return;
     parts_->mailbox.shut();
-    parts_->view.stop();
+    parts_->views.stop();
 }
 
 bool Channel::is_open() const {

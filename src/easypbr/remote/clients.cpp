@@ -9,12 +9,14 @@
 
 namespace easypbr::remote {
 
-Clients::Clients(Wire& wire, Inbox& inbox, Tokens tokens, size_t most_clients, HandOver hand_over)
+Clients::Clients(Wire& wire, Inbox& inbox, Tokens tokens, size_t most_clients, HandOver hand_over,
+                 OwnViewRules own_views)
     : wire_(wire),
       inbox_(inbox),
       tokens_(std::move(tokens)),
       most_clients_(most_clients),
-      hand_over_(hand_over) {}
+      hand_over_(hand_over),
+      own_views_(own_views) {}
 
 void Clients::opened(ClientId client) {
     const std::lock_guard lock(mutex_);
@@ -23,8 +25,12 @@ void Clients::opened(ClientId client) {
 
 void Clients::closed(ClientId client) {
     const std::lock_guard lock(mutex_);
-    if (clients_.erase(client) == 0) return;
-    if (controller_ == client) leave_control(client);
+    const auto found = clients_.find(client);
+    if (found == clients_.end()) return;
+    const ViewId view = found->second.view;
+    clients_.erase(found);
+    if (view != shared_view) groups_.erase(view);
+    if (groups_[shared_view].controller == client) leave_control(client);
     inbox_.wake();
 }
 
@@ -64,7 +70,7 @@ void Clients::admit(ClientId id, Client& client, const ClientMessage& message, d
     wire_.admit(id);
     wire_.send(id, std::make_shared<const std::string>(controls ? welcome_ : watcher_welcome_));
     inbox_.add({id, *hello, now});
-    if (controls && !controller_) return give_control(id);
+    if (controls && !groups_[shared_view].controller) return give_control(id);
     tell_control();
     pump(id, client, now);
 }
@@ -78,51 +84,126 @@ void Clients::obey(ClientId id, Client& client, ClientMessage message, double no
         return inbox_.wake();
     }
     if (const auto* decodes = std::get_if<Decodes>(&message)) return client.seat.decodes(decodes->h264, now);
+    if (const auto* wish = std::get_if<OwnView>(&message)) return switch_view(id, client, *wish, now);
     const auto* act = std::get_if<Act>(&message);
     if (act && act->what == Act::What::take_control) return take_control(id, client, now);
-    if (controller_ != id)
-        return wire_.send(
-            id, std::make_shared<const std::string>(notice_text("Somebody else controls this view", true)));
-    if (act && act->what == Act::What::leave_control) return leave_control(id);
-    if (!std::holds_alternative<Resize>(message)) last_input_s_ = now;
-    inbox_.add({id, std::move(message), now});
+    if (const std::string why = refusal(id, client, message); !why.empty()) return refuse(id, why);
+    if (act && act->what == Act::What::leave_control) {
+        if (client.view == shared_view) leave_control(id);
+        return;
+    }
+    if (!std::holds_alternative<Resize>(message)) groups_[client.view].last_input_s = now;
+    inbox_.add({id, std::move(message), now, client.view});
+}
+
+std::string Clients::refusal(ClientId id, const Client& client, const ClientMessage& message) const {
+    if (group(client.view)->controller != id) return "Somebody else controls this view";
+    if (client.view == shared_view) return {};
+    const auto* widget = std::get_if<SetWidget>(&message);
+    if (std::holds_alternative<ShowObject>(message) || std::holds_alternative<Animate>(message) ||
+        (widget && !widget->tool))
+        return "What all see is changed in the shared view";
+    const bool costs = std::holds_alternative<Shot>(message) || widget;
+    return costs && !client.may_control ? "This link is for watching only" : "";
+}
+
+void Clients::refuse(ClientId id, const std::string& why) {
+    wire_.send(id, std::make_shared<const std::string>(notice_text(why, true)));
+}
+
+std::string Clients::own_view_refusal(const Client& client) const {
+    if (own_views_.most == 0) return "There are no views of one's own here";
+    if (!client.may_control && !own_views_.for_watchers) return "This link is for watching only";
+    if (groups_.size() > own_views_.most)
+        return fmt::format("{} of {} views of clients' own are taken", own_views_.most, own_views_.most);
+    return {};
+}
+
+void Clients::switch_view(ClientId id, Client& client, const OwnView& wish, double now) {
+    if (wish.own == (client.view != shared_view)) return;
+    if (wish.own) {
+        if (const std::string why = own_view_refusal(client); !why.empty()) return refuse(id, why);
+        const bool had_control = groups_[shared_view].controller == id;
+        client.own_size = wish.size;
+        look_at(client, free_view());
+        groups_[client.view].controller = id;
+        if (had_control) leave_control(id);
+    } else {
+        groups_.erase(client.view);
+        look_at(client, shared_view);
+    }
+    inbox_.add({id, wish, now, client.view});
+    if (!wish.own && client.may_control && !groups_[shared_view].controller) return give_control(id);
+    tell_control();
+    pump(id, client, now);
+}
+
+/// What is on its way is answered still; the next picture is another view's.
+void Clients::look_at(Client& client, ViewId view) {
+    client.view = view;
+    client.frame = 0;
+    client.done = true;
+    client.seat.leave();
+}
+
+ViewId Clients::free_view() {
+    do ++last_view_;
+    while (groups_.contains(last_view_));
+    return last_view_;
+}
+
+const Clients::Group* Clients::group(ViewId view) const {
+    const auto found = groups_.find(view);
+    return found == groups_.end() ? nullptr : &found->second;
+}
+
+std::vector<OwnViewOf> Clients::own_views() const {
+    const std::lock_guard lock(mutex_);
+    std::vector<OwnViewOf> views;
+    for (const auto& [id, client] : clients_)
+        if (client.view != shared_view) views.push_back({client.view, !client.may_control, client.own_size});
+    return views;
 }
 
 void Clients::ack(ClientId id, Client& client, const Ack& ack, double now) {
     const size_t before = client.flow.count();
-    client.flow.drawn(ack.frame, ack.chunk, now);
-    const bool counts = client.flow.count() != before && controller_ == id;
-    if (counts && newest_ && newest_->moving)
-        quality_.drawn(client.flow.latency_s(), client.flow.least_latency_s(), now);
+    // The wire's thread was late twice: when it wrote, and when it read the answer.
+    client.flow.drawn(ack.frame, ack.chunk, now, {ack.busy_s, 2 * wire_.lag_s()});
+    Group& group = groups_[client.view];
+    const bool counts = client.flow.count() != before && group.controller == id;
+    if (counts && group.newest && group.newest->moving) group.quality.drawn(client.flow.queued_s(), now);
     pump(id, client, now);
     inbox_.wake();
 }
 
 void Clients::take_control(ClientId id, Client& client, double now) {
-    if (controller_ == id) return;
+    const Group& group = groups_[client.view];
+    if (group.controller == id) return;
     const bool is_free =
-        hand_over_ == HandOver::at_once || !controller_ || now - last_input_s_ > idle_control_s;
+        hand_over_ == HandOver::at_once || !group.controller || now - group.last_input_s > idle_control_s;
     if (client.may_control && is_free) return give_control(id);
     const std::string why =
         client.may_control ? "Who controls this view is using it" : "This link is for watching only";
-    wire_.send(id, std::make_shared<const std::string>(notice_text(why, true)));
+    refuse(id, why);
     if (client.may_control)
-        wire_.send(*controller_, std::make_shared<const std::string>(
-                                     notice_text("Somebody asks for control of this view", false)));
+        wire_.send(*group.controller, std::make_shared<const std::string>(
+                                          notice_text("Somebody asks for control of this view", false)));
 }
 
 /// The next in the order in which they came follows.
 void Clients::leave_control(ClientId id) {
-    controller_.reset();
+    groups_[shared_view].controller.reset();
     for (auto& [other, client] : clients_)
-        if (other != id && client.admitted && client.may_control) return give_control(other);
+        if (other != id && client.admitted && client.may_control && client.view == shared_view)
+            return give_control(other);
     tell_control();
 }
 
 void Clients::give_control(ClientId id) {
-    controller_ = id;
-    last_input_s_ = -1e9;
-    quality_ = {};
+    Group& group = groups_[shared_view];
+    group.controller = id;
+    group.last_input_s = -1e9;
+    group.quality = {};
     // Held buttons and keys of who had it before are released.
     Input released;
     released.event.kind = app::InputEvent::Kind::focus_lost;
@@ -132,10 +213,14 @@ void Clients::give_control(ClientId id) {
 }
 
 void Clients::tell_control() {
-    for (const auto& [id, client] : clients_)
-        if (client.admitted)
-            wire_.send(id, std::make_shared<const std::string>(control_text(
-                               controller_ == id, controller_.has_value(), client.may_control, admitted())));
+    for (const auto& [id, client] : clients_) {
+        if (!client.admitted) continue;
+        const std::optional<ClientId>& controller = group(client.view)->controller;
+        ControlReport report{controller == id, controller.has_value(), client.may_control, admitted()};
+        report.view = client.view;
+        report.may_have_own = own_views_.most > 0 && (client.may_control || own_views_.for_watchers);
+        wire_.send(id, std::make_shared<const std::string>(control_text(report)));
+    }
 }
 
 size_t Clients::admitted() const {
@@ -153,68 +238,77 @@ void Clients::offer_video(bool offered) {
     offers_video_ = offered;
 }
 
-VideoDemand Clients::demand() {
+VideoDemand Clients::demand(ViewId view) {
     const std::lock_guard lock(mutex_);
+    const auto found = groups_.find(view);
+    if (found == groups_.end()) return {};
+    double& last_key_s = found->second.last_key_s;
     const double now = now_seconds();
-    const bool may_begin = offers_video_ && now - last_key_s_ >= key_wait_s;
+    const bool may_begin = offers_video_ && now - last_key_s >= key_wait_s;
     VideoDemand demand;
     for (const auto& [id, client] : clients_) {
-        if (!client.admitted || client.paused) continue;
+        if (!client.looks_at(view)) continue;
         if (offers_video_ && client.seat.is_in())
             demand.video = true;
         else if (client.flow.has_room())
             (may_begin && client.seat.wants_key(now) ? demand.key : demand.jpeg) = true;
     }
-    if (demand.key) last_key_s_ = now;
+    if (demand.key) last_key_s = now;
     demand.video |= demand.key;
     return demand;
 }
 
-bool Clients::publish(Picture picture) {
+bool Clients::publish(ViewId view, Picture picture) {
     const uint32_t frame = picture.header.frame;
-    return take_newest({frame, false, std::move(picture), {}});
+    return take_newest(view, {frame, false, std::move(picture), {}});
 }
 
-bool Clients::publish(MovingPicture picture) {
+bool Clients::publish(ViewId view, MovingPicture picture) {
     const FrameHeader& header = picture.video ? picture.video->picture.header : picture.jpeg->header;
     const uint32_t frame = header.frame;
-    return take_newest({frame, true, std::move(picture.jpeg), std::move(picture.video)});
+    return take_newest(view, {frame, true, std::move(picture.jpeg), std::move(picture.video)});
 }
 
-bool Clients::take_newest(Newest newest) {
+bool Clients::take_newest(ViewId view, Newest newest) {
     const std::lock_guard lock(mutex_);
-    if (newest_ && newest.frame <= newest_->frame) return false;
-    newest_ = std::move(newest);
+    const auto found = groups_.find(view);
+    if (found == groups_.end()) return false;
+    std::optional<Newest>& known = found->second.newest;
+    if (known && newest.frame <= known->frame) return false;
+    known = std::move(newest);
     const double now = now_seconds();
-    for (auto& [id, client] : clients_) pump(id, client, now);
+    for (auto& [id, client] : clients_)
+        if (client.view == view) pump(id, client, now);
     return true;
 }
 
 void Clients::pump(ClientId id, Client& client, double now) {
     if (!client.admitted) return;
     pump_shot(id, client, now);
-    if (!newest_ || client.paused) return;
-    if (newest_->moving) return pump_moving(id, client, now);
-    if (client.frame != newest_->frame) {
-        client.frame = newest_->frame;
+    const std::optional<Newest>& newest = groups_[client.view].newest;
+    if (!newest || client.paused) return;
+    if (newest->moving) return pump_moving(id, client, now);
+    if (client.frame != newest->frame) {
+        client.frame = newest->frame;
         client.from = 0;
         client.chunk = 0;
         client.done = false;
     }
     while (!client.done && client.flow.has_chunk_room()) {
-        send_part(id, client, *newest_->picture, client.from, client.chunk, false, now);
-        client.done = client.from == newest_->picture->bytes->size();
+        send_part(id, client, *newest->picture, client.from, client.chunk, false, now);
+        client.done = client.from == newest->picture->bytes->size();
     }
 }
 
 /// As a whole: the next one replaces it.
 void Clients::pump_moving(ClientId id, Client& client, double now) {
-    if (client.frame == newest_->frame || !client.flow.has_room()) return;
-    client.frame = newest_->frame;
+    Group& group = groups_[client.view];
+    if (client.frame == group.newest->frame || !client.flow.has_room()) return;
+    client.frame = group.newest->frame;
     client.done = true;
     const Picture* picture = version_for(client, now);
     if (!picture) return;
-    if (controller_ == id) quality_.use_video(picture->header.codec == Codec::h264);
+    if (group.controller == id) group.quality.use_video(picture->header.codec == Codec::h264);
     size_t from = 0;
     uint16_t chunk = 0;
     send_part(id, client, *picture, from, chunk, true, now);
@@ -222,13 +316,14 @@ void Clients::pump_moving(ClientId id, Client& client, double now) {
 
 /// Null: it can do nothing with any, and waits for the next.
 const Picture* Clients::version_for(Client& client, double now) {
-    const auto& video = newest_->video;
+    const Newest& newest = *groups_[client.view].newest;
+    const auto& video = newest.video;
     if (video && client.seat.can_take(video->mark)) {
         client.seat.took(video->mark, now);
         return &video->picture;
     }
     if (video) client.seat.missed(now);
-    return newest_->picture ? &*newest_->picture : nullptr;
+    return newest.picture ? &*newest.picture : nullptr;
 }
 
 void Clients::pump_shot(ClientId id, Client& client, double now) {
@@ -250,7 +345,9 @@ void Clients::send_part(ClientId id, Client& client, const Picture& picture, siz
     packet.header.chunk = chunk++;
     packet.header.bytes = uint32_t(picture.bytes->size());
     if (from == picture.bytes->size()) packet.header.flags |= FrameHeader::last;
-    client.flow.sent(packet.header.frame, packet.header.chunk, packet.count, now);
+    const bool moves = packet.header.kind == FrameKind::moving;
+    const double pace_s = moves ? 1e-6 * std::max(packet.header.draw_us, packet.header.encode_us) : 0;
+    client.flow.sent(packet.header.frame, packet.header.chunk, packet.count, now, pace_s);
     wire_.send(id, std::move(packet));
 }
 
@@ -263,11 +360,11 @@ void Clients::send_shot(ClientId id, Picture picture) {
     pump(id, found->second, now_seconds());
 }
 
-void Clients::broadcast(const std::string& text) {
+void Clients::broadcast(ViewId view, const std::string& text) {
     const auto shared = std::make_shared<const std::string>(text);
     const std::lock_guard lock(mutex_);
     for (const auto& [id, client] : clients_)
-        if (client.admitted) wire_.send(id, shared);
+        if (client.admitted && client.view == view) wire_.send(id, shared);
 }
 
 void Clients::tell(ClientId client, const std::string& text) {
@@ -279,8 +376,8 @@ std::vector<ClientState> Clients::states() const {
     std::vector<ClientState> states;
     for (const auto& [id, client] : clients_)
         if (client.admitted)
-            states.push_back(
-                {id, controller_ == id, !client.may_control, client.paused, client.flow.latency_s()});
+            states.push_back({id, client.view, group(client.view)->controller == id, !client.may_control,
+                              client.paused, client.flow.latency_s()});
     return states;
 }
 
@@ -289,39 +386,43 @@ bool Clients::anybody() const {
     return admitted() > 0;
 }
 
-bool Clients::anybody_looks() const {
+bool Clients::anybody_looks(ViewId view) const {
     const std::lock_guard lock(mutex_);
-    return std::ranges::any_of(clients_,
-                               [](const auto& each) { return each.second.admitted && !each.second.paused; });
+    return std::ranges::any_of(clients_, [&](const auto& each) { return each.second.looks_at(view); });
 }
 
-const Clients::Client* Clients::looking_controller() const {
-    if (!controller_) return nullptr;
-    const Client& client = clients_.at(*controller_);
+const Clients::Client* Clients::looking_controller(const Group& group) const {
+    if (!group.controller) return nullptr;
+    const Client& client = clients_.at(*group.controller);
     return client.paused || client.flow.waits_s(now_seconds()) > silent_s ? nullptr : &client;
 }
 
-bool Clients::has_room(size_t coming) const {
+bool Clients::has_room(ViewId view, size_t coming) const {
     const std::lock_guard lock(mutex_);
-    if (const Client* controller = looking_controller()) return controller->flow.has_room(coming);
+    const Group* const group = this->group(view);
+    if (!group) return true;
+    if (const Client* controller = looking_controller(*group)) return controller->flow.has_room(coming);
     return std::ranges::any_of(clients_, [&](const auto& each) {
-        return each.second.admitted && !each.second.paused && each.second.flow.has_room(coming);
+        return each.second.looks_at(view) && each.second.flow.has_room(coming);
     });
 }
 
-bool Clients::has_delivered() const {
+bool Clients::has_delivered(ViewId view) const {
     const std::lock_guard lock(mutex_);
-    if (!newest_) return true;
+    const Group* const group = this->group(view);
+    if (!group || !group->newest) return true;
     const auto has = [&](const Client& client) {
-        return client.frame == newest_->frame && client.done && client.flow.count() == 0;
+        return client.frame == group->newest->frame && client.done && client.flow.count() == 0;
     };
-    if (const Client* controller = looking_controller()) return has(*controller);
-    return std::ranges::any_of(clients_, [&](const auto& each) { return has(each.second); });
+    if (const Client* controller = looking_controller(*group)) return has(*controller);
+    return std::ranges::any_of(
+        clients_, [&](const auto& each) { return each.second.view == view && has(each.second); });
 }
 
-WireQuality Clients::quality() const {
+WireQuality Clients::quality(ViewId view) const {
     const std::lock_guard lock(mutex_);
-    return quality_;
+    const Group* const group = this->group(view);
+    return group ? group->quality : WireQuality();
 }
 
 }  // namespace easypbr::remote

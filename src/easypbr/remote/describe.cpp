@@ -174,12 +174,14 @@ std::string scene_text(const Scene& scene, const std::string& selected, const st
     return written({{"kind", "scene"}, {"nodes", nodes}, {"selected", selected}, {"channel", channel}});
 }
 
-std::string control_text(bool controls, bool taken, bool may_control, size_t clients) {
+std::string control_text(const ControlReport& report) {
     return written({{"kind", "control"},
-                    {"controls", controls},
-                    {"taken", taken},
-                    {"may", may_control},
-                    {"clients", clients}});
+                    {"controls", report.controls},
+                    {"taken", report.taken},
+                    {"may", report.may_control},
+                    {"clients", report.clients},
+                    {"view", report.view},
+                    {"own", report.may_have_own}});
 }
 
 std::string notice_text(const std::string& text, bool is_error) {

@@ -46,7 +46,13 @@ std::string welcome_text(const std::string& session, bool watches_only);
 std::string settings_text(const FieldTexts& changed);
 std::string camera_message(const std::string& camera);
 std::string scene_text(const Scene& scene, const std::string& selected, const std::string& channel);
-std::string control_text(bool controls, bool taken, bool may_control, size_t clients);
+struct ControlReport {
+    bool controls = false, taken = false, may_control = false;
+    size_t clients = 0;
+    uint16_t view = 0;          ///< that the client looks at, as headers name it; 0: the shared one
+    bool may_have_own = false;  ///< a view of its own, unless there are too many
+};
+std::string control_text(const ControlReport& report);
 std::string notice_text(const std::string& text, bool is_error);
 std::string pick_text(uint32_t id, const std::optional<app::Pick>& pick, const Scene& scene);
 std::string animation_text(const std::vector<std::string>& names, size_t current, bool plays, double time_s,

@@ -8,30 +8,29 @@ namespace {
 
 constexpr double memory_s = 10;
 constexpr double decide_s = 0.5;
-constexpr double quick_s = 0.02;  ///< beyond the shortest time: the line has room
+constexpr double quick_s = 0.02;  ///< of waiting: the line has room
+constexpr double least_pace_s = 1.0 / 60, most_pace_s = 0.2;
 constexpr int best_quality = 80, worst_quality = 40;
 /// Of the bytes: what lowering the quality saves, before the resolution has to go down.
 constexpr double quality_share = 0.4, video_share = 0.125;
 
 }  // namespace
 
-void FlowControl::sent(uint32_t frame, uint32_t chunk, size_t bytes, double now_s) {
-    if (chunk == 0 && last_sent_ >= 0)
-        interval_ = 0.8 * interval_ + 0.2 * std::clamp(now_s - last_sent_, 0.005, 0.2);
-    if (chunk == 0) last_sent_ = now_s;
+void FlowControl::sent(uint32_t frame, uint32_t chunk, size_t bytes, double now_s, double pace_s) {
+    if (pace_s > 0) pace_ = 0.8 * pace_ + 0.2 * std::clamp(pace_s, least_pace_s, most_pace_s);
     on_way_.push_back({frame, chunk, bytes, now_s});
     bytes_ += bytes;
 }
 
-void FlowControl::drawn(uint32_t frame, uint32_t chunk, double now_s) {
+void FlowControl::drawn(uint32_t frame, uint32_t chunk, double now_s, const OffTheLine& off) {
     const auto found = std::ranges::find_if(
         on_way_, [&](const Sent& sent) { return sent.frame == frame && sent.chunk == chunk; });
     if (found == on_way_.end()) return;
     measure(now_s - found->sent_s, now_s);
+    queued_ = std::max(0.0, latency_ - off.page_s - off.server_s - least_latency_s());
     for (auto sent = on_way_.begin(); sent != found + 1; ++sent) bytes_ -= sent->bytes;
     on_way_.erase(on_way_.begin(), found + 1);
-    const bool queues = latency_ > least_latency_s() + queue_s;
-    chunks_ = queues ? std::max<size_t>(1, chunks_ / 2) : std::min(most_chunks, chunks_ + 1);
+    chunks_ = queued_ > queue_s ? std::max<size_t>(1, chunks_ / 2) : std::min(most_chunks, chunks_ + 1);
 }
 
 void FlowControl::measure(double latency_s, double now_s) {
@@ -49,12 +48,12 @@ double FlowControl::least_latency_s() const {
 }
 
 size_t FlowControl::window() const {
-    const double frames = std::ceil(least_latency_s() / interval_) + 1;
+    const double frames = std::ceil(least_latency_s() / pace_) + 1;
     return std::clamp(size_t(frames), least_window, most_window);
 }
 
-void WireQuality::drawn(double latency_s, double least_latency_s, double now_s) {
-    late_s_ += latency_s - least_latency_s;
+void WireQuality::drawn(double queued_s, double now_s) {
+    late_s_ += queued_s;
     ++pictures_;
     if (decided_ < 0) decided_ = now_s;
     if (now_s - decided_ < decide_s) return;

@@ -7,12 +7,19 @@
 
 namespace easypbr::remote {
 
+/// Seconds of an answer that the line did not take.
+struct OffTheLine {
+    double page_s = 0;    ///< the client, from the picture's arrival to its being drawn
+    double server_s = 0;  ///< the server's thread, which had other work before it wrote and before it read
+};
+
 /// Pictures on their way to a client. Times are in seconds, from any beginning.
 class FlowControl {
   public:
-    void sent(uint32_t frame, uint32_t chunk, size_t bytes, double now_s);
+    /// `pace_s`: how long another such picture takes to be made, drawing and encoding; 0: it is not known.
+    void sent(uint32_t frame, uint32_t chunk, size_t bytes, double now_s, double pace_s = 0);
     /// The client has drawn it, and with it all that was sent before. What was not sent is ignored.
-    void drawn(uint32_t frame, uint32_t chunk, double now_s);
+    void drawn(uint32_t frame, uint32_t chunk, double now_s, const OffTheLine& off = {});
 
     /// Another picture may be sent, beside so many that will be: the line does not run dry, and no more.
     bool has_room(size_t coming = 0) const {
@@ -28,6 +35,9 @@ class FlowControl {
     double latency_s() const { return latency_; }
     /// The shortest of the last 10 s.
     double least_latency_s() const;
+    /// How much longer than that the last one took, without what was not the line's: pictures wait there.
+    double queued_s() const { return queued_; }
+    /// As many as the line and the making of pictures hold: one drawn each time that one is answered.
     size_t window() const;
 
     static constexpr size_t least_window = 2, most_window = 8, most_chunks = 16;
@@ -45,19 +55,19 @@ class FlowControl {
 
     std::deque<Sent> on_way_;
     size_t bytes_ = 0, chunks_ = 4;
-    double latency_ = 0, interval_ = 1.0 / 30, last_sent_ = -1;
+    double latency_ = 0, queued_ = 0, pace_ = 1.0 / 30;
     double least_now_ = 0, least_before_ = 0,
            epoch_ = -1;  ///< shortest of this half of the 10 s, and of the last
 };
 
-/// How good moving pictures are, by how long they take to a client: the quality of a JPEG or the bit rate of
-/// a video goes first, then the resolution.
+/// How good moving pictures are, by how long they wait on the line to a client: the quality of a JPEG or the
+/// bit rate of a video goes first, then the resolution.
 class WireQuality {
   public:
     /// Which of both the client is sent.
     void use_video(bool video) { video_ = video; }
     /// To be told about every picture that was drawn.
-    void drawn(double latency_s, double least_latency_s, double now_s);
+    void drawn(double queued_s, double now_s);
 
     int jpeg_quality() const;
     /// Bits per second at most of a video whose pictures have that size at the best resolution.
@@ -75,7 +85,7 @@ class WireQuality {
     bool video_ = false;
     double share_ = 1;  ///< of the bytes that the best picture has
     double decided_ = -1;
-    double late_s_ = 0;  ///< beyond the shortest time, all pictures since it was decided together
+    double late_s_ = 0;  ///< all pictures since it was decided together
     int pictures_ = 0;
 };
 

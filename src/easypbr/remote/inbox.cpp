@@ -1,5 +1,7 @@
 #include "easypbr/remote/inbox.h"
 
+#include <algorithm>
+#include <iterator>
 #include <utility>
 
 namespace easypbr::remote {
@@ -19,9 +21,12 @@ double now_seconds() {
 void Inbox::add(Order order) {
     {
         const std::lock_guard lock(mutex_);
-        const bool merges = !orders_.empty() && move_of(order) && move_of(orders_.back()) &&
-                            orders_.back().from == order.from;
-        if (merges) orders_.pop_back();
+        // What comes between for other views changes nothing in this one.
+        const auto last = std::find_if(orders_.rbegin(), orders_.rend(),
+                                       [&](const Order& other) { return other.view == order.view; });
+        const bool merges =
+            last != orders_.rend() && move_of(order) && move_of(*last) && last->from == order.from;
+        if (merges) orders_.erase(std::next(last).base());
         orders_.push_back(std::move(order));
         if (orders_.size() > most_orders) orders_.pop_front();
     }
@@ -56,9 +61,9 @@ bool Inbox::is_closed() const {
     return closed_;
 }
 
-bool Inbox::has_orders() const {
+bool Inbox::has_orders(ViewId view) const {
     const std::lock_guard lock(mutex_);
-    return !orders_.empty();
+    return std::ranges::any_of(orders_, [&](const Order& order) { return order.view == view; });
 }
 
 void Inbox::wait(double seconds) {
@@ -67,12 +72,13 @@ void Inbox::wait(double seconds) {
     woken_ = false;
 }
 
-std::vector<Order> Inbox::take() {
+std::vector<Order> Inbox::take(ViewId view) {
     const std::lock_guard lock(mutex_);
-    std::vector<Order> taken(std::make_move_iterator(orders_.begin()),
-                             std::make_move_iterator(orders_.end()));
-    orders_.clear();
-    return taken;
+    const auto taken = std::stable_partition(orders_.begin(), orders_.end(),
+                                             [&](const Order& order) { return order.view != view; });
+    std::vector<Order> orders(std::make_move_iterator(taken), std::make_move_iterator(orders_.end()));
+    orders_.erase(taken, orders_.end());
+    return orders;
 }
 
 std::vector<std::function<void()>> Inbox::take_tasks() {

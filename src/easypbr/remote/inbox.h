@@ -22,6 +22,7 @@ struct Order {
     ClientId from = 0;
     ClientMessage message;
     double arrived_s = 0;
+    ViewId view = shared_view;  ///< that the client looks at
 };
 
 /// Filled by any thread, emptied by one.
@@ -37,10 +38,12 @@ class Inbox {
     void close();
     bool is_closed() const;
 
-    bool has_orders() const;
+    /// For this view.
+    bool has_orders(ViewId view = shared_view) const;
     /// Until something comes, wake() is called, or the time is over.
     void wait(double seconds);
-    std::vector<Order> take();
+    /// Those for this view.
+    std::vector<Order> take(ViewId view = shared_view);
     std::vector<std::function<void()>> take_tasks();
 
     static constexpr size_t most_orders = 4096;

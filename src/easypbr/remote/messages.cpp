@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 using Kind = app::InputEvent::Kind;
 
-constexpr double most_pixels = 1e5, most_seconds = 1e12;
+constexpr double most_pixels = 1e5, most_seconds = 1e12, most_busy_s = 3600;
 constexpr size_t name_length = 256, path_length = 4096, text_length = 8192;
 
 /// The members of a message, each asked for once.
@@ -113,7 +113,8 @@ ClientMessage hello_of(Members& members) {
 
 ClientMessage ack_of(Members& members) {
     const uint32_t frame = members.count("frame");
-    return Ack{frame, members.count("chunk")};
+    const uint32_t chunk = members.count("chunk");
+    return Ack{frame, chunk, members.number("busy", 0, most_busy_s)};
 }
 
 ClientMessage pointer_of(Members& members) {
@@ -158,6 +159,11 @@ ClientMessage turn_of(Members& members) {
 
 ClientMessage resize_of(Members& members) {
     return Resize{picture_size(members, most_live_side)};
+}
+
+ClientMessage own_view_of(Members& members) {
+    const bool own = members.flag("own");
+    return OwnView{own, picture_size(members, most_live_side)};
 }
 
 ClientMessage pause_of(Members& members) {
@@ -243,11 +249,12 @@ using Reader = ClientMessage (*)(Members&);
 
 const std::map<std::string, Reader>& readers() {
     static const std::map<std::string, Reader> readers = {
-        {"hello", hello_of},     {"ack", ack_of},         {"pointer", pointer_of}, {"key", key_message_of},
-        {"blur", blur_of},       {"turn", turn_of},       {"resize", resize_of},   {"pause", pause_of},
-        {"decodes", decodes_of}, {"set", set_of},         {"show", show_of},       {"select", select_of},
-        {"pick", pick_of},       {"channel", channel_of}, {"shot", shot_of},       {"camera", camera_of},
-        {"widget", widget_of},   {"tool", tool_of},       {"animate", animate_of}, {"act", act_of}};
+        {"hello", hello_of},   {"ack", ack_of},         {"pointer", pointer_of}, {"key", key_message_of},
+        {"blur", blur_of},     {"turn", turn_of},       {"resize", resize_of},   {"view", own_view_of},
+        {"pause", pause_of},   {"decodes", decodes_of}, {"set", set_of},         {"show", show_of},
+        {"select", select_of}, {"pick", pick_of},       {"channel", channel_of}, {"shot", shot_of},
+        {"camera", camera_of}, {"widget", widget_of},   {"tool", tool_of},       {"animate", animate_of},
+        {"act", act_of}};
     return readers;
 }
 

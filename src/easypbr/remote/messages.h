@@ -32,6 +32,7 @@ struct Hello {
 struct Ack {
     uint32_t frame = 0;
     uint32_t chunk = 0;
+    double busy_s = 0;  ///< from its arrival in the page to its being drawn
 };
 /// What mouse, touch and keys did; `id` grows, pictures name the last one that they show.
 struct Input {
@@ -45,6 +46,11 @@ struct Turn {
 };
 struct Resize {
     Vec2i size{1, 1};
+};
+/// Asks for a camera and settings of one's own, of the same scene; or for the shared ones again.
+struct OwnView {
+    bool own = false;
+    Vec2i size{1, 1};  ///< of the client's canvas, pixels
 };
 /// A client that cannot be seen asks for no pictures.
 struct Pause {
@@ -100,8 +106,9 @@ struct Act {
     enum class What { fit, undo, redo, take_control, leave_control, reset } what = What::fit;
 };
 
-using ClientMessage = std::variant<Hello, Ack, Input, Turn, Resize, Pause, Decodes, SetField, ShowObject,
-                                   Select, PickAt, SetChannel, Shot, SetCamera, SetWidget, Animate, Act>;
+using ClientMessage =
+    std::variant<Hello, Ack, Input, Turn, Resize, OwnView, Pause, Decodes, SetField, ShowObject, Select,
+                 PickAt, SetChannel, Shot, SetCamera, SetWidget, Animate, Act>;
 
 /// Throws ProtocolError for text that is no JSON object, of an unknown kind, or whose members are missing,
 /// unknown, of another type, not finite or out of range.

@@ -5,14 +5,14 @@
 
 #include "easypbr/io/video/video_stream.h"
 #include "easypbr/remote/encoder.h"
+#include "easypbr/remote/view_clients.h"
 
 namespace easypbr::remote {
 
 /// Used by one thread.
 class MovingPictures {
   public:
-    /// `clients` must outlive it.
-    explicit MovingPictures(Clients& clients) : clients_(clients) {}
+    explicit MovingPictures(ViewClients clients) : clients_(clients) {}
 
     /// Codes a picture as the clients need it, and publishes it.
     void code(EncodeJob job);
@@ -23,7 +23,7 @@ class MovingPictures {
     void open_for(const EncodeJob& job);
     void follow_rate(const EncodeJob& job);
 
-    Clients& clients_;
+    ViewClients clients_;
     std::unique_ptr<io::VideoStream> stream_;
     Vec2i size_{0, 0};
     uint32_t last_ = 0;  ///< number of the last picture of the stream that was published; 0: none

@@ -7,6 +7,8 @@
 #include <sys/socket.h>
 #include <sys/stat.h>
 
+#include <algorithm>
+#include <atomic>
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/local/stream_protocol.hpp>
@@ -19,12 +21,15 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/remote/connection.h"
+#include "easypbr/remote/inbox.h"
 
 namespace easypbr::remote {
 namespace {
 
 using Tcp = net::ip::tcp;
 using Local = net::local::stream_protocol;
+
+constexpr double lag_memory = 0.8;
 
 void remove_stale(const std::filesystem::path& path) {
     std::error_code ignored;
@@ -65,11 +70,15 @@ class Network::Loop : public Owner, public std::enable_shared_from_this<Network:
         remove_socket();
     }
 
+    double lag_s() const { return lag_s_; }
+
     int port() const { return options_.socket.empty() ? port_ : 0; }
 
     /// Has the loop's thread do something with a connection that is still there.
     void with(ClientId client, std::function<void(Connection&)> work) {
-        net::post(context_, [this, client, work = std::move(work)] {
+        net::post(context_, [this, client, work = std::move(work), given_s = now_seconds()] {
+            // The longest of late, which a few quick ones do not hide.
+            lag_s_ = std::max(now_seconds() - given_s, lag_memory * lag_s_);
             const auto found = connections_.find(client);
             // Alive while it works: what it does may end it.
             if (found == connections_.end()) return;
@@ -201,6 +210,7 @@ class Network::Loop : public Owner, public std::enable_shared_from_this<Network:
     std::map<ClientId, std::shared_ptr<Connection>> connections_;
     ClientId next_ = 1;
     int port_ = 0;
+    std::atomic<double> lag_s_ = 0;
     bool stopping_ = false, bound_ = false;
     std::thread thread_;
 };
@@ -233,6 +243,10 @@ void Network::send(ClientId client, SharedText text) {
 
 void Network::send(ClientId client, Packet packet) {
     loop_->with(client, [packet = std::move(packet)](Connection& connection) { connection.send(packet); });
+}
+
+double Network::lag_s() const {
+    return loop_->lag_s();
 }
 
 void Network::close(ClientId client, CloseCode code, const std::string& reason, double delay_s) {

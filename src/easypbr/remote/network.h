@@ -38,6 +38,7 @@ class Network : public Wire {
     void admit(ClientId client) override;
     void send(ClientId client, SharedText text) override;
     void send(ClientId client, Packet packet) override;
+    double lag_s() const override;
     void close(ClientId client, CloseCode code, const std::string& reason, double delay_s) override;
 
     /// Limits on messages, bytes, and what a client may leave unread.

@@ -9,18 +9,23 @@
 #include "easypbr/core/log.h"
 #include "easypbr/remote/moving_pictures.h"
 #include "easypbr/remote/network.h"
-#include "easypbr/remote/view.h"
+#include "easypbr/remote/views.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/scene/settings.h"
 
 namespace easypbr::remote {
 namespace {
 
+constexpr int most_own_views = 64;
+
 NetworkOptions network_options(const ServeOptions& options) {
     if (options.port < 0 || options.port > 65535)
         throw ArgumentError(fmt::format("port: expected 0 to 65535, got {}", options.port));
     if (options.max_clients < 1 || options.max_clients > 1000)
         throw ArgumentError(fmt::format("max_clients: expected 1 to 1000, got {}", options.max_clients));
+    if (options.own_views < 0 || options.own_views > most_own_views)
+        throw ArgumentError(
+            fmt::format("own_views: expected 0 to {}, got {}", most_own_views, options.own_views));
     NetworkOptions network;
     network.bind = options.bind;
     network.port = options.port;
@@ -52,12 +57,13 @@ struct Server::Parts {
         : options(given),
           tokens(load_tokens(given.token_file)),
           network(network_options(given)),
-          clients(network, inbox, tokens, size_t(given.max_clients)),
-          view(scene, settings, inbox, clients) {
+          clients(network, inbox, tokens, size_t(given.max_clients), HandOver::when_idle,
+                  {size_t(given.own_views), given.own_views_for_watchers}),
+          views(scene, settings, inbox, clients) {
         const std::string session = random_token().substr(0, 16);
         clients.set_welcome(welcome_text(session, false), welcome_text(session, true));
         clients.offer_video(offers_video(given));
-        view.start();
+        views.start();
         network.start(clients);
     }
 
@@ -79,7 +85,7 @@ struct Server::Parts {
     Inbox inbox;
     Network network;
     Clients clients;
-    View view;
+    Views views;
     std::mutex closing;
     std::atomic<bool> open = true;
 };
@@ -117,31 +123,32 @@ std::vector<ServerClient> Server::clients() const {
     std::vector<ServerClient> clients;
     if (!is_open()) return clients;
     for (const ClientState& state : parts_->clients.states())
-        clients.push_back({state.id, state.controls, state.watches_only, state.latency_s});
+        clients.push_back(
+            {state.id, state.controls, state.watches_only, state.latency_s, state.view != shared_view});
     return clients;
 }
 
 void Server::take_settings(const Settings& settings) {
-    if (is_open()) parts_->view.take_settings(settings);
+    if (is_open()) parts_->views.take_settings(settings);
 }
 
 void Server::add_animations(const std::string& name, const Animations& animations) {
-    if (is_open()) parts_->view.add_animations(name, animations);
+    if (is_open()) parts_->views.add_animations(name, animations);
 }
 
 void Server::add_panel(const std::string& name, std::function<void(app::Widgets&)> function) {
-    if (is_open()) parts_->view.add_panel(name, std::move(function));
+    if (is_open()) parts_->views.add_panel(name, std::move(function));
 }
 
 void Server::remove_panel(const std::string& name) {
-    if (is_open()) parts_->view.remove_panel(name);
+    if (is_open()) parts_->views.remove_panel(name);
 }
 
 void Server::close() {
     const std::lock_guard lock(parts_->closing);
     if (!parts_->open.exchange(false)) return;
     parts_->network.stop();
-    parts_->view.stop();
+    parts_->views.stop();
 }
 
 bool Server::is_open() const {

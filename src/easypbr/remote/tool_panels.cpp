@@ -9,21 +9,28 @@
 namespace easypbr::remote {
 namespace {
 
-using Tool = void (*)(RecordedWidgets&, ToolState&);
+struct Tool {
+    void (*draw)(RecordedWidgets&, ToolState&);
+    bool changes_scene;
+};
 
 const std::map<std::string, Tool>& tools() {
-    static const std::map<std::string, Tool> tools = {{"Object", object_tool},
-                                                      {"Lights", lights_tool},
-                                                      {"Camera path", path_tool},
-                                                      {"Recording", recording_tool}};
+    static const std::map<std::string, Tool> tools = {{"Object", {object_tool, true}},
+                                                      {"Lights", {lights_tool, true}},
+                                                      {"Camera path", {path_tool, false}},
+                                                      {"Recording", {recording_tool, false}}};
     return tools;
 }
 
 }  // namespace
 
+bool ToolPanels::has(const std::string& name) const {
+    const auto found = tools().find(name);
+    return found != tools().end() && (whole_ || !found->second.changes_scene);
+}
+
 void ToolPanels::edit(const SetWidget& message) {
-    if (!tools().contains(message.panel))
-        throw ArgumentError(fmt::format("there is no panel '{}'", message.panel));
+    if (!has(message.panel)) throw ArgumentError(fmt::format("there is no panel '{}'", message.panel));
     memories_[message.panel].edits[{message.name, message.use}] = message.value;
 }
 
@@ -32,7 +39,7 @@ std::string ToolPanels::recorded(const std::string& name) {
     RecordedWidgets widgets(memory);
     const auto notify = [&](const std::string& text) { state_.live.notifications().add(text, true); };
     try {
-        tools().at(name)(widgets, state_);
+        tools().at(name).draw(widgets, state_);
     } catch (const Error& error) {
         notify(error.what());
     }
@@ -46,6 +53,7 @@ std::string ToolPanels::recorded(const std::string& name) {
 std::vector<std::string> ToolPanels::news() {
     std::vector<std::string> news;
     for (const auto& [name, tool] : tools()) {
+        if (!has(name)) continue;
         std::string text = recorded(name);
         std::string& told = told_[name];
         if (told == text) continue;

@@ -28,8 +28,8 @@ void recording_tool(RecordedWidgets& ui, ToolState& state);
 
 class ToolPanels {
   public:
-    /// All of the state must outlive it.
-    explicit ToolPanels(ToolState& state) : state_(state) {}
+    /// All of the state must outlive it. `whole`: with those that change the scene.
+    ToolPanels(ToolState& state, bool whole) : state_(state), whole_(whole) {}
 
     /// Throws ArgumentError when there is no such panel.
     void edit(const SetWidget& message);
@@ -40,9 +40,11 @@ class ToolPanels {
     std::vector<std::string> told() const;
 
   private:
+    bool has(const std::string& name) const;
     std::string recorded(const std::string& name);
 
     ToolState& state_;
+    const bool whole_;
     std::map<std::string, PanelMemory> memories_;
     std::map<std::string, std::string> told_;
 };

@@ -1,75 +1,61 @@
 #include "easypbr/remote/view.h"
 
-#include <pthread.h>
-
 #include <algorithm>
 #include <utility>
 
 #include "easypbr/app/camera_text.h"
 #include "easypbr/core/error.h"
-#include "easypbr/core/interrupt.h"
 #include "easypbr/core/log.h"
 #include "easypbr/remote/view_state.h"
 #include "easypbr/scene/animation.h"
 
 namespace easypbr::remote {
 
-View::View(const Scene& scene, const Settings& settings, Inbox& inbox, Clients& clients)
+View::View(const Scene& scene, const Settings& settings, Inbox& inbox, ViewClients clients)
     : inbox_(inbox), clients_(clients), own_(std::make_unique<Own>(scene, settings, clients)) {}
 
+View::View(View& shared, Inbox& inbox, ViewClients clients, const OwnViewOf& own)
+    : inbox_(inbox), clients_(clients), own_(std::make_unique<Own>(*shared.own_, clients, own)) {}
+
 View::~View() {
-    stop();
+    end();
 }
 
-void View::start() {
-    thread_ = std::thread([this] { run(); });
-    ::pthread_setname_np(thread_.native_handle(), "easypbr view");
-}
-
-void View::stop() {
-    inbox_.close();
-    if (thread_.joinable()) thread_.join();
-    // The program's functions may hold what holds the view.
-    inbox_.take_tasks();
+void View::end() {
     own_->live.panels() = {};
     own_->live.stop_recording();
     own_->videos.clear();
 }
 
-void View::run() {
-    // What is drawn when the server ends is given up.
-    const InterruptScope scope([this] { return inbox_.is_closed(); });
-    while (!inbox_.is_closed()) try {
-            step();
-        } catch (const Interrupted&) {
-            continue;
-        } catch (const std::exception& error) {
-            log_warning(std::string("served view: ") + error.what());
-            inbox_.wait(1);
-        }
-}
-
 bool View::waits_for_clients() const {
-    return (inbox_.has_orders() || is_moving()) && !clients_.has_room(own_->moving.pending());
+    return (has_orders() || is_moving()) && !clients_.has_room(own_->moving.pending());
 }
 
-void View::step() {
-    for (const auto& task : inbox_.take_tasks()) task();
-    if (!clients_.anybody()) return inbox_.wait(60);
-    if (!clients_.anybody_looks() && !own_->live.recording().is_running()) {
-        act(inbox_.take());
+double View::step(bool refines) {
+    Own& own = *own_;
+    if (!clients_.anybody_looks() && !own.live.recording().is_running()) {
+        act(inbox_.take(clients_.view()));
         tell_changes();
-        return inbox_.wait(60);
+        return 60;
     }
     // What the line holds back is drawn later, with the newest camera.
-    if (waits_for_clients()) return inbox_.wait(0.1);
-    act(inbox_.take());
-    draw();
+    if (waits_for_clients()) return 0.1;
+    act(inbox_.take(clients_.view()));
+    draw(refines);
     tell_changes();
-    Own& own = *own_;
+    const bool is_held = !refines && wants_refinement();
+    if ((own.live.is_busy() && !is_held) || has_orders()) return 0;
     const bool waits = is_moving() || own.owes_still || own.live.recording().is_running();
-    if (!own.live.is_busy() && !inbox_.has_orders())
-        inbox_.wait(waits ? 0.01 : rests() ? 2 * look_s : look_s);
+    return waits ? 0.01 : rests() ? 2 * look_s : look_s;
+}
+
+bool View::is_quick() const {
+    return clients_.anybody_looks() && (is_moving() || own_->live.navigation().is_moving());
+}
+
+bool View::wants_refinement() const {
+    const app::LivePicture& picture = own_->live.picture();
+    return clients_.anybody_looks() && !is_quick() && !picture.has_failed() && !picture.is_complete();
 }
 
 bool View::rests() const {
@@ -77,7 +63,7 @@ bool View::rests() const {
 }
 
 bool View::is_moving() const {
-    return now_seconds() - own_->last_change_s < rest_s || own_->player.is_playing() ||
+    return now_seconds() - own_->last_change_s < rest_s || own_->scene_player.is_playing() ||
            own_->live.path().editor.is_playing() || own_->live.recording().is_path();
 }
 
@@ -99,13 +85,14 @@ void View::obey(const Order& order) {
     std::visit([&](const auto& message) { obey(order.from, message); }, order.message);
 }
 
-void View::draw() {
+void View::draw(bool refines) {
     Own& own = *own_;
     own.clock.tick();
     const bool moving = is_moving();
     app::LiveNeeds needs;
     needs.moving = moving;
     needs.resolution = clients_.quality().resolution();
+    needs.refines = refines;
     const uint64_t pictures = own.live.picture().statistics().pictures;
     const bool drew = own.live.draw(needs);
     own.live.end_frame(needs);
@@ -123,6 +110,7 @@ void View::send_picture(bool drew) {
     const app::LivePicture& picture = own.live.picture();
     if (picture.has_failed() || !picture.texture()) return;
     if (drew && picture.statistics().frames <= 1) own.owes_still = true;
+    own.has_news |= drew;
     if (is_moving() || own.live.navigation().is_moving()) {
         if (drew) send_moving();
         return;
@@ -134,7 +122,8 @@ void View::send_picture(bool drew) {
     const int frames = picture.statistics().frames;
     const bool is_step = (frames & (frames - 1)) == 0;
     const bool in_time = now_seconds() - own.last_still_s >= rest_s;
-    if (drew && is_step && in_time && !own.stills.is_busy() && clients_.has_delivered()) send_still(false);
+    if (own.has_news && is_step && in_time && !own.stills.is_busy() && clients_.has_delivered())
+        send_still(false);
 }
 
 FrameHeader View::header(FrameKind kind, Codec codec) {
@@ -144,8 +133,9 @@ FrameHeader View::header(FrameKind kind, Codec codec) {
     FrameHeader header;
     header.kind = kind;
     header.codec = codec;
-    header.frame = ++own.frame;
+    header.frame = clients_.next_frame();
     header.input = own.input;
+    header.view = clients_.view();
     header.refined = uint16_t(std::min(statistics.frames, 65535));
     header.total = uint16_t(std::min(statistics.total, 65535));
     header.draw_us = uint32_t(statistics.frame_seconds * 1e6);
@@ -164,6 +154,7 @@ void View::send_moving() {
 void View::send_still(bool exact) {
     Own& own = *own_;
     own.last_still_s = now_seconds();
+    own.has_news = false;
     FrameHeader head = header(FrameKind::still, exact ? Codec::png : Codec::jpeg);
     if (exact) head.flags |= FrameHeader::exact;
     own.owes_still = !exact;
@@ -175,7 +166,7 @@ void View::send_video() {
     Own& own = *own_;
     const bool is_new = own.videos.advance();
     if (std::exchange(own.tool_state.wants_video, false) || is_new) try {
-            clients_.send_shot(own.tool_user, own.videos.fetch(++own.frame));
+            clients_.send_shot(own.tool_user, own.videos.fetch(clients_.next_frame()));
         } catch (const Error& error) {
             own.live.notifications().add(error.what(), true);
         }
@@ -227,10 +218,6 @@ void View::tell_everything(ClientId client) {
 }
 
 void View::take_settings(const Settings& settings) {
-    inbox_.add([this, given = std::make_shared<const Settings>(settings)] { take_now(*given); });
-}
-
-void View::take_now(const Settings& settings) {
     Own& own = *own_;
     for (const Field& field : fields()) {
         const Value now = field.get(settings), before = field.get(own.given);
@@ -242,22 +229,17 @@ void View::take_now(const Settings& settings) {
 }
 
 void View::add_animations(const std::string& name, const Animations& animations) {
-    inbox_.add([this, name, animations] { own_->player.add(name, animations); });
+    own_->player.add(name, animations);
 }
 
-void View::add_panel(const std::string& name, app::PanelFunction function) {
-    app::UserPanels().add(name, function);  // What is wrong is told here.
-    inbox_.add([this, name, function = std::move(function)] {
-        own_->live.panels().add(name, function);
-        own_->panel_memories.erase(name);
-    });
+void View::add_panel(const std::string& name, const app::PanelFunction& function) {
+    own_->live.panels().add(name, function);
+    own_->panel_memories.erase(name);
 }
 
 void View::remove_panel(const std::string& name) {
-    inbox_.add([this, name] {
-        if (own_->live.panels().revision(name) > 0) own_->live.panels().remove(name);
-        own_->panel_memories.erase(name);
-    });
+    if (own_->live.panels().revision(name) > 0) own_->live.panels().remove(name);
+    own_->panel_memories.erase(name);
 }
 
 }  // namespace easypbr::remote

@@ -1,15 +1,14 @@
-// View: the thread that draws what clients see.
+// View: what some clients see, through one camera.
 #pragma once
 
 #include <memory>
 #include <string>
-#include <thread>
 
 #include "easypbr/app/live_drawing.h"
-#include "easypbr/remote/clients.h"
 #include "easypbr/remote/describe.h"
 #include "easypbr/remote/encoder.h"
 #include "easypbr/remote/inbox.h"
+#include "easypbr/remote/view_clients.h"
 
 namespace easypbr {
 class Animations;
@@ -19,27 +18,33 @@ namespace easypbr::remote {
 
 /// Pictures of a scene that a program may change meanwhile, with settings of its own. While something moves
 /// they are drawn quickly and sent as video or JPEG; at rest as JPEG of quality 95 while they are refined,
-/// and at the end as PNG, Session::render()'s picture bit for bit.
+/// and at the end as PNG, Session::render()'s picture bit for bit. Used by the thread of Views alone.
 class View {
   public:
-    /// Both must outlive it.
-    View(const Scene& scene, const Settings& settings, Inbox& inbox, Clients& clients);
-    /// Gives up what is drawn.
+    /// The shared one. `inbox` and what `clients` stands for must outlive it.
+    View(const Scene& scene, const Settings& settings, Inbox& inbox, ViewClients clients);
+    /// A client's own: it begins with camera and settings of the shared one, which must outlive it, and draws
+    /// the same scene by the same device.
+    View(View& shared, Inbox& inbox, ViewClients clients, const OwnViewOf& own);
     ~View();
     View(const View&) = delete;
     View& operator=(const View&) = delete;
 
-    void start();
-    /// Ends the thread. Nothing is published afterwards.
-    void stop();
+    /// Gives up what is recorded and forgets the program's panels.
+    void end();
 
-    /// Any thread: what the program has changed since the last call is changed here; what clients have
-    /// changed stays.
+    /// Takes what clients have asked for, draws what is to be drawn and tells what has changed. Returns how
+    /// many seconds the next step may be waited for, 0 where there is more to do.
+    double step(bool refines);
+    /// Its pictures should come quickly, and somebody sees them.
+    bool is_quick() const;
+    /// Somebody looks at a picture at rest that is not drawn to its end.
+    bool wants_refinement() const;
+
+    /// What the program has changed since the last call is changed here; what clients have changed stays.
     void take_settings(const Settings& settings);
-    /// Any thread.
     void add_animations(const std::string& name, const Animations& animations);
-    /// Any thread; the function is called on the view's.
-    void add_panel(const std::string& name, app::PanelFunction function);
+    void add_panel(const std::string& name, const app::PanelFunction& function);
     void remove_panel(const std::string& name);
 
     /// Moving pictures are asked for until so long after the last input or change.
@@ -49,8 +54,7 @@ class View {
 
   private:
     struct Own;
-    void run();
-    void step();
+    bool has_orders() const { return inbox_.has_orders(clients_.view()); }
     bool waits_for_clients() const;
     /// Nothing has been asked for and nothing has changed for a second: the scene is looked at less often.
     bool rests() const;
@@ -60,6 +64,7 @@ class View {
     void obey(ClientId from, const Input& message);
     void obey(ClientId from, const Turn& message);
     void obey(ClientId from, const Resize& message);
+    void obey(ClientId from, const OwnView& message);
     void obey(ClientId from, const SetField& message);
     void obey(ClientId from, const ShowObject& message);
     void obey(ClientId from, const Select& message);
@@ -75,7 +80,7 @@ class View {
     void obey(ClientId, const Pause&) {}
     void obey(ClientId, const Decodes&) {}
 
-    void draw();
+    void draw(bool refines);
     void send_picture(bool drew);
     void send_moving();
     void send_still(bool exact);
@@ -85,12 +90,10 @@ class View {
     void tell_everything(ClientId client);
     void tell_notices();
     bool is_moving() const;
-    void take_now(const Settings& settings);
 
     Inbox& inbox_;
-    Clients& clients_;
+    ViewClients clients_;
     std::unique_ptr<Own> own_;
-    std::thread thread_;
 };
 
 }  // namespace easypbr::remote

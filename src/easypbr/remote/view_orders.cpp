@@ -10,15 +10,30 @@
 
 namespace easypbr::remote {
 
-View::Own::Own(const Scene& scene, const Settings& settings, Clients& clients)
+View::Own::Own(const Scene& scene, const Settings& settings, ViewClients clients)
     : session(scene),
+      scene_player(player),
       first(settings),
       given(settings),
+      tools(tool_state, true),
       moving_pictures(clients),
       moving([this](EncodeJob job) { moving_pictures.code(std::move(job)); }),
-      stills([&clients](EncodeJob job) { clients.publish(encode(std::move(job))); }) {
+      stills([clients](EncodeJob job) { clients.publish(encode(std::move(job))); }) {
     session.replace_settings(settings);
     clock.on_tick = [this] { player.update(); };
+}
+
+View::Own::Own(Own& shared, ViewClients clients, const OwnViewOf& own)
+    : session(shared.session.beside()),
+      scene_player(shared.player),
+      first(shared.first),
+      given(shared.given),
+      size(own.size),
+      tools(tool_state, false),
+      moving_pictures(clients),
+      moving([this](EncodeJob job) { moving_pictures.code(std::move(job)); }),
+      stills([clients](EncodeJob job) { clients.publish(encode(std::move(job))); }) {
+    live.channel = shared.live.channel;
 }
 
 std::string View::Own::camera_message() {
@@ -36,20 +51,22 @@ std::string View::Own::animation_message() const {
                           player.duration_s(), player.speed());
 }
 
-std::string View::Own::statistics_message(const Clients& clients) {
+std::string View::Own::statistics_message(const ViewClients& clients) {
     StatisticsReport report;
     report.drawing = live.picture().statistics();
     report.share = clients.quality().share();
     report.software = session.context_info().software;
-    for (const ClientState& client : clients.states())
-        if (client.controls) report.latency_s = client.latency_s;
+    if (const auto client = clients.controller()) report.latency_s = client->latency_s;
     return statistics_text(report);
 }
 
 void View::obey(ClientId from, const Hello& message) {
-    const auto states = clients_.states();
-    for (const ClientState& client : states)
-        if (client.id == from && client.controls) own_->size = message.size;
+    const auto controller = clients_.controller();
+    if (controller && controller->id == from) own_->size = message.size;
+    tell_everything(from);
+}
+
+void View::obey(ClientId from, const OwnView&) {
     tell_everything(from);
 }
 
@@ -119,8 +136,9 @@ void View::obey(ClientId from, const Shot& message) {
     header.kind = FrameKind::shot;
     header.codec = Codec::png;
     header.flags = FrameHeader::exact;
-    header.frame = ++own.frame;
+    header.frame = clients_.next_frame();
     header.input = message.id;
+    header.view = clients_.view();
     const Image image = own.session.render({message.size, own.session.settings().image.samples});
     clients_.send_shot(from, encode({image, header, 95}));
 }
@@ -129,7 +147,7 @@ void View::obey(ClientId, const SetCamera& message) {
     // What is inferred follows from the first view, not from where a link looks.
     if (!own_->has_drawn) {
         own_->live.begin_frame(own_->size, 0);
-        draw();
+        draw(false);
     }
     app::apply_camera_text(message.text, own_->session.settings());
     own_->last_change_s = now_seconds();

@@ -1,4 +1,4 @@
-// What a View's thread keeps; see view.cpp and view_orders.cpp.
+// What a View keeps; see view.cpp and view_orders.cpp.
 #pragma once
 
 #include <string>
@@ -12,26 +12,29 @@
 namespace easypbr::remote {
 
 struct View::Own {
-    Own(const Scene& scene, const Settings& settings, Clients& clients);
+    Own(const Scene& scene, const Settings& settings, ViewClients clients);
+    Own(Own& shared, ViewClients clients, const OwnViewOf& own);
 
     std::string camera_message();
     std::string scene_message();
     std::string animation_message() const;
-    std::string statistics_message(const Clients& clients);
+    std::string statistics_message(const ViewClients& clients);
 
     app::Session session;
     app::Clock clock;
     app::Recorder recorder{session, clock};
     app::AnimationPlayer player{clock};
     app::LiveDrawing live{session, recorder, player};
-    const Settings first;  ///< what a reset returns to
-    Settings given;        ///< of the program, at its last take_settings()
+    const app::AnimationPlayer& scene_player;  ///< that moves the scene
+    const Settings first;                      ///< what a reset returns to
+    Settings given;                            ///< of the program, at its last take_settings()
     Vec2i size{1280, 720};
 
-    uint32_t frame = 0, input = 0;
+    uint32_t input = 0;
     double last_frame_s = now_seconds(), last_change_s = -1, last_still_s = -1, waits_since_s = 0;
     bool has_drawn = false;
     bool owes_still = false;  ///< what is shown at rest has not been sent exactly
+    bool has_news = false;    ///< what is shown at rest has not been sent at all
 
     FieldTexts told;
     std::map<std::string, PanelMemory> panel_memories;
@@ -42,7 +45,7 @@ struct View::Own {
 
     VideoDownloads videos{live};
     ToolState tool_state{live, videos};
-    ToolPanels tools{tool_state};
+    ToolPanels tools;
     ClientId tool_user = 0;  ///< who used a tool last, and gets what is recorded
 
     MovingPictures moving_pictures;

@@ -13,6 +13,10 @@
 namespace easypbr::remote {
 
 using ClientId = uint64_t;
+/// Which camera and settings pictures are drawn with.
+using ViewId = uint16_t;
+/// All clients see it until they ask for a view of their own.
+inline constexpr ViewId shared_view = 0;
 using SharedText = std::shared_ptr<const std::string>;
 using SharedBytes = std::shared_ptr<const std::vector<std::byte>>;
 
@@ -49,6 +53,8 @@ class Wire {
     virtual void admit(ClientId client) = 0;
     virtual void send(ClientId client, SharedText text) = 0;
     virtual void send(ClientId client, Packet packet) = 0;
+    /// How late the wire's own thread has lately been for what it was given, because the machine is busy.
+    virtual double lag_s() const { return 0; }
     /// After `delay_s`.
     virtual void close(ClientId client, CloseCode code, const std::string& reason, double delay_s = 0) = 0;
 };
