@@ -144,6 +144,7 @@ bool LiveDrawing::is_busy() const {
 
 LiveShot LiveDrawing::shot(const LiveNeeds& needs) {
     LiveShot shot{size_, channel, is_moving(needs), needs.resolution, needs.pass_times, needs.surfaces};
+    shot.longest_s = needs.longest_s;
     shot.refines = needs.refines;
     shot.motion = [this](const Camera& now) { return shown_motion(now); };
     shot.motion_key = {player_.speed(), form_.fps};

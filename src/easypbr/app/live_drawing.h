@@ -63,6 +63,7 @@ struct LiveNeeds {
     bool pass_times = false;  ///< see LiveShot
     bool surfaces = false;    ///< see LiveShot
     double resolution = 1;    ///< see LiveShot
+    double longest_s = 0.07;  ///< see LiveShot
     bool refines = true;      ///< see LiveShot
 };
 

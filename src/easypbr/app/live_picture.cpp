@@ -14,8 +14,8 @@ namespace {
 
 /// A picture of fewer frames is worse than a single one, whose edges are smoothed.
 constexpr int least_frames = 4;
-/// What a frame may take while something moves, and the resolutions that it may have for that.
-constexpr double slow_seconds = 0.07, quick_seconds = 0.03;
+/// Frames that take less than this share of what they may can be larger; the least resolution.
+constexpr double quick_share = 0.43;
 constexpr double lowest_reduction = 0.25;
 
 Vec2i reduced(Vec2i size, double factor) {
@@ -115,8 +115,8 @@ void LivePicture::draw_quickly(const LiveShot& shot, bool adapt) {
         show_picture(drawn);
         gl::finish();
     }
-    if (adapt && seconds > slow_seconds) reduction_ = std::max(lowest_reduction, reduction_ * 0.75);
-    if (adapt && seconds < quick_seconds) reduction_ = std::min(1.0, reduction_ * 1.2);
+    if (adapt && seconds > shot.longest_s) reduction_ = std::max(lowest_reduction, reduction_ * 0.75);
+    if (adapt && seconds < quick_share * shot.longest_s) reduction_ = std::min(1.0, reduction_ * 1.2);
     statistics_.frame_seconds = seconds;
     statistics_.size = shown_.size;
     ++statistics_.pictures;

@@ -345,9 +345,7 @@ void Clients::send_part(ClientId id, Client& client, const Picture& picture, siz
     packet.header.chunk = chunk++;
     packet.header.bytes = uint32_t(picture.bytes->size());
     if (from == picture.bytes->size()) packet.header.flags |= FrameHeader::last;
-    const bool moves = packet.header.kind == FrameKind::moving;
-    const double pace_s = moves ? 1e-6 * std::max(packet.header.draw_us, packet.header.encode_us) : 0;
-    client.flow.sent(packet.header.frame, packet.header.chunk, packet.count, now, pace_s);
+    client.flow.sent(packet.header.frame, packet.header.chunk, packet.count, now);
     wire_.send(id, std::move(packet));
 }
 

@@ -157,8 +157,7 @@ void Connection::write() {
         parts[0] = net::buffer(*std::get<SharedText>(item));
     }
     socket_.binary(packet != nullptr);
-    socket_.async_write(parts,
-                        [self = shared_from_this()](Code error, size_t) { self->on_written(error); });
+    socket_.async_write(parts, [self = shared_from_this()](Code error, size_t) { self->on_written(error); });
 }
 
 void Connection::on_written(Code error) {

@@ -9,15 +9,16 @@ namespace {
 constexpr double memory_s = 10;
 constexpr double decide_s = 0.5;
 constexpr double quick_s = 0.02;  ///< of waiting: the line has room
-constexpr double least_pace_s = 1.0 / 60, most_pace_s = 0.2;
 constexpr int best_quality = 80, worst_quality = 40;
 /// Of the bytes: what lowering the quality saves, before the resolution has to go down.
 constexpr double quality_share = 0.4, video_share = 0.125;
 
 }  // namespace
 
-void FlowControl::sent(uint32_t frame, uint32_t chunk, size_t bytes, double now_s, double pace_s) {
-    if (pace_s > 0) pace_ = 0.8 * pace_ + 0.2 * std::clamp(pace_s, least_pace_s, most_pace_s);
+void FlowControl::sent(uint32_t frame, uint32_t chunk, size_t bytes, double now_s) {
+    if (chunk == 0 && last_sent_ >= 0)
+        interval_ = 0.8 * interval_ + 0.2 * std::clamp(now_s - last_sent_, 0.005, 0.2);
+    if (chunk == 0) last_sent_ = now_s;
     on_way_.push_back({frame, chunk, bytes, now_s});
     bytes_ += bytes;
 }
@@ -48,7 +49,7 @@ double FlowControl::least_latency_s() const {
 }
 
 size_t FlowControl::window() const {
-    const double frames = std::ceil(least_latency_s() / pace_) + 1;
+    const double frames = std::ceil(least_latency_s() / interval_) + 1;
     return std::clamp(size_t(frames), least_window, most_window);
 }
 

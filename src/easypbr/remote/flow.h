@@ -16,8 +16,7 @@ struct OffTheLine {
 /// Pictures on their way to a client. Times are in seconds, from any beginning.
 class FlowControl {
   public:
-    /// `pace_s`: how long another such picture takes to be made, drawing and encoding; 0: it is not known.
-    void sent(uint32_t frame, uint32_t chunk, size_t bytes, double now_s, double pace_s = 0);
+    void sent(uint32_t frame, uint32_t chunk, size_t bytes, double now_s);
     /// The client has drawn it, and with it all that was sent before. What was not sent is ignored.
     void drawn(uint32_t frame, uint32_t chunk, double now_s, const OffTheLine& off = {});
 
@@ -37,7 +36,7 @@ class FlowControl {
     double least_latency_s() const;
     /// How much longer than that the last one took, without what was not the line's: pictures wait there.
     double queued_s() const { return queued_; }
-    /// As many as the line and the making of pictures hold: one drawn each time that one is answered.
+    /// As many as were sent in the shortest time, and one: it grows for as long as more get through.
     size_t window() const;
 
     static constexpr size_t least_window = 2, most_window = 8, most_chunks = 16;
@@ -55,7 +54,7 @@ class FlowControl {
 
     std::deque<Sent> on_way_;
     size_t bytes_ = 0, chunks_ = 4;
-    double latency_ = 0, queued_ = 0, pace_ = 1.0 / 30;
+    double latency_ = 0, queued_ = 0, interval_ = 1.0 / 30, last_sent_ = -1;
     double least_now_ = 0, least_before_ = 0,
            epoch_ = -1;  ///< shortest of this half of the 10 s, and of the last
 };

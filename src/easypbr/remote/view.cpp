@@ -92,6 +92,7 @@ void View::draw(bool refines) {
     app::LiveNeeds needs;
     needs.moving = moving;
     needs.resolution = clients_.quality().resolution();
+    needs.longest_s = longest_frame_s;
     needs.refines = refines;
     const uint64_t pictures = own.live.picture().statistics().pictures;
     const bool drew = own.live.draw(needs);

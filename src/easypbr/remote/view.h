@@ -49,6 +49,9 @@ class View {
 
     /// Moving pictures are asked for until so long after the last input or change.
     static constexpr double rest_s = 0.15;
+    /// What a moving picture's drawing should take where the CPU draws: reading, encoding and the way come to
+    /// it.
+    static constexpr double longest_frame_s = 0.045;
     /// How often an idle view looks whether the scene is another one.
     static constexpr double look_s = 0.05;
 
