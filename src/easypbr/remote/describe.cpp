@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -62,23 +63,61 @@ json node_of(const Mesh& mesh, const std::string& path, size_t& left) {
     return node;
 }
 
-/// What a face's or vertex's own arrays say.
-json values_at(const MeshData& data, const app::Pick& pick) {
-    const PerElement wanted = pick.is_face ? PerElement::face : PerElement::vertex;
+/// A place on the mesh: rows of its arrays, and how much each counts.
+struct Place {
+    std::vector<std::pair<Eigen::Index, double>> faces, vertices;
+
+    const std::vector<std::pair<Eigen::Index, double>>& in(PerElement element) const {
+        return element == PerElement::face ? faces : vertices;
+    }
+};
+
+/// Barycentric coordinates of a point in, or above, a triangle; the first corner where it has no area.
+Vec3d weights_in(const std::array<Vec3d, 3>& corners, const Vec3d& point) {
+    const Vec3d normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
+    if (!(normal.squaredNorm() > 0)) return {1, 0, 0};
+    const auto part = [&](const Vec3d& from, const Vec3d& to) {
+        return (to - from).cross(point - from).dot(normal) / normal.squaredNorm();
+    };
+    return {part(corners[1], corners[2]), part(corners[2], corners[0]), part(corners[0], corners[1])};
+}
+
+Place place_of(const MeshData& data, const Eigen::Affine3d& T_world_mesh, const app::Pick& pick) {
     const auto row = Eigen::Index(pick.element);
-    const auto holds = [&](Eigen::Index rows) {
-        return row >= 0 && row < rows && element_of(data, rows) == wanted;
+    Place place;
+    if (!pick.is_face && row >= 0 && row < data.V.rows()) place.vertices.emplace_back(row, 1);
+    if (!pick.is_face || row < 0 || row >= data.F.rows()) return place;
+    place.faces.emplace_back(row, 1);
+    const auto vertex = [&](Eigen::Index i) { return Vec3d(data.V(i, 0), data.V(i, 1), data.V(i, 2)); };
+    std::array<Vec3d, 3> corners;
+    for (int k = 0; k < 3; ++k) corners[size_t(k)] = T_world_mesh * vertex(data.F(row, k));
+    const Vec3d weights = weights_in(corners, pick.position);
+    for (int k = 0; k < 3; ++k) place.vertices.emplace_back(data.F(row, k), weights[k]);
+    return place;
+}
+
+/// What the arrays say there: scalars of vertices go over a face as they are drawn, its label is the nearest
+/// vertex's.
+json values_at(const MeshData& data, const Place& place) {
+    const auto rows_of = [&](Eigen::Index count) {
+        auto rows = place.in(element_of(data, count));
+        std::erase_if(rows, [&](const auto& each) { return each.first >= count; });
+        return rows;
     };
     json values = json::object();
-    if (holds(data.L.rows())) {
-        const int32_t label = data.L(row);
+    if (const auto rows = rows_of(data.L.rows()); !rows.empty()) {
+        const auto nearest = std::ranges::max_element(rows, {}, [](const auto& each) { return each.second; });
+        const int32_t label = data.L(nearest->first);
         values["label"] = label;
         const LabelClass* known = data.label_map ? data.label_map->find(label) : nullptr;
         if (known) values["class"] = known->name;
     }
-    for (const ScalarArray& scalar : data.scalars)
-        if (holds(scalar.values.rows()) && std::isfinite(scalar.values(row)))
-            values["scalars"][scalar.name] = scalar.values(row);
+    for (const ScalarArray& scalar : data.scalars) {
+        const auto rows = rows_of(scalar.values.rows());
+        double value = 0;
+        for (const auto& [row, weight] : rows) value += weight * scalar.values(row);
+        if (!rows.empty() && std::isfinite(value)) values["scalars"][scalar.name] = value;
+    }
     return values;
 }
 
@@ -197,8 +236,10 @@ std::string pick_text(uint32_t id, const std::optional<app::Pick>& pick, const S
         message["element"] = pick->element;
         message["position"] = {pick->position.x(), pick->position.y(), pick->position.z()};
         message["depth"] = pick->depth;
-        if (const auto node = app::node_named(scene, pick->object))
-            message["values"] = values_at(*node->snapshot(), *pick);
+        if (const auto node = app::node_named(scene, pick->object)) {
+            const auto data = node->snapshot();
+            message["values"] = values_at(*data, place_of(*data, node->T_world_mesh(), *pick));
+        }
     }
     return written(message);
 }
