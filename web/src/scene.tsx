@@ -67,12 +67,16 @@ function Node({ node, depth, connection }: { node: SceneNode; depth: number; con
 
 export function ScenePanel({ connection }: { connection: Connection }) {
   const nodes = useStore((state) => state.nodes);
+  const shared = useStore((state) => state.control.view === 0);
   if (nodes.length === 0) return <p class="hint">Nothing is shown yet.</p>;
   return (
-    <ul class="tree" aria-label="Objects">
-      {nodes.map((node) => (
-        <Node key={node.path} node={node} depth={0} connection={connection} />
-      ))}
-    </ul>
+    <>
+      <ul class="tree" aria-label="Objects">
+        {nodes.map((node) => (
+          <Node key={node.path} node={node} depth={0} connection={connection} />
+        ))}
+      </ul>
+      {!shared && <p class="hint">Objects and lights are everybody's: they are changed in the shared view.</p>}
+    </>
   );
 }
