@@ -7,6 +7,7 @@ import subprocess
 import sys
 import tarfile
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -219,6 +220,7 @@ def test_impossible_specs_name_the_constraint():
     ("count = 3", "objects"),
     ("count = 0\n[[objects]]", "count: expected 1 to 1000000"),
     ("count = ", "spec.toml"),
+    ("writers = " + "[" * 3000, "nested too deeply"),
     ("[[objects]]\nrotation = 'sideways'", "rotation.*upright"),
     ("seed = -1\n[[objects]]", "seed: expected 0 or more, got -1"),
     ("[[objects]]\ncount = [3, 1]", r"objects\[0\].count: expected \[least, largest\], got \[3, 1\]"),
@@ -238,6 +240,16 @@ def test_bad_specs_say_what_is_wrong(tmp_path, text, message):
     (tmp_path / "spec.toml").write_text(text)
     with pytest.raises(ArgumentError, match=message):
         DatasetSpec.from_toml(tmp_path / "spec.toml")
+
+
+KEPT_SPECS = sorted((Path(__file__).parents[1] / "fuzz/python_seeds/spec").iterdir())
+
+
+@pytest.mark.parametrize("kept", KEPT_SPECS, ids=lambda kept: kept.name)
+def test_specs_kept_by_the_fuzzer_are_read_or_refused(kept, monkeypatch):
+    monkeypatch.syspath_prepend(kept.parents[2])
+    from specs import target
+    target()(kept.read_bytes())
 
 
 def test_files_that_are_no_specs_or_folders_are_named(tmp_path):

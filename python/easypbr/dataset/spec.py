@@ -42,6 +42,8 @@ class DatasetSpec(DatasetTables):
             raise FileError(f"cannot read {path}: {error.strerror}") from None
         except ValueError as error:  # of TOML, or of UTF-8
             raise ArgumentError(f"{path}: {error}") from None
+        except RecursionError:
+            raise ArgumentError(f"{path}: its values are nested too deeply") from None
         spec = _from_dict(cls, values, str(path))
         spec._resolve_files(path.parent)
         spec.check()
