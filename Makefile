@@ -3,7 +3,7 @@ PYTHON := .venv/bin/python
 BUILD := build
 export CMAKE_BUILD_PARALLEL_LEVEL ?= $(shell nproc)
 
-.PHONY: demo test library build setup setup-tests bench bench-light wheel test-wheel deb release-check check-long check-notebook sanitize fuzz docs format lint clean
+.PHONY: demo test library build setup setup-tests bench bench-light wheel test-wheel test-carried deb release-check check-long check-notebook sanitize sanitize-address sanitize-thread fuzz docs format lint clean
 
 # Library, command line and Python module, without tests and benchmarks.
 library: setup
@@ -47,6 +47,10 @@ wheel: setup
 test-wheel: setup-tests
 	scripts/test_wheel.sh
 
+# scripts/gpu_check.sh --carried in a fresh system without a network. Needs root.
+test-carried:
+	scripts/test_carried.sh
+
 # Debian packages in dist/: easypbr, libeasypbr, libeasypbr-dev, python3-easypbr.
 deb: library
 	cmake --build $(BUILD) --target easypbr_shell_pages
@@ -64,9 +68,12 @@ check-long: setup-tests build
 check-notebook: setup-tests library
 	scripts/check_notebook.sh
 
-# All C++ tests under AddressSanitizer and UBSan.
+# All C++ tests under AddressSanitizer and UBSan, and under ThreadSanitizer; each alone by sanitize-address, sanitize-thread.
 sanitize: setup-tests
 	scripts/sanitize.sh
+
+sanitize-address sanitize-thread: sanitize-%: setup-tests
+	scripts/sanitize.sh $*
 
 # Coverage-guided fuzzing of all readers: `make fuzz TIME=3600` seconds.
 TIME ?= 600

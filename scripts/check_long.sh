@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Soaks: 10,000 updates of a cloud and data sets of 5,000 frames, whose memory must not grow; data sets killed 200 times; 100,000
 # frames of a scene that changes, viewers made and dropped, recorders killed (EASYPBR_LONG_SOAK); many faults of the system; all
-# loaders on 10,000 mutated files each, and all C++ tests, under AddressSanitizer and UBSan; a picture of 16384 x 9216 pixels
+# loaders on 10,000 mutated files each under AddressSanitizer and UBSan, and all C++ tests under both and under ThreadSanitizer; a picture of 16384 x 9216 pixels
 # in tiles; native shading against the driver's on 200 random scenes; golden scenes on llvmpipe,
 # zink and softpipe; the library built as a part of another project. usage: check_long.sh
 set -euo pipefail
@@ -13,6 +13,6 @@ EASYPBR_FAULTS=20 .venv/bin/python -m pytest -q tests/faults
 EASYPBR_TEST_SCENES=200 build/tests/test_app --gtest_filter='NativeShading.*'
 .venv/bin/python tests/golden/compare_drivers.py
 scripts/sanitize.sh -E Fuzz
-EASYPBR_FUZZ_COUNT=10000 scripts/sanitize.sh -R Fuzz --timeout 7200
+EASYPBR_FUZZ_COUNT=10000 scripts/sanitize.sh address -R Fuzz --timeout 7200
 cmake -G Ninja -S tests/package/fetched -B build-fetched -DEASYPBR_SOURCE="$PWD" >/dev/null
 cmake --build build-fetched --target fetched

@@ -12,8 +12,45 @@
 
 #include "easypbr/core/interrupt.h"
 
+#ifdef __SANITIZE_THREAD__
+#include <sanitizer/tsan_interface.h>
+#endif
+
 namespace easypbr {
 namespace {
+
+#ifdef __SANITIZE_THREAD__
+constexpr bool sees_threads_of_tbb = false;
+#else
+constexpr bool sees_threads_of_tbb = true;
+#endif
+
+/// TBB, which is not built with ThreadSanitizer, hands chunks to its threads and back: says so to it.
+class HandOver {
+  public:
+    void give() {
+#ifdef __SANITIZE_THREAD__
+        __tsan_release(this);
+#endif
+    }
+    void take() {
+#ifdef __SANITIZE_THREAD__
+        __tsan_acquire(this);
+#endif
+    }
+};
+
+/// A chunk's time on its thread, ended by an exception too.
+class OnThread {
+  public:
+    explicit OnThread(HandOver& hand_over) : hand_over_(hand_over) { hand_over_.take(); }
+    ~OnThread() { hand_over_.give(); }
+    OnThread(const OnThread&) = delete;
+    OnThread& operator=(const OnThread&) = delete;
+
+  private:
+    HandOver& hand_over_;
+};
 
 /// EASYPBR_THREADS keeps the loops to as many threads.
 void limit_threads() {
@@ -41,7 +78,9 @@ void parallel_chunks(size_t count, size_t grain, const std::function<void(size_t
         if (count) body(0, count);
         return;
     }
+    HandOver hand_over;
     const auto run = [&](size_t chunk) {
+        const OnThread here(hand_over);
         check_interrupt();
         body(chunk * grain, std::min(count, (chunk + 1) * grain));
     };
@@ -50,14 +89,16 @@ void parallel_chunks(size_t count, size_t grain, const std::function<void(size_t
         return;
     }
     limit_threads();
+    hand_over.give();
     tbb::parallel_for(size_t(0), chunks, run);
+    hand_over.take();
 }
 
 void parallel_sort(std::vector<KeyedIndex>& items) {
     const auto before = [](const KeyedIndex& a, const KeyedIndex& b) {
         return a.key < b.key || (a.key == b.key && a.index < b.index);
     };
-    if (has_threads()) {
+    if (has_threads() && sees_threads_of_tbb) {
         limit_threads();
         tbb::parallel_sort(items.begin(), items.end(), before);
     } else
