@@ -13,6 +13,7 @@ struct Extension {
     float anisotropy;
     vec3 tangent;                        // world: where reflections are drawn out; at a right angle to the normal
     float transmission, ior, thickness;  // thickness in world units, 0: thin-walled
+    float dispersion;                    // of the volume: 20 / Abbe number
     vec3 transmittance;                  // of the volume below the surface
 };
 
@@ -27,6 +28,7 @@ vec3 unpack_reflectance(uint bits) {
     return root * root;
 }
 
+const float greatest_dispersion = 40.0;
 const float full_turn = 6.28318530717958648;
 
 // `normal` is the one that a reader of the G-buffer decodes.
@@ -37,7 +39,7 @@ void pack_extension(Extension e, vec3 normal, out uvec4 first, out uvec4 second)
     first.x = packUnorm2x16(oct_encode(e.coat_normal) * 0.5 + 0.5);
     first.y = packUnorm4x8(vec4(e.clearcoat, e.coat_roughness, e.sheen_roughness, e.iridescence));
     first.z = packUnorm4x8(vec4(sqrt(e.sheen_color), e.anisotropy));
-    first.w = packUnorm2x16(vec2(angle, 0.0)) | packUnorm4x8(vec4(0.0, 0.0, 0.0, e.f90));
+    first.w = packUnorm2x16(vec2(angle, 0.0)) | packUnorm4x8(vec4(0.0, 0.0, sqrt(e.dispersion / greatest_dispersion), e.f90));
     second.x = pack_reflectance(e.f0);
     second.y = packHalf2x16(vec2(e.film_thickness, 0.0)) |
                packUnorm4x8(vec4(0.0, 0.0, (e.film_ior - 1.0) * 0.5, (e.ior - 1.0) * 0.5));
@@ -60,7 +62,9 @@ Extension unpack_extension(uvec4 first, uvec4 second, vec3 normal) {
     vec3 b1, b2;
     frame_around(normal, b1, b2);
     e.tangent = b1 * cos(angle) + b2 * sin(angle);
-    e.f90 = unpackUnorm4x8(first.w).w;
+    v = unpackUnorm4x8(first.w);
+    e.f90 = v.w;
+    e.dispersion = greatest_dispersion * v.z * v.z;
     e.f0 = unpack_reflectance(second.x);
     e.film_thickness = unpackHalf2x16(second.y).x;
     v = unpackUnorm4x8(second.y);
@@ -89,6 +93,7 @@ Extension chosen_extension(bool first, Extension a, Extension b) {
     a.transmission = first ? a.transmission : b.transmission;
     a.ior = first ? a.ior : b.ior;
     a.thickness = first ? a.thickness : b.thickness;
+    a.dispersion = first ? a.dispersion : b.dispersion;
     a.transmittance = first ? a.transmittance : b.transmittance;
     return a;
 }
@@ -107,7 +112,7 @@ Extension plain_extension(vec3 normal, vec3 f0) {
     e.anisotropy = 0.0;
     vec3 bitangent;
     frame_around(normal, e.tangent, bitangent);
-    e.transmission = e.thickness = 0.0;
+    e.transmission = e.thickness = e.dispersion = 0.0;
     e.ior = 1.5;
     e.transmittance = vec3(1.0);
     return e;

@@ -19,7 +19,7 @@ uniform vec4 u_sheen;        // colour, roughness
 uniform vec4 u_specular;     // colour times the reflectance that the index of refraction gives; specular
 uniform vec4 u_film;         // iridescence, index of refraction, least and greatest thickness
 uniform vec3 u_anisotropy;   // strength, cosine and sine of the rotation
-uniform vec3 u_volume;       // transmission, thickness in world units, index of refraction
+uniform vec4 u_volume;       // transmission, thickness in world units, index of refraction, dispersion
 uniform vec3 u_attenuation;  // per thickness: logarithm of what goes through
 
 uniform sampler2D u_clearcoat_texture;
@@ -75,6 +75,7 @@ void read_dielectric(inout Extension e) {
     e.transmission = u_volume.x;
     e.thickness = u_volume.y;
     e.ior = u_volume.z;
+    e.dispersion = u_volume.w;
     if (has_transmission_texture) e.transmission *= channel_of(u_transmission_texture, 14, u_transmission_channel);
     vec3 attenuation = u_attenuation;
     if (has_thickness_texture) {

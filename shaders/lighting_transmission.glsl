@@ -40,10 +40,10 @@ struct Exit {
 };
 
 // From a volume's front into it and out of its back.
-Exit through_volume(Surface s, vec3 normal) {
+Exit through_volume(Surface s, vec3 normal, float ior) {
     Extension e = s.extension;
     Exit x;
-    vec3 inside = refract(-s.view, normal, 1.0 / e.ior);
+    vec3 inside = refract(-s.view, normal, 1.0 / ior);
     x.path = e.thickness;
     x.position = s.position + inside * x.path;
     x.direction = -s.view;  // a slab's other side, unless the true one is known
@@ -66,7 +66,7 @@ Exit through_volume(Surface s, vec3 normal) {
     x.position = s.position + inside * path;
     vec3 back = oct_decode(textureLod(u_exit_normal, uv, 0.0).rg * 2.0 - 1.0);
     if (dot(back, inside) > 0.0) back = -back;
-    vec3 outside = refract(inside, back, e.ior);
+    vec3 outside = refract(inside, back, ior);
     // What is reflected within comes out somewhere, most likely after one more reflection.
     x.direction = dot(outside, outside) > 0.0 ? outside : reflect(inside, back);
     return x;
@@ -148,21 +148,48 @@ vec4 seen(vec3 origin, vec3 direction, bool straight, float alpha) {
     return vec4(picture.rgb + (1.0 - picture.a) * environment, 1.0);
 }
 
-// What comes through the surface, and how much of what is behind it covers: light to be added, coverage.
-vec4 transmitted(Surface s) {
+struct Through {
+    vec3 part;   // of the light that comes through
+    vec4 light;  // radiance and coverage of what is seen
+};
+
+// With one index of refraction for all colours.
+Through through_surface(Surface s, float ior) {
     Extension e = s.extension;
-    if (max_channel(s.through) <= 0.0) return vec4(0.0, 0.0, 0.0, 1.0);
-    float rough = s.roughness * clamp(2.0 * e.ior - 2.0, 0.0, 1.0);  // without refraction facets turn nothing
-    vec3 through = s.through * s.keep;
+    float rough = s.roughness * clamp(2.0 * ior - 2.0, 0.0, 1.0);  // without refraction facets turn nothing
+    Through t;
+    t.part = s.through * s.keep;
     Exit x = Exit(s.position, -s.view, 0.0);
-    bool straight = e.thickness <= 0.0 || e.ior == 1.0;
+    bool straight = e.thickness <= 0.0 || ior == 1.0;
     vec3 normal = dot(s.normal, s.view) > 0.0 ? s.normal : -s.normal;
     if (e.thickness > 0.0) {
-        x = through_volume(s, normal);
-        through *= pow(max(e.transmittance, 1e-6), vec3(x.path / e.thickness));
+        x = through_volume(s, normal, ior);
+        t.part *= pow(max(e.transmittance, 1e-6), vec3(x.path / e.thickness));
     }
-    vec4 light = seen(x.position, x.direction, straight, rough * rough);
+    t.light = seen(x.position, x.direction, straight, rough * rough);
+    return t;
+}
+
+// KHR_materials_dispersion: red and blue have indices of their own, which the Abbe number sets apart.
+Through dispersed(Surface s) {
+    Extension e = s.extension;
+    float spread = 0.025 * e.dispersion * (e.ior - 1.0);
+    Through red = through_surface(s, e.ior - spread), green = through_surface(s, e.ior), blue = through_surface(s, e.ior + spread);
+    vec3 seen_part = vec3(0.2126 * red.light.a, 0.7152 * green.light.a, 0.0722 * blue.light.a);
+    Through t;
+    t.part = vec3(red.part.r, green.part.g, blue.part.b);
+    t.light = vec4(red.light.r, green.light.g, blue.light.b, dot(seen_part, vec3(1.0)));
+    return t;
+}
+
+// What comes through the surface, and how much of what is behind it covers: light to be added, coverage.
+vec4 transmitted(Surface s) {
+    if (max_channel(s.through) <= 0.0) return vec4(0.0, 0.0, 0.0, 1.0);
+    bool disperses = s.extension.dispersion > 0.0 && s.extension.thickness > 0.0;
+    Through t;
+    if (disperses) t = dispersed(s);
+    else t = through_surface(s, s.extension.ior);
     // Where nothing is seen, the background beyond the picture shines through.
-    float coverage = 1.0 - dot(through, vec3(0.2126, 0.7152, 0.0722)) * (1.0 - light.a);
-    return vec4(through * light.rgb, coverage);
+    float coverage = 1.0 - dot(t.part, vec3(0.2126, 0.7152, 0.0722)) * (1.0 - t.light.a);
+    return vec4(t.part * t.light.rgb, coverage);
 }

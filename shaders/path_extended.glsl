@@ -35,6 +35,7 @@ Extension path_extension() {
     e.transmission = v_volume.x;
     e.ior = v_volume.y;
     e.thickness = v_volume.z;
+    e.dispersion = 0.0;  // A path in a volume has the index of its channel.
     e.transmittance = v_transmittance;
     return e;
 }

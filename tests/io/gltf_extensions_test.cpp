@@ -166,6 +166,16 @@ TEST(GltfExtensions, TransmissionAndVolume) {
     expect_same_values(clear, written(clear));
 }
 
+TEST(GltfExtensions, Dispersion) {
+    const Json volume = {{"thicknessFactor", 1.0}};
+    const Material m = read({{"KHR_materials_dispersion", {{"dispersion", 0.5}}},
+                             {"KHR_materials_transmission", {{"transmissionFactor", 1.0}}},
+                             {"KHR_materials_volume", volume}});
+    EXPECT_EQ(m.dispersion, 0.5f);
+    expect_same_values(m, written(m));
+    EXPECT_EQ(read({{"KHR_materials_dispersion", Json::object()}}).dispersion, 0.0f);
+}
+
 TEST(GltfExtensions, Iridescence) {
     GltfBuilder builder;
     const size_t both = add_texture(builder, {10, 20, 30});

@@ -246,11 +246,11 @@ TEST(GltfAnimationPointer, WarnsOfWhatCannotBeAnimated) {
 TEST(GltfExtensions, WhatIsNotKnownIsNamed) {
     GltfBuilder builder;
     builder.triangle();
-    builder.json["extensionsUsed"] = {"KHR_materials_dispersion", "EXT_mesh_gpu_instancing"};
+    builder.json["extensionsUsed"] = {"KHR_materials_diffuse_transmission", "EXT_mesh_gpu_instancing"};
     const LogCapture log;
     decode(builder);
     EXPECT_EQ(log.text,
-              "test.glb: the extension KHR_materials_dispersion is not known; it is drawn without\n");
+              "test.glb: the extension KHR_materials_diffuse_transmission is not known; it is drawn without\n");
 }
 
 }  // namespace easypbr::gltf_nodes_test

@@ -12,7 +12,7 @@ from easypbr.errors import ArgumentError
 EXTENDED = {
     "clearcoat": 0.5, "clearcoat_roughness": 0.25, "clearcoat_normal_scale": 0.5, "sheen_color": (0.25, 0.5, 1.0),
     "sheen_roughness": 0.5, "ior": 1.75, "specular": 0.5, "specular_color": (2.0, 1.0, 0.5), "transmission": 0.75,
-    "thickness": 0.5, "attenuation_color": (0.5, 1.0, 0.25), "attenuation_distance": 2.0, "iridescence": 0.5,
+    "thickness": 0.5, "attenuation_color": (0.5, 1.0, 0.25), "attenuation_distance": 2.0, "dispersion": 2.0, "iridescence": 0.5,
     "iridescence_ior": 1.5, "iridescence_thickness_min": 200.0, "iridescence_thickness_max": 500.0, "anisotropy": 0.5,
     "anisotropy_rotation_deg": 30.0,
 }

@@ -184,11 +184,11 @@ Environment tall_environment() {
 }
 
 /// What a ball of glass shows of that environment at a height of its middle, from the side: the reflection,
-/// and all that has been reflected within k times (the geometry of rainbows).
-double ball_radiance(double height, double ior) {
+/// and all that has been reflected within k times (the geometry of rainbows). `f0` is the reflectance at a
+/// right angle.
+double ball_radiance(double height, double ior, double f0) {
     const double incident = std::asin(height), refracted = std::asin(height / ior);
-    const double f0 = std::pow((ior - 1) / (ior + 1), 2),
-                 r = f0 + (1 - f0) * std::pow(1 - std::cos(incident), 5);
+    const double r = f0 + (1 - f0) * std::pow(1 - std::cos(incident), 5);
     double sum = r * (1 + std::sin(2 * incident)), part = (1 - r) * (1 - r);
     for (int k = 0; k < 20; ++k, part *= r)
         sum += part * (1 - std::sin(2 * (incident - refracted) + k * (pi - 2 * refracted)));
@@ -215,11 +215,41 @@ TEST(PathExtensions, BallRefracts) {
         for (int y = 0; y < 33; ++y) {
             const double height = (1 - (y + 0.5) / 16.5) * half;
             if (std::abs(height) > 0.85) continue;
-            EXPECT_NEAR(image.at<float>(16, y)[0], ball_radiance(height, ior), 0.02) << ior << " " << height;
+            const double f0 = std::pow((ior - 1) / (ior + 1), 2);
+            EXPECT_NEAR(image.at<float>(16, y)[0], ball_radiance(height, ior, f0), 0.02)
+                << ior << " " << height;
             ++seen;
         }
         EXPECT_GT(seen, 10);
     }
+}
+
+// Each colour has an index of its own, (n - 1) / V from red to blue. KHR_materials_dispersion leaves the
+// reflectance alone. Three times the samples, as each path has one colour: the same bound.
+TEST(PathExtensions, BallDisperses) {
+    Scene scene;
+    Mesh ball = make_sphere(1, 512);
+    ball.set_material(
+        white([](Material& m) { m.transmission = m.thickness = 1, m.roughness = 0, m.dispersion = 10; }));
+    scene.show(ball, "ball");
+    scene.set_environment(tall_environment());
+    app::Session session = traced(plain_session(scene, 33));
+    session.settings().environment.enabled = true;
+    session.settings().camera.projection = Projection::orthographic;
+    look_from(session, Vec3d(0, 0, 4));
+    const Image image = render_linear(session, 3072);
+    const double half = 1 / session.camera().projection_matrix(1)(1, 1);
+    double apart = 0;
+    for (int y = 0; y < 33; ++y) {
+        const double height = (1 - (y + 0.5) / 16.5) * half;
+        if (std::abs(height) > 0.85) continue;
+        const float* seen = image.at<float>(16, y);
+        for (int c = 0; c < 3; ++c)
+            EXPECT_NEAR(seen[c], ball_radiance(height, 1.5 + (c - 1) * 0.5 * 0.5 / 2, 0.04), 0.02)
+                << c << " " << height;
+        apart = std::max(apart, double(std::abs(seen[2] - seen[0])));
+    }
+    EXPECT_GT(apart, 0.1);
 }
 
 // A thin pane passes what is behind it straight: a bright square beside the straight way is not seen.

@@ -221,6 +221,33 @@ TEST(Transmission, ABallRefractsTwice) {
     }
 }
 
+// With dispersion each colour of the ball has the index that the Abbe number of 2 gives it.
+TEST(Transmission, ABallDisperses) {
+    Scene scene;
+    scene.show(ball(glass([&](Material& m) { m.thickness = 2, m.dispersion = 10; })), "ball");
+    scene.set_environment(gradient());
+    app::Session session = session_of(scene);
+    session.settings().environment.enabled = true;
+    const Image image = render_linear(session);
+    double worst = 0, apart = 0;
+    for_each_point(image, session.camera(), 0.35, [&](const Vec3& radiance, const Ray& ray, const Vec3d& n) {
+        Vec3d behind;
+        for (int c = 0; c < 3; ++c) {
+            const double ior = 1.5 + (c - 1) * 0.5 * 0.5 / 2;  // n_F - n_C = (n - 1) / V
+            const Vec3d inside = refracted(ray.direction, n, 1 / ior);
+            const Vec3d back = n - 2 * n.dot(inside) * inside;
+            behind[c] = gradient_at(refracted(inside, -back, ior));
+            const Vec3d mirrored = ray.direction - 2 * ray.direction.dot(n) * n;
+            const double F = schlick(-ray.direction.dot(n), 0.04);
+            worst = std::max(worst, std::abs(radiance[c] - F * gradient_at(mirrored) - (1 - F) * behind[c]));
+        }
+        apart = std::max(apart, std::abs(behind[2] - behind[0]));
+    });
+    // As without dispersion, which has 8 bits of its own.
+    EXPECT_LT(worst, 0.03);
+    EXPECT_GT(apart, 0.1);
+}
+
 // A tilted slab shifts what is behind by t sin(i - r) / cos r.
 TEST(Transmission, ASlabShifts) {
     const double tilt = radians(40.0), t = 0.8, ior = 1.5;

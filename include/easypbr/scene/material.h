@@ -78,6 +78,9 @@ struct Material {
     Vec3 attenuation_color{1, 1, 1};  ///< of white light after attenuation_distance
     float attenuation_distance = std::numeric_limits<float>::infinity();  ///< world units, above 0
 
+    // KHR_materials_dispersion: the index of refraction of volumes grows from red to blue.
+    float dispersion = 0;  ///< 20 / Abbe number, 0 to 40
+
     // KHR_materials_iridescence: thin-film interference.
     float iridescence = 0;                  ///< strength, 0 to 1
     float iridescence_ior = 1.3f;           ///< index of refraction of the thin film, 1 to 100
@@ -120,6 +123,8 @@ struct Material {
     bool names_ior() const { return ior != default_ior; }
     /// Reflectance of its dielectric part at normal incidence; `unnamed` where it specifies no index.
     float dielectric_f0(float unnamed) const;
+    /// The index of red (0), green (1) or blue (2) in a volume (Khronos, KHR_materials_dispersion).
+    float ior_of_channel(int channel) const;
     /// Whether the surface transmits light (KHR_materials_transmission), as opposed to alpha coverage.
     bool transmits() const { return transmission > 0; }
 

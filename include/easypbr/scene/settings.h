@@ -151,6 +151,7 @@ struct MaterialSettings {
     Override<float> thickness;                ///< of the volume, mesh units; 0: thin-walled
     Override<Vec3> attenuation_color;         ///< of white light after attenuation_distance
     Override<float> attenuation_distance;     ///< world units, above 0
+    Override<float> dispersion;               ///< of the volume, 20 / Abbe number, 0 to 40
     Override<float> iridescence;              ///< strength, 0 to 1
     Override<float> iridescence_ior;          ///< index of refraction of the thin film, 1 to 100
     Override<float> iridescence_thickness;    ///< of the thin film, nanometres

@@ -106,6 +106,7 @@ void material_rows(GuiState& state, const Mesh& mesh) {
     number_row(state, "clearcoat_roughness", material, &M::clearcoat_roughness, 0, 1);
     number_row(state, "transmission", material, &M::transmission, 0, 1);
     number_row(state, "ior", material, &M::ior, 1, 3);
+    number_row(state, "dispersion", material, &M::dispersion, 0, 10);
     number_row(state, "iridescence", material, &M::iridescence, 0, 1);
     number_row(state, "anisotropy", material, &M::anisotropy, 0, 1);
     end_rows();

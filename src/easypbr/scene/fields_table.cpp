@@ -323,6 +323,8 @@ void add_extended_overrides(Table& table) {
     number("attenuation_distance", &M::attenuation_distance,
            "Distance in the volume after which white light has the attenuation colour", {positive, unlimited},
            "world units");
+    number("dispersion", &M::dispersion, "Dispersion of the volume below the surface, 20 / Abbe number,",
+           {0, 40});
     number("iridescence", &M::iridescence, "Iridescence strength", {0, 1});
     number("iridescence_ior", &M::iridescence_ior, "Index of refraction of the thin film", {1, 100});
     number("iridescence_thickness", &M::iridescence_thickness, "Thickness of the thin film", {0, 1e6},

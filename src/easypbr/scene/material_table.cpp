@@ -37,6 +37,8 @@ constexpr MaterialNumber numbers[] = {
      "Thickness of the volume below the surface in mesh units; 0: thin-walled."},
     {"attenuation_distance", &Material::attenuation_distance, smallest_length, infinite,
      "Distance in the volume after which white light has the attenuation colour, in world units."},
+    {"dispersion", &Material::dispersion, 0, 40,
+     "Dispersion of the volume below the surface, 20 / Abbe number: glass 0.3 to 0.8."},
     {"iridescence", &Material::iridescence, 0, 1, "Iridescence strength, 0 to 1."},
     {"iridescence_ior", &Material::iridescence_ior, 1, 100, "Index of refraction of the thin film."},
     {"iridescence_thickness_min", &Material::iridescence_thickness_min, 0, largest_number,
@@ -182,6 +184,11 @@ AlphaMode Material::alpha_mode_for(bool transparent_vertices) const {
 
 float Material::dielectric_f0(float unnamed) const {
     return names_ior() ? reflectance(ior) : unnamed;
+}
+
+float Material::ior_of_channel(int channel) const {
+    const float center = ior > 0 ? ior : 1.0f;
+    return center + float(channel - 1) * 0.025f * dispersion * (center - 1);
 }
 
 Vec3 Material::transmittance(AlphaMode mode) const {

@@ -22,6 +22,7 @@ constexpr NumberOverride number_overrides[] = {
     {&MaterialSettings::transmission, &Material::transmission, &Material::transmission_texture},
     {&MaterialSettings::thickness, &Material::thickness, &Material::thickness_texture},
     {&MaterialSettings::attenuation_distance, &Material::attenuation_distance, nullptr},
+    {&MaterialSettings::dispersion, &Material::dispersion, nullptr},
     {&MaterialSettings::iridescence, &Material::iridescence, &Material::iridescence_texture},
     {&MaterialSettings::iridescence_ior, &Material::iridescence_ior, nullptr},
     {&MaterialSettings::iridescence_thickness, &Material::iridescence_thickness_max,

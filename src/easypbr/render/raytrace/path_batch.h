@@ -40,6 +40,9 @@ struct PathVectors {
     std::array<std::vector<float>, size_t(components)> component;
 };
 
+/// In place of one channel of red, green and blue.
+inline constexpr int8_t all_channels = -1;
+
 /// What has become of a path so far.
 struct PathState {
     Vec3 throughput{1, 1, 1};
@@ -49,6 +52,7 @@ struct PathState {
     uint16_t passages = 0;  ///< surfaces that it has passed, or whose volume it has not left
     /// Surfaces whose volumes the path is in, the innermost first; -1: none.
     std::array<int, 2> volumes{-1, -1};
+    int8_t channel = all_channels;  ///< the only one that is left once a volume has dispersed the light
 };
 
 /// What glTF's material extensions add to surfaces, as shaders/path_extended.glsl names it.
@@ -100,7 +104,8 @@ struct PathExtensions {
 
 /// Of a path at a surface with extensions.
 struct ExtendedPath {
-    int surface = -1;        ///< of the ray scene
+    int surface = -1;               ///< of the ray scene
+    int8_t channel = all_channels;  ///< of the index of refraction, where the volume disperses
     Vec3 emission{0, 0, 0};  ///< what the path adds of the surface's light, but for what its layers keep
 };
 

@@ -58,7 +58,14 @@ class PathSampler {
   public:
     /// Dimensions of a vertex, in pairs. Of the second the first number chooses the light, the other the
     /// lobe.
-    enum Dimension : uint32_t { sky_point, light_and_lobe, lobe_point, emitter_point, roulette };
+    enum Dimension : uint32_t {
+        sky_point,
+        light_and_lobe,
+        lobe_point,
+        emitter_point,
+        roulette,
+        color_channel
+    };
 
     PathSampler() = default;
     /// The pixel is in the whole picture; `samples`: how many it gets at most.

@@ -272,6 +272,25 @@ void PathTracer::cross(int surface, bool is_volume, PathState& state) const {
         state.volumes = {surface, state.volumes[0]};
 }
 
+void PathTracer::choose_color(PathBatch& batch, size_t path, uint32_t depth) const {
+    ExtendedPath& at = batch.extended_paths[path];
+    Vec3 volume = batch.extensions->volume.at(path);
+    const Material& material = scene_->item_of(at.surface).material;
+    if (!(material.dispersion > 0) || !(volume.z() > 0)) return;
+    const PathState& state = batch.state[path];
+    at.channel = state.channel != all_channels ? state.channel
+                                               : int8_t(3 * state.sampler.pair(depth, color_channel).x());
+    volume.y() = material.ior_of_channel(at.channel);
+    batch.extensions->volume.set(path, volume);
+}
+
+void PathTracer::disperse(int8_t channel, PathState& state) const {
+    if (channel == all_channels || state.channel != all_channels) return;
+    state.channel = channel;
+    // One of three equally likely channels stands for all.
+    state.throughput = 3 * state.throughput[channel] * Vec3::Unit(channel);
+}
+
 void PathTracer::absorb(float distance, PathState& state) const {
     if (state.volumes[0] < 0) return;
     const Vec3 absorption = absorption_[size_t(state.volumes[0])];
@@ -284,6 +303,7 @@ bool PathTracer::goes_on(const PathBatch& batch, size_t path, uint32_t depth, co
     if (!(most > 0)) return false;
     const bool inside = batch.extensions && batch.inside[path] > 0.5f,
                passes = batch.extensions && direction.dot(batch.face.at(path)) < 0;
+    if (passes) disperse(batch.extended_paths[path].channel, state);
     if (passes) cross(batch.extended_paths[path].surface, batch.extensions->volume.at(path).z() > 0, state);
     const bool is_sure =
         inside || passes ? ++state.passages <= sure_passages : ++state.bounces <= first_roulette;
@@ -395,7 +415,8 @@ PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth,
         const size_t at = add_path(hit, surfaces, i, extended ? next.extended : next.plain);
         if (!extended) continue;
         next.extended.extensions->copy(at, *surfaces.extensions, i);
-        next.extended.extended_paths[at] = {hit.hit.surface, emission};
+        next.extended.extended_paths[at] = {hit.hit.surface, all_channels, emission};
+        choose_color(next.extended, at, depth);
         const bool is_volume = surfaces.extensions->volume.at(i).z() > 0;
         const bool inside = is_volume && is_same_volume(*scene_, hit.state.volumes[0], hit.hit.surface);
         next.extended.inside[at] = inside ? 1.0f : 0.0f;

@@ -240,6 +240,8 @@ void GlbMaterials::add_dielectric(const Material& material, OrderedJson& json) {
         add_channel(e, "thicknessTexture", material.thickness_texture, 1);
         content_.extend(json, khr_volume) = std::move(e);
     }
+    if (material.dispersion > 0)
+        content_.extend(json, khr_dispersion) = {{"dispersion", material.dispersion}};
 }
 
 size_t GlbMaterials::add(const Material& material, bool transparent_vertices) {

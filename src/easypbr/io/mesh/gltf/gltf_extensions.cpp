@@ -74,6 +74,7 @@ void read_gltf_extensions(const GltfDocument& document, const Json& json, Materi
         reader.color("attenuationColor", out.attenuation_color);
         reader.number("attenuationDistance", out.attenuation_distance);
     }
+    if (reader.open(khr_dispersion)) reader.number("dispersion", out.dispersion);
     if (reader.open(khr_anisotropy)) {
         reader.number("anisotropyStrength", out.anisotropy);
         reader.degrees_of("anisotropyRotation", out.anisotropy_rotation_deg);

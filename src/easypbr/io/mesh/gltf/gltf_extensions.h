@@ -15,6 +15,7 @@ inline constexpr const char* khr_specular = "KHR_materials_specular";
 inline constexpr const char* khr_ior = "KHR_materials_ior";
 inline constexpr const char* khr_transmission = "KHR_materials_transmission";
 inline constexpr const char* khr_volume = "KHR_materials_volume";
+inline constexpr const char* khr_dispersion = "KHR_materials_dispersion";
 inline constexpr const char* khr_iridescence = "KHR_materials_iridescence";
 inline constexpr const char* khr_anisotropy = "KHR_materials_anisotropy";
 inline constexpr const char* ext_texture_webp = "EXT_texture_webp";

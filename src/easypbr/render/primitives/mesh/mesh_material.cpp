@@ -90,7 +90,7 @@ void set_extensions(ShaderInputs& values, const ResolvedSettings& resolved, cons
     values.set("u_anisotropy", Vec3(m.anisotropy, float(std::cos(angle)), float(std::sin(angle))));
     const float thickness = m.thickness * float(item.scale());
     // What reflects all does not refract.
-    values.set("u_volume", Vec3(m.transmission, thickness, m.ior > 0 ? m.ior : 1.0f));
+    values.set("u_volume", Vec4(m.transmission, thickness, m.ior > 0 ? m.ior : 1.0f, m.dispersion));
     values.set("u_attenuation", log_transmittance(m, thickness));
     values.set("u_up", Vec3(parse_up(resolved.settings.camera.up).cast<float>()));
 }
