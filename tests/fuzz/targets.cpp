@@ -57,8 +57,9 @@ FileBytes file_of(std::span<const std::byte> bytes) {
 template <char... letters>
 void read_mesh(std::span<const std::byte> bytes) {
     refuse_or([&] {
-        io::load_scene(file_of(bytes), "/nowhere/fuzz",
-                       {.memory_gb = memory_gb, .format = std::string{letters...}});
+        io::LoadedScene scene = io::load_scene(file_of(bytes), "/nowhere/fuzz",
+                                               {.memory_gb = memory_gb, .format = std::string{letters...}});
+        if (!scene.animations.empty()) scene.animations.apply(0, 0.5);
     });
 }
 

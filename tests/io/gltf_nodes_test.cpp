@@ -49,12 +49,14 @@ std::string material_of(const io::LoadedScene& scene) {
     return node(scene).materials.at(0).name;
 }
 
-GltfBuilder pointing_at(const std::string& pointer) {
+/// Two keys, at 0 and 2 seconds, for what a pointer names.
+GltfBuilder pointing_at(const std::string& pointer, const std::vector<float>& values = {0, 0, 0, 6, 0, 0},
+                        const std::string& interpolation = "LINEAR") {
     GltfBuilder builder;
     builder.triangle();
-    const size_t input = builder.floats({0, 2}, 1), output = builder.floats({0, 0, 0, 6, 0, 0}, 3);
+    const size_t input = builder.floats({0, 2}, 1), output = builder.floats(values, int(values.size() / 2));
     builder.json["animations"] = {
-        {{"samplers", {{{"input", input}, {"output", output}}}},
+        {{"samplers", {{{"input", input}, {"output", output}, {"interpolation", interpolation}}}},
          {"channels",
           {{{"sampler", 0},
             {"target",
@@ -225,12 +227,142 @@ TEST(GltfAnimationPointer, MovesWhatANodeHas) {
     EXPECT_EQ(log.text, "");
 }
 
+/// With a material of whatever may be animated.
+GltfBuilder material_at(const std::string& property, const std::vector<float>& values) {
+    GltfBuilder builder = pointing_at("/materials/0/" + property, values);
+    builder.json["meshes"][0]["primitives"][0]["material"] = 0;
+    builder.json["materials"] = {
+        {{"emissiveFactor", {0.5, 0.25, 1.0}},
+         {"extensions", {{"KHR_materials_emissive_strength", {{"emissiveStrength", 2.0}}}}}}};
+    return builder;
+}
+
+Material material_after(const GltfBuilder& builder, double time_s) {
+    io::LoadedScene scene = decode(builder);
+    scene.animations.apply(0, time_s, false);
+    return scene.mesh.children()[0].snapshot()->materials.at(0);
+}
+
+// Half way between the keys of 0 and 1 each factor is a half.
+TEST(GltfAnimationPointer, ChangesTheNumbersOfMaterials) {
+    const std::string ext = "extensions/KHR_materials_";
+    const std::vector<std::pair<std::string, float Material::*>> numbers = {
+        {"pbrMetallicRoughness/metallicFactor", &Material::metallic},
+        {"pbrMetallicRoughness/roughnessFactor", &Material::roughness},
+        {"alphaCutoff", &Material::alpha_cutoff},
+        {"normalTexture/scale", &Material::normal_scale},
+        {"occlusionTexture/strength", &Material::occlusion_strength},
+        {ext + "clearcoat/clearcoatFactor", &Material::clearcoat},
+        {ext + "clearcoat/clearcoatRoughnessFactor", &Material::clearcoat_roughness},
+        {ext + "clearcoat/clearcoatNormalTexture/scale", &Material::clearcoat_normal_scale},
+        {ext + "sheen/sheenRoughnessFactor", &Material::sheen_roughness},
+        {ext + "specular/specularFactor", &Material::specular},
+        {ext + "transmission/transmissionFactor", &Material::transmission},
+        {ext + "volume/thicknessFactor", &Material::thickness},
+        {ext + "volume/attenuationDistance", &Material::attenuation_distance},
+        {ext + "dispersion/dispersion", &Material::dispersion},
+        {ext + "iridescence/iridescenceFactor", &Material::iridescence},
+        {ext + "iridescence/iridescenceThicknessMinimum", &Material::iridescence_thickness_min},
+        {ext + "iridescence/iridescenceThicknessMaximum", &Material::iridescence_thickness_max},
+        {ext + "anisotropy/anisotropyStrength", &Material::anisotropy}};
+    for (const auto& [property, value] : numbers)
+        EXPECT_EQ(material_after(material_at(property, {0, 1}), 1).*value, 0.5f) << property;
+    EXPECT_EQ(material_after(material_at(ext + "ior/ior", {1, 2}), 1).ior, 1.5f);
+    EXPECT_EQ(material_after(material_at(ext + "iridescence/iridescenceIor", {1, 2}), 1).iridescence_ior,
+              1.5f);
+    const Material turned =
+        material_after(material_at(ext + "anisotropy/anisotropyRotation", {0, float(pi)}), 1);
+    EXPECT_NEAR(turned.anisotropy_rotation_deg, 90, 1e-5);
+}
+
+TEST(GltfAnimationPointer, ChangesTheColorsOfMaterials) {
+    const std::string ext = "extensions/KHR_materials_";
+    const Material base =
+        material_after(material_at("pbrMetallicRoughness/baseColorFactor", {0, 0, 0, 0, 1, 0.5, 0.25, 1}), 1);
+    EXPECT_EQ(base.base_color, Vec3(0.5f, 0.25f, 0.125f));
+    EXPECT_EQ(base.opacity, 0.5f);
+    const std::vector<float> keys = {0, 0, 0, 1, 0.5, 0.25};
+    EXPECT_EQ(material_after(material_at(ext + "sheen/sheenColorFactor", keys), 1).sheen_color,
+              Vec3(0.5f, 0.25f, 0.125f));
+    EXPECT_EQ(material_after(material_at(ext + "specular/specularColorFactor", keys), 1).specular_color,
+              Vec3(0.5f, 0.25f, 0.125f));
+    EXPECT_EQ(material_after(material_at(ext + "volume/attenuationColor", keys), 1).attenuation_color,
+              Vec3(0.5f, 0.25f, 0.125f));
+    // Factor and strength multiply, whichever of them is animated.
+    EXPECT_EQ(material_after(material_at("emissiveFactor", keys), 1).emissive, Vec3(1, 0.5f, 0.25f));
+    EXPECT_EQ(material_after(material_at(ext + "emissive_strength/emissiveStrength", {0, 8}), 1).emissive,
+              Vec3(2, 1, 4));
+}
+
+// What is outside of the range is drawn at its end, and after another animation all is at rest again.
+TEST(GltfAnimationPointer, KeepsMaterialsInRangeAndPutsThemBack) {
+    GltfBuilder builder = material_at("pbrMetallicRoughness/roughnessFactor", {0.5, 3});
+    Json other = builder.json["animations"][0];
+    other["channels"][0]["target"]["extensions"]["KHR_animation_pointer"]["pointer"] =
+        "/materials/0/pbrMetallicRoughness/metallicFactor";
+    builder.json["animations"].push_back(other);
+    io::LoadedScene scene = decode(builder);
+    const auto material = [&] { return scene.mesh.children()[0].snapshot()->materials.at(0); };
+    scene.animations.apply(0, 0, false);
+    EXPECT_EQ(material().roughness, 0.5f);
+    scene.animations.apply(0, 2, false);
+    EXPECT_EQ(material().roughness, 1.0f);
+    EXPECT_EQ(material().metallic, 1.0f);
+    scene.animations.apply(1, 0, false);
+    EXPECT_EQ(material().roughness, 1.0f);
+    EXPECT_EQ(material().metallic, 0.5f);
+}
+
+// The specification's matrix, translation * rotation * scale, where v goes down.
+TEST(GltfAnimationPointer, MovesTextures) {
+    const std::string texture = "pbrMetallicRoughness/baseColorTexture";
+    const auto at = [&](const std::string& part, const std::vector<float>& keys, const Vec2& uv) {
+        const Material m =
+            material_after(material_at(texture + "/extensions/KHR_texture_transform/" + part, keys), 1);
+        const Vec3 moved = m.base_color_texture.uv_transform * Vec3(uv.x(), 1 - uv.y(), 1);
+        return Vec2(moved.x(), 1 - moved.y());
+    };
+    EXPECT_TRUE(at("offset", {0, 0, 0.5, 1}, {0.25f, 0.5f}).isApprox(Vec2(0.5f, 1.0f)));
+    EXPECT_TRUE(at("scale", {1, 1, 3, 5}, {0.25f, 0.5f}).isApprox(Vec2(0.5f, 1.5f)));
+    EXPECT_TRUE(at("rotation", {0, float(pi)}, {1, 0}).isApprox(Vec2(0, -1), 1e-6f));
+}
+
+// Each copy of a node has the material.
+TEST(GltfAnimationPointer, ChangesTheMaterialsOfCopies) {
+    GltfBuilder builder = material_at("pbrMetallicRoughness/roughnessFactor", {0, 1});
+    instancing(builder) = {{"TRANSLATION", builder.floats({1, 2, 3, 4, 5, 6}, 3)}};
+    io::LoadedScene scene = decode(builder);
+    scene.animations.apply(0, 1);
+    for (const Mesh& copy : scene.mesh.children()[0].children())
+        EXPECT_EQ(copy.snapshot()->materials.at(0).roughness, 0.5f);
+}
+
+TEST(GltfAnimationPointer, ShowsAndHidesNodes) {
+    const std::string pointer = "/nodes/0/extensions/KHR_node_visibility/visible";
+    io::LoadedScene scene = decode(pointing_at(pointer, {1, 0}, "STEP"));
+    const auto visible = [&] { return scene.mesh.children()[0].style().visible.value(); };
+    scene.animations.apply(0, 1, false);
+    EXPECT_TRUE(visible().value_or(true));
+    scene.animations.apply(0, 2, false);
+    EXPECT_EQ(visible(), false);
+    scene.animations.apply(0, 0, false);
+    EXPECT_EQ(visible(), true);
+    EXPECT_NE(
+        message_of(pointing_at(pointer, {1, 0})).find("visibility of nodes[0] by a sampler that is not"),
+        std::string::npos);
+    EXPECT_NE(message_of(pointing_at(pointer, {1, 0, 1, 0}, "STEP")), "accepted");
+}
+
 TEST(GltfAnimationPointer, WarnsOfWhatCannotBeAnimated) {
     for (const char* pointer :
-         {"/materials/0/emissiveFactor", "/nodes/0", "/nodes/x/translation", "/nodes//translation", "",
-          "/nodes/0/extensions/KHR_node_visibility/visible", "/nodes/0/weights/1", "/nodes/-1/translation"}) {
+         {"/materials/0/doubleSided", "/materials/x/alphaCutoff", "/materials/0",
+          "/cameras/0/perspective/yfov", "/extensions/KHR_lights_punctual/lights/0/intensity",
+          "/materials/0/normalTexture/extensions/KHR_texture_transform/texCoord", "/nodes/0",
+          "/nodes/x/translation", "/nodes//translation", "", "/nodes/0/weights/1", "/nodes/-1/translation"}) {
         const LogCapture log;
-        decode(pointing_at(pointer));
+        GltfBuilder builder = pointing_at(pointer);
+        builder.json["materials"] = {Json::object()};
+        decode(builder);
         EXPECT_NE(log.text.find(fmt::format("animates '{}', which cannot be animated", pointer)),
                   std::string::npos)
             << pointer << ": " << log.text;
@@ -238,6 +370,8 @@ TEST(GltfAnimationPointer, WarnsOfWhatCannotBeAnimated) {
     EXPECT_NE(message_of(pointing_at("/nodes/5/translation")).find("nodes[5] does not exist"),
               std::string::npos);
     EXPECT_NE(message_of(pointing_at("/nodes/99999999999999999999/scale")), "");
+    EXPECT_NE(message_of(pointing_at("/materials/5/alphaCutoff", {0, 1})).find("materials[5] does not exist"),
+              std::string::npos);
     GltfBuilder without = pointing_at("");
     without.json["animations"][0]["channels"][0]["target"].erase("extensions");
     EXPECT_NE(message_of(without).find("without a pointer"), std::string::npos);
@@ -249,8 +383,9 @@ TEST(GltfExtensions, WhatIsNotKnownIsNamed) {
     builder.json["extensionsUsed"] = {"KHR_materials_diffuse_transmission", "EXT_mesh_gpu_instancing"};
     const LogCapture log;
     decode(builder);
-    EXPECT_EQ(log.text,
-              "test.glb: the extension KHR_materials_diffuse_transmission is not known; it is drawn without\n");
+    EXPECT_EQ(
+        log.text,
+        "test.glb: the extension KHR_materials_diffuse_transmission is not known; it is drawn without\n");
 }
 
 }  // namespace easypbr::gltf_nodes_test

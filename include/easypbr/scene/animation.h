@@ -2,11 +2,13 @@
 // and 3.11).
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "easypbr/scene/material.h"
 #include "easypbr/scene/mesh.h"
 
 namespace easypbr {
@@ -18,16 +20,25 @@ enum class Interpolation {
     cubic_spline  ///< Hermite; each key has an in-tangent, a value and an out-tangent
 };
 
-enum class AnimatedProperty { translation, rotation, scale, weights };
+enum class AnimatedProperty {
+    translation,
+    rotation,
+    scale,
+    weights,
+    visibility,  ///< of the node with all that hangs below it; above 0.5: visible
+    material     ///< parameters of a material, as many as there are values in a row
+};
 
-/// One property of one node over time.
+/// One property of one node or material over time.
 struct AnimationChannel {
-    int node = 0;  ///< index into AnimationRig::nodes
+    int node =
+        0;  ///< index into AnimationRig::nodes; AnimatedProperty::material: into AnimationRig::materials
     AnimatedProperty property = AnimatedProperty::translation;
     Interpolation interpolation = Interpolation::linear;
     std::vector<float> times;  ///< seconds, rising
     /// One row for each time, three for cubic splines; rotations are x, y, z, w.
     ArrayXf::Dense values;
+    int parameter = 0;  ///< AnimatedProperty::material: the first one
 };
 
 struct Animation {
@@ -62,14 +73,23 @@ struct AnimationNode {
     Eigen::Quaterniond rotation{1, 0, 0, 0};
     std::optional<Eigen::Affine3d> matrix;  ///< in place of the three; such a node is not animated
     std::vector<float> weights;             ///< of the morph targets at rest
+    std::optional<bool> visible;            ///< at rest; none where no animation changes it
     std::optional<Mesh> mesh;               ///< whose pose follows; none for nodes that only move others
     int skin = -1;
     Deformation deformation;
 };
 
-/// All nodes of a file with what moves them.
+/// A material whose values change over time (KHR_animation_pointer).
+struct AnimatedMaterial {
+    std::vector<double> parameters;  ///< at rest
+    std::function<Material(const std::vector<double>& parameters)> material;
+    std::vector<std::pair<Mesh, size_t>> users;  ///< with the place in each mesh's materials
+};
+
+/// All nodes and materials of a file with what moves and changes them.
 struct AnimationRig {
     std::vector<AnimationNode> nodes;
+    std::vector<AnimatedMaterial> materials;
     std::vector<Skin> skins;
     std::vector<Animation> animations;
 };
@@ -87,10 +107,10 @@ class Animations {
     size_t find(const std::string& name) const;
     double duration_s(size_t index) const;
 
-    /// Puts the meshes where they are at a time of an animation: poses of nodes, vertices and normals of what
-    /// has skins or morph targets. With `loop` the time goes around, else the animation rests at its ends.
-    /// What the animation leaves alone is at rest. Throws NameError for an unknown index, ArgumentError for a
-    /// time that is not finite.
+    /// Puts the meshes where they are at a time of an animation: poses and visibility of nodes, vertices and
+    /// normals of what has skins or morph targets, and materials. With `loop` the time goes around, else the
+    /// animation rests at its ends. What the animation leaves alone is at rest. Throws NameError for an
+    /// unknown index, ArgumentError for a time that is not finite.
     void apply(size_t index, double time_s, bool loop = true);
 
     /// How each node's mesh moved between two times of an animation, as poses in the mesh's own frame: where
@@ -104,11 +124,14 @@ class Animations {
     std::vector<Pose> pose(const Animation& animation, double time_s) const;
     /// The poses at a time, brought into the animation's duration with `loop`.
     std::vector<Pose> pose_at(size_t index, double time_s, bool loop) const;
+    double time_in(size_t index, double time_s, bool loop) const;
     void deform(AnimationNode& node, const Eigen::Affine3d& T_world_node, const std::vector<float>& weights,
                 const std::vector<Eigen::Affine3d>& T_world_nodes);
+    void put_materials(const Animation& animation, double time_s);
 
     AnimationRig rig_;
-    std::vector<size_t> order_;  ///< parents before children
+    std::vector<size_t> order_;                        ///< parents before children
+    std::vector<std::vector<double>> put_parameters_;  ///< of materials, as they were put last
 };
 
 }  // namespace easypbr

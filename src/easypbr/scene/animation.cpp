@@ -59,6 +59,16 @@ void check_index(const char* what, int index, size_t count, bool may_lack) {
             fmt::format("animation rig: {} {} does not exist, there are {}", what, index, count));
 }
 
+void check_channel(const AnimationChannel& channel, const AnimationRig& rig) {
+    if (channel.property != AnimatedProperty::material)
+        return check_index("node", channel.node, rig.nodes.size(), false);
+    check_index("material", channel.node, rig.materials.size(), false);
+    const size_t count = rig.materials[size_t(channel.node)].parameters.size();
+    const int last = channel.parameter + int(channel.values.cols()) - 1;
+    check_index("parameter", channel.parameter, count, false);
+    check_index("parameter", last, count, false);
+}
+
 /// Throws unless all arrays of a deformation fit together and every joint is one of the skin's.
 void check_deformation(const Deformation& d, size_t joints, bool has_skin) {
     const Eigen::Index n = d.V.rows();
@@ -113,6 +123,13 @@ void follow_joints(const Deformation& from, const std::vector<Eigen::Affine3d>& 
     });
 }
 
+void show(Mesh& mesh, bool visible) {
+    Style style = mesh.style();
+    if (style.visible.value() == visible) return;
+    style.visible = visible;
+    mesh.set_style(style);
+}
+
 void normalize(Array3f::Dense& N) {
     parallel_for(size_t(N.rows()), morph_grain, [&](size_t i) {
         auto n = N.row(Eigen::Index(i));
@@ -134,6 +151,7 @@ struct Animations::Pose {
     Vec3d translation, scale;
     Eigen::Quaterniond rotation;
     std::vector<float> weights;
+    std::optional<bool> visible;
 
     Eigen::Affine3d matrix() const {
         return Eigen::Translation3d(translation) * rotation * Eigen::Scaling(scale);
@@ -152,8 +170,8 @@ Animations::Animations(AnimationRig rig) : rig_(std::move(rig)) {
     for (const Skin& skin : rig_.skins)
         for (const int joint : skin.joints) check_index("joint", joint, count, false);
     for (const Animation& animation : rig_.animations)
-        for (const AnimationChannel& channel : animation.channels)
-            check_index("node", channel.node, count, false);
+        for (const AnimationChannel& channel : animation.channels) check_channel(channel, rig_);
+    for (const AnimatedMaterial& material : rig_.materials) put_parameters_.push_back(material.parameters);
     std::vector<bool> placed(count, false);
     // As many rounds as the hierarchy is deep; a circle would never be placed.
     for (bool again = true; again;) {
@@ -194,8 +212,9 @@ double Animations::duration_s(size_t index) const {
 std::vector<Animations::Pose> Animations::pose(const Animation& animation, double time_s) const {
     std::vector<Pose> poses;
     for (const AnimationNode& node : rig_.nodes)
-        poses.push_back({node.translation, node.scale, node.rotation, node.weights});
+        poses.push_back({node.translation, node.scale, node.rotation, node.weights, node.visible});
     for (const AnimationChannel& channel : animation.channels) {
+        if (channel.property == AnimatedProperty::material) continue;
         Pose& pose = poses[size_t(channel.node)];
         const Eigen::VectorXd value = sample(channel, time_s);
         switch (channel.property) {
@@ -211,18 +230,29 @@ std::vector<Animations::Pose> Animations::pose(const Animation& animation, doubl
             case AnimatedProperty::weights: {
                 const Eigen::VectorXf weights = value.cast<float>();
                 pose.weights.assign(weights.begin(), weights.end());
+                break;
             }
+            case AnimatedProperty::visibility:
+                pose.visible = value[0] > 0.5;
+                break;
+            case AnimatedProperty::material:
+                break;
         }
     }
     return poses;
 }
 
-std::vector<Animations::Pose> Animations::pose_at(size_t index, double time_s, bool loop) const {
+double Animations::time_in(size_t index, double time_s, bool loop) const {
     const double duration = duration_s(index);
     if (!std::isfinite(time_s))
         throw ArgumentError(fmt::format("animation: expected a finite time, got {}", time_s));
     if (loop && duration > 0) time_s -= duration * std::floor(time_s / duration);
-    return pose(rig_.animations[index], time_s);
+    return time_s;
+}
+
+std::vector<Animations::Pose> Animations::pose_at(size_t index, double time_s, bool loop) const {
+    const double time = time_in(index, time_s, loop);
+    return pose(rig_.animations[index], time);
 }
 
 std::vector<std::pair<Mesh, Eigen::Affine3d>> Animations::motion(size_t index, double from_s, double to_s,
@@ -247,11 +277,33 @@ void Animations::apply(size_t index, double time_s, bool loop) {
         AnimationNode& node = rig_.nodes[i];
         const Eigen::Affine3d T = node.matrix ? *node.matrix : poses[i].matrix();
         T_world_nodes[i] = node.parent < 0 ? T : T_world_nodes[size_t(node.parent)] * T;
-        if (node.mesh) node.mesh->set_T_parent_mesh(T);
+        if (!node.mesh) continue;
+        node.mesh->set_T_parent_mesh(T);
+        if (poses[i].visible) show(*node.mesh, *poses[i].visible);
     }
+    put_materials(rig_.animations[index], time_in(index, time_s, loop));
     for (const size_t i : order_)
         if (AnimationNode& node = rig_.nodes[i]; node.mesh && !node.deformation.empty())
             deform(node, T_world_nodes[i], poses[i].weights, T_world_nodes);
+}
+
+void Animations::put_materials(const Animation& animation, double time_s) {
+    std::vector<std::vector<double>> parameters;
+    for (const AnimatedMaterial& material : rig_.materials) parameters.push_back(material.parameters);
+    for (const AnimationChannel& channel : animation.channels) {
+        if (channel.property != AnimatedProperty::material) continue;
+        const Eigen::VectorXd value = sample(channel, time_s);
+        std::copy(value.begin(), value.end(), parameters[size_t(channel.node)].begin() + channel.parameter);
+    }
+    for (size_t i = 0; i < parameters.size(); ++i) {
+        if (parameters[i] == put_parameters_[i]) continue;
+        const Material material = rig_.materials[i].material(parameters[i]);
+        for (auto& [mesh, place] : rig_.materials[i].users)
+            mesh.edit([&, slot = place](MeshData& data) {
+                if (slot < data.materials.size()) data.materials[slot] = material;
+            });
+        put_parameters_[i] = std::move(parameters[i]);
+    }
 }
 
 void Animations::deform(AnimationNode& node, const Eigen::Affine3d& T_world_node,

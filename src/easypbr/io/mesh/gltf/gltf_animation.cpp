@@ -21,8 +21,11 @@ struct Sampler {
 
 class AnimationReader {
   public:
-    AnimationReader(GltfDocument& document, const Json& json, size_t index)
-        : document_(document), json_(json), name_(fmt::format("animations[{}]", index)) {}
+    AnimationReader(GltfDocument& document, GltfMaterialPointers& pointers, const Json& json, size_t index)
+        : document_(document),
+          pointers_(pointers),
+          json_(json),
+          name_(fmt::format("animations[{}]", index)) {}
 
     Animation read() {
         Animation animation;
@@ -45,7 +48,13 @@ class AnimationReader {
         if (!target) fail("has a channel without a target");
         auto node = document_.optional_integer(*target, "node");
         std::string path = document_.text(*target, "path");
-        if (path == "pointer") std::tie(node, path) = pointed_at(*target);
+        if (path == "pointer") {
+            const std::string pointer = pointer_of(*target);
+            if (const auto material = pointers_.find(pointer)) return read_material(json, *material);
+            std::tie(node, path) = pointed_at(pointer);
+            if (node && path == fmt::format("extensions/{}/visible", khr_node_visibility))
+                return read_visibility(json, *node);
+        }
         constexpr const char* properties[] = {"translation", "rotation", "scale", "weights"};
         const auto known = std::ranges::find(properties, path);
         if (known == std::end(properties))
@@ -53,21 +62,47 @@ class AnimationReader {
                                     document_.path().string(), name_, path));
         if (!node || known == std::end(properties)) return {};
         document_.item("nodes", *node);
-        AnimationChannel channel;
-        channel.node = int(*node);
-        channel.property = AnimatedProperty(known - std::begin(properties));
-        Sampler sampler = read_sampler(document_.integer(json, "sampler"));
-        channel.interpolation = sampler.interpolation;
-        channel.times = std::move(sampler.times);
-        channel.values = read_values(channel, sampler.output);
+        const auto property = AnimatedProperty(known - std::begin(properties));
+        const bool weights = property == AnimatedProperty::weights;
+        const int columns = weights ? 0 : property == AnimatedProperty::rotation ? 4 : 3;
+        return read_keys(json, int(*node), property, columns);
+    }
+
+    AnimationChannel read_material(const Json& json, const GltfMaterialTarget& target) {
+        AnimationChannel channel = read_keys(json, target.material, AnimatedProperty::material, target.width);
+        channel.parameter = target.parameter;
         return channel;
     }
 
-    /// What KHR_animation_pointer names: a property of a node; another one is returned as a whole.
-    std::pair<std::optional<size_t>, std::string> pointed_at(const Json& target) const {
+    /// Truth values have nothing between them.
+    AnimationChannel read_visibility(const Json& json, size_t node) {
+        document_.item("nodes", node);
+        AnimationChannel channel = read_keys(json, int(node), AnimatedProperty::visibility, 1);
+        if (channel.interpolation != Interpolation::step)
+            fail(fmt::format("animates the visibility of nodes[{}] by a sampler that is not STEP", node));
+        return channel;
+    }
+
+    /// Keys with rows of `columns` values; 0: as many as there are.
+    AnimationChannel read_keys(const Json& json, int target, AnimatedProperty property, int columns) {
+        AnimationChannel channel;
+        channel.node = target;
+        channel.property = property;
+        Sampler sampler = read_sampler(document_.integer(json, "sampler"));
+        channel.interpolation = sampler.interpolation;
+        channel.times = std::move(sampler.times);
+        channel.values = read_values(channel, sampler.output, columns);
+        return channel;
+    }
+
+    std::string pointer_of(const Json& target) const {
         const Json* given = extension(target, khr_animation_pointer);
         if (!given) fail("has a channel of path 'pointer' without a pointer");
-        const std::string pointer = document_.text(*given, "pointer");
+        return document_.text(*given, "pointer");
+    }
+
+    /// A property of a node; what is none is returned as a whole.
+    static std::pair<std::optional<size_t>, std::string> pointed_at(const std::string& pointer) {
         constexpr std::string_view nodes = "/nodes/";
         const size_t end = pointer.find('/', nodes.size());
         if (!pointer.starts_with(nodes) || end == pointer.npos) return {std::nullopt, pointer};
@@ -75,7 +110,8 @@ class AnimationReader {
         const auto read = std::from_chars(pointer.data() + nodes.size(), pointer.data() + end, node);
         if (read.ec != std::errc() || read.ptr != pointer.data() + end) return {std::nullopt, pointer};
         const std::string property = pointer.substr(end + 1);
-        return {node, property.find('/') == property.npos ? property : pointer};
+        const bool known = property.find('/') == property.npos || property.starts_with("extensions/");
+        return {node, known ? property : pointer};
     }
 
     Sampler read_sampler(size_t index) {
@@ -101,9 +137,9 @@ class AnimationReader {
     }
 
     /// One row for each key, or three.
-    ArrayXf::Dense read_values(const AnimationChannel& channel, size_t accessor) {
-        const bool weights = channel.property == AnimatedProperty::weights;
-        const int columns = weights ? 1 : channel.property == AnimatedProperty::rotation ? 4 : 3;
+    ArrayXf::Dense read_values(const AnimationChannel& channel, size_t accessor, int columns) {
+        const bool weights = columns == 0;
+        if (weights) columns = 1;
         ArrayXf::Dense values = read_floats(document_, accessor, columns, columns);
         const auto keys = Eigen::Index(channel.times.size()) *
                           (channel.interpolation == Interpolation::cubic_spline ? 3 : 1);
@@ -116,6 +152,7 @@ class AnimationReader {
     }
 
     GltfDocument& document_;
+    GltfMaterialPointers& pointers_;
     const Json& json_;
     std::string name_;
 };
@@ -144,6 +181,16 @@ Skin read_skin(GltfDocument& document, size_t index) {
     return skin;
 }
 
+/// Nodes whose visibility an animation changes have one at rest.
+void set_visibility_at_rest(const GltfDocument& document, AnimationRig& rig) {
+    for (const Animation& animation : rig.animations)
+        for (const AnimationChannel& channel : animation.channels) {
+            if (channel.property != AnimatedProperty::visibility) continue;
+            const Json* given = extension(document.item("nodes", size_t(channel.node)), khr_node_visibility);
+            rig.nodes[size_t(channel.node)].visible = !given || document.boolean(*given, "visible", true);
+        }
+}
+
 }  // namespace
 
 AnimationNode read_gltf_pose(const GltfDocument& document, size_t index) {
@@ -164,7 +211,7 @@ AnimationNode read_gltf_pose(const GltfDocument& document, size_t index) {
     return node;
 }
 
-AnimationRig read_gltf_rig(GltfDocument& document) {
+AnimationRig read_gltf_rig(GltfDocument& document, GltfMaterialPointers& pointers) {
     AnimationRig rig;
     const size_t animations = document.count("animations");
     if (animations == 0) return rig;
@@ -180,7 +227,10 @@ AnimationRig read_gltf_rig(GltfDocument& document) {
             if (child < rig.nodes.size()) rig.nodes[child].parent = int(i);
     for (size_t i = 0; i < document.count("skins"); ++i) rig.skins.push_back(read_skin(document, i));
     for (size_t i = 0; i < animations; ++i)
-        rig.animations.push_back(AnimationReader(document, document.item("animations", i), i).read());
+        rig.animations.push_back(
+            AnimationReader(document, pointers, document.item("animations", i), i).read());
+    set_visibility_at_rest(document, rig);
+    rig.materials = pointers.materials();
     return rig;
 }
 

@@ -22,20 +22,6 @@ Wrap wrap_of(size_t code) {
     return code == 33071 ? Wrap::clamp : code == 33648 ? Wrap::mirror : Wrap::repeat;
 }
 
-/// KHR_texture_transform, scaling first, then turning counter-clockwise, then shifting, where v goes down;
-/// both sides of it are flipped, for our v goes up.
-Mat3 uv_transform_of(const GltfDocument& document, const Json& json) {
-    const auto offset = document.numbers(json, "offset", 2).value_or(std::vector<double>{0, 0});
-    const auto scale = document.numbers(json, "scale", 2).value_or(std::vector<double>{1, 1});
-    const double angle = document.number(json, "rotation", 0);
-    Mat3d transform = Mat3d::Identity(), flip = Mat3d::Identity();
-    transform << std::cos(angle) * scale[0], std::sin(angle) * scale[1], offset[0],  //
-        -std::sin(angle) * scale[0], std::cos(angle) * scale[1], offset[1],          //
-        0, 0, 1;
-    flip.row(1) << 0, -1, 1;
-    return (flip * transform * flip).cast<float>();
-}
-
 /// The images of a file, decoded when they are first asked for as a whole.
 class Images {
   public:
@@ -141,7 +127,6 @@ class MaterialReader {
         out.roughness = float(document_.number(json, "roughnessFactor", 1));
     }
 
-  private:
     struct Place {
         const char* extension;  ///< or null
         const char* parent;     ///< or null
@@ -171,6 +156,7 @@ class MaterialReader {
          1},
         {khr_anisotropy, nullptr, "anisotropyTexture", &Material::anisotropy_texture, 0}};
 
+  private:
     void read_rest(const Json& json, Material& out) const {
         out.emissive =
             vec3_of(document_.numbers(json, "emissiveFactor", 3).value_or(std::vector<double>{0, 0, 0}));
@@ -254,7 +240,7 @@ class MaterialReader {
             out.filter = nearest ? Filter::nearest : Filter::linear;
         }
         if (const Json* transform = extension(*info, "KHR_texture_transform"))
-            out.uv_transform = uv_transform_of(document_, *transform);
+            out.uv_transform = read_texture_transform(document_, *transform).matrix();
         return out;
     }
 
@@ -263,6 +249,34 @@ class MaterialReader {
 };
 
 }  // namespace
+
+Mat3 GltfTextureTransform::matrix() const {
+    Mat3d transform = Mat3d::Identity(), flip = Mat3d::Identity();
+    transform << std::cos(rotation) * scale[0], std::sin(rotation) * scale[1], offset[0],  //
+        -std::sin(rotation) * scale[0], std::cos(rotation) * scale[1], offset[1],          //
+        0, 0, 1;
+    flip.row(1) << 0, -1, 1;
+    return (flip * transform * flip).cast<float>();
+}
+
+GltfTextureTransform read_texture_transform(const GltfDocument& document, const Json& json) {
+    GltfTextureTransform transform;
+    if (const auto offset = document.numbers(json, "offset", 2)) transform.offset = Vec2d(offset->data());
+    if (const auto scale = document.numbers(json, "scale", 2)) transform.scale = Vec2d(scale->data());
+    transform.rotation = document.number(json, "rotation", 0);
+    return transform;
+}
+
+std::vector<std::pair<std::string, Texture Material::*>> gltf_texture_places() {
+    std::vector<std::pair<std::string, Texture Material::*>> places;
+    for (const MaterialReader::Place& place : MaterialReader::places) {
+        const std::string parent = place.extension ? fmt::format("extensions/{}/", place.extension)
+                                   : place.parent  ? fmt::format("{}/", place.parent)
+                                                   : "";
+        places.emplace_back(parent + place.key, place.texture);
+    }
+    return places;
+}
 
 GltfMaterials::GltfMaterials(GltfDocument& document)
     : document_(document), entries_(document.count("materials")) {

@@ -3,12 +3,29 @@
 
 #include <memory>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "easypbr/io/mesh/gltf/gltf_document.h"
 #include "easypbr/scene/material.h"
 
 namespace easypbr::io {
+
+/// KHR_texture_transform: scaling first, then turning counter-clockwise, then shifting, where v goes down.
+struct GltfTextureTransform {
+    Vec2d offset{0, 0}, scale{1, 1};
+    double rotation = 0;  ///< radians
+
+    /// For our v, which goes up: both sides are flipped.
+    Mat3 matrix() const;
+};
+
+/// Of a texture info's extension.
+GltfTextureTransform read_texture_transform(const GltfDocument& document, const Json& json);
+
+/// Where a material's JSON names its textures ("pbrMetallicRoughness/baseColorTexture"), and what they are
+/// read into.
+std::vector<std::pair<std::string, Texture Material::*>> gltf_texture_places();
 
 class GltfMaterials {
   public:

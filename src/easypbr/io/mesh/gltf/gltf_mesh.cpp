@@ -97,7 +97,7 @@ class MeshBuilder {
         for (const Json& primitive : *primitives) add(primitive);
         if (blocks_.empty() && splats_.size() == 1) {
             splats_[0].name = out_.name;
-            return {std::move(splats_[0]), {}, {}};
+            return {std::move(splats_[0]), {}, {}, {}};
         }
         for (MeshData& splats : splats_) {
             splats.name = fmt::format("splats {}", out_.children.size());
@@ -108,7 +108,7 @@ class MeshBuilder {
         if (!edges_.empty())
             out_.E =
                 Array2i(Eigen::Map<const Array2i::Dense>(edges_.data(), Eigen::Index(edges_.size() / 2), 2));
-        GltfMesh mesh{std::move(out_), {}, {}};
+        GltfMesh mesh{std::move(out_), {}, {}, std::move(sources_)};
         read_deformation(json, mesh);
         return mesh;
     }
@@ -214,7 +214,10 @@ class MeshBuilder {
 
     int material_index(std::optional<size_t> material) {
         const auto [found, is_new] = material_index_.try_emplace(material, int(out_.materials.size()));
-        if (is_new) out_.materials.push_back(materials_.material(material));
+        if (is_new) {
+            out_.materials.push_back(materials_.material(material));
+            sources_.push_back(material);
+        }
         return found->second;
     }
 
@@ -314,6 +317,7 @@ class MeshBuilder {
     ArrayXf::Dense none_;           ///< what a block has of a morph target that it lacks
     std::map<BlockKey, size_t> block_index_;
     std::map<std::optional<size_t>, int> material_index_;
+    std::vector<std::optional<size_t>> sources_;  ///< of out_.materials
     Eigen::Index vertex_count_ = 0;
     std::vector<int32_t> faces_, edges_;
 };

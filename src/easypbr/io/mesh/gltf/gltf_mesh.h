@@ -11,8 +11,9 @@ namespace easypbr::io {
 
 struct GltfMesh {
     MeshData data;
-    Deformation deformation;     ///< empty without joints and morph targets
-    std::vector<float> weights;  ///< of the morph targets at rest
+    Deformation deformation;                       ///< empty without joints and morph targets
+    std::vector<float> weights;                    ///< of the morph targets at rest
+    std::vector<std::optional<size_t>> materials;  ///< of the file, one for each of data's
 };
 
 /// Triangles, strips and fans become F with a part for each primitive, lines E, points plain vertices.

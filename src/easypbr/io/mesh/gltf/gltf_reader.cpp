@@ -39,7 +39,7 @@ constexpr std::string_view known_extensions[] = {khr_unlit,
                                                  "KHR_lights_punctual",
                                                  "KHR_mesh_quantization",
                                                  khr_variants,
-                                                 "KHR_node_visibility",
+                                                 khr_node_visibility,
                                                  khr_animation_pointer,
                                                  ext_mesh_gpu_instancing,
                                                  khr_draco,
@@ -61,6 +61,7 @@ class SceneReader {
     SceneReader(GltfDocument& document, const std::string& variant)
         : document_(document),
           materials_(document),
+          pointers_(document, materials_),
           variants_(document, variant),
           meshes_(document.count("meshes")),
           visited_(document.count("nodes")) {}
@@ -68,7 +69,7 @@ class SceneReader {
     LoadedScene read() {
         require_extensions();
         warn_of_extensions();
-        rig_ = read_gltf_rig(document_);
+        rig_ = read_gltf_rig(document_, pointers_);
         MeshData root;
         root.name = document_.path().stem().string();
         root.source = document_.path();
@@ -156,12 +157,14 @@ class SceneReader {
         if (!mesh && data.children.empty()) return std::nullopt;
         const Mesh node(std::move(data));
         if (!rig_.animations.empty()) animate(index, json, node, copies ? std::nullopt : mesh);
+        if (!rig_.animations.empty() && copies)
+            for (const Mesh& copy : node.children()) animate_materials(*mesh, copy);
         return node;
     }
 
     /// KHR_node_visibility; a parent that is not visible takes its children with it.
     bool is_visible(const Json& node) const {
-        const Json* visibility = extension(node, "KHR_node_visibility");
+        const Json* visibility = extension(node, khr_node_visibility);
         return !visibility || document_.boolean(*visibility, "visible", true);
     }
 
@@ -183,11 +186,20 @@ class SceneReader {
         AnimationNode& node = rig_.nodes[index];
         node.mesh = mesh;
         if (!mesh_index) return;
+        animate_materials(*mesh_index, mesh);
         const GltfMesh& source = mesh_of(*mesh_index);
         node.deformation = source.deformation;
         node.weights = source.weights;
         if (const auto weights = document_.numbers(json, "weights", source.weights.size()))
             node.weights.assign(weights->begin(), weights->end());
+    }
+
+    /// Tells the animations which materials of a mesh are those that they change.
+    void animate_materials(size_t mesh_index, const Mesh& mesh) {
+        const auto& sources = mesh_of(mesh_index).materials;
+        for (size_t place = 0; place < sources.size(); ++place)
+            if (const auto animated = sources[place] ? pointers_.animated(*sources[place]) : std::nullopt)
+                rig_.materials[*animated].users.emplace_back(mesh, place);
     }
 
     const GltfMesh& mesh_of(size_t index) {
@@ -273,6 +285,7 @@ class SceneReader {
 
     GltfDocument& document_;
     GltfMaterials materials_;
+    GltfMaterialPointers pointers_;
     GltfVariants variants_;
     std::vector<std::optional<GltfMesh>> meshes_;
     std::map<std::string, size_t> first_of_;  ///< meshes, by their JSON without names
