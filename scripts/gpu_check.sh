@@ -119,7 +119,7 @@ step bench 120 "$python scripts/gpu_steps.py bench '$output' ${gpu:+23}"
   if [ -n "$gpu" ]; then echo "Measured on: $gpu"; else echo "**No GPU was found: all of this was drawn by the CPU, through the driver named below, and says nothing of a GPU.**"; fi
   echo
   grep -hE '^(easypbr|renderer|OpenGL|version|vendor|platform|context) ' "$output/doctor.log" 2>/dev/null | sed 's/^/    /'
-  grep -h 'model name' "$output/facts.log" | sed 's/^/    /'
+  grep -h 'model name' "$output/facts.log" 2>/dev/null | sed 's/^/    /'
   echo "    $(release), $(git rev-parse --short HEAD 2>/dev/null || echo 'no revision'), $SECONDS s in all"
   echo
   echo '| Step | Result | s |'
