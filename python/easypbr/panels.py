@@ -4,7 +4,7 @@ import sys
 import traceback
 import weakref
 from collections.abc import Callable, Iterable, Sequence
-from typing import Any, TypeVar
+from typing import Any, TypeVar, overload
 
 import numpy as np
 
@@ -12,6 +12,11 @@ from . import _easypbr
 from .errors import ArgumentError
 
 Value = TypeVar("Value")
+
+# Decorators return the function as it is, with its own type.
+_Draws = TypeVar("_Draws", bound=Callable[["Panel"], object])
+_Called = TypeVar("_Called", bound=Callable[[], object])
+_Handles = TypeVar("_Handles", bound=Callable[["_easypbr.Event"], object])
 
 _KINDS = ("move", "press", "release", "scroll", "key_down", "key_up", "text", "drop", "resize", "focus_lost")
 
@@ -117,6 +122,12 @@ class WindowCallbacks:
         self._handler_number: int | None = None
         self._front_ends: weakref.WeakSet[Any] = weakref.WeakSet()  # Servers and widgets.
 
+    @overload
+    def add_panel(self, name: str, function: _Draws) -> _Draws: ...
+
+    @overload
+    def add_panel(self, name: str, function: None = None) -> Callable[[_Draws], _Draws]: ...
+
     def add_panel(self, name: str, function: Callable[[Panel], object] | None = None) -> Any:
         """Adds a panel to the window, drawn by function(ui) in each frame; see Panel. Exceptions are shown in the panel
         with their traceback, and the loop continues. Also as a decorator: @view.add_panel("Training"). Browser views and
@@ -177,18 +188,24 @@ class WindowCallbacks:
         finally:
             panel._handle = None
 
-    def before_draw(self, function: Callable[[], object]) -> Callable[[], object]:
+    def before_draw(self, function: _Called) -> _Called:
         """Calls `function` in every update() before it draws. Exceptions are shown in the window with their traceback,
         and the loop continues. Also as a decorator."""
         self._before_draw.append(function)
         return function
 
-    def after_draw(self, function: Callable[[], object]) -> Callable[[], object]:
+    def after_draw(self, function: _Called) -> _Called:
         """Calls `function` in every update() after it has drawn. Also as a decorator."""
         self._after_draw.append(function)
         return function
 
-    def on_event(self, function: Callable[..., Any] | None = None, kind: str | None = None) -> Any:
+    @overload
+    def on_event(self, function: _Handles, kind: str | None = None) -> _Handles: ...
+
+    @overload
+    def on_event(self, function: None = None, kind: str | None = None) -> Callable[[_Handles], _Handles]: ...
+
+    def on_event(self, function: "Callable[[_easypbr.Event], object] | None" = None, kind: str | None = None) -> Any:
         """Calls function(event) for events of mouse and keyboard, dropped files and resizing, except those consumed
         by panels; see Event. If it returns True the viewer ignores the event. `kind`: only events of this kind. Also
         as a decorator: @view.on_event(kind="key_down")."""

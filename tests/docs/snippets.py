@@ -11,12 +11,24 @@ from easypbr import shapes
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+IMPORTS_ALL = re.compile(r"^from easypbr\S* import \*", re.MULTILINE)
 FENCE = re.compile(r"^```(\w*)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
 def blocks(page, language):
     """The page's blocks of one language, in their order."""
     return [text for name, text in FENCE.findall(page.read_text()) if name == language]
+
+
+def programs(page):
+    """The page's Python; a block that imports all names again begins another program."""
+    texts = []
+    for block in blocks(page, "python"):
+        if not texts or IMPORTS_ALL.search(texts[-1]) and IMPORTS_ALL.search(block):
+            texts.append(block)
+        else:
+            texts[-1] += "\n" + block
+    return texts
 
 
 def write_inputs(folder):

@@ -43,6 +43,8 @@ linear: str = easypbr.render(mesh, hdr=True)  # WRONG
 view.render(samples="many")  # WRONG
 view.focus_at(1)  # WRONG
 view.settings.camera.fov = 3  # WRONG
+view.add_panel("Mine", lambda: None)  # WRONG
+view.on_event(lambda: True)  # WRONG
 text: str = view.render()  # WRONG
 generate("spec.toml", "out")  # WRONG
 """
