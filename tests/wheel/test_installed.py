@@ -4,11 +4,13 @@ import importlib.metadata
 import json
 import os
 import pathlib
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import unittest
+import urllib.request
 
 import numpy as np
 
@@ -55,6 +57,10 @@ class Installed(unittest.TestCase):
                               capture_output=True, text=True, timeout=300, check=False)
         self.assertEqual(done.returncode, code, done.stdout + done.stderr)
         return done
+
+    def fetched(self, address: str) -> bytes:
+        with urllib.request.urlopen(address, timeout=60) as answer:
+            return answer.read()
 
     def assert_drawn(self, name: str) -> None:
         self.assertGreater(np.ptp(picture(self.folder / name)[:, :, :3]), 50, name)
@@ -105,6 +111,41 @@ class Installed(unittest.TestCase):
         pictures = [picture(self.folder / f"f_{i}.png").astype(int) for i in range(4)]
         for i in range(4):
             self.assertGreater(np.abs(pictures[i] - pictures[i - 1]).max(), 50)
+
+    def test_line_drawing(self) -> None:
+        self.run_(PROGRAM, "render", "drone.ply", "--size", "160x120", "-o", "a.svg")
+        text = (self.folder / "a.svg").read_text()
+        self.assertIn('viewBox="0 0 160 120"', text)
+        self.assertIn("<path", text)
+
+    def test_splats(self) -> None:
+        """Written by the package, drawn by the program."""
+        self.run_(sys.executable, "-c", "import easypbr; easypbr.splats([[0, 0, 0], [1, 0, 0], [0, 1, 0]], 0.2, opacities=0.9, "
+                  "colors=[[1, 0, 0], [0, 1, 0], [0, 0, 1]]).save('room.ply')")
+        self.run_(PROGRAM, "render", "room.ply", "--size", "96x64", "-o", "room.png")
+        self.assert_drawn("room.png")
+
+    def test_serve(self) -> None:
+        """The page and its program come from the library; nothing is fetched from elsewhere."""
+        with subprocess.Popen([PROGRAM, "serve", "drone.ply"], cwd=self.folder, stdout=subprocess.PIPE, text=True) as server:
+            try:
+                said = server.stdout.readline()
+                link = re.search(r"http://127\.0\.0\.1:\d+/\S*", said)
+                self.assertTrue(link, said)
+                address = link[0].split("#")[0]
+                page = self.fetched(address).decode()
+                self.assertIn("<title>EasyPBR</title>", page)
+                names = re.findall(r'(?:src|href)="([^"]+)"', page)
+                self.assertEqual(sorted(names), ["app.css", "app.js", "icon.svg"])
+                for name in names:
+                    self.assertTrue(self.fetched(address + name), name)
+            finally:
+                server.terminate()
+
+    def test_widget(self) -> None:
+        """What it needs beside the package is named."""
+        said = self.run_(sys.executable, "-c", "import easypbr; easypbr.Viewer((64, 48)).widget()", code=1).stderr
+        self.assertIn("easypbr[jupyter]", said)
 
     def test_video(self) -> None:
         """Written where FFmpeg is; elsewhere an error names what has it."""
