@@ -12,8 +12,8 @@ namespace easypbr::io {
 namespace {
 
 constexpr size_t record_grain = 1 << 15;
-constexpr size_t record_slab =
-    record_grain * 64;  ///< rows after which the memory of the rows before is given back
+/// Bytes after which the memory of the rows before is given back.
+constexpr size_t record_slab = size_t(64) << 20;
 
 /// Reads one element; keeps what the functions below share.
 class ElementReader {
@@ -81,10 +81,11 @@ class ElementReader {
         const size_t stride = widths.back();
         if (element_.count > size_t(source_.end() - body) / stride) return nullptr;
         for (size_t i = 0; i < plan_.columns.size(); ++i) allocate_uniform(plan_.columns[i], widths[i]);
-        for (size_t row = 0; row < element_.count; row += record_slab) {
-            if (!read_uniform_slab(body, widths, row, std::min(record_slab, element_.count - row)))
-                return nullptr;
-            source_.release_until(body + row * stride);
+        const size_t slab = std::max(record_grain, record_slab / stride / record_grain * record_grain);
+        for (size_t row = 0; row < element_.count; row += slab) {
+            const size_t count = std::min(slab, element_.count - row);
+            if (!read_uniform_slab(body, widths, row, count)) return nullptr;
+            source_.release_until(body + (row + count) * stride);
         }
         return body + element_.count * stride;
     }
