@@ -174,6 +174,13 @@ struct PointsSettings {
     int hole_filling = 0;  ///< passes that fill one-pixel holes between points, 0 to 32
 };
 
+/// 3D Gaussian splats among lights and other objects.
+struct SplatSettings {
+    bool cast = true;     ///< they cast shadows with their opacity, and rays see them
+    bool receive = true;  ///< surfaces darken them where they hide lights and sky
+    bool resort = false;  ///< the splats of each pixel are in the order of their depths there
+};
+
 /// Legends and colour bars drawn into the image, never into layers.
 template <template <class> class MaybeAuto>
 struct BasicAnnotationSettings {
@@ -216,6 +223,7 @@ struct BasicSettings {
     MaterialSettings material;
     Style style;  ///< overrides of the style of every object; automatic: the object's own value
     PointsSettings points;
+    SplatSettings splats;
     ClipSettings clip;
     BasicAnnotationSettings<MaybeAuto> annotation;
     LoadSettings load;

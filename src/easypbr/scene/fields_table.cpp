@@ -426,6 +426,15 @@ void add_style(Table& table) {
 
 void add_clipping(Table& table) {
     table.push_back(
+        make("splats.cast", EASYPBR_AT(splats.cast),
+             "3D Gaussian splats cast shadows with their opacity, and are seen in mirrors and through glass "
+             "where rays or paths are traced."));
+    table.push_back(make("splats.receive", EASYPBR_AT(splats.receive),
+                         "Surfaces darken 3D Gaussian splats where they hide lights and sky from them."));
+    table.push_back(make("splats.resort", EASYPBR_AT(splats.resort),
+                         "Splats are blended in the order of their depths in each pixel, in place of one "
+                         "order for the whole image: nothing pops when the camera moves. Slower."));
+    table.push_back(
         make("points.hole_filling", EASYPBR_AT(points.hole_filling),
              "Number of passes that fill one-pixel holes between points from the neighbouring pixels.", "",
              {0, 32}));

@@ -170,6 +170,15 @@ DrawList DrawList::as_surfaces() const {
     return surfaces;
 }
 
+DrawList DrawList::as_casters(bool splats) const {
+    DrawList casters = *this;
+    auto own = casters.overlays.extract(DrawMode::splats);
+    if (!own || !splats) return casters;
+    for (DrawItem& item : own.mapped()) item.alpha = AlphaMode::blend;
+    casters.items.insert(std::move(own));
+    return casters;
+}
+
 DrawList draw_list(const DrawableScene& drawable, const InferredSettings& settings, const Material& textures,
                    const ShaderFiles& shader_files) {
     DrawList list;

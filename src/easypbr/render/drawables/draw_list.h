@@ -106,6 +106,9 @@ struct DrawList {
     /// All items as surfaces that hide what is behind them: what depth, ids and labels are of. A blended
     /// surface is one where its opacity is at least one half, and so are splats together.
     DrawList as_surfaces() const;
+    /// What casts shadows and is met by rays: all surfaces, and, with `splats`, those too, which weaken light
+    /// by their opacity.
+    DrawList as_casters(bool splats) const;
     /// Whether some of these surfaces are none in pictures.
     bool has_soft_surfaces() const { return overlays.contains(DrawMode::splats); }
 };

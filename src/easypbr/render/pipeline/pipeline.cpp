@@ -73,11 +73,14 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
     shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
     const bool native = is_lit_natively(list, contents);
     shadow_maps_.keep_in_host_memory(native);
+    find_place_light(frame, list, casters, contents);
     const std::string pass = native ? first_by_driver(list, contents) : lit_by_driver(native_shading_);
     if (!native && targets_.depth.is_ahead()) timer_.run(pass, [&] { targets_.upload(transfers_); });
     if (contents.ground)
         timer_.run("ground", [&] { native ? ground_.shade(seen, targets_) : ground_.draw(seen, targets_); });
-    light_surfaces(seen, casters, contents, {.native = native, .extensions = outputs.extensions},
+    // Where nothing is lit rays need no tree of what casts.
+    const DrawList& met = list.empty() && !contents.ground ? list : casters;
+    light_surfaces(seen, met, contents, {.native = native, .extensions = outputs.extensions},
                    {.of_points = with_overlay, .mapped = opaque.has(&DrawItem::has_mapped_normals)});
     const bool shows_environment =
         !resolved.environment.empty() && resolved.settings.background.shows_environment();
@@ -210,6 +213,26 @@ void Pipeline::update_ray_scene(const Frame& frame, const DrawList& casters, boo
     if (ground) plane = ray_ground(*frame.resolved);
     ray_scene_.update(casters, shadow_maps_.caster_bounds(), shadow_maps_.casters_generation(), primitives_,
                       plane);
+}
+
+void Pipeline::find_place_light(const Frame& frame, const DrawList& list, const DrawList& casters,
+                                const FrameContents& contents) {
+    const ResolvedSettings& resolved = *frame.resolved;
+    const bool is_lit = !resolved.lights.empty() || !resolved.environment.empty();
+    bool receives = resolved.settings.splats.receive && is_lit && !contents.layers &&
+                    list.overlays.contains(DrawMode::splats);
+    if (receives) {
+        darkening_ = casters;
+        darkening_.items.erase(DrawMode::splats);
+        receives = !darkening_.empty();
+    }
+    if (receives)
+        timer_.run("rays", [&] {
+            const bool occludes = resolved.settings.ssao.enabled || contents.traced || contents.paths;
+            received_light_.update(frame,
+                                   {darkening_, shadow_maps_.casters_generation(), primitives_, occludes});
+        });
+    for (const auto& kind : primitives_) kind->set_place_light(receives ? &received_light_ : nullptr);
 }
 
 bool Pipeline::draws_overlay(const Shot& shot, const FrameContents& contents) const {

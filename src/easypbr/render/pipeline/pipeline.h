@@ -21,6 +21,7 @@
 #include "easypbr/render/primitives/surfaces.h"
 #include "easypbr/render/raytrace/path_pass.h"
 #include "easypbr/render/raytrace/ray_pass.h"
+#include "easypbr/render/raytrace/received_light.h"
 #include "easypbr/render/shadow/shadow_maps.h"
 #include "easypbr/render/transparency/layer_guides.h"
 #include "easypbr/render/transparency/native_layers.h"
@@ -99,6 +100,9 @@ class Pipeline {
                         const LightInputs& inputs, AmbientOcclusionPass::Normals normals);
     void trace_paths(const Frame& frame, const SampledTiles* tiles, bool native, bool caught);
     void update_ray_scene(const Frame& frame, const DrawList& casters, bool ground);
+    /// Tells kinds that are not lit what darkens them.
+    void find_place_light(const Frame& frame, const DrawList& list, const DrawList& casters,
+                          const FrameContents& contents);
     /// Depth that hides overlays and layers: of what is drawn over everything else too.
     const gl::Texture& hiding_depth(const Frame& frame, const DrawList& list);
     /// Draws the overlays of primitives where there are no layers.
@@ -152,6 +156,8 @@ class Pipeline {
     ShadowMaps shadow_maps_;
     AmbientOcclusionPass ambient_occlusion_;
     RayScene ray_scene_;
+    ReceivedLight received_light_;
+    DrawList darkening_;  ///< the surfaces of its rays
     RayPass rays_;
     PathPass paths_;
     LightingPass lighting_;

@@ -61,6 +61,7 @@ struct Renderer::Picture {
     DrawableScene drawable;
     DrawList list;      ///< everything
     DrawList averaged;  ///< of frames that are added up
+    DrawList casters;   ///< of everything
     Shot shot;
     FrameContents contents;
     Frame frame;                  ///< drawn last
@@ -121,6 +122,7 @@ void Renderer::prepare(Picture& picture) {
         draw_list(picture.drawable, resolved.settings, picture.images.textures, picture.images.shader_files);
     const bool is_picture = !options.layers && !options.ids;
     picture.list = is_picture ? all : all.as_surfaces();
+    picture.casters = picture.list.as_casters(resolved.settings.splats.cast);
     const bool accumulated = options.samples > 1 && !options.layers;
     picture.shot = {.scene = &picture.drawable.scene,
                     .resolved = &picture.resolved,
@@ -192,7 +194,7 @@ void Renderer::draw_sample(Picture& picture) {
     if (picture.contents.ground) GroundPass::widen_depth(camera, picture.resolved, bounds);
     const bool reaches_beyond = picture.averaged.reaches_beyond_vertices() || picture.contents.ground;
     picture.frame = make_frame(shot, picture.frames, camera, bounds, reaches_beyond);
-    picture.lit = pipeline_.draw(picture.frame, picture.averaged, picture.list, picture.contents);
+    picture.lit = pipeline_.draw(picture.frame, picture.averaged, picture.casters, picture.contents);
     if (shot.sample_count == 1) return;
     pipeline_.timer().run("accumulate", [&] {
         output_.accumulate(picture.frame, picture.lit, pipeline_.targets());
@@ -244,7 +246,7 @@ void Renderer::draw_exact() {
         FrameContents contents = picture.contents;
         contents.traced = picture.resolved.traces_single_frames && !contents.layers;
         contents.paths = contents.paths && picture.resolved.asks_for_paths;
-        lit = pipeline_.draw(frame, picture.list, picture.list, contents);
+        lit = pipeline_.draw(frame, picture.list, picture.casters, contents);
         lit.partly_covered |= picture.lit.partly_covered;
     }
     if (averaged && !has_layers) {

@@ -10,6 +10,7 @@
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/render/primitives/caches.h"
 #include "easypbr/render/primitives/hit_surface.h"
+#include "easypbr/render/primitives/place_light.h"
 #include "easypbr/render/primitives/ray_geometry.h"
 #include "easypbr/render/primitives/shadow_layer.h"
 #include "easypbr/render/raster/surface_writer.h"
@@ -112,6 +113,10 @@ class Primitive {
     virtual std::vector<float> overlay_depths() const { return {}; }
     /// Items lie before and behind those of other kinds in a pixel: they are drawn around them, in two parts.
     virtual bool lies_around() const { return false; }
+
+    /// What reaches places of the scene, for kinds that surfaces darken though they are not lit; null: all
+    /// light. It must live as long as the kind draws.
+    virtual void set_place_light(const PlaceLight*) {}
 
     // Bounds.
 

@@ -8,6 +8,13 @@
 
 namespace easypbr::render {
 
+/// A Gaussian in the frame of its mesh, of one opacity at its mean.
+struct RayGaussian {
+    Vec3d mean;
+    Mat3d axes;  ///< columns: semi-axes of one standard deviation, of which none is 0
+    float opacity = 1;
+};
+
 class RayGeometry {
   public:
     virtual ~RayGeometry() = default;
@@ -22,6 +29,10 @@ class RayGeometry {
     virtual void add_polygons(
         const DrawItem& item, int corners,
         const std::function<void(Eigen::Index vertex, std::span<Vec3d> out)>& polygon) = 0;
+    /// A Gaussian for each vertex, which stops a ray with its opacity where it is densest along the ray.
+    /// gaussian(vertex) is called from several threads.
+    virtual void add_gaussians(const DrawItem& item,
+                               const std::function<RayGaussian(Eigen::Index vertex)>& gaussian) = 0;
 };
 
 }  // namespace easypbr::render

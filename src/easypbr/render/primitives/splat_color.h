@@ -2,6 +2,7 @@
 #pragma once
 
 #include "easypbr/core/math.h"
+#include "easypbr/render/drawables/draw_list.h"
 
 namespace easypbr::render {
 
@@ -9,5 +10,8 @@ namespace easypbr::render {
 /// `direction` is a unit vector from the camera to the splat in the frame of the splats. Basis and signs are
 /// those of Kerbl et al. 2023.
 Vec3 splat_color(const float* sh, int degree, const Vec3& direction);
+
+/// The colour of a splat of an item, sRGB-encoded, to a ray of this unit direction in the world.
+Vec3 splat_color(const DrawItem& item, Eigen::Index splat, const Vec3& direction);
 
 }  // namespace easypbr::render

@@ -54,14 +54,19 @@ TintLayer::TintLayer(std::span<float> absorption, std::span<float> moment, int r
 }
 
 void TintLayer::add(size_t texel, float depth, const float* absorbed) {
-    if (absorbed[0] == 0 && absorbed[1] == 0 && absorbed[2] == 0) return;
+    const Vec3 absorption(absorbed[0], absorbed[1], absorbed[2]);
+    add(texel, {absorption, absorption * depth, depth, depth});
+}
+
+void TintLayer::add(size_t texel, const Absorbed& absorbed) {
+    if (absorbed.absorption.isZero(0)) return;
     float *absorption = &absorption_[4 * texel], *moment = &moment_[4 * texel];
     for (int i = 0; i < 3; ++i) {
-        absorption[i] += absorbed[i];
-        moment[i] += absorbed[i] * depth;
+        absorption[i] += absorbed.absorption[i];
+        moment[i] += absorbed.moment[i];
     }
-    absorption[3] = std::max(absorption[3], depth);
-    moment[3] = std::max(moment[3], -depth);
+    absorption[3] = std::max(absorption[3], absorbed.first);
+    moment[3] = std::max(moment[3], -absorbed.last);
 }
 
 bool TintLayer::draw(const ScreenTriangles& triangles, const std::variant<Vec3, TexelAbsorption>& absorbed) {

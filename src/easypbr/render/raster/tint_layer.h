@@ -27,6 +27,14 @@ class TintLayer {
     /// Adds triangles; see TriangleRaster. `absorbed` is -ln(transmittance), the same everywhere or by texel.
     bool draw(const ScreenTriangles& triangles, const std::variant<Vec3, TexelAbsorption>& absorbed);
 
+    /// What several casters absorb together.
+    struct Absorbed {
+        Vec3 absorption, moment;
+        float first, last;  ///< depths, of the nearest to the light and of the farthest
+    };
+    /// For different texels also from several threads.
+    void add(size_t texel, const Absorbed& absorbed);
+
   private:
     class Texels;
     void add(size_t texel, float depth, const float* absorbed);

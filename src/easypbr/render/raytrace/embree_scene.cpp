@@ -55,6 +55,14 @@ void* Scene::new_buffer(const Geometry& geometry, RTCBufferType type, RTCFormat 
     return data;
 }
 
+void Scene::set_own(const Geometry& geometry, const OwnPrimitives& primitives) {
+    rtcSetGeometryUserPrimitiveCount(geometry.get(), primitives.count);
+    rtcSetGeometryBoundsFunction(geometry.get(), primitives.bounds, nullptr);
+    rtcSetGeometryIntersectFunction(geometry.get(), primitives.intersect);
+    rtcSetGeometryOccludedFunction(geometry.get(), primitives.occluded);
+    check();
+}
+
 void Scene::attach(const Geometry& geometry, unsigned id) {
     rtcCommitGeometry(geometry.get());
     rtcAttachGeometryByID(get(), geometry.get(), id);

@@ -29,6 +29,14 @@ class Scene {
     RTCScene get() const { return scene_.get(); }
 
     Geometry make(RTCGeometryType type);
+    /// The functions that bound and meet the primitives of a geometry of the type USER.
+    struct OwnPrimitives {
+        unsigned count;
+        RTCBoundsFunction bounds;
+        RTCIntersectFunctionN intersect;
+        RTCOccludedFunctionN occluded;
+    };
+    void set_own(const Geometry& geometry, const OwnPrimitives& primitives);
     /// A new buffer of a geometry, which is to be filled.
     template <class T>
     std::span<T> buffer(const Geometry& geometry, RTCBufferType type, RTCFormat format, size_t count) {

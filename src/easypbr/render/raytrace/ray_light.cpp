@@ -159,6 +159,8 @@ Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, 
         if (!hit.item && scene_->ground()->shadow_catcher)
             return sum + weight.cwiseProduct(caught(hit, direction, random));
         const float dielectric = resolved_->settings.shading.dielectric_f0;
+        if (hit.item && hit.item->style.mode == DrawMode::splats)
+            return sum + weight.cwiseProduct(splat_at(hit, resolved_->exposure).emission);
         const RaySurface s =
             hit.item ? surface_at(hit, dielectric) : ground_surface(*scene_->ground(), dielectric);
         const Vec3 reflects = fresnel(s, -direction.dot(s.normal));

@@ -10,6 +10,7 @@
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/render/raytrace/embree_scene.h"
+#include "easypbr/render/raytrace/ray_gaussians.h"
 #include "easypbr/render/raytrace/ray_random.h"
 #include "easypbr/render/raytrace/ray_surface.h"
 
@@ -44,6 +45,7 @@ struct Element {
     int triangles = 1;                            ///< of each
     int faces = 0;                                ///< of a mesh; 0: the elements are no faces
     const std::vector<Vec3>* vertices = nullptr;  ///< of faces
+    const RayGaussians* gaussians = nullptr;
 
     int of(unsigned triangle) const { return first + int(triangle) / triangles; }
 };
@@ -58,6 +60,7 @@ struct RayQuery {
     embree::Context context;
     Transmissive transmissive = Transmissive::passed;
     Vec3* transmittance = nullptr;  ///< of what is passed straight, where it is asked for
+    bool meets_gaussians = true;
 
     explicit RayQuery(Transmissive transmissive_) : transmissive(transmissive_) { embree::begin(context); }
 };
@@ -90,6 +93,69 @@ void filter(const RTCFilterFunctionNArguments* args) {
     if (stops < 1 && (stops <= 0 || hash_of(ray, hit.primID) >= stops)) args->valid[0] = 0;
 }
 
+Vec3 origin_of(const RTCRay& ray) {
+    return {ray.org_x, ray.org_y, ray.org_z};
+}
+Vec3 direction_of(const RTCRay& ray) {
+    return {ray.dir_x, ray.dir_y, ray.dir_z};
+}
+
+void bound_gaussian(const RTCBoundsFunctionArguments* args) {
+    const auto& element = *static_cast<const Element*>(args->geometryUserPtr);
+    Eigen::AlignedBox3f box = element.gaussians->bounds(args->primID);
+    // Embree leaves out what has no extent.
+    if (box.isEmpty()) box = Eigen::AlignedBox3f(Vec3::Constant(1), Vec3::Constant(-1));
+    RTCBounds& to = *args->bounds_o;
+    to.lower_x = box.min().x();
+    to.lower_y = box.min().y();
+    to.lower_z = box.min().z();
+    to.upper_x = box.max().x();
+    to.upper_y = box.max().y();
+    to.upper_z = box.max().z();
+}
+
+/// Where a ray of a query meets a Gaussian; an opacity of 0 where it does not.
+template <class Arguments>
+RayGaussians::Meeting meeting_of(const Arguments* args, const RTCRay& ray) {
+    if (args->valid[0] != -1 || args->N != 1) return {};
+    if (!reinterpret_cast<const RayQuery*>(args->context)->meets_gaussians) return {};
+    const auto& element = *static_cast<const Element*>(args->geometryUserPtr);
+    const auto meeting = element.gaussians->meet(args->primID, origin_of(ray), direction_of(ray));
+    return meeting.distance > ray.tnear && meeting.distance < ray.tfar ? meeting : RayGaussians::Meeting{};
+}
+
+template <class Arguments>
+bool is_stopped(const Arguments* args, const RTCRay& ray, float opacity) {
+    return opacity > 0 && hash_of(ray, args->primID ^ (args->geomID << 24)) < opacity;
+}
+
+void meet_gaussian(const RTCIntersectFunctionNArguments* args) {
+    auto& found = *reinterpret_cast<RTCRayHit*>(args->rayhit);
+    const RayGaussians::Meeting meeting = meeting_of(args, found.ray);
+    if (!is_stopped(args, found.ray, meeting.opacity)) return;
+    found.ray.tfar = meeting.distance;
+    found.hit.Ng_x = -found.ray.dir_x;
+    found.hit.Ng_y = -found.ray.dir_y;
+    found.hit.Ng_z = -found.ray.dir_z;
+    found.hit.u = found.hit.v = 0;
+    found.hit.primID = args->primID;
+    found.hit.geomID = args->geomID;
+    found.hit.instID[0] = args->context->instID[0];
+}
+
+void occlude_by_gaussian(const RTCOccludedFunctionNArguments* args) {
+    auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
+    const RayGaussians::Meeting meeting = meeting_of(args, ray);
+    bool stops = false;
+    if (Vec3* left = reinterpret_cast<const RayQuery*>(args->context)->transmittance) {
+        *left *= 1 - meeting.opacity;
+        stops = left->maxCoeff() <= least_transmittance;
+    } else {
+        stops = is_stopped(args, ray, meeting.opacity);
+    }
+    if (stops) ray.tfar = -std::numeric_limits<float>::infinity();
+}
+
 /// What a place that comes from a pixel may be off by.
 float rounding_at(const Vec3& place) {
     return 1e-4f * std::max(1.0f, place.norm());
@@ -109,7 +175,7 @@ struct RayScene::Scene final : RayGeometry {
         const DrawItem& item = *element.item;
         elements.push_back(std::make_unique<Element>(element));
         rtcSetGeometryUserData(geometry.get(), elements.back().get());
-        if (is_filtered(item)) {
+        if (is_filtered(item) && !element.gaussians) {
             rtcSetGeometryIntersectFilterFunction(geometry.get(), filter);
             rtcSetGeometryOccludedFilterFunction(geometry.get(), filter);
         }
@@ -190,11 +256,23 @@ struct RayScene::Scene final : RayGeometry {
         attach(geometry, {&item, 0, int(triangles)});
     }
 
+    void add_gaussians(const DrawItem& item,
+                       const std::function<RayGaussian(Eigen::Index)>& gaussian) override {
+        const Eigen::Affine3d T = placed(item);
+        const auto count = size_t(item.mesh().V.rows());
+        RayGaussians& set = *gaussians.emplace_back(std::make_unique<RayGaussians>(count));
+        parallel_for(count, 1 << 12, [&](size_t i) { set.set(i, gaussian(Eigen::Index(i)), T); });
+        const embree::Geometry geometry = tree.make(RTC_GEOMETRY_TYPE_USER);
+        tree.set_own(geometry, {unsigned(count), bound_gaussian, meet_gaussian, occlude_by_gaussian});
+        attach(geometry, {.item = &item, .gaussians = &set});
+    }
+
     static constexpr size_t most_corners = 16;
     double world_scale;
     Eigen::Affine3d from_world;
     embree::Scene tree;
     std::vector<std::unique_ptr<Element>> elements;
+    std::vector<std::unique_ptr<RayGaussians>> gaussians;
     std::vector<Primitive*> kinds;                      ///< of the elements
     std::vector<std::unique_ptr<HitSurface>> surfaces;  ///< likewise, once they are made
     std::map<const SceneSnapshot::Object*, std::vector<Vec3>> vertices;
@@ -284,13 +362,14 @@ float RayScene::ground_distance(const Vec3& from, const Vec3& direction) const {
     return (at - up * up.dot(at)).norm() * float(unit_) < float(ground_->radius) ? above / falls : none;
 }
 
-std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction,
-                                      Transmissive transmissive) const {
+std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction, Transmissive transmissive,
+                                      bool meets_gaussians) const {
     const float to_ground = ground_distance(from, direction);
     RTCRayHit found{};
     found.ray = ray_of(from, direction, to_ground);
     found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     RayQuery query(transmissive);
+    query.meets_gaussians = meets_gaussians;
     if (scene_) embree::intersect(scene_->tree.get(), query.context, found);
     RayHit hit;
     hit.distance = found.ray.tfar;
@@ -314,7 +393,7 @@ std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction,
 RayScene::Seen RayScene::seen_at(const Vec3& place, const Vec3& normal, const Vec3& view, float footprint,
                                  Transmissive transmissive) const {
     const float rounding = rounding_at(place), near = std::max(rounding, footprint);
-    const auto hit = trace(place + near * view, -view, transmissive);
+    const auto hit = trace(place + near * view, -view, transmissive, false);
     if (!hit || hit->distance > near + rounding) return {place, normal, normal};
     if (hit->normal.dot(normal) > 0.3f) return {hit->position, hit->normal, normal};
     const bool stands_before = hit->distance < near - 0.02f * rounding;
@@ -324,7 +403,7 @@ RayScene::Seen RayScene::seen_at(const Vec3& place, const Vec3& normal, const Ve
 std::optional<RayHit> RayScene::hit_at(const Vec3& place, const Vec3& view, float footprint,
                                        Transmissive transmissive) const {
     const float near = std::max(rounding_at(place), footprint);
-    auto hit = trace(place + near * view, -view, transmissive);
+    auto hit = trace(place + near * view, -view, transmissive, false);
     // At a silhouette the surface may go on behind the place, by more than a pixel.
     if (!hit || hit->surface < 0 || hit->distance > 16 * near) return std::nullopt;
     return hit;

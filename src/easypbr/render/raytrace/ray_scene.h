@@ -84,8 +84,11 @@ class RayScene {
     const std::optional<RayGround>& ground() const { return ground_; }
 
     /// The first surface in the direction (unit); safe to call from several threads, as are the others.
+    /// Gaussians stop the part of the rays that their opacity is, by a hash of the ray; there the normal is
+    /// opposite to the direction.
     std::optional<RayHit> trace(const Vec3& from, const Vec3& direction,
-                                Transmissive transmissive = Transmissive::passed) const;
+                                Transmissive transmissive = Transmissive::passed,
+                                bool meets_gaussians = true) const;
     /// What a camera's pixel shows, as rays find it.
     struct Seen {
         Vec3 position;

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "easypbr/core/color.h"
+#include "easypbr/render/primitives/splat_color.h"
 #include "easypbr/render/raytrace/ray_scene.h"
 
 namespace easypbr::render {
@@ -122,6 +123,13 @@ Vec3 transmittance_at(const DrawItem& item, int element, float u, float v) {
     const Material& m = item.material;
     if (item.kind != SurfaceKind::lit || !m.transmits()) return open;
     return open + coverage * m.transmittance(AlphaMode::opaque);
+}
+
+RaySurface splat_at(const RayHit& hit, float exposure) {
+    RaySurface s;
+    s.normal = hit.normal;
+    s.emission = linear_from_srgb(splat_color(*hit.item, hit.element, -hit.normal)) / exposure;
+    return s;
 }
 
 RaySurface surface_at(const RayHit& hit, float dielectric_f0) {

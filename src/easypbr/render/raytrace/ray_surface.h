@@ -25,6 +25,9 @@ struct RaySurface {
     float roughness = 1;
 };
 
+/// A splat that shines in its colour, which is one of the picture's, divided by the exposure.
+RaySurface splat_at(const RayHit& hit, float exposure);
+
 /// Textures are read at their nearest texel; normal maps do not count.
 RaySurface surface_at(const RayHit& hit, float dielectric_f0);
 

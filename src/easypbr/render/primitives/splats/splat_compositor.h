@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "easypbr/render/primitives/primitive.h"
+#include "easypbr/render/primitives/splats/splat_set.h"
 #include "easypbr/render/primitives/splats/splat_tile.h"
 
 namespace easypbr::render {
@@ -15,9 +16,13 @@ namespace easypbr::render {
 /// on the number of threads nor on the order of splats and sets.
 class SplatCompositor {
   public:
-    /// Projects and sorts the splats of the items.
-    void begin(const Frame& frame, const std::vector<const DrawItem*>& items);
-    bool empty() const { return splats_.empty(); }
+    /// Projects and sorts the splats of the items. `finish` gives them their colours.
+    void begin(const Frame& frame, const std::vector<const DrawItem*>& items,
+               const SplatSet::Finish& finish) {
+        resorts_ = resorts(frame);
+        set_.begin(view_of(frame), items, finish);
+    }
+    bool empty() const { return set_.empty(); }
 
     /// Reversed depth of every pixel of the frame, row by row: splats are blended from `farthest` to before
     /// `nearest`. Either may be empty: no limit.
@@ -27,17 +32,15 @@ class SplatCompositor {
     /// Calls take(tile) for each tile that has splats, with all of them blended, from any thread.
     void blend(const Limits& limits, const std::function<void(const SplatTile&)>& take);
 
-    Vec2i size() const { return size_; }
-    const ProjectedSplat& splat(uint32_t place) const { return splats_[place]; }
-    const DrawItem& item_of(uint32_t place) const;
+    Vec2i size() const { return set_.size(); }
+    const ProjectedSplat& splat(uint32_t place) const { return set_.splats()[place]; }
+    const DrawItem& item_of(uint32_t place) const { return set_.item_of(place); }
 
   private:
-    Vec2i size_{0, 0};
-    std::vector<const DrawItem*> items_;
-    std::vector<size_t> ends_;  ///< of each item's splats
-    std::vector<ProjectedSplat> splats_;
-    std::vector<uint32_t> order_;
-    SplatTiles tiles_;
+    static bool resorts(const Frame& frame);
+
+    SplatSet set_;
+    bool resorts_ = false;  ///< in each pixel
 };
 
 }  // namespace easypbr::render

@@ -70,11 +70,12 @@ int tiles_across(int pixels) {
 
 }  // namespace
 
-std::vector<uint32_t> front_to_back(std::span<const ProjectedSplat> splats) {
-    std::vector<Keyed> items(splats.size()), other(splats.size());
+std::vector<uint32_t> front_to_back(std::span<const ProjectedSplat> splats,
+                                    std::span<const uint32_t> places) {
+    std::vector<Keyed> items(places.size()), other(places.size());
     // Depths are above 0, and their bits rise with them.
-    parallel_for(splats.size(), sort_block, [&](size_t i) {
-        items[i] = {~std::bit_cast<uint32_t>(splats[i].depth), uint32_t(i)};
+    parallel_for(places.size(), sort_block, [&](size_t i) {
+        items[i] = {~std::bit_cast<uint32_t>(splats[places[i]].depth), places[i]};
     });
     for (int shift = 0; shift < 32; shift += digit_bits) {
         sort_by_digit(items, other, shift);
@@ -88,18 +89,20 @@ std::vector<uint32_t> front_to_back(std::span<const ProjectedSplat> splats) {
                                  return look_of(splats[a.place]) < look_of(splats[b.place]);
                              });
     }
-    std::vector<uint32_t> order(splats.size());
+    other = {};
+    std::vector<uint32_t> order(items.size());
     parallel_for(order.size(), sort_block, [&](size_t i) { order[i] = items[i].place; });
     return order;
 }
 
-size_t SplatTiles::count_entries(std::span<const ProjectedSplat> splats, Vec2i size) {
+size_t SplatTiles::count_entries(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places,
+                                 Vec2i size) {
     const int columns = tiles_across(size.x()), rows = tiles_across(size.y());
-    std::vector<size_t> counts(block_count(splats.size(), sort_block));
-    parallel_chunks(splats.size(), sort_block, [&](size_t begin, size_t end) {
+    std::vector<size_t> counts(block_count(places.size(), sort_block));
+    parallel_chunks(places.size(), sort_block, [&](size_t begin, size_t end) {
         size_t& count = counts[begin / sort_block];
         for (size_t i = begin; i < end; ++i) {
-            const TileBox box = tile_box(splats[i], columns, 0, rows);
+            const TileBox box = tile_box(splats[places[i]], columns, 0, rows);
             count += size_t(std::max(0, box.x1 - box.x0)) * size_t(std::max(0, box.y1 - box.y0));
         }
     });

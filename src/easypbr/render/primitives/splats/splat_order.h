@@ -9,9 +9,9 @@
 
 namespace easypbr::render {
 
-/// Places of the splats from the nearest to the farthest. Of those of equal depth the order is that of what
-/// they look like, so that it does not depend on the order in which they are given.
-std::vector<uint32_t> front_to_back(std::span<const ProjectedSplat> splats);
+/// Places of splats from the nearest to the farthest. Of those of equal depth the order is that of what they
+/// look like, so that it does not depend on the order in which they are given.
+std::vector<uint32_t> front_to_back(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places);
 
 /// Lists of the splats in tiles of a band of the screen.
 class SplatTiles {
@@ -19,7 +19,8 @@ class SplatTiles {
     static constexpr int tile_size = 16;
 
     /// How many entries the lists of the whole screen have.
-    static size_t count_entries(std::span<const ProjectedSplat> splats, Vec2i size);
+    static size_t count_entries(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places,
+                                Vec2i size);
 
     /// Makes the lists of the rows of tiles from `first_row` to before `end_row`, in the order of `order`.
     void bin(std::span<const ProjectedSplat> splats, std::span<const uint32_t> order, Vec2i size,

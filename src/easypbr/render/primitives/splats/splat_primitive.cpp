@@ -3,15 +3,21 @@
 #include <algorithm>
 #include <atomic>
 #include <limits>
+#include <map>
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/render/primitives/overlay_depths.h"
+#include "easypbr/render/primitives/splats/splat_hits.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 namespace {
 
 using OverlayPixel = Eigen::Vector4<Eigen::half>;
+
+/// Flat splats are this thick to rays, in their longest semi-axis.
+constexpr double least_thickness = 1e-3;
 
 std::vector<const DrawItem*> chosen(DrawItems items, bool over) {
     std::vector<const DrawItem*> chosen;
@@ -26,19 +32,14 @@ std::vector<const DrawItem*> every(DrawItems items) {
     return every;
 }
 
-/// The axis of a splat along which it is thinnest, in the world, towards the camera.
-Vec3 normal_of(const Frame& frame, const DrawItem& item, Eigen::Index i) {
-    const SplatArrays& splats = item.mesh().splats;
-    const auto q = splats.rotations.row(i).cast<double>();
-    Eigen::Index thinnest;
-    splats.scales.row(i).minCoeff(&thinnest);
-    const Mat3d axes = Eigen::Quaterniond(q(0), q(1), q(2), q(3)).normalized().toRotationMatrix();
-    const Eigen::Affine3d& T = item.object->T_world_mesh;
-    const Vec3d normal = T.linear().inverse().transpose() * axes.col(thinnest);
-    const Vec3d mean = T * Vec3d(item.mesh().V.row(i).transpose().cast<double>());
-    const Vec3d towards = frame.orthographic() ? Vec3d(frame.camera.T_world_cam.linear().col(2))
-                                               : Vec3d(frame.camera.position() - mean);
-    return (normal.dot(towards) < 0 ? Vec3d(-normal) : normal).stableNormalized().cast<float>();
+Vec3d towards_camera(const Frame& frame, const DrawItem& item, Eigen::Index i) {
+    if (frame.orthographic()) return frame.camera.T_world_cam.linear().col(2);
+    return frame.camera.position() -
+           item.object->T_world_mesh * Vec3d(item.mesh().V.row(i).transpose().cast<double>());
+}
+
+void add_color(const SplatProjector& projector, ProjectedSplat& splat) {
+    projector.color(Eigen::Index(splat.index), splat);
 }
 
 SurfacePixel surface_of(const Frame& frame, const SplatCompositor& compositor, uint32_t place, int x, int y) {
@@ -46,7 +47,8 @@ SurfacePixel surface_of(const Frame& frame, const SplatCompositor& compositor, u
     const DrawItem& item = compositor.item_of(place);
     SurfacePixel pixel;
     pixel.albedo = linear_from_srgb(Vec3(Vec3(splat.red, splat.green, splat.blue).cwiseMin(1.0f)));
-    pixel.normal = normal_of(frame, item, Eigen::Index(splat.index));
+    const auto vertex = Eigen::Index(splat.index);
+    pixel.normal = splat_normal(item, vertex, towards_camera(frame, item, vertex)).cast<float>();
     pixel.roughness = 1;
     pixel.kind = item.kind;
     pixel.depth = splat.depth + splat.depth_x * (float(x) + 0.5f - splat.x) +
@@ -93,7 +95,10 @@ void for_each_light(const SplatTile& tile, const PixelRect& area, Put&& put) {
 
 void SplatPrimitive::add_mean(const Frame& frame, DrawItems items, std::span<const float> hides,
                               SurfaceWriter& writer) {
-    compositor_.begin(frame, every(items));
+    compositor_.begin(frame, every(items),
+                      [](const SplatProjector& projector, const DrawItem&, std::span<ProjectedSplat> splats) {
+                          for (ProjectedSplat& splat : splats) add_color(projector, splat);
+                      });
     // What is written hides nothing of what is still to be blended.
     const std::vector<float> farthest(hides.begin(), hides.end());
     compositor_.blend({farthest, {}}, [&](const SplatTile& tile) {
@@ -111,7 +116,7 @@ void SplatPrimitive::draw_overlay(const Frame& frame, DrawItems items, const GBu
     if (step.part == Part::over) {
         const std::vector<const DrawItem*> over = chosen(items, true);
         if (over.empty()) return;
-        compositor_.begin(frame, over);
+        compositor_.begin(frame, over, colors(frame, over));
         return blend(targets, {}, step.host != nullptr);
     }
     if (compositor_.empty()) return;
@@ -120,9 +125,53 @@ void SplatPrimitive::draw_overlay(const Frame& frame, DrawItems items, const GBu
 
 void SplatPrimitive::begin(const Frame& frame, DrawItems items, const GBuffer& targets,
                            const OverlayStep& step) {
-    compositor_.begin(frame, chosen(items, false));
+    const std::vector<const DrawItem*> shown = chosen(items, false);
+    compositor_.begin(frame, shown, colors(frame, shown));
     farthest_.clear();
     if (!compositor_.empty()) farthest_ = step.host ? whole_depths(targets.depth) : read_depths(*step.opaque);
+}
+
+ShadowShape SplatPrimitive::shadow_shape(const DrawItem& item) {
+    const MeshData& mesh = item.mesh();
+    return {{mesh.V.revision(), mesh.splats.scales.revision(), mesh.splats.rotations.revision(),
+             mesh.splats.opacities.revision()},
+            {}};
+}
+
+SplatSet::Finish SplatPrimitive::colors(const Frame& frame, const std::vector<const DrawItem*>& items) {
+    std::map<const DrawItem*, std::shared_ptr<SplatLight::Parts>> parts;
+    for (const DrawItem* item : items) parts[item] = light_.parts_of(*item);
+    return [&frame, parts, light = light_.light()](const SplatProjector& projector, const DrawItem& item,
+                                                   std::span<ProjectedSplat> splats) {
+        SplatLight::Parts* const own = parts.at(&item).get();
+        for (ProjectedSplat& splat : splats) {
+            add_color(projector, splat);
+            if (!own) continue;
+            const auto i = Eigen::Index(splat.index);
+            const Vec3 color = own->darkened(*light, item, i, towards_camera(frame, item, i),
+                                             {splat.red, splat.green, splat.blue});
+            splat.red = color.x();
+            splat.green = color.y();
+            splat.blue = color.z();
+        }
+    };
+}
+
+void SplatPrimitive::add_to(RayGeometry& geometry, const DrawItem& item) {
+    const MeshData& mesh = item.mesh();
+    geometry.add_gaussians(item, [&](Eigen::Index i) {
+        const auto q = mesh.splats.rotations.row(i).cast<double>();
+        const Mat3d turn = Eigen::Quaterniond(q(0), q(1), q(2), q(3)).normalized().toRotationMatrix();
+        const Vec3d given = mesh.splats.scales.row(i).transpose().cast<double>(),
+                    scales = given.cwiseMax(given.maxCoeff() * least_thickness);
+        return RayGaussian{mesh.V.row(i).transpose().cast<double>(), turn * scales.asDiagonal(),
+                           mesh.splats.opacities(i)};
+    });
+}
+
+std::unique_ptr<HitSurface> SplatPrimitive::hit_surface(const ResolvedSettings& resolved,
+                                                        const DrawItem& item) {
+    return std::make_unique<SplatHits>(item, resolved.exposure, light_);
 }
 
 void SplatPrimitive::find_limits(const OverlayStep& step) {

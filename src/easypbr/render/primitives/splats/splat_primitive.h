@@ -5,6 +5,8 @@
 #include "easypbr/render/frame/programs.h"
 #include "easypbr/render/primitives/primitive.h"
 #include "easypbr/render/primitives/splats/splat_compositor.h"
+#include "easypbr/render/primitives/splats/splat_light.h"
+#include "easypbr/render/primitives/splats/splat_shadows.h"
 
 namespace easypbr::render {
 
@@ -24,10 +26,26 @@ class SplatPrimitive final : public Primitive {
     void draw_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
                       const OverlayStep& step) override;
 
+    ShadowShape shadow_shape(const DrawItem& item) override;
+    bool has_native_tints(DrawItems) const override { return true; }
+    void rasterise_tints(const ShadowView& view, const Casters& casters, TintLayer& layer) override {
+        shadows_.rasterise(view, casters, layer);
+    }
+    void draw_shadows(const ShadowLayer& layer, const Casters& casters) override {
+        shadows_.draw(layer, casters);
+    }
+    void add_to(RayGeometry& geometry, const DrawItem& item) override;
+    std::unique_ptr<HitSurface> hit_surface(const ResolvedSettings& resolved, const DrawItem& item) override;
+    void set_place_light(const PlaceLight* light) override { light_.set(light); }
+    double reach(const DrawItem& item) override { return shadows_.reach(item); }
+    void evict_unused() override { shadows_.evict_unused(); }
+
   private:
     using Limits = SplatCompositor::Limits;
 
     void begin(const Frame& frame, DrawItems items, const GBuffer& targets, const OverlayStep& step);
+    /// Gives splats the colours that are seen of them, darkened by what hides light from them.
+    SplatSet::Finish colors(const Frame& frame, const std::vector<const DrawItem*>& items);
     /// Blends up to the layer that is next, or to what others draw before it.
     void draw_behind(const GBuffer& targets, const OverlayStep& step);
     void draw_front(const GBuffer& targets, const OverlayStep& step);
@@ -44,6 +62,8 @@ class SplatPrimitive final : public Primitive {
     std::vector<float> nearest_, split_;  ///< of the step
     bool is_split_ = false;               ///< in some pixel others lie between splats of the step
     Target picture_;                      ///< RGBA16F: what is uploaded
+    SplatShadows shadows_;
+    SplatLight light_;
     ProgramVariants programs_{"screen_triangle.vert", "overlay_splats.frag"};
 };
 

@@ -4,6 +4,8 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <functional>
+#include <vector>
 
 namespace easypbr::render {
 namespace {
@@ -110,6 +112,52 @@ void SplatTile::blend(const ProjectedSplat& splat, uint32_t place) {
             if (!any_set(crosses)) continue;
             for (int i = 0; i < width; ++i)
                 if (crosses[i]) median[at + size_t(i)] = place;
+        }
+    }
+}
+
+namespace {
+
+/// A splat in one pixel.
+struct InPixel {
+    float depth, alpha;
+    uint32_t place;
+};
+
+/// Those of a pixel, from the nearest on; of equal depth in the order of the places.
+void find_in_pixel(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places,
+                   const Vec2& pixel, std::vector<InPixel>& found) {
+    found.clear();
+    for (const uint32_t place : places) {
+        const ProjectedSplat& s = splats[place];
+        const float dx = pixel.x() - s.x, dy = pixel.y() - s.y;
+        if (std::abs(dx) > s.half_width || std::abs(dy) > s.half_height) continue;
+        const float power = (0.5f * s.xx * dx + s.xy * dy) * dx + 0.5f * s.yy * dy * dy;
+        const float alpha = std::min(s.opacity * std::exp(-power), most_splat_alpha);
+        if (alpha >= least_splat_alpha)
+            found.push_back({s.depth_x * dx + (s.depth + s.depth_y * dy), alpha, place});
+    }
+    std::ranges::stable_sort(found, std::greater{}, &InPixel::depth);
+}
+
+}  // namespace
+
+void SplatTile::blend_resorted(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places) {
+    thread_local std::vector<InPixel> found;
+    for (size_t at = 0; at < through.size(); ++at) {
+        const Vec2 pixel(float(left + int(at) % size) + 0.5f, float(top + int(at) / size) + 0.5f);
+        find_in_pixel(splats, places, pixel, found);
+        for (const InPixel& one : found) {
+            float& light = through[at];
+            if (light < least_splat_transmittance) break;
+            if (is_limited && !(farthest[at] <= one.depth && nearest[at] > one.depth)) continue;
+            const ProjectedSplat& splat = splats[one.place];
+            const float part = light * one.alpha, rest = light - part;
+            red[at] += part * splat.red;
+            green[at] += part * splat.green;
+            blue[at] += part * splat.blue;
+            if (light >= 0.5f && rest < 0.5f) median[at] = one.place;
+            light = rest;
         }
     }
 }

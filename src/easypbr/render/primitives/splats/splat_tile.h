@@ -29,6 +29,9 @@ struct alignas(64) SplatTile {
 
     /// Blends splats, of which `places` are those of the tile from the nearest on, behind what it holds.
     void blend(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places);
+    /// The same, but each pixel's splats in the order of their depths there (Radl et al. 2024,
+    /// "StopThePop", whose order is that of the depths where they are densest along the pixel's ray).
+    void blend_resorted(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places);
     /// Nothing blended yet.
     void clear();
 
