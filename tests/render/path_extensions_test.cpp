@@ -225,31 +225,38 @@ TEST(PathExtensions, BallRefracts) {
 }
 
 // Each colour has an index of its own, (n - 1) / V from red to blue. KHR_materials_dispersion leaves the
-// reflectance alone. Three times the samples, as each path has one colour: the same bound.
+// reflectance alone. A path through the ball has three times the light of one colour at random, up to 2 of
+// radiance: one sample's deviation is below 3, that of 1024 below 0.1 where they are not stratified, and that
+// of the mean of 75 values below 0.012.
 TEST(PathExtensions, BallDisperses) {
     Scene scene;
     Mesh ball = make_sphere(1, 512);
     ball.set_material(
-        white([](Material& m) { m.transmission = m.thickness = 1, m.roughness = 0, m.dispersion = 10; }));
+        white([](Material& m) { m.transmission = m.thickness = 1, m.roughness = 0, m.dispersion = 30; }));
     scene.show(ball, "ball");
     scene.set_environment(tall_environment());
     app::Session session = traced(plain_session(scene, 33));
     session.settings().environment.enabled = true;
     session.settings().camera.projection = Projection::orthographic;
     look_from(session, Vec3d(0, 0, 4));
-    const Image image = render_linear(session, 3072);
+    const Image image = render_linear(session, 1024);
     const double half = 1 / session.camera().projection_matrix(1)(1, 1);
-    double apart = 0;
+    double sum = 0, apart = 0;
+    int count = 0;
     for (int y = 0; y < 33; ++y) {
         const double height = (1 - (y + 0.5) / 16.5) * half;
         if (std::abs(height) > 0.85) continue;
         const float* seen = image.at<float>(16, y);
-        for (int c = 0; c < 3; ++c)
-            EXPECT_NEAR(seen[c], ball_radiance(height, 1.5 + (c - 1) * 0.5 * 0.5 / 2, 0.04), 0.02)
-                << c << " " << height;
-        apart = std::max(apart, double(std::abs(seen[2] - seen[0])));
+        for (int c = 0; c < 3; ++c, ++count) {
+            const double expected = ball_radiance(height, 1.5 + (c - 1) * 0.5 * 1.5 / 2, 0.04);
+            EXPECT_NEAR(seen[c], expected, 0.1) << c << " " << height;
+            sum += seen[c] - expected;
+        }
+        apart = std::max(apart,
+                         std::abs(ball_radiance(height, 1.125, 0.04) - ball_radiance(height, 1.875, 0.04)));
     }
-    EXPECT_GT(apart, 0.1);
+    EXPECT_NEAR(sum / count, 0, 0.012);
+    EXPECT_GT(apart, 0.3);
 }
 
 // A thin pane passes what is behind it straight: a bright square beside the straight way is not seen.
