@@ -19,7 +19,7 @@ class Player : public testing::Test {
         node.mesh = box_;
         Animation rest = slide("rest");
         rest.channels[0].values.setZero();
-        animations_ = Animations({{node}, {}, {slide("slide"), rest}});
+        animations_ = Animations({{node}, {}, {}, {slide("slide"), rest}});
     }
     double x() const { return box_.T_parent_mesh().translation().x(); }
 

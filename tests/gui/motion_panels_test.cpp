@@ -283,7 +283,7 @@ TEST_F(MotionPanels, WhatCannotBeRecordedIsTold) {
 TEST_F(MotionPanels, AnimationsPlayPauseAndScrub) {
     AnimationNode node;
     node.mesh = session_.scene().get("ball");
-    player_.add("ball", Animations({{node}, {}, {slide("slide"), slide("other")}}));
+    player_.add("ball", Animations({{node}, {}, {}, {slide("slide"), slide("other")}}));
     clock_.set_fixed_step(0.5);
     clock_.on_tick = [this] { player_.update(); };
     const auto x = [&] { return session_.scene().get("ball").T_parent_mesh().translation().x(); };
@@ -358,7 +358,7 @@ TEST_F(MotionPanels, AnAnimationAtRestIsBlurred) {
     look_from({0, 1, 5});
     AnimationNode node;
     node.mesh = session_.scene().get("ball");
-    player_.add("ball", Animations({{node}, {}, {slide("slide")}}));
+    player_.add("ball", Animations({{node}, {}, {}, {slide("slide")}}));
     session_.settings().motion_blur.enabled = true;
     session_.settings().motion_blur.shutter = 1;
     session_.settings().image.samples = 6;

@@ -254,7 +254,7 @@ TEST(Paths, HiddenFacesGetNoSamples) {
     app::Session session = path_session(scene, 3);
     session.settings().shading.dielectric_f0 = 0;
     session.settings().path.bounces = 1;
-    look_from(session, Vec3d(1, 0, 0.2), 1);
+    look_from(session, Vec3d(1, 0, 1), 1);
     const double side = half / std::hypot(half, height);
     const double form_factor = 4 / (2 * pi) * 2 * side * std::atan(side);
     EXPECT_NEAR(render_linear(session, 64).at<float>(1, 1)[0] / form_factor, 1, 0.02);
