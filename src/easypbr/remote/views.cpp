@@ -79,7 +79,8 @@ const View* Views::refined_next() {
     for (const auto& [id, view] : own_) views.emplace_back(id, view.get());
     if (std::ranges::any_of(views, [](const auto& each) { return each.second->is_quick(); })) return nullptr;
     // The last one until it is complete, then the next in turn.
-    std::ranges::stable_partition(views, [&](const auto& each) { return each.first >= refined_; });
+    std::stable_partition(views.begin(), views.end(),
+                          [&](const auto& each) { return each.first >= refined_; });
     for (const auto& [id, view] : views)
         if (view->wants_refinement()) {
             refined_ = id;

@@ -96,10 +96,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
                    .overlay = with_overlay ? &targets_.overlay : nullptr,
                    .covered = has_layers ? frame.covered : seen.covered,
                    .partly_covered = contents.ground};
-    if (has_layers)
-        timer_.run("transparency", [&] {
-            draw_transparent(frame, list, contents, {pass.empty(), with_overlay}, lit);
-        });
+    if (has_layers) draw_transparent(frame, list, contents, {pass.empty(), with_overlay}, lit);
     if (contents.custom) contents.custom->draw_in_frame(frame, targets_, timer_, lit);
     if (!contents.layers) draw_effects(frame, opaque, {.native = pass.empty()}, lit);
     return lit;

@@ -43,8 +43,10 @@ void Pipeline::draw_transparent(const Frame& frame, const DrawList& list, const 
         layer_guides_.begin(targets_, transfers_);
         lit.guides = &layer_guides_.surfaces();
     }
-    lit.partly_covered |= kinds.native ? shade_transparent(frame, list, contents, kinds.overlay)
-                                       : draw_transparent_by_driver(frame, list, contents, kinds.overlay);
+    lit.partly_covered |= timer_.run("transparency", [&] {
+        return kinds.native ? shade_transparent(frame, list, contents, kinds.overlay)
+                            : draw_transparent_by_driver(frame, list, contents, kinds.overlay);
+    });
 }
 
 bool Pipeline::draw_transparent_by_driver(const Frame& frame, const DrawList& list,

@@ -145,7 +145,8 @@ void find_in_pixel(std::span<const ProjectedSplat> splats, std::span<const uint3
 void SplatTile::blend_resorted(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places) {
     thread_local std::vector<InPixel> found;
     for (size_t at = 0; at < through.size(); ++at) {
-        const Vec2 pixel(float(left + int(at) % size) + 0.5f, float(top + int(at) / size) + 0.5f);
+        const int x = left + int(at) % size, y = top + int(at) / size;
+        const Vec2 pixel(float(x) + 0.5f, float(y) + 0.5f);
         find_in_pixel(splats, places, pixel, found);
         for (const InPixel& one : found) {
             float& light = through[at];
