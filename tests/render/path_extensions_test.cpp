@@ -195,19 +195,28 @@ double ball_radiance(double height, double ior, double f0) {
     return sum;
 }
 
+/// A smooth solid ball of glass, seen in parallel.
+app::Session session_of_glass_ball(const std::function<void(Material&)>& change) {
+    Mesh ball = make_sphere(1, 512);
+    ball.set_material(white([&](Material& m) {
+        m.transmission = m.thickness = 1;
+        m.roughness = 0;
+        change(m);
+    }));
+    Scene scene;
+    scene.show(ball, "ball");
+    scene.set_environment(tall_environment());
+    app::Session session = traced(plain_session(scene, 33));
+    session.settings().environment.enabled = true;
+    session.settings().camera.projection = Projection::orthographic;
+    look_from(session, Vec3d(0, 0, 4));
+    return session;
+}
+
 // 0.02 of up to 2: facets of the sphere, noise of 1024 samples, and the width of a pixel.
 TEST(PathExtensions, BallRefracts) {
     for (const float ior : {1.1f, 1.5f, 2.0f}) {
-        Scene scene;
-        Mesh ball = make_sphere(1, 512);
-        ball.set_material(
-            white([&](Material& m) { m.transmission = m.thickness = 1, m.roughness = 0, m.ior = ior; }));
-        scene.show(ball, "ball");
-        scene.set_environment(tall_environment());
-        app::Session session = traced(plain_session(scene, 33));
-        session.settings().environment.enabled = true;
-        session.settings().camera.projection = Projection::orthographic;
-        look_from(session, Vec3d(0, 0, 4));
+        app::Session session = session_of_glass_ball([&](Material& m) { m.ior = ior; });
         const Image image = render_linear(session, 1024);
         const Camera camera = session.camera();
         const double half = 1 / camera.projection_matrix(1)(1, 1);
@@ -229,16 +238,7 @@ TEST(PathExtensions, BallRefracts) {
 // radiance: one sample's deviation is below 3, that of 1024 below 0.1 where they are not stratified, and that
 // of the mean of 75 values below 0.012.
 TEST(PathExtensions, BallDisperses) {
-    Scene scene;
-    Mesh ball = make_sphere(1, 512);
-    ball.set_material(
-        white([](Material& m) { m.transmission = m.thickness = 1, m.roughness = 0, m.dispersion = 30; }));
-    scene.show(ball, "ball");
-    scene.set_environment(tall_environment());
-    app::Session session = traced(plain_session(scene, 33));
-    session.settings().environment.enabled = true;
-    session.settings().camera.projection = Projection::orthographic;
-    look_from(session, Vec3d(0, 0, 4));
+    app::Session session = session_of_glass_ball([](Material& m) { m.dispersion = 30; });
     const Image image = render_linear(session, 1024);
     const double half = 1 / session.camera().projection_matrix(1)(1, 1);
     double sum = 0, apart = 0;
