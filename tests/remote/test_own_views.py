@@ -129,7 +129,7 @@ def test_there_are_none_where_none_are_allowed(view):
         client = Client(server.url)
         assert not client.until_told("control")["own"]
         client.send("view", own=True, width=160, height=120)
-        client.until_told("notice", lambda notice: notice["text"] == "There are no views of one's own here")
+        client.until_told("notice", lambda notice: notice["text"] == "Own views are off here")
         client.close()
     with pytest.raises(easypbr.ArgumentError, match="own_views: expected 0 to 64, got 65"):
         view.serve(own_views=65)

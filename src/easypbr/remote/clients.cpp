@@ -112,7 +112,7 @@ void Clients::refuse(ClientId id, const std::string& why) {
 }
 
 std::string Clients::own_view_refusal(const Client& client) const {
-    if (own_views_.most == 0) return "There are no views of one's own here";
+    if (own_views_.most == 0) return "Own views are off here";
     if (!client.may_control && !own_views_.for_watchers) return "This link is for watching only";
     if (groups_.size() > own_views_.most)
         return fmt::format("{} of {} views of clients' own are taken", own_views_.most, own_views_.most);

@@ -47,7 +47,7 @@ struct Turn {
 struct Resize {
     Vec2i size{1, 1};
 };
-/// Asks for a camera and settings of one's own, of the same scene; or for the shared ones again.
+/// Asks for an own camera and settings of the same scene, or for the shared ones again.
 struct OwnView {
     bool own = false;
     Vec2i size{1, 1};  ///< of the client's canvas, pixels
