@@ -10,7 +10,7 @@ from . import _easypbr
 from .errors import ArgumentError, ContextError
 
 
-class SharedArray(NDArray[Any]):
+class SharedArray(np.ndarray[Any, np.dtype[Any]]):
     """A read-only array that a mesh owns, such as mesh.V. Other libraries take it by DLPack: without a copy if they know
     DLPack 1.0, whose flag says that it is read-only, else a copy. What is computed from it is a plain numpy array."""
 
