@@ -183,6 +183,18 @@ class Installed(unittest.TestCase):
                          EASYPBR_DEVICE="cpu")
         self.assertEqual(done.stdout.strip(), "[]")
 
+    def test_opengl_of_the_system(self) -> None:
+        """EASYPBR_TEST_GL says whether there is one."""
+        has_gl = os.environ["EASYPBR_TEST_GL"] == "yes"
+        done = self.run_(PROGRAM, "render", "drone.ply", "-o", "a.png", code=0 if has_gl else 1, EASYPBR_DEVICE="gl")
+        said = self.run_(PROGRAM, "doctor", code=0).stdout
+        if has_gl:
+            self.assert_drawn("a.png")
+            self.assertIn("llvmpipe", said)
+        else:
+            self.assertIn("libEGL", done.stderr)
+            self.assertFalse((self.folder / "a.png").exists())
+
 
 if __name__ == "__main__":
     unittest.main()
