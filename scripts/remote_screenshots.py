@@ -53,6 +53,11 @@ def main(mesh: str, folder: pathlib.Path) -> None:
         page.get_by_role("button", name="Show everything").click()
         page.wait_for_timeout(1000)
         keep(page, folder / "remote_phone.jpg")
+        with easypbr.Viewer((1280, 720), scene=easypbr.Scene()).serve(files=pathlib.Path(mesh).parent) as files:
+            page = browser.new_page(viewport={"width": 1024, "height": 768}, color_scheme="light")
+            page.goto(files.url)
+            page.get_by_role("button", name=pathlib.Path(mesh).name, exact=True).click()
+            keep(page, folder / "remote_files.jpg")
         browser.close()
 
 

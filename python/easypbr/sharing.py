@@ -35,6 +35,7 @@ class Sharing(WindowCallbacks):
         codec: str = "auto",
         own_views: int = 4,
         own_views_for_watchers: bool = False,
+        files: str | os.PathLike[str] = "",
         block: bool = False,
     ) -> Server:
         """Shows the scene in browsers: print(view.serve().url). Returns at once, unless `block`: then when it is closed, by
@@ -43,10 +44,11 @@ class Sharing(WindowCallbacks):
         `host_names`: other names that the server is reached by; `origins`: pages of other sites that may connect;
         `codec`: what moving images are sent as, "h264" or "jpeg"; "auto" takes H.264 where FFmpeg's libraries and a
         client's browser have it; `own_views`: clients, 0 to 64, that may have a camera and settings of their own at a time;
-        `own_views_for_watchers`: those who came by watch_url too."""
+        `own_views_for_watchers`: those who came by watch_url too; `files`: a folder beneath which who controls the view may
+        have files opened. Raises FileError when it is not there."""
         handle = self._handle.serve(
             port, bind, socket, token_file, list(host_names), list(origins), max_clients, codec, own_views,
-            own_views_for_watchers)
+            own_views_for_watchers, files)
         server = Server(handle)
         self._serve_panels(server)
         if block:

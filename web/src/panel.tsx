@@ -49,6 +49,7 @@ export function Panel({ connection, hide }: { connection: Connection; hide: () =
         {tab === "Panels" && <UserPanels connection={connection} />}
         {tab === "Scene" && (
           <>
+            <Tool name="Files" connection={connection} />
             <ScenePanel connection={connection} />
             <Tool name="Object" connection={connection} />
             <Tool name="Lights" connection={connection} />

@@ -26,6 +26,8 @@ class AnimationPlayer {
     /// Makes a file's animations known under its name; those of a file of this name are replaced. Nothing
     /// plays yet.
     void add(const std::string& file, const Animations& animations);
+    /// Forgets those of a file; the one that played ends with it. Nothing happens when there are none.
+    void remove(const std::string& file);
     /// "robot: Walk" for each that is known; "Walk" of a file without a name.
     const std::vector<std::string>& names() const { return names_; }
     bool empty() const { return names_.empty(); }

@@ -46,6 +46,23 @@ void AnimationPlayer::add(const std::string& file, const Animations& animations)
     }
 }
 
+void AnimationPlayer::remove(const std::string& file) {
+    const auto known = std::ranges::find(files_, file, &File::name);
+    if (known == files_.end()) return;
+    const size_t removed = size_t(known - files_.begin());
+    const size_t first = size_t(std::ranges::find(places_, removed, &Place::file) - places_.begin());
+    const size_t count = known->animations.names().size();
+    files_.erase(known);
+    rebuild_names();
+    if (current_ >= first + count) {
+        current_ -= count;
+    } else if (current_ >= first) {
+        current_ = 0;
+        playing_ = false;
+        base_ = 0;
+    }
+}
+
 bool AnimationPlayer::has(const std::string& file) const {
     return std::ranges::find(files_, file, &File::name) != files_.end();
 }

@@ -28,8 +28,8 @@ std::string unique_name(const Scene& scene, const std::string& stem) {
     return name;
 }
 
-void show_loaded(Session& session, AnimationPlayer& player, const fs::path& path, const std::string& name) {
-    const io::LoadedScene loaded = io::load_scene(path, load_options(session.settings()));
+void show_loaded(Session& session, AnimationPlayer& player, const io::LoadedScene& loaded,
+                 const std::string& name) {
     session.scene().show(loaded.mesh, name);
     if (!loaded.animations.empty()) player.add(name, loaded.animations);
     for (const auto& [light, value] : loaded.lights)
@@ -50,9 +50,22 @@ void SceneFiles::open(const fs::path& path) {
         session_.load_environment(path);
         return notifications_.add("Environment: " + path.filename().string());
     }
-    const std::string name = unique_name(session_.scene(), path.stem().string());
-    show_loaded(session_, player_, path, name);
+    add(io::load_scene(path, load_options(session_.settings())), path);
+}
+
+std::string SceneFiles::add(const io::LoadedScene& loaded, const fs::path& path) {
+    std::string name = unique_name(session_.scene(), path.stem().string());
+    show_loaded(session_, player_, loaded, name);
     notifications_.add("Added " + name);
+    return name;
+}
+
+void SceneFiles::close(const std::string& name) {
+    Scene& scene = session_.scene();
+    player_.remove(name);
+    if (scene.contains(name)) scene.remove(name);
+    for (const std::string& light : scene.light_names())
+        if (light.starts_with(name + "/")) scene.remove_light(light);
 }
 
 void SceneFiles::watch(const fs::path& path, const std::string& name) {
@@ -67,7 +80,8 @@ void SceneFiles::advance(double seconds) {
             const auto time = fs::last_write_time(file.path, gone);
             if (gone || time == file.time) continue;
             file.time = time;
-            show_loaded(session_, player_, file.path, file.name);
+            show_loaded(session_, player_, io::load_scene(file.path, load_options(session_.settings())),
+                        file.name);
             notifications_.add("Reloaded " + file.name);
         } catch (const Error& error) {
             notifications_.add(error.what(), true);

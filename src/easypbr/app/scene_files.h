@@ -10,6 +10,7 @@
 #include "easypbr/app/session.h"
 
 namespace easypbr::io {
+struct LoadedScene;
 struct LoadOptions;
 }
 
@@ -28,6 +29,11 @@ class SceneFiles {
     /// Adds what a file holds under the file's name, made unique; pictures with high range become the
     /// environment. Throws FileError, FormatError.
     void open(const std::filesystem::path& path);
+    /// Adds what was read from a file, and returns the name that it has in the scene.
+    std::string add(const io::LoadedScene& loaded, const std::filesystem::path& path);
+    /// Removes what a file's name stands for in the scene, with its lights and animations. Nothing happens when
+    /// it is not there.
+    void close(const std::string& name);
 
     /// Shows the file again under `name` whenever it changes.
     void watch(const std::filesystem::path& path, const std::string& name);

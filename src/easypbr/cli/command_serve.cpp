@@ -25,7 +25,7 @@ namespace {
 
 struct ServeCommand {
     ShownFiles shown;
-    std::string socket, token_file;
+    std::string socket, token_file, files;
     remote::ServeOptions server;
 };
 
@@ -67,6 +67,10 @@ void declare_serve(CLI::App& command, ServeCommand& options) {
         ->option_text("N");
     command.add_flag("--own-views-for-watchers", options.server.own_views_for_watchers,
                      "Clients that came by the watch link may have one too");
+    command
+        .add_option("--files", options.files,
+                    "Folder beneath which clients that control may have files opened, instead of FILE or beside")
+        ->option_text("FOLDER");
 }
 
 volatile std::sig_atomic_t stopped = 0;
@@ -112,7 +116,7 @@ void tell_urls(const remote::Server& server) {
 int run_serve(const ServeCommand& options) {
     const ShownFiles& shown = options.shown;
     check_input("serve", shown.files);
-    require(!shown.files.empty(), "serve", "at least one FILE");
+    require(!shown.files.empty() || !options.files.empty(), "serve", "at least one FILE, or --files FOLDER");
     app::Session session;
     apply(shown.start, session);
     apply(shown_look(shown), session.settings());
@@ -123,6 +127,7 @@ int run_serve(const ServeCommand& options) {
     remote::ServeOptions server_options = options.server;
     server_options.socket = options.socket;
     server_options.token_file = options.token_file;
+    server_options.files = options.files;
     const Signals signals;
     remote::Server server(session.scene(), session.settings(), server_options);
     for (const auto& [name, each] : animations) server.add_animations(name, each);

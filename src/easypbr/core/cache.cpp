@@ -9,6 +9,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
+#include "easypbr/core/folder.h"
 #include "easypbr/core/hash.h"
 
 namespace easypbr {
@@ -112,6 +113,7 @@ uint64_t cache_limit() {
 }
 
 std::optional<std::vector<std::byte>> cache_load(std::string_view key) {
+    const FolderScope anywhere(nullptr);
     try {
         const FileBytes file(path_of(key));
         if (file.size() < hash_digits) return std::nullopt;

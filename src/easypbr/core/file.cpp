@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/folder.h"
 #include "easypbr/core/open_file.h"
 
 namespace easypbr {
@@ -39,6 +40,18 @@ std::byte* allocate_pages(size_t size, std::string_view path) {
     return static_cast<std::byte*>(pages);
 }
 
+/// Beneath the folder of a FolderScope where there is one.
+Descriptor open_input(const fs::path& path) {
+    const int flags = O_RDONLY | O_NONBLOCK;
+    const Folder* const folder = FolderScope::current();
+    if (!folder) return Descriptor(open_file(path.c_str(), flags));
+    const fs::path relative = fs::absolute(path).lexically_normal().lexically_relative(folder->path());
+    Descriptor file = folder->open(relative, flags);
+    if (file.get() < 0 && errno == EXDEV)
+        fail_read(path.string(), fmt::format("it lies outside of the folder {}", folder->path().string()));
+    return file;
+}
+
 /// Waits until there is something to read where that does not block.
 void wait_for_input(int descriptor) {
     pollfd input{descriptor, POLLIN, 0};
@@ -52,7 +65,7 @@ Descriptor::~Descriptor() {
 }
 
 InputFile::InputFile(fs::path path)
-    : path_(std::move(path)), file_(open_file(path_.c_str(), O_RDONLY | O_NONBLOCK)) {
+    : path_(std::move(path)), file_(open_input(path_)) {
     struct stat info {};
     // A socket cannot be opened at all.
     if (file_.get() < 0 && errno == ENXIO && ::stat(path_.c_str(), &info) == 0 && !S_ISREG(info.st_mode))

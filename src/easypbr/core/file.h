@@ -37,7 +37,8 @@ class Descriptor {
 class InputFile {
   public:
     /// Throws FileError when the file is missing, not readable, or no regular file: a folder, a pipe, a
-    /// socket or a device, which could block for ever. Never blocks.
+    /// socket or a device, which could block for ever; or when it lies outside of the folder of the thread's
+    /// FolderScope. Never blocks.
     explicit InputFile(fs::path path);
 
     const fs::path& path() const { return path_; }

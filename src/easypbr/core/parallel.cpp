@@ -10,6 +10,7 @@
 #include <cstdlib>
 #include <memory>
 
+#include "easypbr/core/folder.h"
 #include "easypbr/core/interrupt.h"
 
 #ifdef __SANITIZE_THREAD__
@@ -79,8 +80,9 @@ void parallel_chunks(size_t count, size_t grain, const std::function<void(size_t
         return;
     }
     HandOver hand_over;
-    const auto run = [&](size_t chunk) {
+    const auto run = [&, folder = FolderScope::current()](size_t chunk) {
         const OnThread here(hand_over);
+        const FolderScope scope(folder);
         check_interrupt();
         body(chunk * grain, std::min(count, (chunk + 1) * grain));
     };

@@ -23,7 +23,8 @@ using remote::ServerClient;
 std::shared_ptr<Server> serve(SharedViewer& self, int port, const std::string& bind, const fs::path& socket,
                               const fs::path& token_file, const std::vector<std::string>& host_names,
                               const std::vector<std::string>& origins, int max_clients,
-                              const std::string& codec, int own_views, bool own_views_for_watchers) {
+                              const std::string& codec, int own_views, bool own_views_for_watchers,
+                              const fs::path& files) {
     const remote::ServeOptions options{
         .port = port,
         .bind = bind,
@@ -35,6 +36,7 @@ std::shared_ptr<Server> serve(SharedViewer& self, int port, const std::string& b
         .codec = codec,
         .own_views = own_views,
         .own_views_for_watchers = own_views_for_watchers,
+        .files = files,
     };
     return self.run([&](Viewer& viewer) { return viewer.serve(options); });
 }
@@ -125,7 +127,7 @@ void bind_server(nb::module_& module, nb::class_<SharedViewer>& viewer) {
         .def("close", [](Server& self) { released([&] { self.close(); }); });
     viewer.def("serve", serve, nb::arg("port"), nb::arg("bind"), nb::arg("socket"), nb::arg("token_file"),
                nb::arg("host_names"), nb::arg("origins"), nb::arg("max_clients"), nb::arg("codec"),
-               nb::arg("own_views"), nb::arg("own_views_for_watchers"));
+               nb::arg("own_views"), nb::arg("own_views_for_watchers"), nb::arg("files"));
     bind_channel(module, viewer);
 }
 

@@ -358,15 +358,19 @@ void Clients::send_shot(ClientId id, Picture picture) {
     pump(id, found->second, now_seconds());
 }
 
-void Clients::broadcast(ViewId view, const std::string& text) {
+void Clients::broadcast(ViewId view, const std::string& text, bool for_watchers) {
     const auto shared = std::make_shared<const std::string>(text);
     const std::lock_guard lock(mutex_);
     for (const auto& [id, client] : clients_)
-        if (client.admitted && client.view == view) wire_.send(id, shared);
+        if (client.admitted && client.view == view && (for_watchers || client.may_control))
+            wire_.send(id, shared);
 }
 
-void Clients::tell(ClientId client, const std::string& text) {
-    wire_.send(client, std::make_shared<const std::string>(text));
+void Clients::tell(ClientId id, const std::string& text, bool for_watchers) {
+    const std::lock_guard lock(mutex_);
+    const auto found = clients_.find(id);
+    if (found == clients_.end() || !(for_watchers || found->second.may_control)) return;
+    wire_.send(id, std::make_shared<const std::string>(text));
 }
 
 std::vector<ClientState> Clients::states() const {

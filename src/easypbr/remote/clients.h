@@ -97,8 +97,9 @@ class Clients : public WireEvents {
     bool publish(ViewId view, MovingPicture picture);
     /// Chunks of a still or a file for one client, after those that it waits for already.
     void send_shot(ClientId client, Picture picture);
-    void broadcast(ViewId view, const std::string& text);
-    void tell(ClientId client, const std::string& text);
+    /// Without `for_watchers` not to those who may watch only.
+    void broadcast(ViewId view, const std::string& text, bool for_watchers = true);
+    void tell(ClientId client, const std::string& text, bool for_watchers = true);
 
     std::vector<ClientState> states() const;
     bool anybody() const;

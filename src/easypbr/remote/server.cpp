@@ -9,6 +9,7 @@
 #include "easypbr/core/log.h"
 #include "easypbr/remote/moving_pictures.h"
 #include "easypbr/remote/network.h"
+#include "easypbr/remote/served_files.h"
 #include "easypbr/remote/views.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/scene/settings.h"
@@ -43,6 +44,10 @@ bool offers_video(const ServeOptions& options) {
     return true;
 }
 
+std::unique_ptr<ServedFiles> served_files(const ServeOptions& options) {
+    return options.files.empty() ? nullptr : std::make_unique<ServedFiles>(options.files);
+}
+
 void warn_of_strangers(const ServeOptions& options) {
     if (options.socket.empty() && !is_loopback(options.bind))
         log_warning(fmt::format(
@@ -59,7 +64,7 @@ struct Server::Parts {
           network(network_options(given)),
           clients(network, inbox, tokens, size_t(given.max_clients), HandOver::when_idle,
                   {size_t(given.own_views), given.own_views_for_watchers}),
-          views(scene, settings, inbox, clients) {
+          views(scene, settings, inbox, clients, served_files(given)) {
         const std::string session = random_token().substr(0, 16);
         clients.set_welcome(welcome_text(session, false), welcome_text(session, true));
         clients.offer_video(offers_video(given));

@@ -12,13 +12,15 @@ namespace {
 struct Tool {
     void (*draw)(RecordedWidgets&, ToolState&);
     bool changes_scene;
+    bool names_files = false;
 };
 
 const std::map<std::string, Tool>& tools() {
     static const std::map<std::string, Tool> tools = {{"Object", {object_tool, true}},
                                                       {"Lights", {lights_tool, true}},
                                                       {"Camera path", {path_tool, false}},
-                                                      {"Recording", {recording_tool, false}}};
+                                                      {"Recording", {recording_tool, false}},
+                                                      {"Files", {files_tool, true, true}}};
     return tools;
 }
 
@@ -26,7 +28,8 @@ const std::map<std::string, Tool>& tools() {
 
 bool ToolPanels::has(const std::string& name) const {
     const auto found = tools().find(name);
-    return found != tools().end() && (whole_ || !found->second.changes_scene);
+    return found != tools().end() && (whole_ || !found->second.changes_scene) &&
+           (state_.files || !found->second.names_files);
 }
 
 void ToolPanels::edit(const SetWidget& message) {
@@ -50,22 +53,22 @@ std::string ToolPanels::recorded(const std::string& name) {
         .dump(-1, ' ', false, json::error_handler_t::replace);
 }
 
-std::vector<std::string> ToolPanels::news() {
-    std::vector<std::string> news;
+std::vector<ToolText> ToolPanels::news() {
+    std::vector<ToolText> news;
     for (const auto& [name, tool] : tools()) {
         if (!has(name)) continue;
         std::string text = recorded(name);
         std::string& told = told_[name];
         if (told == text) continue;
         told = std::move(text);
-        news.push_back(told);
+        news.push_back({told, !tool.names_files});
     }
     return news;
 }
 
-std::vector<std::string> ToolPanels::told() const {
-    std::vector<std::string> texts;
-    for (const auto& [name, text] : told_) texts.push_back(text);
+std::vector<ToolText> ToolPanels::told() const {
+    std::vector<ToolText> texts;
+    for (const auto& [name, text] : told_) texts.push_back({text, !tools().at(name).names_files});
     return texts;
 }
 

@@ -10,11 +10,14 @@
 
 namespace easypbr::remote {
 
+class ServedFiles;
+
 /// What a tool changes.
 struct ToolState {
     app::LiveDrawing& live;
     VideoDownloads& videos;
-    bool wants_video = false;  ///< the last recording shall be sent again
+    bool wants_video = false;      ///< the last recording shall be sent again
+    ServedFiles* files = nullptr;  ///< null: clients may open none
 };
 
 /// Material and style of the selected object.
@@ -25,6 +28,14 @@ void lights_tool(RecordedWidgets& ui, ToolState& state);
 void path_tool(RecordedWidgets& ui, ToolState& state);
 /// What is recorded, and how far it is.
 void recording_tool(RecordedWidgets& ui, ToolState& state);
+/// Files beneath the folder that is served; the state has some.
+void files_tool(RecordedWidgets& ui, ToolState& state);
+
+/// A message to the clients of the view.
+struct ToolText {
+    std::string text;
+    bool for_watchers = true;  ///< those who may watch only are told too
+};
 
 class ToolPanels {
   public:
@@ -35,9 +46,9 @@ class ToolPanels {
     void edit(const SetWidget& message);
     /// Has each panel do what was done to it. Returns messages for what looks different than before; errors
     /// become notifications.
-    std::vector<std::string> news();
+    std::vector<ToolText> news();
     /// What has been told of all of them.
-    std::vector<std::string> told() const;
+    std::vector<ToolText> told() const;
 
   private:
     bool has(const std::string& name) const;

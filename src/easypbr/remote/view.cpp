@@ -11,8 +11,11 @@
 
 namespace easypbr::remote {
 
-View::View(const Scene& scene, const Settings& settings, Inbox& inbox, ViewClients clients)
-    : inbox_(inbox), clients_(clients), own_(std::make_unique<Own>(scene, settings, clients)) {}
+View::View(const Scene& scene, const Settings& settings, Inbox& inbox, ViewClients clients,
+           std::unique_ptr<ServedFiles> files)
+    : inbox_(inbox),
+      clients_(clients),
+      own_(std::make_unique<Own>(scene, settings, clients, std::move(files))) {}
 
 View::View(View& shared, Inbox& inbox, ViewClients clients, const OwnViewOf& own)
     : inbox_(inbox), clients_(clients), own_(std::make_unique<Own>(*shared.own_, clients, own)) {}
@@ -204,7 +207,7 @@ void View::tell_changes() {
     tell(own.told_scene, own.scene_message());
     tell(own.told_animation, own.animation_message());
     tell(own.told_panels, panels_text(own.live.panels(), own.panel_memories));
-    for (const std::string& text : own.tools.news()) clients_.broadcast(text);
+    for (const ToolText& news : own.tools.news()) clients_.broadcast(news.text, news.for_watchers);
     tell_notices();
     tell(own.told_statistics, own.statistics_message(clients_));
 }
@@ -215,7 +218,7 @@ void View::tell_everything(ClientId client) {
     for (const std::string& text : {own.camera_message(), own.scene_message(), own.animation_message(),
                                     own.told_panels, own.statistics_message(clients_)})
         if (!text.empty()) clients_.tell(client, text);
-    for (const std::string& text : own.tools.told()) clients_.tell(client, text);
+    for (const ToolText& told : own.tools.told()) clients_.tell(client, told.text, told.for_watchers);
 }
 
 void View::take_settings(const Settings& settings) {

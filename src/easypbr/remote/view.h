@@ -16,13 +16,17 @@ class Animations;
 
 namespace easypbr::remote {
 
+class ServedFiles;
+
 /// Pictures of a scene that a program may change meanwhile, with settings of its own. While something moves
 /// they are drawn quickly and sent as video or JPEG; at rest as JPEG of quality 95 while they are refined,
 /// and at the end as PNG, Session::render()'s picture bit for bit. Used by the thread of Views alone.
 class View {
   public:
-    /// The shared one. `inbox` and what `clients` stands for must outlive it.
-    View(const Scene& scene, const Settings& settings, Inbox& inbox, ViewClients clients);
+    /// The shared one. `inbox` and what `clients` stands for must outlive it. Clients may open `files`; null:
+    /// none.
+    View(const Scene& scene, const Settings& settings, Inbox& inbox, ViewClients clients,
+         std::unique_ptr<ServedFiles> files);
     /// A client's own: it begins with camera and settings of the shared one, which must outlive it, and draws
     /// the same scene by the same device.
     View(View& shared, Inbox& inbox, ViewClients clients, const OwnViewOf& own);

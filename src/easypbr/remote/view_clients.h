@@ -24,8 +24,12 @@ class ViewClients {
     void send_shot(ClientId client, Picture picture) const {
         clients_->send_shot(client, std::move(picture));
     }
-    void broadcast(const std::string& text) const { clients_->broadcast(view_, text); }
-    void tell(ClientId client, const std::string& text) const { clients_->tell(client, text); }
+    void broadcast(const std::string& text, bool for_watchers = true) const {
+        clients_->broadcast(view_, text, for_watchers);
+    }
+    void tell(ClientId client, const std::string& text, bool for_watchers = true) const {
+        clients_->tell(client, text, for_watchers);
+    }
     bool anybody_looks() const { return clients_->anybody_looks(view_); }
     bool has_room(size_t coming) const { return clients_->has_room(view_, coming); }
     bool has_delivered() const { return clients_->has_delivered(view_); }

@@ -10,11 +10,13 @@
 
 namespace easypbr::remote {
 
-View::Own::Own(const Scene& scene, const Settings& settings, ViewClients clients)
+View::Own::Own(const Scene& scene, const Settings& settings, ViewClients clients,
+               std::unique_ptr<ServedFiles> given_files)
     : session(scene),
       scene_player(player),
       first(settings),
       given(settings),
+      files(std::move(given_files)),
       tools(tool_state, true),
       moving_pictures(clients),
       moving([this](EncodeJob job) { moving_pictures.code(std::move(job)); }),

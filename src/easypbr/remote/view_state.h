@@ -5,6 +5,7 @@
 
 #include "easypbr/remote/moving_pictures.h"
 #include "easypbr/remote/recorded_widgets.h"
+#include "easypbr/remote/served_files.h"
 #include "easypbr/remote/tool_panels.h"
 #include "easypbr/remote/view.h"
 #include "easypbr/scene/settings.h"
@@ -12,7 +13,8 @@
 namespace easypbr::remote {
 
 struct View::Own {
-    Own(const Scene& scene, const Settings& settings, ViewClients clients);
+    Own(const Scene& scene, const Settings& settings, ViewClients clients,
+        std::unique_ptr<ServedFiles> given_files);
     Own(Own& shared, ViewClients clients, const OwnViewOf& own);
 
     std::string camera_message();
@@ -44,7 +46,8 @@ struct View::Own {
     uint64_t notices = 0;
 
     VideoDownloads videos{live};
-    ToolState tool_state{live, videos};
+    std::unique_ptr<ServedFiles> files;  ///< null: none
+    ToolState tool_state{live, videos, false, files.get()};
     ToolPanels tools;
     ClientId tool_user = 0;  ///< who used a tool last, and gets what is recorded
 

@@ -12,8 +12,11 @@
 
 namespace easypbr::remote {
 
-Views::Views(const Scene& scene, const Settings& settings, Inbox& inbox, Clients& clients)
-    : inbox_(inbox), clients_(clients), shared_(scene, settings, inbox, {clients, shared_view}) {}
+Views::Views(const Scene& scene, const Settings& settings, Inbox& inbox, Clients& clients,
+             std::unique_ptr<ServedFiles> files)
+    : inbox_(inbox),
+      clients_(clients),
+      shared_(scene, settings, inbox, {clients, shared_view}, std::move(files)) {}
 
 Views::~Views() {
     stop();

@@ -14,8 +14,9 @@ namespace easypbr::remote {
 /// one picture at rest is drawn to its end before the next, and none while another view moves.
 class Views {
   public:
-    /// All must outlive it.
-    Views(const Scene& scene, const Settings& settings, Inbox& inbox, Clients& clients);
+    /// `inbox` and `clients` must outlive it. Who controls the shared view may open `files`; null: none.
+    Views(const Scene& scene, const Settings& settings, Inbox& inbox, Clients& clients,
+          std::unique_ptr<ServedFiles> files = nullptr);
     /// Gives up what is drawn.
     ~Views();
     Views(const Views&) = delete;

@@ -59,7 +59,8 @@ Mesh load_mesh(const std::filesystem::path& path, const LoadOptions& options = {
 /// FormatError for an unknown extension. Never leaves half a file.
 void save_mesh(const Mesh& mesh, const std::filesystem::path& path);
 
-/// Extensions that load_scene() reads without and with assimp's reader.
+/// Extensions that load_scene() reads without assimp's reader, and all.
+std::vector<std::string> native_extensions();
 std::vector<std::string> readable_extensions();
 
 }  // namespace easypbr::io

@@ -94,8 +94,7 @@ LoadedScene decode(const FileBytes& bytes, const fs::path& path, const std::stri
 }
 
 [[noreturn]] void fail_format(const fs::path& path, const std::string& format) {
-    std::vector<std::string> known{"gltf", "glb"};
-    for (const auto& [name, reader] : readers()) known.push_back(name);
+    const std::vector<std::string> known = native_extensions();
     if (format.empty())
         throw FormatError(fmt::format("{}: its format cannot be told from its content; name it, one of {}",
                                       path.string(), fmt::join(known, ", ")));
@@ -181,9 +180,14 @@ void save_mesh(const Mesh& mesh, const fs::path& path) {
     write_file(path, encode(flatten(mesh), path, extension));
 }
 
-std::vector<std::string> readable_extensions() {
+std::vector<std::string> native_extensions() {
     std::vector<std::string> all{"gltf", "glb"};
     for (const auto& [extension, reader] : readers()) all.push_back(extension);
+    return all;
+}
+
+std::vector<std::string> readable_extensions() {
+    std::vector<std::string> all = native_extensions();
     for (const std::string& extension : assimp_extensions())
         if (!contains(all, extension)) all.push_back(extension);
     return all;
