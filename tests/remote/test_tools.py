@@ -80,6 +80,9 @@ def test_the_look_of_an_object_is_changed(view, connect, tmp_path):
     use(client, "Object", "base color", "#0000ff")
     use(client, "Object", "roughness", "0.125")
     tool_is(client, "Object", lambda rows: rows["roughness"]["value"] == "0.125" and rows["base color"]["value"] == "#0000ff")
+    # It stays as it was chosen when it is read back.
+    use(client, "Object", "metallic", "0.5")
+    tool_is(client, "Object", lambda rows: rows["metallic"]["value"] == "0.5" and rows["base color"]["value"] == "#0000ff")
     material = view.scene.get("ball").material
     assert material.base_color == pytest.approx([0, 0, 1])
     assert material.roughness == 0.125

@@ -29,6 +29,14 @@ void change_materials(app::LiveDrawing& live, const std::string& property,
     });
 }
 
+/// Colours that were chosen as codes of 8 bits are shown as these: the curve and back rounds them by up to 1e-6.
+Vec3 shown_color(const Vec3& linear) {
+    const Vec3 srgb = srgb_from_linear(linear.cwiseMin(1.0f));
+    const Rgb8 codes = to_rgb8(srgb);
+    const Vec3 code = Vec3(codes[0], codes[1], codes[2]) / 255.0f;
+    return (srgb - code).cwiseAbs().maxCoeff() < 1e-5f ? code : srgb;
+}
+
 void color_row(RecordedWidgets& ui, app::LiveDrawing& live, const Material& material,
                const MaterialColor& color) {
     FieldInfo info;
@@ -38,7 +46,7 @@ void color_row(RecordedWidgets& ui, app::LiveDrawing& live, const Material& mate
     info.min = 0;
     info.max = 1;
     info.sizes = {3};
-    const Vec3 shown = srgb_from_linear((material.*color.value).cwiseMin(1.0f));
+    const Vec3 shown = shown_color(material.*color.value);
     const auto chosen =
         ui.field(readable(color.name), info, {std::vector<double>{shown[0], shown[1], shown[2]}});
     if (!chosen) return;
