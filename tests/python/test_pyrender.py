@@ -286,3 +286,19 @@ def test_the_names_that_scripts_use_are_there():
         Material MetallicRoughnessMaterial Primitive Mesh Node Scene Viewer OffscreenRenderer RenderFlags GLTF constants""".split()
     assert [name for name in names if not hasattr(pyrender, name)] == []
     assert pyrender.constants.RenderFlags.SHADOWS_ALL == 224
+
+
+def test_light_comes_straight_from_the_lamps(renderer):
+    """As in pyrender: a floor is as bright beside a wall as without it."""
+    floor = trimesh.Trimesh([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]], [[0, 1, 2], [0, 2, 3]])
+    wall = trimesh.Trimesh([[-1, -1, 0], [-1, 1, 0], [-1, 1, 1], [-1, -1, 1]], [[0, 1, 2], [0, 2, 3]])
+    scene = pyrender.Scene()
+    scene.add(pyrender.Mesh.from_trimesh(floor, smooth=False))
+    scene.add(pyrender.DirectionalLight(intensity=3.0), pose=np.eye(4))
+    scene.add(pyrender.DirectionalLight(intensity=3.0), pose=np.array([[0, 0, 1, 0], [0, 1, 0, 0], [-1, 0, 0, 0], [0, 0, 0, 1]]))
+    scene.add(pyrender.PerspectiveCamera(yfov=0.2), pose=at(-0.8, 0, 2))
+    alone, _ = renderer.render(scene)
+    scene.add(pyrender.Mesh.from_trimesh(wall, smooth=False))
+    beside, _ = renderer.render(scene)
+    assert np.array_equal(alone[20:40, 30:50], beside[20:40, 30:50])
+    assert alone[30, 40].min() > 50

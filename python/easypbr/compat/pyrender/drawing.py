@@ -51,7 +51,7 @@ class Drawing:
         self._ambient: tuple[float, ...] | None = None
         self._count = 0
         self.view.settings.update({
-            "ground.mode": "none", "image.samples": _SAMPLES, "annotation.legend": False, "annotation.colorbar": False,
+            "ground.mode": "none", "path.enabled": False, "shadows.mode": "pcf", "image.samples": _SAMPLES, "annotation.legend": False, "annotation.colorbar": False,
         })  # fmt: skip
 
     def update(self, scene: Scene, flags: int, only: "Container[Node] | None" = None, point_size: float = 1.0) -> None:
@@ -130,7 +130,7 @@ class Drawing:
         chosen: dict[str, Any] = {"tonemap.operator": "none", "tonemap.exposure": 1.0, "environment.intensity": 1.0}
         automatic: dict[str, Any] = {name: _easypbr.field(name).default for name in chosen}
         values = chosen if is_given else automatic
-        values["environment.enabled"] = any(ambient) or not is_given
+        values["environment.enabled"] = values["ssao.enabled"] = any(ambient) or not is_given
         values.update({f"lights.{name}.enabled": _easypbr.auto if not is_given else False for name in _STUDIO})
         for name, value in values.items():
             settings[name] = value
