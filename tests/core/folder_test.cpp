@@ -36,8 +36,8 @@ class FolderTest : public testing::Test {
     fs::path all_, in_;
 };
 
-const std::set<fs::path> outside = {"out", "absolute", "up/secret", "../secret", "deep/../../secret",
-                                    "/etc/hostname"};
+const std::set<fs::path> outside = {"out",       "absolute",          "up/secret",
+                                    "../secret", "deep/../../secret", "/etc/hostname"};
 
 TEST_F(FolderTest, OpensWhatLiesBeneath) {
     const Folder folder(in_);
@@ -100,7 +100,8 @@ TEST_F(FolderTest, ScopeBindsWhatIsRead) {
             FileBytes{fs::path(secret)};
             FAIL();
         } catch (const FileError& error) {
-            EXPECT_EQ(error.what(), "cannot read " + secret + ": it lies outside of the folder " + in_.string());
+            EXPECT_EQ(error.what(),
+                      "cannot read " + secret + ": it lies outside of the folder " + in_.string());
         }
         const FolderScope anywhere(nullptr);
         EXPECT_EQ(FileBytes(fs::path(secret)).text(), "outside");

@@ -106,6 +106,85 @@ TEST_F(Live, AQuickDragCountsThoughItIsOverBeforeTheFirstFrame) {
     EXPECT_LT((quick - camera_position()).norm(), 1e-6) << "another way than the slow drag's";
 }
 
+// Whoever presses a button waits for the next picture, not for a sample of the last one.
+TEST_F(Live, InputInterruptsAFrameThatRefines) {
+    session_.settings().path.enabled = true;
+    session_.settings().image.samples = 8;
+    app::Session other(session_.scene());
+    other.replace_settings(session_.settings());
+    const Image still = other.render({size, 8});
+    int asked = 0, most = 1 << 30;
+    view_.set_interrupt([&] { return ++asked > most; });
+    step();
+    const uint64_t pictures = view_.drawing().picture().statistics().pictures;
+    for (int i = 0; i < 3; ++i) {
+        asked = 0;
+        step();
+    }
+    const int whole = asked;
+    EXPECT_GT(whole, 10);
+    const int frames = view_.drawing().picture().statistics().frames;
+    EXPECT_GT(frames, 0);
+    // In the middle of a frame, where a part of it has been added to the sum.
+    for (const int part : {5, 4, 3}) {
+        most = whole / part;
+        asked = 0;
+        step();
+        EXPECT_EQ(asked, most + 1);
+    }
+    EXPECT_EQ(view_.drawing().picture().statistics().frames, frames);
+    EXPECT_TRUE(view_.is_busy());
+    // What was given up is drawn anew, bit for bit.
+    most = 1 << 30;
+    settle();
+    EXPECT_EQ(view_.drawing().picture().statistics().pictures, pictures);
+    const Image screen = view_.screen();
+    double worst = 0;
+    for (size_t i = 0; i < still.bytes().size(); ++i)
+        if (i % 4 < 3)
+            worst =
+                std::max(worst, std::abs(double(screen.pixels<uint8_t>()[i]) - still.pixels<uint8_t>()[i]));
+    EXPECT_LE(worst, 1);  // once more through 8 bits
+}
+
+TEST_F(Live, AnAutomaticCameraShowsTheContentBelowTheMenuBar) {
+    app::Session session(session_.scene());
+    LiveView view(session);
+    view.update({}, size, 1, 0.02);
+    ASSERT_TRUE(view.state().panels.shown);
+    const double bar = session.insets().top * size.y();
+    EXPECT_GT(bar, 10);
+    EXPECT_LT(bar, 40);
+    const auto check = [&](double top) {
+        const Camera camera = session.view_point(size).camera;
+        double low = 1e9, high = -1e9;
+        for (double angle = 0; angle < 2 * pi; angle += 0.01) {
+            // The silhouette of the ball: seen from a distance d, of radius sqrt(1 - 1/d^2) about 1/d of the
+            // way.
+            const double d = camera.position().norm();
+            const Vec3d to = camera.position() / d, up = camera.T_world_cam.linear().col(1),
+                        right = up.cross(to).normalized(), above = to.cross(right);
+            const Vec3d point =
+                to / d + std::sqrt(1 - 1 / (d * d)) * (std::cos(angle) * right + std::sin(angle) * above);
+            const Eigen::Vector4d clip =
+                camera.projection_matrix(double(size.x()) / size.y()) * (camera.view() * point.homogeneous());
+            const double row = (1 - clip.y() / clip.w()) / 2 * size.y();
+            low = std::min(low, row);
+            high = std::max(high, row);
+        }
+        const double margin = 0.05 * (size.y() - top) / 2;
+        // The mesh is a ball of 32 segments: up to a percent smaller than the ball.
+        EXPECT_NEAR(low, top + margin, 4);
+        EXPECT_NEAR(high, size.y() - margin, 4);
+    };
+    check(bar);
+    view.update({key('H')}, size, 1, 0.02);
+    view.update({key('F')}, size, 1, 0.02);
+    view.update({}, size, 1, 0.02);
+    EXPECT_EQ(session.insets().top, 0);
+    check(0);
+}
+
 TEST_F(Live, AClickSelectsAndTheWheelZoomsToThePointer) {
     const Vec2d place = middle + Vec2d(60, 30);
     step({at(Kind::move, place)});

@@ -105,6 +105,28 @@ TEST(Fit, TouchesTheMarginOrthographically) {
     }
 }
 
+// What is left of the picture is fitted into, with its margin, and the other axis is centred in it.
+TEST(Fit, LeavesInsetsFree) {
+    std::mt19937 random(17);
+    std::uniform_real_distribution<double> unit(0, 1);
+    for (int i = 0; i < 100; ++i) {
+        RandomCase c = random_case(random);
+        const bool orthographic = i % 2;
+        if (orthographic) c.settings.projection = Projection::orthographic;
+        const Insets in{0.4 * unit(random), 0.4 * unit(random), 0.4 * unit(random), 0.4 * unit(random)};
+        const Camera camera = fit_camera(c.scene, c.R_world_cam, c.settings, c.aspect, in);
+        Extent extent = extent_of(c.scene, camera, c.aspect);
+        // In coordinates of the free rectangle, from -1 to 1.
+        const Eigen::Array2d low(2 * in.left - 1, 2 * in.bottom - 1), high(1 - 2 * in.right, 1 - 2 * in.top);
+        const Eigen::Array2d middle = (low + high) / 2, half = (high - low) / 2;
+        extent.low = (extent.low - middle) / half;
+        extent.high = (extent.high - middle) / half;
+        expect_tight(extent, 1.0 - c.settings.margin);
+        // As in CentresTheOtherAxis; exact without perspective.
+        EXPECT_LT((extent.low + extent.high).cwiseAbs().maxCoeff(), orthographic ? 1e-4 : 0.15) << i;
+    }
+}
+
 TEST(Fit, TouchesTheMarginWithAnOffCentrePrincipalPoint) {
     std::mt19937 random(13);
     std::uniform_real_distribution<double> unit(0, 1);

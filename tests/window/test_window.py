@@ -53,6 +53,30 @@ def test_a_left_drag_orbits_and_a_right_drag_pans(window):
     assert abs((columns[0] + columns[-1]) / 2 - 450) < 6
 
 
+def test_a_button_interrupts_a_frame_that_refines(window):
+    """Who presses a button while a sample of some seconds is drawn waits for a part of it only."""
+    window.mouse("mousemove", *MIDDLE)
+    window.view.settings.update({"image.samples": 1000, "path.enabled": True, "path.bounces": 64})
+    for shell in range(40):
+        ball = easypbr.shapes.sphere(1 + 0.02 * shell, 64)
+        ball.material = easypbr.Material(transmission=1.0, roughness=0.3)
+        window.view.scene.show(ball, f"shell {shell}")
+    window.update(2)
+    took = []
+    for presses in (False, True):
+        worker = threading.Timer(0.2 * took[0] if took else 0, window.display.run, ("xdotool", "mousedown", "1"))
+        if presses:
+            worker.start()
+        start = time.monotonic()
+        window.update()
+        took.append(time.monotonic() - start)
+        if presses:
+            worker.join()
+    window.display.run("xdotool", "mouseup", "1")
+    assert took[0] > 0.4, "the frame is too quick for this test"
+    assert took[1] < 0.7 * took[0]
+
+
 def test_the_wheel_zooms_and_a_click_picks(window):
     window.key("h")
     before = distance(window.view.camera)

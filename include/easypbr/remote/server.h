@@ -41,8 +41,8 @@ struct ServeOptions {
     /// takes up to 48 MB at 1280x720.
     int own_views = 4;
     bool own_views_for_watchers = false;  ///< those who came by watch_url() may have one too
-    /// A folder beneath which who controls the shared view may have files opened; empty: none. Nothing outside
-    /// of it is read, whatever links and files name. Formats that assimp reads are left out.
+    /// A folder beneath which who controls the shared view may have files opened; empty: none. Nothing
+    /// outside of it is read, whatever links and files name. Formats that assimp reads are left out.
     std::filesystem::path files;
 };
 
@@ -59,8 +59,8 @@ struct ServerClient {
 class Server {
   public:
     /// Shows the scene with these settings. Throws ArgumentError for options out of range, FileError and
-    /// FormatError for the token file, the socket and the folder of files, FormatError for a codec that is not there, Error when
-    /// the port is taken.
+    /// FormatError for the token file, the socket and the folder of files, FormatError for a codec that is
+    /// not there, Error when the port is taken.
     Server(const Scene& scene, const Settings& settings, const ServeOptions& options = {});
     /// Closes.
     ~Server();

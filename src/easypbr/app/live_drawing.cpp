@@ -146,6 +146,7 @@ LiveShot LiveDrawing::shot(const LiveNeeds& needs) {
     LiveShot shot{size_, channel, is_moving(needs), needs.resolution, needs.pass_times, needs.surfaces};
     shot.longest_s = needs.longest_s;
     shot.refines = needs.refines;
+    shot.interrupt = needs.interrupt;
     shot.motion = [this](const Camera& now) { return shown_motion(now); };
     shot.motion_key = {player_.speed(), form_.fps};
     return shot;

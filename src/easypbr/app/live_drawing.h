@@ -65,6 +65,7 @@ struct LiveNeeds {
     double resolution = 1;    ///< see LiveShot
     double longest_s = 0.07;  ///< see LiveShot
     bool refines = true;      ///< see LiveShot
+    std::function<bool()> interrupt = {};  ///< see LiveShot
 };
 
 /// What a client shows, panels and all: for recordings with panels. A client without panels has none.

@@ -4,6 +4,7 @@
 
 #include "easypbr/app/channels.h"
 #include "easypbr/core/error.h"
+#include "easypbr/core/interrupt.h"
 #include "easypbr/core/stopwatch.h"
 #include "easypbr/gl/context.h"
 #include "easypbr/gl/draw.h"
@@ -135,7 +136,15 @@ bool LivePicture::refine(const LiveShot& shot) {
     const Stopwatch watch(statistics_.frame_seconds);
     const int total = statistics_.total;
     const bool show = frames_ + 1 >= std::min(least_frames, total);
-    const Session::Refinement done = session_.refine({shot.size, total}, show, motion_);
+    Session::Refinement done;
+    try {
+        const InterruptScope scope(shot.interrupt, true);
+        done = session_.refine({shot.size, total}, show, motion_);
+    } catch (const Interrupted&) {
+        check_interrupt();  // Who waits outside is told.
+        frames_ = 0;
+        return false;
+    }
     frames_ = statistics_.frames = done.frames;
     statistics_.total = done.total;
     if ((show || is_complete()) && (shot.channel == "picture" || is_complete())) show_picture(done.drawn);

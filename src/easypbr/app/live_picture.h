@@ -32,11 +32,14 @@ struct LiveShot {
     bool pass_times = false;          ///< measure LiveStatistics::passes
     bool surfaces = false;            ///< known_surfaces() is asked for at rest
     bool refines = true;              ///< at rest it gets better; else the single frame stays
-    double longest_s = 0.07;          ///< that a moving one takes on a software context, where a smaller helps
+    double longest_s = 0.07;  ///< that a moving one takes on a software context, where a smaller helps
     /// What motion_blur.enabled shows: asked with the camera of each new picture. Another `motion_key` is
     /// another motion.
     std::function<Session::RefinedMotion(const Camera& now)> motion = {};
     std::pair<double, double> motion_key{};
+    /// A frame that refines is given up, and the picture begun anew, when this says so: somebody waits.
+    /// Called often; empty: never.
+    std::function<bool()> interrupt = {};
 };
 
 /// A picture that has changed is drawn once as a single frame, smoothed, then refined frame by frame up to

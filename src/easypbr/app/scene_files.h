@@ -12,7 +12,7 @@
 namespace easypbr::io {
 struct LoadedScene;
 struct LoadOptions;
-}
+}  // namespace easypbr::io
 
 namespace easypbr::app {
 
@@ -31,8 +31,8 @@ class SceneFiles {
     void open(const std::filesystem::path& path);
     /// Adds what was read from a file, and returns the name that it has in the scene.
     std::string add(const io::LoadedScene& loaded, const std::filesystem::path& path);
-    /// Removes what a file's name stands for in the scene, with its lights and animations. Nothing happens when
-    /// it is not there.
+    /// Removes what a file's name stands for in the scene, with its lights and animations. Nothing happens
+    /// when it is not there.
     void close(const std::string& name);
 
     /// Shows the file again under `name` whenever it changes.

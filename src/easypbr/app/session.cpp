@@ -106,7 +106,7 @@ SceneSnapshot Session::snapshot() {
 ResolvedSettings Session::resolve(std::optional<Vec2i> size) {
     check_size(size_or(size));
     const SceneSnapshot scene = snapshot();
-    ResolvedSettings resolved = easypbr::resolve(scene, *settings_, size_or(size));
+    ResolvedSettings resolved = easypbr::resolve(scene, *settings_, size_or(size), {}, insets_);
     latched_content_.lower_ground(scene, *settings_, resolved);
     return resolved;
 }
@@ -124,8 +124,8 @@ Prepared Session::prepare(const PictureOptions& options) {
         prepared.images = files_.images();
     }
     const Stopwatch watch(timing_.draw);
-    prepared.resolved =
-        easypbr::resolve(prepared.scene, *settings_, prepared.options.size, prepared.options.samples);
+    prepared.resolved = easypbr::resolve(prepared.scene, *settings_, prepared.options.size,
+                                         prepared.options.samples, insets_);
     latched_content_.lower_ground(prepared.scene, *settings_, prepared.resolved);
     warnings_.check(prepared.scene, *settings_, prepared.resolved);
     for (const render::CustomPass& custom : passes_)
@@ -235,7 +235,12 @@ Session::Refinement Session::refine_once(const PictureOptions& options, bool fin
             Refined{std::move(prepared), std::move(drawn), {}, 0, false, device_.number(), device_->sum});
     }
     done.drew = true;
-    done.frames = refined_->frames = renderer.add_sample();
+    try {
+        done.frames = refined_->frames = renderer.add_sample();
+    } catch (...) {
+        refined_.reset();  // Half a sample may be in its sum.
+        throw;
+    }
     refined_->is_complete = renderer.is_complete();
     if (refined_->is_complete) done.total = done.frames;
     if (finish || refined_->is_complete) {
@@ -343,7 +348,7 @@ Drawn Session::draw_surfaces_once(const PictureOptions& options, bool picture, c
 
 Moment Session::moment(std::optional<Vec2i> size) {
     Moment moment{snapshot(), {}};
-    moment.camera = easypbr::resolve(moment.scene, *settings_, size_or(size)).camera;
+    moment.camera = easypbr::resolve(moment.scene, *settings_, size_or(size), {}, insets_).camera;
     return moment;
 }
 

@@ -135,6 +135,10 @@ class Session {
     /// Pins the camera, as set_camera(), and keeps its target; an automatic near plane comes as near as the
     /// camera.
     void set_view_point(const ViewPoint& view);
+    /// What covers the picture's sides where it is shown, such as a menu bar: an automatic camera that is not
+    /// latched yet leaves it free.
+    void set_insets(const Insets& insets) { insets_ = insets; }
+    const Insets& insets() const { return insets_; }
 
     /// Draws a pass of the program's own in every picture from now on; one of the same name is replaced. See
     /// app/custom_pass.h.
@@ -219,6 +223,7 @@ class Session {
     SceneWarnings warnings_;
     std::vector<render::CustomPass> passes_;
     std::optional<render::TileLimits> tile_limits_;
+    Insets insets_;
     KeptDevice device_;
 
     /// What refine() adds frames to; nothing: it has to begin.

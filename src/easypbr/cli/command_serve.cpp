@@ -68,8 +68,9 @@ void declare_serve(CLI::App& command, ServeCommand& options) {
     command.add_flag("--own-views-for-watchers", options.server.own_views_for_watchers,
                      "Clients that came by the watch link may have one too");
     command
-        .add_option("--files", options.files,
-                    "Folder beneath which clients that control may have files opened, instead of FILE or beside")
+        .add_option(
+            "--files", options.files,
+            "Folder beneath which clients that control may have files opened, instead of FILE or beside")
         ->option_text("FOLDER");
 }
 

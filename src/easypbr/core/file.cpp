@@ -64,8 +64,7 @@ Descriptor::~Descriptor() {
     if (value_ >= 0) ::close(value_);
 }
 
-InputFile::InputFile(fs::path path)
-    : path_(std::move(path)), file_(open_input(path_)) {
+InputFile::InputFile(fs::path path) : path_(std::move(path)), file_(open_input(path_)) {
     struct stat info {};
     // A socket cannot be opened at all.
     if (file_.get() < 0 && errno == ENXIO && ::stat(path_.c_str(), &info) == 0 && !S_ISREG(info.st_mode))

@@ -73,8 +73,7 @@ Descriptor Folder::open_in_steps(const fs::path& relative, int flags) const {
     }
     for (auto name = relative.begin(); name != relative.end() && at.get() >= 0; ++name) {
         const bool is_last = std::next(name) == relative.end();
-        at = open_step(at.get(), name->empty() ? "." : name->c_str(),
-                       is_last ? flags : O_PATH | O_DIRECTORY);
+        at = open_step(at.get(), name->empty() ? "." : name->c_str(), is_last ? flags : O_PATH | O_DIRECTORY);
     }
     return relative.empty() ? open_step(folder_.get(), ".", flags) : std::move(at);
 }
@@ -92,8 +91,8 @@ std::vector<FolderEntry> Folder::list(const fs::path& relative) const {
         if (name.starts_with('.') || valid_utf8(name) != name) continue;
         struct stat info {};
         // A link may lead out, or nowhere.
-        const bool is_link = ::fstatat(here.get(), name.c_str(), &info, AT_SYMLINK_NOFOLLOW) == 0 &&
-                             S_ISLNK(info.st_mode);
+        const bool is_link =
+            ::fstatat(here.get(), name.c_str(), &info, AT_SYMLINK_NOFOLLOW) == 0 && S_ISLNK(info.st_mode);
         if (is_link) {
             const Descriptor target = open(relative / name, O_PATH);
             if (target.get() < 0 || ::fstat(target.get(), &info) != 0) continue;

@@ -43,8 +43,9 @@ class Folder {
     Descriptor folder_;
 };
 
-/// What this thread reads while the object lives, and the loops that it runs on all cores, is opened beneath a
-/// folder: InputFile refuses everything else. Scopes nest; the innermost counts. Null: anything can be read.
+/// What this thread reads while the object lives, and the loops that it runs on all cores, is opened beneath
+/// a folder: InputFile refuses everything else. Scopes nest; the innermost counts. Null: anything can be
+/// read.
 class FolderScope {
   public:
     /// The folder must outlive the scope.

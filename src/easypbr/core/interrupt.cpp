@@ -9,8 +9,8 @@ thread_local const InterruptScope* current = nullptr;
 
 }  // namespace
 
-InterruptScope::InterruptScope(std::function<bool()> stop)
-    : stop_(std::move(stop)), outer_(std::exchange(current, this)) {}
+InterruptScope::InterruptScope(std::function<bool()> stop, bool also_outer)
+    : stop_(std::move(stop)), also_outer_(also_outer), outer_(std::exchange(current, this)) {}
 
 InterruptScope::~InterruptScope() {
     current = outer_;

@@ -15,18 +15,19 @@ class Interrupted : public std::exception {
 
 /// Makes the jobs that this thread runs stop once `stop` returns true, for as long as the object lives. It is
 /// called often, so it must be quick, and must not throw. An empty function: they run to their end. Scopes
-/// nest; the innermost counts.
+/// nest; the innermost counts, and with `also_outer` those around it too.
 class InterruptScope {
   public:
-    explicit InterruptScope(std::function<bool()> stop);
+    explicit InterruptScope(std::function<bool()> stop, bool also_outer = false);
     ~InterruptScope();
     InterruptScope(const InterruptScope&) = delete;
     InterruptScope& operator=(const InterruptScope&) = delete;
 
-    bool is_stopped() const { return stop_ && stop_(); }
+    bool is_stopped() const { return (stop_ && stop_()) || (also_outer_ && outer_ && outer_->is_stopped()); }
 
   private:
     std::function<bool()> stop_;
+    bool also_outer_;
     const InterruptScope* outer_;
 };
 

@@ -215,6 +215,13 @@ void Gui::prepare(const GuiState& state, double seconds) {
     }
 }
 
+float Gui::menu_height(const GuiState& state) {
+    if (!state.panels.shown) return 0;
+    const GuiScope scope(context_);
+    prepare(state, 0);
+    return ImGui::GetIO().Fonts->Fonts[0]->FontSize + 2 * ImGui::GetStyle().FramePadding.y;
+}
+
 void Gui::draw_panels(GuiState& state, const std::function<void()>& more) {
     state.image_value.clear();
     if (state.panels.shown) draw_path(state);

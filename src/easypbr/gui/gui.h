@@ -37,6 +37,9 @@ class Gui {
     /// session's context must be current.
     bool lay_out(GuiState& state, double seconds, const gl::Texture& picture,
                  const std::function<void()>& more = {});
+    /// Height of the menu bar in pixels; 0 while the panels are hidden. The session's context must be
+    /// current.
+    float menu_height(const GuiState& state);
     /// Draws what was laid out last. The session's context must be current.
     void paint(const gl::Framebuffer& target);
     /// Where the named items of the last lay_out() are.

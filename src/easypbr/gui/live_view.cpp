@@ -87,6 +87,7 @@ bool LiveView::update(const std::vector<InputEvent>& events, Vec2i size, float s
 app::LiveNeeds LiveView::needs() const {
     const PanelLayout& panels = state_.panels;
     app::LiveNeeds needs;
+    needs.interrupt = input_waits_;
     needs.moving = gui_.is_active() || state_.manipulator.drag.axis >= 0;
     needs.pass_times = panels.shown && panels.open[size_t(Panel::statistics)];
     needs.surfaces =
@@ -103,6 +104,7 @@ bool LiveView::update_now(const std::vector<InputEvent>& events, Vec2i size, flo
     for (const InputEvent& event : events) handle(event);
     const gl::ContextScope scope(live_.session().context());
     follow_device();
+    leave_menu_free();
     const bool drew = live_.draw(needs());
     const app::Notifications& messages = live_.notifications();
     changed |= std::exchange(told_, messages.revision()) != messages.revision();
@@ -118,6 +120,11 @@ bool LiveView::update_now(const std::vector<InputEvent>& events, Vec2i size, flo
     if (live_.recording().is_running()) gui_frames_ = std::max(gui_frames_, 1);
     if (messages.revision() != told) touch();
     return draws;
+}
+
+void LiveView::leave_menu_free() {
+    const double part = gui_.menu_height(state_) / state_.screen.size.y();
+    live_.session().set_insets({.top = std::min(part, 0.5)});
 }
 
 void LiveView::follow_device() {

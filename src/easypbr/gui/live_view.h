@@ -35,6 +35,10 @@ class LiveView {
     bool wants_to_close() { return live_.wishes().close; }
     void close(bool close = true) { live_.wishes().close = close; }
 
+    /// Has frames that refine given up when it returns true, for input waits: called often while they are
+    /// drawn.
+    void set_interrupt(std::function<bool()> input_waits) { input_waits_ = std::move(input_waits); }
+
     /// The screen, RGBA u8, row 0 on top: picture and GUI. Throws ArgumentError before the first update().
     Image screen();
     /// The screen when all is refined; draws until then. What panels and callbacks change in every frame is
@@ -88,6 +92,8 @@ class LiveView {
     app::LiveNeeds needs() const;
     bool draw_screen(double seconds, bool always);
     Image finished_now();
+    /// An automatic camera shows the content below the menu bar.
+    void leave_menu_free();
     /// What was made in a context that is no longer the session's is forgotten.
     void follow_device();
 
@@ -97,6 +103,7 @@ class LiveView {
     UserPanelWindows user_panels_;
     ImagePanels images_;
 
+    std::function<bool()> input_waits_;
     uint64_t device_ = 0;  ///< that all here is of, see app::Session::device_number()
     gl::Texture screen_;
     gl::Framebuffer screen_framebuffer_;

@@ -3,6 +3,7 @@
 #include <epoxy/gl.h>
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <exception>
@@ -167,6 +168,23 @@ bool Window::poll_events() {
     return !events_.empty();
 }
 
+bool Window::has_input() noexcept {
+    constexpr double look_seconds = 0.005;
+    const double time = now();
+    if (input_waits_ || time - looked_ < look_seconds) return input_waits_;
+    looked_ = time;
+    try {
+        const GlfwLock lock;
+        if (!display_is_lost()) poll_events();
+        input_waits_ = std::ranges::any_of(events_, [](const InputEvent& event) {
+            return event.kind == Kind::press || event.kind == Kind::scroll || event.kind == Kind::key_down;
+        });
+    } catch (...) {
+        // events() meets it again, and tells.
+    }
+    return input_waits_;
+}
+
 std::vector<InputEvent> Window::events(double seconds) {
     require_display();
     // What lies in GLFW's own queue does not show on the connection.
@@ -185,6 +203,7 @@ std::vector<InputEvent> Window::events(double seconds) {
     // Whoever asked for the mutex meanwhile gets it before this thread waits again.
     if (waiting_threads > 0) std::this_thread::sleep_for(std::chrono::microseconds(200));
     const GlfwLock lock;
+    input_waits_ = false;
     return std::exchange(events_, {});
 }
 

@@ -27,6 +27,9 @@ class Window {
     /// What has happened since the last call; waits up to `seconds` for something. Throws ContextError when
     /// the display has gone away.
     std::vector<app::InputEvent> events(double seconds);
+    /// Whether the next events() hold a button, the wheel or a key. Looks at most every few milliseconds, so
+    /// that it can be asked often. Never throws.
+    bool has_input() noexcept;
 
     /// Size in pixels; 0 while it is minimised.
     Vec2i size() const;
@@ -55,6 +58,8 @@ class Window {
     std::vector<app::InputEvent> events_;
     bool needs_present_ = true;
     bool is_shown_ = false;
+    bool input_waits_ = false;
+    double looked_ = 0;  ///< when has_input() last did
     double asked_to_show_ = 0;
     unsigned texture_ = 0, framebuffer_ = 0;
     Vec2i target_size_{0, 0};

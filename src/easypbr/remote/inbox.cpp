@@ -66,6 +66,19 @@ bool Inbox::has_orders(ViewId view) const {
     return std::ranges::any_of(orders_, [&](const Order& order) { return order.view == view; });
 }
 
+bool Inbox::has_presses(ViewId view) const {
+    const std::lock_guard lock(mutex_);
+    return std::ranges::any_of(orders_, [&](const Order& order) {
+        const auto* input = std::get_if<Input>(&order.message);
+        const bool presses = input && (input->event.kind == app::InputEvent::Kind::press ||
+                                       input->event.kind == app::InputEvent::Kind::scroll ||
+                                       input->event.kind == app::InputEvent::Kind::key_down);
+        return order.view == view && (presses || std::holds_alternative<Turn>(order.message) ||
+                                      std::holds_alternative<SetCamera>(order.message) ||
+                                      std::holds_alternative<SetField>(order.message));
+    });
+}
+
 void Inbox::wait(double seconds) {
     std::unique_lock lock(mutex_);
     changed_.wait_for(lock, std::chrono::duration<double>(seconds), [&] { return woken_ || closed_; });

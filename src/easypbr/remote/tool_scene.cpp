@@ -29,7 +29,8 @@ void change_materials(app::LiveDrawing& live, const std::string& property,
     });
 }
 
-/// Colours that were chosen as codes of 8 bits are shown as these: the curve and back rounds them by up to 1e-6.
+/// Colours that were chosen as codes of 8 bits are shown as these: the curve and back rounds them by up to
+/// 1e-6.
 Vec3 shown_color(const Vec3& linear) {
     const Vec3 srgb = srgb_from_linear(linear.cwiseMin(1.0f));
     const Rgb8 codes = to_rgb8(srgb);

@@ -97,6 +97,7 @@ void View::draw(bool refines) {
     needs.resolution = clients_.quality().resolution();
     needs.longest_s = longest_frame_s;
     needs.refines = refines;
+    needs.interrupt = [this] { return inbox_.has_presses(clients_.view()); };
     const uint64_t pictures = own.live.picture().statistics().pictures;
     const bool drew = own.live.draw(needs);
     own.live.end_frame(needs);

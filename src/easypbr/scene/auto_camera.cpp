@@ -41,7 +41,8 @@ double target_depth(const Content& content, const Vec3d& position, const Vec3d& 
     return depth > 0 ? depth : content.radius();
 }
 
-void place(const Content& content, const Camera& lens, double aspect, CameraSettings& settings) {
+void place(const Content& content, const Camera& lens, const PictureShape& picture,
+           CameraSettings& settings) {
     const auto position = settings.position.value(), target = settings.target.value();
     const Mat3d R = view_rotation(settings);
     if (!position && content.empty())
@@ -53,10 +54,11 @@ void place(const Content& content, const Camera& lens, double aspect, CameraSett
         const bool inside = (content.centre() - *position).norm() <= 1e-6 * content.radius();
         fill(settings.target, inside ? Vec3d(*position - R.col(2) * content.radius()) : content.centre());
     } else if (target) {
-        const double distance = fitted_distance(content, *target, R, lens, settings.margin, aspect);
+        const double distance = fitted_distance(content, *target, R, lens, settings.margin, picture);
         fill(settings.position, Vec3d(*target + R.col(2) * distance));
     } else {
-        const Vec3d fitted = fitted_position(content, R, lens, settings.margin, aspect);
+        const Vec3d fitted =
+            fitted_position(content, R, lens, settings.margin, picture, settings.ortho_height.value());
         fill(settings.position, fitted);
         fill(settings.target, Vec3d(fitted - R.col(2) * target_depth(content, fitted, -R.col(2))));
     }
@@ -116,11 +118,11 @@ Camera lens_of(const CameraSettings& settings) {
     return lens;
 }
 
-Camera resolve_camera(const Content& content, CameraSettings& settings, double aspect) {
+Camera resolve_camera(const Content& content, CameraSettings& settings, const PictureShape& picture) {
     reject_contradictions(settings);
     Camera camera = lens_of(settings);
     if (settings.pose.empty()) {
-        place(content, camera, aspect, settings);
+        place(content, camera, picture, settings);
         camera.T_world_cam = look_from(*settings.position, *settings.target, settings).T_world_cam;
     } else {
         take_pose(content, settings, camera);
@@ -129,8 +131,9 @@ Camera resolve_camera(const Content& content, CameraSettings& settings, double a
     if (!settings.ortho_height.value()) {
         const bool fits = camera.projection == Projection::orthographic && !content.empty();
         // The height at the target, so that switching the projection keeps its size.
-        fill(settings.ortho_height, fits ? fitted_height(content, camera.T_world_cam, settings.margin, aspect)
-                                         : 2 * distance * std::tan(radians(camera.fov_y_deg) / 2));
+        fill(settings.ortho_height, fits
+                                        ? fitted_height(content, camera.T_world_cam, settings.margin, picture)
+                                        : 2 * distance * std::tan(radians(camera.fov_y_deg) / 2));
     }
     camera.ortho_height = *settings.ortho_height;
     set_depth_range(content, settings, camera);

@@ -49,19 +49,32 @@ std::string inferred_up(const SceneSnapshot& scene);
 /// Projection, angle or intrinsics of the settings, without a pose. Throws ArgumentError for bad intrinsics.
 Camera lens_of(const CameraSettings& settings);
 
-/// Position with the given axes that frames the content, as fit_camera().
+/// The picture that content is fitted into.
+struct PictureShape {
+    double aspect = 1;
+    Insets insets = {};
+};
+
+/// How far the picture, less its insets and its margin, reaches to each side: of half its width or height.
+struct Edges {
+    double right, left, top, bottom;
+};
+Edges edges_of(const PictureShape& picture, double margin);
+
+/// Position with the given axes that frames the content, as fit_camera(). An orthographic picture is
+/// `ortho_height` high; nothing: as high as the content needs.
 Vec3d fitted_position(const Content& content, const Mat3d& R_world_cam, const Camera& lens, double margin,
-                      double aspect);
+                      const PictureShape& picture, std::optional<double> ortho_height);
 
 /// Distance from `target`, along the camera's z, at which all vertices are in the picture.
 double fitted_distance(const Content& content, const Vec3d& target, const Mat3d& R_world_cam,
-                       const Camera& lens, double margin, double aspect);
+                       const Camera& lens, double margin, const PictureShape& picture);
 
 /// World height of an orthographic picture around the optical axis that shows all vertices.
 double fitted_height(const Content& content, const Eigen::Isometry3d& T_world_cam, double margin,
-                     double aspect);
+                     const PictureShape& picture);
 
-Camera resolve_camera(const Content& content, CameraSettings& settings, double aspect);
+Camera resolve_camera(const Content& content, CameraSettings& settings, const PictureShape& picture);
 
 /// Height of a ground just below the content, so that a floor of its own hides it. Infinite where there is no
 /// content.

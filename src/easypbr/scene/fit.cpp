@@ -13,16 +13,22 @@ namespace {
 /// No vertex comes nearer to a fitted camera than this part of the content's radius.
 constexpr double nearest_part = 0.01;
 
-/// How far the picture (less its margin) reaches to each side, per unit of depth.
+/// How far the picture (less insets and margin) reaches to each side, per unit of depth.
 struct Slopes {
     double right, left, top, bottom;
 };
 
-Slopes slopes_of(const Camera& lens, double margin, double aspect) {
+Slopes slopes_of(const Camera& lens, double margin, const PictureShape& picture) {
+    const Mat4d P = lens.projection_matrix(picture.aspect);
+    const Edges edges = edges_of(picture, margin);
+    return {(edges.right + P(0, 2)) / P(0, 0), (edges.left - P(0, 2)) / P(0, 0),
+            (edges.top + P(1, 2)) / P(1, 1), (edges.bottom - P(1, 2)) / P(1, 1)};
+}
+
+/// Whether the lens looks along the middle of the picture.
+bool is_centred(const Camera& lens, double aspect) {
     const Mat4d P = lens.projection_matrix(aspect);
-    const double edge = 1 - margin;
-    return {(edge + P(0, 2)) / P(0, 0), (edge - P(0, 2)) / P(0, 0), (edge + P(1, 2)) / P(1, 1),
-            (edge - P(1, 2)) / P(1, 1)};
+    return P(0, 2) == 0 && P(1, 2) == 0;
 }
 
 /// Rows: what decides about the right, left, upper and lower side of a picture (for slopes of 0: the axes
@@ -48,18 +54,21 @@ double centre_of(double P, double Q, double right, double left, double d) {
 namespace {
 
 /// The axis that does not decide about the distance has room to spare. It is centred in the picture where
-/// both sides touch narrower slopes t: f(t) = P(t) + Q(t) - 2 t d = 0. f is convex and falls; two secant
-/// steps leave a small part of the room. The interval that the full slopes allow is kept in any case.
+/// both sides touch narrower slopes, t to each side of the middle m: f(t) = P(t) + Q(t) - 2 t d = 0. f is
+/// convex and falls; two secant steps leave a small part of the room. The interval that the full slopes allow
+/// is kept in any case.
 Vec2d balanced_centre(const Content& content, const Mat3d& R_world_cam, const Slopes& slopes,
                       const SceneSnapshot::Support& support, double d) {
     const double depth =
         std::max(d - R_world_cam.col(2).dot(content.centre()), nearest_part * content.radius());
-    const Vec2d full(slopes.right, slopes.top);
+    const Vec2d right(slopes.right, slopes.top), left(slopes.left, slopes.bottom);
+    const Vec2d full = (right + left) / 2, middle = (right - left) / 2;
     const auto excess = [&](const SceneSnapshot::Support& s, const Vec2d& t) {
         return Vec2d(s[0] + s[1] - 2 * t.x() * d, s[2] + s[3] - 2 * t.y() * d);
     };
     const auto support_at = [&](const Vec2d& t) {
-        return content.scene().support(frustum_directions(R_world_cam, {t.x(), t.x(), t.y(), t.y()}));
+        const Vec2d to = middle + t, from = t - middle;
+        return content.scene().support(frustum_directions(R_world_cam, {to.x(), from.x(), to.y(), from.y()}));
     };
     const Vec2d f0 = excess(support, full);
     Vec2d t = (full + f0 / (2 * depth)).cwiseMax(0.0);
@@ -72,9 +81,10 @@ Vec2d balanced_centre(const Content& content, const Mat3d& R_world_cam, const Sl
     s = support_at(t);
     Vec2d centre;
     for (int axis = 0; axis < 2; ++axis) {
-        const double low = support[2 * axis] - full[axis] * d, high = full[axis] * d - support[2 * axis + 1];
-        const double middle = centre_of(s[2 * axis], s[2 * axis + 1], t[axis], t[axis], d);
-        centre[axis] = low <= high ? std::clamp(middle, low, high) : (low + high) / 2;
+        const double low = support[2 * axis] - right[axis] * d, high = left[axis] * d - support[2 * axis + 1];
+        const double balanced =
+            centre_of(s[2 * axis], s[2 * axis + 1], middle[axis] + t[axis], t[axis] - middle[axis], d);
+        centre[axis] = low <= high ? std::clamp(balanced, low, high) : (low + high) / 2;
     }
     return centre;
 }
@@ -116,28 +126,41 @@ double ground_below(const Box3d& content, const Vec3d& up) {
     return up.dot(content.center()) - half - gap_diagonals * content.diagonal().norm();
 }
 
+Edges edges_of(const PictureShape& picture, double margin) {
+    const Insets& in = picture.insets;
+    const double across = margin * (1 - in.left - in.right), along = margin * (1 - in.top - in.bottom);
+    return {1 - 2 * in.right - across, 1 - 2 * in.left - across, 1 - 2 * in.top - along,
+            1 - 2 * in.bottom - along};
+}
+
 Vec3d fitted_position(const Content& content, const Mat3d& R_world_cam, const Camera& lens, double margin,
-                      double aspect) {
+                      const PictureShape& picture, std::optional<double> ortho_height) {
     if (lens.projection == Projection::orthographic) {
         const SceneSnapshot::Support s = content.scene().support(frustum_directions(R_world_cam, {}));
-        return R_world_cam * Vec3d((s[0] - s[1]) / 2, (s[2] - s[3]) / 2, s[4] + content.radius());
+        const Edges e = edges_of(picture, margin);
+        const double needed = 2 * std::max((s[2] + s[3]) / (e.top + e.bottom),
+                                           (s[0] + s[1]) / (e.right + e.left) / picture.aspect);
+        const double half = ortho_height.value_or(needed) / 2;
+        // The content's middle is that of what is left of the picture.
+        const double x = (s[0] - s[1]) / 2 - (e.right - e.left) / 2 * half * picture.aspect;
+        const double y = (s[2] - s[3]) / 2 - (e.top - e.bottom) / 2 * half;
+        return R_world_cam * Vec3d(x, y, s[4] + content.radius());
     }
-    const Slopes slopes = slopes_of(lens, margin, aspect);
+    const Slopes slopes = slopes_of(lens, margin, picture);
     const SceneSnapshot::Support s = content.scene().support(frustum_directions(R_world_cam, slopes));
     const double d =
         std::max({(s[0] + s[1]) / (slopes.right + slopes.left), (s[2] + s[3]) / (slopes.top + slopes.bottom),
                   s[4] + nearest_part * content.radius()});
     Vec2d centre(centre_of(s[0], s[1], slopes.right, slopes.left, d),
                  centre_of(s[2], s[3], slopes.top, slopes.bottom, d));
-    if (slopes.right == slopes.left && slopes.top == slopes.bottom)
-        centre = balanced_centre(content, R_world_cam, slopes, s, d);
+    if (is_centred(lens, picture.aspect)) centre = balanced_centre(content, R_world_cam, slopes, s, d);
     return R_world_cam * Vec3d(centre.x(), centre.y(), d);
 }
 
 double fitted_distance(const Content& content, const Vec3d& target, const Mat3d& R_world_cam,
-                       const Camera& lens, double margin, double aspect) {
+                       const Camera& lens, double margin, const PictureShape& picture) {
     const bool orthographic = lens.projection == Projection::orthographic;
-    const Slopes slopes = orthographic ? Slopes{} : slopes_of(lens, margin, aspect);
+    const Slopes slopes = orthographic ? Slopes{} : slopes_of(lens, margin, picture);
     const SceneSnapshot::Directions directions = frustum_directions(R_world_cam, slopes);
     const SceneSnapshot::Support s = content.scene().support(directions) - directions * target;
     double distance = s[4] + (orthographic ? 1 : nearest_part) * content.radius();
@@ -149,11 +172,15 @@ double fitted_distance(const Content& content, const Vec3d& target, const Mat3d&
 }
 
 double fitted_height(const Content& content, const Eigen::Isometry3d& T_world_cam, double margin,
-                     double aspect) {
+                     const PictureShape& picture) {
     const SceneSnapshot::Directions directions = frustum_directions(T_world_cam.linear(), {});
     const SceneSnapshot::Support s =
         content.scene().support(directions) - directions * T_world_cam.translation();
-    const double height = 2 * std::max({s[2], s[3], s[0] / aspect, s[1] / aspect}) / (1 - margin);
+    const Edges e = edges_of(picture, margin);
+    const double sides[] = {e.right * picture.aspect, e.left * picture.aspect, e.top, e.bottom};
+    double height = 0;
+    for (int i = 0; i < 4; ++i)
+        if (sides[i] > 0) height = std::max(height, 2 * s[i] / sides[i]);
     return height > 0 ? height : 2 * content.radius();
 }
 
@@ -181,15 +208,16 @@ Mat3d view_rotation(const CameraSettings& settings) {
 }
 
 Camera fit_camera(const SceneSnapshot& scene, const Mat3d& R_world_cam, const CameraSettings& settings,
-                  double aspect) {
+                  double aspect, const Insets& insets) {
     const detail::Content content(scene);
     if (content.empty()) throw ArgumentError("camera: there are no vertices to fit a camera to");
+    const detail::PictureShape picture{aspect, insets};
     Camera camera = detail::lens_of(settings);
     camera.T_world_cam.linear() = R_world_cam;
     camera.T_world_cam.translation() =
-        detail::fitted_position(content, R_world_cam, camera, settings.margin, aspect);
+        detail::fitted_position(content, R_world_cam, camera, settings.margin, picture, std::nullopt);
     if (camera.projection == Projection::orthographic)
-        camera.ortho_height = detail::fitted_height(content, camera.T_world_cam, settings.margin, aspect);
+        camera.ortho_height = detail::fitted_height(content, camera.T_world_cam, settings.margin, picture);
     return camera;
 }
 

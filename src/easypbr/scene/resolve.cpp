@@ -136,7 +136,7 @@ bool detail::is_asked_for(const Settings& given, std::string_view group) {
 }
 
 ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& given, Vec2i size,
-                         std::optional<int> samples) {
+                         std::optional<int> samples, const Insets& insets) {
     if (size.minCoeff() < 1 || size.maxCoeff() > max_image_side)
         throw ArgumentError(fmt::format("picture size: expected width and height from 1 to {}, got {}x{}",
                                         max_image_side, size.x(), size.y()));
@@ -145,7 +145,7 @@ ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& given, Vec2
     Settings settings = given;
     ResolvedSettings resolved;
     if (!settings.camera.up.value()) detail::fill(settings.camera.up, detail::inferred_up(scene));
-    resolved.camera = detail::resolve_camera(content, settings.camera, double(size.x()) / size.y());
+    resolved.camera = detail::resolve_camera(content, settings.camera, {double(size.x()) / size.y(), insets});
     resolve_environment(scene, settings, resolved);
     resolve_lights(content, settings, resolved);
     resolve_sun(scene, settings.environment, resolved);

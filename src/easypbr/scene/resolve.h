@@ -13,6 +13,13 @@
 
 namespace easypbr {
 
+/// Parts of a picture's width and height that something covers along its sides, such as a menu bar: 0 to 0.9,
+/// together as much along each axis. An automatic camera leaves them free beside its margin.
+struct Insets {
+    double left = 0, right = 0, top = 0, bottom = 0;
+    bool operator==(const Insets&) const = default;
+};
+
 /// All inputs of the renderer from the settings, fully inferred.
 struct ResolvedSettings {
     InferredSettings settings;
@@ -35,7 +42,7 @@ struct ResolvedSettings {
 /// is nothing to place a camera for, and, with its name, when a mesh is so large that the camera or a light
 /// leaves single precision.
 ResolvedSettings resolve(const SceneSnapshot& scene, const Settings& settings, Vec2i size,
-                         std::optional<int> samples = std::nullopt);
+                         std::optional<int> samples = std::nullopt, const Insets& insets = {});
 
 /// Copies inferred values into the automatic (not pinned, not following) fields of `settings` that keep them
 /// and hold none yet, but those that are not finite or out of the field's range.
@@ -61,10 +68,10 @@ Mat3d up_frame(const Vec3d& up);
 Mat3d view_rotation(const CameraSettings& settings);
 
 /// The camera with these axes that shows all vertices, the limiting dimension filling 1 - margin of the
-/// picture exactly (but no vertex is nearer than a hundredth of the content's radius). Projection, angle or
-/// intrinsics and margin are those of the settings. Closed form per axis: see "Camera fit" in
-/// docs/design/automatic_parameters.md. Throws ArgumentError when there are no vertices.
+/// picture, less its insets, exactly (but no vertex is nearer than a hundredth of the content's radius).
+/// Projection, angle or intrinsics and margin are those of the settings. Closed form per axis: see "Camera
+/// fit" in docs/design/automatic_parameters.md. Throws ArgumentError when there are no vertices.
 Camera fit_camera(const SceneSnapshot& scene, const Mat3d& R_world_cam, const CameraSettings& settings,
-                  double aspect);
+                  double aspect, const Insets& insets = {});
 
 }  // namespace easypbr

@@ -68,6 +68,7 @@ struct Viewer::Window {
 
     void open(Vec2i size) {
         window = std::make_unique<gui::Window>(title, size);
+        live.set_interrupt([this] { return window && window->has_input(); });
         live.drawing().clipboard() = {[this] { return window->clipboard(); },
                                       [this](const std::string& text) { window->set_clipboard(text); }};
     }

@@ -97,9 +97,10 @@ AssimpLimits assimp_limits(uint64_t file_bytes) {
 
 SharedMemory ask_assimp(const fs::path& path, const AssimpLimits& limits) {
     if (FolderScope::current())
-        throw FormatError(fmt::format(
-            "{}: this format is read by a process that opens what a file names, wherever it lies, which is not allowed here",
-            path.string()));
+        throw FormatError(
+            fmt::format("{}: this format is read by a process that opens what a file names, wherever it "
+                        "lies, which is not allowed here",
+                        path.string()));
     check_readable(path);
     return ask(path.string(), {path.string()}, limits);
 }

@@ -28,9 +28,8 @@ AssimpLimits assimp_limits(uint64_t file_bytes);
 LoadedScene load_assimp(const std::filesystem::path& path);
 LoadedScene load_assimp(const std::filesystem::path& path, const AssimpLimits& limits);
 
-/// The reader's answer to a file, sealed (assimp/message.h). FormatError in a FolderScope, which does not bind
-/// the reader. Throws as load_assimp() does, but for what the
-/// answer says.
+/// The reader's answer to a file, sealed (assimp/message.h). FormatError in a FolderScope, which does not
+/// bind the reader. Throws as load_assimp() does, but for what the answer says.
 SharedMemory ask_assimp(const std::filesystem::path& path, const AssimpLimits& limits);
 
 /// Extensions that assimp reads, sorted; empty without its reader. Throws Interrupted.
