@@ -41,3 +41,11 @@ def test_figure_7_shows_boxes(tmp_path, count):
     picture = easypbr.load_image(tmp_path / "drone_boxes.png")
     assert picture.shape == (480, 480 * count, 3)
     assert (picture == (230, 80, 60)).all(-1).sum() > 500  # the colour of the boxes' lines
+
+
+def test_a_fit_is_served_while_it_runs(tmp_path):
+    said = run("training/watch_fit.py", tmp_path, "--steps", "60")
+    assert re.match(r"http://127.0.0.1:\d+/#token=\w+\n", said)
+    before, after = map(float, re.search(r"loss ([\d.]+) before, ([\d.]+) after", said).groups())
+    assert after < before / 2
+    assert np.ptp(easypbr.load_image(tmp_path / "fit.png")[..., :3]) > 50
