@@ -81,6 +81,7 @@ def widget_class() -> type:
             self._still = kind, picture
             label = ", ".join(view.scene.names()) or "Empty scene"
             super().__init__(_width=size[0], _height=size[1], _label=label, _picture=picture)
+            self._lines = _Lines()
             self._channel = view._handle.open_channel()
             # Threads within the library must not outlive the interpreter.
             weakref.finalize(self, self._channel.close)
@@ -119,13 +120,54 @@ def widget_class() -> type:
     return ViewWidget
 
 
+class _Lines:
+    """What the pages of a widget get. Some front ends lose the bytes beside a message: each page is asked first whether they
+    arrive; where they do not, they are sent as text. Thread-safe."""
+
+    def __init__(self) -> None:
+        self._lock = threading.Lock()
+        #: By client: whether bytes arrive, None until it has said so; and what waits for that.
+        self._lines: dict[int, tuple[bool | None, list[bytes]]] = {}
+
+    def send(self, widget: Any, client: int, data: bytes) -> None:
+        with self._lock:
+            arrives, waiting = self._lines.get(client, (None, []))
+            if arrives is not None:
+                _send(widget, client, data, arrives)
+                return
+            if not waiting:
+                widget.send({"client": client, "probe": True}, [b"bytes"])
+            self._lines[client] = None, [*waiting, data]
+
+    def answered(self, widget: Any, client: int, arrives: bool) -> None:
+        with self._lock:
+            _, waiting = self._lines.get(client, (None, []))
+            self._lines[client] = arrives, []
+            for data in waiting:
+                _send(widget, client, data, arrives)
+
+    def forget(self, client: int) -> None:
+        with self._lock:
+            self._lines.pop(client, None)
+
+
+def _send(widget: Any, client: int, data: bytes, arrives: bool) -> None:
+    if arrives:
+        widget.send({"client": client}, [data])
+    else:
+        widget.send({"client": client, "data": base64.b64encode(data).decode()})
+
+
 def _receive(widget: Any, content: Any, _: Any) -> None:
     """What a page has sent. It is only put aside here: the kernel's thread draws nothing."""
     client = content.get("client") if isinstance(content, dict) else None
     if not isinstance(client, int) or not 0 <= client < 2**53:
         return
     if content.get("gone"):
+        widget._lines.forget(client)
         widget._channel.leave(client)
+    elif "arrives" in content:
+        widget._lines.answered(widget, client, bool(content["arrives"]))
     else:
         widget._channel.receive(client, str(content.get("text", "")))
 
@@ -139,9 +181,10 @@ def _carry(reference: "weakref.ref[Any]", channel: "_easypbr.ChannelHandle") -> 
             return
         for client, text, data, code in messages:
             if code:
+                widget._lines.forget(client)
                 widget.send({"client": client, "code": code, "reason": text})
             elif data:
-                widget.send({"client": client}, [data])
+                widget._lines.send(widget, client, data)
             else:
                 widget.send({"client": client, "text": text})
         del widget

@@ -82,6 +82,23 @@ def test_it_moves_while_a_cell_runs(open_lab):
     assert lab.text_of(2) == "done"
 
 
+def test_where_bytes_are_lost_pictures_come_as_text(open_lab):
+    """As in Colab, whose front end drops the buffers of messages."""
+    loses = ("w = view.widget(size=(300, 200))\nkept, texts = w.send, []\n"
+             "def send(content, buffers=None):\n    texts.append('data' in content)\n    kept(content)\n"
+             "w.send = send\nw")
+    lab = open_lab("lossy.ipynb", SCENE, loses, "print(sum(texts) > 1)")
+    lab.run(0)
+    lab.run(1)
+    first = lab.exact()
+    before = lab.pixels()
+    lab.drag(80, 0)
+    lab.exact(0, first)
+    assert lab.pixels() != before
+    lab.run(2)
+    assert lab.text_of(2) == "True"
+
+
 def test_frames_on_their_way_are_few(open_lab):
     spy = """sent, most = 0, 0
 widget = view.widget(size=(300, 200))

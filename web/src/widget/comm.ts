@@ -14,12 +14,17 @@ export interface Incoming {
   text?: string;
   code?: number;
   reason?: string;
+  /** Bytes come with this one: did they arrive? */
+  probe?: boolean;
+  /** Bytes in base 64, where they do not arrive by themselves. */
+  data?: string;
 }
 
 export interface Outgoing {
   client: number;
   text?: string;
   gone?: boolean;
+  arrives?: boolean;
 }
 
 /** Who says nothing for three minutes is forgotten; hidden pages may act once a minute. */
@@ -71,6 +76,8 @@ export class CommWire implements Wire {
   private take = (content: Incoming, buffers: DataView[]): void => {
     const { events } = this;
     if (!events || content.client !== this.client) return;
+    if (content.probe) return this.model.send({ client: this.client, arrives: (buffers?.[0]?.byteLength ?? 0) > 0 });
+    if (content.data !== undefined) return events.received(Uint8Array.from(atob(content.data), (letter) => letter.charCodeAt(0)).buffer);
     if (content.code) {
       clearInterval(this.alive);
       this.events = null;
@@ -79,6 +86,6 @@ export class CommWire implements Wire {
       events.received(content.text);
     }
     // A copy: the view may be one into a larger buffer.
-    for (const view of buffers) events.received(new Uint8Array(view.buffer, view.byteOffset, view.byteLength).slice().buffer);
+    for (const view of buffers ?? []) events.received(new Uint8Array(view.buffer, view.byteOffset, view.byteLength).slice().buffer);
   };
 }
