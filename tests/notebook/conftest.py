@@ -63,7 +63,7 @@ def lab(tmp_path_factory):
     overrides.mkdir()
     (overrides / "overrides.json").write_text(json.dumps(settings))
     command = [sys.executable, "-m", "jupyterlab", "--no-browser", "--allow-root", f"--port={port}", f"--IdentityProvider.token={TOKEN}",
-               f"--ServerApp.root_dir={root}", f"--LabApp.app_settings_dir={overrides}"]
+               "--LabApp.expose_app_in_browser=True", f"--ServerApp.root_dir={root}", f"--LabApp.app_settings_dir={overrides}"]
     environment = os.environ | {"HOME": str(home), "JUPYTER_CONFIG_DIR": str(home / "config"), "JUPYTER_DATA_DIR": str(home / "data"),
                                 "JUPYTER_RUNTIME_DIR": str(home / "runtime"), "IPYTHONDIR": str(home / "ipython")}
     with open(home / "log", "w") as log:
@@ -101,13 +101,12 @@ class Lab:
         page.wait_for_selector(".jp-Notebook-ExecutionIndicator[data-status='idle']")
 
     def run(self, number):
-        """Runs a cell by its place in the notebook, from 0, as by Ctrl+Enter."""
+        """Runs a cell by its place in the notebook, from 0: the command of Ctrl+Enter, for JupyterLab loses keys while it
+        loads its extensions."""
         cell = self.page.locator(".jp-Notebook .jp-CodeCell").nth(number)
         cell.locator(".jp-InputArea-editor").click()
         expect(cell).to_have_class(re.compile("jp-mod-active"))
-        self.page.locator(".jp-Notebook.jp-mod-editMode").wait_for()
-        cell.locator(".cm-focused").wait_for()
-        self.page.keyboard.press("Control+Enter")
+        self.page.evaluate("() => { window.jupyterapp.commands.execute('notebook:run-cell'); }")
         expect(cell.locator(".jp-InputArea-prompt")).not_to_have_text("[ ]:")
 
     def canvas(self, number=0):
