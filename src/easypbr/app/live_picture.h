@@ -37,7 +37,7 @@ struct LiveShot {
     /// another motion.
     std::function<Session::RefinedMotion(const Camera& now)> motion = {};
     std::pair<double, double> motion_key{};
-    /// A frame that refines is given up, and the picture begun anew, when this says so: somebody waits.
+    /// A frame that refines is given up, and the picture begun anew, when this says so: input waits.
     /// Called often; empty: never.
     std::function<bool()> interrupt = {};
 };

@@ -40,7 +40,7 @@ class Inbox {
 
     /// For this view.
     bool has_orders(ViewId view = shared_view) const;
-    /// Of those some that turn the camera or change a setting, or may begin to: somebody waits for them.
+    /// Whether some of those turn the camera or change a setting, or may begin to.
     bool has_presses(ViewId view = shared_view) const;
     /// Until something comes, wake() is called, or the time is over.
     void wait(double seconds);

@@ -141,7 +141,7 @@ Vec3d fitted_position(const Content& content, const Mat3d& R_world_cam, const Ca
         const double needed = 2 * std::max((s[2] + s[3]) / (e.top + e.bottom),
                                            (s[0] + s[1]) / (e.right + e.left) / picture.aspect);
         const double half = ortho_height.value_or(needed) / 2;
-        // The content's middle is that of what is left of the picture.
+        // Centres the content in the rectangle between the insets.
         const double x = (s[0] - s[1]) / 2 - (e.right - e.left) / 2 * half * picture.aspect;
         const double y = (s[2] - s[3]) / 2 - (e.top - e.bottom) / 2 * half;
         return R_world_cam * Vec3d(x, y, s[4] + content.radius());
