@@ -147,6 +147,19 @@ TEST_F(Live, InputInterruptsAFrameThatRefines) {
     EXPECT_LE(worst, 1);  // once more through 8 bits
 }
 
+// Nobody takes the input that waits before a finished screen is drawn.
+TEST_F(Live, InputThatWaitsDoesNotKeepAScreenFromItsEnd) {
+    session_.settings().image.samples = 5;
+    int asked = 0;
+    view_.set_interrupt([&] { return ++asked <= 20; });
+    view_.finished_screen(size);
+    EXPECT_TRUE(view_.drawing().picture().is_complete());
+    session_.settings().image.samples = 4;
+    view_.drawing().draw_finished({.interrupt = [&] { return ++asked <= 20; }});
+    EXPECT_TRUE(view_.drawing().picture().is_complete());
+    EXPECT_EQ(asked, 0);
+}
+
 TEST_F(Live, AnAutomaticCameraShowsTheContentBelowTheMenuBar) {
     app::Session session(session_.scene());
     LiveView view(session);

@@ -45,7 +45,7 @@ class Window:
                 return self.update(5)
         raise AssertionError("never ready")
 
-    def mouse(self, *words):
+    def send(self, *words):
         """xdotool's words; positions are the window's."""
         words = list(map(str, words))
         for i, word in enumerate(words):
@@ -53,6 +53,10 @@ class Window:
                 words[i + 1] = str(self.left + int(words[i + 1]))
                 words[i + 2] = str(self.top + int(words[i + 2]))
         self.display.run("xdotool", *words)
+
+    def mouse(self, *words):
+        """The same, taken at once."""
+        self.send(*words)
         self.update(3)
 
     def key(self, *names):

@@ -53,6 +53,29 @@ def test_a_left_drag_orbits_and_a_right_drag_pans(window):
     assert abs((columns[0] + columns[-1]) / 2 - 450) < 6
 
 
+def turned_by_a_drag(window, update):
+    """From where the camera is; `update` is called after each of the drag's steps."""
+    before = window.view.camera
+    steps = [("mousemove", *MIDDLE), ("mousedown", 1), ("mousemove", 440, 310), ("mousemove", 520, 320), ("mouseup", 1)]
+    for step in steps:
+        window.send(*step)
+        update()
+    window.update(3)
+    after = window.view.camera.position.copy()
+    window.view.camera = before
+    return after
+
+
+def test_a_drag_counts_though_it_is_over_before_its_events_are_taken(window):
+    window.key("h")
+    before = window.view.camera.position.copy()
+    slow = turned_by_a_drag(window, window.update)
+    assert np.linalg.norm(slow - before) > 0.5
+    # As while the program is busy, or a frame is drawn: the pointer is elsewhere when the press is taken.
+    # The same two movements either way: only rounding differs.
+    assert np.linalg.norm(turned_by_a_drag(window, lambda: None) - slow) < 1e-9
+
+
 def test_a_button_interrupts_a_frame_that_refines(window):
     """Who presses a button while a sample of some seconds is drawn waits for a part of it only."""
     window.mouse("mousemove", *MIDDLE)

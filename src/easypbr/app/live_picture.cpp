@@ -98,6 +98,7 @@ bool LivePicture::fail(const std::string& what, const LiveShot& shot, uint64_t v
 
 void LivePicture::finish(LiveShot shot) {
     shot.moving = false;
+    shot.interrupt = nullptr;  // Input is taken afterwards: a picture begun anew would never end.
     do draw(shot);
     while (!has_failed() && !is_complete() && !session_.is_stuck());
 }

@@ -38,7 +38,7 @@ struct LiveShot {
     std::function<Session::RefinedMotion(const Camera& now)> motion = {};
     std::pair<double, double> motion_key{};
     /// A frame that refines is given up, and the picture begun anew, when this says so: input waits.
-    /// Called often; empty: never.
+    /// Called often; empty: never. finish() does not ask.
     std::function<bool()> interrupt = {};
 };
 

@@ -210,6 +210,12 @@ Image LiveView::finished_now() {
 
 Image LiveView::finished_screen(Vec2i size, float scale) {
     touch();
+    // Input is taken afterwards: a picture begun anew would never end.
+    struct Restored {
+        std::function<bool()>& function;
+        std::function<bool()> kept = std::exchange(function, nullptr);
+        ~Restored() { function = std::move(kept); }
+    } const restored{input_waits_};
     const uint64_t begun = live_.picture().statistics().pictures;
     do update({}, size, scale, 1.0 / 60);
     while (is_busy() && live_.picture().statistics().pictures < begun + most_changes);

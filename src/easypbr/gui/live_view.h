@@ -35,8 +35,8 @@ class LiveView {
     bool wants_to_close() { return live_.wishes().close; }
     void close(bool close = true) { live_.wishes().close = close; }
 
-    /// Has frames that refine given up when it returns true, for input waits: called often while they are
-    /// drawn.
+    /// Has frames that refine given up when it returns true, for input waits: called often while update()
+    /// draws them. finished_screen() does not ask.
     void set_interrupt(std::function<bool()> input_waits) { input_waits_ = std::move(input_waits); }
 
     /// The screen, RGBA u8, row 0 on top: picture and GUI. Throws ArgumentError before the first update().

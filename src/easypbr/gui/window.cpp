@@ -71,11 +71,19 @@ struct WindowCallbacks {
         InputEvent event;
         event.kind = kind;
         event.time = now();
-        double x = 0, y = 0;
-        glfw().glfwGetCursorPos(window, &x, &y);
-        event.position = in_pixels(window, {x, y});
+        event.position = in_pixels(window, pointer(window));
         self.events_.push_back(event);
         return self.events_.back();
+    }
+    /// Where the pointer was at this event. glfwGetCursorPos() asks X11 where it is now: at the end of a drag
+    /// whose events are taken after a slow frame.
+    static Vec2d pointer(GLFWwindow* window) {
+        std::optional<Vec2d>& known = of(window).pointer_;
+        if (!known) {
+            known = Vec2d(0, 0);
+            glfw().glfwGetCursorPos(window, &known->x(), &known->y());
+        }
+        return *known;
     }
     static Vec2d in_pixels(GLFWwindow* window, Vec2d position) {
         int width = 0, height = 0, pixels_x = 0, pixels_y = 0;
@@ -92,7 +100,8 @@ struct WindowCallbacks {
     }
 
     static void move(GLFWwindow* window, double x, double y) {
-        add(window, Kind::move).position = in_pixels(window, {x, y});
+        of(window).pointer_ = Vec2d(x, y);
+        add(window, Kind::move);
     }
     static void button(GLFWwindow* window, int button, int action, int mods) {
         if (button > GLFW_MOUSE_BUTTON_MIDDLE) return;

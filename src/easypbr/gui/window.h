@@ -56,6 +56,7 @@ class Window {
 
     GLFWwindow* window_ = nullptr;
     std::vector<app::InputEvent> events_;
+    std::optional<Vec2d> pointer_;  ///< at the last event, in screen coordinates
     bool needs_present_ = true;
     bool is_shown_ = false;
     bool input_waits_ = false;
