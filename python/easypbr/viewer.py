@@ -85,11 +85,17 @@ class Viewer(Sharing):
         """view.lights["key" | "fill" | "rim"] and the lights of the scene, by name."""
         return Lights(self._handle, self.scene._handle)
 
-    def add_light(self, name: str, type: str = "point", **values: Any) -> "SceneLight | StudioLight":
-        """Adds or replaces a light: position, direction, color, intensity, ... as _easypbr.Light has them."""
+    def add_light(self, name: str, type: "str | _easypbr.Light" = "point", **values: Any) -> "SceneLight | StudioLight":
+        """Adds or replaces a light: position, direction, color, intensity, ... as _easypbr.Light has them. Or a whole one:
+        view.add_light("lamp", load_scene(path).lights["lamp"])."""
         if name in _STUDIO:
             raise ArgumentError(f"'{name}' is one of the three-point lights: use view.lights['{name}']")
-        self.scene.set_light(name, _easypbr.Light(type, **values))
+        if isinstance(type, _easypbr.Light):
+            if values:
+                raise ArgumentError(f"add_light: a whole light needs no further values, got {', '.join(sorted(values))}")
+            self.scene.set_light(name, type)
+        else:
+            self.scene.set_light(name, _easypbr.Light(type, **values))
         return self.lights[name]
 
     def remove_light(self, name: str) -> None:

@@ -43,6 +43,34 @@ TEST_F(Player, FollowsTheClockFromWhereItBegan) {
     EXPECT_DOUBLE_EQ(player_.duration_s(), 4);
 }
 
+// A lamp that hangs on the box goes with it, under its file's name; what the scene's owner chose stays.
+TEST_F(Player, MovesLights) {
+    AnimationRig rig{{{}}, {}, {}, {slide("slide")}};
+    rig.lights.resize(1);
+    rig.lights[0].users = {{"lamp", 0}, {"removed", 0}};
+    rig.lights[0].value = [](const std::vector<double>&, const Eigen::Affine3d& T_world_node) {
+        Light light;
+        light.position = T_world_node.translation().cast<float>();
+        return light;
+    };
+    Scene scene;
+    Light lamp;
+    lamp.casts_shadows = false;
+    lamp.radius = 0.5f;
+    scene.set_light("box/lamp", lamp);
+    scene.set_light("other", Light());
+    player_.add("box", Animations(rig), scene);
+    player_.play(0);
+    clock_.tick();
+    EXPECT_EQ(scene.light("box/lamp").position, Vec3(0.25f, 0, 0));
+    EXPECT_FALSE(scene.light("box/lamp").casts_shadows);
+    EXPECT_EQ(scene.light("box/lamp").radius.value(), 0.5f);
+    EXPECT_EQ(scene.light("other").position, Vec3(0, 0, 0));
+    EXPECT_EQ(scene.light_names().size(), 2u);
+    rig.lights[0].users = {{"lamp", 3}};
+    EXPECT_THROW(Animations{rig}, ArgumentError);
+}
+
 TEST_F(Player, PausesScrubsAndGoesOn) {
     player_.add("box", animations_);
     player_.play(0);

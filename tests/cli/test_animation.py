@@ -77,6 +77,54 @@ def test_a_still_is_blurred_like_a_frame_of_a_recording(render, moving, tmp_path
     np.testing.assert_array_equal(png.read(tmp_path / "first.png"), png.read(tmp_path / "rest.png"))
 
 
+@pytest.fixture
+def moving_camera(moving):
+    """The same file with a camera and a lamp, six units before the triangle, that go with it."""
+    file = json.loads(moving.read_text())
+    file["nodes"] += [{"name": "eye", "camera": 0, "translation": [0, 0, 6], "extensions": {"KHR_lights_punctual": {"light": 0}}}]
+    file["nodes"][0]["children"] = [1]
+    file["cameras"] = [{"type": "perspective", "perspective": {"yfov": 0.6, "znear": 0.1}}]
+    file["extensions"] = {"KHR_lights_punctual": {"lights": [{"type": "point", "intensity": 200}]}}
+    moving.write_text(json.dumps(file))
+    return moving
+
+
+LIT = ("--exposure", "1", "--set", "lights.key.enabled=false", "--set", "lights.fill.enabled=false", "--set",
+       "lights.rim.enabled=false", "--preset", "dark", "--mode", "raster")
+
+
+def test_cameras_and_lights_go_with_it(render, moving_camera, tmp_path):
+    """What the camera and its lamp go with stays in the same place of the picture, equally lit; seen from afar it does not."""
+    for time in (0, 0.25):
+        render(moving_camera, "--animation", "go", "--animation-time", time, "--camera", "eye", "-o", f"{time}.png", *LIT)
+    rest, moved = (png.read(tmp_path / name)[..., :3].astype(int) for name in ("0.png", "0.25.png"))
+    assert rest.max() > 40
+    np.testing.assert_allclose(rest, moved, atol=1)
+    for time in (0, 0.25):
+        render(moving_camera, "--animation", "go", "--animation-time", time, "--camera-position", "0,0,6", "--camera-target",
+               "0,0,0", "-o", f"far {time}.png", *LIT)
+    assert (png.read(tmp_path / "far 0.png") != png.read(tmp_path / "far 0.25.png")).any()
+
+
+def test_info_names_them(easypbr, moving_camera):
+    info = json.loads(easypbr("info", "--json", moving_camera).stdout)
+    assert info["animations"] == [{"name": "go", "duration_s": 0.5}]
+    assert info["camera_names"] == ["eye"] and len(info["light_names"]) == info["lights"] == 1
+    text = easypbr("info", moving_camera).stdout
+    assert "animation   'go': 0.5 s\n" in text and "cameras     1: eye\n" in text
+
+
+def test_an_animation_alone_is_recorded(render, moving_camera, tmp_path):
+    """Half a second at 10 frames a second, once around; each frame is the still of its time."""
+    render(moving_camera, "--animation", "go", "--camera", "0", "--fps", "10", "-o", "f_%d.png", *LIT)
+    assert sorted(path.name for path in tmp_path.glob("f_*.png")) == [f"f_{i}.png" for i in range(5)]
+    render(moving_camera, "--animation", "go", "--camera", "0", "--animation-time", 0.3, "-o", "s.png", *LIT)
+    np.testing.assert_array_equal(png.read(tmp_path / "f_3.png"), png.read(tmp_path / "s.png"))
+    # Without a camera of the file that of the first frame stays.
+    render(moving_camera, "--animation", "go", "--fps", "10", "-o", "r_%d.png", *LIT)
+    assert (png.read(tmp_path / "r_0.png") != png.read(tmp_path / "r_4.png")).any()
+
+
 def test_what_is_not_there(render, moving, box):
     assert "there is no animation 'og'" in render(moving, "--animation", "og", "-o", "a.png", code=1).stderr
     assert "the files hold no animations" in render(box, "--animation", "go", "-o", "a.png", code=1).stderr

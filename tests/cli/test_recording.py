@@ -131,8 +131,8 @@ def test_a_camera_path_hits_its_keys(render, box, tmp_path):
     [
         (("--turntable", "0", "-o", "a.mp4"), "expected at least one frame, got 0"),
         (("--turntable", "5", "--camera-path", "p.json", "-o", "a.mp4"), "exclude each other"),
-        (("-o", "a.mp4"), "a video needs --turntable or --camera-path"),
-        (("--fps", "30", "-o", "a.png"), "--fps needs --turntable or --camera-path"),
+        (("-o", "a.mp4"), "a video needs --turntable, --camera-path or --animation"),
+        (("--fps", "30", "-o", "a.png"), "--fps needs --turntable, --camera-path or --animation"),
         (("--turntable", "5", "-o", "-"), "cannot go to standard output"),
         (("--turntable", "5", "-o", "a.mp4", "--layers", "depth"), "--layers are of one picture"),
     ],

@@ -118,7 +118,9 @@ def animated(tmp_path):
 
     data = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0) + struct.pack("<2f", 0, 1) + struct.pack("<6f", 0, 0, 0, 2, 0, 0)
     uri = "data:application/octet-stream;base64," + base64.b64encode(data).decode()
-    file = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0, "name": "tri"}],
+    file = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [
+                {"mesh": 0, "name": "tri", "children": [1]},
+                {"name": "eye", "translation": [0, 0, 9], "camera": 0, "extensions": {"KHR_lights_punctual": {"light": 0}}}],
             "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
             "buffers": [{"byteLength": len(data), "uri": uri}],
             "bufferViews": [{"buffer": 0, "byteOffset": o, "byteLength": n} for o, n in ((0, 36), (36, 8), (44, 24))],
@@ -126,11 +128,33 @@ def animated(tmp_path):
                 {"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0]},
                 {"bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [1]},
                 {"bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3"}],
+            "cameras": [{"type": "perspective", "perspective": {"yfov": 0.5, "znear": 0.1}}],
+            "extensions": {"KHR_lights_punctual": {"lights": [{"name": "lamp", "type": "point", "intensity": 5}]}},
             "animations": [{"name": "slide", "samplers": [{"input": 1, "output": 2}],
                             "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}]}]}
     path = tmp_path / "slide.gltf"
     path.write_text(json.dumps(file))
     return easypbr.load_scene(path)
+
+
+def test_lights_and_cameras_of_a_file_go_with_it(tmp_path):
+    file = animated(tmp_path)
+    assert file.animations.lights(0.5)["lamp"].position == pytest.approx((1, 0, 9))
+    assert file.animations.cameras(0.5, "slide")["eye"].position == pytest.approx((1, 0, 9))
+    assert file.animations.lights(1.5, loop=False)["lamp"].position == pytest.approx((2, 0, 9))
+    with pytest.raises(easypbr.UnknownNameError):
+        file.animations.lights(0, "slid")
+    with pytest.raises(easypbr.ArgumentError):
+        file.animations.cameras(float("nan"))
+    scene = Scene()
+    scene.show(file.mesh, "file")
+    view = Viewer((32, 24), {"image": {"samples": 1}}, scene)
+    view.add_light("lamp", file.lights["lamp"])
+    with pytest.raises(easypbr.ArgumentError, match="no further values, got intensity"):
+        view.add_light("lamp", file.lights["lamp"], intensity=3)
+    view.play(file.animations)
+    view.animation_time = 0.5
+    assert scene.light("lamp").position == pytest.approx((1, 0, 9))
 
 
 def test_an_animation_plays_in_a_recording(tmp_path):

@@ -1,12 +1,14 @@
 // Plays the animations of files by a clock.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "easypbr/app/clock.h"
 #include "easypbr/core/math.h"
+#include "easypbr/scene/scene.h"
 
 namespace easypbr {
 class Animations;
@@ -14,6 +16,15 @@ class Mesh;
 }  // namespace easypbr
 
 namespace easypbr::app {
+
+/// The name of a file's light in a scene: "robot/lamp", of a file without a name "lamp".
+std::string light_name(const std::string& file, const std::string& light);
+
+/// Puts the lights of a file that an animation moves or changes where they are at a time, those that the
+/// scene has under light_name(). Whether they are enabled, cast shadows and how large they are stays as it
+/// is. Throws as Animations::apply().
+void put_lights(Scene scene, const std::string& file, const Animations& animations, size_t index,
+                double time_s, bool loop = true);
 
 /// One animation plays at a time. Its time follows the clock's: that of a recording, of a fixed step, or real
 /// time; setting the clock's time back sets the animation back.
@@ -24,8 +35,9 @@ class AnimationPlayer {
     ~AnimationPlayer();
 
     /// Makes a file's animations known under its name; those of a file of this name are replaced. Nothing
-    /// plays yet.
-    void add(const std::string& file, const Animations& animations);
+    /// plays yet. They move the file's lights in `scene`, see put_lights().
+    void add(const std::string& file, const Animations& animations,
+             const std::optional<Scene>& scene = std::nullopt);
     /// Forgets those of a file; the one that played ends with it. Nothing happens when there are none.
     void remove(const std::string& file);
     /// "robot: Walk" for each that is known; "Walk" of a file without a name.

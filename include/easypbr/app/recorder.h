@@ -78,6 +78,14 @@ class Recorder {
                     const RecordingOptions& options = {}, std::optional<int> frames = std::nullopt,
                     const BeforeFrame& before_frame = {});
 
+    /// The camera at a time, in seconds.
+    using CameraAt = std::function<Camera(double time_s)>;
+    /// Records one frame at each of `times_s`, with the camera of that time. `before_s`: where the camera was
+    /// before the first frame. The rest is as for record_path(). Throws ArgumentError when there is no time.
+    int record_frames(const std::vector<double>& times_s, double before_s, const CameraAt& camera,
+                      const std::filesystem::path& file, const RecordingOptions& options = {},
+                      const BeforeFrame& before_frame = {});
+
   private:
     struct Recording;
     Recording& require_recording();

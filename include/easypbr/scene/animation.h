@@ -1,13 +1,16 @@
-// Animations of a file's nodes: poses, skins and morph targets over time (glTF 2.0, sections 3.7.2.2, 3.7.3
-// and 3.11).
+// Animations of a file: poses of nodes, skins, morph targets, materials, lights and cameras over time
+// (glTF 2.0, sections 3.7.2.2, 3.7.3 and 3.11; KHR_animation_pointer).
 #pragma once
 
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "easypbr/scene/camera.h"
+#include "easypbr/scene/light.h"
 #include "easypbr/scene/material.h"
 #include "easypbr/scene/mesh.h"
 
@@ -26,19 +29,22 @@ enum class AnimatedProperty {
     scale,
     weights,
     visibility,  ///< of the node with all that hangs below it; above 0.5: visible
-    material     ///< parameters of a material, as many as there are values in a row
+    material,    ///< parameters of a material, as many as there are values in a row
+    light,       ///< the same of a light
+    camera       ///< the same of a camera
 };
 
-/// One property of one node or material over time.
+/// One property of one node, material, light or camera over time.
 struct AnimationChannel {
-    int node =
-        0;  ///< index into AnimationRig::nodes; AnimatedProperty::material: into AnimationRig::materials
+    /// Index into AnimationRig::nodes; for a material, light or camera into AnimationRig::materials, lights
+    /// or cameras.
+    int node = 0;
     AnimatedProperty property = AnimatedProperty::translation;
     Interpolation interpolation = Interpolation::linear;
     std::vector<float> times;  ///< seconds, rising
     /// One row for each time, three for cubic splines; rotations are x, y, z, w.
     ArrayXf::Dense values;
-    int parameter = 0;  ///< AnimatedProperty::material: the first one
+    int parameter = 0;  ///< of a material, light or camera: the first one
 };
 
 struct Animation {
@@ -86,12 +92,22 @@ struct AnimatedMaterial {
     std::vector<std::pair<Mesh, size_t>> users;  ///< with the place in each mesh's materials
 };
 
-/// All nodes and materials of a file with what moves and changes them.
+/// A light or camera that nodes of a file place, with values that may change over time.
+template <class Value>
+struct AnimatedItem {
+    std::vector<double> parameters;  ///< at rest
+    std::function<Value(const std::vector<double>& parameters, const Eigen::Affine3d& T_world_node)> value;
+    std::vector<std::pair<std::string, int>> users;  ///< its name in the loaded scene, and the node
+};
+
+/// All nodes, materials, lights and cameras of a file with what moves and changes them.
 struct AnimationRig {
     std::vector<AnimationNode> nodes;
     std::vector<AnimatedMaterial> materials;
     std::vector<Skin> skins;
     std::vector<Animation> animations;
+    std::vector<AnimatedItem<Light>> lights = {};
+    std::vector<AnimatedItem<Camera>> cameras = {};
 };
 
 /// The animations of a file that was loaded, which move its meshes. Copies share the meshes.
@@ -113,6 +129,12 @@ class Animations {
     /// unknown index, ArgumentError for a time that is not finite.
     void apply(size_t index, double time_s, bool loop = true);
 
+    /// The lights that the animations of the file move, change or hide, at a time of one of them, by their
+    /// names in io::LoadedScene::lights, in world space. A hidden one has no intensity. Throws as apply().
+    std::map<std::string, Light> lights(size_t index, double time_s, bool loop = true) const;
+    /// The same of the cameras.
+    std::map<std::string, Camera> cameras(size_t index, double time_s, bool loop = true) const;
+
     /// How each node's mesh moved between two times of an animation, as poses in the mesh's own frame: where
     /// it is at `to_s`, T_parent_mesh, it was T_parent_mesh * pose at `from_s`. Vertices apart. Throws as
     /// apply().
@@ -125,6 +147,15 @@ class Animations {
     /// The poses at a time, brought into the animation's duration with `loop`.
     std::vector<Pose> pose_at(size_t index, double time_s, bool loop) const;
     double time_in(size_t index, double time_s, bool loop) const;
+    std::vector<Eigen::Affine3d> world_poses(const std::vector<Pose>& poses) const;
+    /// Whether the node or one above it is hidden.
+    bool is_hidden(int node, const std::vector<Pose>& poses) const;
+    /// Whether an animation moves or hides the node or one above it.
+    bool is_moved(int node) const;
+    template <class Value>
+    std::map<std::string, Value> placed(const std::vector<AnimatedItem<Value>>& items,
+                                        AnimatedProperty property, size_t index, double time_s,
+                                        bool loop) const;
     void deform(AnimationNode& node, const Eigen::Affine3d& T_world_node, const std::vector<float>& weights,
                 const std::vector<Eigen::Affine3d>& T_world_nodes);
     void put_materials(const Animation& animation, double time_s);
@@ -132,6 +163,7 @@ class Animations {
     AnimationRig rig_;
     std::vector<size_t> order_;                        ///< parents before children
     std::vector<std::vector<double>> put_parameters_;  ///< of materials, as they were put last
+    std::vector<bool> moved_;                          ///< nodes that channels name
 };
 
 }  // namespace easypbr

@@ -14,7 +14,28 @@ namespace easypbr::app {
 struct AnimationPlayer::File {
     std::string name;
     Animations animations;
+    std::optional<Scene> scene;
 };
+
+std::string light_name(const std::string& file, const std::string& light) {
+    return file.empty() ? light : fmt::format("{}/{}", file, light);
+}
+
+void put_lights(Scene scene, const std::string& file, const Animations& animations, size_t index,
+                double time_s, bool loop) {
+    const std::vector<std::string> known = scene.light_names();
+    for (auto& [name, moved] : animations.lights(index, time_s, loop)) {
+        const std::string full = light_name(file, name);
+        if (std::ranges::find(known, full) == known.end()) continue;
+        const Light before = scene.light(full);
+        Light light = moved;
+        light.enabled = before.enabled;
+        light.casts_shadows = before.casts_shadows;
+        light.angular_radius_deg = before.angular_radius_deg;
+        light.radius = before.radius;
+        if (!(light == before)) scene.set_light(full, light);
+    }
+}
 
 void AnimationPlayer::rebuild_names() {
     places_.clear();
@@ -33,12 +54,13 @@ void AnimationPlayer::rebuild_names() {
 AnimationPlayer::AnimationPlayer(const Clock& clock) : clock_(clock) {}
 AnimationPlayer::~AnimationPlayer() = default;
 
-void AnimationPlayer::add(const std::string& file, const Animations& animations) {
+void AnimationPlayer::add(const std::string& file, const Animations& animations,
+                          const std::optional<Scene>& scene) {
     const auto known = std::ranges::find(files_, file, &File::name);
     if (known != files_.end())
-        known->animations = animations;
+        *known = {file, animations, scene};
     else
-        files_.push_back({file, animations});
+        files_.push_back({file, animations, scene});
     rebuild_names();
     if (current_ >= places_.size()) {
         current_ = 0;
@@ -139,7 +161,9 @@ void AnimationPlayer::update() {
 
 void AnimationPlayer::apply() {
     const Place place = places_[current_];
-    files_[place.file].animations.apply(place.index, time(), loop_);
+    File& file = files_[place.file];
+    file.animations.apply(place.index, time(), loop_);
+    if (file.scene) put_lights(*file.scene, file.name, file.animations, place.index, time(), loop_);
 }
 
 }  // namespace easypbr::app

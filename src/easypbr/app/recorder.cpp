@@ -147,18 +147,27 @@ int Recorder::stop() {
 int Recorder::record_path(const CameraPath& path, const fs::path& file, const RecordingOptions& options,
                           std::optional<int> frames, const BeforeFrame& before_frame) {
     const std::vector<double> times = frames ? path.times(*frames) : path.frame_times(options.fps);
-    const KeptCamera kept(session_);
-    const Camera camera = session_.resolve(options.size).camera;
-    start(file, options);
-    StepProgress progress(file.filename().string(), "frame", int(times.size()), 0.2);
+    const Camera like = session_.resolve(options.size).camera;
     // A closed path was on its way before the first frame; on an open one the camera rests until then.
     const double step = times.size() > 1 ? times[1] - times[0] : 1 / options.fps;
-    session_.begin_motion(path.camera(times[0] - step, camera));
+    return record_frames(
+        times, times[0] - step, [&](double time_s) { return path.camera(time_s, like); }, file, options,
+        before_frame);
+}
+
+int Recorder::record_frames(const std::vector<double>& times_s, double before_s, const CameraAt& camera,
+                            const fs::path& file, const RecordingOptions& options,
+                            const BeforeFrame& before_frame) {
+    if (times_s.empty()) throw ArgumentError(fmt::format("{}: there is no frame to record", file.string()));
+    const KeptCamera kept(session_);
+    start(file, options);
+    StepProgress progress(file.filename().string(), "frame", int(times_s.size()), 0.2);
+    session_.begin_motion(camera(before_s));
     try {
-        for (size_t i = 0; i < times.size(); ++i) {
+        for (size_t i = 0; i < times_s.size(); ++i) {
             progress.done(int(i));
-            if (before_frame) before_frame(int(i), int(times.size()), times[i]);
-            session_.set_camera(path.camera(times[i], camera));
+            if (before_frame) before_frame(int(i), int(times_s.size()), times_s[i]);
+            session_.set_camera(camera(times_s[i]));
             add_frame();
         }
     } catch (...) {

@@ -82,6 +82,10 @@ void check_folder(const fs::path& pattern) {
 
 }  // namespace
 
+bool is_recording_name(const fs::path& path) {
+    return io::is_video(path) || number_in(path.filename().string());
+}
+
 fs::path frame_path(const fs::path& path, int index) {
     const fs::path pattern = numbered(path);
     const std::string name = pattern.filename().string();

@@ -14,6 +14,9 @@ namespace easypbr::app {
 /// The path of frame `index` for "out/frame_%04d.png" or for a folder ("out/": out/frame_00000.png).
 std::filesystem::path frame_path(const std::filesystem::path& path, int index);
 
+/// Whether it is a video's name or numbered pictures': "out.mp4", "out/frame_%04d.png".
+bool is_recording_name(const std::filesystem::path& path);
+
 /// What the frames must be drawn as.
 Encoding encoding_for_recording(const std::filesystem::path& path, bool deep);
 

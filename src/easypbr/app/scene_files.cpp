@@ -31,9 +31,9 @@ std::string unique_name(const Scene& scene, const std::string& stem) {
 void show_loaded(Session& session, AnimationPlayer& player, const io::LoadedScene& loaded,
                  const std::string& name) {
     session.scene().show(loaded.mesh, name);
-    if (!loaded.animations.empty()) player.add(name, loaded.animations);
+    if (!loaded.animations.empty()) player.add(name, loaded.animations, session.scene());
     for (const auto& [light, value] : loaded.lights)
-        session.scene().set_light(fmt::format("{}/{}", name, light), value);
+        session.scene().set_light(light_name(name, light), value);
 }
 
 }  // namespace

@@ -107,6 +107,21 @@ struct Summary {
     }
 };
 
+template <class Value>
+Json names_of(const std::map<std::string, Value>& values) {
+    Json names = Json::array();
+    for (const auto& [name, value] : values) names.push_back(name);
+    return names;
+}
+
+Json describe(const Animations& animations) {
+    Json json = Json::array();
+    const std::vector<std::string> names = animations.names();
+    for (size_t i = 0; i < names.size(); ++i)
+        json.push_back({{"name", names[i]}, {"duration_s", animations.duration_s(i)}});
+    return json;
+}
+
 Json describe(const io::LoadedScene& loaded) {
     Summary sum;
     for_each_node(loaded.mesh, [&](const std::shared_ptr<const MeshData>& data, const Eigen::Affine3d& T) {
@@ -120,6 +135,9 @@ Json describe(const io::LoadedScene& loaded) {
         json["bounds"] = {{"min", describe(sum.bounds.min())}, {"max", describe(sum.bounds.max())}};
     json["lights"] = loaded.lights.size();
     json["cameras"] = loaded.cameras.size();
+    json["light_names"] = names_of(loaded.lights);
+    json["camera_names"] = names_of(loaded.cameras);
+    json["animations"] = describe(loaded.animations);
     json["variants"] = loaded.variants;
     return json;
 }
@@ -152,8 +170,15 @@ std::string box_text(const Json& low, const Json& high) {
 }
 
 void print_mesh(const Json& mesh) {
-    for (const char* count : {"vertices", "faces", "nodes", "parts", "lights", "cameras"})
+    for (const char* count : {"vertices", "faces", "nodes", "parts"})
         fmt::print("{:<12}{}\n", count, mesh[count].get<size_t>());
+    for (const auto& [count, names] : {std::pair("lights", "light_names"), {"cameras", "camera_names"}}) {
+        const auto each = mesh[names].get<std::vector<std::string>>();
+        fmt::print("{:<12}{}{}{}\n", count, each.size(), each.empty() ? "" : ": ", fmt::join(each, ", "));
+    }
+    for (const Json& animation : mesh["animations"])
+        fmt::print("{:<12}'{}': {:.4g} s\n", "animation", animation["name"].get<std::string>(),
+                   animation["duration_s"].get<double>());
     const auto attributes = mesh["attributes"].get<std::vector<std::string>>();
     fmt::print("{:<12}{}\n", "attributes",
                attributes.empty() ? "none" : fmt::format("{}", fmt::join(attributes, ", ")));

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdio>
 #include <future>
 
@@ -14,6 +15,7 @@
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/console.h"
 #include "easypbr/cli/drawable.h"
+#include "easypbr/cli/file_animation.h"
 #include "easypbr/cli/object_styles.h"
 #include "easypbr/cli/open_file.h"
 #include "easypbr/cli/render_options.h"
@@ -201,6 +203,7 @@ class RenderJob {
         const app::RecordingOptions recording = recording_of(options_);
         app::Clock clock;
         app::Recorder recorder(session_, clock);
+        if (!options_.turntable && !camera_path_) return record_animation(picture, recorder, recording);
         const CameraPath path =
             camera_path_ ? *camera_path_
                          : app::turntable(session_, options_.turntable.value_or(1) / recording.fps);
@@ -209,10 +212,24 @@ class RenderJob {
         recorder.record_path(path, picture.output, recording, options_.turntable, play);
     }
 
+    /// Once from --animation-time around, with the camera of the file that it moves, or one at rest.
+    void record_animation(const Picture& picture, app::Recorder& recorder,
+                          const app::RecordingOptions& recording) {
+        std::vector<double> times(
+            size_t(std::max(1.0, std::round(animation_->duration_s() * recording.fps))));
+        for (size_t i = 0; i < times.size(); ++i) times[i] = double(i) / recording.fps;
+        const Camera rest = session_.resolve().camera;
+        const auto camera = [&](double time_s) { return animation_->camera(time_of(time_s)).value_or(rest); };
+        animate_frame_before();
+        recorder.record_frames(times, frame_before(), camera, picture.output, recording,
+                               [&](int, int, double time_s) { animate(time_s); });
+    }
+
+    double time_of(double time_s) const { return options_.animation_time.value_or(0) + time_s; }
+
     /// Puts what --animation names where it is `time` seconds after --animation-time.
     void animate(double time_s) {
-        if (animation_)
-            animation_->first.apply(animation_->second, options_.animation_time.value_or(0) + time_s);
+        if (animation_) animation_->apply(session_, time_of(time_s));
     }
 
     /// An image has the motion blur of a recording's frame: the motion since the previous frame.
@@ -224,20 +241,10 @@ class RenderJob {
     }
 
     /// At its beginning an animation has not moved.
-    void animate_frame_before() {
-        animate(-std::min(1 / recording_of(options_).fps, options_.animation_time.value_or(0)));
+    double frame_before() const {
+        return -std::min(1 / recording_of(options_).fps, options_.animation_time.value_or(0));
     }
-
-    /// The first file with animations has the one that is meant.
-    void find_animation(const std::vector<io::LoadedScene>& loaded) {
-        animation_.reset();
-        if (options_.animation.empty()) return;
-        for (const io::LoadedScene& file : loaded)
-            if (!file.animations.empty() && !animation_)
-                animation_ = {file.animations, file.animations.find(options_.animation)};
-        if (!animation_) throw NameError("--animation: the files hold no animations");
-        animate(0);
-    }
+    void animate_frame_before() { animate(frame_before()); }
 
     void start_look() {
         session_.replace_settings(look_.settings);
@@ -258,8 +265,11 @@ class RenderJob {
             style_object(picture.names[i], styles_, label_map_, loaded[i].mesh);
             show(session_.scene(), loaded[i], picture.names[i]);
         }
-        find_animation(loaded);
-        if (!options_.camera.empty()) session_.set_camera(find_camera(loaded, options_.camera));
+        if (!options_.camera.empty()) session_.set_camera(find_camera(loaded, options_.camera).camera);
+        animation_.reset();
+        if (!options_.animation.empty())
+            animation_.emplace(loaded, picture.names, options_.animation, options_.camera);
+        animate(0);
         for (const auto& [name, light] : look_.lights) session_.scene().set_light(name, light);
     }
 
@@ -308,7 +318,7 @@ class RenderJob {
     std::vector<StyleOption> styles_;
     std::shared_ptr<const LabelMap> label_map_;
     std::optional<CameraPath> camera_path_;
-    std::optional<std::pair<Animations, size_t>> animation_;
+    std::optional<FileAnimation> animation_;
     app::Session session_;
     std::string loaded_environment_;
 };

@@ -79,7 +79,7 @@ int run_view(const ViewOptions& options) {
     add_passes(options.passes, view.session());
     if (!options.screenshot.empty()) app::encoding_for(options.screenshot);
     show_files(shown, view.session(), [&](size_t i, const std::string& name, const io::LoadedScene& loaded) {
-        if (!loaded.animations.empty()) view.player().add(name, loaded.animations);
+        if (!loaded.animations.empty()) view.player().add(name, loaded.animations, view.scene());
         if (options.watch && shown.files[i] != standard_input)
             view.live().drawing().files().watch(shown.files[i], name);
     });

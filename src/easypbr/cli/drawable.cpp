@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <set>
 
+#include "easypbr/app/animation_player.h"
 #include "easypbr/cli/command.h"
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
@@ -61,11 +62,12 @@ std::vector<std::string> unique_names(const std::vector<std::string>& files) {
     return names;
 }
 
-Camera find_camera(const std::vector<io::LoadedScene>& loaded, const std::string& name_or_number) {
+FileCamera find_camera(const std::vector<io::LoadedScene>& loaded, const std::string& name_or_number) {
     std::vector<std::string> names;
-    for (const io::LoadedScene& file : loaded)
-        for (const auto& [name, camera] : file.cameras) {
-            if (name == name_or_number || std::to_string(names.size()) == name_or_number) return camera;
+    for (size_t file = 0; file < loaded.size(); ++file)
+        for (const auto& [name, camera] : loaded[file].cameras) {
+            if (name == name_or_number || std::to_string(names.size()) == name_or_number)
+                return {file, name, camera};
             names.push_back(name);
         }
     if (names.empty()) throw NameError("--camera: there is no camera in the files");
@@ -76,7 +78,7 @@ Camera find_camera(const std::vector<io::LoadedScene>& loaded, const std::string
 void show(Scene& scene, const io::LoadedScene& loaded, const std::string& name) {
     scene.show(loaded.mesh, name);
     for (const auto& [light_name, light] : loaded.lights)
-        scene.set_light(fmt::format("{}/{}", name, light_name), light);
+        scene.set_light(app::light_name(name, light_name), light);
 }
 
 }  // namespace easypbr::cli

@@ -37,8 +37,14 @@ std::vector<std::string> unique_names(const std::vector<std::string>& files);
 /// Shows the mesh under a name and adds the file's lights as "NAME/LIGHT".
 void show(Scene& scene, const io::LoadedScene& loaded, const std::string& name);
 
+struct FileCamera {
+    size_t file = 0;  ///< of the files loaded
+    std::string name;
+    Camera camera;
+};
+
 /// The files' camera of this name, or of this number from 0 in the order of files and names. Throws
 /// NameError.
-Camera find_camera(const std::vector<io::LoadedScene>& loaded, const std::string& name_or_number);
+FileCamera find_camera(const std::vector<io::LoadedScene>& loaded, const std::string& name_or_number);
 
 }  // namespace easypbr::cli

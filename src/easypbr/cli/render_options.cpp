@@ -9,6 +9,7 @@
 
 #include "easypbr/app/custom_pass.h"
 #include "easypbr/app/output.h"
+#include "easypbr/app/recording_target.h"
 #include "easypbr/cli/command.h"
 #include "easypbr/cli/drawable.h"
 #include "easypbr/cli/object_styles.h"
@@ -158,7 +159,8 @@ void declare_camera(CLI::App& command, RenderOptions& options) {
     command.add_option("--codec", options.codec, "Video encoder by its FFmpeg name")->option_text("NAME");
     command
         .add_option("--animation", options.animation,
-                    "Animation of the file (glTF) by name, or by number from 0; a recording plays it")
+                    "Animation of the file (glTF) by name, or by number from 0; a recording plays it, a "
+                    "video or numbered pictures the whole of it")
         ->option_text("NAME|NUMBER");
     command
         .add_option("--animation-time", options.animation_time,
@@ -409,12 +411,12 @@ void check_recording_usage(const RenderOptions& options) {
     if (!options.records()) {
         const bool fps_is_idle = options.fps && options.animation.empty();
         if (fps_is_idle || !options.codec.empty())
-            throw UsageError(fmt::format("render: {} needs --turntable or --camera-path",
+            throw UsageError(fmt::format("render: {} needs --turntable, --camera-path or --animation",
                                          fps_is_idle ? "--fps" : "--codec"));
         if (options.fps && !(*options.fps > 0))
             throw UsageError(fmt::format("--fps: expected a number above 0, got {}", *options.fps));
         if (io::is_video(options.output))
-            throw UsageError("render: a video needs --turntable or --camera-path");
+            throw UsageError("render: a video needs --turntable, --camera-path or --animation");
         return;
     }
     if (options.turntable && !options.camera_path.empty())
@@ -426,6 +428,10 @@ void check_recording_usage(const RenderOptions& options) {
 }
 
 }  // namespace
+
+bool RenderOptions::records() const {
+    return turntable || !camera_path.empty() || (!animation.empty() && app::is_recording_name(output));
+}
 
 void check_usage(const RenderOptions& options) {
     require(!options.files.empty(), "render", "at least one FILE");

@@ -58,7 +58,7 @@ struct RenderOptions {
     std::vector<Shorthand> shorthands;
 
     /// Many frames instead of one picture.
-    bool records() const { return turntable || !camera_path.empty(); }
+    bool records() const;
     /// One image and nothing else, where no file is named for it.
     bool shows_in_terminal() const {
         return output.empty() && !records() && !batch && !open && layers.empty() && bit_depth == 8;

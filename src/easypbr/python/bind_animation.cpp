@@ -1,4 +1,5 @@
 // Animations: what moves the meshes of a file.
+#include <nanobind/stl/map.h>
 #include <nanobind/stl/vector.h>
 
 #include "easypbr/python/bindings.h"
@@ -37,7 +38,28 @@ void bind_animation(nb::module_& module) {
             nb::arg("time_s"), nb::arg("animation") = 0, nb::arg("loop") = true,
             nb::sig("def apply(self, time_s: float, animation: str | int = 0, loop: bool = True) -> None"),
             "Poses the meshes of the file at a time: nodes, skins, morph targets. With loop the animation "
-            "repeats, else the time is clamped to its ends.");
+            "repeats, else the time is clamped to its ends.")
+        .def(
+            "lights",
+            [](const Animations& a, double time, const nb::object& animation, bool loop) {
+                return a.lights(index_of(a, animation), time, loop);
+            },
+            nb::arg("time_s"), nb::arg("animation") = 0, nb::arg("loop") = true,
+            nb::sig("def lights(self, time_s: float, animation: str | int = 0, loop: bool = True) -> "
+                    "dict[str, Light]"),
+            "The lights that the animations of the file move, change or hide, at a time, by name, in world "
+            "space. A hidden one has no intensity. Viewer.play() moves those that the scene has under these "
+            "names.")
+        .def(
+            "cameras",
+            [](const Animations& a, double time, const nb::object& animation, bool loop) {
+                return a.cameras(index_of(a, animation), time, loop);
+            },
+            nb::arg("time_s"), nb::arg("animation") = 0, nb::arg("loop") = true,
+            nb::sig("def cameras(self, time_s: float, animation: str | int = 0, loop: bool = True) -> "
+                    "dict[str, Camera]"),
+            "The cameras that the animations of the file move or change, at a time, by name, in world "
+            "space.");
 }
 
 }  // namespace easypbr::python

@@ -234,7 +234,7 @@ void View::take_settings(const Settings& settings) {
 }
 
 void View::add_animations(const std::string& name, const Animations& animations) {
-    own_->player.add(name, animations);
+    own_->player.add(name, animations, own_->session.scene());
 }
 
 void View::add_panel(const std::string& name, const app::PanelFunction& function) {

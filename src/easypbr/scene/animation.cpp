@@ -59,14 +59,45 @@ void check_index(const char* what, int index, size_t count, bool may_lack) {
             fmt::format("animation rig: {} {} does not exist, there are {}", what, index, count));
 }
 
-void check_channel(const AnimationChannel& channel, const AnimationRig& rig) {
-    if (channel.property != AnimatedProperty::material)
-        return check_index("node", channel.node, rig.nodes.size(), false);
-    check_index("material", channel.node, rig.materials.size(), false);
-    const size_t count = rig.materials[size_t(channel.node)].parameters.size();
+bool is_of_node(const AnimationChannel& channel) {
+    return channel.property < AnimatedProperty::material;
+}
+
+/// A channel of what has parameters: materials, lights, cameras.
+template <class Item>
+void check_parameters(const AnimationChannel& channel, const char* what, const std::vector<Item>& items) {
+    check_index(what, channel.node, items.size(), false);
+    const size_t count = items[size_t(channel.node)].parameters.size();
     const int last = channel.parameter + int(channel.values.cols()) - 1;
     check_index("parameter", channel.parameter, count, false);
     check_index("parameter", last, count, false);
+}
+
+void check_channel(const AnimationChannel& channel, const AnimationRig& rig) {
+    switch (channel.property) {
+        case AnimatedProperty::material:
+            return check_parameters(channel, "material", rig.materials);
+        case AnimatedProperty::light:
+            return check_parameters(channel, "light", rig.lights);
+        case AnimatedProperty::camera:
+            return check_parameters(channel, "camera", rig.cameras);
+        default:
+            return check_index("node", channel.node, rig.nodes.size(), false);
+    }
+}
+
+/// The parameters of all items at a time of an animation.
+template <class Item>
+std::vector<std::vector<double>> parameters_at(const std::vector<Item>& items, AnimatedProperty property,
+                                               const Animation& animation, double time_s) {
+    std::vector<std::vector<double>> parameters;
+    for (const Item& item : items) parameters.push_back(item.parameters);
+    for (const AnimationChannel& channel : animation.channels) {
+        if (channel.property != property) continue;
+        const Eigen::VectorXd value = sample(channel, time_s);
+        std::copy(value.begin(), value.end(), parameters[size_t(channel.node)].begin() + channel.parameter);
+    }
+    return parameters;
 }
 
 /// Throws unless all arrays of a deformation fit together and every joint is one of the skin's.
@@ -152,8 +183,10 @@ struct Animations::Pose {
     Eigen::Quaterniond rotation;
     std::vector<float> weights;
     std::optional<bool> visible;
+    std::optional<Eigen::Affine3d> fixed;  ///< in place of the three
 
     Eigen::Affine3d matrix() const {
+        if (fixed) return *fixed;
         return Eigen::Translation3d(translation) * rotation * Eigen::Scaling(scale);
     }
 };
@@ -171,6 +204,14 @@ Animations::Animations(AnimationRig rig) : rig_(std::move(rig)) {
         for (const int joint : skin.joints) check_index("joint", joint, count, false);
     for (const Animation& animation : rig_.animations)
         for (const AnimationChannel& channel : animation.channels) check_channel(channel, rig_);
+    for (const auto& light : rig_.lights)
+        for (const auto& [name, node] : light.users) check_index("node", node, count, false);
+    for (const auto& camera : rig_.cameras)
+        for (const auto& [name, node] : camera.users) check_index("node", node, count, false);
+    moved_.assign(count, false);
+    for (const Animation& animation : rig_.animations)
+        for (const AnimationChannel& channel : animation.channels)
+            if (is_of_node(channel)) moved_[size_t(channel.node)] = true;
     for (const AnimatedMaterial& material : rig_.materials) put_parameters_.push_back(material.parameters);
     std::vector<bool> placed(count, false);
     // As many rounds as the hierarchy is deep; a circle would never be placed.
@@ -212,9 +253,10 @@ double Animations::duration_s(size_t index) const {
 std::vector<Animations::Pose> Animations::pose(const Animation& animation, double time_s) const {
     std::vector<Pose> poses;
     for (const AnimationNode& node : rig_.nodes)
-        poses.push_back({node.translation, node.scale, node.rotation, node.weights, node.visible});
+        poses.push_back(
+            {node.translation, node.scale, node.rotation, node.weights, node.visible, node.matrix});
     for (const AnimationChannel& channel : animation.channels) {
-        if (channel.property == AnimatedProperty::material) continue;
+        if (!is_of_node(channel)) continue;
         Pose& pose = poses[size_t(channel.node)];
         const Eigen::VectorXd value = sample(channel, time_s);
         switch (channel.property) {
@@ -235,7 +277,7 @@ std::vector<Animations::Pose> Animations::pose(const Animation& animation, doubl
             case AnimatedProperty::visibility:
                 pose.visible = value[0] > 0.5;
                 break;
-            case AnimatedProperty::material:
+            default:
                 break;
         }
     }
@@ -270,15 +312,69 @@ std::vector<std::pair<Mesh, Eigen::Affine3d>> Animations::motion(size_t index, d
     return motion;
 }
 
-void Animations::apply(size_t index, double time_s, bool loop) {
-    const std::vector<Pose> poses = pose_at(index, time_s, loop);
+std::vector<Eigen::Affine3d> Animations::world_poses(const std::vector<Pose>& poses) const {
     std::vector<Eigen::Affine3d> T_world_nodes(rig_.nodes.size());
     for (const size_t i : order_) {
+        const int parent = rig_.nodes[i].parent;
+        T_world_nodes[i] = parent < 0 ? poses[i].matrix() : T_world_nodes[size_t(parent)] * poses[i].matrix();
+    }
+    return T_world_nodes;
+}
+
+bool Animations::is_hidden(int node, const std::vector<Pose>& poses) const {
+    for (; node >= 0; node = rig_.nodes[size_t(node)].parent)
+        if (!poses[size_t(node)].visible.value_or(true)) return true;
+    return false;
+}
+
+bool Animations::is_moved(int node) const {
+    for (; node >= 0; node = rig_.nodes[size_t(node)].parent)
+        if (moved_[size_t(node)]) return true;
+    return false;
+}
+
+template <class Value>
+std::map<std::string, Value> Animations::placed(const std::vector<AnimatedItem<Value>>& items,
+                                                AnimatedProperty property, size_t index, double time_s,
+                                                bool loop) const {
+    const std::vector<Pose> poses = pose_at(index, time_s, loop);
+    const std::vector<Eigen::Affine3d> T_world_nodes = world_poses(poses);
+    const auto parameters =
+        parameters_at(items, property, rig_.animations[index], time_in(index, time_s, loop));
+    const auto changes = [&](size_t item) {
+        return std::ranges::any_of(rig_.animations, [&](const Animation& animation) {
+            return std::ranges::any_of(animation.channels, [&](const AnimationChannel& channel) {
+                return channel.property == property && channel.node == int(item);
+            });
+        });
+    };
+    std::map<std::string, Value> out;
+    for (size_t i = 0; i < items.size(); ++i)
+        for (const auto& [name, node] : items[i].users) {
+            if (!is_moved(node) && !changes(i)) continue;
+            Value value = items[i].value(parameters[i], T_world_nodes[size_t(node)]);
+            if constexpr (std::is_same_v<Value, Light>)
+                if (is_hidden(node, poses)) value.intensity = 0;
+            out.emplace(name, std::move(value));
+        }
+    return out;
+}
+
+std::map<std::string, Light> Animations::lights(size_t index, double time_s, bool loop) const {
+    return placed(rig_.lights, AnimatedProperty::light, index, time_s, loop);
+}
+
+std::map<std::string, Camera> Animations::cameras(size_t index, double time_s, bool loop) const {
+    return placed(rig_.cameras, AnimatedProperty::camera, index, time_s, loop);
+}
+
+void Animations::apply(size_t index, double time_s, bool loop) {
+    const std::vector<Pose> poses = pose_at(index, time_s, loop);
+    const std::vector<Eigen::Affine3d> T_world_nodes = world_poses(poses);
+    for (const size_t i : order_) {
         AnimationNode& node = rig_.nodes[i];
-        const Eigen::Affine3d T = node.matrix ? *node.matrix : poses[i].matrix();
-        T_world_nodes[i] = node.parent < 0 ? T : T_world_nodes[size_t(node.parent)] * T;
         if (!node.mesh) continue;
-        node.mesh->set_T_parent_mesh(T);
+        node.mesh->set_T_parent_mesh(poses[i].matrix());
         if (poses[i].visible) show(*node.mesh, *poses[i].visible);
     }
     put_materials(rig_.animations[index], time_in(index, time_s, loop));
@@ -288,13 +384,7 @@ void Animations::apply(size_t index, double time_s, bool loop) {
 }
 
 void Animations::put_materials(const Animation& animation, double time_s) {
-    std::vector<std::vector<double>> parameters;
-    for (const AnimatedMaterial& material : rig_.materials) parameters.push_back(material.parameters);
-    for (const AnimationChannel& channel : animation.channels) {
-        if (channel.property != AnimatedProperty::material) continue;
-        const Eigen::VectorXd value = sample(channel, time_s);
-        std::copy(value.begin(), value.end(), parameters[size_t(channel.node)].begin() + channel.parameter);
-    }
+    auto parameters = parameters_at(rig_.materials, AnimatedProperty::material, animation, time_s);
     for (size_t i = 0; i < parameters.size(); ++i) {
         if (parameters[i] == put_parameters_[i]) continue;
         const Material material = rig_.materials[i].material(parameters[i]);

@@ -379,7 +379,7 @@ void Viewer::remove_light(const std::string& name) {
 void Viewer::play(const Animations& animations, const std::string& animation, double speed, bool loop) {
     parts_->player.set_speed(speed);
     parts_->player.set_loop(loop);
-    parts_->player.add("", animations);
+    parts_->player.add("", animations, scene());
     parts_->player.play("", animation);
 }
 

@@ -8,6 +8,7 @@
 
 #include "easypbr/core/log.h"
 #include "easypbr/io/mesh/gltf/gltf_accessor.h"
+#include "easypbr/io/mesh/gltf/gltf_placed.h"
 
 namespace easypbr::io {
 namespace {
@@ -51,6 +52,7 @@ class AnimationReader {
         if (path == "pointer") {
             const std::string pointer = pointer_of(*target);
             if (const auto material = pointers_.find(pointer)) return read_material(json, *material);
+            if (const auto placed = find_gltf_placed(document_, pointer)) return read_placed(json, *placed);
             std::tie(node, path) = pointed_at(pointer);
             if (node && path == fmt::format("extensions/{}/visible", khr_node_visibility))
                 return read_visibility(json, *node);
@@ -70,6 +72,12 @@ class AnimationReader {
 
     AnimationChannel read_material(const Json& json, const GltfMaterialTarget& target) {
         AnimationChannel channel = read_keys(json, target.material, AnimatedProperty::material, target.width);
+        channel.parameter = target.parameter;
+        return channel;
+    }
+
+    AnimationChannel read_placed(const Json& json, const GltfPlacedTarget& target) {
+        AnimationChannel channel = read_keys(json, target.item, target.property, target.width);
         channel.parameter = target.parameter;
         return channel;
     }
@@ -231,6 +239,8 @@ AnimationRig read_gltf_rig(GltfDocument& document, GltfMaterialPointers& pointer
             AnimationReader(document, pointers, document.item("animations", i), i).read());
     set_visibility_at_rest(document, rig);
     rig.materials = pointers.materials();
+    rig.lights = read_gltf_lights(document);
+    rig.cameras = read_gltf_cameras(document);
     return rig;
 }
 

@@ -17,6 +17,7 @@
 #include "easypbr/io/mesh/gltf/gltf_materials.h"
 #include "easypbr/io/mesh/gltf/gltf_mesh.h"
 #include "easypbr/io/mesh/gltf/gltf_meshopt.h"
+#include "easypbr/io/mesh/gltf/gltf_placed.h"
 #include "easypbr/io/mesh/gltf/gltf_splats.h"
 #include "easypbr/io/mesh/gltf/gltf_variants.h"
 #include "easypbr/io/mesh/mesh_io.h"
@@ -64,6 +65,8 @@ class SceneReader {
           pointers_(document, materials_),
           variants_(document, variant),
           meshes_(document.count("meshes")),
+          lights_(read_gltf_lights(document)),
+          cameras_(read_gltf_cameras(document)),
           visited_(document.count("nodes")) {}
 
     LoadedScene read() {
@@ -75,7 +78,7 @@ class SceneReader {
         root.source = document_.path();
         root.up = Vec3d::UnitY();
         for (const size_t node : root_nodes())
-            if (auto mesh = read_node(node, Eigen::Affine3d::Identity(), 1, true))
+            if (auto mesh = read_node(node, Eigen::Affine3d::Identity(), 1, Visibility::shown))
                 root.children.push_back(*mesh);
         if (root.children.empty()) document_.fail("there is no mesh in its scene");
         out_.mesh = Mesh(std::move(root));
@@ -85,6 +88,9 @@ class SceneReader {
     }
 
   private:
+    /// Of a node with those above it; the greatest of them counts.
+    enum class Visibility { shown, hidden_at_rest, hidden };
+
     /// The extensions of a list of the root that are not known.
     std::vector<std::string> unknown_extensions(const char* list) const {
         std::vector<std::string> unknown;
@@ -130,9 +136,8 @@ class SceneReader {
     }
 
     /// The node as a mesh; nothing when neither it nor what hangs below it has one.
-    /// `visible`: whether its parent is.
     std::optional<Mesh> read_node(size_t index, const Eigen::Affine3d& T_world_parent, int depth,
-                                  bool visible) {
+                                  Visibility of_parent) {
         const Json& json = document_.item("nodes", index);
         if (visited_[index])
             document_.fail(fmt::format("nodes[{}] has two parents or is part of a circle", index));
@@ -146,13 +151,15 @@ class SceneReader {
             document_.text(json, "name", data.name.empty() ? fmt::format("node {}", index) : data.name);
         const auto copies = mesh ? read_gltf_instances(document_, json, index) : std::nullopt;
         if (copies) data = copied(data, *copies);
-        if (!is_visible(json)) data.style.visible = visible = false;
+        if (!is_visible(json)) data.style.visible = false;
+        const Visibility visibility = std::max(of_parent, visibility_of(index));
         data.T_parent_mesh = pose_of(index);
         const Eigen::Affine3d T_world_node = T_world_parent * data.T_parent_mesh;
-        add_camera(json, document_.text(json, "name", ""), data.name, T_world_node);
-        if (visible) add_light(json, data.name, T_world_node);
+        add_camera(index, data.name, T_world_node);
+        if (visibility != Visibility::hidden)
+            add_light(index, data.name, T_world_node, visibility == Visibility::shown);
         for (const size_t child : document_.integers(json, "children"))
-            if (auto below = read_node(child, T_world_node, depth + 1, visible))
+            if (auto below = read_node(child, T_world_node, depth + 1, visibility))
                 data.children.push_back(*below);
         if (!mesh && data.children.empty()) return std::nullopt;
         const Mesh node(std::move(data));
@@ -166,6 +173,12 @@ class SceneReader {
     bool is_visible(const Json& node) const {
         const Json* visibility = extension(node, khr_node_visibility);
         return !visibility || document_.boolean(*visibility, "visible", true);
+    }
+
+    Visibility visibility_of(size_t node) const {
+        if (is_visible(document_.item("nodes", node))) return Visibility::shown;
+        const bool changes = !rig_.animations.empty() && rig_.nodes[node].visible;
+        return changes ? Visibility::hidden_at_rest : Visibility::hidden;
     }
 
     /// A mesh without vertices, whose children are copies of `data`; they share its arrays.
@@ -222,65 +235,28 @@ class SceneReader {
     }
 
     /// Named after its node, as viewers show it, else after the camera itself.
-    void add_camera(const Json& node, const std::string& node_name, const std::string& fallback,
-                    const Eigen::Affine3d& T_world_node) {
-        const auto index = document_.optional_integer(node, "camera");
+    void add_camera(size_t node, const std::string& fallback, const Eigen::Affine3d& T_world_node) {
+        const Json& json = document_.item("nodes", node);
+        const auto index = gltf_camera_of_node(document_, json);
         if (!index) return;
-        const Json& json = document_.item("cameras", *index);
-        Camera camera;
-        camera.T_world_cam.translation() = T_world_node.translation();
-        camera.T_world_cam.linear() = rigid(T_world_node);
-        if (const Json* view = member(json, "perspective")) {
-            camera.fov_y_deg = degrees(document_.number(*view, "yfov", 0.5));
-            camera.near = document_.number(*view, "znear", camera.near);
-        } else if (const Json* box = member(json, "orthographic")) {
-            camera.projection = Projection::orthographic;
-            camera.ortho_height = 2 * document_.number(*box, "ymag", 1);
-            camera.near = document_.number(*box, "znear", camera.near);
-            camera.far = document_.number(*box, "zfar", camera.far);
-        }
-        const std::string name = node_name.empty() ? document_.text(json, "name", fallback) : node_name;
-        out_.cameras.emplace(free_name(out_.cameras, name), camera);
+        const std::string own = document_.text(json, "name", "");
+        const std::string name =
+            free_name(out_.cameras, own.empty() ? gltf_camera_name(document_, *index, fallback) : own);
+        const AnimatedItem<Camera>& camera = cameras_[*index];
+        out_.cameras.emplace(name, camera.value(camera.parameters, T_world_node));
+        if (!rig_.animations.empty()) rig_.cameras[*index].users.emplace_back(name, int(node));
     }
 
-    /// The node's axes as a rotation: scaling and shear are no part of a camera's pose.
-    static Mat3d rigid(const Eigen::Affine3d& T) {
-        Vec3d z = T.linear().col(2), y = T.linear().col(1);
-        if (!(z.norm() > 0)) return Mat3d::Identity();
-        z.normalize();
-        y -= z * z.dot(y);
-        if (!(y.norm() > 0)) y = z.unitOrthogonal();
-        y.normalize();
-        Mat3d out;
-        out << y.cross(z), y, z;
-        return out;
-    }
-
-    void add_light(const Json& node, const std::string& name, const Eigen::Affine3d& T_world_node) {
-        const Json* reference = extension(node, "KHR_lights_punctual");
-        const Json* lists = extension(document_.root(), "KHR_lights_punctual");
-        const Json* list = lists ? member(*lists, "lights") : nullptr;
-        if (!reference) return;
-        const size_t index = document_.integer(*reference, "light");
-        if (!list || !list->is_array() || index >= list->size())
-            document_.fail(fmt::format("KHR_lights_punctual.lights[{}] does not exist", index));
-        const Json& json = (*list)[index];
-        Light light;
-        const std::string type = document_.text(json, "type");
-        light.type = type == "directional" ? LightType::directional
-                     : type == "spot"      ? LightType::spot
-                                           : LightType::point;
-        light.position = T_world_node.translation().cast<float>();
-        light.direction = -rigid(T_world_node).col(2).cast<float>();
-        const auto color = document_.numbers(json, "color", 3).value_or(std::vector<double>{1, 1, 1});
-        light.color = Vec3d(color[0], color[1], color[2]).cast<float>();
-        light.intensity = float(document_.number(json, "intensity", 1));
-        light.range = float(document_.number(json, "range", 0));
-        if (const Json* spot = member(json, "spot")) {
-            light.inner_cone_deg = float(degrees(document_.number(*spot, "innerConeAngle", 0)));
-            light.outer_cone_deg = float(degrees(document_.number(*spot, "outerConeAngle", pi / 4)));
-        }
-        out_.lights.emplace(free_name(out_.lights, document_.text(json, "name", name)), light);
+    /// One that is not visible, but may become so, has no intensity.
+    void add_light(size_t node, const std::string& fallback, const Eigen::Affine3d& T_world_node,
+                   bool visible) {
+        const auto index = gltf_light_of_node(document_, document_.item("nodes", node));
+        if (!index) return;
+        const std::string name = free_name(out_.lights, gltf_light_name(document_, *index, fallback));
+        Light light = lights_[*index].value(lights_[*index].parameters, T_world_node);
+        if (!visible) light.intensity = 0;
+        out_.lights.emplace(name, light);
+        if (!rig_.animations.empty()) rig_.lights[*index].users.emplace_back(name, int(node));
     }
 
     GltfDocument& document_;
@@ -289,6 +265,8 @@ class SceneReader {
     GltfVariants variants_;
     std::vector<std::optional<GltfMesh>> meshes_;
     std::map<std::string, size_t> first_of_;  ///< meshes, by their JSON without names
+    std::vector<AnimatedItem<Light>> lights_;
+    std::vector<AnimatedItem<Camera>> cameras_;
     AnimationRig rig_;
     std::vector<bool> visited_;
     LoadedScene out_;
