@@ -9,10 +9,21 @@ set(native_surface_shaders mesh_resolve mesh_extended shadow_depth)
 set(native_stream_shaders path_lamps path_scatter path_lamps_extended path_scatter_extended)
 set(native_line_shaders overlay_lines)
 set(native_folder ${PROJECT_BINARY_DIR}/generated/native)
+set(native_march_v2 x86-64-v2)
+set(native_march_avx2 x86-64-v3)
+set(native_march_avx512 x86-64-v4)
+if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
+  set(native_instruction_sets ${EASYPBR_INSTRUCTION_SETS})
+else()
+  set(native_instruction_sets base)
+endif()
 list(JOIN native_shaders ") X(" native_names)
+list(JOIN native_instruction_sets ") X(" native_set_names)
 list(JOIN native_stream_shaders ") X(" native_stream_names)
 file(CONFIGURE OUTPUT ${native_folder}/shader_list.h
      CONTENT "#define EASYPBR_SHADERS(X) X(${native_names})\n#define EASYPBR_STREAMS(X) X(${native_stream_names})\n")
+file(CONFIGURE OUTPUT ${native_folder}/instruction_sets.h
+     CONTENT "#define EASYPBR_INSTRUCTION_SETS(X) X(${native_set_names})\n")
 # Inlined wherever they are called, these would take as long to compile as all else.
 set(native_apart mesh_extended.texel_of lighting_surface_extended.prefiltered lighting_surface_extended.area_form)
 foreach(shader IN ITEMS lighting_surface_extended path_lamps_extended path_scatter_extended)
@@ -39,12 +50,18 @@ foreach(room IN ITEMS native gpu render app gui dataset remote drawing viewer)
 endforeach()
 target_sources(easypbr_native PRIVATE ${native_folder}/shader_uniforms.h)
 
+# With sanitizers -O2 takes ten times as long as -O1.
+set(native_optimization -O2)
+if(EASYPBR_SANITIZE)
+  set(native_optimization -O1)
+endif()
+
 # No contraction: all instruction sets compute the same bits.
 function(easypbr_add_instruction_set name)
   add_library(easypbr_native_${name} OBJECT ${PROJECT_SOURCE_DIR}/src/easypbr/native/simd/kernels.cpp)
   target_link_libraries(easypbr_native_${name} PRIVATE easypbr_options)
   target_compile_definitions(easypbr_native_${name} PRIVATE EASYPBR_ISA=${name})
-  target_compile_options(easypbr_native_${name} PRIVATE -O2 -ffp-contract=off -fno-math-errno -fno-trapping-math
+  target_compile_options(easypbr_native_${name} PRIVATE ${native_optimization} -ffp-contract=off -fno-math-errno -fno-trapping-math
                          # Registers of whole functions at once: a fifth less to compile, and smaller code.
                          $<$<CXX_COMPILER_ID:GNU>:-fira-region=one>
                          # Shader functions ignore arguments. GCC 12 takes its own intrinsics for uninitialised.
@@ -53,10 +70,10 @@ function(easypbr_add_instruction_set name)
   set(room_objects ${room_objects} $<TARGET_OBJECTS:easypbr_native_${name}> PARENT_SCOPE)
 endfunction()
 
-if(CMAKE_SYSTEM_PROCESSOR MATCHES "x86_64|AMD64")
-  easypbr_add_instruction_set(v2 -march=x86-64-v2)
-  easypbr_add_instruction_set(avx2 -march=x86-64-v3)
-  easypbr_add_instruction_set(avx512 -march=x86-64-v4)
-else()
-  easypbr_add_instruction_set(base)
-endif()
+foreach(instruction_set IN LISTS native_instruction_sets)
+  if(instruction_set STREQUAL "base")
+    easypbr_add_instruction_set(base)
+  else()
+    easypbr_add_instruction_set(${instruction_set} -march=${native_march_${instruction_set}})
+  endif()
+endforeach()

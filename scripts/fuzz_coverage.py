@@ -7,7 +7,7 @@ import json
 import re
 import sys
 
-LEFT_OUT = re.compile(r"writer|/glb_|npy_builder|vertex_rows|/video/|/settings/presets|child_process|module_loader|assimp_loader|mesh_queue|_draco")
+LEFT_OUT = re.compile(r"writer|/glb_|npy_builder|vertex_rows|splat_row_parts|/video/|/settings/presets|child_process|module_loader|assimp_loader|mesh_queue|_draco")
 LEAST = 0.9
 
 

@@ -3,17 +3,23 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <cstdio>
+#include <cstdlib>
+#include <optional>
+
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/log.h"
 #include "easypbr/core/memory_budget.h"
 #include "easypbr/gl/program.h"
+#include "easypbr/io/image/image_codecs.h"
 #include "easypbr/io/image/image_io.h"
 #include "easypbr/io/image/texture_loader.h"
 #include "easypbr/io/mesh/assimp/message_decoder.h"
 #include "easypbr/io/mesh/content_format.h"
 #include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "easypbr/io/mesh/mesh_io.h"
+#include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/io/mesh/obj/mtl_reader.h"
 #include "easypbr/io/settings/camera_path_io.h"
 #include "easypbr/io/settings/label_map_text.h"
@@ -26,12 +32,29 @@ namespace easypbr::fuzz {
 namespace {
 
 constexpr double memory_gb = 0.5;
+/// Side of the largest images that are written again, pixels.
+constexpr int largest_written = 64;
 
 template <class Read>
 void refuse_or(Read&& read) {
     try {
         read();
     } catch (const Error&) {
+    }
+}
+
+/// What was read may be refused by what writes; but what was written must be read. The process ends where it
+/// is not.
+template <class Write, class Read>
+void write_and_read(Write&& write, Read&& read) {
+    std::optional<decltype(write())> written;
+    refuse_or([&] { written = write(); });
+    if (!written) return;
+    try {
+        read(*written);
+    } catch (const Error& error) {
+        std::fprintf(stderr, "ERROR: what was written is refused: %s\n", error.what());
+        std::abort();
     }
 }
 
@@ -59,15 +82,28 @@ void read_mesh(std::span<const std::byte> bytes) {
     refuse_or([&] {
         io::LoadedScene scene = io::load_scene(file_of(bytes), "/nowhere/fuzz",
                                                {.memory_gb = memory_gb, .format = std::string{letters...}});
-        if (!scene.animations.empty()) scene.animations.apply(0, 0.5);
+        if (scene.animations.empty()) return;
+        scene.animations.apply(0, 0.5);
+        scene.animations.lights(0, 0.5);
+        scene.animations.cameras(0, 0.5);
     });
 }
 
-/// A mesh from standard input.
+/// A mesh of a file whose name does not say what it is.
 void read_any_mesh(std::span<const std::byte> bytes) {
+    const Descriptor file = unnamed_file(bytes);
     refuse_or([&] {
-        io::load_scene(file_of(bytes), "/nowhere/fuzz",
+        io::load_scene("/proc/self/fd/" + std::to_string(file.get()),
                        {.memory_gb = memory_gb, .format = io::format_of_content(text_of(bytes))});
+    });
+}
+
+/// Labels of as many points as there are.
+void read_labels(std::span<const std::byte> bytes) {
+    refuse_or([&] {
+        MeshData mesh;
+        mesh.V = Array3f::Dense::Zero(Eigen::Index(bytes.size() / 4), 3);
+        io::read_kitti_labels({text_of(bytes), "fuzz.label"}, mesh);
     });
 }
 
@@ -104,28 +140,53 @@ void read_assignments(std::span<const std::byte> bytes) {
 void read_image(std::span<const std::byte> bytes) {
     refuse_or([&] {
         const MemoryScope scope("fuzz", uint64_t(memory_gb * 1e9));
-        io::decode_image(bytes, "fuzz");
+        const Image image = io::decode_image(bytes, "fuzz");
+        if (image.width() > largest_written || image.height() > largest_written) return;
+        const Image eight = to_u8(image), linear = to_linear_f32(image);
+        const auto read = [](const std::vector<std::byte>& written) { io::decode_image(written, "again"); };
+        write_and_read([&] { return io::encode_png(eight); }, read);
+        write_and_read([&] { return io::encode_jpeg(eight, 90); }, read);
+        write_and_read([&] { return io::encode_webp(with_channels(eight, 4), 90); }, read);
+        write_and_read([&] { return io::encode_hdr(linear); }, read);
+        write_and_read([&] { return io::encode_exr(linear); }, read);
     });
 }
 
 void read_settings(std::span<const std::byte> bytes) {
-    refuse_or([&] { io::parse_settings(std::string(text_of(bytes)), "fuzz"); });
+    refuse_or([&] {
+        const io::SettingsFile file = io::parse_settings(std::string(text_of(bytes)), "fuzz");
+        write_and_read([&] { return io::to_json(file); },
+                       [](const std::string& text) { io::parse_settings(text, "again"); });
+    });
 }
 
 void read_camera_path(std::span<const std::byte> bytes) {
-    refuse_or([&] { io::parse_camera_path(std::string(text_of(bytes)), "fuzz"); });
+    refuse_or([&] {
+        const CameraPath path = io::parse_camera_path(std::string(text_of(bytes)), "fuzz");
+        write_and_read([&] { return io::to_json(path); },
+                       [](const std::string& text) { io::parse_camera_path(text, "again"); });
+    });
+}
+
+void read_label_map(std::span<const std::byte> bytes, const char* name) {
+    refuse_or([&] {
+        const LabelMap map = io::parse_label_map(text_of(bytes), name);
+        for (const char* again : {"again.json", "again.txt"})
+            write_and_read([&] { return io::format_label_map(map, again); },
+                           [&](const std::string& text) { io::parse_label_map(text, again); });
+    });
 }
 
 void read_label_text(std::span<const std::byte> bytes) {
-    refuse_or([&] { io::parse_label_map(text_of(bytes), "fuzz.txt"); });
+    read_label_map(bytes, "fuzz.txt");
 }
 
 void read_label_json(std::span<const std::byte> bytes) {
-    refuse_or([&] { io::parse_label_map(text_of(bytes), "fuzz.json"); });
+    read_label_map(bytes, "fuzz.json");
 }
 
 void read_label_yaml(std::span<const std::byte> bytes) {
-    refuse_or([&] { io::parse_label_map(text_of(bytes), "fuzz.yaml"); });
+    read_label_map(bytes, "fuzz.yaml");
 }
 
 void read_message(std::span<const std::byte> bytes) {
@@ -153,6 +214,7 @@ const std::vector<Target>& targets() {
         {"bin", read_mesh<'b', 'i', 'n'>},
         {"splat", read_mesh<'s', 'p', 'l', 'a', 't'>},
         {"content", read_any_mesh},
+        {"label", read_labels},
         {"mtl", read_materials},
         {"assimp", read_assimp_answer},
         {"shader", read_shader},

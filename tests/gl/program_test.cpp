@@ -28,6 +28,8 @@ class ProgramTest : public testing::Test {
         unsetenv("EASYPBR_SHADER_DIR");
         fs::remove_all(folder_);
     }
+    void add_folder(const std::string& name) const { fs::create_directories(path_of(name)); }
+    std::string path_of(const std::string& name) const { return (fs::path(folder_) / name).string(); }
     void write(const std::string& name, const std::string& text) const {
         std::ofstream(fs::path(folder_) / name) << text;
     }
@@ -117,6 +119,18 @@ TEST_F(ProgramTest, IncludesAFileOnce) {
     EXPECT_EQ(message("twice.frag", {"ROUND"}),
               "shader file 'value.glsl' is included within #if, and again: expected its "
               "include before the #if");
+}
+
+// By way of a folder a file has another name each time it includes itself.
+TEST_F(ProgramTest, EndsWhereAFileIncludesItself) {
+    add_folder("x");
+    write("circle.frag", "#include \"x/../circle.frag\"\n");
+    try {
+        shader_stage(path_of("circle.frag"));
+        FAIL() << "accepted";
+    } catch (const ArgumentError& error) {
+        EXPECT_NE(std::string(error.what()).find("or more than 64 deep"), std::string::npos) << error.what();
+    }
 }
 
 }  // namespace

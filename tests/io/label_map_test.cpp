@@ -3,6 +3,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/io/settings/label_map_io.h"
+#include "easypbr/io/settings/label_map_text.h"
 #include "easypbr/scene/label_colors.h"
 #include "io/temporary_folder.h"
 
@@ -92,6 +93,26 @@ TEST(LabelMapFiles, SurviveWritingAndReading) {
     EXPECT_THROW(io::save_label_map(tolerant, folder / "t.yaml"), FormatError);
     EXPECT_THROW(io::save_label_map(LabelMap("q", {{0, "a\"b", {}}}), folder / "q.txt"), FormatError);
     EXPECT_THROW(io::save_label_map(tolerant, folder / "no/t.json"), FileError);
+}
+
+// A name may be a number, where it is quoted, and need not be UTF-8; quotes alone are no line.
+TEST(LabelMapFiles, OddNamesSurviveToo) {
+    const LabelMap map = io::parse_label_map("\"\n0 \"17\" 1 2 3\n\"\"\n5 \"a 11111\" 4 5 6\n", "a.txt");
+    ASSERT_EQ(map.classes().size(), 2u);
+    EXPECT_EQ(map.classes()[0].name, "17");
+    EXPECT_EQ(map.classes()[1].name, "a 11111");
+    const LabelMap again = io::parse_label_map(io::format_label_map(map, "b.txt"), "b.txt");
+    EXPECT_EQ(again.classes()[1].name, "a 11111");
+    EXPECT_EQ(again.classes()[0].color, map.classes()[0].color);
+    // Between commas quotes say nothing of what is a number.
+    EXPECT_EQ(io::parse_label_map("\"3\",\"road\",\"1\",\"2\",\"3\"\n", "c.csv").classes()[0].label, 3);
+    const LabelMap latin = io::parse_label_map(
+        "1 Stra\xdf"
+        "e 1 2 3\n",
+        "d.txt");
+    EXPECT_EQ(io::parse_label_map(io::format_label_map(latin, "d.json"), "d.json").classes()[0].name,
+              "Stra\xef\xbf\xbd"
+              "e");
 }
 
 TEST(LabelMapFiles, SayWhereTheyAreWrong) {

@@ -67,6 +67,11 @@ std::string line_directive(size_t file, int line) {
     return fmt::format("#line {}\n", int(file) * lines_of_a_file + line);
 }
 
+/// Files of one shader, and how deep they may include each other. A file that includes itself by way of a
+/// folder, "a/../self.glsl" or a link, has another name each time.
+constexpr size_t most_files = 1000;
+constexpr int deepest_include = 64;
+
 /// A line `#feature MACRO constant`; empty names: another line.
 struct Feature {
     std::string macro, constant;
@@ -88,11 +93,16 @@ struct Expanded {
     std::vector<std::string> files = {}, shown = {}, features = {};
     std::set<std::string, std::less<>> in_conditions = {};  ///< of the files, those first included within #if
     int conditions = 0;                                     ///< #if that are open
+    int depth = 0;                                          ///< of the file that is read
     bool is_own = false;                                    ///< something of it is not of the library
 
     /// A file that is included already is left out: each is part of a stage once.
     void add(std::string_view name) {
         if (std::ranges::find(files, name) != files.end()) return check_again(name);
+        if (depth == deepest_include || files.size() == most_files)
+            throw ArgumentError(fmt::format(
+                "shader file '{}' includes more than {} files, or more than {} deep, the last '{}'",
+                shown.front(), most_files, deepest_include, name.substr(0, 200)));
         if (conditions > 0) in_conditions.emplace(name);
         const size_t index = files.size();
         const auto given = texts.find(name);
@@ -104,7 +114,9 @@ struct Expanded {
         text += line_directive(index, 1);
         for (int number = 1; std::getline(lines, line); ++number) {
             if (const auto file = included_file(line)) {
+                ++depth;
                 add(resolve_include(name, std::string(*file)));
+                --depth;
                 text += line_directive(index, number + 1);
             } else if (const Feature feature = feature_of(line); !feature.macro.empty()) {
                 features.push_back(feature.macro);

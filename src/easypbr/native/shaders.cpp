@@ -13,6 +13,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
+#include "native/instruction_sets.h"
 
 namespace easypbr::native {
 
@@ -20,21 +21,12 @@ namespace easypbr::native {
 #include "native/shader_uniforms.h"
 // clang-format on
 
-#if defined(__x86_64__)
-namespace v2 {
-extern const Kernels kernels;
-}
-namespace avx2 {
-extern const Kernels kernels;
-}
-namespace avx512 {
-extern const Kernels kernels;
-}
-#else
-namespace base {
-extern const Kernels kernels;
-}
-#endif
+#define EASYPBR_DECLARE(name)     \
+    namespace name {              \
+    extern const Kernels kernels; \
+    }
+EASYPBR_INSTRUCTION_SETS(EASYPBR_DECLARE)
+#undef EASYPBR_DECLARE
 
 namespace {
 
@@ -56,15 +48,20 @@ bool has_v4() {
 }
 #endif
 
+/// Whether this processor has it.
+bool is_there(std::string_view name) {
+#if defined(__x86_64__)
+    if (name == "avx512") return has_v4();
+    if (name == "avx2") return has_v3();
+#endif
+    return name == "v2" || name == "base";
+}
+
 /// The best first.
 std::span<const InstructionSet> known_sets() {
-#if defined(__x86_64__)
-    static const std::array sets{InstructionSet{"avx512", &avx512::kernels, has_v4()},
-                                 InstructionSet{"avx2", &avx2::kernels, has_v3()},
-                                 InstructionSet{"v2", &v2::kernels, true}};
-#else
-    static const std::array sets{InstructionSet{"base", &base::kernels, true}};
-#endif
+#define EASYPBR_LIST(name) InstructionSet{#name, &name::kernels, is_there(#name)},
+    static const std::array sets{EASYPBR_INSTRUCTION_SETS(EASYPBR_LIST)};
+#undef EASYPBR_LIST
     return sets;
 }
 

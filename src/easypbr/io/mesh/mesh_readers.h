@@ -25,6 +25,8 @@ MeshData read_npy(const Source& source);
 MeshData read_npz(const Source& source);
 /// A scan of KITTI; the labels of SemanticKITTI are looked for beside the source's path and in ../labels.
 MeshData read_kitti(const Source& source);
+/// SemanticKITTI's labels, one for each point of the mesh. Throws FormatError for another number.
+void read_kitti_labels(const Source& source, MeshData& mesh);
 MeshData read_las(const Source& source);
 MeshData read_splat(const Source& source);
 MeshData read_spz(const Source& source);

@@ -140,7 +140,7 @@ std::string label_map_json(const LabelMap& map) {
         const Vec3 color = Vec3(own.color[0], own.color[1], own.color[2]) / 255.0f;
         root["classes"].push_back({{"label", own.label}, {"name", own.name}, {"color", to_hex(color)}});
     }
-    return root.dump(1) + "\n";
+    return root.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";
 }
 
 }  // namespace
@@ -161,11 +161,15 @@ LabelMap parse_label_map(std::string_view text, const fs::path& path) {
     }
 }
 
-void save_label_map(const LabelMap& map, const fs::path& path) {
+std::string format_label_map(const LabelMap& map, const fs::path& path) {
     if (is_yaml(path))
         throw FormatError(
             fmt::format("cannot write {}: label maps are written as JSON or text", path.string()));
-    write_file(path, extension_of(path) == "json" ? label_map_json(map) : to_label_text(map));
+    return extension_of(path) == "json" ? label_map_json(map) : to_label_text(map);
+}
+
+void save_label_map(const LabelMap& map, const fs::path& path) {
+    write_file(path, format_label_map(map, path));
 }
 
 std::shared_ptr<const LabelMap> find_label_map(const std::string& name_or_path) {

@@ -18,11 +18,17 @@ std::optional<int32_t> whole_number(std::string_view text) {
     return value;
 }
 
+struct Word {
+    std::string text;
+    bool is_name = false;  ///< never a number: quoted, in a line without commas
+};
+using Words = std::vector<Word>;
+
 /// One line's words; quotes keep blanks and commas. With a comma outside of quotes the words are what is
 /// between commas.
 class Splitter {
   public:
-    std::vector<std::string> split(std::string_view line) {
+    Words split(std::string_view line) {
         words_.clear();
         separators_only_ = !has_comma(line);
         for (const char c : line) take(c);
@@ -41,29 +47,36 @@ class Splitter {
     }
 
     void take(char c) {
-        if (c == '"')
+        if (c == '"') {
             quoted_ = !quoted_;
-        else if (!quoted_ && (separators_only_ ? is_blank(c) : c == ','))
+            is_name_ = separators_only_;
+        } else if (!quoted_ && (separators_only_ ? is_blank(c) : c == ',')) {
             finish_word(!separators_only_);
-        else
+        } else {
             word_ += c;
+        }
     }
 
     void finish_word(bool keep_empty) {
         const size_t first = word_.find_first_not_of(" \t\r"), last = word_.find_last_not_of(" \t\r");
         word_ = first == word_.npos ? "" : word_.substr(first, last - first + 1);
-        if (keep_empty || !word_.empty()) words_.push_back(word_);
+        if (keep_empty || !word_.empty()) words_.push_back({word_, is_name_});
         word_.clear();
+        is_name_ = false;
     }
 
-    std::vector<std::string> words_;
+    Words words_;
     std::string word_;
-    bool quoted_ = false, separators_only_ = true;
+    bool quoted_ = false, is_name_ = false, separators_only_ = true;
 };
+
+std::optional<int32_t> number_of(const Word& word) {
+    return word.is_name ? std::nullopt : whole_number(word.text);
+}
 
 struct Line {
     size_t number;
-    std::vector<std::string> words;
+    Words words;
 };
 
 std::vector<Line> lines_of(std::string_view text) {
@@ -73,16 +86,15 @@ std::vector<Line> lines_of(std::string_view text) {
         const char* at = p;
         const std::string_view line = read_rest(at, end);
         if (line.empty() || line.starts_with('#') || line.starts_with("//")) continue;
-        lines.push_back({number, Splitter().split(line)});
+        // Quotes alone are no words.
+        if (Words words = Splitter().split(line); !words.empty()) lines.push_back({number, std::move(words)});
     }
     return lines;
 }
 
-using Words = std::vector<std::string>;
-
 std::string joined_words(Words::const_iterator first, Words::const_iterator last) {
     std::string text;
-    for (; first != last; ++first) text += (text.empty() ? "" : " ") + *first;
+    for (; first != last; ++first) text += (text.empty() ? "" : " ") + first->text;
     return text;
 }
 
@@ -92,7 +104,7 @@ class TextReader {
     explicit TextReader(const std::string& file) : file_(file) {}
 
     std::vector<ReadClass> read(std::vector<Line> lines) {
-        const auto numbered = [](const Line& line) { return whole_number(line.words.front()).has_value(); };
+        const auto numbered = [](const Line& line) { return number_of(line.words.front()).has_value(); };
         std::vector<ReadClass> classes;
         if (std::ranges::none_of(lines, numbered)) {
             for (const Line& line : lines)
@@ -108,9 +120,9 @@ class TextReader {
   private:
     ReadClass read(const Line& line) const {
         const Words& words = line.words;
-        const std::optional<int32_t> label = whole_number(words.front());
-        if (!label) fail(line, fmt::format("expected a label, got '{}'", words.front()));
-        const auto is_number = [](const std::string& word) { return whole_number(word).has_value(); };
+        const std::optional<int32_t> label = number_of(words.front());
+        if (!label) fail(line, fmt::format("expected a label, got '{}'", words.front().text));
+        const auto is_number = [](const Word& word) { return number_of(word).has_value(); };
         const auto begin = words.begin() + 1, end = words.end();
         const auto first_word = std::find_if_not(begin, end, is_number);
         // Colour first, as ITK-SNAP has it, when the name comes last.
@@ -127,7 +139,7 @@ class TextReader {
     Rgb8 color(const Line& line, Words::const_iterator word) const {
         Rgb8 result;
         for (uint8_t& channel : result) {
-            const int32_t value = *whole_number(*word++);
+            const int32_t value = *number_of(*word++);
             if (value < 0 || value > 255)
                 fail(line, fmt::format("expected a colour of numbers from 0 to 255, got {}", value));
             channel = uint8_t(value);

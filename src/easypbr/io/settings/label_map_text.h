@@ -21,6 +21,9 @@ std::vector<ReadClass> parse_label_text(std::string_view text, const std::string
 /// "LABEL NAME R G B" for each class; names with blanks are quoted.
 std::string to_label_text(const LabelMap& map);
 
+/// What save_label_map() writes into a file of this name. Throws FormatError for YAML.
+std::string format_label_map(const LabelMap& map, const std::filesystem::path& path);
+
 /// The content of a label map's file, of the format that the path's extension names. Throws as
 /// load_label_map() does for what is in a file.
 LabelMap parse_label_map(std::string_view text, const std::filesystem::path& path);

@@ -18,8 +18,6 @@ namespace {
 constexpr size_t splat_rows_grain = 1 << 14;
 /// Numbers of f_rest fields for degree 0 to 3.
 constexpr std::array<size_t, 4> rest_counts{0, 9, 24, 45};
-/// The logarithms of what is written are kept finite.
-constexpr float least_scale = 1e-30f, least_opacity = 1e-30f, most_opacity = 1 - 6e-8f;
 
 const VertexField* find(const std::vector<VertexField>& fields, const std::string& name) {
     const auto found =
@@ -102,41 +100,6 @@ SplatArrays SplatColumns::finish(const Source& source) {
     SplatArrays splats{std::move(scales_), std::move(rotations_), std::move(opacities_), std::move(sh_)};
     *this = {};
     return splats;
-}
-
-std::vector<RowPart> splat_row_parts(const SplatArrays& splats) {
-    if (splats.empty()) return {};
-    using Names = std::vector<std::string>;
-    const auto part = [](Names names, auto&& value_of) {
-        const size_t count = names.size();
-        return RowPart{std::move(names), ScalarType::float32, [count, value_of](Eigen::Index row, char* out) {
-                           for (size_t i = 0; i < count; ++i, out += sizeof(float)) {
-                               const float value = value_of(row, Eigen::Index(i));
-                               std::memcpy(out, &value, sizeof value);
-                           }
-                       }};
-    };
-    const auto rows = size_t(splats.sh.cols() / 3 - 1);
-    Names rest;
-    for (size_t i = 0; i < 3 * rows; ++i) rest.push_back(fmt::format("f_rest_{}", i));
-    std::vector<RowPart> parts;
-    parts.push_back(part({"f_dc_0", "f_dc_1", "f_dc_2"},
-                         [sh = splats.sh](Eigen::Index row, Eigen::Index i) { return sh(row, i); }));
-    if (rows > 0)
-        parts.push_back(part(std::move(rest), [sh = splats.sh, rows](Eigen::Index row, Eigen::Index i) {
-            return sh(row, harmonic_column(size_t(i) % rows, size_t(i) / rows));
-        }));
-    parts.push_back(part({"opacity"}, [o = splats.opacities](Eigen::Index row, Eigen::Index) {
-        const float opacity = std::clamp(o(row), least_opacity, most_opacity);
-        return std::log(opacity / (1 - opacity));
-    }));
-    parts.push_back(
-        part({"scale_0", "scale_1", "scale_2"}, [s = splats.scales](Eigen::Index row, Eigen::Index i) {
-            return std::log(std::max(s(row, i), least_scale));
-        }));
-    parts.push_back(part({"rot_0", "rot_1", "rot_2", "rot_3"},
-                         [q = splats.rotations](Eigen::Index row, Eigen::Index i) { return q(row, i); }));
-    return parts;
 }
 
 float constant_of_color(float encoded) {

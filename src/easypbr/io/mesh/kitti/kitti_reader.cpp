@@ -36,15 +36,15 @@ void set_label_map(const fs::path& path, MeshData& mesh) {
     mesh.label_map = map;
 }
 
-void read_labels(const fs::path& path, MeshData& mesh) {
-    const FileBytes file(path);
-    const Source source(file, path);
+}  // namespace
+
+void read_kitti_labels(const Source& source, MeshData& mesh) {
     const size_t count = size_t(mesh.V.rows());
-    if (file.size() != count * label_size)
+    if (source.bytes.size() != count * label_size)
         fail(
             source,
             fmt::format("{} labels of {} bytes expected, one for each point of {}, but the file has {} bytes",
-                        count, label_size, mesh.source.filename().string(), file.size()));
+                        count, label_size, mesh.source.filename().string(), source.bytes.size()));
     Array1i::Dense labels{Eigen::Index(count)};
     Array1f::Dense instances{Eigen::Index(count)};
     parallel_for(count, grain, [&](size_t i) {
@@ -53,14 +53,11 @@ void read_labels(const fs::path& path, MeshData& mesh) {
         labels[Eigen::Index(i)] = int32_t(code & 0xffff);
         instances[Eigen::Index(i)] = float(code >> 16);
     });
-    file.check();
     const bool has_instances = (instances.array() != 0).any();
     mesh.L = std::move(labels);
     if (has_instances) mesh.scalars.push_back({"instance", std::move(instances)});
-    set_label_map(path, mesh);
+    set_label_map(source.path, mesh);
 }
-
-}  // namespace
 
 MeshData read_kitti(const Source& source) {
     if (source.bytes.empty()) fail(source, "the file is empty");
@@ -73,7 +70,11 @@ MeshData read_kitti(const Source& source) {
         points.properties.push_back({name, ScalarType::float32, {}, 1, 0});
     MeshData mesh = read_binary_cloud(source, {{source, source.begin(), std::endian::little, {points}}});
     mesh.source = source.path;
-    if (const auto labels = find_labels(source.path)) read_labels(*labels, mesh);
+    if (const auto labels = find_labels(source.path)) {
+        const FileBytes file(*labels);
+        read_kitti_labels({file, *labels}, mesh);
+        file.check();
+    }
     drop_points_without_position(source, mesh);
     mesh.up = Vec3d::UnitZ();
     return mesh;
