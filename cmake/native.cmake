@@ -50,7 +50,7 @@ foreach(room IN ITEMS native gpu render app gui dataset remote drawing viewer)
 endforeach()
 target_sources(easypbr_native PRIVATE ${native_folder}/shader_uniforms.h)
 
-# With sanitizers -O2 takes ten times as long as -O1.
+# With sanitizers these are what takes longest.
 set(native_optimization -O2)
 if(EASYPBR_SANITIZE)
   set(native_optimization -O1)

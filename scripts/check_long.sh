@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Soaks: 10,000 updates of a cloud and data sets of 5,000 frames, whose memory must not grow; data sets killed 200 times; 100,000
+# Soaks: 10,000 updates of a cloud and data sets of 5,000 frames, whose memory must not grow; data sets killed 1000 times; 100,000
 # frames of a scene that changes, viewers made and dropped, recorders killed (EASYPBR_LONG_SOAK); many faults of the system; all
 # loaders on 10,000 mutated files each under AddressSanitizer and UBSan, and all C++ tests under both and under ThreadSanitizer; a picture of 16384 x 9216 pixels
 # in tiles; native shading against the driver's on 200 random scenes; golden scenes on llvmpipe,

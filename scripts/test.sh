@@ -17,7 +17,7 @@ ctest --test-dir build --output-on-failure -j "$(nproc)" --timeout "$limit_s" ||
 if [ -z "${EASYPBR_TEST_DATA:-}" ]; then
   echo "EASYPBR_TEST_DATA is not set: $(ctest --test-dir build -N | grep -c 'Test *#') tests ran, those on real files were left out"
 fi
-for part in cli python faults golden window remote web oracle package docs; do
+for part in cli instructions python faults golden window remote web oracle package docs; do
   echo "tests/$part, $(date -u +%T)"
   .venv/bin/python -m pytest -q --durations=3 "${stacks[@]}" "tests/$part" || failed=1
 done

@@ -1,6 +1,6 @@
 """What only shows after long: kills at random moments lose nothing, memory stays flat. `make check-long` runs these.
 
-EASYPBR_LONG_KILLS (200) and EASYPBR_LONG_FRAMES (5000) say how much."""
+EASYPBR_LONG_KILLS (1000) and EASYPBR_LONG_FRAMES (5000) say how much."""
 
 import hashlib
 import json
@@ -17,7 +17,7 @@ from easypbr.dataset import DatasetSpec, ImageSpec
 from easypbr.dataset.folder import FolderWriter, keep_memory
 from easypbr.dataset.frames import FrameMaker
 
-KILLS = int(os.environ.get("EASYPBR_LONG_KILLS", "200"))
+KILLS = int(os.environ.get("EASYPBR_LONG_KILLS", "1000"))
 FRAMES = int(os.environ.get("EASYPBR_LONG_FRAMES", "5000"))
 
 SPEC = """

@@ -58,17 +58,31 @@ std::vector<const std::vector<uint16_t>*> levels_of(const PrefilteredEnvironment
 
 /// Adds the six faces of a level, each with a border of one texel from its neighbours.
 void add_with_gutter(const std::vector<uint16_t>& faces, int size, std::vector<uint16_t>& texels) {
+    // The gutter comes from the texels along the edges: the rest need not be decoded.
     CubeMap map(size);
-    const uint16_t* from = faces.data();
+    const auto row_of = [&](int face, int y) {
+        return faces.data() + 4 * size_t(face * size + y) * size_t(size);
+    };
     for (int face = 0; face < 6; ++face)
-        for (int y = 0; y < size; ++y)
-            for (int x = 0; x < size; ++x)
-                for (int c = 0; c < 4; ++c) map.at(face, x, y)[c] = float(half_of_bits(*from++));
+        for (int y = 0; y < size; ++y) {
+            const bool is_edge = y == 0 || y == size - 1;
+            for (int x = 0; x < size; x += is_edge ? 1 : std::max(size - 1, 1))
+                for (int c = 0; c < 4; ++c)
+                    map.at(face, x, y)[c] = float(half_of_bits(row_of(face, y)[4 * x + c]));
+        }
     map.fill_gutter();
-    for (int face = 0; face < 6; ++face)
-        for (int y = -1; y <= size; ++y)
-            for (int x = -1; x <= size; ++x)
-                for (int c = 0; c < 4; ++c) texels.push_back(Eigen::half(map.at(face, x, y)[c]).x);
+    const auto add_gutter = [&](int face, int x, int y) {
+        for (int c = 0; c < 4; ++c) texels.push_back(Eigen::half(map.at(face, x, y)[c]).x);
+    };
+    for (int face = 0; face < 6; ++face) {
+        for (int x = -1; x <= size; ++x) add_gutter(face, x, -1);
+        for (int y = 0; y < size; ++y) {
+            add_gutter(face, -1, y);
+            texels.insert(texels.end(), row_of(face, y), row_of(face, y) + 4 * size_t(size));
+            add_gutter(face, size, y);
+        }
+        for (int x = -1; x <= size; ++x) add_gutter(face, x, size);
+    }
 }
 
 /// Adds the rows of a level, each with its first texel once more at the end.
@@ -136,6 +150,10 @@ EnvironmentMaps::HostCube EnvironmentMaps::host_cube(const std::vector<const std
                                                      int size) {
     HostCube host;
     host.cube = {.size = size, .levels = int(levels.size())};
+    size_t count = 0;
+    for (size_t level = 0; level < levels.size(); ++level)
+        count += size_t(6 * 4) * ((size >> level) + 2) * ((size >> level) + 2);
+    host.texels.reserve(count);
     for (size_t level = 0; level < levels.size(); ++level) {
         host.cube.offsets[level] = int(host.texels.size() / 4);
         add_with_gutter(*levels[level], size >> level, host.texels);

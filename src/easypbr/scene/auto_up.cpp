@@ -60,6 +60,11 @@ struct SurfacePoint {
     Vec3d normal{0, 0, 0};
 };
 
+/// What std::fmod(x, 1) is for positive numbers, in a fraction of its time.
+double fraction(double x) {
+    return x - std::floor(x);
+}
+
 /// Points of the faces, evenly spread by area; the R2 sequence (Roberts 2018) says where in a face.
 void spread(const SampledObject& object, size_t count, std::vector<SurfacePoint>& points) {
     std::vector<double> until;
@@ -70,8 +75,8 @@ void spread(const SampledObject& object, size_t count, std::vector<SurfacePoint>
     for (size_t i = 0; i < count; ++i) {
         const double at = (double(i) + 0.5) / double(count) * until.back();
         while (face + 1 < until.size() && until[face] < at) ++face;
-        double u = std::fmod(0.5 + 0.7548776662466927 * double(i), 1.0),
-               v = std::fmod(0.5 + 0.5698402909980532 * double(i), 1.0);
+        double u = fraction(0.5 + 0.7548776662466927 * double(i)),
+               v = fraction(0.5 + 0.5698402909980532 * double(i));
         if (u + v > 1) u = 1 - u, v = 1 - v;
         const Triangle& t = object.faces[face];
         const Vec3d a = t[1] - t[0], b = t[2] - t[0];

@@ -20,6 +20,7 @@ struct SoftBox {
     Vec3 axis, right, up;
     float half_width, half_height, edge;
     Vec3 radiance;
+    float least_cosine;  ///< between its axis and a direction that sees something of it
 };
 
 float smooth_step(float from, float to, float x) {
@@ -33,13 +34,12 @@ SoftBox make_box(const Vec3& towards, const Vec3& roll_up, Vec2 size_deg, float 
     const Vec3 axis = towards.normalized();
     const Vec3 right = axis.cross(roll_up).normalized();
     const auto tangent = [](float angle_deg) { return float(std::tan(radians(angle_deg))); };
-    return {axis,
-            right,
-            right.cross(axis),
-            tangent(size_deg.x() / 2),
-            tangent(size_deg.y() / 2),
-            tangent(edge_deg),
-            radiance};
+    const float width = tangent(size_deg.x() / 2), height = tangent(size_deg.y() / 2),
+                edge = tangent(edge_deg);
+    const float corner =
+        1 / std::sqrt(1 + (width + edge) * (width + edge) + (height + edge) * (height + edge));
+    // A little less, for what is rounded.
+    return {axis, right, right.cross(axis), width, height, edge, radiance, 0.999f * corner};
 }
 
 const std::array<SoftBox, 5>& soft_boxes() {
@@ -66,19 +66,28 @@ Vec3 room_radiance(float height) {
 /// The part of the lamp's radiance that a direction sees.
 float coverage(const SoftBox& box, const Vec3& direction) {
     const float forward = direction.dot(box.axis);
-    if (forward <= 0) return 0;
+    if (forward <= box.least_cosine) return 0;
     const float x = std::abs(direction.dot(box.right)) / forward,
                 y = std::abs(direction.dot(box.up)) / forward;
     return smooth_step(box.half_width + box.edge, box.half_width, x) *
            smooth_step(box.half_height + box.edge, box.half_height, y);
 }
 
-Vec3 with_lamps(Vec3 radiance, const Vec3& direction) {
-    for (const SoftBox& box : soft_boxes()) {
-        const float part = coverage(box, direction);
-        radiance += part * (box.radiance - radiance);
-    }
+Vec3 with_lamps(Vec3 radiance, const Vec3& direction, const std::vector<const SoftBox*>& boxes) {
+    for (const SoftBox* box : boxes)
+        if (const float part = coverage(*box, direction); part > 0)
+            radiance += part * (box->radiance - radiance);
     return radiance;
+}
+
+/// Those that a row of directions of one height sees.
+std::vector<const SoftBox*> boxes_at(float height, float sine) {
+    std::vector<const SoftBox*> boxes;
+    for (const SoftBox& box : soft_boxes()) {
+        const float nearest = height * box.axis.y() + sine * Vec2(box.axis.x(), box.axis.z()).norm();
+        if (nearest > 0.999f * box.least_cosine) boxes.push_back(&box);
+    }
+    return boxes;
 }
 
 Image studio_image() {
@@ -90,9 +99,10 @@ Image studio_image() {
         const Vec3 meridian = equirect_direction(0.5f, (float(y) + 0.5f) / float(image.height()));
         const float height = meridian.y(), sine = -meridian.z();
         const Vec3 room = room_radiance(height);
+        const std::vector<const SoftBox*> boxes = boxes_at(height, sine);
         float* pixel = image.at<float>(0, int(y));
         for (const Vec3& east : horizon) {
-            Eigen::Map<Vec3>{pixel} = with_lamps(room, Vec3(sine * east.x(), height, sine * east.z()));
+            Eigen::Map<Vec3>{pixel} = with_lamps(room, Vec3(sine * east.x(), height, sine * east.z()), boxes);
             pixel += 3;
         }
     });
