@@ -23,18 +23,28 @@ size_t edit_distance(std::string_view a, std::string_view b) {
     return row.back();
 }
 
+/// Edits up to which a name is a hint.
+size_t most_edits(std::string_view candidate) {
+    return std::max<size_t>(1, candidate.size() / 3);
+}
+
+/// Edits that the lengths alone ask for.
+size_t least_edits(std::string_view a, std::string_view b) {
+    return a.size() > b.size() ? a.size() - b.size() : b.size() - a.size();
+}
+
 }  // namespace
 
 std::string nearest(std::string_view wrong, std::span<const std::string> candidates) {
     const std::string* best = nullptr;
     size_t best_distance = 0;
     for (const std::string& candidate : candidates) {
+        if (least_edits(wrong, candidate) > most_edits(candidate)) continue;
         const size_t distance = edit_distance(wrong, candidate);
         if (!best || distance < best_distance) best = &candidate, best_distance = distance;
     }
     // A name of which no letter is right is no hint.
-    if (!best || best_distance > std::max<size_t>(1, best->size() / 3) || best_distance >= best->size())
-        return {};
+    if (!best || best_distance > most_edits(*best) || best_distance >= best->size()) return {};
     return *best;
 }
 
