@@ -142,9 +142,8 @@ TEST(SplatRays, WeakenLampsByTheirOpacity) {
     EXPECT_LT(floor.most - floor.least, 0.04);
 }
 
-/// A mirror in the plane z = 0 with a sheet of splats behind the camera, seen straight on; the mean colour of
-/// its middle.
-Vec3 mirrored(bool paths, float opacity, const Vec3& color, float behind, int samples) {
+/// A mirror in the plane z = 0 with a sheet of splats behind the camera, seen straight on.
+app::Session before_mirror(bool paths, float opacity, const Vec3& color, float behind) {
     Material mirror;
     mirror.base_color = Vec3::Ones();
     mirror.metallic = 1;
@@ -159,6 +158,12 @@ Vec3 mirrored(bool paths, float opacity, const Vec3& color, float behind, int sa
     session.settings().rays.enabled = !paths;
     session.settings().ssao.enabled = !paths;
     look_from(session, Vec3d(0, 0, 3), 10);
+    return session;
+}
+
+/// The mean colour of the mirror's middle.
+Vec3 mirrored(bool paths, float opacity, const Vec3& color, float behind, int samples) {
+    app::Session session = before_mirror(paths, opacity, color, behind);
     const Image image = render_linear(session, samples);
     Vec3 sum = Vec3::Zero();
     int count = 0;
@@ -176,6 +181,29 @@ TEST(SplatRays, AreSeenInMirrors) {
         const Vec3 expected = 0.6f * light + 0.4f * Vec3::Ones();
         for (int c = 0; c < 3; ++c) EXPECT_NEAR(seen[c], expected[c], 0.02) << c << " paths " << paths;
     }
+}
+
+// The curve is passed once, in a mirror as in the image: a sheet all but opaque has its colour there. 0.02:
+// the mirror reflects all but 1 %, the sheet hides all but 1 % of the sky behind it, which is much brighter
+// for some curves.
+TEST(SplatRays, HaveTheirColoursInMirrorsUnderAllCurves) {
+    const Vec3 color(0.75f, 0.45f, 0.2f);
+    for (const auto tone : {ToneOperator::aces, ToneOperator::reinhard, ToneOperator::agx,
+                            ToneOperator::neutral, ToneOperator::none})
+        for (const bool paths : {true, false}) {
+            app::Session session = before_mirror(paths, 0.99f, color, 6);
+            session.settings().tonemap.tone_operator = tone;
+            session.settings().tonemap.exposure = 2;
+            session.settings().environment.intensity = 0.25f;
+            const Image image = session.render({std::nullopt, 64, Encoding::srgb8});
+            for (int c = 0; c < 3; ++c) {
+                double sum = 0;
+                for (int y = 8; y < 24; ++y)
+                    for (int x = 8; x < 24; ++x) sum += image.at<uint8_t>(x, y)[c] / 255.0;
+                EXPECT_NEAR(sum / 256, color[c], 0.02)
+                    << "curve " << int(tone) << " paths " << paths << " " << c;
+            }
+        }
 }
 
 // Seen through clear glass that bends no ray: nearly all of the sheet's colour.

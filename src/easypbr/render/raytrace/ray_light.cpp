@@ -160,7 +160,7 @@ Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, 
             return sum + weight.cwiseProduct(caught(hit, direction, random));
         const float dielectric = resolved_->settings.shading.dielectric_f0;
         if (hit.item && hit.item->style.mode == DrawMode::splats)
-            return sum + weight.cwiseProduct(splat_at(hit, resolved_->exposure).emission);
+            return sum + weight.cwiseProduct(splat_at(hit, *resolved_).emission);
         const RaySurface s =
             hit.item ? surface_at(hit, dielectric) : ground_surface(*scene_->ground(), dielectric);
         const Vec3 reflects = fresnel(s, -direction.dot(s.normal));

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "easypbr/core/color.h"
+#include "easypbr/render/frame/inverse_tone.h"
 #include "easypbr/render/primitives/splat_color.h"
 #include "easypbr/render/raytrace/ray_scene.h"
 
@@ -125,10 +126,11 @@ Vec3 transmittance_at(const DrawItem& item, int element, float u, float v) {
     return open + coverage * m.transmittance(AlphaMode::opaque);
 }
 
-RaySurface splat_at(const RayHit& hit, float exposure) {
+RaySurface splat_at(const RayHit& hit, const ResolvedSettings& resolved) {
     RaySurface s;
     s.normal = hit.normal;
-    s.emission = linear_from_srgb(splat_color(*hit.item, hit.element, -hit.normal)) / exposure;
+    const Vec3 shown = linear_from_srgb(splat_color(*hit.item, hit.element, -hit.normal));
+    s.emission = inverse_tone_map(shown, display_tone(resolved));
     return s;
 }
 

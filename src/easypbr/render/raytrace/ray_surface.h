@@ -2,6 +2,7 @@
 #pragma once
 
 #include "easypbr/render/drawables/draw_list.h"
+#include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
 
@@ -25,8 +26,8 @@ struct RaySurface {
     float roughness = 1;
 };
 
-/// A splat that shines in its colour, which is one of the picture's, divided by the exposure.
-RaySurface splat_at(const RayHit& hit, float exposure);
+/// A splat that shines so that its colour, which is one of the image's, is what is displayed of it.
+RaySurface splat_at(const RayHit& hit, const ResolvedSettings& resolved);
 
 /// Textures are read at their nearest texel; normal maps do not count.
 RaySurface surface_at(const RayHit& hit, float dielectric_f0);

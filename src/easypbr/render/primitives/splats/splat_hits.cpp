@@ -1,6 +1,7 @@
 #include "easypbr/render/primitives/splats/splat_hits.h"
 
 #include "easypbr/core/color.h"
+#include "easypbr/render/frame/inverse_tone.h"
 #include "easypbr/render/primitives/splat_color.h"
 
 namespace easypbr::render {
@@ -12,10 +13,11 @@ void SplatHits::shade(std::span<const native::ElementHit> hits, const native::Hi
         Vec3 color = splat_color(item_, splat, -normal);
         if (parts_) color = parts_->darkened(*light_.light(), item_, splat, normal.cast<double>(), color);
         color = linear_from_srgb(color);
+        const Vec3 emission = inverse_tone_map(color, tone_);
         for (int c = 0; c < 3; ++c) {
             to.normal[c][i] = to.face[c][i] = normal[c];
             to.albedo[c][i] = color[c];
-            to.emission[c][i] = color[c] / exposure_;
+            to.emission[c][i] = emission[c];
         }
         to.parameters[0][i] = 0;
         to.parameters[1][i] = 1;

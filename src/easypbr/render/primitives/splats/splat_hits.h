@@ -2,23 +2,24 @@
 #pragma once
 
 #include "easypbr/render/drawables/draw_list.h"
+#include "easypbr/render/frame/inverse_tone.h"
 #include "easypbr/render/primitives/hit_surface.h"
 #include "easypbr/render/primitives/splats/splat_light.h"
 
 namespace easypbr::render {
 
-/// Their colours are those of the picture: what is seen of them in a mirror passes exposure and tone curve
-/// once more, so that they are divided by the exposure. The normals of the hits are opposite to the rays.
+/// Their colours are those of the image: what is seen of them in a mirror passes exposure and tone curve, so
+/// that they shine with what becomes their colours by them. The normals of the hits are opposite to the rays.
 class SplatHits final : public HitSurface {
   public:
     /// The item must outlive this, and so must what darkens it.
-    SplatHits(const DrawItem& item, float exposure, SplatLight& light)
-        : item_(item), exposure_(exposure), light_(light), parts_(light.parts_of(item)) {}
+    SplatHits(const DrawItem& item, const DisplayTone& tone, SplatLight& light)
+        : item_(item), tone_(tone), light_(light), parts_(light.parts_of(item)) {}
     void shade(std::span<const native::ElementHit> hits, const native::HitSurfaces& surfaces) const override;
 
   private:
     const DrawItem& item_;
-    float exposure_;
+    DisplayTone tone_;
     const SplatLight& light_;
     std::shared_ptr<SplatLight::Parts> parts_;
 };

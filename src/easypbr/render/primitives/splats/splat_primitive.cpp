@@ -171,7 +171,7 @@ void SplatPrimitive::add_to(RayGeometry& geometry, const DrawItem& item) {
 
 std::unique_ptr<HitSurface> SplatPrimitive::hit_surface(const ResolvedSettings& resolved,
                                                         const DrawItem& item) {
-    return std::make_unique<SplatHits>(item, resolved.exposure, light_);
+    return std::make_unique<SplatHits>(item, display_tone(resolved), light_);
 }
 
 void SplatPrimitive::find_limits(const OverlayStep& step) {

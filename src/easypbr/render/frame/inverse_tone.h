@@ -1,0 +1,19 @@
+// The inverse of the tone curves of shaders/common_tone.glsl.
+#pragma once
+
+#include "easypbr/scene/resolve.h"
+
+namespace easypbr::render {
+
+struct DisplayTone {
+    ToneOperator tone_operator = ToneOperator::none;
+    float exposure = 1;
+};
+DisplayTone display_tone(const ResolvedSettings& resolved);
+
+/// Linear Rec.709 radiance, of which exposure and curve make `display`, linear display light in [0, 1]. What
+/// only much brighter light would show, near white, stands for radiance that is 4 times white after
+/// exposure: the curves take it all but to white, and it lights surfaces no more than a lamp would.
+Vec3 inverse_tone_map(const Vec3& display, const DisplayTone& tone);
+
+}  // namespace easypbr::render
