@@ -105,25 +105,39 @@ INLINE bool any_lane(vbool a) {
         a.v = a.v op b.v;                 \
         return a;                         \
     }
+/// As in GLSL whole numbers wrap around: what idle lanes hold may be any number.
+#define WRAPPING(T, op)                        \
+    INLINE T operator op(T a, T b) {           \
+        return Ints(Uints(a.v) op Uints(b.v)); \
+    }                                          \
+    INLINE T& operator op##=(T& a, T b) {      \
+        return a = a op b;                     \
+    }
 #define COMPARISON(T, op)                \
     INLINE vbool operator op(T a, T b) { \
         return Ints(a.v op b.v);         \
     }
+#define COMPARISONS(T) \
+    COMPARISON(T, <) COMPARISON(T, >) COMPARISON(T, <=) COMPARISON(T, >=) COMPARISON(T, ==) COMPARISON(T, !=)
 #define NUMBER(T)    \
     ARITHMETIC(T, +) \
     ARITHMETIC(T, -) \
     ARITHMETIC(T, *) \
-    COMPARISON(T, <) COMPARISON(T, >) COMPARISON(T, <=) COMPARISON(T, >=) COMPARISON(T, ==) COMPARISON(T, !=)
+    COMPARISONS(T)
+#define SIGNED(T) WRAPPING(T, +) WRAPPING(T, -) WRAPPING(T, *) COMPARISONS(T)
 #define BITS(T) ARITHMETIC(T, &) ARITHMETIC(T, |) ARITHMETIC(T, ^)
 NUMBER(vfloat)
-NUMBER(vint)
+SIGNED(vint)
 NUMBER(vuint)
 ARITHMETIC(vfloat, /)
 BITS(vint)
 BITS(vuint)
 #undef BITS
+#undef SIGNED
 #undef NUMBER
+#undef COMPARISONS
 #undef COMPARISON
+#undef WRAPPING
 #undef ARITHMETIC
 
 INLINE vint operator>>(vint a, int n) {
@@ -133,7 +147,7 @@ INLINE vint operator>>(vint a, vint n) {
     return a.v >> n.v;
 }
 INLINE vint operator<<(vint a, int n) {
-    return a.v << n;
+    return Ints(Uints(a.v) << n);
 }
 INLINE vuint operator>>(vuint a, int n) {
     return a.v >> n;
@@ -152,7 +166,7 @@ INLINE vfloat operator-(vfloat a) {
     return -a.v;
 }
 INLINE vint operator-(vint a) {
-    return -a.v;
+    return Ints(-Uints(a.v));
 }
 
 INLINE float to_float(float a) {
