@@ -282,11 +282,13 @@ TEST(NativeShading, SeesTheDriversSideOfFaces) {
 
 TEST(NativeShading, IsTheSameForAllInstructionSets) {
     if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
+    const std::vector<std::string_view> names = native::instruction_sets();
+    if (names.size() == 1) GTEST_SKIP() << "only " << names[0] << " is built, or the processor has no more";
     const std::string before(native::instruction_set());
     for (unsigned seed = 0; seed < 40; ++seed) {
         const Scene scene = Generator(seed).scene();
-        const Image first = drawn(scene, seed, true, "v2");
-        for (const std::string_view name : native::instruction_sets()) {
+        const Image first = drawn(scene, seed, true, std::string(names.back()));
+        for (const std::string_view name : names) {
             const Image other = drawn(scene, seed, true, std::string(name));
             EXPECT_TRUE(std::ranges::equal(first.bytes(), other.bytes())) << name << ", scene " << seed;
         }
