@@ -6,7 +6,7 @@ set(native_shaders lighting_surface lighting_surface_extended background_environ
                    bloom_blocks bloom_gather bloom_resample focus_halve focus_gather focus_compose
                    outline_edges outline_lines denoise_smooth transparency_layer)
 set(native_surface_shaders mesh_resolve mesh_extended shadow_depth)
-set(native_stream_shaders path_lamps path_scatter path_lamps_extended path_scatter_extended)
+set(native_stream_shaders path_lamps path_scatter path_lamps_extended path_scatter_extended display_color)
 set(native_line_shaders overlay_lines)
 set(native_folder ${PROJECT_BINARY_DIR}/generated/native)
 set(native_march_v2 x86-64-v2)

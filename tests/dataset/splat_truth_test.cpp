@@ -101,6 +101,38 @@ TEST(SplatTruth, IsWhereHalfOfTheLightIsStopped) {
     }
 }
 
+// Three flat splats one behind the other, of opacity 0.5: what they add is 4 : 2 : 1, and the second stops
+// more than half of the light. Before a wall that they do not count.
+TEST(SplatTruth, DepthMayBeTheExpectedOne) {
+    MeshData three;
+    Array3f::Dense V(3, 3);
+    V << 0, 0, 0.2f, 0, 0, 0.6f, 0, 0, 1.0f;
+    three.V = std::move(V);
+    three.splats.scales = Array3f::Dense(Eigen::RowVector3f(20, 20, 0).replicate(3, 1));
+    three.splats.rotations = Array4f::Dense(Eigen::RowVector4f(1, 0, 0, 0).replicate(3, 1));
+    three.splats.opacities = Array1f::Dense::Constant(3, 0.5f);
+    three.splats.sh = ArrayXf::Dense::Zero(3, 3);
+    for (const bool orthographic : {false, true})
+        for (const bool resort : {false, true}) {
+            Scene scene;
+            scene.show(wall(0), "wall");
+            scene.show(Mesh(three), "three");
+            app::Session session = plain_session(scene, size);
+            session.settings().splats.depth = SplatDepth::expected;
+            session.settings().splats.resort = resort;
+            if (orthographic) session.settings().camera.projection = Projection::orthographic;
+            look_from(session, Vec3d(0, 0, distance));
+            const Image depth = session.render_layers({"depth"}).at("depth");
+            // The wall lies behind and adds 0.95 of the rest, 1/8 of the light; it is a splat too.
+            const double weight = 0.5 + 0.25 + 0.125 + 0.125 * 0.95;
+            const double expected = distance - (0.5 * 1.0 + 0.25 * 0.6 + 0.125 * 0.2) / weight;
+            // Half a splat of the wall: its opacity is less beside the means of its splats, and several
+            // overlap.
+            EXPECT_NEAR(double(depth.at<float>(size / 2, size / 2)[0]), expected, 0.01)
+                << orthographic << resort;
+        }
+}
+
 // A square before the middle of the wall, and one half a unit behind it.
 TEST(SplatTruth, MeshesAndSplatsHideEachOther) {
     Scene scene;

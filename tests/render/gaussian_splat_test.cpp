@@ -306,6 +306,55 @@ TEST(GaussianSplats, AreBeforeAndBehindLayers) {
     EXPECT_LT((middle_of(scene) - Eigen::Vector4f(red, green, 0, red + green)).norm(), 4e-3f);
 }
 
+/// A splat that is thick along the view, `deviations` standard deviations before the plane z = 0.
+Splat thick_splat(double deviations) {
+    constexpr double thickness = 0.02;
+    Splat splat = wide_splat(deviations * thickness);
+    splat.scales.z() = thickness;
+    return splat;
+}
+
+double normal_cdf(double deviations) {
+    return 0.5 * std::erfc(-deviations / std::sqrt(2.0));
+}
+
+// A surface hides the part of a splat's density along the ray that is behind it: of a medium that lets 1/4
+// through, the part p before the surface lets 4^-p through. Depths are to first order: thickness / distance =
+// 1/200.
+TEST(GaussianSplats, AreCutBySurfaces) {
+    for (const bool native : {true, false})
+        for (const bool resort : {false, true})
+            for (const double deviations : {-4.0, -1.5, -0.5, 0.0, 0.5, 1.5, 4.0}) {
+                Scene scene;
+                scene.show(unlit_square(Vec3(0, 1, 0)), "square");
+                scene.show(Mesh(mesh_of({thick_splat(deviations)})), "splat");
+                const double through = std::pow(0.25, normal_cdf(deviations));
+                for (const bool soft : {true, false}) {
+                    app::Session session = session_of(scene, 32);
+                    session.settings().splats.resort = resort;
+                    session.settings().splats.soft = soft;
+                    session.allow_native_geometry(native);
+                    session.allow_native_shading(native);
+                    const Image image = render_linear(session);
+                    // Without soft cuts all of it is seen, or nothing; in its middle that is a rounding.
+                    const double green = soft ? through : deviations > 0 ? 0.25 : 1;
+                    if (!soft && deviations == 0) continue;
+                    EXPECT_NEAR(image.at<float>(16, 16)[1], green, code)
+                        << native << resort << soft << deviations;
+                    EXPECT_NEAR(image.at<float>(16, 16)[0], 1 - green, code) << native << resort << soft;
+                }
+            }
+}
+
+// Half of a splat is before a half-transparent square, and half behind it: both let sqrt(1/4) through.
+TEST(GaussianSplats, AreCutByLayers) {
+    Scene scene;
+    scene.show(unlit_square(Vec3(0, 1, 0), 0.5f), "square");
+    scene.show(Mesh(mesh_of({thick_splat(0)})), "splat");
+    const float red = 0.5f + 0.5f * 0.5f * 0.5f, green = 0.5f * 0.5f;
+    EXPECT_LT((middle_of(scene) - Eigen::Vector4f(red, green, 0, red + green)).norm(), 4e-3f);
+}
+
 /// A horizontal line through the picture's middle in the plane z.
 Mesh blue_line(float z, float width) {
     Array3f::Dense V(2, 3);

@@ -21,6 +21,7 @@ enum class BackgroundMode { color, environment, blur, image, transparent };
 enum class Brdf { height_correlated, separable, ue4 };
 enum class ShadowMode { hard, pcf, soft };
 enum class TransparencyMode { layers, stochastic };
+enum class SplatDepth { median, expected };
 enum class Corner { top_left, top_right, bottom_left, bottom_right };
 enum class ToneOperator { aces, reinhard, agx, neutral, none };
 
@@ -179,6 +180,10 @@ struct SplatSettings {
     bool cast = true;     ///< they cast shadows with their opacity, and rays see them
     bool receive = true;  ///< surfaces darken them where they hide lights and sky
     bool resort = false;  ///< the splats of each pixel are in the order of their depths there
+    bool soft = true;  ///< surfaces hide the part of a splat that is behind them, else all or nothing of it
+    bool relight =
+        false;  ///< lamps and sky light them: degree 0 is their albedo, the thinnest axis the normal
+    SplatDepth depth = SplatDepth::median;  ///< of layers; expected: the mean by what each splat adds
 };
 
 /// Legends and colour bars drawn into the image, never into layers.

@@ -26,31 +26,38 @@ constexpr bool sees_threads_of_tbb = false;
 constexpr bool sees_threads_of_tbb = true;
 #endif
 
-/// TBB, which is not built with ThreadSanitizer, hands chunks to its threads and back: says so to it.
-class HandOver {
-  public:
-    void give() {
+/// TBB, which is not built with ThreadSanitizer, hands chunks to its threads and back: says so to it. The
+/// same for all loops, so that a thread need not read which one it is in.
+struct HandOver {
+    static void give() {
 #ifdef __SANITIZE_THREAD__
-        __tsan_release(this);
+        __tsan_release(&place_);
 #endif
     }
-    void take() {
+    static void take() {
 #ifdef __SANITIZE_THREAD__
-        __tsan_acquire(this);
+        __tsan_acquire(&place_);
 #endif
     }
+
+  private:
+    [[maybe_unused]] static inline char place_ = 0;
 };
 
 /// A chunk's time on its thread, ended by an exception too.
-class OnThread {
-  public:
-    explicit OnThread(HandOver& hand_over) : hand_over_(hand_over) { hand_over_.take(); }
-    ~OnThread() { hand_over_.give(); }
+struct OnThread {
+    OnThread() { HandOver::take(); }
+    ~OnThread() { HandOver::give(); }
     OnThread(const OnThread&) = delete;
     OnThread& operator=(const OnThread&) = delete;
+};
 
-  private:
-    HandOver& hand_over_;
+/// The time of a loop as its caller sees it.
+struct InLoop {
+    InLoop() { HandOver::give(); }
+    ~InLoop() { HandOver::take(); }
+    InLoop(const InLoop&) = delete;
+    InLoop& operator=(const InLoop&) = delete;
 };
 
 /// EASYPBR_THREADS keeps the loops to as many threads.
@@ -79,9 +86,8 @@ void parallel_chunks(size_t count, size_t grain, const std::function<void(size_t
         if (count) body(0, count);
         return;
     }
-    HandOver hand_over;
     const auto run = [&, folder = FolderScope::current()](size_t chunk) {
-        const OnThread here(hand_over);
+        const OnThread here;
         const FolderScope scope(folder);
         check_interrupt();
         body(chunk * grain, std::min(count, (chunk + 1) * grain));
@@ -91,9 +97,8 @@ void parallel_chunks(size_t count, size_t grain, const std::function<void(size_t
         return;
     }
     limit_threads();
-    hand_over.give();
+    const InLoop loop;
     tbb::parallel_for(size_t(0), chunks, run);
-    hand_over.take();
 }
 
 void parallel_sort(std::vector<KeyedIndex>& items) {

@@ -43,6 +43,11 @@ const std::vector<std::string>& enum_names<ShadowMode>() {
     return names;
 }
 template <>
+const std::vector<std::string>& enum_names<SplatDepth>() {
+    static const std::vector<std::string> names = {"median", "expected"};
+    return names;
+}
+template <>
 const std::vector<std::string>& enum_names<TransparencyMode>() {
     static const std::vector<std::string> names = {"layers", "stochastic"};
     return names;
@@ -434,6 +439,18 @@ void add_clipping(Table& table) {
     table.push_back(make("splats.resort", EASYPBR_AT(splats.resort),
                          "Splats are blended in the order of their depths in each pixel, in place of one "
                          "order for the whole image: nothing pops when the camera moves. Slower."));
+    table.push_back(
+        make("splats.soft", EASYPBR_AT(splats.soft),
+             "A surface that a splat passes through hides the part of it that is behind. Off: all "
+             "of the splat is hidden in a pixel, or nothing, by where it is densest."));
+    table.push_back(
+        make("splats.relight", EASYPBR_AT(splats.relight),
+             "Lamps and sky light splats, in place of their own colours: an approximation that takes "
+             "their colour of degree 0 for the albedo, and their thinnest axis for the normal."));
+    table.push_back(
+        make("splats.depth", EASYPBR_AT(splats.depth),
+             "What the layer depth holds of splats: the depth at which half of the light is stopped, or "
+             "the expected depth, the mean weighed by what each splat adds to the pixel."));
     table.push_back(
         make("points.hole_filling", EASYPBR_AT(points.hole_filling),
              "Number of passes that fill one-pixel holes between points from the neighbouring pixels.", "",

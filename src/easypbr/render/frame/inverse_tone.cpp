@@ -104,6 +104,21 @@ DisplayTone display_tone(const ResolvedSettings& resolved) {
     return {resolved.settings.tonemap.tone_operator, resolved.exposure};
 }
 
+std::string_view tone_feature(ToneOperator tone_operator) {
+    switch (tone_operator) {
+        case ToneOperator::reinhard:
+            return "TONE_REINHARD";
+        case ToneOperator::agx:
+            return "TONE_AGX";
+        case ToneOperator::neutral:
+            return "TONE_NEUTRAL";
+        case ToneOperator::none:
+            return "TONE_NONE";
+        default:
+            return "TONE_ACES";
+    }
+}
+
 Vec3 inverse_tone_map(const Vec3& display, const DisplayTone& tone) {
     const Vec3 radiance =
         inverse_curve(display.cwiseMax(0.0f).cwiseMin(1.0f), tone.tone_operator).cwiseMax(0.0f);

@@ -1,5 +1,7 @@
-// The inverse of the tone curves of shaders/common_tone.glsl.
+// The tone curves of shaders/common_tone.glsl, and their inverse.
 #pragma once
+
+#include <string_view>
 
 #include "easypbr/scene/resolve.h"
 
@@ -10,6 +12,8 @@ struct DisplayTone {
     float exposure = 1;
 };
 DisplayTone display_tone(const ResolvedSettings& resolved);
+/// The feature of shaders/common_tone.glsl that stands for a curve.
+std::string_view tone_feature(ToneOperator tone_operator);
 
 /// Linear Rec.709 radiance, of which exposure and curve make `display`, linear display light in [0, 1]. What
 /// only much brighter light would show, near white, stands for radiance that is 4 times white after

@@ -5,6 +5,7 @@
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/render/frame/inverse_tone.h"
 #include "easypbr/scene/resolve.h"
 
 namespace easypbr::render {
@@ -12,18 +13,7 @@ namespace {
 
 std::vector<std::string> curve_defines(const Frame& frame, Encoding encoding) {
     if (encoding == Encoding::scene_linear) return {"SCENE_LINEAR"};
-    switch (frame.resolved->settings.tonemap.tone_operator) {
-        case ToneOperator::reinhard:
-            return {"TONE_REINHARD"};
-        case ToneOperator::agx:
-            return {"TONE_AGX"};
-        case ToneOperator::neutral:
-            return {"TONE_NEUTRAL"};
-        case ToneOperator::none:
-            return {"TONE_NONE"};
-        default:
-            return {"TONE_ACES"};
-    }
+    return {std::string(tone_feature(frame.resolved->settings.tonemap.tone_operator))};
 }
 
 std::vector<std::string> tone_defines(const Frame& frame, const LitPicture& lit, Encoding encoding) {

@@ -107,7 +107,10 @@ void Pipeline::light_surfaces(const Frame& frame, const DrawList& casters, const
     const ResolvedSettings& resolved = *frame.resolved;
     const bool caught = contents.ground && GroundPass::is_shadow_catcher(resolved);
     if (contents.traced || contents.paths)
-        timer_.run("rays", [&] { update_ray_scene(frame, casters, contents.ground); });
+        timer_.run("rays", [&] {
+            update_ray_scene(frame, casters, contents.ground);
+            if (!contents.paths && !casters.of(DrawMode::splats).empty()) ray_scene_.make_surfaces(resolved);
+        });
     if (contents.paths) return trace_paths(frame, contents.tiles, inputs.native, caught);
     if (resolved.settings.ssao.enabled && !contents.traced) occlude(frame, inputs.native, normals);
     light(frame, targets_, contents, inputs, caught);
@@ -215,21 +218,25 @@ void Pipeline::update_ray_scene(const Frame& frame, const DrawList& casters, boo
 void Pipeline::find_place_light(const Frame& frame, const DrawList& list, const DrawList& casters,
                                 const FrameContents& contents) {
     const ResolvedSettings& resolved = *frame.resolved;
-    const bool is_lit = !resolved.lights.empty() || !resolved.environment.empty();
-    bool receives = resolved.settings.splats.receive && is_lit && !contents.layers &&
-                    list.overlays.contains(DrawMode::splats);
+    const SplatSettings& splats = resolved.settings.splats;
+    const bool is_lit = !resolved.lights.empty() || !resolved.environment.empty(),
+               has_splats = !contents.layers && list.overlays.contains(DrawMode::splats);
+    const bool relights = has_splats && splats.relight;
+    bool receives = has_splats && splats.receive && is_lit;
+    darkening_ = {};
     if (receives) {
         darkening_ = casters;
         darkening_.items.erase(DrawMode::splats);
         receives = !darkening_.empty();
     }
-    if (receives)
+    if (receives || relights)
         timer_.run("rays", [&] {
             const bool occludes = resolved.settings.ssao.enabled || contents.traced || contents.paths;
             received_light_.update(frame,
                                    {darkening_, shadow_maps_.casters_generation(), primitives_, occludes});
         });
-    for (const auto& kind : primitives_) kind->set_place_light(receives ? &received_light_ : nullptr);
+    for (const auto& kind : primitives_)
+        kind->set_place_light(receives || relights ? &received_light_ : nullptr);
 }
 
 bool Pipeline::draws_overlay(const Shot& shot, const FrameContents& contents) const {

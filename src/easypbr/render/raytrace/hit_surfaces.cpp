@@ -1,5 +1,8 @@
 #include "easypbr/render/raytrace/hit_surfaces.h"
 
+#include <algorithm>
+#include <array>
+
 #include "easypbr/render/frame/surface_kind.h"
 
 namespace easypbr::render {
@@ -54,6 +57,25 @@ HitSurfaces evaluate(const RayScene& scene, std::span<const native::ElementHit> 
         first = end;
     }
     return found;
+}
+
+Vec3 emission_at(const RayScene& scene, const RayHit& hit) {
+    native::ElementHit element;
+    element.element = uint32_t(hit.element);
+    element.u = hit.u;
+    element.v = hit.v;
+    std::copy_n(hit.normal.data(), 3, element.normal);
+    constexpr size_t room = native::stream_alignment;
+    std::array<std::array<float, room>, 15> values;
+    size_t next = 0;
+    const auto component = [&] { return values[next++].data(); };
+    native::HitSurfaces to;
+    for (auto* vector : {&to.normal, &to.face, &to.albedo, &to.emission})
+        for (float*& array : *vector) array = component();
+    for (float*& array : to.parameters) array = component();
+    to.kind = component();
+    scene.surface(hit.surface).shade({&element, 1}, to);
+    return {*to.emission[0], *to.emission[1], *to.emission[2]};
 }
 
 }  // namespace easypbr::render

@@ -24,4 +24,7 @@ struct HitSurfaces {
 HitSurfaces evaluate(const RayScene& scene, std::span<const native::ElementHit> hits,
                      std::span<const int> surfaces);
 
+/// The radiance that one surface without extensions shines with.
+Vec3 emission_at(const RayScene& scene, const RayHit& hit);
+
 }  // namespace easypbr::render

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "easypbr/render/raytrace/hit_surfaces.h"
 #include "easypbr/render/raytrace/ray_surface.h"
 #include "easypbr/render/raytrace/sky_place.h"
 #include "easypbr/scene/light_falloff.h"
@@ -160,7 +161,7 @@ Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, 
             return sum + weight.cwiseProduct(caught(hit, direction, random));
         const float dielectric = resolved_->settings.shading.dielectric_f0;
         if (hit.item && hit.item->style.mode == DrawMode::splats)
-            return sum + weight.cwiseProduct(splat_at(hit, *resolved_).emission);
+            return sum + weight.cwiseProduct(emission_at(*scene_, hit));
         const RaySurface s =
             hit.item ? surface_at(hit, dielectric) : ground_surface(*scene_->ground(), dielectric);
         const Vec3 reflects = fresnel(s, -direction.dot(s.normal));

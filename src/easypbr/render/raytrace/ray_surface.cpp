@@ -4,8 +4,6 @@
 #include <cmath>
 
 #include "easypbr/core/color.h"
-#include "easypbr/render/frame/inverse_tone.h"
-#include "easypbr/render/primitives/splat_color.h"
 #include "easypbr/render/raytrace/ray_scene.h"
 
 namespace easypbr::render {
@@ -124,14 +122,6 @@ Vec3 transmittance_at(const DrawItem& item, int element, float u, float v) {
     const Material& m = item.material;
     if (item.kind != SurfaceKind::lit || !m.transmits()) return open;
     return open + coverage * m.transmittance(AlphaMode::opaque);
-}
-
-RaySurface splat_at(const RayHit& hit, const ResolvedSettings& resolved) {
-    RaySurface s;
-    s.normal = hit.normal;
-    const Vec3 shown = linear_from_srgb(splat_color(*hit.item, hit.element, -hit.normal));
-    s.emission = inverse_tone_map(shown, display_tone(resolved));
-    return s;
 }
 
 RaySurface surface_at(const RayHit& hit, float dielectric_f0) {

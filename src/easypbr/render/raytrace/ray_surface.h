@@ -26,9 +26,6 @@ struct RaySurface {
     float roughness = 1;
 };
 
-/// A splat that shines so that its colour, which is one of the image's, is what is displayed of it.
-RaySurface splat_at(const RayHit& hit, const ResolvedSettings& resolved);
-
 /// Textures are read at their nearest texel; normal maps do not count.
 RaySurface surface_at(const RayHit& hit, float dielectric_f0);
 

@@ -18,8 +18,8 @@ constexpr int sky_rays = 8, lamp_rays = 4;
 constexpr double least_hidden = 1.0 / 512;
 constexpr double turn = 2.39996322972865332;  // the golden angle
 
-double brightness_of(const Vec3& c) {
-    return double(c.dot(Vec3(0.2126f, 0.7152f, 0.0722f)));
+double brightness_of(const Vec3d& c) {
+    return c.dot(Vec3d(0.2126, 0.7152, 0.0722));
 }
 
 /// Point `i` of `count` of the unit square, evenly spread, of a sequence that belongs to a number.
@@ -61,12 +61,13 @@ void ReceivedLight::update(const Frame& frame, const Surfaces& surfaces) {
                               surfaces.hide_sky ? 1.0f : 0.0f};
     sky.insert(sky.end(), resolved_->R_env_world.data(), resolved_->R_env_world.data() + 9);
     const std::string environment = resolved_->environment.empty() ? "" : resolved_->environment.hash();
-    const bool same_casters = surfaces.generation == casters_ && generation_ != 0;
+    const uint64_t casters = surfaces.list.empty() ? 0 : surfaces.generation;
+    const bool same_casters = casters == casters_ && generation_ != 0;
     if (!same_casters) bounds_ = bounds_of_surfaces(surfaces.list, surfaces.primitives);
-    scene_.update(surfaces.list, bounds_, surfaces.generation, surfaces.primitives, std::nullopt);
+    scene_.update(surfaces.list, bounds_, casters, surfaces.primitives, std::nullopt);
     hides_sky_ = surfaces.hide_sky;
     if (same_casters && lights_ == resolved_->lights && sky == sky_ && environment == environment_) return;
-    casters_ = surfaces.generation;
+    casters_ = casters;
     lights_ = resolved_->lights;
     sky_ = std::move(sky);
     environment_ = environment;
@@ -75,7 +76,7 @@ void ReceivedLight::update(const Frame& frame, const Surfaces& surfaces) {
 
 double ReceivedLight::left(const Place& place, const Vec3& direction, double distance) const {
     const Vec3 from = RayScene::off_surface(place.at, place.normal);
-    return brightness_of(scene_.transmittance(from, direction, float(distance)));
+    return brightness_of(scene_.transmittance(from, direction, float(distance)).cast<double>());
 }
 
 ReceivedLight::Sum ReceivedLight::from_lamp(const ResolvedLight& light, const Place& place) const {
@@ -88,9 +89,9 @@ ReceivedLight::Sum ReceivedLight::from_lamp(const ResolvedLight& light, const Pl
     const double cosine = l.dot(place.normal.cast<double>());
     if (cosine <= 0) return {};
     const double falls = parallel ? 1 : falloff(light, -l, distance);
-    const double arrives = brightness_of(light.color) * double(light.intensity) * falls * cosine / pi;
-    if (!(arrives > 0)) return {};
-    if (!light.casts_shadows || !resolved_->settings.shadows.enabled) return {arrives, arrives};
+    const Vec3d all = light.color.cast<double>() * (double(light.intensity) * falls * cosine / pi);
+    if (!(brightness_of(all) > 0)) return {};
+    if (scene_.empty() || !light.casts_shadows || !resolved_->settings.shadows.enabled) return {all, all};
     const double extent = softness_of(light);
     const int rays = extent > 0 ? lamp_rays : 1;
     const RayFrame frame(l.cast<float>());
@@ -104,7 +105,7 @@ ReceivedLight::Sum ReceivedLight::from_lamp(const ResolvedLight& light, const Pl
             parallel ? std::numeric_limits<double>::infinity() : way.norm() / scene_.unit() * (1 - 1e-4);
         open += left(place, way.normalized().cast<float>(), reach);
     }
-    return {arrives, arrives * open / rays};
+    return {all, all * (open / rays)};
 }
 
 double ReceivedLight::hidden_sky(const Place& place) const {
@@ -143,12 +144,12 @@ ReceivedLight::Sum ReceivedLight::from_sky(const Place& place) const {
     if (resolved_->environment.empty()) return {};
     const Vec3 sky = resolved_->settings.environment.intensity *
                      resolved_->environment.irradiance_over_pi(resolved_->R_env_world * place.normal);
-    const double all = brightness_of(sky);
-    return {all, all > 0 && hides_sky_ ? all * (1 - hidden_sky(place)) : all};
+    const Vec3d all = sky.cast<double>();
+    const bool is_hidden = hides_sky_ && !scene_.empty() && brightness_of(all) > 0;
+    return {all, is_hidden ? Vec3d(all * (1 - hidden_sky(place))) : all};
 }
 
-float ReceivedLight::part_at(const Vec3d& place, const Vec3d& normal, uint32_t number) const {
-    if (scene_.empty()) return 1;
+ReceivedLight::Sum ReceivedLight::from_all(const Vec3d& place, const Vec3d& normal, uint32_t number) const {
     const Place at{place, ((place - scene_.centre()) / scene_.unit()).cast<float>(), normal.cast<float>(),
                    pcg_hash(number)};
     Sum sum = from_sky(at);
@@ -157,7 +158,18 @@ float ReceivedLight::part_at(const Vec3d& place, const Vec3d& normal, uint32_t n
         sum.all += own.all;
         sum.arrives += own.arrives;
     }
-    return sum.all > 0 ? float(sum.arrives / sum.all) : 1.0f;
+    return sum;
+}
+
+float ReceivedLight::part_at(const Vec3d& place, const Vec3d& normal, uint32_t number) const {
+    if (scene_.empty()) return 1;
+    const Sum sum = from_all(place, normal, number);
+    const double all = brightness_of(sum.all);
+    return all > 0 ? float(brightness_of(sum.arrives) / all) : 1.0f;
+}
+
+Vec3 ReceivedLight::light_at(const Vec3d& place, const Vec3d& normal, uint32_t number) const {
+    return from_all(place, normal, number).arrives.cast<float>();
 }
 
 }  // namespace easypbr::render

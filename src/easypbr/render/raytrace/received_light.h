@@ -18,8 +18,8 @@ class ReceivedLight final : public PlaceLight {
   public:
     /// What hides light; it must live as long as parts are asked for.
     struct Surfaces {
-        const DrawList& list;
-        uint64_t generation;  ///< ShadowMaps::casters_generation()
+        const DrawList& list;  ///< empty: nothing hides light
+        uint64_t generation;   ///< ShadowMaps::casters_generation()
         const Primitives& primitives;
         bool hide_sky;  ///< else lamps alone
     };
@@ -27,12 +27,13 @@ class ReceivedLight final : public PlaceLight {
     void update(const Frame& frame, const Surfaces& surfaces);
 
     float part_at(const Vec3d& place, const Vec3d& normal, uint32_t number) const override;
+    Vec3 light_at(const Vec3d& place, const Vec3d& normal, uint32_t number) const override;
     uint64_t generation() const override { return generation_; }
 
   private:
-    /// Irradiance, and what arrives of it.
+    /// Light that a white matt surface reflects: all of a lamp or the sky, and what arrives.
     struct Sum {
-        double all = 0, arrives = 0;
+        Vec3d all{0, 0, 0}, arrives{0, 0, 0};
     };
     /// Of a place in the frame of the rays.
     struct Place {
@@ -42,6 +43,7 @@ class ReceivedLight final : public PlaceLight {
     };
     Sum from_lamp(const ResolvedLight& light, const Place& place) const;
     Sum from_sky(const Place& place) const;
+    Sum from_all(const Vec3d& place, const Vec3d& normal, uint32_t number) const;
     /// The part of the sky's light that the casters hide.
     double hidden_sky(const Place& place) const;
     double left(const Place& place, const Vec3& direction, double distance) const;

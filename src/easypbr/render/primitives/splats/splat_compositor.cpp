@@ -22,11 +22,15 @@ void copy_tile(std::span<const float> from, Vec2i size, float missing, const Spl
 
 }  // namespace
 
-bool SplatCompositor::resorts(const Frame& frame) {
-    return frame.resolved->settings.splats.resort;
+void SplatCompositor::begin(const Frame& frame, const std::vector<const DrawItem*>& items,
+                            const SplatSet::Finish& finish) {
+    settings_ = frame.resolved->settings.splats;
+    const Mat4d& P = frame.clip_from_view;
+    axis_ = {float(P(2, 2)), float(P(2, 3)), float(P(3, 2)), float(P(3, 3))};
+    set_.begin(view_of(frame), items, finish);
 }
 
-void SplatCompositor::blend(const Limits& limits, const std::function<void(const SplatTile&)>& take) {
+void SplatCompositor::blend(const Limits& limits, const Take& take, bool sums_positions) {
     set_.for_each_tile([&](int column, int row, std::span<const uint32_t> places) {
         thread_local SplatTile tile;
         tile.left = column * SplatTile::size;
@@ -34,10 +38,15 @@ void SplatCompositor::blend(const Limits& limits, const std::function<void(const
         tile.clear();
         tile.is_limited = !limits.farthest.empty() || !limits.nearest.empty();
         if (tile.is_limited) {
+            constexpr float no_limit = std::numeric_limits<float>::infinity();
             copy_tile(limits.farthest, size(), 0, tile, tile.farthest);
-            copy_tile(limits.nearest, size(), std::numeric_limits<float>::infinity(), tile, tile.nearest);
+            copy_tile(limits.nearest, size(), no_limit, tile, tile.nearest);
+            std::ranges::replace(tile.farthest, 0.0f, -no_limit);
         }
-        resorts_ ? tile.blend_resorted(set_.splats(), places) : tile.blend(set_.splats(), places);
+        tile.is_soft = settings_.soft;
+        tile.sums_positions = sums_positions;
+        tile.axis = axis_;
+        settings_.resort ? tile.blend_resorted(set_.splats(), places) : tile.blend(set_.splats(), places);
         take(tile);
     });
 }

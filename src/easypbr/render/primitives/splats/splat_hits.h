@@ -1,4 +1,4 @@
-// Splats where rays meet them: they shine in their colours.
+// Splats where rays meet them: they shine in their colours, or as they are lit.
 #pragma once
 
 #include "easypbr/render/drawables/draw_list.h"
@@ -13,14 +13,24 @@ namespace easypbr::render {
 class SplatHits final : public HitSurface {
   public:
     /// The item must outlive this, and so must what darkens it.
-    SplatHits(const DrawItem& item, const DisplayTone& tone, SplatLight& light)
-        : item_(item), tone_(tone), light_(light), parts_(light.parts_of(item)) {}
+    SplatHits(const DrawItem& item, const ResolvedSettings& resolved, SplatLight& light)
+        : item_(item),
+          tone_(display_tone(resolved)),
+          light_(light),
+          are_lit_(SplatLight::relights(resolved)),
+          parts_(light.parts_of(item, are_lit_)) {}
     void shade(std::span<const native::ElementHit> hits, const native::HitSurfaces& surfaces) const override;
 
   private:
+    struct Shown {
+        Vec3 albedo, emission;
+    };
+    Shown shown(Eigen::Index splat, const Vec3& normal) const;
+
     const DrawItem& item_;
     DisplayTone tone_;
     const SplatLight& light_;
+    bool are_lit_;
     std::shared_ptr<SplatLight::Parts> parts_;
 };
 

@@ -1,12 +1,14 @@
 #include "easypbr/render/primitives/splats/splat_primitive.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <limits>
 #include <map>
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/native/shaders.h"
 #include "easypbr/render/primitives/overlay_depths.h"
 #include "easypbr/render/primitives/splats/splat_hits.h"
 #include "easypbr/scene/resolve.h"
@@ -42,7 +44,10 @@ void add_color(const SplatProjector& projector, ProjectedSplat& splat) {
     projector.color(Eigen::Index(splat.index), splat);
 }
 
-SurfacePixel surface_of(const Frame& frame, const SplatCompositor& compositor, uint32_t place, int x, int y) {
+/// The surface of a tile's pixel, which has one.
+SurfacePixel surface_of(const Frame& frame, const SplatCompositor& compositor, const SplatTile& tile,
+                        size_t in_tile, int x, int y) {
+    const uint32_t place = tile.median[in_tile];
     const ProjectedSplat& splat = compositor.splat(place);
     const DrawItem& item = compositor.item_of(place);
     SurfacePixel pixel;
@@ -53,11 +58,46 @@ SurfacePixel surface_of(const Frame& frame, const SplatCompositor& compositor, u
     pixel.kind = item.kind;
     pixel.depth = splat.depth + splat.depth_x * (float(x) + 0.5f - splat.x) +
                   splat.depth_y * (float(y) + 0.5f - splat.y);
+    if (tile.sums_positions)
+        pixel.depth = tile.axis.depth_at(tile.positions[in_tile] / (1 - tile.through[in_tile]));
     pixel.object = uint32_t(item.object - frame.scene->objects.data());
     pixel.element = splat.index;
     pixel.is_point = true;
     return pixel;
 }
+
+/// Colours that are displayed of radiance.
+class LitColors {
+  public:
+    explicit LitColors(size_t count) : count_(count) {
+        constexpr auto step = size_t(native::stream_alignment);
+        const size_t room = (count + step - 1) / step * step;
+        for (int c = 0; c < 3; ++c) {
+            radiance_[size_t(c)].assign(room, 0);
+            color_[size_t(c)].assign(room, 0);
+        }
+    }
+    void set_radiance(size_t i, const Vec3& radiance) {
+        for (int c = 0; c < 3; ++c) radiance_[size_t(c)][i] = radiance[c];
+    }
+    void display(const void* uniforms) {
+        native::display_color_stream stream;
+        for (int c = 0; c < 3; ++c) {
+            stream.v_radiance[c] = radiance_[size_t(c)].data();
+            stream.o_color[c] = color_[size_t(c)].data();
+        }
+        native::run(uniforms, stream, int(count_));
+    }
+    void show(size_t i, ProjectedSplat& splat) const {
+        splat.red = color_[0][i];
+        splat.green = color_[1][i];
+        splat.blue = color_[2][i];
+    }
+
+  private:
+    size_t count_;
+    std::array<std::vector<float>, 3> radiance_, color_;
+};
 
 /// Linear display light, premultiplied. Splats are blended as they are encoded, and what they are together is
 /// blended with the picture as light.
@@ -101,12 +141,16 @@ void SplatPrimitive::add_mean(const Frame& frame, DrawItems items, std::span<con
                       });
     // What is written hides nothing of what is still to be blended.
     const std::vector<float> farthest(hides.begin(), hides.end());
-    compositor_.blend({farthest, {}}, [&](const SplatTile& tile) {
-        for_each_pixel(tile, frame.whole(), [&](int x, int y, size_t place) {
-            if (tile.median[place] == SplatTile::no_splat) return;
-            writer.put(writer.index(x, y), surface_of(frame, compositor_, tile.median[place], x, y));
+    const auto put = [&](const SplatTile& tile) {
+        for_each_pixel(tile, frame.whole(), [&](int x, int y, size_t in_tile) {
+            if (tile.median[in_tile] == SplatTile::no_splat) return;
+            writer.put(writer.index(x, y), surface_of(frame, compositor_, tile, in_tile, x, y));
         });
-    });
+    };
+    if (frame.resolved->settings.splats.depth == SplatDepth::expected)
+        compositor_.blend_with_positions({farthest, {}}, put);
+    else
+        compositor_.blend({farthest, {}}, put);
 }
 
 void SplatPrimitive::draw_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
@@ -139,8 +183,35 @@ ShadowShape SplatPrimitive::shadow_shape(const DrawItem& item) {
 }
 
 SplatSet::Finish SplatPrimitive::colors(const Frame& frame, const std::vector<const DrawItem*>& items) {
+    const bool are_lit = SplatLight::relights(*frame.resolved) && light_.light();
+    return are_lit ? lit_colors(frame, items) : own_colors(frame, items);
+}
+
+SplatSet::Finish SplatPrimitive::lit_colors(const Frame& frame, const std::vector<const DrawItem*>& items) {
     std::map<const DrawItem*, std::shared_ptr<SplatLight::Parts>> parts;
-    for (const DrawItem* item : items) parts[item] = light_.parts_of(*item);
+    for (const DrawItem* item : items) parts[item] = light_.parts_of(*item, true);
+    const DisplayTone tone = display_tone(*frame.resolved);
+    native::Inputs inputs;
+    inputs.features.push_back(tone_feature(tone.tone_operator));
+    inputs.set("u_exposure", tone.exposure);
+    const std::shared_ptr<const void> uniforms =
+        native::stream_uniforms(native::Stream::display_color, inputs);
+    return [&frame, parts, uniforms, light = light_.light()](const SplatProjector&, const DrawItem& item,
+                                                             std::span<ProjectedSplat> splats) {
+        SplatLight::Parts& own = *parts.at(&item);
+        LitColors colors(splats.size());
+        for (size_t k = 0; k < splats.size(); ++k) {
+            const auto i = Eigen::Index(splats[k].index);
+            colors.set_radiance(k, own.lit(*light, item, i, towards_camera(frame, item, i)));
+        }
+        colors.display(uniforms.get());
+        for (size_t k = 0; k < splats.size(); ++k) colors.show(k, splats[k]);
+    };
+}
+
+SplatSet::Finish SplatPrimitive::own_colors(const Frame& frame, const std::vector<const DrawItem*>& items) {
+    std::map<const DrawItem*, std::shared_ptr<SplatLight::Parts>> parts;
+    for (const DrawItem* item : items) parts[item] = light_.parts_of(*item, false);
     return [&frame, parts, light = light_.light()](const SplatProjector& projector, const DrawItem& item,
                                                    std::span<ProjectedSplat> splats) {
         SplatLight::Parts* const own = parts.at(&item).get();
@@ -171,7 +242,7 @@ void SplatPrimitive::add_to(RayGeometry& geometry, const DrawItem& item) {
 
 std::unique_ptr<HitSurface> SplatPrimitive::hit_surface(const ResolvedSettings& resolved,
                                                         const DrawItem& item) {
-    return std::make_unique<SplatHits>(item, display_tone(resolved), light_);
+    return std::make_unique<SplatHits>(item, resolved, light_);
 }
 
 void SplatPrimitive::find_limits(const OverlayStep& step) {

@@ -1,4 +1,4 @@
-// 3D Gaussian splats: into the overlay, unlit, blended in the order of their depths and hidden by surfaces;
+// 3D Gaussian splats: into the overlay, blended in the order of their depths and hidden by surfaces;
 // as surfaces into the G-buffer.
 #pragma once
 
@@ -11,10 +11,10 @@
 namespace easypbr::render {
 
 /// Splats are blended natively on every device; where the overlay is a texture they are uploaded. Their
-/// colours pass neither light nor tone curve. A splat is hidden where a surface is nearer than it is densest;
+/// colours pass neither light nor tone curve, unless they are relit. Surfaces hide what is behind them;
 /// of surfaces that light passes some splats are before and others behind. As surfaces (DrawList::
-/// as_surfaces()) splats are where half of the light is stopped: the depth, normal and index of the splat
-/// that does it.
+/// as_surfaces()) splats are where half of the light is stopped: the normal and index of the splat that does
+/// it, and its depth or the expected one.
 class SplatPrimitive final : public Primitive {
   public:
     DrawMode mode() const override { return DrawMode::splats; }
@@ -44,8 +44,10 @@ class SplatPrimitive final : public Primitive {
     using Limits = SplatCompositor::Limits;
 
     void begin(const Frame& frame, DrawItems items, const GBuffer& targets, const OverlayStep& step);
-    /// Gives splats the colours that are seen of them, darkened by what hides light from them.
+    /// Gives splats the colours that are seen of them, darkened by what hides light from them, or lit.
     SplatSet::Finish colors(const Frame& frame, const std::vector<const DrawItem*>& items);
+    SplatSet::Finish own_colors(const Frame& frame, const std::vector<const DrawItem*>& items);
+    SplatSet::Finish lit_colors(const Frame& frame, const std::vector<const DrawItem*>& items);
     /// Blends up to the layer that is next, or to what others draw before it.
     void draw_behind(const GBuffer& targets, const OverlayStep& step);
     void draw_front(const GBuffer& targets, const OverlayStep& step);

@@ -13,6 +13,8 @@ constexpr double low_pass = 0.3;
 /// The projection is replaced by its derivative, which is far off outside of the picture: beyond this part
 /// of its half size the derivative is that at the border (Kerbl et al. 2023).
 constexpr double derivative_limit = 1.3;
+/// Standard deviation of the depth of a flat splat, in its depth: a rounding.
+constexpr double least_deviation = 1e-6;
 
 /// A centre in normalised device coordinates of the frame, kept to what the whole picture shows and a little
 /// more: the same for all tiles of a picture.
@@ -113,6 +115,11 @@ bool SplatProjector::widen(const Mat3& axes, ProjectedSplat& splat) const {
     const double x_depth = own.row(0).dot(own.row(2)), y_depth = own.row(1).dot(own.row(2));
     splat.depth_x = float((yy * x_depth - own_xy * y_depth) / area);
     splat.depth_y = float((xx * y_depth - own_xy * x_depth) / area);
+    // What is left of its variance.
+    const double along =
+        own.row(2).squaredNorm() - double(splat.depth_x) * x_depth - double(splat.depth_y) * y_depth;
+    splat.sharpness =
+        float(1 / std::max(std::sqrt(std::max(0.0, along)), double(splat.depth) * least_deviation));
     // Where its opacity falls to the least that is seen.
     const double farthest = 2 * std::log(double(splat.opacity) / double(least_splat_alpha));
     splat.half_width = float(std::sqrt(farthest * xx));

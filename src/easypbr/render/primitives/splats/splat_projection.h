@@ -25,7 +25,9 @@ struct alignas(64) ProjectedSplat {
     float depth;                    ///< of its mean, as GBuffer::depth has it
     float depth_x, depth_y;         ///< change of the depth, per pixel
     float half_width, half_height;  ///< of the box, in pixels, outside of which it is not seen
-    uint32_t index;                 ///< of the vertex
+    /// Inverse of the standard deviation of its density along a pixel's ray, per unit of depth.
+    float sharpness;
+    uint32_t index;  ///< of the vertex
 };
 
 /// What splats are projected by.

@@ -51,6 +51,25 @@ Floats falling_exp(Floats x) {
     return power * std::bit_cast<Floats>(Ints((whole + 127) << 23));
 }
 
+/// Standard deviations from where a splat is densest, beyond which there is nothing of it: 1/4000.
+constexpr float reach = 3.5f;
+
+/// The part of a normal distribution below a number of standard deviations.
+float normal_cdf(float deviations) {
+    return 0.5f * std::erfc(deviations * -0.70710678f);
+}
+
+/// The opacity of what a splat has between two limits, at these numbers of standard deviations along the ray.
+/// Its density is a Gaussian there, and its opacity that of a medium of this density, so that both parts of a
+/// splat that is cut let through together what the whole one does.
+float cut_opacity(float opacity, float to_farthest, float to_nearest) {
+    const float part = normal_cdf(to_farthest) - normal_cdf(to_nearest);
+    return -std::expm1(part * std::log1p(-opacity));
+}
+
+/// To first order a large splat reaches behind the camera or beyond all: no farther than this times its mean.
+constexpr float farthest_part = 0.1f;
+
 /// First and one past the last pixel of a tile whose centres lie in [low, high] of the frame.
 std::array<int, 2> tile_span(float low, float high, int first) {
     const auto clamped = [](float pixel) { return int(std::clamp(pixel, 0.0f, float(SplatTile::size))); };
@@ -65,6 +84,7 @@ void SplatTile::clear() {
     green.fill(0);
     blue.fill(0);
     through.fill(1);
+    positions.fill(0);
     median.fill(no_splat);
 }
 
@@ -94,18 +114,32 @@ void SplatTile::blend(const ProjectedSplat& splat, uint32_t place) {
             const Floats power = (0.5f * splat.xx * dx + mixed) * dx + own;
             Floats light = load_pixels(&through[at]);
             Ints seen = (power <= farthest_power) & (light >= least_splat_transmittance);
+            Ints is_cut = {};
+            Floats to_farthest = {}, to_nearest = {}, depth = {};
+            if (is_limited || sums_positions) depth = splat.depth_x * dx + (splat.depth + splat.depth_y * dy);
             if (is_limited) {
-                const Floats depth = splat.depth_x * dx + (splat.depth + splat.depth_y * dy);
-                seen &= (load_pixels(&farthest[at]) <= depth) & (load_pixels(&nearest[at]) > depth);
+                to_farthest = (depth - load_pixels(&farthest[at])) * splat.sharpness;
+                to_nearest = (depth - load_pixels(&nearest[at])) * splat.sharpness;
+                const float margin = is_soft ? reach : 0;
+                seen &= (to_farthest >= -margin) & (to_nearest < margin);
+                is_cut = seen & ((to_farthest < margin) | (to_nearest >= -margin));
             }
             if (!any_set(seen)) continue;
             // Beyond these bounds are only pixels that are not seen, and rounding.
             const Floats kept = smaller(power > 0 ? power : same_in_all(0), same_in_all(6));
-            const Floats alpha = smaller(splat.opacity * falling_exp(kept), same_in_all(most_splat_alpha));
+            Floats alpha = smaller(splat.opacity * falling_exp(kept), same_in_all(most_splat_alpha));
+            if (any_set(is_cut))
+                for (int i = 0; i < width; ++i)
+                    if (is_cut[i]) alpha[i] = cut_opacity(alpha[i], to_farthest[i], to_nearest[i]);
             const Floats part = seen ? light * alpha : same_in_all(0);
             store_pixels(&red[at], load_pixels(&red[at]) + part * splat.red);
             store_pixels(&green[at], load_pixels(&green[at]) + part * splat.green);
             store_pixels(&blue[at], load_pixels(&blue[at]) + part * splat.blue);
+            if (sums_positions) {
+                const Floats least = same_in_all(farthest_part * splat.depth);
+                const Floats position = axis.position_at(depth > least ? depth : least);
+                store_pixels(&positions[at], load_pixels(&positions[at]) + part * position);
+            }
             const Floats rest = light - part;
             store_pixels(&through[at], rest);
             const Ints crosses = (light >= 0.5f) & (rest < 0.5f);
@@ -151,12 +185,22 @@ void SplatTile::blend_resorted(std::span<const ProjectedSplat> splats, std::span
         for (const InPixel& one : found) {
             float& light = through[at];
             if (light < least_splat_transmittance) break;
-            if (is_limited && !(farthest[at] <= one.depth && nearest[at] > one.depth)) continue;
             const ProjectedSplat& splat = splats[one.place];
-            const float part = light * one.alpha, rest = light - part;
+            float alpha = one.alpha;
+            if (is_limited) {
+                const float to_farthest = (one.depth - farthest[at]) * splat.sharpness,
+                            to_nearest = (one.depth - nearest[at]) * splat.sharpness,
+                            margin = is_soft ? reach : 0;
+                if (!(to_farthest >= -margin && to_nearest < margin)) continue;
+                if (to_farthest < margin || to_nearest >= -margin)
+                    alpha = cut_opacity(alpha, to_farthest, to_nearest);
+            }
+            const float part = light * alpha, rest = light - part;
             red[at] += part * splat.red;
             green[at] += part * splat.green;
             blue[at] += part * splat.blue;
+            if (sums_positions)
+                positions[at] += part * axis.position_at(std::max(one.depth, farthest_part * splat.depth));
             if (light >= 0.5f && rest < 0.5f) median[at] = one.place;
             light = rest;
         }
