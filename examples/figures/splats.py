@@ -70,8 +70,8 @@ def garden(blades: int = 14000) -> Mesh:
 def draw(data: pathlib.Path | None, scale: float) -> NDArray[Any]:
     scene = Scene()
     scene.show(garden(), "garden")
-    ball = placed(shapes.sphere(0.32), 0.55, 0.3, 0.55)
-    ball.material = Material(base_color="#f0f0f0", metallic=1, roughness=0.15)
+    ball = placed(shapes.sphere(0.34, 128), 0.6, 0.34, 0.6)
+    ball.material = Material(base_color="white", roughness=0, transmission=1, ior=1.5, thickness=0.68)
     pot = placed(shapes.teapot(0.9), -0.3, 0.33, -0.1, 35)
     pot.material = Material(base_color="#c8642c", roughness=0.35)
     scene.show(ball, "ball")

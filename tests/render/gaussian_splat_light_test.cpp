@@ -404,6 +404,45 @@ TEST(SplatsRelit, AreSeenInMirrors) {
     }
 }
 
+// A pixel at a silhouette before splats that hide the background shows the surface and the splats, in any
+// part, but nothing of the white background: each sample's light counts by what is seen of it.
+TEST(SplatsBehind, ShowNoBackgroundAtSilhouettes) {
+    Material green;
+    green.base_color = Vec3(0, 1, 0);
+    for (const bool unlit : {true, false})
+        for (const auto denoise : {Denoising::off, Denoising::filter}) {
+            green.unlit = unlit;
+            Mesh square = facing_square(0.5f, green);
+            square.set_T_parent_mesh(Eigen::Affine3d(Eigen::AngleAxisd(0.3, Vec3d::UnitZ())));
+            Scene scene;
+            scene.show(square, "square");
+            scene.show(sheets({-0.5f, -0.51f, -0.52f}, 0.99f, Vec3(1, 0, 0)), "sheets");
+            scene.set_environment(constant_environment(1));
+            app::Session session = plain_session(scene, 32);
+            Settings& s = session.settings();
+            s.environment.enabled = true;
+            s.shading.dielectric_f0 = 0;
+            s.path.enabled = true;
+            s.path.denoise = denoise;
+            s.splats.receive = false;
+            s.background.mode = BackgroundMode::color;
+            s.background.color = Vec3(1, 1, 1);
+            look_from(session, Vec3d(0, 0, 4), 20);
+            const Image image = render_linear(session, 16);
+            int mixed = 0;
+            for (int y = 0; y < 32; ++y)
+                for (int x = 0; x < 32; ++x) {
+                    const float* p = image.at<float>(x, y);
+                    // Half floats, and Schlick's rise at 10 degrees: 1e-7.
+                    ASSERT_NEAR(p[2], 0, 0.002f) << x << " " << y << " " << unlit << int(denoise);
+                    // 0.1: three deviations of the mean of 16 samples, each off by 0.13.
+                    ASSERT_NEAR(p[0] + p[1], 1, 0.1f) << x << " " << y << " " << unlit << int(denoise);
+                    mixed += p[0] > 0.1f && p[0] < 0.9f;
+                }
+            EXPECT_GT(mixed, 20);
+        }
+}
+
 /// Two flat splats that cross each other at right angles in the plane of the picture's middle column.
 Mesh crossed(bool other_first) {
     MeshData mesh;

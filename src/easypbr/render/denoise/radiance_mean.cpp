@@ -20,6 +20,9 @@ constexpr size_t grain = size_t(1) << 14;
 /// A ground that has faded further is as good as not there.
 constexpr float least_coverage = 1.0f / 64;
 
+/// Less than this of a frame is as good as nothing.
+constexpr float least_open = 1e-4f;
+
 /// Light of the scene falls on the pixel: its radiance is an estimate.
 bool is_noisy(uint8_t kind) {
     return is_lit_by_scene(kind) || kind == uint8_t(SurfaceKind::ground_catcher);
@@ -68,6 +71,8 @@ void RadianceMean::begin(Vec2i size, bool with_surfaces) {
     tiles_.begin(size);
     overlay_sum_.clear();
     coverage_.clear();
+    open_.clear();
+    weights_.clear();
     notes_surfaces_ = with_surfaces;
     const auto make = [&](Target& target) {
         if (target.size() != size) target = Target(gl::Format::rgba32f, size);
@@ -86,20 +91,38 @@ void RadianceMean::begin(Vec2i size, bool with_surfaces) {
 
 void RadianceMean::add(const Frame& frame, const PixelRect& area, const GBuffer& surfaces, bool see_through,
                        Transfers& transfers) {
+    begin_weights();
     ++frames_;
     sample_.download(area, transfers);
     const HeldPixels<Vec4> sample(sample_), sum(sum_);
     parallel_for(size_t(area.height), 16, [&](size_t row) {
         const int y = area.y + int(row);
-        for (int x = area.x; x < area.x + area.width; ++x)
-            if (!tiles_.has_ended(tiles_.tile_at(x, y))) *sum.at(x, y) += *sample.at(x, y);
+        for (int x = area.x; x < area.x + area.width; ++x) {
+            if (tiles_.has_ended(tiles_.tile_at(x, y))) continue;
+            const size_t i = index_of(x, y);
+            *sum.at(x, y) += open_part(i) * *sample.at(x, y);
+            if (!weights_.empty()) weights_[i].x() += open_part(i);
+        }
     });
-    if (!notes_surfaces_) return;
+    if (!notes_surfaces_) {
+        open_.clear();
+        return;
+    }
     for (const Target* target : {&surfaces.albedo, &surfaces.normal, &surfaces.material, &surfaces.depth})
         target->download(area, transfers);
     if (see_through && !frame.resolved->settings.background.shows_environment())
         coverage_.resize(noisy_.size(), Vec2::Zero());
     add_surfaces(frame, area, surfaces);
+    open_.clear();
+}
+
+void RadianceMean::begin_weights() {
+    if (open_.empty() || !weights_.empty()) return;
+    // Nothing was over the frames before.
+    weights_.assign(open_.size(), Vec2(float(frames_), 0));
+    if (!notes_surfaces_) return;
+    const auto color = color_.pixels<Vec4>();
+    for (size_t i = 0; i < weights_.size(); ++i) weights_[i].y() = color[i].w();
 }
 
 void RadianceMean::add_surfaces(const Frame& frame, const PixelRect& area, const GBuffer& surfaces) {
@@ -122,7 +145,8 @@ void RadianceMean::add_surfaces(const Frame& frame, const PixelRect& area, const
             const bool is_caught = !is_lit_by_scene(m[3]);
             if (!is_caught && of_frame.w() < least_coverage) continue;
             const Noisy kind = is_caught && over_nothing ? Noisy::coverage : Noisy::radiance;
-            Noisy& noted = noisy_[size_t(y) * size_t(sum_.width()) + size_t(x)];
+            const size_t i = index_of(x, y);
+            Noisy& noted = noisy_[i];
             if (noted == Noisy::nothing) noted = kind;
             if (noted != kind) continue;
             const Vec3 light =
@@ -137,8 +161,8 @@ void RadianceMean::add_surfaces(const Frame& frame, const PixelRect& area, const
                           : Vec3(reflectance(Vec3(a[0], a[1], a[2]) / 65535.0f, float(m[0]) / 255) *
                                  std::clamp(of_frame.w(), 0.0f, 1.0f));
             if (!coverage_.empty() && kind == Noisy::radiance)
-                coverage_[size_t(y) * size_t(sum_.width()) + size_t(x)] +=
-                    Vec2(of_frame.w(), of_frame.w() * of_frame.w());
+                coverage_[i] += Vec2(of_frame.w(), of_frame.w() * of_frame.w());
+            if (!weights_.empty()) weights_[i].y() += open_part(i);
             *seen.at(x, y) += Vec4(light.x(), light.y(), light.z(), bright * bright);
             *surface.at(x, y) +=
                 Vec4(direction.x(), direction.y(), direction.z(), orthographic ? *d : std::log2(*d));
@@ -150,13 +174,17 @@ void RadianceMean::add_surfaces(const Frame& frame, const PixelRect& area, const
 void RadianceMean::add_overlay(const Frame& frame, const Target& overlay, Transfers& transfers) {
     overlay.download(frame.whole(), transfers);
     overlay_sum_.resize(size_t(frame.size.prod()), Vec4::Zero());
+    open_.assign(overlay_sum_.size(), 1.0f);
     const auto pixels = overlay.pixels<Eigen::Vector4<Eigen::half>>();
     const PixelRect& area = overlay.area();
     parallel_for(size_t(area.height), 16, [&](size_t y) {
         const size_t from = y * size_t(area.width),
                      to = (y + size_t(area.y)) * size_t(frame.size.x()) + size_t(area.x);
-        for (size_t x = 0; x < size_t(area.width); ++x)
-            overlay_sum_[to + x] += pixels[from + x].cast<float>();
+        for (size_t x = 0; x < size_t(area.width); ++x) {
+            const Vec4 over = pixels[from + x].cast<float>();
+            overlay_sum_[to + x] += over;
+            open_[to + x] = std::clamp(1 - over.w(), 0.0f, 1.0f);
+        }
     });
 }
 
@@ -167,7 +195,7 @@ RadianceMean::TileError RadianceMean::error_of(size_t tile, float exposure) cons
     TileError error;
     for (int y = area.y; y < area.y + area.height; ++y)
         for (int x = area.x; x < area.x + area.width; ++x) {
-            const size_t i = size_t(y) * size_t(sum_.width()) + size_t(x);
+            const size_t i = index_of(x, y);
             const float count = color[i].w();
             if (!(count > 0)) continue;
             const float deviation = std::sqrt(variance_of(seen[i], count)),
@@ -215,6 +243,7 @@ const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
     if (denoising == Denoising::best) denoising = finds_oidn ? Denoising::oidn : Denoising::filter;
     const auto sum = sum_.pixels<Vec4>();
     const auto scale_of = [&](size_t i) {
+        if (!weights_.empty()) return weights_[i].x() > least_open ? 1 / weights_[i].x() : 0.0f;
         const size_t tile = tiles_.tile_at(int(i) % sum_.width(), int(i) / sum_.width());
         return 1 / float(tiles_.frames_of(tile, frames_));
     };
@@ -230,11 +259,12 @@ const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
     const Target& result = denoised(denoising, color_, transfers);
     const auto to = result.pixels<Vec4>(), seen = seen_.pixels<Vec4>(), color = color_.pixels<Vec4>();
     parallel_for(to.size(), grain, [&](size_t i) {
-        const Vec3 changed = to[i].head<3>() * color[i].w() - seen[i].head<3>();
+        const Vec3 changed = (to[i].head<3>() * color[i].w() - seen[i].head<3>()) *
+                             (weights_.empty() ? 1.0f : open_part_of_seen(i));
         to[i] = sum[i];
         if (noisy_[i] == Noisy::radiance) to[i].head<3>() += changed;
         if (noisy_[i] == Noisy::coverage) to[i].w() += luminance_of(changed);
-        if (!coverage.empty()) to[i].w() += coverage[i];
+        if (!coverage.empty()) to[i].w() += coverage[i] * (weights_.empty() ? 1.0f : open_part_of_seen(i));
         to[i] *= scale_of(i);
     });
     return result;

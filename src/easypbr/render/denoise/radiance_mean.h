@@ -26,7 +26,8 @@ class RadianceMean {
     /// light, since a shadow catcher is seen through them.
     void add(const Frame& frame, const PixelRect& area, const GBuffer& surfaces, bool see_through,
              Transfers& transfers);
-    /// Adds a frame's overlay, RGBA16F.
+    /// Adds a frame's overlay, RGBA16F, before its radiance: each frame counts by what its overlay leaves of
+    /// it.
     void add_overlay(const Frame& frame, const Target& overlay, Transfers& transfers);
 
     /// Of the frames so far: the standard error of what is displayed with an exposure, of white, that 95 of
@@ -39,13 +40,21 @@ class RadianceMean {
     void end_tiles(float noise, float exposure);
     const SampledTiles& tiles() const { return tiles_; }
 
-    /// The means so far, in host memory; they live until the next call of a member. Throws Error when a
-    /// denoiser that is asked for by name fails.
+    /// The means so far, in host memory; of radiance 0 where overlays leave none of it. They live until the
+    /// next call of a member. Throws Error when a denoiser that is asked for by name fails.
     const Target& mean(Denoising denoising, Transfers& transfers);
     /// Null where there was none.
     const Target* overlay_mean();
 
   private:
+    size_t index_of(int x, int y) const { return size_t(y) * size_t(sum_.width()) + size_t(x); }
+    float open_part(size_t pixel) const { return open_.empty() ? 1.0f : open_[pixel]; }
+    /// On the mean over the frames that seen_ is of.
+    float open_part_of_seen(size_t pixel) const {
+        const float count = color_.pixels<Vec4>()[pixel].w();
+        return count > 0 ? weights_[pixel].y() / count : 0.0f;
+    }
+    void begin_weights();
     void add_surfaces(const Frame& frame, const PixelRect& area, const GBuffer& surfaces);
     /// Standard errors of what is displayed, over the pixels of a tile that show a surface.
     struct TileError {
@@ -76,6 +85,10 @@ class RadianceMean {
     /// Of pixels that note radiance: sums of the coverage and of its square. Empty where it has no noise.
     std::vector<Vec2> coverage_;
     std::vector<Vec4> overlay_sum_;
+    /// Of the frame: what its overlay leaves of the light. Empty: all.
+    std::vector<float> open_;
+    /// Sums of that over all frames, and over those that seen_ is of; empty where all of it is left.
+    std::vector<Vec2> weights_;
     Target overlay_mean_;
     EdgeAvoidingFilter filter_;
     OpenImageDenoise oidn_;
