@@ -124,6 +124,9 @@ def test_splats_become_other_data(easypbr, splats):
     for step, attributes in (("--to-cloud", ["colors"]), ("--to-surfels", ["colors", "normals", "tangents"])):
         easypbr("convert", splats, "out.ply", step)
         assert info(easypbr, "out.ply")["attributes"] == attributes
+    easypbr("convert", splats, "out.ply", "--prune-opacity", "0.5", "--to-mesh", "64")
+    assert info(easypbr, "out.ply")["faces"] > 100
+    assert "from 8 to 512" in easypbr("convert", splats, "out.ply", "--to-mesh", "7", code=1).stderr
 
 
 def test_steps_are_for_meshes(easypbr, sphere, render, tmp_path):

@@ -121,6 +121,11 @@ def test_tools():
     # sqrt(2) standard deviations of the two longer axes; across the shortest.
     assert np.allclose(np.abs(surfels.N), [1, 0, 0]) and np.allclose(surfels.B, np.sqrt(2) * 0.2)
     assert np.allclose(np.linalg.norm(surfels.T, axis=1), np.sqrt(2) * 0.3)
+    surface = splats([[0, 0, 0]], 0.5, colors=[[0.2, 0.4, 0.6]]).to_mesh(resolution=32, level=0.5)
+    assert np.allclose(np.linalg.norm(surface.V, axis=1), 0.5 * np.sqrt(2 * np.log(2)), atol=0.01)
+    assert np.allclose(surface.C[:, :3], [0.2, 0.4, 0.6], atol=1e-4) and len(surface.F) > 100
+    with pytest.raises(ArgumentError, match="from 8 to 512"):
+        mesh.to_mesh(resolution=4)
     with pytest.raises(ArgumentError, match="nothing stays"):
         mesh.prune_splats(max_size=0.1)
     with pytest.raises(ArgumentError, match="mesh with splats"):

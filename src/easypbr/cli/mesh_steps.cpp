@@ -4,6 +4,7 @@
 #include <array>
 #include <utility>
 
+#include "easypbr/geometry/isosurface.h"
 #include "easypbr/geometry/place.h"
 #include "easypbr/geometry/remesh.h"
 #include "easypbr/geometry/repair.h"
@@ -166,6 +167,9 @@ void declare_splats(StepOptions& steps) {
     steps.number<int64_t>("--decimate-splats", "N", "Merge neighbouring splats until N are left",
                           [](const Mesh& mesh, int64_t count) { return decimate_splats(mesh, count); });
     steps.flag("--to-cloud", "Make a cloud of the means of splats", cloud_from_splats);
+    steps.number<int>(
+        "--to-mesh", "N", "Make a mesh of the surface of splats, N cells along the longest side",
+        [](const Mesh& mesh, int resolution) { return mesh_from_splats(mesh, {.resolution = resolution}); });
 }
 
 }  // namespace

@@ -13,14 +13,14 @@
 #include "easypbr/core/folder.h"
 #include "easypbr/core/interrupt.h"
 
-#ifdef __SANITIZE_THREAD__
+#ifdef EASYPBR_THREAD_SANITIZER
 #include <sanitizer/tsan_interface.h>
 #endif
 
 namespace easypbr {
 namespace {
 
-#ifdef __SANITIZE_THREAD__
+#ifdef EASYPBR_THREAD_SANITIZER
 constexpr bool sees_threads_of_tbb = false;
 #else
 constexpr bool sees_threads_of_tbb = true;
@@ -30,12 +30,12 @@ constexpr bool sees_threads_of_tbb = true;
 /// same for all loops, so that a thread need not read which one it is in.
 struct HandOver {
     static void give() {
-#ifdef __SANITIZE_THREAD__
+#ifdef EASYPBR_THREAD_SANITIZER
         __tsan_release(&place_);
 #endif
     }
     static void take() {
-#ifdef __SANITIZE_THREAD__
+#ifdef EASYPBR_THREAD_SANITIZER
         __tsan_acquire(&place_);
 #endif
     }

@@ -7,6 +7,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/suggest.h"
+#include "easypbr/geometry/isosurface.h"
 #include "easypbr/geometry/place.h"
 #include "easypbr/geometry/remesh.h"
 #include "easypbr/geometry/repair.h"
@@ -222,7 +223,19 @@ void bind_splats(MeshClass& mesh) {
             "A new mesh of at most `count` splats: neighbours are merged, those first that look most alike.")
         .def(
             "to_cloud", [](const Mesh& m) { return released([&] { return cloud_from_splats(m); }); },
-            "A new cloud of the means of splats, with their colours and, as alpha, opacities.");
+            "A new cloud of the means of splats, with their colours and, as alpha, opacities.")
+        .def(
+            "to_mesh",
+            [](const Mesh& m, int resolution, double level) {
+                return released([&] { return mesh_from_splats(m, {resolution, level}); });
+            },
+            nb::arg("resolution") = SplatMeshOptions{}.resolution,
+            nb::arg("level") = SplatMeshOptions{}.level,
+            "A new triangle mesh of the surface of splats: where their density, the sum of opacity exp(-d^2 "
+            "/ 2) with d "
+            "in standard deviations, is `level`, above 0 and below 1. `resolution`: cells of the grid along "
+            "the "
+            "longest side, 8 to 512. With the splats' colours, and their labels if they have some.");
 }
 
 }  // namespace
