@@ -11,7 +11,7 @@ from figure import main
 from splats import garden
 
 SPEC = """
-count = 8
+count = 5
 seed = 4
 writers = ["coco"]
 

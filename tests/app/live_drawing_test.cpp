@@ -7,6 +7,7 @@
 
 #include <filesystem>
 
+#include "easypbr/app/vertex_edits.h"
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/io/image/image_io.h"
@@ -167,6 +168,112 @@ TEST_F(LiveDrawingTest, RecordsACameraPathAndShowsItsFrames) {
     EXPECT_FALSE(live_.picture().shows_other());
     EXPECT_TRUE(same(live_.picture().image(), still()));
     fs::remove_all(folder);
+}
+
+/// Flat splats side by side along x at -2, -1, 0, 1, 2, each a quarter wide, their opacities from 0.95 down.
+Mesh five_splats() {
+    MeshData mesh;
+    Array3f::Dense V = Array3f::Dense::Zero(5, 3);
+    Array4f::Dense rotations = Array4f::Dense::Zero(5, 4);
+    Array1f::Dense opacities(5);
+    for (int i = 0; i < 5; ++i) {
+        V(i, 0) = float(i - 2);
+        rotations(i, 0) = 1;
+        opacities(i) = 0.95f - 0.05f * float(i);
+    }
+    mesh.V = std::move(V);
+    mesh.splats = {Array3f::Dense::Constant(5, 3, 0.25f), std::move(rotations), std::move(opacities),
+                   ArrayXf::Dense::Zero(5, 3)};
+    return Mesh(std::move(mesh));
+}
+
+class VertexEditsTest : public testing::Test {
+  protected:
+    VertexEditsTest() : session_(scene()), live_(session_) {
+        session_.settings().image.samples = 1;
+        session_.settings().camera.position = Vec3d(0, 0, 10);
+        session_.settings().camera.target = Vec3d(0, 0, 0);
+        live_.update({}, size, 0.02);
+    }
+    static Scene scene() {
+        Scene scene;
+        scene.show(five_splats(), "five");
+        return scene;
+    }
+    std::vector<float> xs() const {
+        const auto data = session_.scene().get("five").snapshot();
+        EXPECT_EQ(data->splats.scales.rows(), data->V.rows());
+        std::vector<float> xs;
+        for (Eigen::Index i = 0; i < data->V.rows(); ++i) xs.push_back(data->V(i, 0));
+        return xs;
+    }
+    /// As after a frame.
+    void note() { live_.update({}, size, 0.02); }
+    void click_middle() {
+        live_.update({at(Kind::move, middle), at(Kind::press, middle), at(Kind::release, middle)}, size,
+                     0.02);
+    }
+
+    Session session_;
+    LiveDrawing live_;
+};
+
+using Xs = std::vector<float>;
+
+TEST_F(VertexEditsTest, RemovesWhatWasClickedAndGivesItBack) {
+    click_middle();
+    ASSERT_EQ(live_.selection().object, "five");
+    ASSERT_TRUE(live_.selection().picked && !live_.selection().picked->is_face);
+    EXPECT_EQ(live_.selection().picked->element, 2);
+    remove_vertices(live_, {VertexFilter::Shape::picked});
+    note();
+    EXPECT_EQ(xs(), Xs({-2, -1, 1, 2}));
+    EXPECT_FALSE(live_.selection().picked);
+    EXPECT_THROW(remove_vertices(live_, {VertexFilter::Shape::picked}), ArgumentError);
+    remove_vertices(live_, {VertexFilter::Shape::faint, false, 0, 0.78});  // the last one has 0.75
+    note();
+    EXPECT_EQ(xs(), Xs({-2, -1, 1}));
+    live_.update({key('Z', true)}, size, 0.02);
+    EXPECT_EQ(xs(), Xs({-2, -1, 1, 2}));
+    live_.update({key('Z', true)}, size, 0.02);
+    EXPECT_EQ(xs(), Xs({-2, -1, 0, 1, 2}));
+    live_.update({key('Y', true)}, size, 0.02);
+    EXPECT_EQ(xs(), Xs({-2, -1, 1, 2}));
+}
+
+TEST_F(VertexEditsTest, RemovesByBallAndBox) {
+    click_middle();
+    remove_vertices(live_, {VertexFilter::Shape::ball, true, 1.5});
+    note();
+    EXPECT_EQ(xs(), Xs({-1, 0, 1}));
+    // The box is in the world: the object has been moved by one.
+    Mesh node = session_.scene().get("five");
+    node.set_T_parent_mesh(Eigen::Affine3d(Eigen::Translation3d(1, 0, 0)));
+    EXPECT_THROW(remove_vertices(live_, {VertexFilter::Shape::clip_box}), ArgumentError);
+    session_.settings().clip.box = {0.5, -1, -1, 3, 1, 1};
+    remove_vertices(live_, {VertexFilter::Shape::clip_box, false});
+    note();
+    EXPECT_EQ(xs(), Xs({-1}));
+    // Nothing would stay: nothing happens.
+    EXPECT_THROW(remove_vertices(live_, {VertexFilter::Shape::faint, false, 0, 1}), ArgumentError);
+    EXPECT_EQ(xs(), Xs({-1}));
+    // Looks that are changed afterwards stay when the removal is undone.
+    live_.edits().change_look("five", "visible", [](MeshData& d) { d.style.visible = false; });
+    note();
+    live_.edits().undo();
+    live_.edits().undo();
+    EXPECT_EQ(xs(), Xs({-1, 0, 1}));
+    EXPECT_EQ(session_.scene().get("five").T_parent_mesh().translation().x(), 1);
+}
+
+TEST_F(VertexEditsTest, IsForCloudsAndSplatsAlone) {
+    session_.scene().show(make_sphere(1, 8), "ball");
+    note();
+    live_.selection() = {"ball", "", {}};
+    EXPECT_FALSE(has_loose_vertices(*session_.scene().get("ball").snapshot()));
+    EXPECT_THROW(remove_vertices(live_, {VertexFilter::Shape::faint}), ArgumentError);
+    live_.selection() = {};
+    EXPECT_THROW(remove_vertices(live_, {VertexFilter::Shape::faint}), ArgumentError);
 }
 
 }  // namespace

@@ -4,9 +4,12 @@ import json
 import shutil
 import subprocess
 import tempfile
+import time
 
 import numpy as np
 import pytest
+
+import easypbr
 
 from client import Client, Frame, camera_of
 
@@ -117,6 +120,29 @@ def with_path(client):
     use(client, "Camera path", "Add key")
     tool_is(client, "Camera path", lambda rows: "Key 2, at 1.00 s" in rows and "Play" in rows)
     return poses
+
+
+def test_faint_splats_are_removed_and_given_back(view, connect):
+    means = [[float(x), 3, 0] for x in range(5)]
+    view.scene.show(easypbr.splats(means, 0.3, opacities=[0.9, 0.2, 0.8, 0.3, 0.7], colors=np.ones((5, 3))), "splats")
+    client = connect()
+    before = client.until_exact()
+    client.send("select", object="splats")
+    tool_is(client, "Object", lambda rows: "Remove" in rows)
+    use(client, "Object", "Remove", "true")
+    assert "Click a splat or a point." in tool_is(client, "Object", lambda rows: "least opacity" in rows)
+    use(client, "Object", "least opacity", "0.5")
+    use(client, "Object", "Remove the fainter")
+    client.until_exact(before.number)
+    assert view.scene.get("splats").V[:, 0].tolist() == [0, 2, 4]
+    use(client, "Object", "least opacity", "1")
+    use(client, "Object", "Remove the fainter")
+    client.until_told("notice", lambda notice: notice["error"] and "would stay" in notice["text"])
+    client.send("act", what="undo")
+    deadline = time.monotonic() + 10
+    while len(view.scene.get("splats").V) != 5 and time.monotonic() < deadline:
+        client.collect(0.05)
+    assert view.scene.get("splats").V[:, 0].tolist() == [0, 1, 2, 3, 4]
 
 
 def test_a_path_is_scrubbed_and_played(view, connect):

@@ -87,7 +87,7 @@ TEST(Fields, AreComplete) {
         {"outline", 8},
         {"path", 4},
         {"transparency", 2},
-        {"splats", 3},
+        {"splats", 6},
         {"tonemap", 3},
         {"material", 4 + 19 + 7 + 1},
         {"style", 25},

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "easypbr/scene/mesh.h"
+#include "easypbr/scene/mesh_arrays.h"
 
 namespace easypbr::app {
 
@@ -64,6 +65,16 @@ void Edits::change_look(const std::string& object, const std::string& property, 
     looks_[object][property] = change;
 }
 
+void Edits::change_data(const std::string& object, const LookChange& change) {
+    std::optional<Mesh> node = node_named(session_.scene(), object);
+    if (!node) return;
+    ObjectState before;
+    before.arrays = node->snapshot();
+    node->edit(change);
+    history_.know(object, before);
+    changed_data_.insert(object);
+}
+
 void Edits::keep_looks() {
     std::map<std::string, Mesh> present;
     for (const auto& [object, changes] : looks_) {
@@ -102,6 +113,8 @@ void Edits::note() {
     for (const std::string& name : std::exchange(changed_poses_, {}))
         if (const std::optional<Mesh> node = node_named(scene, name))
             changed[name].T_parent_mesh = node->T_parent_mesh();
+    for (const std::string& name : std::exchange(changed_data_, {}))
+        if (const std::optional<Mesh> node = node_named(scene, name)) changed[name].arrays = node->snapshot();
     LightStates lights;
     for (const std::string& name : std::exchange(changed_lights_, {}))
         lights[name] = light_named(scene, name);
@@ -114,6 +127,8 @@ void Edits::restore(const History::Step& step) {
         std::optional<Mesh> node = node_named(session_.scene(), name);
         if (!node) continue;
         if (object.T_parent_mesh) node->set_T_parent_mesh(*object.T_parent_mesh);
+        if (object.arrays)
+            node->edit([&arrays = *object.arrays](MeshData& data) { replace_arrays(data, arrays); });
         if (object.materials && object.style)
             node->edit([&look = object](MeshData& data) {
                 data.materials = *look.materials;

@@ -28,6 +28,10 @@ class Edits {
     /// Makes the changes again where other data are shown under a name than at the last call.
     void keep_looks();
 
+    /// Changes a node's arrays, once: other data under its name are left as they are. Throws what the change
+    /// throws.
+    void change_data(const std::string& object, const LookChange& change);
+
     /// Before an object is moved: undo() puts it back.
     void will_move(const std::string& object, const Mesh& node);
     /// Before a light of the scene is added, changed or removed.
@@ -50,7 +54,7 @@ class Edits {
     struct Shown;
     std::unique_ptr<Shown> shown_;
     /// Objects and lights that were changed since the last note().
-    std::set<std::string> changed_looks_, changed_poses_, changed_lights_;
+    std::set<std::string> changed_looks_, changed_poses_, changed_data_, changed_lights_;
 };
 
 }  // namespace easypbr::app

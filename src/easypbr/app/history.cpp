@@ -30,6 +30,7 @@ void History::note(const Settings& settings, const ObjectStates& changed, const 
     for (const auto& [name, object] : changed) {
         ObjectState& known = state.objects[name];
         if (object.T_parent_mesh) known.T_parent_mesh = object.T_parent_mesh;
+        if (object.arrays) known.arrays = object.arrays;
         if (!object.materials) continue;
         known.materials = object.materials;
         known.style = object.style;
@@ -48,6 +49,7 @@ void History::know(const std::string& object, const ObjectState& before) {
         if (!known.T_parent_mesh) known.T_parent_mesh = before.T_parent_mesh;
         if (!known.materials) known.materials = before.materials;
         if (!known.style) known.style = before.style;
+        if (!known.arrays) known.arrays = before.arrays;
     }
 }
 
@@ -68,6 +70,7 @@ History::Step History::go(size_t to) {
         const auto& pose = known->second.T_parent_mesh;
         if (pose && object.T_parent_mesh && pose->matrix() == object.T_parent_mesh->matrix())
             object.T_parent_mesh.reset();
+        if (known->second.arrays == object.arrays) object.arrays.reset();
         if (known->second.look != object.look) continue;
         object.materials.reset();
         object.style.reset();

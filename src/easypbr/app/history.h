@@ -32,6 +32,8 @@ struct ObjectState {
     std::optional<Style> style;
     std::map<std::string, LookChange> changes;
     uint64_t look = 0;  ///< tells looks of one object apart
+    /// Its arrays, where a person has removed some of them.
+    std::shared_ptr<const MeshData> arrays;
 };
 /// By the object's name.
 using ObjectStates = std::map<std::string, ObjectState>;

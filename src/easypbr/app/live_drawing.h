@@ -28,6 +28,19 @@ struct Selection {
     std::optional<Pick> picked;  ///< where the object was clicked
 };
 
+/// Which vertices of an object without faces and edges a person keeps.
+struct VertexFilter {
+    enum class Shape {
+        picked,    ///< the one that was clicked: Selection::picked
+        ball,      ///< those within `radius` of it
+        clip_box,  ///< those within clip.box of the settings
+        faint,     ///< splats of an opacity below `opacity`
+    } shape = Shape::picked;
+    bool keeps = false;  ///< those of the shape stay, else the others
+    double radius = 0;   ///< in the object's units
+    double opacity = 0;
+};
+
 /// The camera path that a person makes.
 struct PathPlan {
     PathEditor editor;
@@ -121,6 +134,8 @@ class LiveDrawing {
     std::string channel = "picture";
 
     Selection& selection() { return selection_; }
+    /// What the panels' next removal of vertices is of.
+    VertexFilter& vertex_filter() { return vertex_filter_; }
     Edits& edits() { return edits_; }
     Navigation& navigation() { return navigation_; }
     Notifications& notifications() { return notifications_; }
@@ -174,6 +189,7 @@ class LiveDrawing {
     RecordingForm form_;
     RecordingReport report_;
     Selection selection_;
+    VertexFilter vertex_filter_{.opacity = 0.1};
     PathPlan path_;
     LiveWishes wishes_;
     Clipboard clipboard_;

@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <set>
 
+#include "easypbr/app/vertex_edits.h"
 #include "easypbr/core/color.h"
+#include "easypbr/gui/imgui_widgets.h"
 #include "easypbr/gui/panels.h"
 #include "easypbr/gui/widgets.h"
 #include "easypbr/scene/material_table.h"
@@ -167,6 +169,8 @@ void object_panel(GuiState& state) {
         if (ImGui::Button(labels[i], ImVec2(third, 0))) state.manipulator.handle = Handle(i);
         if (chosen) ImGui::PopStyleColor();
     }
+    ImGuiWidgets widgets(ImGui::GetCurrentContext(), state.screen.scale, "object");
+    app::vertex_tool(widgets, state.live);
     if (ImGui::TreeNodeEx("Material", ImGuiTreeNodeFlags_DefaultOpen | ImGuiTreeNodeFlags_SpanAvailWidth)) {
         material_rows(state, *mesh);
         ImGui::TreePop();

@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "easypbr/app/light_edits.h"
+#include "easypbr/app/vertex_edits.h"
 #include "easypbr/core/color.h"
 #include "easypbr/remote/describe.h"
 #include "easypbr/remote/tool_panels.h"
@@ -130,6 +131,7 @@ void object_tool(RecordedWidgets& ui, ToolState& state) {
     const auto data = mesh->snapshot();
     if (data->materials.size() > 1)
         ui.text(fmt::format("{} materials: the first is shown, all are changed", data->materials.size()));
+    app::vertex_tool(ui, live);
     if (ui.section("Material", true)) material_rows(ui, live, mesh->material());
     if (ui.section("Style", false)) style_rows(ui, live, mesh->style());
 }
