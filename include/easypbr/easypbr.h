@@ -14,7 +14,6 @@
 #include "easypbr/core/math.h"
 #include "easypbr/core/picture.h"
 #include "easypbr/geometry/camera_shapes.h"
-#include "easypbr/geometry/isosurface.h"
 #include "easypbr/geometry/nearest.h"
 #include "easypbr/geometry/place.h"
 #include "easypbr/geometry/primitives.h"

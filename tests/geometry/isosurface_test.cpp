@@ -12,6 +12,7 @@
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/isosurface.h"
 #include "easypbr/geometry/repair.h"
+#include "easypbr/geometry/sample.h"
 #include "measure.h"
 
 namespace easypbr::isosurface_test {

@@ -87,3 +87,30 @@ def test_a_window_beside_the_program_calls_its_panels(display):
     wait_until(lambda: len(calls) > 3)
     view.close()
     assert not view.is_open
+
+
+def test_a_splat_that_was_clicked_is_removed_and_given_back(display):
+    from conftest import Window
+
+    scene = easypbr.Scene()
+    means = np.array([[x, 0.0, 0.0] for x in range(-2, 3)])
+    scene.show(easypbr.splats(means, 0.25, colors=np.full((5, 3), 0.6)), "row")
+    camera = {"position": (0, 0, 8), "target": (0, 0, 0), "fov_y_deg": 40}
+    view = easypbr.Viewer((800, 600), {"image": {"samples": 1}, "camera": camera}, scene=scene)
+    try:
+        window = Window(display, view)
+        view.show_panels("Object")
+        window.settle()
+        window.mouse("mousemove", 400, 300, "mousedown", 1, "mouseup", 1)
+        window.settle()
+        assert window.state["object"] == "row"
+        click(window, "object/Remove")
+        window.settle()
+        click(window, "object/Remove it")
+        window.settle()
+        assert scene.get("row").V[:, 0].tolist() == [-2, -1, 1, 2]
+        window.key("ctrl+z")
+        window.settle()
+        assert scene.get("row").V[:, 0].tolist() == [-2, -1, 0, 1, 2]
+    finally:
+        view.close()

@@ -66,4 +66,21 @@ Mesh decimate_splats(const Mesh& mesh, int64_t count);
 /// ArgumentError when the mesh has no splats.
 Mesh cloud_from_splats(const Mesh& mesh);
 
+struct SplatMeshOptions {
+    /// Cells along the longest side of the box of the splats, 8 to 512.
+    int resolution = 128;
+    /// The density on the surface, above 0 and below 1. One opaque splat becomes the ellipsoid of
+    /// sqrt(-2 ln level) standard deviations: of 1.55 by default.
+    double level = 0.3;
+};
+
+/// The surface of splats where their density, the sum of opacity exp(-d^T S^-1 d / 2) over all of them
+/// (Guedon and Lepetit, "SuGaR", 2024), is the level: outside of it is less. Vertices have the colours that
+/// all directions see, weighed by density, and the label of the splat that is densest there, where the mesh
+/// has labels. Splats count within three standard deviations, and those thinner than a cell are as thick as
+/// half of one. The grid covers the splats but for outliers, whose means lie far from the others. Takes 33
+/// bytes a sample. In parallel; does not depend on the number of threads. Throws ArgumentError when the mesh
+/// has no splats, an option is out of range, or the density is below the level everywhere.
+Mesh mesh_from_splats(const Mesh& mesh, const SplatMeshOptions& options = {});
+
 }  // namespace easypbr

@@ -117,7 +117,6 @@ void vertex_tool(Widgets& ui, LiveDrawing& live) {
         if (!(form.radius > 0) || form.radius > most) form.radius = most / 10;
         ui.slider("radius", form.radius, 0, most);
         filter_button(ui, live, "Remove it", {Shape::picked});
-        ui.same_line();
         filter_button(ui, live, "Remove around it", {Shape::ball, false, form.radius});
         ui.same_line();
         filter_button(ui, live, "Keep around it", {Shape::ball, true, form.radius});
@@ -126,7 +125,6 @@ void vertex_tool(Widgets& ui, LiveDrawing& live) {
     }
     if (!live.session().settings().clip.box.empty()) {
         filter_button(ui, live, "Remove in the clip box", {Shape::clip_box, false});
-        ui.same_line();
         filter_button(ui, live, "Keep in the clip box", {Shape::clip_box, true});
     }
     if (data->splats.empty()) return;

@@ -4,7 +4,6 @@
 #include <array>
 #include <utility>
 
-#include "easypbr/geometry/isosurface.h"
 #include "easypbr/geometry/place.h"
 #include "easypbr/geometry/remesh.h"
 #include "easypbr/geometry/repair.h"

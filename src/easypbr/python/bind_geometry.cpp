@@ -7,7 +7,6 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/suggest.h"
-#include "easypbr/geometry/isosurface.h"
 #include "easypbr/geometry/place.h"
 #include "easypbr/geometry/remesh.h"
 #include "easypbr/geometry/repair.h"
