@@ -266,6 +266,23 @@ TEST_F(VertexEditsTest, RemovesByBallAndBox) {
     EXPECT_EQ(session_.scene().get("five").T_parent_mesh().translation().x(), 1);
 }
 
+TEST_F(VertexEditsTest, LeavesWhatAProgramHasShownSince) {
+    live_.selection() = {"five", "", {}};
+    remove_vertices(live_, {VertexFilter::Shape::faint, false, 0, 0.93});
+    note();
+    EXPECT_EQ(xs(), Xs({-2}));
+    Mesh other = five_splats();
+    other.edit([](MeshData& data) {
+        Array3f::Dense V = data.V;
+        V.col(0).array() += 10;
+        data.V = std::move(V);
+    });
+    session_.scene().show(other, "five");
+    note();
+    live_.edits().undo();
+    EXPECT_EQ(xs(), Xs({8, 9, 10, 11, 12}));
+}
+
 TEST_F(VertexEditsTest, IsForCloudsAndSplatsAlone) {
     session_.scene().show(make_sphere(1, 8), "ball");
     note();

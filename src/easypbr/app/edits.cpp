@@ -21,6 +21,11 @@ std::optional<Light> light_named(const Scene& scene, const std::string& name) {
     return scene.light(name);
 }
 
+/// Whether a node has the arrays that a person left: a program may have shown others since.
+bool is_still(const Mesh& node, const std::shared_ptr<const MeshData>& left) {
+    return !left || node.snapshot()->V.revision() == left->V.revision();
+}
+
 ObjectState look_of(const Mesh& node) {
     const auto data = node.snapshot();
     ObjectState object;
@@ -127,7 +132,7 @@ void Edits::restore(const History::Step& step) {
         std::optional<Mesh> node = node_named(session_.scene(), name);
         if (!node) continue;
         if (object.T_parent_mesh) node->set_T_parent_mesh(*object.T_parent_mesh);
-        if (object.arrays)
+        if (object.arrays && is_still(*node, object.replaced))
             node->edit([&arrays = *object.arrays](MeshData& data) { replace_arrays(data, arrays); });
         if (object.materials && object.style)
             node->edit([&look = object](MeshData& data) {

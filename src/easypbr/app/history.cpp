@@ -71,6 +71,7 @@ History::Step History::go(size_t to) {
         if (pose && object.T_parent_mesh && pose->matrix() == object.T_parent_mesh->matrix())
             object.T_parent_mesh.reset();
         if (known->second.arrays == object.arrays) object.arrays.reset();
+        object.replaced = known->second.arrays;
         if (known->second.look != object.look) continue;
         object.materials.reset();
         object.style.reset();

@@ -34,6 +34,7 @@ struct ObjectState {
     uint64_t look = 0;  ///< tells looks of one object apart
     /// Its arrays, where a person has removed some of them.
     std::shared_ptr<const MeshData> arrays;
+    std::shared_ptr<const MeshData> replaced;  ///< of a step: the arrays that these stand in for
 };
 /// By the object's name.
 using ObjectStates = std::map<std::string, ObjectState>;
