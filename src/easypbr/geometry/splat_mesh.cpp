@@ -162,7 +162,7 @@ Mesh mesh_from_splats(const Mesh& mesh, const SplatMeshOptions& options) {
     charge_memory(grid.count() * bytes_a_sample, "the samples of the splats' density");
     const Mesh cloud = cloud_from_splats(mesh);
     const Field field(*source, *cloud.snapshot(), grid);
-    Isosurface surface = isosurface(field.density().value, grid, float(options.level));
+    const Isosurface surface = isosurface(field.density().value, grid, float(options.level));
     if (surface.F.empty())
         throw ArgumentError(
             fmt::format("mesh_from_splats: the density is nowhere above the level {}; the most is {:.3g}",
@@ -173,8 +173,8 @@ Mesh mesh_from_splats(const Mesh& mesh, const SplatMeshOptions& options) {
     result.T_parent_mesh = source->T_parent_mesh;
     result.label_map = source->label_map;
     add_looks(surface, field.density(), result);
-    result.V = std::move(surface.V);
-    result.F = std::move(surface.F);
+    result.V = surface.V;
+    result.F = surface.F;
     return Mesh(std::move(result));
 }
 
