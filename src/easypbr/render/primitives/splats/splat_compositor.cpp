@@ -42,6 +42,10 @@ void SplatCompositor::blend(const Limits& limits, const Take& take, bool sums_po
             copy_tile(limits.farthest, size(), 0, tile, tile.farthest);
             copy_tile(limits.nearest, size(), no_limit, tile, tile.nearest);
             std::ranges::replace(tile.farthest, 0.0f, -no_limit);
+            // Most tiles have no surface.
+            tile.is_limited =
+                std::ranges::any_of(tile.farthest, [](float depth) { return depth > -no_limit; }) ||
+                std::ranges::any_of(tile.nearest, [](float depth) { return depth < no_limit; });
         }
         tile.is_soft = settings_.soft;
         tile.sums_positions = sums_positions;

@@ -4,7 +4,6 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <numeric>
 #include <tuple>
 #include <utility>
 
@@ -18,6 +17,8 @@ struct Keyed {
 };
 
 constexpr size_t sort_block = 1 << 16;
+/// The entries of so many in tiles are counted, those of more estimated.
+constexpr size_t few_splats = 1 << 14;
 constexpr int digit_bits = 11, digit_count = 1 << digit_bits;
 
 size_t block_count(size_t count, size_t block) {
@@ -95,18 +96,17 @@ std::vector<uint32_t> front_to_back(std::span<const ProjectedSplat> splats,
     return order;
 }
 
-size_t SplatTiles::count_entries(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places,
-                                 Vec2i size) {
+size_t SplatTiles::estimated_entries(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places,
+                                     Vec2i size) {
+    // Of many splats some are looked at, evenly spread over the depths.
+    const size_t step = places.size() > few_splats ? 16 : 1;
     const int columns = tiles_across(size.x()), rows = tiles_across(size.y());
-    std::vector<size_t> counts(block_count(places.size(), sort_block));
-    parallel_chunks(places.size(), sort_block, [&](size_t begin, size_t end) {
-        size_t& count = counts[begin / sort_block];
-        for (size_t i = begin; i < end; ++i) {
-            const TileBox box = tile_box(splats[places[i]], columns, 0, rows);
-            count += size_t(std::max(0, box.x1 - box.x0)) * size_t(std::max(0, box.y1 - box.y0));
-        }
-    });
-    return std::accumulate(counts.begin(), counts.end(), size_t(0));
+    size_t count = 0;
+    for (size_t i = 0; i < places.size(); i += step) {
+        const TileBox box = tile_box(splats[places[i]], columns, 0, rows);
+        count += size_t(std::max(0, box.x1 - box.x0)) * size_t(std::max(0, box.y1 - box.y0));
+    }
+    return count * step;
 }
 
 void SplatTiles::bin(std::span<const ProjectedSplat> splats, std::span<const uint32_t> order, Vec2i size,

@@ -18,9 +18,9 @@ class SplatTiles {
   public:
     static constexpr int tile_size = 16;
 
-    /// How many entries the lists of the whole screen have.
-    static size_t count_entries(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places,
-                                Vec2i size);
+    /// About how many entries the lists of the whole screen have.
+    static size_t estimated_entries(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places,
+                                    Vec2i size);
 
     /// Makes the lists of the rows of tiles from `first_row` to before `end_row`, in the order of `order`.
     void bin(std::span<const ProjectedSplat> splats, std::span<const uint32_t> order, Vec2i size,

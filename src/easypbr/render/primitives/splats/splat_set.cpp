@@ -53,7 +53,7 @@ const DrawItem& SplatSet::item_of(uint32_t place) const {
 void SplatSet::for_each_tile(const std::function<void(int, int, std::span<const uint32_t>)>& body) {
     if (empty()) return;
     const int rows = (size_.y() + SplatTiles::tile_size - 1) / SplatTiles::tile_size;
-    const size_t bands = 1 + SplatTiles::count_entries(splats(), order_, size_) / most_entries;
+    const size_t bands = 1 + SplatTiles::estimated_entries(splats(), order_, size_) / most_entries;
     const int step = std::max(1, rows / int(std::min(bands, size_t(rows))));
     for (int first = 0; first < rows; first += step) {
         const int end = std::min(first + step, rows);
