@@ -78,9 +78,10 @@ struct SplatMeshOptions {
 /// (Guedon and Lepetit, "SuGaR", 2024), is the level: outside of it is less. Vertices have the colours that
 /// all directions see, weighed by density, and the label of the splat that is densest there, where the mesh
 /// has labels. Splats count within three standard deviations, and those thinner than a cell are as thick as
-/// half of one. The grid covers the splats but for outliers, whose means lie far from the others. Takes 33
+/// half of one. The grid covers the splats but for outliers, whose means lie far from the others. Takes 29
 /// bytes a sample. In parallel; does not depend on the number of threads. Throws ArgumentError when the mesh
-/// has no splats, an option is out of range, or the density is below the level everywhere.
+/// has no splats, an option is out of range, or the density is below the level everywhere,
+/// and FormatError when the samples take more than the machine's memory.
 Mesh mesh_from_splats(const Mesh& mesh, const SplatMeshOptions& options = {});
 
 }  // namespace easypbr

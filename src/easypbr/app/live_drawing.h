@@ -28,7 +28,7 @@ struct Selection {
     std::optional<Pick> picked;  ///< where the object was clicked
 };
 
-/// Which vertices of an object without faces and edges a person keeps.
+/// Which vertices of an object without faces and edges a person removes.
 struct VertexFilter {
     enum class Shape {
         picked,    ///< the one that was clicked: Selection::picked
@@ -36,7 +36,7 @@ struct VertexFilter {
         clip_box,  ///< those within clip.box of the settings
         faint,     ///< splats of an opacity below `opacity`
     } shape = Shape::picked;
-    bool keeps = false;  ///< those of the shape stay, else the others
+    bool keeps = false;  ///< those of the shape stay, and the others are removed
     double radius = 0;   ///< in the object's units
     double opacity = 0;
 };

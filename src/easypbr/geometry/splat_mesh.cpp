@@ -19,7 +19,26 @@ namespace {
 constexpr double splat_extent = 3;
 /// The least standard deviation, in cells.
 constexpr double thinnest_splat = 0.5;
-constexpr uint64_t bytes_a_sample = 33;
+constexpr uint64_t bytes_a_sample = 29;
+
+/// Semi-axes of a splat as columns.
+Mat3d semi_axes(const MeshData& mesh, Eigen::Index i, const Vec3d& lengths) {
+    const auto q = mesh.splats.rotations.row(i).cast<double>();
+    return Eigen::Quaterniond(q(0), q(1), q(2), q(3)).normalized().toRotationMatrix() * lengths.asDiagonal();
+}
+
+Vec3d scales_of(const MeshData& mesh, Eigen::Index i) {
+    return mesh.splats.scales.row(i).transpose().cast<double>();
+}
+
+/// Half of the box in which a splat counts.
+Vec3d half_box(const Mat3d& axes) {
+    return splat_extent * axes.rowwise().norm();
+}
+
+Vec3d mean_of(const MeshData& mesh, Eigen::Index i) {
+    return mesh.V.row(i).transpose().cast<double>();
+}
 
 /// What an evaluation needs of a splat.
 struct Kernel {
@@ -30,14 +49,10 @@ struct Kernel {
 };
 
 Kernel kernel_of(const MeshData& mesh, Eigen::Index i, double least_scale) {
-    const SplatArrays& splats = mesh.splats;
-    const auto q = splats.rotations.row(i).cast<double>();
-    const Mat3d axes = Eigen::Quaterniond(q(0), q(1), q(2), q(3)).normalized().toRotationMatrix();
-    const Vec3d scales = splats.scales.row(i).transpose().cast<double>().cwiseMax(least_scale);
-    const Mat3d long_axes = axes * scales.asDiagonal();
-    const Mat3d short_axes = axes * scales.cwiseInverse().asDiagonal();
-    return {mesh.V.row(i).transpose().cast<double>(), short_axes * short_axes.transpose(),
-            splat_extent * long_axes.rowwise().norm(), double(splats.opacities(i))};
+    const Vec3d scales = scales_of(mesh, i).cwiseMax(least_scale);
+    const Mat3d inverse_axes = semi_axes(mesh, i, scales.cwiseInverse());
+    return {mean_of(mesh, i), inverse_axes * inverse_axes.transpose(), half_box(semi_axes(mesh, i, scales)),
+            double(mesh.splats.opacities(i))};
 }
 
 /// Sums over the splats at each sample.
@@ -54,19 +69,12 @@ struct Density {
     std::vector<int32_t> label;  ///< of the densest
 };
 
-/// The samples along an axis within a range, cut to the grid.
-std::pair<int, int> samples_within(double low, double high, int count) {
-    return {int(std::ceil(std::clamp(low, 0.0, double(count)))),
-            int(std::floor(std::clamp(high, -1.0, double(count - 1))))};
-}
-
 SampleGrid grid_of(const MeshData& mesh, int resolution) {
     const Box3d means = trimmed_bounds(mesh.V);
     Box3d box;
     for (Eigen::Index i = 0; i < mesh.V.rows(); ++i) {
-        const Kernel kernel = kernel_of(mesh, i, 0);
-        if (!means.contains(kernel.mean)) continue;
-        box.extend(Box3d(kernel.mean - kernel.half, kernel.mean + kernel.half));
+        const Vec3d mean = mean_of(mesh, i), half = half_box(semi_axes(mesh, i, scales_of(mesh, i)));
+        if (means.contains(mean)) box.extend(Box3d(mean - half, mean + half));
     }
     SampleGrid grid;
     grid.step = box.sizes().maxCoeff() / resolution;
@@ -78,9 +86,9 @@ SampleGrid grid_of(const MeshData& mesh, int resolution) {
     return grid;
 }
 
-class Field {
+class DensityField {
   public:
-    Field(const MeshData& mesh, const MeshData& cloud, const SampleGrid& grid)
+    DensityField(const MeshData& mesh, const MeshData& cloud, const SampleGrid& grid)
         : mesh_(mesh), cloud_(cloud), grid_(grid), density_(grid.count(), !mesh.L.empty()) {
         find_slices();
         parallel_for(size_t(grid.size.z()), 1, [&](size_t z) {
@@ -91,12 +99,13 @@ class Field {
 
   private:
     Kernel kernel(int32_t i) const { return kernel_of(mesh_, i, thinnest_splat * grid_.step); }
+    /// First and last sample along an axis; those of the border stay empty.
     std::pair<int, int> range(const Kernel& kernel, int axis) const {
         const double at = (kernel.mean[axis] - grid_.corner[axis]) / grid_.step,
                      half = kernel.half[axis] / grid_.step;
-        // The samples of the border stay empty.
-        const auto [low, high] = samples_within(at - half, at + half, grid_.size[axis]);
-        return {std::max(low, 1), std::min(high, grid_.size[axis] - 2)};
+        const double last = grid_.size[axis] - 2;
+        return {int(std::ceil(std::clamp(at - half, 1.0, last + 1))),
+                int(std::floor(std::clamp(at + half, 0.0, last)))};
     }
     void find_slices() {
         by_slice_.resize(size_t(grid_.size.z()));
@@ -161,7 +170,7 @@ Mesh mesh_from_splats(const Mesh& mesh, const SplatMeshOptions& options) {
     const SampleGrid grid = grid_of(*source, options.resolution);
     charge_memory(grid.count() * bytes_a_sample, "the samples of the splats' density");
     const Mesh cloud = cloud_from_splats(mesh);
-    const Field field(*source, *cloud.snapshot(), grid);
+    const DensityField field(*source, *cloud.snapshot(), grid);
     const Isosurface surface = isosurface(field.density().value, grid, float(options.level));
     if (surface.F.empty())
         throw ArgumentError(

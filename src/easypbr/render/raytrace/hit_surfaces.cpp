@@ -42,6 +42,16 @@ native::HitSurfaces HitSurfaces::from(size_t first) {
     return to;
 }
 
+native::ElementHit native_hit(const RayHit& hit, float footprint) {
+    native::ElementHit element;
+    element.element = uint32_t(hit.element);
+    element.u = hit.u;
+    element.v = hit.v;
+    std::copy_n(hit.normal.data(), 3, element.normal);
+    element.footprint = footprint;
+    return element;
+}
+
 HitSurfaces evaluate(const RayScene& scene, std::span<const native::ElementHit> hits,
                      std::span<const int> surfaces) {
     HitSurfaces found(hits.size(), scene.extensions() != 0);
@@ -60,11 +70,7 @@ HitSurfaces evaluate(const RayScene& scene, std::span<const native::ElementHit> 
 }
 
 Vec3 emission_at(const RayScene& scene, const RayHit& hit) {
-    native::ElementHit element;
-    element.element = uint32_t(hit.element);
-    element.u = hit.u;
-    element.v = hit.v;
-    std::copy_n(hit.normal.data(), 3, element.normal);
+    const native::ElementHit element = native_hit(hit, 0);
     constexpr size_t room = native::stream_alignment;
     std::array<std::array<float, room>, 15> values;
     size_t next = 0;

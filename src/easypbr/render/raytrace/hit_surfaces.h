@@ -20,6 +20,9 @@ struct HitSurfaces {
     std::optional<PathExtensions> extensions;  ///< of those whose kind is extended
 };
 
+/// `footprint`: width of the ray there, world units.
+native::ElementHit native_hit(const RayHit& hit, float footprint);
+
 /// Evaluates the surfaces of hits, which are sorted by RayHit::surface; `surfaces` holds that of each.
 HitSurfaces evaluate(const RayScene& scene, std::span<const native::ElementHit> hits,
                      std::span<const int> surfaces);

@@ -364,16 +364,6 @@ bool PathTracer::is_caught(const Hit& hit, uint32_t depth, std::vector<Vec3>& ra
 
 namespace {
 
-native::ElementHit native_hit(const PathTracer::Hit& hit) {
-    native::ElementHit element;
-    element.element = uint32_t(hit.hit.element);
-    element.u = hit.hit.u;
-    element.v = hit.hit.v;
-    std::copy_n(hit.hit.normal.data(), 3, element.normal);
-    element.footprint = hit.footprint;
-    return element;
-}
-
 /// Adds a path at a surface to a batch.
 size_t add_path(const PathTracer::Hit& hit, const HitSurfaces& surfaces, size_t i, PathBatch& to) {
     const size_t at = to.count++;
@@ -398,7 +388,7 @@ PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth,
     std::vector<native::ElementHit> elements(hits.size());
     std::vector<int> order(hits.size());
     for (size_t i = 0; i < hits.size(); ++i) {
-        elements[i] = native_hit(hits[sorted[i]]);
+        elements[i] = native_hit(hits[sorted[i]].hit, hits[sorted[i]].footprint);
         order[i] = hits[sorted[i]].hit.surface;
     }
     const HitSurfaces surfaces = evaluate(*scene_, elements, order);
