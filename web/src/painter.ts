@@ -57,9 +57,11 @@ export class Painter {
     this.canvases.delete(canvas);
   }
 
-  /** Another connection: its pictures are numbered anew. */
+  /** Another connection or view: its pictures are numbered anew. What is on the canvas until one comes is not its own. */
   restart(): void {
     this.drawn = 0;
+    this.note({ exact: "false" });
+    this.store.update({ exact: false });
     this.still = { frame: 0, chunks: [] };
     this.file = { frame: 0, chunks: [] };
     this.inputs.clear();
@@ -119,12 +121,15 @@ export class Painter {
     picture.close();
   }
 
+  private note(values: Record<string, string>): void {
+    for (const canvas of this.canvases) Object.assign(canvas.dataset, values);
+  }
+
   private measure(header: FrameHeader): void {
     const exact = (header.flags & FLAG_EXACT) !== 0;
-    const note = (values: Record<string, string>) => this.canvases.forEach((canvas) => Object.assign(canvas.dataset, values));
-    note({ frame: String(header.frame), input: String(header.input), exact: String(exact) });
+    this.note({ frame: String(header.frame), input: String(header.input), exact: String(exact) });
     const codec = CODEC_NAMES[header.codec] ?? "";
-    if (header.kind === FRAME_MOVING) note({ moving: codec });
+    if (header.kind === FRAME_MOVING) this.note({ moving: codec });
     this.store.update({ exact, drawn: true, ...(header.kind === FRAME_MOVING && { codec }) });
     const sent = this.inputs.get(header.input);
     if (sent === undefined) return;
@@ -132,7 +137,7 @@ export class Painter {
     this.latencies.push(latency);
     if (this.latencies.length > 60) this.latencies.shift();
     // Without what the server waited and drew: on the way there, encoding, on the way here, decoding.
-    note({ latency: `${latency} ${latency - header.waitUs / 1000} ${header.encodeUs / 1000}` });
+    this.note({ latency: `${latency} ${latency - header.waitUs / 1000} ${header.encodeUs / 1000}` });
     for (const id of [...this.inputs.keys()]) if (id <= header.input) this.inputs.delete(id);
   }
 
