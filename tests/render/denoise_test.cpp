@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/luminance.h"
 #include "easypbr/render/denoise/edge_avoiding_filter.h"
 #include "easypbr/render/denoise/open_image_denoise.h"
 
@@ -35,7 +36,7 @@ struct Made {
         const float value = mean + noise(random);
         light.pixels<Vec4>()[i] =
             Vec4(value * reflectance.x(), value * reflectance.y(), value * reflectance.z(),
-                 std::pow(deviation * luminance_of(reflectance), 2.0f));
+                 std::pow(deviation * luminance(reflectance), 2.0f));
         surface.pixels<Vec4>()[i] = Vec4(normal.x(), normal.y(), normal.z(), -1) * float(frames);
         color.pixels<Vec4>()[i] = Vec4(reflectance.x(), reflectance.y(), reflectance.z(), 1) * float(frames);
     }

@@ -283,25 +283,6 @@ TEST(Paths, SkyBesideAWall) {
     EXPECT_NEAR(render_linear(session, 1024).at<float>(1, 1)[0], 0.5, 0.02);
 }
 
-// Under the middle of a disc of radius r at height h the part h^2 / (h^2 + r^2) of an even sky arrives. 0.02:
-// the noise of 256 samples of nine pixels.
-TEST(Paths, CaughtShadowOfADisc) {
-    Scene scene;
-    scene.show(make_cylinder(1, 0.001f, 128), "disc");
-    app::Session session = path_session_under_sky(scene, 33);
-    Settings& s = session.settings();
-    s.ground.mode = GroundMode::shadow;
-    s.ground.height = -1.0;
-    s.camera.position = Vec3d(4, -0.5, 0);
-    s.camera.target = Vec3d(0, -1, 0);
-    s.camera.fov_y_deg = 5;
-    const Image image = render_linear(session, 256);
-    double alpha = 0;
-    for (int y = 15; y < 18; ++y)
-        for (int x = 15; x < 18; ++x) alpha += image.at<float>(x, y)[3] / 9.0;
-    EXPECT_NEAR(alpha, 0.5, 0.02);
-}
-
 // Twice the same, byte for byte.
 TEST(Paths, AreDeterministic) {
     Scene scene;

@@ -68,15 +68,23 @@ TEST(SkySampler, SamplesAreWhatIsSeenInTheirDirection) {
     render::SkySampler sky;
     sky.prepare(environment, R, 2);
     const int side = 128;
-    int other = 0;
+    std::vector<Vec2> points;
     for (int j = 0; j < side; ++j)
-        for (int i = 0; i < side; ++i) {
-            const auto sample = sky.sample(Vec2(float(i) + 0.5f, float(j) + 0.5f) / float(side));
-            EXPECT_NEAR(sample.direction.norm(), 1, 1e-6);
-            const auto seen = sky.seen(sample.direction, 1);
-            other += sample.density != seen.density || sample.radiance != seen.radiance;
-            EXPECT_EQ(seen.radiance, sky.radiance(sample.direction));
-        }
+        for (int i = 0; i < side; ++i)
+            points.emplace_back((float(i) + 0.5f) / float(side), (float(j) + 0.5f) / float(side));
+    const auto samples = sky.sample(points);
+    std::vector<Vec3> directions;
+    for (const auto& sample : samples) directions.push_back(sample.direction);
+    const auto all_seen = sky.seen(directions, std::vector<float>(directions.size(), 1.0f));
+    int other = 0;
+    for (size_t i = 0; i < samples.size(); ++i) {
+        EXPECT_NEAR(samples[i].direction.norm(), 1, 1e-6);
+        const auto seen = sky.seen(directions[i], 1);
+        other += samples[i].density != seen.density || samples[i].radiance != seen.radiance;
+        EXPECT_EQ(seen.radiance, sky.seen(directions[i], 1e6f).radiance);
+        EXPECT_EQ(seen.radiance, all_seen[i].radiance);
+        EXPECT_EQ(seen.density, all_seen[i].density);
+    }
     EXPECT_LE(other, side * side / 1000) << "single precision, beside borders";
     double integral = 0;
     const int rows = 4 * h, columns = 4 * w;
@@ -87,6 +95,24 @@ TEST(SkySampler, SamplesAreWhatIsSeenInTheirDirection) {
             integral += angle * sky.seen(R.transpose() * equirect_direction(u, v), 1).density;
         }
     EXPECT_NEAR(integral, 1, 1e-4);
+}
+
+// Of a sky whose radiance is the cosine from straight up, above its horizon: 2/3 on a surface that faces up,
+// 2/(3 pi) on one that faces the horizon, nothing on one that faces down. 1e-4: sums over texels.
+TEST(SkySampler, LightOnASurface) {
+    const int w = 256, h = 128;
+    Image map(w, h, 3, PixelType::f32);
+    for (int y = 0; y < h; ++y)
+        for (int x = 0; x < w; ++x)
+            for (int c = 0; c < 3; ++c)
+                map.at<float>(x, y)[c] = std::max(0.0f, float(std::cos(pi * (y + 0.5) / h)));
+    const Mat3 R = Eigen::AngleAxisf(0.7f, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    render::SkySampler sky;
+    sky.prepare(Environment(map, "test"), R, 3);
+    EXPECT_NEAR(sky.light_on(R.transpose() * Vec3(0, 1, 0)) / 3, 2 / 3.0, 1e-4);
+    EXPECT_NEAR(sky.light_on(R.transpose() * Vec3(0, -1, 0)) / 3, 0, 1e-4);
+    // The integral of sin^2 cos over the polar angle is 1/3, that of the cosine over half of the others 2.
+    EXPECT_NEAR(sky.light_on(R.transpose() * Vec3(0, 0, 1)) / 3, 2 / (3 * pi), 1e-4);
 }
 
 }  // namespace easypbr::sky_sampler_test

@@ -146,7 +146,12 @@ INLINE vec4 fetch_pixels(const View& s, vint x, vint y, Load&& load_pixel) {
     const Place p = place_of(s, x, y);
     if (!any_lane(p.inside)) return vec4(vfloat(0.0f));
     Floats4 pixels[lanes];
-    for (int k = 0; k < lanes; ++k) pixels[k] = load_pixel(p.index.v[k]);
+    if (p.all_inside && p.side_by_side) {
+        const int first = p.index.v[0];
+        for (int k = 0; k < lanes; ++k) pixels[k] = load_pixel(first + k);
+    } else {
+        for (int k = 0; k < lanes; ++k) pixels[k] = load_pixel(p.index.v[k]);
+    }
     const vec4 c = planar(pixels);
     return p.all_inside ? c : select(p.inside, c, vec4(vfloat(0.0f)));
 }

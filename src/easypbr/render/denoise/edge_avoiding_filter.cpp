@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "easypbr/core/luminance.h"
 #include "easypbr/core/parallel.h"
 
 namespace easypbr::render {
@@ -19,7 +20,7 @@ void change_colors(const Target& light, const Target& color, bool out) {
         const Vec4& sum = colors[i];
         if (!(sum.w() > 0)) return;
         const Vec3 reflectance = (sum.head<3>() / sum.w()).cwiseMax(least_reflectance);
-        const float of_luminance = luminance_of(reflectance);
+        const float of_luminance = luminance(reflectance);
         const Vec3 light_rgb = pixels[i].head<3>();
         pixels[i].head<3>() =
             out ? Vec3(light_rgb.cwiseQuotient(reflectance)) : Vec3(light_rgb.cwiseProduct(reflectance));

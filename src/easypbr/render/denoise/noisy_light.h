@@ -18,9 +18,4 @@ struct NoisyLight {
     const Target& scratch;
 };
 
-/// Weights of linear Rec.709.
-inline float luminance_of(const Vec3& c) {
-    return c.dot(Vec3(0.2126f, 0.7152f, 0.0722f));
-}
-
 }  // namespace easypbr::render

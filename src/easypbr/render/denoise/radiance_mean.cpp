@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 
+#include "easypbr/core/luminance.h"
 #include "easypbr/core/octahedral.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/render/frame/held_pixels.h"
@@ -38,7 +39,7 @@ Vec3 reflectance(const Vec3& base, float metallic) {
 /// Of a mean's luminance, from a pixel of RadianceMean's `seen_`, by the sample variance; of one frame its
 /// own square.
 float variance_of(const Vec4& seen, float count) {
-    const float bright = luminance_of(seen.head<3>()) / count, squares = seen.w() / count;
+    const float bright = luminance(seen.head<3>()) / count, squares = seen.w() / count;
     return count > 1 ? std::max(0.0f, squares - bright * bright) / (count - 1) : squares;
 }
 
@@ -151,7 +152,7 @@ void RadianceMean::add_surfaces(const Frame& frame, const PixelRect& area, const
             if (noted != kind) continue;
             const Vec3 light =
                 kind == Noisy::coverage ? Vec3(Vec3::Constant(of_frame.w())) : Vec3(of_frame.head<3>());
-            const float bright = luminance_of(light);
+            const float bright = luminance(light);
             const std::array<uint16_t, 4>& a = *albedo.at(x, y);
             const std::array<uint16_t, 2>& n = *normal.at(x, y);
             const Vec3 direction = oct_decode(Vec2(n[0], n[1]) / 32767.5f - Vec2(1, 1));
@@ -199,7 +200,7 @@ RadianceMean::TileError RadianceMean::error_of(size_t tile, float exposure) cons
             const float count = color[i].w();
             if (!(count > 0)) continue;
             const float deviation = std::sqrt(variance_of(seen[i], count)),
-                        bright = exposure * luminance_of(seen[i].head<3>()) / count;
+                        bright = exposure * luminance(seen[i].head<3>()) / count;
             // A coverage is displayed as it is.
             const float displayed =
                 noisy_[i] == Noisy::coverage ? deviation : exposure * deviation * display_slope(bright);
@@ -263,7 +264,7 @@ const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
                              (weights_.empty() ? 1.0f : open_part_of_seen(i));
         to[i] = sum[i];
         if (noisy_[i] == Noisy::radiance) to[i].head<3>() += changed;
-        if (noisy_[i] == Noisy::coverage) to[i].w() += luminance_of(changed);
+        if (noisy_[i] == Noisy::coverage) to[i].w() += luminance(changed);
         if (!coverage.empty()) to[i].w() += coverage[i] * (weights_.empty() ? 1.0f : open_part_of_seen(i));
         to[i] *= scale_of(i);
     });
@@ -288,7 +289,7 @@ std::vector<float> RadianceMean::denoised_coverage(Denoising denoising, Transfer
     std::vector<float> changes(result.size());
     parallel_for(changes.size(), grain, [&](size_t i) {
         if (noisy_[i] == Noisy::radiance)
-            changes[i] = luminance_of(result[i].head<3>()) * color[i].w() - coverage_[i].x();
+            changes[i] = luminance(result[i].head<3>()) * color[i].w() - coverage_[i].x();
     });
     return changes;
 }

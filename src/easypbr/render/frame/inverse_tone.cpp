@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "easypbr/core/luminance.h"
+
 namespace easypbr::render {
 namespace {
 
@@ -30,8 +32,7 @@ Vec3 inverse_aces(const Vec3& display) {
 }
 
 Vec3 inverse_reinhard(const Vec3& display) {
-    const float luminance = display.dot(Vec3(0.2126f, 0.7152f, 0.0722f));
-    return display / std::max(1 - luminance, 1e-3f);
+    return display / std::max(1 - luminance(display), 1e-3f);
 }
 
 /// Where the sigmoid of AgX has a value, by bisection: it rises.

@@ -1,9 +1,11 @@
 #include "easypbr/render/raytrace/bright_sky.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
+#include "easypbr/core/luminance.h"
 #include "easypbr/render/raytrace/cdf.h"
 
 namespace easypbr::render {
@@ -63,22 +65,67 @@ void BrightSky::prepare(const Image& map) {
     for (int y = 0; y <= h; ++y) row_cosines_.push_back(std::cos(pi * y / h));
 }
 
+float BrightSky::light_on(const Vec3& normal) const {
+    const int w = size_.x(), h = size_.y();
+    std::vector<Vec2> across;  // of the columns
+    for (int x = 0; x < w; ++x) {
+        const double phi = 2 * pi * ((x + 0.5) / w - 0.5);
+        across.emplace_back(float(std::sin(phi)), float(-std::cos(phi)));
+    }
+    const Vec2 level(normal.x(), normal.z());
+    double sum = 0;
+    for (int y = 0; y < h; ++y) {
+        const double cosine = (row_cosines_[size_t(y)] + row_cosines_[size_t(y) + 1]) / 2;
+        const auto sine = float(std::sqrt(1 - cosine * cosine));
+        float row = 0;
+        for (int x = 0; x < w; ++x)
+            row += luminance(texels_[size_t(y) * size_t(w) + size_t(x)].head<3>()) *
+                   std::max(0.0f, normal.y() * float(cosine) + sine * level.dot(across[size_t(x)]));
+        sum += row * (row_cosines_[size_t(y)] - row_cosines_[size_t(y) + 1]);
+    }
+    return float(sum * 2 / w);
+}
+
 const Vec4& BrightSky::texel(const Vec2& uv) const {
     const Vec2i at = pixel_at(uv, size_);
     return texels_[size_t(at.y()) * size_t(size_.x()) + size_t(at.x())];
 }
 
-BrightSky::Sample BrightSky::sample(const Vec2& u) const {
-    float within_row = 0, within_pixel = 0;
+void BrightSky::sample(std::span<const Vec2> points, std::span<Sample> samples) const {
+    constexpr size_t together = 64;
     const auto w = size_t(size_.x());
-    const size_t y = step_of(row_ends_, row_guide_, u.y(), within_row), first = y * w;
-    const size_t x = step_of(std::span(pixel_ends_).subspan(first, w),
-                             std::span(pixel_guide_).subspan(first, w), u.x(), within_pixel);
-    // Even over the sphere within a row.
-    const double top = row_cosines_[y], bottom = row_cosines_[y + 1];
-    const Vec4& texel = texels_[first + x];
-    return {(float(x) + within_pixel) / float(w), top + (bottom - top) * within_row, texel.head<3>(),
-            texel.w()};
+    struct Found {
+        size_t y, x;
+        float within_row, within_pixel;
+    };
+    std::array<Found, together> found;
+    for (size_t begin = 0; begin < points.size(); begin += together) {
+        const size_t count = std::min(together, points.size() - begin);
+        const auto each = [&](auto&& visit) {
+            for (size_t i = 0; i < count; ++i) visit(points[begin + i], found[i]);
+        };
+        each([&](const Vec2& u, Found& at) {
+            at.y = step_of(row_ends_, row_guide_, u.y(), at.within_row);
+            __builtin_prefetch(&pixel_guide_[at.y * w + guide_place(w, u.x())]);
+        });
+        each([&](const Vec2& u, Found& at) {
+            __builtin_prefetch(&pixel_ends_[at.y * w + pixel_guide_[at.y * w + guide_place(w, u.x())]]);
+        });
+        each([&](const Vec2& u, Found& at) {
+            const size_t first = at.y * w;
+            at.x = step_of(std::span(pixel_ends_).subspan(first, w),
+                           std::span(pixel_guide_).subspan(first, w), u.x(), at.within_pixel);
+            __builtin_prefetch(&texels_[first + at.x]);
+        });
+        for (size_t i = 0; i < count; ++i) {
+            const Found& at = found[i];
+            // Even over the sphere within a row.
+            const double top = row_cosines_[at.y], bottom = row_cosines_[at.y + 1];
+            const Vec4& texel = texels_[at.y * w + at.x];
+            samples[begin + i] = {(float(at.x) + at.within_pixel) / float(w),
+                                  top + (bottom - top) * at.within_row, texel.head<3>(), texel.w()};
+        }
+    }
 }
 
 Vec3 BrightSky::Sample::direction() const {

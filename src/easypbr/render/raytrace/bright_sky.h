@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "easypbr/core/image.h"
@@ -20,19 +21,28 @@ class BrightSky {
     float bright_part() const { return bright_part_; }
     /// That part's integral over all directions, of the mean of the channels.
     float brightness() const { return brightness_; }
+    /// Luminance times the cosine to a normal of the map, integrated over the hemisphere, over pi.
+    float light_on(const Vec3& normal) const;
     /// At a place of the map, 0 to 1 each: radiance, and the density of sampled directions, per steradian.
     const Vec4& texel(const Vec2& uv) const;
     struct Sample {
-        float u;           ///< place across the map, 0 to 1
-        double cos_theta;  ///< of the angle from straight up
-        Vec3 radiance;
-        float density;  ///< per steradian
+        float u = 0;           ///< place across the map, 0 to 1
+        double cos_theta = 0;  ///< of the angle from straight up
+        Vec3 radiance{0, 0, 0};
+        float density = 0;  ///< per steradian
 
         /// Unit direction of the map.
         Vec3 direction() const;
     };
-    /// A place by a point of the unit square. Its density is 0 where the map is even.
-    Sample sample(const Vec2& u) const;
+    /// Places by points of the unit square, which should be many: what each reads of the tables, which are
+    /// larger than caches, is fetched while others are at work. Densities are 0 where the map is even.
+    void sample(std::span<const Vec2> points, std::span<Sample> samples) const;
+
+    Sample sample(const Vec2& point) const {
+        Sample sample;
+        this->sample({&point, 1}, {&sample, 1});
+        return sample;
+    }
 
   private:
     Vec2i size_{0, 0};

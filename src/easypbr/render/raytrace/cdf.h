@@ -32,9 +32,14 @@ inline void add_guide(std::span<const float> ends, std::vector<uint16_t>& guide)
     }
 }
 
+/// Which of `count` places of a guide a number in [0, 1) looks up.
+inline size_t guide_place(size_t count, float at) {
+    return std::min(size_t(at * float(count)), count - 1);
+}
+
 /// As step_of() without a guide.
 inline size_t step_of(std::span<const float> ends, std::span<const uint16_t> guide, float at, float& within) {
-    size_t step = guide[std::min(size_t(at * float(ends.size())), ends.size() - 1)];
+    size_t step = guide[guide_place(ends.size(), at)];
     while (step > 0 && ends[step - 1] > at) --step;
     while (step + 1 < ends.size() && ends[step] <= at) ++step;
     within = within_step(ends, step, at);

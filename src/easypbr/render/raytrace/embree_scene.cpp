@@ -79,6 +79,13 @@ void Scene::build() {
     throw Interrupted();
 }
 
+Eigen::AlignedBox3f Scene::bounds() const {
+    RTCBounds found;
+    rtcGetSceneBounds(get(), &found);
+    return {Vec3(found.lower_x, found.lower_y, found.lower_z),
+            Vec3(found.upper_x, found.upper_y, found.upper_z)};
+}
+
 void Scene::check() {
     const RTCError error = rtcGetDeviceError(device_.get());
     if (error != RTC_ERROR_NONE) fail(error);

@@ -6,6 +6,7 @@
 #include <span>
 #include <type_traits>
 
+#include "easypbr/core/math.h"
 #include "easypbr/render/raytrace/embree.h"
 
 namespace easypbr::render::embree {
@@ -46,6 +47,8 @@ class Scene {
     void attach(const Geometry& geometry, unsigned id);
     /// Builds the tree. Throws Interrupted too; nothing may be traced then.
     void build();
+    /// Of all primitives; empty where there are none.
+    Eigen::AlignedBox3f bounds() const;
 
   private:
     void* new_buffer(const Geometry& geometry, RTCBufferType type, RTCFormat format, size_t stride,

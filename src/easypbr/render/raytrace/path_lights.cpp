@@ -61,6 +61,8 @@ void PathLights::prepare(const ResolvedSettings& resolved, const RayScene& scene
     resolved_ = &resolved;
     blocks_.clear();
     areas_.clear();
+    transmits_ = false;
+    for (int i = 0; i < scene.surface_count(); ++i) transmits_ |= scene.item_of(i).casts_tint();
     const auto& lights = resolved.lights;
     for (const ResolvedLight& light : lights)
         if (is_area(light.type)) {
@@ -122,7 +124,7 @@ void PathLights::choose(const PathBatch& batch, uint32_t depth, bool caught,
                 so_far.way = found.way.at(i);
             }
             so_far.all = all;
-            found.choice[i] = std::min(left, 1 - 0x1p-24f);
+            found.choice[i] = std::min(left, below_one);
         }
     }
 }
@@ -186,6 +188,13 @@ PathLights::Towards PathLights::towards(const ChosenLight& chosen, const Vec3& p
     const Vec3 towards = middle + (frame.t * std::cos(phi) + frame.b * std::sin(phi)) * r;
     const float reach = towards.norm();
     return {towards / reach, parallel ? std::numeric_limits<float>::infinity() : reach * (1 - 1e-4f), false};
+}
+
+Vec3 PathLights::transmittance(const Towards& to, const Vec3& from, const RayScene& scene) const {
+    if (to.distance <= 0) return Vec3::Ones();
+    if (transmits_ && !to.is_area) return scene.transmittance(from, to.direction, to.distance);
+    const bool hidden = scene.blocked(from, to.direction, to.distance, Transmissive::met);
+    return hidden ? Vec3(Vec3::Zero()) : Vec3(Vec3::Ones());
 }
 
 }  // namespace easypbr::render

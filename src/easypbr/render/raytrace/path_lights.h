@@ -40,10 +40,14 @@ class PathLights {
     struct Towards {
         Vec3 direction{0, 0, 0};  ///< unit; 0: at the emitter, or the light casts no shadows
         float distance = 0;
-        bool is_area =
-            false;  ///< its light is refracted by transmissive surfaces: it does not shine straight through
+        /// Its light is refracted by transmissive surfaces: it does not shine straight through.
+        bool is_area = false;
     };
     Towards towards(const ChosenLight& light, const Vec3& place, const Vec2& u, const RayScene& scene) const;
+    /// What reaches a place of the light that comes from there; rays start at `from`.
+    Vec3 transmittance(const Towards& to, const Vec3& from, const RayScene& scene) const;
+    /// Whether there are area lights, which directions meet that are sampled by the BSDF.
+    bool has_areas() const { return !areas_.empty(); }
 
     /// Calls `visit` with each area light that a direction meets which was sampled by the BSDF with a density
     /// per steradian: with its radiance times the weight by MIS, and the distance at which it is met; -1 for
@@ -80,6 +84,7 @@ class PathLights {
     const ResolvedSettings* resolved_ = nullptr;
     std::vector<Area> areas_;
     std::vector<Block> blocks_;
+    bool transmits_ = false;  ///< light passes some surface
 };
 
 /// The surfaces that a shader of paths is for.

@@ -18,11 +18,11 @@ bool is_catcher(uint8_t kind) {
     return kind == uint8_t(SurfaceKind::ground_catcher);
 }
 
-/// Every how many frames a place of a shadow catcher, in radii of the scene from its middle, gets paths:
-/// far away a scene removes little light. By the place alone, so that the ratio stays consistent.
-int catcher_period(const Vec3& place) {
-    const float distance = place.norm();
-    return distance < 2.5f ? 1 : distance < 5 ? 2 : 4;
+/// Every how many frames a place of a shadow catcher gets samples, by its distance from the middle of the
+/// casters in radii: far away they remove little light. By the place alone, so that the ratio stays
+/// consistent.
+int catcher_period(float distance) {
+    return distance < 2.2f ? 1 : distance < 4 ? 2 : 4;
 }
 
 }  // namespace
@@ -58,6 +58,11 @@ struct PathPass::Pixels {
         float footprint;  ///< width of the pixel there, RayScene::unit()
         PathState state;
     };
+    /// Neighbours take turns, by their place in the whole image.
+    int turn_of(int x, int y) const {
+        const Vec2i pixel = frame.origin + Vec2i(x, y);
+        return frame.sample_index + pixel.x() + 2 * pixel.y();
+    }
     /// Whether a surface is there that gets a sample.
     bool is_traced(int x, int y) const {
         const float* d = depth.at(x, y);
@@ -83,12 +88,12 @@ struct PathPass::Pixels {
 PathPass::Pixels::Place PathPass::Pixels::place_of(int x, int y, uint32_t index) const {
     const Vec3d position = view_position(frame, {x, y}, *depth.at(x, y));
     const Vec3d towards = frame.orthographic() ? Vec3d(0, 0, 1) : Vec3d(-position.normalized());
-    const Vec3d beside = view_position(frame, {x + 1, y}, *depth.at(x, y));
+    const double width = 2 / (frame.size.x() * frame.clip_from_view(0, 0));
     const Vec2i pixel = frame.origin + Vec2i(x, y);
     Place place;
     place.position = ((world_from_view * position + eye) / scene.unit()).cast<float>();
     place.view = (world_from_view * towards).cast<float>();
-    place.footprint = float((beside - position).norm() / scene.unit());
+    place.footprint = float((frame.orthographic() ? width : -position.z() * width) / scene.unit());
     place.state.sampler = PathSampler(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(frame.sample_index),
                                       uint32_t(frame.sample_count));
     place.state.index = index;
@@ -113,11 +118,8 @@ void PathPass::Pixels::add(int x, int y, const Place& place, PathBatch& batch) c
     batch.state[i] = place.state;
 }
 
-bool PathPass::is_due(const Frame& frame, int x, int y, const Vec3& place) const {
-    if (caught_[size_t(y) * size_t(frame.size.x()) + size_t(x)].sum.all <= 0) return true;
-    // Neighbours take turns, by their place in the whole image.
-    const Vec2i pixel = frame.origin + Vec2i(x, y);
-    return (frame.sample_index + pixel.x() + 2 * pixel.y()) % catcher_period(place) == 0;
+PathPass::Caught& PathPass::caught_at(const Pixels& pixels, int x, int y) {
+    return caught_[size_t(y) * size_t(pixels.frame.size.x()) + size_t(x)];
 }
 
 void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
@@ -136,7 +138,14 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
         if (!pixels.is_traced(x, y)) return;
         const uint8_t kind = (*pixels.material.at(x, y))[3];
         if (!is_catcher(kind) && !is_lit_by_scene(kind)) return;
+        const bool catches = is_catcher(kind);
+        if (catches && !(pixels.starts.catches && caught_at(pixels, x, y).is_due(pixels.turn_of(x, y))))
+            return;
         const Pixels::Place place = pixels.place_of(x, y, index);
+        if (catches) {
+            caught_at(pixels, x, y).period = catcher_period(tracer_.catcher().distance_of(place.position));
+            return pixels.add(x, y, place, caught);
+        }
         if (kind == uint8_t(SurfaceKind::extended)) {
             if (const auto hit =
                     pixels.scene.hit_at(place.position, place.view, place.footprint, pixels.starts.seen)) {
@@ -146,13 +155,10 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
                 return;
             }
         }
-        if (!is_catcher(kind))
-            pixels.add(x, y, place, lit);
-        else if (pixels.starts.catches && is_due(pixels.frame, x, y, place.position))
-            pixels.add(x, y, place, caught);
+        pixels.add(x, y, place, lit);
     });
     tracer_.trace(lit, hits, radiance);
-    tracer_.trace_caught(caught, light);
+    tracer_.catcher().add_samples(caught, light);
     each([&](int x, int y, uint32_t index) {
         Vec4* to = pixels.radiance.at(x, y);
         if (!to || !pixels.is_traced(x, y)) return;
@@ -160,8 +166,7 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
         to->head<3>() = radiance[index] + (emission ? Vec3(emission->head<3>()) : Vec3(Vec3::Zero()));
         to->w() = 1;
         if (!pixels.starts.catches) return;
-        if (is_catcher((*pixels.material.at(x, y))[3]))
-            caught_[size_t(y) * size_t(pixels.frame.size.x()) + size_t(x)].add(light[index]);
+        if (is_catcher((*pixels.material.at(x, y))[3])) caught_at(pixels, x, y).add(light[index]);
     });
 }
 

@@ -30,24 +30,26 @@ class PathPass {
         Transmissive seen = Transmissive::opaque;  ///< how rays find what a pixel shows
         bool catches = false;                      ///< a shadow catcher's light is wanted
     };
-    struct Block;
     void trace(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Starts& starts,
                Transfers& transfers);
     void trace_block(const Pixels& pixels, const PixelRect& block);
-    /// Whether a pixel of a shadow catcher gets a path in this frame.
-    bool is_due(const Frame& frame, int x, int y, const Vec3& place) const;
 
     PathTracer tracer_;
     /// The part of a shadow catcher's light that arrives at a pixel: the ratio of sums over all frames so
     /// far.
     struct Caught {
+        /// Whether it gets a sample.
+        bool is_due(int turn) const { return period == 0 || turn % period == 0; }
         void add(const CaughtLight& light);
 
         CaughtLight sum;
         double ratio = 0;
         int frames = 0;
+        int period = 0;      ///< gets a sample every so many frames; 0: not known yet
         float of_frame = 1;  ///< by which the last frame changed the sum of frames, each of this ratio
     };
+    Caught& caught_at(const Pixels& pixels, int x, int y);
+
     std::vector<Caught> caught_;  ///< for each pixel
 };
 

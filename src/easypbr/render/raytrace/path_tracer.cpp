@@ -5,6 +5,7 @@
 #include <limits>
 #include <numeric>
 
+#include "easypbr/core/luminance.h"
 #include "easypbr/render/frame/surface_kind.h"
 #include "easypbr/render/raytrace/hit_surfaces.h"
 #include "easypbr/scene/resolve.h"
@@ -20,7 +21,6 @@ constexpr float widening = 0.05f;
 /// Rays to a place on an emissive surface end before it by this part of their length, and of the scene's
 /// radius.
 constexpr float before_emitter = 1e-4f;
-constexpr float below_one = 1 - 0x1p-24f;
 /// Neither the sky nor emissive surfaces get less of the directions of next-event estimation, where there are
 /// both.
 constexpr float least_part = 0.1f;
@@ -30,10 +30,6 @@ constexpr uint16_t sure_passages = 16;
 constexpr float only_direction = 1e30f;
 
 using enum PathSampler::Dimension;
-
-float luminance(const Vec3& c) {
-    return c.dot(Vec3(0.2126f, 0.7152f, 0.0722f));
-}
 
 bool is_extended_kind(float code) {
     return std::abs(code - code_of(SurfaceKind::extended)) < 0.01f;
@@ -117,6 +113,17 @@ struct PathTracer::Scattered {
     PathVectors<3> keep;  ///< of emission, where the surfaces have extensions
 };
 
+/// Paths that have left the scene.
+struct PathTracer::Escaped {
+    struct Path {
+        Vec3 throughput;
+        uint32_t index, bounces;
+    };
+    std::vector<Vec3> directions;
+    std::vector<float> densities;
+    std::vector<Path> paths;
+};
+
 struct PathTracer::Batches {
     PathBatch plain, extended;
 };
@@ -132,18 +139,16 @@ void PathTracer::prepare(const ResolvedSettings& resolved, const RayScene& scene
     lights_.prepare(resolved, scene);
     sky_.prepare(resolved.environment, resolved.R_env_world, resolved.settings.environment.intensity);
     emitters_.prepare(scene);
+    catcher_.prepare(scene, lights_, sky_);
     const float of_emitters = emitters_.brightness(), of_sky = sky_.brightness();
     emitter_part_ =
         emitters_.empty() ? 0 : std::clamp(of_emitters / (of_emitters + of_sky), least_part, 1 - least_part);
     if (!emitters_.empty() && !sky_.is_sampled()) emitter_part_ = 1;
-    transmits_ = false;
-    for (int i = 0; i < scene.surface_count(); ++i) transmits_ |= scene.item_of(i).casts_tint();
     const auto with = [&](PathSurfaces surfaces, native::Stream shader) {
         Transfers none;
         return native::stream_uniforms(shader, path_inputs(resolved, scene, surfaces).native(none));
     };
     uniforms_ = with(PathSurfaces::plain, native::Stream::path_scatter);
-    of_catcher_ = with(PathSurfaces::catcher, native::Stream::path_scatter);
     extended_.reset();
     absorption_.clear();
     if (!scene.extensions()) return;
@@ -169,9 +174,15 @@ Vec3 PathTracer::limited(const Vec3& light, uint32_t bounces) const {
     return bounces > 0 && most > 0 && brightness > most ? Vec3(light * (most / brightness)) : light;
 }
 
-Vec3 PathTracer::escaped(const Vec3& direction, float density, float sky_part) const {
-    const SkySampler::Sample sky = sky_.seen(direction, density);
-    return sky.radiance * (density / (density + sky_part * sky.density));
+void PathTracer::add_escaped(const Escaped& paths, std::vector<Vec3>& radiance) const {
+    const std::vector<SkySampler::Sample> skies = sky_.seen(paths.directions, paths.densities);
+    for (size_t i = 0; i < skies.size(); ++i) {
+        const float density = paths.densities[i];
+        const float weight = density / (density + (1 - emitter_part_) * skies[i].density);
+        const Escaped::Path& path = paths.paths[i];
+        radiance[path.index] +=
+            limited(path.throughput.cwiseProduct(skies[i].radiance * weight), path.bounces);
+    }
 }
 
 float PathTracer::emission_weight(const RayHit& hit, const Vec3& direction, float density) const {
@@ -179,22 +190,26 @@ float PathTracer::emission_weight(const RayHit& hit, const Vec3& direction, floa
     return chosen > 0 ? density / (density + chosen) : 1.0f;
 }
 
-void PathTracer::choose_directions(const PathBatch& batch, uint32_t depth, bool caught, Scattered& to) const {
-    const float emitter_part = caught ? 0 : emitter_part_;
+void PathTracer::choose_directions(const PathBatch& batch, uint32_t depth, Scattered& to) const {
     std::vector<Emitters::Sample> chosen;
-    std::vector<size_t> paths;
+    std::vector<size_t> paths, of_sky;
+    std::vector<Vec2> sky_points;
     for (size_t i = 0; i < batch.count; ++i) {
         Vec2 u = batch.state[i].sampler.pair(depth, sky_point);
-        if (u.x() < emitter_part) {
-            u.x() = std::min(u.x() / emitter_part, below_one);
+        if (u.x() < emitter_part_) {
+            u.x() = std::min(u.x() / emitter_part_, below_one);
             chosen.push_back(emitters_.sample(start_of(batch, i), u));
             paths.push_back(i);
         } else if (sky_.is_sampled()) {
-            u.x() = std::min((u.x() - emitter_part) / (1 - emitter_part), below_one);
-            const SkySampler::Sample sky = sky_.sample(u);
-            to.set_direction(i, sky.direction, sky.radiance, (1 - emitter_part) * sky.density);
+            u.x() = std::min((u.x() - emitter_part_) / (1 - emitter_part_), below_one);
+            sky_points.push_back(u);
+            of_sky.push_back(i);
         }
     }
+    const std::vector<SkySampler::Sample> skies = sky_.sample(sky_points);
+    for (size_t i = 0; i < of_sky.size(); ++i)
+        to.set_direction(of_sky[i], skies[i].direction, skies[i].radiance,
+                         (1 - emitter_part_) * skies[i].density);
     const std::vector<uint32_t> sorted =
         sorted_by_surface(chosen.size(), [&](size_t i) { return chosen[i].surface; });
     std::vector<native::ElementHit> hits(chosen.size());
@@ -209,24 +224,23 @@ void PathTracer::choose_directions(const PathBatch& batch, uint32_t depth, bool 
     for (size_t i = 0; i < chosen.size(); ++i) {
         const Emitters::Sample& sample = chosen[sorted[i]];
         const size_t path = paths[sorted[i]];
-        to.set_direction(path, sample.direction, found.emission.at(i), emitter_part * sample.density);
+        to.set_direction(path, sample.direction, found.emission.at(i), emitter_part_ * sample.density);
         to.distance[path] = sample.distance * (1 - before_emitter) - before_emitter;
     }
 }
 
-void PathTracer::scatter(const PathBatch& batch, uint32_t depth, bool caught, Scattered& to) const {
+void PathTracer::scatter(const PathBatch& batch, uint32_t depth, Scattered& to) const {
     for (size_t i = 0; i < batch.count; ++i) {
         const PathSampler& sampler = batch.state[i].sampler;
         const Vec2 lobe = sampler.pair(depth, lobe_point);
         to.random.set(i, {lobe.x(), lobe.y(), sampler.pair(depth, light_and_lobe).y()});
     }
-    choose_directions(batch, depth, caught, to);
+    choose_directions(batch, depth, to);
     const int count = int(batch.count);
     if (batch.extensions)
         native::run(extended_.get(), to.stream<native::path_scatter_extended_stream>(batch), count);
     else
-        native::run((caught ? of_catcher_ : uniforms_).get(), to.stream<native::path_scatter_stream>(batch),
-                    count);
+        native::run(uniforms_.get(), to.stream<native::path_scatter_stream>(batch), count);
 }
 
 void PathTracer::add_direct(const PathBatch& batch, uint32_t depth, const std::vector<ChosenLight>& lamps,
@@ -237,7 +251,8 @@ void PathTracer::add_direct(const PathBatch& batch, uint32_t depth, const std::v
         if (lamps[i].all > 0) {
             const auto to = lights_.towards(lamps[i], batch.position.at(i),
                                             state.sampler.pair(depth, emitter_point), *scene_);
-            light += lamps[i].light.cwiseProduct(lamp_transmittance(batch, i, to));
+            const Vec3 from = start_towards(batch, i, to.direction);
+            light += lamps[i].light.cwiseProduct(lights_.transmittance(to, from, *scene_));
         }
         const Vec3 chosen = scattered.chosen_light.at(i), direction = scattered.chosen_direction.at(i);
         if (chosen.maxCoeff() > 0 && !scene_->blocked(start_towards(batch, i, direction), direction,
@@ -245,15 +260,6 @@ void PathTracer::add_direct(const PathBatch& batch, uint32_t depth, const std::v
             light += chosen;
         radiance[state.index] += limited(state.throughput.cwiseProduct(light), state.bounces);
     }
-}
-
-Vec3 PathTracer::lamp_transmittance(const PathBatch& batch, size_t path,
-                                    const PathLights::Towards& to) const {
-    if (to.distance <= 0) return Vec3::Ones();
-    const Vec3 from = start_towards(batch, path, to.direction);
-    if (transmits_ && !to.is_area) return scene_->transmittance(from, to.direction, to.distance);
-    const bool hidden = scene_->blocked(from, to.direction, to.distance, Transmissive::met);
-    return hidden ? Vec3(Vec3::Zero()) : Vec3(Vec3::Ones());
 }
 
 void PathTracer::add_emission(const PathBatch& batch, const Scattered& scattered,
@@ -316,6 +322,7 @@ bool PathTracer::goes_on(const PathBatch& batch, size_t path, uint32_t depth, co
 
 void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered& scattered,
                         std::vector<Hit>& hits, std::vector<Vec3>& radiance) const {
+    Escaped escaped;
     for (size_t i = 0; i < batch.count; ++i) {
         PathState state = batch.state[i];
         const uint16_t bounces = state.bounces;
@@ -333,17 +340,20 @@ void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered&
             hits.push_back({state, *hit, direction, scattered.density[i],
                             hit->distance * float(scene_->unit()) * widening});
         } else {
-            const Vec3 sky = escaped(direction, scattered.density[i], 1 - emitter_part_);
-            radiance[state.index] += limited(state.throughput.cwiseProduct(sky), bounces);
+            escaped.directions.push_back(direction);
+            escaped.densities.push_back(scattered.density[i]);
+            escaped.paths.push_back({state.throughput, state.index, bounces});
         }
     }
+    add_escaped(escaped, radiance);
 }
 
-Vec3 PathTracer::caught_sky(const RayHit& hit, const Vec3& direction, const Vec2& u) const {
+Vec3 PathTracer::caught_sky(const Hit& at, const Vec2& u) const {
+    const RayHit& hit = at.hit;
     const Vec3 up = cosine_direction(RayFrame(hit.normal), u);
     const bool open = !scene_->blocked(RayScene::off_surface(hit.position, hit.normal, scene_->reach()), up,
                                        std::numeric_limits<float>::infinity());
-    return open ? sky_.radiance(direction) : Vec3(Vec3::Zero());
+    return open ? sky_.seen(at.direction, at.density).radiance : Vec3(Vec3::Zero());
 }
 
 namespace {
@@ -357,7 +367,7 @@ uint32_t bounces_before(const PathTracer::Hit& hit) {
 
 bool PathTracer::is_caught(const Hit& hit, uint32_t depth, std::vector<Vec3>& radiance) const {
     if (hit.hit.surface >= 0 || !scene_->ground()->shadow_catcher) return false;
-    const Vec3 sky = caught_sky(hit.hit, hit.direction, hit.state.sampler.pair(depth, emitter_point));
+    const Vec3 sky = caught_sky(hit, hit.state.sampler.pair(depth, emitter_point));
     radiance[hit.state.index] += limited(hit.state.throughput.cwiseProduct(sky), bounces_before(hit));
     return true;
 }
@@ -422,7 +432,7 @@ void PathTracer::step(const PathBatch& batch, uint32_t depth, std::vector<Hit>& 
     std::vector<ChosenLight> lamps;
     lights_.choose(batch, depth, false, lamps);
     Scattered scattered(PathBatch::rounded_up(batch.count));
-    scatter(batch, depth, false, scattered);
+    scatter(batch, depth, scattered);
     add_direct(batch, depth, lamps, scattered, radiance);
     if (batch.extensions) add_emission(batch, scattered, radiance);
     follow(batch, depth, scattered, hits, radiance);
@@ -437,38 +447,6 @@ void PathTracer::trace(PathBatch& batch, std::vector<Hit>& hits, std::vector<Vec
         at = arrive(hits, depth - 1, radiance);
         step(at.plain, depth, hits, radiance);
         step(at.extended, depth, hits, radiance);
-    }
-}
-
-void PathTracer::trace_caught(const PathBatch& batch, std::vector<CaughtLight>& light) const {
-    constexpr float no_end = std::numeric_limits<float>::infinity();
-    std::vector<ChosenLight> lamps;
-    lights_.choose(batch, 0, true, lamps);
-    Scattered scattered(PathBatch::rounded_up(batch.count));
-    scatter(batch, 0, true, scattered);
-    for (size_t i = 0; i < batch.count; ++i) {
-        const Vec3 place = batch.position.at(i), from = start_of(batch, i);
-        CaughtLight& to = light[batch.state[i].index];
-        const auto add = [&](float amount, bool arrives) {
-            to.all += amount;
-            if (arrives) to.arrives += amount;
-        };
-        if (lamps[i].all > 0) {
-            const auto lamp =
-                lights_.towards(lamps[i], place, batch.state[i].sampler.pair(0, emitter_point), *scene_);
-            to.all += lamps[i].all;
-            to.arrives += lamps[i].all * luminance(lamp_transmittance(batch, i, lamp));
-        }
-        const float sky = luminance(scattered.chosen_light.at(i));
-        if (sky > 0) add(sky, !scene_->blocked(from, scattered.chosen_direction.at(i), no_end));
-        const Vec3 direction = scattered.direction.at(i);
-        const float found =
-            luminance(Vec3(scattered.weight.at(i).cwiseProduct(escaped(direction, scattered.density[i], 1))));
-        if (found > 0) add(found, !scene_->blocked(from, direction, no_end));
-        lights_.for_each_met(place, direction, scattered.density[i], [&](const Vec3& light, float distance) {
-            const Vec3 seen = scattered.weight.at(i).cwiseProduct(light);
-            add(luminance(seen), distance < 0 || !scene_->blocked(from, direction, distance));
-        });
     }
 }
 

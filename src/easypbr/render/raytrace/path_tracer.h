@@ -4,18 +4,13 @@
 #include <memory>
 #include <vector>
 
+#include "easypbr/render/raytrace/catcher_light.h"
 #include "easypbr/render/raytrace/emitters.h"
 #include "easypbr/render/raytrace/path_batch.h"
 #include "easypbr/render/raytrace/path_lights.h"
 #include "easypbr/render/raytrace/sky_sampler.h"
 
 namespace easypbr::render {
-
-/// Light that reaches a surface that catches shadows, and what would reach it if nothing stood there:
-/// luminances.
-struct CaughtLight {
-    float arrives = 0, all = 0;
-};
 
 /// Estimates the radiance that surfaces send back along paths: lights, emissive surfaces and the sky by
 /// next-event estimation at each surface, and what directions find that are sampled by the BSDF. The sky and
@@ -41,29 +36,27 @@ class PathTracer {
     /// Adds the radiance of each path to its place in `radiance`: of those of a batch, whose surfaces have no
     /// extensions, and of others that have met a surface. Both are used up.
     void trace(PathBatch& batch, std::vector<Hit>& hits, std::vector<Vec3>& radiance) const;
-    /// The light of surfaces that catch shadows, from lights and sky alone, added by the paths' places.
-    void trace_caught(const PathBatch& batch, std::vector<CaughtLight>& light) const;
-
-    /// Where rays start that leave the place of a path: back along the path too, so that it is on the right
-    /// side of other surfaces that meet this one there.
-    Vec3 start_of(const PathBatch& batch, size_t path) const;
+    /// Of surfaces that catch shadows.
+    const CatcherLight& catcher() const { return catcher_; }
 
   private:
     struct Scattered;
+    struct Escaped;
     /// Paths at surfaces without extensions and with them.
     struct Batches;
+    /// Where rays start that leave the place of a path: back along the path too, so that it is on the right
+    /// side of other surfaces that meet this one there.
+    Vec3 start_of(const PathBatch& batch, size_t path) const;
     /// The same of rays in a direction, which may go through the surface.
     Vec3 start_towards(const PathBatch& batch, size_t path, const Vec3& direction) const;
     /// One step of all paths of a batch: `hits` gets the surfaces that they meet next.
     void step(const PathBatch& batch, uint32_t depth, std::vector<Hit>& hits,
               std::vector<Vec3>& radiance) const;
-    void scatter(const PathBatch& batch, uint32_t depth, bool caught, Scattered& to) const;
+    void scatter(const PathBatch& batch, uint32_t depth, Scattered& to) const;
     /// Chooses the direction of next-event estimation for each path: to the sky, or to an emissive surface.
-    void choose_directions(const PathBatch& batch, uint32_t depth, bool caught, Scattered& to) const;
+    void choose_directions(const PathBatch& batch, uint32_t depth, Scattered& to) const;
     void add_direct(const PathBatch& batch, uint32_t depth, const std::vector<ChosenLight>& lamps,
                     const Scattered& scattered, std::vector<Vec3>& radiance) const;
-    /// What reaches a surface of the light that a lamp sends.
-    Vec3 lamp_transmittance(const PathBatch& batch, size_t path, const PathLights::Towards& to) const;
     /// What surfaces with extensions emit.
     void add_emission(const PathBatch& batch, const Scattered& scattered, std::vector<Vec3>& radiance) const;
     /// Follows the paths to the next surface.
@@ -85,11 +78,10 @@ class PathTracer {
     bool is_caught(const Hit& hit, uint32_t depth, std::vector<Vec3>& radiance) const;
     /// Part of what a surface emits that a path adds which has met it in a sampled direction.
     float emission_weight(const RayHit& hit, const Vec3& direction, float density) const;
-    /// What the sky adds to a path that left a surface in a sampled direction; `sky_part` of the directions
-    /// of next-event estimation are those of the sky.
-    Vec3 escaped(const Vec3& direction, float density, float sky_part) const;
+    /// Adds what the sky sends to paths that have left the scene in sampled directions.
+    void add_escaped(const Escaped& paths, std::vector<Vec3>& radiance) const;
     /// What a ground that catches shadows shows of the sky behind it.
-    Vec3 caught_sky(const RayHit& hit, const Vec3& direction, const Vec2& u) const;
+    Vec3 caught_sky(const Hit& at, const Vec2& u) const;
     /// Light that a path adds after some bounces.
     Vec3 limited(const Vec3& light, uint32_t bounces) const;
 
@@ -98,9 +90,9 @@ class PathTracer {
     PathLights lights_;
     SkySampler sky_;
     Emitters emitters_;
-    bool transmits_ = false;  ///< light passes some surface
+    CatcherLight catcher_;
     float emitter_part_ = 0;  ///< of the directions of next-event estimation; the others are those of the sky
-    std::shared_ptr<const void> uniforms_, of_catcher_, extended_;
+    std::shared_ptr<const void> uniforms_, extended_;
     std::vector<Vec3> absorption_;  ///< of the surfaces' volumes, per RayScene::unit()
 };
 

@@ -29,6 +29,9 @@ inline uint32_t pcg_hash(uint32_t value) {
     return pcg_output(pcg_advance(value));
 }
 
+/// The largest number of single precision below 1.
+inline constexpr float below_one = 1 - 0x1p-24f;
+
 /// In [0, 1), of 24 bits.
 inline float unit_number(uint32_t bits) {
     return float(bits >> 8) * 0x1p-24f;

@@ -295,6 +295,7 @@ void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t gen
     generation_ = generation;
     scene_.reset();
     reach_ = 0;
+    ball_ = {};
     if (items.empty() || bounds.isEmpty() || !(bounds.diagonal().norm() > 0)) return;
     centre_ = bounds.center();
     unit_ = bounds.diagonal().norm() / 2;
@@ -305,6 +306,9 @@ void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t gen
         made->kinds.resize(made->elements.size(), kind);
     }
     made->tree.build();
+    const Eigen::AlignedBox3f box = made->tree.bounds();
+    constexpr float rounding = 1e-4f;  // of what rays meet
+    if (!box.isEmpty()) ball_ = {box.center(), box.diagonal().norm() / 2 + rounding};
     scene_ = std::move(made);
 }
 

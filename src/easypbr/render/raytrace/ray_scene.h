@@ -77,6 +77,20 @@ class RayScene {
     /// How far the lit surfaces around vertices reach, so that rays start beyond them; 0 where all are faces.
     float reach() const { return reach_; }
 
+    /// Holds all casters; RayScene's frame. Its radius is 0 where there are none.
+    struct Ball {
+        Vec3 centre{0, 0, 0};
+        float radius = 0;
+
+        /// Whether a ray from a place in a unit direction meets it.
+        bool is_met(const Vec3& from, const Vec3& direction) const {
+            const Vec3 way = centre - from;
+            const float along = way.dot(direction), outside = way.squaredNorm() - radius * radius;
+            return outside <= 0 || (along > 0 && along * along >= outside);
+        }
+    };
+    const Ball& ball() const { return ball_; }
+
     /// Where rays start that leave a place of a surface with this normal: beyond its roundings, and beyond
     /// `reach`.
     static Vec3 off_surface(const Vec3& at, const Vec3& normal, float reach = 0);
@@ -120,6 +134,7 @@ class RayScene {
     Vec3d centre_{0, 0, 0};
     double unit_ = 1;
     float reach_ = 0;
+    Ball ball_;
     ExtensionSet extensions_ = 0;
 };
 

@@ -27,28 +27,51 @@ void SkySampler::prepare(const Environment& environment, const Mat3& R_env_world
     hash_ = hash;
 }
 
-Vec3 SkySampler::texel_at(const Vec2& place) const {
+const float* SkySampler::texel_at(const Vec2& place) const {
     const Image& image = environment_.image();
     const Vec2i at = pixel_at(place, {image.width(), image.height()});
-    return intensity_ * Eigen::Map<const Vec3>(image.at<float>(at.x(), at.y()));
+    return image.at<float>(at.x(), at.y());
+}
+
+SkySampler::Sample SkySampler::seen_at(const Vec2& place, const Vec3& direction, float density) const {
+    const Vec4& small = bright_.texel(place);
+    const float chosen = is_sampled() ? small.w() : 0;
+    const float* texel = density < most_blurred ? small.data() : texel_at(place);
+    return {direction, intensity_ * Eigen::Map<const Vec3>(texel), chosen};
 }
 
 SkySampler::Sample SkySampler::seen(const Vec3& direction, float density) const {
     if (empty()) return {direction, Vec3::Zero(), 0};
-    const Vec2 place = sky_place(R_env_world_ * direction);
-    const Vec4& small = bright_.texel(place);
-    const float chosen = is_sampled() ? small.w() : 0;
-    if (density < most_blurred) return {direction, intensity_ * small.head<3>(), chosen};
-    return {direction, texel_at(place), chosen};
+    return seen_at(sky_place(R_env_world_ * direction), direction, density);
 }
 
-Vec3 SkySampler::radiance(const Vec3& direction) const {
-    return empty() ? Vec3(Vec3::Zero()) : texel_at(sky_place(R_env_world_ * direction));
+std::vector<SkySampler::Sample> SkySampler::seen(std::span<const Vec3> directions,
+                                                 std::span<const float> densities) const {
+    std::vector<Sample> samples(directions.size());
+    if (empty()) return samples;
+    std::vector<Vec2> places(directions.size());
+    for (size_t i = 0; i < places.size(); ++i) {
+        places[i] = sky_place(R_env_world_ * directions[i]);
+        __builtin_prefetch(&bright_.texel(places[i]));
+        if (densities[i] >= most_blurred) __builtin_prefetch(texel_at(places[i]));
+    }
+    for (size_t i = 0; i < places.size(); ++i) samples[i] = seen_at(places[i], directions[i], densities[i]);
+    return samples;
 }
 
-SkySampler::Sample SkySampler::sample(const Vec2& u) const {
-    const BrightSky::Sample sample = bright_.sample(u);
-    return {R_env_world_.transpose() * sample.direction(), intensity_ * sample.radiance, sample.density};
+float SkySampler::light_on(const Vec3& normal) const {
+    return empty() ? 0 : intensity_ * bright_.light_on(R_env_world_ * normal);
+}
+
+std::vector<SkySampler::Sample> SkySampler::sample(std::span<const Vec2> points) const {
+    std::vector<BrightSky::Sample> places(points.size());
+    bright_.sample(points, places);
+    const Mat3 R_world_env = R_env_world_.transpose();
+    std::vector<Sample> samples;
+    samples.reserve(points.size());
+    for (const BrightSky::Sample& at : places)
+        samples.push_back({R_world_env * at.direction(), intensity_ * at.radiance, at.density});
+    return samples;
 }
 
 }  // namespace easypbr::render

@@ -1,7 +1,9 @@
 // Directions of the sky that its light comes from.
 #pragma once
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include "easypbr/render/raytrace/bright_sky.h"
 #include "easypbr/scene/environment.h"
@@ -16,27 +18,30 @@ class SkySampler {
     void prepare(const Environment& environment, const Mat3& R_env_world, float intensity);
 
     bool empty() const { return environment_.empty(); }
-    /// Radiance in a unit direction.
-    Vec3 radiance(const Vec3& direction) const;
-
     /// Whether directions are chosen at all: not of a sky that is as bright everywhere.
     bool is_sampled() const { return bright_.bright_part() > 0; }
     /// Light that is found by such directions: the integral of their radiance, of the mean of the channels.
     float brightness() const { return intensity_ * bright_.brightness(); }
+    /// Irradiance over pi on a surface with this normal that nothing hides anything from, luminance.
+    float light_on(const Vec3& normal) const;
     struct Sample {
-        Vec3 direction;  ///< unit
-        Vec3 radiance;
-        float density;
+        Vec3 direction{0, 0, 0};  ///< unit
+        Vec3 radiance{0, 0, 0};
+        float density = 0;
     };
-    /// A direction by a point of the unit square; the brighter the sky is beyond its mean, the likelier.
-    Sample sample(const Vec2& u) const;
+    /// Directions by points of the unit square, which should be many; the brighter the sky is beyond its
+    /// mean, the likelier.
+    std::vector<Sample> sample(std::span<const Vec2> points) const;
     /// A direction that was chosen in another way, with the density of those that are chosen here. The lower
     /// its own density, per steradian, the less of the sky's detail shows: the radiance is that of a smaller
     /// map then.
     Sample seen(const Vec3& direction, float density) const;
+    /// The same of many.
+    std::vector<Sample> seen(std::span<const Vec3> directions, std::span<const float> densities) const;
 
   private:
-    Vec3 texel_at(const Vec2& place) const;
+    const float* texel_at(const Vec2& place) const;
+    Sample seen_at(const Vec2& place, const Vec3& direction, float density) const;
 
     Environment environment_;
     Mat3 R_env_world_ = Mat3::Identity();

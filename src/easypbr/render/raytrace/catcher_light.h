@@ -1,0 +1,50 @@
+// The light of surfaces that catch shadows.
+#pragma once
+
+#include <vector>
+
+#include "easypbr/render/raytrace/path_batch.h"
+#include "easypbr/render/raytrace/path_lights.h"
+#include "easypbr/render/raytrace/sky_sampler.h"
+
+namespace easypbr::render {
+
+/// Light that reaches a surface that catches shadows, and what would reach it if nothing stood there:
+/// luminances. One sample can be less than none.
+struct CaughtLight {
+    float arrives = 0, all = 0;
+};
+
+/// Estimates how much of the irradiance that lamps and the sky send a ground without casters arrives. Where
+/// all casters are seen within a cone, the sky's light without them is known, and what they hide is sampled
+/// within the cone; elsewhere directions are distributed by the cosine. Bright parts of the sky are found by
+/// its own directions too, combined by MIS (Veach and Guibas 1995).
+class CatcherLight {
+  public:
+    /// Of the ground of the scene. All must outlive the calls of the others.
+    void prepare(const RayScene& scene, const PathLights& lights, const SkySampler& sky);
+
+    /// One sample for each path of a batch, added by the paths' places.
+    void add_samples(const PathBatch& batch, std::vector<CaughtLight>& light) const;
+
+    /// Of a place (RayScene's frame) from the middle of the ball that holds the casters, in its radii.
+    float distance_of(const Vec3& place) const;
+
+  private:
+    struct Cone;
+    struct SkyPoint;
+    void add_lamp(const PathBatch& batch, size_t path, const ChosenLight& lamp, CaughtLight& to) const;
+    std::vector<SkyPoint> sky_points(const PathBatch& batch) const;
+    void add_sky(const PathBatch& batch, const SkyPoint& point, CaughtLight& to) const;
+    /// The same by what the casters hide, of a place outside of their ball.
+    void add_hidden_sky(const PathBatch& batch, const SkyPoint& point, CaughtLight& to) const;
+    Vec3 start_of(const PathBatch& batch, size_t path) const;
+    bool is_hidden(const PathBatch& batch, size_t path, const Vec3& direction, float distance) const;
+
+    const RayScene* scene_ = nullptr;
+    const PathLights* lights_ = nullptr;
+    const SkySampler* sky_ = nullptr;
+    float sky_light_ = 0;  ///< irradiance by the sky over pi, luminance
+};
+
+}  // namespace easypbr::render
