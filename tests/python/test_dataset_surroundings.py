@@ -53,14 +53,14 @@ def test_the_axis_that_points_up(wall, up, top):
     assert lower[2 - top] > 200 and lower[top] < 60
 
 
-@pytest.mark.parametrize("up", ["x", "y", "z", "-x", "-y", "-z"])
+@pytest.mark.parametrize("up", ["x", "y", "z", "-x", "-y", "-z", "+y", "+Z", "-X"])
 def test_fitted(up):
     V = np.random.default_rng(1).uniform((-1, -2, -3), (2, 4, 6), (5000, 3))
     V[0] = (1e4, 0, 0)  # left out
     mesh = easypbr.Mesh()
     mesh.V = V
     T = fitted(mesh, 5, up)
-    axis = (-1 if up.startswith("-") else 1) * np.eye(3)["xyz".index(up[-1])]
+    axis = (-1 if up.startswith("-") else 1) * np.eye(3)["xyz".index(up[-1].lower())]
     scale = np.cbrt(np.linalg.det(T[:3, :3]))
     assert np.allclose(T[:3, :3] @ axis / scale, (0, 1, 0)) and np.allclose(T[:3, :3] @ T[:3, :3].T, scale**2 * np.eye(3))
     placed = np.asarray(mesh.V, float) @ T[:3, :3].T + T[:3, 3]
@@ -90,6 +90,8 @@ def test_from_a_file(wall, tmp_path):
 def test_what_is_refused(wall, tmp_path):
     with pytest.raises(ArgumentError, match="surroundings.up"):
         spec_with(wall, "up").check()
+    for up in ("+z", "+Z", "-Y", "x"):
+        spec_with(wall, up).check()
     with pytest.raises(ArgumentError, match="surroundings.size"):
         spec_with(wall, surroundings=SurroundingsSpec(str(wall), 0.0)).check()
     with pytest.raises(FileError):

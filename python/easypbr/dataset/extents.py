@@ -37,7 +37,7 @@ def fitted(mesh: Mesh, size: float, up: str) -> NDArray[Any]:
     V = vertices_of(mesh)
     low, high = np.quantile(V, (0.005, 0.995), axis=0)
     axis = np.zeros(3)
-    axis["xyz".index(up[-1])] = -1.0 if up.startswith("-") else 1.0
+    axis["xyz".index(up[-1].lower())] = -1.0 if up.startswith("-") else 1.0
     # The shortest turn, and for what is upside down half a turn about x.
     turn = np.diag([1.0, -1, -1])
     if axis[1] > -0.5:

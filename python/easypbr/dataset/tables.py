@@ -108,7 +108,7 @@ class SurroundingsSpec:
     """A file that stands around the objects in every frame, such as a captured room of Gaussian splats: hidden by objects
     and hiding them, not annotated. Without a source there is none. The box around all but the outermost hundredth of its
     vertices has its middle at the origin, and a longest side of `size` metres; `up` is the axis of the file that points up:
-    x, y, z, -x, -y or -z. It is turned about the vertical by `turn_deg`."""
+    x, y, z, -x, -y or -z, in either case; +x is x. It is turned about the vertical by `turn_deg`."""
 
     source: str = ""
     size: float = 8.0
