@@ -63,7 +63,7 @@ class DatasetSpec(DatasetTables):
             "image.format": (self.image.format, ("png", "jpg")),
             "placement.mode": (self.placement.mode, ("frustum", "surface")),
             "background.mode": (self.background.mode, ("sky", "environment", "image", "color")),
-            "surroundings.up": (self.surroundings.up.lower(), ("x", "y", "z", "+x", "+y", "+z", "-x", "-y", "-z")),
+            "surroundings.up": (str(self.surroundings.up).lower(), ("x", "y", "z", "+x", "+y", "+z", "-x", "-y", "-z")),
             "on_error": (self.on_error, ("stop", "skip")),
         }
         for i, entry in enumerate(self.objects):
