@@ -5,11 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <condition_variable>
+#include <mutex>
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/file.h"
 #include "easypbr/core/parallel.h"
-#include "easypbr/io/image/image_io.h"
+#include "easypbr/io/image/image_codecs.h"
 #include "easypbr/io/video/video.h"
 #include "easypbr/scene/settings.h"
 
@@ -49,16 +51,40 @@ std::string known_kinds() {
                        fmt::join(io::writable_image_extensions(), ", "));
 }
 
+/// Files appear in order, so that a recording that is killed has no gaps.
 class PictureFrames final : public FrameWriter {
   public:
     explicit PictureFrames(fs::path path) : path_(std::move(path)) {}
     void write(int index, const Image& picture) override {
-        io::save_image(picture, frame_path(path_, index));
+        const Turn turn{*this, index};
+        const std::vector<std::byte> bytes = io::encode_image(picture, extension_of(path_));
+        turn.wait();
+        write_file(frame_path(path_, index), bytes);
     }
     int threads() const override { return std::clamp(thread_count(), 1, 8); }
 
   private:
+    /// That of a picture to be written; the next one's comes when it ends, by a failure too.
+    struct Turn {
+        ~Turn() {
+            std::unique_lock lock(frames.mutex_);
+            frames.changed_.wait(lock, [this] { return frames.next_ == index; });
+            ++frames.next_;
+            frames.changed_.notify_all();
+        }
+        void wait() const {
+            std::unique_lock lock(frames.mutex_);
+            frames.changed_.wait(lock, [this] { return frames.next_ == index; });
+        }
+
+        PictureFrames& frames;
+        int index;
+    };
+
     fs::path path_;
+    std::mutex mutex_;
+    std::condition_variable changed_;
+    int next_ = 0;
 };
 
 class VideoFrames final : public FrameWriter {

@@ -36,6 +36,8 @@ std::vector<std::byte> encode_webp(const Image& image, int quality);
 std::vector<std::byte> encode_hdr(const Image& image);
 /// float32 channels, ZIP-compressed scanlines. f32 only.
 std::vector<std::byte> encode_exr(const Image& image);
+/// What save_image() writes into a file with one of writable_image_extensions().
+std::vector<std::byte> encode_image(const Image& image, std::string_view extension);
 
 /// Throws FormatError: "cannot read NAME: WHAT".
 [[noreturn]] void fail_image(const std::string& name, std::string_view what);

@@ -64,6 +64,13 @@ Image load_image(const std::filesystem::path& path) {
     return image;
 }
 
+std::vector<std::byte> encode_image(const Image& image, std::string_view extension) {
+    if (extension == "png") return encode_png(image.type() == PixelType::f32 ? to_u8(image) : image);
+    if (extension == "hdr") return encode_hdr(to_linear_f32(image));
+    if (extension == "exr") return encode_exr(to_linear_f32(image));
+    return encode_jpeg(to_u8(image));
+}
+
 void save_image(const Image& image, const std::filesystem::path& path) {
     const std::string extension = extension_of(path);
     const std::vector<std::string> known = writable_image_extensions();
@@ -71,14 +78,7 @@ void save_image(const Image& image, const std::filesystem::path& path) {
         throw ArgumentError(fmt::format("cannot write {}: unknown image extension '{}' (expected {})",
                                         path.string(), extension, fmt::join(known, ", ")));
     if (image.empty()) throw ArgumentError(fmt::format("cannot write {}: the image is empty", path.string()));
-    if (extension == "png")
-        write_file(path, encode_png(image.type() == PixelType::f32 ? to_u8(image) : image));
-    else if (extension == "hdr")
-        write_file(path, encode_hdr(to_linear_f32(image)));
-    else if (extension == "exr")
-        write_file(path, encode_exr(to_linear_f32(image)));
-    else
-        write_file(path, encode_jpeg(to_u8(image)));
+    write_file(path, encode_image(image, extension));
 }
 
 std::vector<std::string> writable_image_extensions() {
