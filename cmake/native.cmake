@@ -4,7 +4,8 @@ set(native_shaders lighting_surface lighting_surface_extended background_environ
                    accumulate_sample antialias_fxaa occlusion_select occlusion_horizon occlusion_hemisphere occlusion_blur occlusion_magnify
                    lighting_catcher ground_finish occlusion_normals display_surface exact_surface
                    bloom_blocks bloom_gather bloom_resample focus_halve focus_gather focus_compose
-                   outline_edges outline_lines denoise_smooth transparency_layer)
+                   outline_edges outline_lines denoise_smooth transparency_layer transparency_behind
+                   downsample_picture)
 set(native_surface_shaders mesh_resolve mesh_extended shadow_depth)
 set(native_stream_shaders path_lamps path_scatter path_lamps_extended path_scatter_extended display_color)
 set(native_line_shaders overlay_lines)
@@ -25,7 +26,8 @@ file(CONFIGURE OUTPUT ${native_folder}/shader_list.h
 file(CONFIGURE OUTPUT ${native_folder}/instruction_sets.h
      CONTENT "#define EASYPBR_INSTRUCTION_SETS(X) X(${native_set_names})\n")
 # Inlined wherever they are called, these would take as long to compile as all else.
-set(native_apart mesh_extended.texel_of lighting_surface_extended.prefiltered lighting_surface_extended.area_form)
+set(native_apart mesh_extended.texel_of lighting_surface_extended.prefiltered lighting_surface_extended.area_form
+                 lighting_surface_extended.through_surface)
 foreach(shader IN ITEMS lighting_surface_extended path_lamps_extended path_scatter_extended)
   list(APPEND native_apart ${shader}.F_film ${shader}.charlie_lambda)
 endforeach()

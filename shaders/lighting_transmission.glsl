@@ -3,9 +3,9 @@
 // ends or is empty the environment is seen. Thin surfaces do not bend the ray. Volumes bend it where it enters, and where it leaves through the
 // back faces that lie behind the pixel (Wyman 2005, "An Approximate Image-Space Approach for Interactive Refraction").
 
-uniform sampler2D u_behind;        // premultiplied radiance, with mip levels
-uniform sampler2D u_behind_depth;  // of the opaque surfaces
-uniform sampler2D u_exit_depth;    // of the nearest back faces of volumes behind each pixel; 0: none
+uniform sampler2D u_behind_picture;  // premultiplied radiance, with mip levels
+uniform sampler2D u_behind_depth;    // of the opaque surfaces
+uniform sampler2D u_exit_depth;      // of the nearest back faces of volumes behind each pixel; 0: none
 uniform sampler2D u_exit_normal;
 uniform float u_behind_levels;
 uniform float u_behind_reach;      // beyond this distance from the camera there is no geometry
@@ -47,28 +47,31 @@ Exit through_volume(Surface s, vec3 normal, float ior) {
     x.path = e.thickness;
     x.position = s.position + inside * x.path;
     x.direction = -s.view;  // a slab's other side, unless the true one is known
-    vec2 start = gl_FragCoord.xy / u_size;
-    float exit_depth = textureLod(u_exit_depth, start, 0.0).r;
-    if (exit_depth <= 0.0) return x;
+    vec2 uv = gl_FragCoord.xy / u_size;
+    float exit_depth = textureLod(u_exit_depth, uv, 0.0).r;
+    bool has_back = exit_depth > 0.0;
+    if (!any_lane(has_back)) return x;
     // The ray meets the back where its point lies on it: a few steps of a secant from the straight way through.
-    float axis = dot(inside, u_world_from_view * vec3(0.0, 0.0, -1.0));
-    float path = (distance_of(exit_depth) - projected(s.position).z) / max(dot(-s.view, u_world_from_view * vec3(0.0, 0.0, -1.0)), 1e-3);
-    vec2 uv = start;
+    vec3 forward = u_world_from_view * vec3(0.0, 0.0, -1.0);
+    float axis = dot(inside, forward);
+    float path = (distance_of(exit_depth) - projected(s.position).z) / max(dot(-s.view, forward), 1e-3);
+    bool on_back = has_back;
     for (int i = 0; i < 4; ++i) {
         vec3 p = projected(s.position + inside * path);
         vec2 next = clamp(clamp(p.xy, gl_FragCoord.xy - u_reach, gl_FragCoord.xy + u_reach) / u_size, 0.0, 1.0);
         float depth = textureLod(u_exit_depth, next, 0.0).r;
-        if (depth <= 0.0) break;  // beside the back: keep the last point on it
-        uv = next;
-        path = max(path + (distance_of(depth) - p.z) / max(axis, 0.1), 0.0);
+        on_back = on_back && depth > 0.0;  // beside the back: the last point on it is kept
+        uv = on_back ? next : uv;
+        path = on_back ? max(path + (distance_of(depth) - p.z) / max(axis, 0.1), 0.0) : path;
     }
-    x.path = path;
-    x.position = s.position + inside * path;
+    x.path = has_back ? path : x.path;
+    x.position = has_back ? s.position + inside * path : x.position;
     vec3 back = oct_decode(textureLod(u_exit_normal, uv, 0.0).rg * 2.0 - 1.0);
-    if (dot(back, inside) > 0.0) back = -back;
+    back = dot(back, inside) > 0.0 ? -back : back;
     vec3 outside = refract(inside, back, ior);
     // What is reflected within comes out somewhere, most likely after one more reflection.
-    x.direction = dot(outside, outside) > 0.0 ? outside : reflect(inside, back);
+    outside = dot(outside, outside) > 0.0 ? outside : reflect(inside, back);
+    x.direction = has_back ? outside : x.direction;
     return x;
 }
 
@@ -78,44 +81,57 @@ float gap_at(vec3 p) {
     return (d > 0.0 ? distance_of(d) : 1e30) - p.z;
 }
 
-// The opaque surface that a ray meets, as pixel and distance; z is 0 when it meets none.
-vec3 march(vec3 origin, vec3 direction) {
+// Whether a projected point is behind the opaque surface of its pixel: a thousandth of the distance in front of it counts, so
+// that what stands on a floor sees it.
+bool is_met(vec3 p, float gap) { return gap <= 0.001 * p.z; }
+
+// The opaque surface that a ray meets, as pixel and distance; z is 0 when it meets none, and where it is not `needed`.
+vec3 march(vec3 origin, vec3 direction, bool needed) {
     const int steps = 24;
-    float reach = u_behind_reach;
-    vec3 before = projected(origin);
+    vec3 before = projected(origin), low = before, high = before, hit = vec3(0.0);
     float gap_before = gap_at(before);
+    bool going = needed, unmet = needed;
     for (int i = 1; i <= steps; ++i) {
+        if (!any_lane(going)) break;
         // Steps grow with the distance, so that what is near is not stepped over.
-        float t = reach * pow((float(i) - 1.0 + u_tap_offset) / float(steps), 2.0);
-        vec3 p = projected(origin + direction * t);
-        if (p.z <= 0.0 || !on_screen(p.xy)) {
+        float part = (float(i) - 1.0 + u_tap_offset) / float(steps);
+        vec3 p = projected(origin + direction * (u_behind_reach * part * part));
+        bool leaves = going && (p.z <= 0.0 || !on_screen(p.xy));
+        if (any_lane(leaves)) {
             // What the ray was in front of at the picture's border is taken to go on beyond it.
             vec2 border = clamp(before.xy, vec2(0.5), u_size - 0.5);
             float d = textureLod(u_behind_depth, border / u_size, 0.0).r;
-            return d > 0.0 ? vec3(border, distance_of(d)) : vec3(0.0);
+            hit = leaves && d > 0.0 ? vec3(border, distance_of(d)) : hit;
+            going = going && !leaves;
         }
         float gap = gap_at(p);
-        // A thousandth of the distance, so that what stands on a floor sees it; but not when the ray goes away from it.
-        if (gap <= 0.001 * p.z && gap < gap_before) {
-            // Between the last two points, by the distances to the surface.
-            vec3 low = before, high = p;
-            for (int k = 0; k < 5; ++k) {
-                vec3 middle = 0.5 * (low + high);
-                if (gap_at(middle) <= 0.001 * middle.z) high = middle;
-                else low = middle;
-            }
-            // Far in front of the ray: it passes behind that surface, which is none of its own.
-            return gap_at(high) > -0.25 * abs(p.z - before.z) - 0.02 * high.z ? high : vec3(0.0);
-        }
+        // Not when the ray goes away from the surface.
+        bool meets = going && is_met(p, gap) && gap < gap_before;
+        low = meets ? before : low;
+        high = meets ? p : high;
+        unmet = unmet && !meets;
+        going = going && !meets;
         before = p;
         gap_before = gap;
     }
-    return vec3(0.0);
+    bool has_met = needed && !unmet;
+    if (!any_lane(has_met)) return hit;
+    // Between the last two points, by the distances to the surface.
+    float span = abs(high.z - low.z);
+    for (int k = 0; k < 5; ++k) {
+        vec3 middle = 0.5 * (low + high);
+        bool meets = is_met(middle, gap_at(middle));
+        high = meets ? middle : high;
+        low = meets ? low : middle;
+    }
+    // Far in front of the ray: it passes behind that surface, which is none of its own.
+    bool is_own = gap_at(high) > -0.25 * span - 0.02 * high.z;
+    return has_met ? (is_own ? high : vec3(0.0)) : hit;
 }
 
 vec4 picture_at(vec2 pixel, float radius) {
     float level = clamp(log2(max(radius, 1.0)), 0.0, u_behind_levels - 1.0);
-    return textureLod(u_behind, pixel / u_size, level);
+    return textureLod(u_behind_picture, pixel / u_size, level);
 }
 
 // A direction of the lobe around this one: facets of slope alpha turn a ray by twice as much.
@@ -129,20 +145,16 @@ vec3 scattered_direction(vec3 direction, float alpha) {
 vec4 seen(vec3 origin, vec3 direction, bool straight, float alpha) {
     direction = scattered_direction(direction, alpha);
     float own = projected(origin).z;
-    vec3 hit;
-    vec2 turned = vec2(0.0);
-    if (straight) {
-        float d = textureLod(u_behind_depth, gl_FragCoord.xy / u_size, 0.0).r;
-        hit = vec3(gl_FragCoord.xy, d > 0.0 ? distance_of(d) : 1e20 * own);
-        turned = u_lobe_sample;
-    } else {
-        hit = march(origin, direction);
+    float d = textureLod(u_behind_depth, gl_FragCoord.xy / u_size, 0.0).r;
+    vec3 hit = vec3(gl_FragCoord.xy, d > 0.0 ? distance_of(d) : 1e20 * own);
+    vec2 turned = straight ? u_lobe_sample : vec2(0.0);
+    if (any_lane(!straight)) {
+        vec3 met = march(origin, direction, !straight);
+        hit = straight ? hit : met;
     }
-    vec4 picture = vec4(0.0);
-    if (hit.z > 0.0) {
-        float width = min(2.0 * alpha * max(hit.z - own, 0.0) * pixels_per_unit(hit.z), min(u_picture.w, 0.25 * u_reach));
-        picture = picture_at(hit.xy + turned * width, width * u_lobe_share);
-    }
+    float width = min(2.0 * alpha * max(hit.z - own, 0.0) * pixels_per_unit(max(hit.z, 1e-20)), min(u_picture.w, 0.25 * u_reach));
+    vec4 picture = picture_at(hit.xy + turned * width, width * u_lobe_share);
+    picture = hit.z > 0.0 ? picture : vec4(0.0);
     if (!has_environment) return picture;
     vec3 environment = u_env_intensity * prefiltered(direction, sqrt(alpha * u_lobe_share));
     return vec4(picture.rgb + (1.0 - picture.a) * environment, 1.0);
@@ -159,22 +171,26 @@ Through through_surface(Surface s, float ior) {
     float rough = s.roughness * clamp(2.0 * ior - 2.0, 0.0, 1.0);  // without refraction facets turn nothing
     Through t;
     t.part = s.through * s.keep;
-    Exit x = Exit(s.position, -s.view, 0.0);
-    bool straight = e.thickness <= 0.0 || ior == 1.0;
-    vec3 normal = dot(s.normal, s.view) > 0.0 ? s.normal : -s.normal;
-    if (e.thickness > 0.0) {
-        x = through_volume(s, normal, ior);
-        t.part *= pow(max(e.transmittance, 1e-6), vec3(x.path / e.thickness));
+    vec3 position = s.position, direction = -s.view;
+    bool is_volume = e.thickness > 0.0;
+    if (any_lane(is_volume)) {
+        vec3 normal = dot(s.normal, s.view) > 0.0 ? s.normal : -s.normal;
+        Exit x = through_volume(s, normal, ior);
+        vec3 left = pow(max(e.transmittance, 1e-6), vec3(x.path / max(e.thickness, 1e-20)));
+        t.part = is_volume ? t.part * left : t.part;
+        position = is_volume ? x.position : position;
+        direction = is_volume ? x.direction : direction;
     }
-    t.light = seen(x.position, x.direction, straight, rough * rough);
+    t.light = seen(position, direction, !is_volume || ior == 1.0, rough * rough);
     return t;
 }
 
-// KHR_materials_dispersion: red and blue have indices of their own, which the Abbe number sets apart.
-Through dispersed(Surface s) {
+// KHR_materials_dispersion: red and blue have indices of their own, which the Abbe number sets apart; `green` is what comes
+// through with the material's.
+Through dispersed(Surface s, Through green) {
     Extension e = s.extension;
     float spread = 0.025 * e.dispersion * (e.ior - 1.0);
-    Through red = through_surface(s, e.ior - spread), green = through_surface(s, e.ior), blue = through_surface(s, e.ior + spread);
+    Through red = through_surface(s, e.ior - spread), blue = through_surface(s, e.ior + spread);
     vec3 seen_part = vec3(0.2126 * red.light.a, 0.7152 * green.light.a, 0.0722 * blue.light.a);
     Through t;
     t.part = vec3(red.part.r, green.part.g, blue.part.b);
@@ -184,12 +200,16 @@ Through dispersed(Surface s) {
 
 // What comes through the surface, and how much of what is behind it covers: light to be added, coverage.
 vec4 transmitted(Surface s) {
-    if (max_channel(s.through) <= 0.0) return vec4(0.0, 0.0, 0.0, 1.0);
-    bool disperses = s.extension.dispersion > 0.0 && s.extension.thickness > 0.0;
-    Through t;
-    if (disperses) t = dispersed(s);
-    else t = through_surface(s, s.extension.ior);
+    bool passes = max_channel(s.through) > 0.0;
+    if (!any_lane(passes)) return vec4(0.0, 0.0, 0.0, 1.0);
+    Through t = through_surface(s, s.extension.ior);
+    bool disperses = passes && s.extension.dispersion > 0.0 && s.extension.thickness > 0.0;
+    if (any_lane(disperses)) {
+        Through apart = dispersed(s, t);
+        t.part = disperses ? apart.part : t.part;
+        t.light = disperses ? apart.light : t.light;
+    }
     // Where nothing is seen, the background beyond the picture shines through.
     float coverage = 1.0 - dot(t.part, vec3(0.2126, 0.7152, 0.0722)) * (1.0 - t.light.a);
-    return vec4(t.part * t.light.rgb, coverage);
+    return passes ? vec4(t.part * t.light.rgb, coverage) : vec4(0.0, 0.0, 0.0, 1.0);
 }

@@ -1,6 +1,7 @@
 // Shading on the CPU against the driver's: one text, two compilers.
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <memory>
 #include <random>
 #include <string>
@@ -10,6 +11,7 @@
 #include "easypbr/app/session.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/gl/context.h"
+#include "easypbr/io/image/image_io.h"
 #include "easypbr/native/shaders.h"
 #include "easypbr/scene/settings.h"
 #include "render/render_test.h"
@@ -40,6 +42,7 @@ class Generator {
             material.metallic = chance(0.5) ? 0.0f : number(0, 1);
             if (chance(0.4)) extend(material);
             if (has_layers_ && chance(0.7)) blend(material);
+            if (has_layers_ && chance(0.5)) transmit(material);
             mesh.set_material(material);
             Eigen::Affine3d pose = Eigen::Affine3d::Identity();
             pose.translate(Vec3d(1.5 * i, number(-1, 1), number(-1, 1)));
@@ -119,6 +122,16 @@ class Generator {
         m.alpha_mode = AlphaMode::blend;
         m.opacity = number(0, 1);
         m.unlit = chance(0.2);
+    }
+    /// Glass: thin or a volume, clear or rough.
+    void transmit(Material& m) {
+        m.transmission = number(0.2f, 1);
+        m.metallic = chance(0.8) ? 0.0f : number(0, 1);
+        m.roughness = chance(0.4) ? 0.0f : m.roughness;
+        m.thickness = chance(0.5) ? number(0.1f, 2) : 0.0f;
+        m.dispersion = chance(0.3) ? number(0, 10) : 0.0f;
+        m.attenuation_color = color();
+        m.attenuation_distance = number(0.5f, 3);
     }
     /// Points without normals: shaded by eye-dome lighting.
     Mesh cloud_of(const Mesh& mesh) {
@@ -309,6 +322,103 @@ TEST(NativeShading, LoadsNoDriver) {
         session.render_layers({"depth", "object_id"});
         EXPECT_TRUE(session.context_info().version.empty()) << "scene " << seed;
     }
+}
+
+/// Glass before a wall of labels: panes, balls and a slab, behind each other.
+Scene glasses(float roughness, float dispersion) {
+    Scene scene;
+    Image sky(64, 32, 3, PixelType::f32);
+    for (size_t i = 0; i < sky.pixels<float>().size(); ++i)
+        sky.pixels<float>()[i] = 0.2f + 0.8f * float(i % 192) / 192 * float(i / 192 % 32) / 32;
+    scene.set_environment(Environment(sky));
+    Mesh wall = make_box(Vec3(4, 1, 0.2f));
+    Style labels;
+    labels.lit = false;
+    labels.color_by = ColorBy::height;
+    wall.set_style(labels);
+    Mesh ball = make_sphere(0.8f, 48), slab = make_box(Vec3(1, 1, 0.3f)),
+         pane = make_box(Vec3(3, 0.7f, 0.01f));
+    Material glass;
+    glass.transmission = 1;
+    glass.roughness = roughness;
+    glass.base_color = Vec3(0.9f, 1, 0.95f);
+    pane.set_material(glass);
+    glass.thickness = 0.5f;
+    glass.dispersion = dispersion;
+    glass.attenuation_color = Vec3(0.5f, 0.8f, 0.9f);
+    ball.set_material(glass);
+    slab.set_material(glass);
+    const auto place = [&](Mesh mesh, const char* name, const Vec3d& at) {
+        mesh.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(at)));
+        scene.show(mesh, name);
+    };
+    place(wall, "wall", Vec3d(0, 0, -2));
+    place(ball, "ball", Vec3d(-1, 0, 0));
+    place(slab, "slab", Vec3d(0.9, 0, 0));
+    place(pane, "pane", Vec3d(0, 0.3, 1.2));
+    return scene;
+}
+
+// What is seen through glass: thin or a volume, clear, rough or dispersing, over surfaces and over colours
+// past the tone curve. A refracted ray that passes an edge within its rounding meets what is before it for
+// one and what is behind it for the other: 8 of 76800 pixels at most.
+TEST(NativeShading, SeesThroughGlassAsTheDriver) {
+    if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
+    for (const float roughness : {0.0f, 0.4f})
+        for (const float dispersion : {0.0f, 5.0f})
+            for (const int samples : {1, 3}) {
+                const Scene scene = glasses(roughness, dispersion);
+                const auto draw = [&](bool native) {
+                    app::Session session(scene);
+                    Settings& s = session.settings();
+                    s.image.size = Vec2i(320, 240);
+                    s.image.samples = samples;
+                    s.image.antialias = Antialias::none;
+                    s.rays.enabled = false;
+                    s.shadows.enabled = false;
+                    session.allow_native_shading(native);
+                    return session.render();
+                };
+                const Difference d = difference(draw(true), draw(false));
+                EXPECT_LE(d.by_more, d.pixels / 5000)
+                    << "roughness " << roughness << ", dispersion " << dispersion << ", samples " << samples
+                    << ", largest " << d.most;
+            }
+}
+
+// The driver filters codes of 8 bits, the CPU linear values of 16: at most one step.
+TEST(NativeShading, ShowsImagesBehindAsTheDriver) {
+    if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
+    Image image(37, 23, 3, PixelType::u8);
+    for (size_t i = 0; i < image.pixels<uint8_t>().size(); ++i)
+        image.pixels<uint8_t>()[i] = uint8_t(40 + i * i % 180);
+    const auto file = std::filesystem::temp_directory_path() / "easypbr_native_background.png";
+    io::save_image(image, file);
+    Scene scene;
+    scene.show(make_sphere(1, 20), "ball");
+    for (const int samples : {1, 4}) {
+        const auto draw = [&](bool native) {
+            app::Session session(scene);
+            if (native) session.use_device(DrawDevice::cpu);
+            Settings& s = session.settings();
+            s.image.size = Vec2i(161, 67);
+            s.image.samples = samples;
+            s.image.antialias = Antialias::none;
+            s.rays.enabled = false;
+            s.background.mode = BackgroundMode::image;
+            s.background.image = file.string();
+            session.allow_native_shading(native);
+            const Image picture = session.render();
+            EXPECT_EQ(session.context_info().version.empty(), native);
+            return picture;
+        };
+        const Image native = draw(true);
+        EXPECT_EQ(difference(native, draw(false)).by_more, 0u) << samples << " samples";
+        // All of the width of 37 pixels is seen, and the middle of the height.
+        EXPECT_NEAR(native.at<uint8_t>(0, 33)[1], image.at<uint8_t>(0, 11)[1], 1);
+        EXPECT_EQ(native.at<uint8_t>(0, 0)[3], 255);
+    }
+    std::filesystem::remove(file);
 }
 
 /// A leaf with holes, or coloured glass, over a floor.

@@ -142,8 +142,12 @@ def test_without_opengl_clouds_colour_bars_effects_and_lines_are_drawn(without_o
     heights = ["style.color_by=height", "annotation.colorbar=true"]
     occlusion, lines = ["ssao.enabled=true"], ["style.show_wireframe=true", "style.line_dash=3"]
     layers, coat = ["material.opacity=0.5", "ground.mode=shadow"], ["material.clearcoat=1", "path.enabled=false"]
+    easypbr("render", sphere, "-o", "backdrop.png", "--size", "13x9")
+    backdrop = ["background.mode=image", f"background.image={tmp_path / 'backdrop.png'}"]
+    glass = ["material.transmission=1", "material.thickness=1", "material.roughness=0.2", "path.enabled=false"]
     pictures = (([cloud], []), ([cloud], heights), ([cloud], occlusion), ([sphere], effects), ([sphere], lines),
-                ([sphere], layers), ([sphere], coat))
+                ([sphere], layers), ([sphere], coat), ([sphere], glass),
+                ([sphere], backdrop))
     for files, settings in pictures:
         options = ["--size", "64x48", *(word for setting in settings for word in ("--set", setting))]
         done = without_opengl("render", *files, "-o", tmp_path / "without.png", *options)
@@ -153,8 +157,8 @@ def test_without_opengl_clouds_colour_bars_effects_and_lines_are_drawn(without_o
 
 
 def test_without_opengl_errors_name_the_pass_and_what_to_install(without_opengl, sphere, tmp_path):
-    glass = ("--set", "material.transmission=1", "--mode", "raster")
-    for name, settings in {"shadows": glass, "transparency": (*glass, "--set", "shadows.enabled=false")}.items():
+    mist = ("--set", "material.opacity=0.5", "--set", "style.mode=points", "--mode", "raster")
+    for name, settings in {"shadows": mist, "transparency": (*mist, "--set", "shadows.enabled=false")}.items():
         done = without_opengl("render", sphere, "-o", tmp_path / "out.png", *settings)
         assert done.returncode == 1 and done.stderr.count("\n") == 1
         assert f"{name}: this needs OpenGL" in done.stderr and "Install" in done.stderr

@@ -56,8 +56,10 @@ assert view.render()[16, 16, 3] == 255
 view.settings.material.opacity = 0.5
 view.settings.background.mode = "transparent"
 assert 128 < view.render()[16, 16, 3] < 255
-view.settings.shadows.enabled = False
 view.settings.material.transmission = 0.5
+assert 64 < view.render()[16, 16, 3] < 192
+view.settings.shadows.enabled = False
+view.settings.style.mode = "points"
 try:
     view.render()
 except easypbr.ContextError as error:

@@ -142,19 +142,26 @@ TEST(Transfers, LayersStayInHostMemory) {
     glass.opacity = 0.5f;
     glass.alpha_mode = AlphaMode::blend;
     scene.show(pane_of(glass), "pane");
+    Material volume;
+    volume.transmission = volume.thickness = 1;
+    volume.roughness = 0.3f;
+    scene.show(pane_of(volume), "volume");
     const auto transfers = transfers_of(scene, {});
     if (!transfers) GTEST_SKIP() << "this machine has a GPU: nothing is drawn natively";
     EXPECT_EQ(*transfers, Transfers());
 }
 
-// Layers that transmit light are drawn by the driver.
+// Layers of points are drawn by the driver.
 TEST(Transfers, SurfacesAreUploadedOnceForPassesOfTheDriver) {
     Settings settings;
     settings.ssao.enabled = false;
     Scene scene = scene_of(make_teapot(1, 20));
-    Material glass;
-    glass.transmission = 0.5f;
-    scene.show(pane_of(glass), "pane");
+    Material mist;
+    mist.opacity = 0.5f;
+    mist.alpha_mode = AlphaMode::blend;
+    Mesh cloud = pane_of(mist);
+    cloud.edit([](MeshData& data) { data.style.mode = DrawMode::points; });
+    scene.show(cloud, "cloud");
     const auto transfers = transfers_of(scene, settings);
     if (!transfers) GTEST_SKIP() << "this machine has a GPU: nothing is drawn natively";
     EXPECT_EQ(transfers->uploads, gbuffer_uploads + 1);  // and the light

@@ -157,8 +157,6 @@ std::vector<std::byte> host_texels(const Texture& texture, bool color, native::T
     return all_levels(std::vector<uint8_t>(pixels.begin(), pixels.end()), texture.wrap_u, to);
 }
 
-}  // namespace
-
 gl::Texture make_texture(const Image& image, bool color, const std::string& name) {
     // Three channels are uploaded as they are; grey and grey with alpha are spread to four.
     Image level = to_valid_u8(image, name);
@@ -176,6 +174,8 @@ gl::Texture make_texture(const Image& image, bool color, const std::string& name
     texture.sampling(gl::Filtering::trilinear);
     return texture;
 }
+
+}  // namespace
 
 const gl::Texture& TextureCache::get(const Texture& texture, bool color) {
     const Key key{texture.image.get(), color, texture.wrap_u, texture.wrap_v, texture.filter};

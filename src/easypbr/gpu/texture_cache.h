@@ -43,8 +43,4 @@ class TextureCache {
     RevisionCache<Key, HostEntry> host_entries_;
 };
 
-/// An image as 8-bit RGBA with all mip levels, on its own: for backgrounds. Values that are NaN or infinite
-/// are replaced by 0 and reported to the log under the name.
-gl::Texture make_texture(const Image& image, bool color, const std::string& name);
-
 }  // namespace easypbr::gpu

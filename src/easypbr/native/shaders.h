@@ -28,7 +28,7 @@ void use_instruction_set(std::string_view name);
 struct Inputs {
     using Bytes = std::span<const std::byte>;
     using Value = std::variant<int, float, Vec2, Vec3, Vec4, Mat3, View, Cube, Panorama, Layers, Layers4,
-                               Texture, Bytes>;
+                               MipPicture, Texture, Bytes>;
 
     std::vector<std::string_view> features;
     std::vector<std::pair<std::string_view, Value>> values;

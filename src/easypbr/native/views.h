@@ -31,6 +31,7 @@ struct R16fLinear : View {};
 struct Rgba8Linear : View {};
 struct Rg16fLinear : View {};
 struct Rgba16fLinear : View {};
+struct Rgba32fLinear : View {};
 
 /// Faces of halves, four channels a texel, with a border of one texel from the neighbouring faces: bilinear
 /// filtering is seamless. Levels are from the largest on, six faces each.
@@ -52,6 +53,16 @@ struct Panorama {
     int levels = 0;
     int width[most_levels] = {}, height[most_levels] = {};
     size_t offsets[most_levels] = {};  ///< of levels, in texels
+};
+
+/// A picture of four floats a pixel with its mip levels, each half as large as the one before it, rounded
+/// down.
+struct MipPicture {
+    static constexpr int most_levels = 16;
+
+    const float* data[most_levels] = {};  ///< of levels, row by row
+    int width = 0, height = 0;            ///< of the largest level
+    int levels = 0;
 };
 
 /// Square pictures of one float a texel, one after the other.
@@ -115,6 +126,11 @@ using u_half_light = Rgba16f;
 using u_confusion = R32f;
 using u_behind = Rgba16fLinear;
 using u_before = Rgba16fLinear;
+using u_behind_picture = MipPicture;
+using u_behind_depth = R32f;
+using u_exit_depth = R32f;
+using u_exit_normal = Rg16;
+using u_finer = Rgba32fLinear;
 using u_hidden = R16fLinear;
 using u_edges = Rg8;
 using u_last_depth = R32f;
@@ -127,7 +143,7 @@ using u_id_depth = R32f;
 using u_radiance = Rgba32f;
 using u_overlay = Rgba16f;
 using u_glow = Rgba16fLinear;
-using u_background_image = Rgba8Linear;
+using u_background_image = Texture;
 using u_color = Rgba8Linear;
 using u_base_color_texture = Texture;
 using u_metallic_texture = Texture;

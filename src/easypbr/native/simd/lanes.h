@@ -35,6 +35,16 @@ INLINE Ints splat(int a) {
     return a - Ints{};
 }
 
+/// Towards zero. What is no number or lies beyond all whole numbers becomes the least one, as x86 has it.
+INLINE Ints truncated(Floats a) {
+    const Ints whole = __builtin_convertvector(a, Ints);
+#if defined(__x86_64__)
+    return whole;
+#else
+    return a < 2147483648.0f ? whole : splat(-2147483647 - 1);
+#endif
+}
+
 struct vint;
 struct vuint;
 
@@ -67,7 +77,7 @@ struct vuint {
     INLINE vuint(unsigned a) : v(Uints(splat(int(a)))) {}
     INLINE explicit vuint(vint a) : v(Uints(a.v)) {}
     /// Of numbers below 2^31.
-    INLINE explicit vuint(vfloat a) : v(Uints(__builtin_convertvector(a.v, Ints))) {}
+    INLINE explicit vuint(vfloat a) : v(Uints(truncated(a.v))) {}
 };
 
 INLINE vbool operator&&(vbool a, vbool b) {
@@ -191,9 +201,8 @@ INLINE int to_int(float a) {
 INLINE int to_int(int a) {
     return a;
 }
-/// Towards zero.
 INLINE vint to_int(vfloat a) {
-    return __builtin_convertvector(a.v, Ints);
+    return truncated(a.v);
 }
 INLINE vint to_int(vint a) {
     return a;
@@ -264,6 +273,9 @@ INLINE vfloat max(vfloat a, vfloat b) {
 }
 INLINE float min(float a, float b) {
     return a < b ? a : b;
+}
+INLINE float max(float a, float b) {
+    return a > b ? a : b;
 }
 INLINE vint min(vint a, vint b) {
     return a.v < b.v ? a.v : b.v;
@@ -362,7 +374,7 @@ INLINE vfloat exp2(vfloat x) {
     p = p * f + 0.24022651f;
     p = p * f + 0.69314718f;
     p = p * f + 1.0f;
-    return p * as_float((__builtin_convertvector(whole.v, Ints) + 127) << 23);
+    return p * as_float((truncated(whole.v) + 127) << 23);
 }
 INLINE vfloat exp(vfloat x) {
     return exp2(x * 1.44269504f);
@@ -417,7 +429,7 @@ INLINE vfloat atan(vfloat y, vfloat x) {
 INLINE void sin_cos(vfloat x, vfloat& sine, vfloat& cosine) {
     const vfloat turns = floor(x * 0.636619772f + 0.5f);
     const vfloat r = x - turns * 1.5707963f, r2 = r * r;
-    const Ints n = __builtin_convertvector(turns.v, Ints);
+    const Ints n = truncated(turns.v);
     const vfloat s = ((-1.9515296e-4f * r2 + 8.3321609e-3f) * r2 - 1.6666655e-1f) * r2 * r + r;
     const vfloat c = ((2.4433157e-5f * r2 - 1.3887316e-3f) * r2 + 4.1666646e-2f) * r2 * r2 - 0.5f * r2 + 1.0f;
     const vbool odd = Ints((n & 1) != 0);

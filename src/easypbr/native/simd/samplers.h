@@ -90,6 +90,45 @@ INLINE Floats8 from_halves8(const std::byte* p) {
 INLINE vec4 textureLod(const Rgba16fLinear& s, const vec2& uv, float) {
     return linear(s, uv, 8, from_halves8);
 }
+INLINE vec4 textureLod(const Rgba32fLinear& s, const vec2& uv, float) {
+    return linear(s, uv, 16, load<Floats8>);
+}
+/// Where the bilinear filter reads along one axis of `count` texels: the one before, and the next one's
+/// weight.
+struct ScalarStep {
+    int first;
+    float part;
+};
+INLINE ScalarStep scalar_step(float u, int count) {
+    float x = u * float(count) - 0.5f;
+    x = x > 0 ? x : 0.0f;  // also what is not a number
+    x = x < float(count - 1) ? x : float(count - 1);
+    const int first = int(x) < count - 2 ? int(x) : count > 1 ? count - 2 : 0;
+    return {first, x - float(first)};
+}
+INLINE Floats4 level_tap(const MipPicture& s, int level, float u, float v) {
+    const int width = s.width >> level > 1 ? s.width >> level : 1,
+              height = s.height >> level > 1 ? s.height >> level : 1;
+    const ScalarStep x = scalar_step(u, width), y = scalar_step(v, height);
+    const float* top = s.data[level] + 4 * (size_t(y.first) * size_t(width) + size_t(x.first));
+    const size_t right = width > 1 ? 4 : 0, below = height > 1 ? 4 * size_t(width) : 0;
+    const Floats4 a = load<Floats4>(top), b = load<Floats4>(top + right), c = load<Floats4>(top + below),
+                  d = load<Floats4>(top + below + right);
+    const Floats4 upper = a + (b - a) * x.part, lower = c + (d - c) * x.part;
+    return upper + (lower - upper) * y.part;
+}
+/// Trilinear, pixel by pixel: few are asked for.
+INLINE vec4 textureLod(const MipPicture& s, const vec2& uv, vfloat level) {
+    const vfloat l = clamp(level, 0.0f, float(s.levels - 1));
+    Floats4 pixels[lanes];
+    for (int k = 0; k < lanes; ++k) {
+        const int larger = int(l.v[k]);
+        const float part = l.v[k] - float(larger);
+        pixels[k] = level_tap(s, larger, uv.x.v[k], uv.y.v[k]);
+        if (part > 0) pixels[k] += (level_tap(s, larger + 1, uv.x.v[k], uv.y.v[k]) - pixels[k]) * part;
+    }
+    return planar(pixels);
+}
 INLINE Floats4 bilinear_halves(const uint16_t* top, const uint16_t* bottom, float right, float below) {
     return bilinear(from_halves(load<Shorts8>(top)), from_halves(load<Shorts8>(bottom)), right, below);
 }
@@ -174,6 +213,15 @@ template <class Load>
 INLINE Floats4 texel_of(const Texture& s, const TexturePlace& p, int k, size_t bytes, Load&& load_pair) {
     return bilinear(load_pair(s.texels + bytes * size_t(p.top.v[k])),
                     load_pair(s.texels + bytes * size_t(p.bottom.v[k])), p.right.v[k], p.below.v[k]);
+}
+/// The bilinear filter of the largest level.
+INLINE vec4 textureLod(const Texture& s, const vec2& uv, float) {
+    const TexturePlace place = place_of(s, wrapped(uv.x, s.wrap_u), wrapped(uv.y, s.wrap_v), 0);
+    Floats4 pixels[lanes];
+    for (int k = 0; k < lanes; ++k)
+        pixels[k] =
+            s.is_16_bit ? texel_of(s, place, k, 8, from_shorts8) : texel_of(s, place, k, 4, from_bytes8);
+    return planar(pixels) * (s.is_16_bit ? 1.0f / 65535.0f : 1.0f / 255.0f);
 }
 /// What the trilinear filter reads.
 struct TextureFootprint {

@@ -214,6 +214,14 @@ INLINE vec4 fetch(const Rgba16f& s, vint x, vint y) {
 INLINE vec4 fetch(const Rgba16fLinear& s, vint x, vint y) {
     return fetch(Rgba16f{s}, x, y);
 }
+INLINE vec4 fetch(const Rgba32f& s, vint x, vint y) {
+    return fetch_pixels(
+        s, x,
+        y, [&](int i) __attribute__((always_inline)) { return load<Floats4>(s.data + 16 * size_t(i)); });
+}
+INLINE vec4 fetch(const Rgba32fLinear& s, vint x, vint y) {
+    return fetch(Rgba32f{s}, x, y);
+}
 INLINE vec4 fetch(const R16fLinear& s, vint x, vint y) {
     const Place p = place_of(s, x, y);
     Floats4 pixels[lanes];
@@ -222,11 +230,6 @@ INLINE vec4 fetch(const R16fLinear& s, vint x, vint y) {
         pixels[k] = from_halves(Shorts4{half, 0, 0, 0});
     }
     return planar(pixels);
-}
-INLINE vec4 fetch(const Rgba32f& s, vint x, vint y) {
-    return fetch_pixels(
-        s, x,
-        y, [&](int i) __attribute__((always_inline)) { return load<Floats4>(s.data + 16 * size_t(i)); });
 }
 
 template <class Sampler>

@@ -10,6 +10,9 @@ struct ivec2;
 struct uvec3;
 struct vec3;
 
+struct bvec2 {
+    vbool x, y;
+};
 struct bvec3 {
     vbool x, y, z;
 };
@@ -324,6 +327,17 @@ INLINE vec3 reflect(const vec3& i, const vec3& n) {
 INLINE vec3 cross(const vec3& a, const vec3& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+/// Zero where all is reflected.
+INLINE vec3 refract(const vec3& i, const vec3& n, vfloat eta) {
+    const vfloat cosine = dot(n, i), k = 1.0f - eta * eta * (1.0f - cosine * cosine);
+    return select(k < 0.0f, vec3(vfloat(0.0f)), eta * i - (eta * cosine + sqrt(k)) * n);
+}
+INLINE bvec2 lessThan(const vec2& a, const vec2& b) {
+    return {a.x < b.x, a.y < b.y};
+}
+INLINE bvec2 greaterThanEqual(const vec2& a, const vec2& b) {
+    return {a.x >= b.x, a.y >= b.y};
+}
 INLINE bvec3 lessThan(const vec3& a, const vec3& b) {
     return {a.x < b.x, a.y < b.y, a.z < b.z};
 }
@@ -338,6 +352,9 @@ INLINE bvec3 greaterThan(const vec3& a, const vec3& b) {
 }
 INLINE bvec4 greaterThan(const vec4& a, const vec4& b) {
     return {a.x > b.x, a.y > b.y, a.z > b.z, a.w > b.w};
+}
+INLINE vbool all(const bvec2& a) {
+    return a.x && a.y;
 }
 INLINE vbool any(const bvec3& a) {
     return a.x || a.y || a.z;

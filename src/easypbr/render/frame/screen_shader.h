@@ -26,9 +26,9 @@ class ShaderInputs {
         defines_.insert(defines_.end(), macros.begin(), macros.end());
     }
 
-    using Value =
-        std::variant<int, float, Vec2, Vec3, Vec4, Mat3, const Target*, const gl::Texture*, native::View,
-                     native::Cube, native::Panorama, native::Layers, native::Layers4, native::Texture>;
+    using Value = std::variant<int, float, Vec2, Vec3, Vec4, Mat3, const Target*, const gl::Texture*,
+                               native::View, native::Cube, native::Panorama, native::Layers, native::Layers4,
+                               native::MipPicture, native::Texture>;
     template <class T>
     void set(std::string name, const T& value) {
         add(std::move(name), Value(value));

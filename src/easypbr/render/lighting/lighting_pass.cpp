@@ -101,12 +101,16 @@ void set_surfaces(ShaderInputs& values, const Frame& frame, const GBuffer& targe
     if (targets.ambient_occlusion) values.set("u_ambient_occlusion", targets.ambient_occlusion);
 }
 
-void set_transmission(ShaderInputs& values, const Frame& frame, const TransmissionInputs& behind) {
+void set_transmission(ShaderInputs& values, const Frame& frame, const TransmissionInputs& behind,
+                      bool native) {
     // Without volumes in the layer nobody asks for their backs.
-    const auto or_depth = [&](const gl::Texture* texture) -> const gl::Texture& {
-        return texture ? *texture : *behind.depth;
+    const auto or_depth = [&](const Target* target) -> const Target& {
+        return target ? *target : *behind.depth;
     };
-    values.set("u_behind", *behind.picture);
+    if (native)
+        values.set("u_behind_picture", behind.host_picture);
+    else
+        values.set("u_behind_picture", *behind.picture);
     values.set("u_behind_depth", *behind.depth);
     values.set("u_exit_depth", or_depth(behind.exit_depth));
     values.set("u_exit_normal", or_depth(behind.exit_normal));
@@ -224,7 +228,7 @@ ShaderInputs LightingPass::surface_inputs(const Frame& frame, const GBuffer& tar
     values.set("u_first_block", inputs.block.first ? 1.0f : 0.0f);
     if (inputs.block.has_area()) set_ltc(values, native);
     if (inputs.extensions) set_extensions(values, frame, targets, native);
-    if (inputs.transmission) set_transmission(values, frame, *inputs.transmission);
+    if (inputs.transmission) set_transmission(values, frame, *inputs.transmission, native);
     if (inputs.environment) set_environment(values, frame, inputs, native);
     set_lights(values, frame, inputs.block, native);
     return values;

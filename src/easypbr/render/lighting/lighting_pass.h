@@ -17,11 +17,12 @@ namespace easypbr::render {
 /// What is seen through a transmissive layer.
 struct TransmissionInputs {
     const gl::Texture* picture = nullptr;  ///< radiance of all that is farther, with mip levels
+    native::MipPicture host_picture = {};  ///< the same for LightingPass::shade()
     int levels = 1;
-    const gl::Texture* depth = nullptr;        ///< of the opaque surfaces
-    const gl::Texture* exit_depth = nullptr;   ///< of volumes' back faces
-    const gl::Texture* exit_normal = nullptr;  ///< of volumes' back faces
-    double reach = 0;                          ///< there is no geometry farther from the camera
+    const Target* depth = nullptr;        ///< of the opaque surfaces
+    const Target* exit_depth = nullptr;   ///< of volumes' back faces
+    const Target* exit_normal = nullptr;  ///< of volumes' back faces
+    double reach = 0;                     ///< there is no geometry farther from the camera
 };
 
 /// What lights a G-buffer.
@@ -44,8 +45,8 @@ class LightingPass {
     void draw_caught(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,
                      const gl::Framebuffer& light);
 
-    /// Lights natively: writes the radiance target in host memory, where the surfaces are. There must be no
-    /// transmission and no tinted shadows, and the shadow maps are in host memory.
+    /// Lights natively: writes the radiance target in host memory, where the surfaces are. The
+    /// shadow maps are in host memory.
     void shade(const Frame& frame, const GBuffer& targets, const LightInputs& inputs, Transfers& transfers);
     /// draw_caught() natively: with the first block it writes all of `light`.
     void shade_caught(const Frame& frame, const GBuffer& targets, const LightInputs& inputs,

@@ -44,7 +44,7 @@ Vec4 background_color(const Frame& frame) {
 
 /// Scale and offset of the frame's texture coordinates with which an image covers the picture, centred,
 /// nothing distorted.
-Vec4 covering_uv(const gl::Texture& image, const Frame& frame) {
+Vec4 covering_uv(const Image& image, const Frame& frame) {
     const Vec2 whole = frame.picture_size.cast<float>();
     const float picture = whole.x() / whole.y(), own = float(image.width()) / float(image.height());
     const Vec2 scale = picture > own ? Vec2(1, own / picture) : Vec2(picture / own, 1);
@@ -52,6 +52,15 @@ Vec4 covering_uv(const gl::Texture& image, const Frame& frame) {
     const Vec2 first =
         (Vec2(1, 1) - scale) / 2 + scale.cwiseProduct(frame.origin.cast<float>().cwiseQuotient(whole));
     return {part.x(), part.y(), first.x(), first.y()};
+}
+
+void add_image(const BackgroundImage& background, const Frame& frame, bool native, ShaderInputs& values) {
+    values.define("BACKGROUND_IMAGE");
+    values.set("u_background_uv", covering_uv(*background.texture.image, frame));
+    if (native)
+        values.set("u_background_image", background.textures->host(background.texture, true));
+    else
+        values.set("u_background_image", background.textures->get(background.texture, true));
 }
 
 void add_lit(const LitPicture& lit, const char* radiance, ShaderInputs& values) {
@@ -159,9 +168,9 @@ void OutputPass::begin(Vec2i size, Encoding encoding) {
     encoding_ = encoding;
 }
 
-bool OutputPass::is_native(const Shot& shot, bool background_image) const {
+bool OutputPass::is_native(const Shot& shot) const {
     const bool blurs = shot.sample_count == 1 && shot.resolved->settings.image.antialias == Antialias::fxaa;
-    return !background_image && (!blurs || encoding_ != Encoding::srgb16);
+    return !blurs || encoding_ != Encoding::srgb16;
 }
 
 const gl::Framebuffer& OutputPass::framebuffer() const {
@@ -253,23 +262,21 @@ LitPicture OutputPass::mean_of(const Frame& frame, const LitPicture& lit) {
     return mean;
 }
 
-void OutputPass::finish(const Frame& frame, const LitPicture& lit_frame, const gl::Texture* background_image,
+void OutputPass::finish(const Frame& frame, const LitPicture& lit_frame, const BackgroundImage* background,
                         const GBuffer* exact) {
     const bool averages_radiance = frame.averages_radiance;
     const LitPicture lit = averages_radiance ? mean_of(frame, lit_frame) : lit_frame;
     const Target* sum = frame.sample_count > 1 && !averages_radiance ? &sum_ : nullptr;
     const Target& source = sum ? *sum : *lit.radiance;
-    if (source.is_ahead() && is_native(frame, background_image)) return finish_natively(frame, lit, exact);
+    if (source.is_ahead() && is_native(frame)) return finish_natively(frame, lit, background, exact);
 
     source.upload(transfers_);
     ShaderInputs values = display_inputs(frame, lit, encoding_, sum);
     gl::DrawState state;
     picture_.drawn();
     framebuffer().bind();
-    if (background_image) {
-        values.define("BACKGROUND_IMAGE");
-        values.set("u_background_uv", covering_uv(*background_image, frame));
-        values.set("u_background_image", *background_image);
+    if (background) {
+        add_image(*background, frame, false, values);
     } else {
         const Vec4 code = background_code(frame, encoding_);
         const float rgba[4] = {code.x(), code.y(), code.z(), code.w()};
@@ -280,13 +287,15 @@ void OutputPass::finish(const Frame& frame, const LitPicture& lit_frame, const g
     if (is_blurred(frame, encoding_)) blur_edges(frame, lit.covered, exact);
 }
 
-void OutputPass::finish_natively(const Frame& frame, const LitPicture& lit, const GBuffer* exact) {
+void OutputPass::finish_natively(const Frame& frame, const LitPicture& lit, const BackgroundImage* background,
+                                 const GBuffer* exact) {
     const Target* sum = frame.sample_count > 1 && !frame.averages_radiance ? &sum_ : nullptr;
-    const PixelRect area = is_whole(frame, lit) ? frame.whole() : sum ? drawn_ : lit.covered;
+    const PixelRect area = background || is_whole(frame, lit) ? frame.whole() : sum ? drawn_ : lit.covered;
+    ShaderInputs values = display_inputs(frame, lit, encoding_, sum);
+    if (background) add_image(*background, frame, true, values);
     picture_.write(picture_.whole());
     fill_around(picture_, area, background_code(frame, encoding_));
-    display_.shade(display_inputs(frame, lit, encoding_, sum), {.target = &picture_, .area = area},
-                   transfers_);
+    display_.shade(values, {.target = &picture_, .area = area}, transfers_);
     if (is_blurred(frame, encoding_)) blur_edges_natively(frame, lit.covered, exact);
 }
 

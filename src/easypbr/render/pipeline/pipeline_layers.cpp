@@ -1,4 +1,5 @@
 // The part of the pipeline that draws transparent layers, and overlays between them.
+#include <algorithm>
 #include <functional>
 
 #include "easypbr/render/pipeline/pipeline.h"
@@ -9,6 +10,20 @@ namespace {
 bool is_shaded(const DrawItem& item) {
     return item.kind == SurfaceKind::eye_dome;
 }
+
+/// What layers need to be seen through.
+struct SeeThrough {
+    bool any = false, rough = false, volumes = false;
+    double reach = 0;  ///< of geometry, from the camera
+
+    SeeThrough(const Frame& frame, const DrawList& layers, const Box3d& bounds) {
+        const auto meshes = layers.of(DrawMode::mesh);
+        any = layers.extensions() & transmission_bit;
+        rough = std::ranges::any_of(meshes, &DrawItem::blurs_behind);
+        volumes = any && std::ranges::any_of(meshes, &DrawItem::is_volume);
+        reach = (bounds.center() - frame.camera.position()).norm() + bounds.diagonal().norm() / 2;
+    }
+};
 
 }  // namespace
 
@@ -78,10 +93,23 @@ bool Pipeline::shade_transparent(const Frame& frame, const DrawList& list, const
     const ExtensionSet extensions = layers.extensions();
     native_layers_.begin(frame, targets_, extensions);
     const GBuffer& layer = native_layers_.layer();
+    const SeeThrough through(frame, layers, bounds_of(*frame.scene));
     while (native_layers_.open_layer(frame)) {
         const bool drawn = surfaces_.peel(frame, layers, layer, extensions, native_layers_.limits());
         if (!native_layers_.close_layer(drawn)) break;
-        light_layer(frame, layer, contents, {.native = true, .extensions = extensions});
+        // Paths find what is behind by themselves.
+        if (through.any && !contents.paths) {
+            native_layers_.keep_picture(frame, targets_, with_overlay, through.rough, through.reach,
+                                        transfers_);
+            if (through.volumes) {
+                native_layers_.open_exits(frame);
+                surfaces_.peel_backs(frame, layers, native_layers_.exits(), native_layers_.limits());
+                native_layers_.close_exits();
+            }
+        }
+        light_layer(
+            frame, layer, contents,
+            {.native = true, .extensions = extensions, .transmission = native_layers_.transmission()});
         native_layers_.blend(targets_, with_overlay, transfers_);
     }
     return native_layers_.has_layers();
@@ -113,12 +141,7 @@ const gl::Texture* Pipeline::shade_points(const Frame& frame, const DrawList& la
 void Pipeline::draw_layers(const Frame& frame, const DrawList& list, const ItemsByKind& overlays,
                            const gl::Texture& opaque, const FrameContents& contents, bool with_overlay) {
     SurfaceOutputs outputs{.extensions = list.extensions()};
-    const bool see_through = outputs.extensions & transmission_bit;
-    const auto meshes = list.of(DrawMode::mesh);
-    const bool rough = std::ranges::any_of(meshes, &DrawItem::blurs_behind);
-    const bool volumes = see_through && std::ranges::any_of(meshes, &DrawItem::is_volume);
-    const Box3d& bounds = bounds_of(*frame.scene);
-    const double reach = (bounds.center() - frame.camera.position()).norm() + bounds.diagonal().norm() / 2;
+    const SeeThrough through(frame, list, bounds_of(*frame.scene));
     transparency_.begin(frame, targets_, opaque, outputs.extensions, with_overlay);
     const gl::Texture* shade = shade_points(frame, list, opaque);
     surfaces_.begin_layers(frame, list, opaque);
@@ -128,8 +151,8 @@ void Pipeline::draw_layers(const Frame& frame, const DrawList& list, const Items
         if (!transparency_.close_layer()) break;
         surfaces_.take_layer(list);
         overlays_.draw(frame, overlays, targets_, &transparency_.layer());
-        if (see_through) transparency_.keep_picture(frame, targets_, rough, reach);
-        if (volumes) {
+        if (through.any) transparency_.keep_picture(frame, targets_, through.rough, through.reach);
+        if (through.volumes) {
             transparency_.open_exits(frame);
             surfaces_.draw_backs(frame, list, transparency_.exits(), outputs);
             transparency_.close_exits();

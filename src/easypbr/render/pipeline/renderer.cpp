@@ -149,9 +149,7 @@ void Renderer::prepare(Picture& picture) {
     picture.shot.averages_radiance = picture.contents.paths && options.samples > 1;
     picture.with_exact = picture.list.has(
         [](const DrawItem& item) { return item.kind == SurfaceKind::exact && !item.layered; });
-    const bool has_image =
-        resolved.settings.background.mode == BackgroundMode::image && picture.images.background;
-    picture.contents.in_host_memory = is_picture && output_.is_native(picture.shot, has_image);
+    picture.contents.in_host_memory = is_picture && output_.is_native(picture.shot);
     // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
     const bool apart = options.samples > 1 && picture.with_exact;
     picture.averaged = apart ? picture.list.without_exact() : picture.list;
@@ -209,8 +207,8 @@ void Renderer::finish() {
     PassTimer& timer = pipeline_.timer();
     const GBuffer* exact = picture.with_exact ? &pipeline_.targets() : nullptr;
     timer.run("output", [&] {
-        output_.finish(picture.frame, picture.lit, background_texture(picture.resolved, picture.images),
-                       exact);
+        const auto background = background_image(picture.resolved, picture.images);
+        output_.finish(picture.frame, picture.lit, background ? &*background : nullptr, exact);
     });
     if (picture.shot.motion) move_objects(picture.drawable, picture.scene, *picture.shot.motion, 1);
     if (exact) timer.run("exact", [&] { draw_exact(); });
@@ -282,15 +280,15 @@ void Renderer::evict_unused() {
     drawables_.evict_unused();
 }
 
-const gl::Texture* Renderer::background_texture(const ResolvedSettings& resolved,
-                                                const SettingsImages& images) {
-    if (resolved.settings.background.mode != BackgroundMode::image || !images.background) return nullptr;
-    if (images.background != background_image_) {
-        background_image_ = images.background;
-        background_texture_ = gpu::make_texture(*background_image_, true, resolved.settings.background.image);
-        background_texture_.sampling(gl::Filtering::linear);
-    }
-    return &background_texture_;
+std::optional<BackgroundImage> Renderer::background_image(const ResolvedSettings& resolved,
+                                                          const SettingsImages& images) {
+    const BackgroundSettings& background = resolved.settings.background;
+    if (background.mode != BackgroundMode::image || !images.background) return {};
+    Texture texture;
+    texture.image = images.background;
+    texture.path = background.image;
+    texture.wrap_u = texture.wrap_v = Wrap::clamp;
+    return BackgroundImage{texture, &pipeline_.caches().textures};
 }
 
 void Renderer::draw_custom_over_picture() {

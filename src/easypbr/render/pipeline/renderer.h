@@ -4,6 +4,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -132,7 +133,8 @@ class Renderer {
     /// Draws the exact colours that nothing may mix with, once, through the pixels' centres.
     void draw_exact();
     void draw_custom_over_picture();
-    const gl::Texture* background_texture(const ResolvedSettings& resolved, const SettingsImages& images);
+    std::optional<BackgroundImage> background_image(const ResolvedSettings& resolved,
+                                                    const SettingsImages& images);
     void evict_unused();
 
     Pipeline pipeline_;
@@ -142,9 +144,7 @@ class Renderer {
     std::unique_ptr<KeptSurfaces> kept_;   ///< of a picture that was drawn with `surfaces`
     Camera camera_;                        ///< that the targets were seen by
     std::vector<ElementSources> sources_;  ///< of what the targets hold
-    std::shared_ptr<const Image> background_image_;
-    gl::Texture background_texture_;
-    std::unique_ptr<Picture> picture_;  ///< that frames are added to
+    std::unique_ptr<Picture> picture_;     ///< that frames are added to
 };
 
 }  // namespace easypbr::render

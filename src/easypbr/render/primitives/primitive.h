@@ -75,7 +75,8 @@ class Primitive {
     /// Sets to 1 what items cover of the frame, row by row; false when only the G-buffer can tell.
     virtual bool cover(const Frame&, DrawItems, std::span<uint8_t>) { return false; }
 
-    /// Whether rasterise() draws these items as layers, by the limits of VisibilityBuffer::begin_layer().
+    /// Whether rasterise() draws these items as layers, by the limits of VisibilityBuffer::begin_layer(), and
+    /// of volumes the back faces where VisibilityBuffer::takes_backs().
     virtual bool has_native_layers(DrawItems) const { return false; }
 
     // Layers of what light passes, by the driver. begin_layers() once, then draw_layer() for each that is

@@ -149,12 +149,17 @@ bool Surfaces::has_native_layers(const DrawList& list) const {
            });
 }
 
-bool Surfaces::peel(const Frame& frame, const DrawList& list, const GBuffer& layer, ExtensionSet extensions,
-                    PeelLimits& limits) {
+void Surfaces::rasterise_layer(const Frame& frame, const DrawList& list, ExtensionSet extensions,
+                               const PeelLimits& limits) {
     visible_.clear(frame.size, frame.covered);
     visible_.buffer().begin_layer(limits);
     for (const Group& group : groups_of(list))
         group.kind->rasterise(frame, group.items, extensions, visible_);
+}
+
+bool Surfaces::peel(const Frame& frame, const DrawList& list, const GBuffer& layer, ExtensionSet extensions,
+                    PeelLimits& limits) {
+    rasterise_layer(frame, list, extensions, limits);
     visible_.buffer().end_layer(limits);
     const PixelRect seen = visible_.crop();
     if (seen.width == 0) return false;
@@ -162,6 +167,13 @@ bool Surfaces::peel(const Frame& frame, const DrawList& list, const GBuffer& lay
                          {.emission = list.has(&DrawItem::emits), .extensions = extensions != 0});
     visible_.resolve(frame, writer);
     return true;
+}
+
+void Surfaces::peel_backs(const Frame& frame, const DrawList& list, const GBuffer& targets,
+                          const PeelLimits& limits) {
+    rasterise_layer(frame, list, 0, limits);
+    SurfaceWriter writer(targets, visible_.crop(), {});
+    visible_.resolve(frame, writer);
 }
 
 void Surfaces::begin_layers(const Frame& frame, const DrawList& list, const gl::Texture& opaque) {

@@ -43,6 +43,9 @@ class Surfaces {
     /// Writes a layer, nothing but a rectangle of it; false where it would hold nothing.
     bool peel(const Frame& frame, const DrawList& list, const GBuffer& layer, ExtensionSet extensions,
               PeelLimits& limits);
+    /// Writes the back faces of volumes that PeelLimits::backs asks for, nothing but a rectangle of them.
+    void peel_backs(const Frame& frame, const DrawList& list, const GBuffer& targets,
+                    const PeelLimits& limits);
 
     /// Without a GPU, surfaces are drawn natively; false leaves them to the driver.
     void allow_native(bool allow) { allow_native_ = allow; }
@@ -55,6 +58,9 @@ class Surfaces {
     };
     std::vector<Group> groups_of(const DrawList& list) const;
     bool is_native() const;
+    /// Finds what is visible of a layer.
+    void rasterise_layer(const Frame& frame, const DrawList& list, ExtensionSet extensions,
+                         const PeelLimits& limits);
     /// Takes the groups out of the list that are visible natively; the rest is left to others.
     void rasterise(const Frame& frame, const SurfaceOutputs& outputs, std::vector<Group>& groups);
     void draw_means(const Frame& frame, const std::vector<Group>& groups, const GBuffer& targets,

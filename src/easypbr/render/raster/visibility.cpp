@@ -38,17 +38,26 @@ void raise_point(uint64_t& pixel, uint64_t key, const std::function<uint64_t(uin
     }
 }
 
+/// The limit of a pixel of which no layer is left: nothing is as near.
+constexpr float finished = 2;
+
 /// Which of the triangles of a pixel is kept: the one with the largest key.
 struct KeyOrder {
     const float* limits = nullptr;  ///< of each pixel: what is not nearer is left out
+    bool behind = false;            ///< what is not farther is left out instead, and all where nothing is
     uint32_t flipped = 0;           ///< bits of the depth
 
     explicit KeyOrder(const PeelLimits* layer) {
         if (!layer) return;
         limits = layer->depths.data();
-        if (layer->farthest) flipped = ~0u;
+        behind = layer->backs;
+        if (layer->farthest && !behind) flipped = ~0u;
     }
-    bool takes(size_t pixel, float depth) const { return !limits || depth > limits[pixel]; }
+    bool takes(size_t pixel, float depth) const {
+        if (!limits) return true;
+        const float limit = limits[pixel];
+        return behind ? depth < limit && limit < finished : depth > limit;
+    }
     uint64_t key(float depth, uint32_t id) const {
         return uint64_t(std::bit_cast<uint32_t>(depth) ^ flipped) << 32 | uint32_t(~id);
     }
@@ -110,7 +119,6 @@ void VisibilityBuffer::begin_layer(const PeelLimits& limits) {
 }
 
 void VisibilityBuffer::end_layer(PeelLimits& limits) {
-    constexpr float finished = 2;  // nothing is as near
     const uint64_t flipped = uint64_t(KeyOrder(limits_).flipped) << 32;
     parallel_for(pixels_.size(), size_t(1) << 14, [&](size_t i) {
         if (pixels_[i] != 0) pixels_[i] ^= flipped;

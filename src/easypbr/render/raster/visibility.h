@@ -33,10 +33,11 @@ struct AlphaTest {
     float cutoff = 0.5f;
 };
 
-/// One layer of depth peeling. Only what is nearer than a limit is drawn.
+/// One layer of depth peeling. Only what is nearer than a limit is drawn, or with `backs` what is farther.
 struct PeelLimits {
     std::vector<float> depths;  ///< reversed, of the pixels of the area, row by row
     bool farthest = true;       ///< of what is drawn the farthest is kept, not the nearest
+    bool backs = false;         ///< instead the nearest back faces of volumes that lie behind the limits
 };
 
 /// The nearest triangle or point of each pixel of a rectangle. Rules as OpenGL's: 8 bits of sub-pixel
@@ -52,6 +53,9 @@ class VisibilityBuffer {
     /// pixel is finished.
     void end_layer(PeelLimits& limits);
     bool is_layer() const { return limits_ != nullptr; }
+    /// Whether nothing but back faces of volumes are drawn: see PeelLimits::backs. There is no end_layer()
+    /// then.
+    bool takes_backs() const { return limits_ && limits_->backs; }
 
     /// Draws triangles numbered from `first_id`. Returns false, with nothing drawn, where TriangleRaster
     /// does.

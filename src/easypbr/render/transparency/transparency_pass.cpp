@@ -65,13 +65,12 @@ void TransparencyPass::keep_picture(const Frame& frame, const GBuffer& targets, 
         merge_overlay(frame, targets);
     else
         gl::copy(targets.radiance.texture(), picture_);
-    transmission_ = {&picture_, rough ? int(levels_.size()) : 1, &targets.depth.texture(), nullptr, nullptr,
-                     reach};
+    transmission_ = {&picture_, {}, rough ? int(levels_.size()) : 1, &targets.depth, nullptr, nullptr, reach};
     kept_ = true;
     if (!rough) return;
     const gl::Program& program = downsample_.get({});
     program.use();
-    program.set("u_source", 0);
+    program.set("u_finer", 0);
     picture_.bind(0);
     for (int level = 1; level < transmission_.levels; ++level) {
         const gl::Framebuffer& target = levels_[size_t(level)];
@@ -107,8 +106,8 @@ void TransparencyPass::open_exits(const Frame& frame) {
 
 void TransparencyPass::close_exits() {
     peel_.backs = false;
-    transmission_.exit_depth = &exits_.depth.texture();
-    transmission_.exit_normal = &exits_.normal.texture();
+    transmission_.exit_depth = &exits_.depth;
+    transmission_.exit_normal = &exits_.normal;
 }
 
 void TransparencyPass::bind_layer(const gl::Program& program, const Frame& frame) const {

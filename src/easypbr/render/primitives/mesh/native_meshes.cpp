@@ -21,7 +21,7 @@ Mat4d clip_from(const Frame& frame, const DrawItem& item) {
 }
 
 ScreenTriangles triangles_of(const Frame& frame, const DrawItem& item, const MeshFacts& known,
-                             const Mat4d& clip_from_mesh) {
+                             const Mat4d& clip_from_mesh, bool backs) {
     const MeshData& mesh = item.mesh();
     const bool hides = item.alpha == AlphaMode::opaque && !item.material.transmits();
     // Of a volume the back is a part of what happens behind the front.
@@ -35,7 +35,7 @@ ScreenTriangles triangles_of(const Frame& frame, const DrawItem& item, const Mes
             item.part.face_count,
             clip_from_mesh.cast<float>(),
             both_sides,
-            mirrored,
+            mirrored != backs,
             true};
 }
 
@@ -74,7 +74,7 @@ bool NativeMeshes::draws(DrawItems items) {
 bool NativeMeshes::draws_layers(DrawItems items) {
     int64_t faces = 0;
     for (const DrawItem& item : items) {
-        if (item.material.shader || item.extensions() & transmission_bit) return false;
+        if (item.material.shader) return false;
         faces += item.part.face_count;
     }
     return faces < int64_t(UINT32_MAX);
@@ -152,10 +152,12 @@ std::unique_ptr<MeshSurface> NativeMeshes::surface_of(const Frame& frame, const 
 
 bool NativeMeshes::rasterise(const Frame& frame, DrawItems items, ExtensionSet extensions,
                              VisibleSurfaces& surfaces) {
+    const bool backs = surfaces.buffer().takes_backs();
     for (const DrawItem& item : items) {
         if (!surfaces.has_room(item.part.face_count)) return false;
         const bool is_blended = item.alpha == AlphaMode::blend;
         if (is_blended && !(item.material.opacity > 0)) continue;
+        if (backs && !item.is_volume()) continue;
         const MeshFacts& known = facts_of(item.mesh());
         const Mat4d clip_from_mesh = clip_from(frame, item);
         std::unique_ptr<MeshSurface> surface = surface_of(frame, item, extensions, known, clip_from_mesh);
@@ -163,7 +165,7 @@ bool NativeMeshes::rasterise(const Frame& frame, DrawItems items, ExtensionSet e
                                                   std::span<float> alpha) { of->alpha(pixels, alpha); },
                              is_blended ? std::numeric_limits<float>::min() : item.material.alpha_cutoff};
         const uint32_t first = surfaces.add(item, uint32_t(item.part.face_count), std::move(surface));
-        if (!surfaces.buffer().draw(triangles_of(frame, item, known, clip_from_mesh), first,
+        if (!surfaces.buffer().draw(triangles_of(frame, item, known, clip_from_mesh, backs), first,
                                     has_holes(item) ? &test : nullptr))
             return false;
     }
@@ -181,8 +183,8 @@ bool NativeMeshes::cover(const Frame& frame, DrawItems items, std::span<uint8_t>
     raster.set_area(frame.size, frame.whole());
     return std::ranges::all_of(items, [&](const DrawItem& item) {
         if (item.alpha != AlphaMode::opaque || item.material.shader) return false;
-        return render::cover(raster, triangles_of(frame, item, facts_of(item.mesh()), clip_from(frame, item)),
-                             covered);
+        return render::cover(
+            raster, triangles_of(frame, item, facts_of(item.mesh()), clip_from(frame, item), false), covered);
     });
 }
 
