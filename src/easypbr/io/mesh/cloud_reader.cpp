@@ -40,7 +40,8 @@ class CloudPlan {
         if (count > INT32_MAX)
             fail(source_, fmt::format("{} points are more than the {} that are read", count, INT32_MAX));
         arrays_.emplace(fields_, count);
-        if (!arrays_->position() && !fields_.empty()) fail_without_position();
+        // Rows may have no field at all.
+        if (!arrays_->position() && (count > 0 || !fields_.empty())) fail_without_position();
         if (count == 0) fail(source_, "no points");
     }
 
