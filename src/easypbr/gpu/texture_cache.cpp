@@ -2,10 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
-#include <span>
 #include <utility>
 
 #include "easypbr/core/color.h"
@@ -76,85 +75,114 @@ native::Texture::Wrap host_wrapping(Wrap wrap) {
                                   : native::Texture::Wrap::clamp;
 }
 
-/// Pixels of four channels of type T, as native::Texture has a level.
-template <class T>
-void append_level(const std::vector<T>& pixels, int width, Wrap wrap, std::vector<std::byte>& to) {
-    const size_t row = 4 * size_t(width), rows = pixels.size() / row, bytes = (row + 4) * sizeof(T);
-    const size_t before = to.size();
-    to.resize(before + rows * bytes);
-    parallel_for(rows, 32, [&](size_t y) {
-        const T* from = pixels.data() + y * row;
-        std::byte* line = to.data() + before + y * bytes;
-        std::memcpy(line, from, row * sizeof(T));
-        std::memcpy(line + row * sizeof(T), wrap == Wrap::repeat ? from : from + row - 4, 4 * sizeof(T));
-    });
+/// Linear light in 16 bits of codes: an error below 0.03 of an sRGB code.
+const std::array<uint16_t, 256>& linear_table() {
+    static const std::array<uint16_t, 256> table = [] {
+        std::array<uint16_t, 256> values{};
+        for (size_t i = 0; i < 256; ++i) values[i] = uint16_t(std::lround(srgb8_table()[i] * 65535.0f));
+        return values;
+    }();
+    return table;
 }
 
-/// Every 2x2 pixels averaged.
+/// A level of a native::Texture: rows of four channels with a texel more.
 template <class T>
-std::vector<T> smaller_level(const std::vector<T>& pixels, int width, int height) {
-    const int w = std::max(1, width / 2), h = std::max(1, height / 2);
-    std::vector<T> out(4 * size_t(w) * size_t(h));
-    parallel_for(size_t(h), 32, [&](size_t row) {
-        const size_t y0 = row * 2, y1 = std::min(y0 + 1, size_t(height) - 1);
-        for (size_t x = 0; x < size_t(w); ++x) {
-            const size_t x0 = 2 * x, x1 = std::min(x0 + 1, size_t(width) - 1);
-            const auto at = [&](size_t column, size_t line) {
-                return pixels.data() + 4 * (line * size_t(width) + column);
-            };
-            const T* from[4] = {at(x0, y0), at(x1, y0), at(x0, y1), at(x1, y1)};
-            for (size_t c = 0; c < 4; ++c)
-                out[4 * (row * size_t(w) + x) + c] =
-                    T((uint32_t(from[0][c]) + from[1][c] + from[2][c] + from[3][c] + 2) / 4);
-        }
-    });
-    return out;
-}
+struct HostLevel {
+    T* texels;
+    int width, height;
 
-template <class T>
-std::vector<std::byte> all_levels(std::vector<T> pixels, Wrap wrap, native::Texture& to) {
-    std::vector<std::byte> texels;
-    texels.reserve(pixels.size() * sizeof(T) * 4 / 3 + size_t(to.width + to.height) * 8 * sizeof(T));
-    int width = to.width, height = to.height;
-    for (int i = 0; i < to.levels; ++i) {
-        to.offsets[i] = int(texels.size() / (4 * sizeof(T)));
-        append_level(pixels, width, wrap, texels);
-        if (i + 1 < to.levels) pixels = smaller_level(pixels, width, height);
-        width = std::max(1, width / 2);
-        height = std::max(1, height / 2);
+    T* row(size_t y) const { return texels + 4 * (size_t(width) + 1) * y; }
+    /// The texel beyond a row's end.
+    void close(T* row, Wrap wrap) const {
+        const T* from = wrap == Wrap::repeat ? row : row + 4 * (size_t(width) - 1);
+        std::copy_n(from, 4, row + 4 * size_t(width));
     }
-    texels.resize(texels.size() + 4 * sizeof(T));  // pairs of texels are read at the last one too
+};
+
+/// Spreads the channels of an image to four, as with_channels() does. `color` and `alpha` decode codes.
+template <class T, class Color, class Alpha>
+void fill_level(const Image& image, Wrap wrap, const HostLevel<T>& to, Color&& color, Alpha&& alpha) {
+    const size_t channels = size_t(image.channels());
+    const size_t green = channels > 2 ? 1 : 0, blue = channels > 2 ? 2 : 0;
+    const bool has_alpha = channels % 2 == 0;
+    parallel_for(size_t(to.height), 32, [&](size_t y) {
+        const uint8_t* p = image.at<uint8_t>(0, int(y));
+        T *row = to.row(y), *q = row;
+        for (int x = 0; x < to.width; ++x, p += channels, q += 4) {
+            q[0] = color(p[0]);
+            q[1] = color(p[green]);
+            q[2] = color(p[blue]);
+            q[3] = alpha(has_alpha ? p[channels - 1] : uint8_t(255));
+        }
+        to.close(row, wrap);
+    });
+}
+
+/// Every 2x2 texels averaged.
+template <class T>
+void fill_smaller(const HostLevel<T>& from, Wrap wrap, const HostLevel<T>& to) {
+    parallel_for(size_t(to.height), 32, [&](size_t y) {
+        const T *upper = from.row(2 * y), *lower = from.row(std::min(2 * y + 1, size_t(from.height) - 1));
+        T* row = to.row(y);
+        for (size_t x = 0; x < size_t(to.width); ++x) {
+            const size_t left = 8 * x, right = 4 * std::min(2 * x + 1, size_t(from.width) - 1);
+            for (size_t c = 0; c < 4; ++c)
+                row[4 * x + c] = T(
+                    (uint32_t(upper[left + c]) + upper[right + c] + lower[left + c] + lower[right + c] + 2) /
+                    4);
+        }
+        to.close(row, wrap);
+    });
+}
+
+/// Makes room for all levels. Every texel is written once, by whoever makes it: nothing is cleared before.
+template <class T>
+std::unique_ptr<std::byte[]> make_levels(native::Texture& to, std::vector<HostLevel<T>>& levels) {
+    size_t count = 0;
+    for (int i = 0; i < to.levels; ++i) {
+        const int width = std::max(1, to.width >> i), height = std::max(1, to.height >> i);
+        to.offsets[i] = int(count);
+        levels.push_back({nullptr, width, height});
+        count += size_t(width + 1) * size_t(height);
+    }
+    // Pairs of texels are read at the last one too.
+    auto texels = std::make_unique_for_overwrite<std::byte[]>((count + 1) * 4 * sizeof(T));
+    T* first = reinterpret_cast<T*>(texels.get());
+    for (size_t i = 0; i < levels.size(); ++i) levels[i].texels = first + 4 * size_t(to.offsets[i]);
+    std::fill_n(first + 4 * count, 4, T(0));
     return texels;
 }
 
-/// Linear light in 16 bits: an error below 0.03 of an sRGB code.
-std::vector<uint16_t> linear_pixels(std::span<const uint8_t> codes) {
-    std::array<uint16_t, 256> decoded;
-    for (size_t i = 0; i < 256; ++i) decoded[i] = uint16_t(std::lround(srgb8_table()[i] * 65535.0f));
-    std::vector<uint16_t> pixels(codes.size());
-    parallel_for(codes.size() / 4, size_t(1) << 16, [&](size_t i) {
-        for (size_t c = 0; c < 3; ++c) pixels[4 * i + c] = decoded[codes[4 * i + c]];
-        pixels[4 * i + 3] = uint16_t(codes[4 * i + 3] * 257);
-    });
-    return pixels;
+template <class T, class Color, class Alpha>
+std::unique_ptr<std::byte[]> all_levels(const Image& image, Wrap wrap, native::Texture& to, Color&& color,
+                                        Alpha&& alpha) {
+    std::vector<HostLevel<T>> levels;
+    std::unique_ptr<std::byte[]> texels = make_levels(to, levels);
+    fill_level(image, wrap, levels[0], color, alpha);
+    for (size_t i = 1; i < levels.size(); ++i) fill_smaller(levels[i - 1], wrap, levels[i]);
+    return texels;
 }
 
 /// Fills in what does not depend on where the texels are.
-std::vector<std::byte> host_texels(const Texture& texture, bool color, native::Texture& to) {
-    Image image = to_valid_u8(*texture.image, texture.path);
-    while (std::max(image.width(), image.height()) > 1 << (native::Texture::most_levels - 1))
-        image = next_level(image, color);
-    if (image.channels() < 4) image = with_channels(image, 4);
-    to.width = image.width();
-    to.height = image.height();
+std::unique_ptr<std::byte[]> host_texels(const Texture& texture, bool color, native::Texture& to) {
+    const Image* image = texture.image.get();
+    Image changed;
+    if (image->type() != PixelType::u8) image = &(changed = to_valid_u8(*image, texture.path));
+    while (std::max(image->width(), image->height()) > 1 << (native::Texture::most_levels - 1))
+        image = &(changed = next_level(*image, color));
+    to.width = image->width();
+    to.height = image->height();
     to.levels = gl::full_levels(to.width, to.height);
     to.wrap_u = host_wrapping(texture.wrap_u);
     to.wrap_v = host_wrapping(texture.wrap_v);
     to.nearest = texture.filter == Filter::nearest;
     to.is_16_bit = color;
-    const auto pixels = image.pixels<uint8_t>();
-    if (color) return all_levels(linear_pixels(pixels), texture.wrap_u, to);
-    return all_levels(std::vector<uint8_t>(pixels.begin(), pixels.end()), texture.wrap_u, to);
+    const auto same = [](uint8_t code) { return code; };
+    if (!color) return all_levels<uint8_t>(*image, texture.wrap_u, to, same, same);
+    const auto& linear = linear_table();
+    return all_levels<uint16_t>(
+        *image, texture.wrap_u, to, [&](uint8_t code) { return linear[code]; },
+        [](uint8_t code) { return uint16_t(code * 257); });
 }
 
 gl::Texture make_texture(const Image& image, bool color, const std::string& name) {
@@ -194,9 +222,9 @@ const gl::Texture& TextureCache::get(const Texture& texture, bool color) {
 const native::Texture& TextureCache::host(const Texture& texture, bool color) {
     const Key key{texture.image.get(), color, texture.wrap_u, texture.wrap_v, texture.filter};
     const auto make = [&] {
-        HostEntry entry{texture.image, {}, {}};
+        HostEntry entry{texture.image, nullptr, {}};
         entry.texels = host_texels(texture, color, entry.texture);
-        entry.texture.texels = entry.texels.data();
+        entry.texture.texels = entry.texels.get();
         return entry;
     };
     return host_entries_.get(key, make).texture;

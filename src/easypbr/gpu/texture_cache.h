@@ -36,7 +36,7 @@ class TextureCache {
     };
     struct HostEntry {
         std::shared_ptr<const Image> image;
-        std::vector<std::byte> texels;
+        std::unique_ptr<std::byte[]> texels;
         native::Texture texture;
     };
     RevisionCache<Key, Entry> entries_;
