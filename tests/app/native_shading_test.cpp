@@ -33,6 +33,7 @@ class Generator {
         if (chance(0.7)) scene.set_environment(sky());
         const int count = between(1, 3);
         has_layers_ = chance(0.3);
+        has_over_ = !has_layers_ && chance(0.3);
         for (int i = 0; i < count; ++i) {
             Mesh mesh = chance(0.5) ? make_teapot(1, between(2, 12)) : make_sphere(1, between(8, 60));
             if (chance(0.3) && !has_layers_) mesh = cloud_of(mesh);
@@ -49,7 +50,8 @@ class Generator {
             pose.scale(double(number(0.5f, 1.5f)));
             mesh.set_T_world_mesh(pose);
             if (chance(0.3)) color(mesh);
-            if (chance(0.3) && !has_layers_) draw_lines(mesh);
+            if (chance(0.3) && !has_layers_ && !has_over_) draw_lines(mesh);
+            if (chance(0.5) && has_over_) mesh.edit([](MeshData& data) { data.style.overlay = true; });
             scene.show(mesh, "mesh" + std::to_string(i));
         }
         const int lights = between(0, 3);
@@ -86,6 +88,7 @@ class Generator {
         s.ground.mode = GroundMode(chance(0.6) ? 0 : between(1, 2));
         s.edl.strength = number(0, 2);
         s.edl.radius = number(0.5f, 30);
+        s.points.hole_filling = chance(0.5) ? 0 : between(1, 4);
         change_effects(s);
     }
 
@@ -189,7 +192,7 @@ class Generator {
     }
 
     std::mt19937 random_;
-    bool has_layers_ = false;
+    bool has_layers_ = false, has_over_ = false;
 };
 
 /// Pixels by how far apart their largest channels are.

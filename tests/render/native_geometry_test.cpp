@@ -1,5 +1,6 @@
 // The two ways to fill the G-buffer must agree: the driver's rasteriser and the native one.
 #include <cmath>
+#include <random>
 
 #include "easypbr/gl/context.h"
 #include "easypbr/render/pipeline/renderer.h"
@@ -305,6 +306,58 @@ TEST(NativeGeometry, EmissionAndUnlit) {
 }
 
 // Light of a native picture stays in host memory; what the driver lights next does not begin with it.
+// Three quarters of a sheet's pixels hold a point, off the middle and its diagonals, some of them on a second
+// sheet far behind: both ways rasterise the same, and both must close the same gaps by the same neighbours.
+TEST(NativeGeometry, GapsBetweenPointsAreClosed) {
+    constexpr int n = 160, half = n / 2;
+    std::mt19937 random(5);
+    std::vector<Vec3> points;
+    for (int y = -half; y < half; ++y)
+        for (int x = -half; x < half; ++x) {
+            if (random() % 4 == 0) continue;
+            const float depth = random() % 8 == 0 ? -1.0f : 0.001f * float(random() % 9);
+            points.emplace_back((float(x) + 0.6f) / half, (float(y) + 0.3f) / half, depth);
+        }
+    MeshData data;
+    Array3f::Dense V(Eigen::Index(points.size()), 3);
+    for (size_t i = 0; i < points.size(); ++i) V.row(Eigen::Index(i)) = points[i].transpose();
+    data.V = Array3f(V);
+    Scene scene;
+    scene.show(Mesh(data), "sheet");
+    Settings settings;
+    settings.camera.projection = Projection::orthographic;
+    settings.camera.position = Vec3d(0, 0, 5);
+    settings.camera.target = Vec3d(0, 0, 0);
+    settings.camera.ortho_height = 240.0 / half;
+    settings.style.point_size = 1.0f;
+    const Comparison open = compare_both(scene, settings);
+    if (!open.software) GTEST_SKIP() << "this machine has a GPU: the native rasteriser is not used";
+    settings.points.hole_filling = 3;
+    const Comparison closed = compare_both(scene, settings);
+    EXPECT_EQ(open.one_sided, 0);
+    EXPECT_EQ(closed.one_sided, 0);
+    EXPECT_EQ(closed.depth_off, 0);
+    EXPECT_GT(closed.covered, open.covered * 1.2);
+}
+
+// A box behind a teapot that is drawn over it: it emits, and the teapot does not.
+TEST(NativeGeometry, OneIsDrawnOverEverythingElse) {
+    Mesh box = make_box(Vec3(0.8f, 0.8f, 0.8f));
+    Material glowing;
+    glowing.emissive = Vec3(0.2f, 0.5f, 0.1f);
+    box.set_material(glowing);
+    box.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0.3, -1.5)));
+    Scene scene;
+    scene.show(fine_teapot(), "teapot");
+    scene.show(box, "box");
+    const double hidden = compare_both(scene, {}).covered;
+    Style over;
+    over.overlay = true;
+    box.set_style(over);
+    expect_agreement(scene);
+    EXPECT_NEAR(compare_both(scene, {}).covered, hidden, 5);
+}
+
 TEST(NativeGeometry, LightOfThePictureBeforeIsForgotten) {
     Scene scene;
     scene.show(fine_teapot(), "teapot");

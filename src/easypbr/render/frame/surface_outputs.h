@@ -19,6 +19,7 @@ struct SurfaceOutputs {
     bool ids = false;             ///< the id and element targets are filled too
     ExtensionSet extensions = 0;  ///< of the surfaces that are drawn; 0: all are of the core model
     bool whole = false;           ///< in host memory targets hold all of the frame, for what is added to them
+    bool emission = false;        ///< in host memory emission is written, though nothing may emit
     const Peel* peel = nullptr;   ///< one layer of depth peeling is drawn, into targets cleared before
 };
 

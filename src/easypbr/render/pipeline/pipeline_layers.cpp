@@ -33,6 +33,7 @@ const gl::Texture& Pipeline::hiding_depth(const Frame& frame, const DrawList& li
         hiding_depth_ = gl::Texture(gl::Format::r32f, frame.size.x(), frame.size.y());
         hiding_ = gl::Framebuffer({&hiding_depth_});
     }
+    surfaces_.over(frame).upload(transfers_);
     const gl::Program& program = hiding_programs_.get({});
     hiding_.bind();
     program.use();

@@ -66,15 +66,18 @@ PixelRect Surfaces::draw_groups(const Frame& frame, const DrawList& list, const 
     if (native) rasterise(frame, outputs, groups);
     const PixelRect seen = visible_.empty() ? PixelRect{} : visible_.crop();
     const bool in_host_memory = native && groups.empty();
-    const SurfaceContents contents{
-        .ids = outputs.ids, .emission = list.has(&DrawItem::emits), .extensions = outputs.extensions != 0};
+    const SurfaceContents contents{.ids = outputs.ids,
+                                   .emission = outputs.emission || list.has(&DrawItem::emits),
+                                   .extensions = outputs.extensions != 0};
+    const int fillings = list.of(DrawMode::points).empty() ? 0 : frame.resolved->settings.points.hole_filling;
     if (in_host_memory) {
-        const bool whole = outputs.whole || !means.empty();
+        const bool whole = outputs.whole || !means.empty() || fillings > 0;
         SurfaceWriter writer(targets, whole ? frame.whole() : seen, contents);
         if (whole) writer.clear();
         visible_.resolve(frame, writer);
         for (const Group& group : means)
             group.kind->add_mean(frame, group.items, targets.depth.pixels<float>(), writer);
+        if (fillings > 0) SurfaceComposite::fill_host_holes(frame, targets, fillings);
     } else {
         targets.clear(outputs.ids);
         for (const Group& group : groups) group.kind->draw(frame, group.items, targets, outputs);
@@ -84,11 +87,7 @@ PixelRect Surfaces::draw_groups(const Frame& frame, const DrawList& list, const 
             composite_.draw(frame, targets, outputs, transfers_);
         }
         draw_means(frame, means, targets, outputs);
-    }
-    const int fillings = frame.resolved->settings.points.hole_filling;
-    if (fillings > 0 && !list.of(DrawMode::points).empty()) {
-        targets.upload(transfers_);
-        composite_.fill_holes(frame, targets, outputs, fillings);
+        if (fillings > 0) composite_.fill_holes(frame, targets, outputs, fillings);
     }
     const bool is_known = in_host_memory && means.empty() && list.overlays.empty() && !is_empty;
     return is_known ? with_margin(seen, frame.size) : frame.covered;
@@ -113,11 +112,20 @@ GBuffer& Surfaces::over(const Frame& frame) {
 PixelRect Surfaces::draw(const Frame& frame, const DrawList& list, const GBuffer& targets,
                          const SurfaceOutputs& outputs) {
     if (!list.has(is_over)) return draw_groups(frame, list, targets, outputs);
-    draw_groups(frame, list.without(is_over), targets, outputs);
+    // Lines and splats are hidden by what is drawn over everything else wherever it is: by the driver.
+    const bool native = is_native() && list.overlays.empty();
+    SurfaceOutputs whole = outputs;
+    whole.whole = true;
+    whole.emission = native && list.has(&DrawItem::emits);
+    draw_groups(frame, list.without(is_over), targets, whole);
     GBuffer& over_everything = over(frame);
     if (outputs.ids) over_everything.add_ids();
     if (outputs.extensions) over_everything.add_extensions();
-    draw_groups(frame, list.without(std::not_fn(is_over)), over_everything, outputs);
+    draw_groups(frame, list.without(std::not_fn(is_over)), over_everything, whole);
+    if (native && targets.depth.is_ahead() && over_everything.depth.is_ahead()) {
+        SurfaceComposite::put_over(over_everything, targets);
+        return frame.covered;
+    }
     targets.upload(transfers_);
     over_everything.upload(transfers_);
     composite_.draw_over(frame, over_everything, targets, outputs);

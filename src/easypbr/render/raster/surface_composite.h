@@ -22,6 +22,10 @@ class SurfaceComposite {
     /// Closes gaps of a pixel between points, `times` over.
     void fill_holes(const Frame& frame, const GBuffer& targets, const SurfaceOutputs& outputs, int times);
 
+    // The same natively: G-buffers hold the whole frame in host memory.
+    static void put_over(const GBuffer& source, const GBuffer& targets);
+    static void fill_host_holes(const Frame& frame, const GBuffer& targets, int times);
+
   private:
     struct How {
         bool always = false;      ///< whatever is in front
