@@ -50,7 +50,7 @@ class Generator {
             pose.scale(double(number(0.5f, 1.5f)));
             mesh.set_T_world_mesh(pose);
             if (chance(0.3)) color(mesh);
-            if (chance(0.3) && !has_layers_ && !has_over_) draw_lines(mesh);
+            if (chance(0.3) && !has_over_) draw_lines(mesh);
             if (chance(0.5) && has_over_) mesh.edit([](MeshData& data) { data.style.overlay = true; });
             scene.show(mesh, "mesh" + std::to_string(i));
         }

@@ -141,7 +141,7 @@ def test_without_opengl_clouds_colour_bars_effects_and_lines_are_drawn(without_o
     effects = [f"{name}.enabled=true" for name in ("bloom", "outline", "depth_of_field")]
     heights = ["style.color_by=height", "annotation.colorbar=true"]
     occlusion, lines = ["ssao.enabled=true"], ["style.show_wireframe=true", "style.line_dash=3"]
-    layers, coat = ["material.opacity=0.5", "ground.mode=shadow"], ["material.clearcoat=1", "path.enabled=false"]
+    layers, coat = [*lines, "material.opacity=0.5", "ground.mode=shadow"], ["material.clearcoat=1", "path.enabled=false"]
     easypbr("render", sphere, "-o", "backdrop.png", "--size", "13x9")
     backdrop = ["background.mode=image", f"background.image={tmp_path / 'backdrop.png'}"]
     glass = ["material.transmission=1", "material.thickness=1", "material.roughness=0.2", "path.enabled=false"]

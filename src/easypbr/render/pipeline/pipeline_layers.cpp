@@ -47,8 +47,10 @@ const gl::Texture& Pipeline::hiding_depth(const Frame& frame, const DrawList& li
 
 void Pipeline::draw_overlay_items(const Frame& frame, const DrawList& list, bool native) {
     if (list.overlays.empty()) return;
-    if (native) return overlays_.shade(frame, list.overlays, targets_, transfers_);
-    overlays_.begin(frame, list.overlays, targets_, hiding_depth(frame, list));
+    if (native)
+        overlays_.begin(frame, list.overlays, targets_, transfers_);
+    else
+        overlays_.begin(frame, list.overlays, targets_, hiding_depth(frame, list));
     overlays_.draw(frame, list.overlays, targets_, nullptr);
     overlays_.draw_over(frame, list.overlays, targets_);
 }
@@ -85,7 +87,7 @@ bool Pipeline::draw_transparent_by_driver(const Frame& frame, const DrawList& li
 }
 
 bool Pipeline::has_native_layers(const DrawList& list) const {
-    return list.overlays.empty() && !list.has(is_over) && surfaces_.has_native_layers(list.layers());
+    return !list.has(is_over) && surfaces_.has_native_layers(list.layers());
 }
 
 bool Pipeline::shade_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
@@ -95,9 +97,11 @@ bool Pipeline::shade_transparent(const Frame& frame, const DrawList& list, const
     native_layers_.begin(frame, targets_, extensions);
     const GBuffer& layer = native_layers_.layer();
     const SeeThrough through(frame, layers, bounds_of(*frame.scene));
+    overlays_.begin(frame, list.overlays, targets_, transfers_);
     while (native_layers_.open_layer(frame)) {
         const bool drawn = surfaces_.peel(frame, layers, layer, extensions, native_layers_.limits());
         if (!native_layers_.close_layer(drawn)) break;
+        overlays_.draw(frame, list.overlays, targets_, &layer);
         // Paths find what is behind by themselves.
         if (through.any && !contents.paths) {
             native_layers_.keep_picture(frame, targets_, with_overlay, through.rough, through.reach,
@@ -113,6 +117,8 @@ bool Pipeline::shade_transparent(const Frame& frame, const DrawList& list, const
             {.native = true, .extensions = extensions, .transmission = native_layers_.transmission()});
         native_layers_.blend(targets_, with_overlay, transfers_);
     }
+    overlays_.draw(frame, list.overlays, targets_, nullptr);
+    overlays_.draw_over(frame, list.overlays, targets_);
     return native_layers_.has_layers();
 }
 

@@ -19,7 +19,13 @@ void for_each_kind(const Primitives& primitives, const ItemsByKind& items, Draw&
 
 void Overlays::begin(const Frame& frame, const ItemsByKind& items, const GBuffer& targets,
                      const gl::Texture& opaque) {
+    host_ = nullptr;
     run(frame, items, targets, {.part = OverlayPart::begin, .opaque = &opaque});
+}
+
+void Overlays::begin(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, Transfers& host) {
+    host_ = &host;
+    run(frame, items, targets, {.part = OverlayPart::begin});
 }
 
 void Overlays::draw(const Frame& frame, const ItemsByKind& items, const GBuffer& targets,
@@ -32,14 +38,8 @@ void Overlays::draw_over(const Frame& frame, const ItemsByKind& items, const GBu
     run(frame, items, targets, {.part = OverlayPart::over});
 }
 
-void Overlays::shade(const Frame& frame, const ItemsByKind& items, const GBuffer& targets,
-                     Transfers& transfers) {
-    for (const OverlayPart part :
-         {OverlayPart::begin, OverlayPart::behind, OverlayPart::front, OverlayPart::over})
-        run(frame, items, targets, {.part = part, .host = &transfers});
-}
-
 void Overlays::run(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, OverlayStep step) {
+    step.host = host_;
     step.others = others_;
     for_each_kind(primitives_, items, [&](Primitive& kind, DrawItems of_kind) {
         kind.draw_overlay(frame, of_kind, targets, step);

@@ -16,17 +16,19 @@ class Overlays {
     /// Items, targets and `opaque` stay as they are until draw_over(). See OverlayStep::opaque.
     void begin(const Frame& frame, const ItemsByKind& items, const GBuffer& targets,
                const gl::Texture& opaque);
+    /// The same natively: until draw_over() from and to host memory, which holds the layers too. `host` must
+    /// live as long.
+    void begin(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, Transfers& host);
     /// Adds what lies behind a layer, or all that is left.
     void draw(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, const GBuffer* next);
     void draw_over(const Frame& frame, const ItemsByKind& items, const GBuffer& targets);
-    /// All steps at once where there are no layers, natively: from and to host memory.
-    void shade(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, Transfers& transfers);
 
   private:
     void run(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, OverlayStep step);
     void find_others(const ItemsByKind& items);
 
     const Primitives& primitives_;
+    Transfers* host_ = nullptr;  ///< OverlayStep::host, since the beginning
     std::vector<float> others_;  ///< OverlayStep::others, since the beginning
 };
 

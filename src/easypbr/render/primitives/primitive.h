@@ -32,7 +32,7 @@ struct OverlayStep {
         over     ///< adds the items that are drawn over everything else (is_over())
     };
     Part part = Part::begin;
-    /// Given for native drawing: the targets are in host memory, and there are no layers.
+    /// Given for native drawing: the targets and the layer are in host memory.
     Transfers* host = nullptr;
     /// By the driver, with `begin`: hidden is what lies behind this (R32F, reversed depth), whose normals are
     /// those of the targets; both stay as they are until `over`.

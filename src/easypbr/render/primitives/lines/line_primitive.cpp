@@ -74,9 +74,11 @@ void LinePrimitive::draw_overlay(const Frame& frame, DrawItems items, const GBuf
                          : begin(frame, items, targets, *step.opaque);
     if (step.part == Part::front) return;
     const Kind kind = step.part == Part::over ? Kind::over : Kind::ordered;
-    if (step.host) return shade_items(frame, items, kind, targets, *step.host);
-    add(frame, items, targets, kind, step.next);
-    if (step.next) keep_last(*step.next);
+    if (step.host)
+        shade_items(frame, items, kind, targets, step.next, *step.host);
+    else
+        add(frame, items, targets, kind, step.next);
+    if (step.next) step.host ? keep_host_last(*step.next) : keep_last(*step.next);
 }
 
 void LinePrimitive::begin(const Frame& frame, DrawItems items, const GBuffer& targets,
@@ -104,6 +106,17 @@ void LinePrimitive::keep_last(const GBuffer& layer) {
     }
     gl::copy(layer.depth.texture(), last_depth_);
     gl::copy(layer.normal.texture(), last_normal_);
+    has_last_ = true;
+}
+
+void LinePrimitive::keep_host_last(const GBuffer& layer) {
+    const auto keep = [](const Target& from, Target& to) {
+        if (to.size() != from.size()) to = Target(from.format(), from.size());
+        to.write(from.area());
+        std::ranges::copy(from.pixels<std::byte>(), to.pixels<std::byte>().begin());
+    };
+    keep(layer.depth, host_last_depth_);
+    keep(layer.normal, host_last_normal_);
     has_last_ = true;
 }
 
@@ -174,14 +187,27 @@ void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, c
 
 void LinePrimitive::begin(const Frame& frame, DrawItems items, const GBuffer& targets, Transfers& transfers) {
     in_host_memory_ = true;
+    has_last_ = false;
     if (nearest_.size() != frame.size) nearest_ = Target(gl::Format::r32f, frame.size);
     nearest_.write(targets.overlay.area());
     std::ranges::fill(nearest_.pixels<float>(), 0.0f);
-    shade_items(frame, items, Kind::nearest, targets, transfers);
+    shade_items(frame, items, Kind::nearest, targets, nullptr, transfers);
+}
+
+void LinePrimitive::set_layers(ShaderInputs& values, Kind kind, const GBuffer* next) const {
+    if (kind == Kind::ordered && has_last_) {
+        values.define("AFTER");
+        values.set("u_last_depth", host_last_depth_);
+        values.set("u_last_normal", host_last_normal_);
+    }
+    if (!next) return;
+    values.define("BEFORE");
+    values.set("u_next_depth", next->depth);
+    values.set("u_next_normal", next->normal);
 }
 
 void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, const GBuffer& targets,
-                                Transfers& transfers) {
+                                const GBuffer* next, Transfers& transfers) {
     const Target& to = kind == Kind::nearest ? nearest_ : targets.overlay;
     const PixelRect& area = to.area();
     const native::Region region =
@@ -193,6 +219,7 @@ void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, 
         if (kind == Kind::nearest) values.define("DEPTH_ONLY");
         set_camera_uniforms(values, frame);
         set_style(values, item);
+        set_layers(values, kind, next);
         values.set("u_depth_target", targets.depth);
         values.set("u_normal", targets.normal);
         if (kind != Kind::nearest) values.set("u_nearest_line", nearest_);

@@ -30,8 +30,11 @@ class LinePrimitive final : public Primitive {
     void draw_items(const Frame& frame, DrawItems items, Kind kind, const GBuffer* next = nullptr);
     void add(const Frame& frame, DrawItems items, const GBuffer& targets, Kind kind, const GBuffer* next);
     void bind_surfaces(const gl::Program& program, const GBuffer* next) const;
+    void keep_host_last(const GBuffer& layer);
     void shade_items(const Frame& frame, DrawItems items, Kind kind, const GBuffer& targets,
-                     Transfers& transfers);
+                     const GBuffer* next, Transfers& transfers);
+    /// What tells which lines lie between the last layer and the next one.
+    void set_layers(ShaderInputs& values, Kind kind, const GBuffer* next) const;
 
     LineCache cache_;
     ProgramVariants programs_{"overlay_lines.vert", "overlay_lines.frag"};
@@ -42,7 +45,8 @@ class LinePrimitive final : public Primitive {
     bool in_host_memory_ = false;                              ///< where the nearest depths are
     const gl::Texture *opaque_ = nullptr, *normal_ = nullptr;  ///< since begin_overlay()
     bool has_last_ = false;
-    gl::Texture last_depth_, last_normal_;  ///< of the layer that was drawn last
+    gl::Texture last_depth_, last_normal_;       ///< of the layer that was drawn last
+    Target host_last_depth_, host_last_normal_;  ///< the same natively
 };
 
 }  // namespace easypbr::render

@@ -248,7 +248,8 @@ std::unique_ptr<HitSurface> SplatPrimitive::hit_surface(const ResolvedSettings& 
 void SplatPrimitive::find_limits(const OverlayStep& step) {
     constexpr float no_limit = std::numeric_limits<float>::infinity();
     nearest_.clear();
-    if (step.next) nearest_ = read_depths(step.next->depth.texture());
+    if (step.next)
+        nearest_ = step.host ? whole_depths(step.next->depth) : read_depths(step.next->depth.texture());
     // Where the layer is not there is nothing more before the pixel.
     std::ranges::replace(nearest_, 0.0f, no_limit);
     is_split_ = false;
