@@ -60,4 +60,8 @@ vec3 area_scattered(Light light, Surface s) {
 }
 
 #include "lighting_extended_sky.glsl"
+#ifdef BEHIND  // The driver compiles it for layers alone: only they are seen through.
 #include "lighting_transmission.glsl"
+#else
+vec4 transmitted(Surface s) { return vec4(0.0, 0.0, 0.0, 1.0); }
+#endif

@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "easypbr/app/custom_pass.h"
 #include "easypbr/app/session.h"
 #include "easypbr/geometry/primitives.h"
 #include "easypbr/gl/context.h"
@@ -387,6 +388,88 @@ TEST(NativeShading, SeesThroughGlassAsTheDriver) {
                     << "roughness " << roughness << ", dispersion " << dispersion << ", samples " << samples
                     << ", largest " << d.most;
             }
+}
+
+// Layers that the driver lights, for the sake of a pass that follows, have their shadow maps where it reads
+// them.
+TEST(NativeShading, LightsGlassAsTheDriverBeforeOwnPasses) {
+    if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
+    Scene scene = glasses(0, 0);
+    Light lamp;
+    lamp.type = LightType::directional;
+    lamp.direction = Vec3(0.3f, -1, -0.5f);
+    scene.set_light("lamp", lamp);
+    const auto draw = [&](bool native) {
+        app::Session session(scene);
+        Settings& s = session.settings();
+        s.image.size = Vec2i(160, 120);
+        s.image.samples = 1;
+        s.image.antialias = Antialias::none;
+        s.path.enabled = s.rays.enabled = false;
+        s.shadows.resolution = 256;
+        s.shadows.mode = ShadowMode::hard;
+        const std::string text =
+            "layout(location = 0) out vec4 o_color;\nvoid main() { o_color = vec4(0.0, 0.25, 0.0, 0.25); }";
+        session.add_pass("own", Stage::picture, std::make_shared<app::ShaderPass>("own", text, Blend::over));
+        session.allow_native_shading(native);
+        return session.render();
+    };
+    const Difference d = difference(draw(true), draw(false));
+    EXPECT_LE(d.by_more, d.pixels / 1000) << "largest " << d.most;
+}
+
+// Ids of a part of the frame are there from the picture before.
+TEST(NativeShading, ClosesGapsAndDrawsOverAllAfterIdsOfAPart) {
+    Mesh cloud = make_sphere(0.3f, 40);
+    cloud.edit([](MeshData& data) { data.style.mode = DrawMode::points; });
+    Scene scene;
+    scene.show(cloud, "cloud");
+    scene.show(make_box(Vec3(0.2f, 0.2f, 0.2f)), "box");
+    const auto draw = [&](bool ids) {
+        app::Session session(scene);
+        session.use_device(DrawDevice::cpu);
+        session.settings().image.size = Vec2i(640, 480);
+        session.settings().image.samples = 1;
+        session.settings().camera.position = Vec3d(0, 0, 6);
+        if (ids) session.render_layers({"object_id"});
+        session.settings().points.hole_filling = 2;
+        const Image filled = session.render();
+        session.settings().style.overlay = true;
+        return std::pair(filled, session.render());
+    };
+    const auto after = draw(true), fresh = draw(false);
+    EXPECT_TRUE(std::ranges::equal(after.first.bytes(), fresh.first.bytes()));
+    EXPECT_TRUE(std::ranges::equal(after.second.bytes(), fresh.second.bytes()));
+}
+
+// FXAA of 16 bits: that of 8 bits, in finer steps, but where it chooses between two blurs.
+TEST(NativeShading, SmoothsEdgesOf16Bits) {
+    Scene scene;
+    scene.show(make_teapot(1, 12), "teapot");
+    app::Session session(scene);
+    session.use_device(DrawDevice::cpu);
+    session.settings().image.size = Vec2i(160, 120);
+    session.settings().image.samples = 1;
+    session.settings().path.enabled = false;
+    const auto draw = [&](Antialias antialias, Encoding encoding) {
+        session.settings().image.antialias = antialias;
+        app::PictureOptions options;
+        options.encoding = encoding;
+        return session.render(options);
+    };
+    const Image coarse = draw(Antialias::fxaa, Encoding::srgb8),
+                fine = draw(Antialias::fxaa, Encoding::srgb16),
+                jagged = draw(Antialias::none, Encoding::srgb16);
+    size_t off = 0, smoothed = 0;
+    for (size_t i = 0; i < coarse.pixels<uint8_t>().size(); ++i) {
+        const int code = coarse.pixels<uint8_t>()[i];
+        const double value = fine.pixels<uint16_t>()[i] / 257.0;
+        off += std::abs(code - value) > 1;
+        smoothed += std::abs(value - jagged.pixels<uint16_t>()[i] / 257.0) > 8;
+    }
+    EXPECT_LE(off, coarse.pixels<uint8_t>().size() / 1000);
+    EXPECT_GT(smoothed, 300u);
+    EXPECT_TRUE(session.context_info().version.empty());
 }
 
 // The driver filters codes of 8 bits, the CPU linear values of 16: at most one step.

@@ -253,7 +253,10 @@ class Filler {
     void operator()(std::string_view, Rg16& to) { shorts(to, 2); }
     void operator()(std::string_view, Rgba16& to) { shorts(to, 4); }
     void operator()(std::string_view, Rgba8& to) { bytes(to), cut(to); }
-    void operator()(std::string_view, Rgba8Linear& to) { bytes(to); }
+    void operator()(std::string_view, EncodedLinear& to) {
+        bytes(to);
+        to.pixel_bytes = 4;
+    }
     void operator()(std::string_view, Rgba16f& to) { halves(to, 4), cut(to); }
     void operator()(std::string_view, R16fLinear& to) { halves(to, 1); }
     void operator()(std::string_view, Rg16fLinear& to) { halves(to, 2); }

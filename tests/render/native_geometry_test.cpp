@@ -305,7 +305,6 @@ TEST(NativeGeometry, EmissionAndUnlit) {
     expect_agreement(scene, with_ground);
 }
 
-// Light of a native picture stays in host memory; what the driver lights next does not begin with it.
 // Three quarters of a sheet's pixels hold a point, off the middle and its diagonals, some of them on a second
 // sheet far behind: both ways rasterise the same, and both must close the same gaps by the same neighbours.
 TEST(NativeGeometry, GapsBetweenPointsAreClosed) {
@@ -358,6 +357,7 @@ TEST(NativeGeometry, OneIsDrawnOverEverythingElse) {
     EXPECT_NEAR(compare_both(scene, {}).covered, hidden, 5);
 }
 
+// Light of a native picture stays in host memory; what the driver lights next does not begin with it.
 TEST(NativeGeometry, LightOfThePictureBeforeIsForgotten) {
     Scene scene;
     scene.show(fine_teapot(), "teapot");

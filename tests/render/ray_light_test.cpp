@@ -77,6 +77,25 @@ double largest_difference(const Image& a, const Image& b) {
     return largest;
 }
 
+// Two panes, which are almost clear, lie over a white floor under a white sky: it is as bright as without
+// them, for what rays find at a layer counts for that layer alone.
+TEST(RayLight, LayersLeaveTheLightBehindThemAsItIs) {
+    Scene scene;
+    scene.set_environment(constant_environment(1));
+    scene.show(box_at(Vec3(8, 8, 0.1f), Vec3d(0, 0, -0.1), diffuse(1)), "floor");
+    Material clear = diffuse(1);
+    clear.opacity = 0.01f;
+    clear.alpha_mode = AlphaMode::blend;
+    for (const double z : {0.5, 1.0})
+        scene.show(box_at(Vec3(8, 8, 0.02f), Vec3d(0, 0, z), clear), z < 1 ? "lower" : "upper");
+    app::Session session = sky_session(scene, 32, 2);
+    session.settings().rays.enabled = true;
+    session.settings().path.enabled = false;
+    const Image image = render_linear(session, 8);
+    // The panes are hit by a hundredth of the rays each, twice.
+    for (int i = 0; i < 32; i += 5) EXPECT_NEAR(image.at<float>(i, 16)[0], 1, 0.06) << i;
+}
+
 // Nothing is in the way of a plane and a ball: their light is what it is without rays, and without noise.
 // 1e-3: the open sky's part is stored in 16-bit floats, of 2^-11.
 TEST(RayLight, ChangesNothingInTheOpen) {

@@ -13,6 +13,7 @@ struct View {
     int width = 0, height = 0;  ///< of the picture
     int x = 0, y = 0;           ///< first pixel that is held
     int held_width = 0, held_height = 0;
+    int pixel_bytes = 0;  ///< for EncodedLinear
 };
 
 // How a sampler reads: by the format, then by the filter. Nearest unless the name says more.
@@ -28,7 +29,8 @@ struct Rgba32f : View {};
 struct Rgba32ui : View {};
 // Held whole.
 struct R16fLinear : View {};
-struct Rgba8Linear : View {};
+/// Four channels of 8 or of 16 bits, by View::pixel_bytes.
+struct EncodedLinear : View {};
 struct Rg16fLinear : View {};
 struct Rgba16fLinear : View {};
 struct Rgba32fLinear : View {};
@@ -144,7 +146,7 @@ using u_radiance = Rgba32f;
 using u_overlay = Rgba16f;
 using u_glow = Rgba16fLinear;
 using u_background_image = Texture;
-using u_color = Rgba8Linear;
+using u_color = EncodedLinear;
 using u_base_color_texture = Texture;
 using u_metallic_texture = Texture;
 using u_roughness_texture = Texture;

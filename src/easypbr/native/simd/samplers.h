@@ -81,7 +81,11 @@ INLINE vec4 linear(const Sampler& s, const vec2& uv, size_t pixel_bytes, Load&& 
     }
     return planar(pixels);
 }
-INLINE vec4 textureLod(const Rgba8Linear& s, const vec2& uv, float) {
+INLINE Floats8 from_shorts8(const std::byte* p) {
+    return __builtin_convertvector(__builtin_convertvector(load<Shorts8>(p), Ints8), Floats8);
+}
+INLINE vec4 textureLod(const EncodedLinear& s, const vec2& uv, float) {
+    if (s.pixel_bytes == 8) return linear(s, uv, 8, from_shorts8) * (1.0f / 65535.0f);
     return linear(s, uv, 4, from_bytes8) * (1.0f / 255.0f);
 }
 INLINE Floats8 from_halves8(const std::byte* p) {
@@ -205,9 +209,6 @@ INLINE TexturePlace place_of(const Texture& s, vfloat u, vfloat v, vint level) {
     const vint next = y.first + 1, beyond = s.wrap_v == Texture::Wrap::repeat ? vint(0) : height - 1;
     const vint first = gather(s.offsets, level) + x.first, row = width + 1;
     return {first + y.first * row, first + select(next < height, next, beyond) * row, x.part, y.part};
-}
-INLINE Floats8 from_shorts8(const std::byte* p) {
-    return __builtin_convertvector(__builtin_convertvector(load<Shorts8>(p), Ints8), Floats8);
 }
 template <class Load>
 INLINE Floats4 texel_of(const Texture& s, const TexturePlace& p, int k, size_t bytes, Load&& load_pair) {

@@ -194,9 +194,6 @@ INLINE vec4 from_bytes(vint bits) {
 INLINE vec4 fetch(const Rgba8& s, vint x, vint y) {
     return from_bytes(fetch_bits(s, x, y));
 }
-INLINE vec4 fetch(const Rgba8Linear& s, vint x, vint y) {
-    return from_bytes(fetch_bits(s, x, y));
-}
 INLINE vec4 fetch(const Rgba16& s, vint x, vint y) {
     const vec4 c = fetch_pixels(
         s, x, y, [&](int i) __attribute__((always_inline)) {
@@ -204,6 +201,9 @@ INLINE vec4 fetch(const Rgba16& s, vint x, vint y) {
                 __builtin_convertvector(load<Shorts4>(s.data + 8 * size_t(i)), Ints4), Floats4);
         });
     return c * (1.0f / 65535.0f);
+}
+INLINE vec4 fetch(const EncodedLinear& s, vint x, vint y) {
+    return s.pixel_bytes == 8 ? fetch(Rgba16{s}, x, y) : fetch(Rgba8{s}, x, y);
 }
 INLINE vec4 fetch(const Rgba16f& s, vint x, vint y) {
     return fetch_pixels(

@@ -108,9 +108,10 @@ void GBuffer::write(const PixelRect& area, SurfaceContents contents) const {
         target.forget();
         if (contents.extensions) target.write(area);
     }
-    if (!contents.ids) return;
-    id.write(area);
-    element.write(area);
+    for (const Target* target : {&id, &element}) {
+        target->forget();
+        if (contents.ids) target->write(area);
+    }
 }
 
 void GBuffer::download(Transfers& transfers) const {

@@ -37,7 +37,7 @@ struct GBuffer {
     Target overlay;  ///< RGBA16F, when asked for: linear display light, premultiplied, over the
                      ///< tone-mapped picture
 
-    bool from_behind = false;  ///< a layer: depth_test() is 1 where there is nothing
+    bool from_behind = false;  ///< a layer of depth peeling: depth_test() is 1 where there is nothing
     Target ambient_occlusion;  ///< R16, there only when it counts: the part of the surroundings that is seen,
                                ///< 1 where there is nothing
 

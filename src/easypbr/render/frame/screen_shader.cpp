@@ -46,7 +46,8 @@ native::View view_of(const Target& target) {
             .x = held.x,
             .y = held.y,
             .held_width = held.width,
-            .held_height = held.height};
+            .held_height = held.height,
+            .pixel_bytes = int(gl::pixel_bytes(target.format()))};
 }
 
 void ShaderInputs::add(std::string name, Value value) {

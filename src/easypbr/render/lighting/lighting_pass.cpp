@@ -103,7 +103,7 @@ void set_surfaces(ShaderInputs& values, const Frame& frame, const GBuffer& targe
 
 void set_transmission(ShaderInputs& values, const Frame& frame, const TransmissionInputs& behind,
                       bool native) {
-    // Without volumes in the layer nobody asks for their backs.
+    // Without volumes in the layer nobody asks for their backs: any picture of 4 bytes a pixel will do.
     const auto or_depth = [&](const Target* target) -> const Target& {
         return target ? *target : *behind.depth;
     };

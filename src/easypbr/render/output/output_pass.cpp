@@ -54,13 +54,13 @@ Vec4 covering_uv(const Image& image, const Frame& frame) {
     return {part.x(), part.y(), first.x(), first.y()};
 }
 
-void add_image(const BackgroundImage& background, const Frame& frame, bool native, ShaderInputs& values) {
+void add_image(BackgroundImage& background, const Frame& frame, bool native, ShaderInputs& values) {
     values.define("BACKGROUND_IMAGE");
     values.set("u_background_uv", covering_uv(*background.texture.image, frame));
     if (native)
-        values.set("u_background_image", background.textures->host(background.texture, true));
+        values.set("u_background_image", background.textures.host(background.texture, true));
     else
-        values.set("u_background_image", background.textures->get(background.texture, true));
+        values.set("u_background_image", background.textures.get(background.texture, true));
 }
 
 void add_lit(const LitPicture& lit, const char* radiance, ShaderInputs& values) {
@@ -168,11 +168,6 @@ void OutputPass::begin(Vec2i size, Encoding encoding) {
     encoding_ = encoding;
 }
 
-bool OutputPass::is_native(const Shot& shot) const {
-    const bool blurs = shot.sample_count == 1 && shot.resolved->settings.image.antialias == Antialias::fxaa;
-    return !blurs || encoding_ != Encoding::srgb16;
-}
-
 const gl::Framebuffer& OutputPass::framebuffer() const {
     picture_.upload(transfers_);
     if (!picture_framebuffer_) picture_framebuffer_ = gl::Framebuffer({&picture_.attachment()});
@@ -262,13 +257,13 @@ LitPicture OutputPass::mean_of(const Frame& frame, const LitPicture& lit) {
     return mean;
 }
 
-void OutputPass::finish(const Frame& frame, const LitPicture& lit_frame, const BackgroundImage* background,
+void OutputPass::finish(const Frame& frame, const LitPicture& lit_frame, BackgroundImage* background,
                         const GBuffer* exact) {
     const bool averages_radiance = frame.averages_radiance;
     const LitPicture lit = averages_radiance ? mean_of(frame, lit_frame) : lit_frame;
     const Target* sum = frame.sample_count > 1 && !averages_radiance ? &sum_ : nullptr;
     const Target& source = sum ? *sum : *lit.radiance;
-    if (source.is_ahead() && is_native(frame)) return finish_natively(frame, lit, background, exact);
+    if (source.is_ahead()) return finish_natively(frame, lit, background, exact);
 
     source.upload(transfers_);
     ShaderInputs values = display_inputs(frame, lit, encoding_, sum);
@@ -287,7 +282,7 @@ void OutputPass::finish(const Frame& frame, const LitPicture& lit_frame, const B
     if (is_blurred(frame, encoding_)) blur_edges(frame, lit.covered, exact);
 }
 
-void OutputPass::finish_natively(const Frame& frame, const LitPicture& lit, const BackgroundImage* background,
+void OutputPass::finish_natively(const Frame& frame, const LitPicture& lit, BackgroundImage* background,
                                  const GBuffer* exact) {
     const Target* sum = frame.sample_count > 1 && !frame.averages_radiance ? &sum_ : nullptr;
     const PixelRect area = background || is_whole(frame, lit) ? frame.whole() : sum ? drawn_ : lit.covered;

@@ -17,8 +17,8 @@ using easypbr::Encoding;
 
 /// An image behind everything.
 struct BackgroundImage {
-    Texture texture;                        ///< clamped
-    gpu::TextureCache* textures = nullptr;  ///< which keeps it for the driver or for native shaders
+    Texture texture;             ///< clamped
+    gpu::TextureCache textures;  ///< holds it, for the driver or for native shaders
 };
 
 /// A picture whose radiance is in host memory alone is finished there, natively; any other by the driver.
@@ -29,8 +29,6 @@ class OutputPass {
 
     /// Forgets the sum and makes targets for this size and encoding.
     void begin(Vec2i size, Encoding encoding);
-    /// Whether frames of a shot can be finished natively: there is nothing but radiance.
-    bool is_native(const Shot& shot) const;
     /// Whether the picture is in host memory alone: write_exact() leaves it there.
     bool is_finished_natively() const { return picture_.is_ahead(); }
     /// Adds a frame's radiance to the sum. Not needed for a picture of one sample. `surfaces`: the frame's.
@@ -43,8 +41,7 @@ class OutputPass {
     const SampledTiles& tiles() const { return mean_.tiles(); }
     /// Writes the picture from the sum of the frames so far, or from the radiance of the only one.
     /// `exact`: the G-buffer whose exact colours anti-aliasing leaves alone, where there are some.
-    void finish(const Frame& frame, const LitPicture& lit, const BackgroundImage* background,
-                const GBuffer* exact);
+    void finish(const Frame& frame, const LitPicture& lit, BackgroundImage* background, const GBuffer* exact);
     /// Puts the exact colours that the G-buffer holds into the finished picture, lines in the overlay over
     /// them. With `layers` radiance and overlay are those of a whole frame with something before the colours.
     void write_exact(const Frame& frame, const LitPicture& lit, const GBuffer& targets, bool layers);
@@ -58,7 +55,7 @@ class OutputPass {
 
   private:
     void blur_edges(const Frame& frame, const PixelRect& area, const GBuffer* exact);
-    void finish_natively(const Frame& frame, const LitPicture& lit, const BackgroundImage* background,
+    void finish_natively(const Frame& frame, const LitPicture& lit, BackgroundImage* background,
                          const GBuffer* exact);
     void blur_edges_natively(const Frame& frame, const PixelRect& area, const GBuffer* exact);
     ShaderInputs edge_inputs(const Frame& frame, const GBuffer* exact) const;

@@ -161,7 +161,7 @@ bool Pipeline::is_lit_natively(const DrawList& list, const FrameContents& conten
     if (contents.paths || !shadow_maps_.has_shadows()) return true;
     if (shadow_maps_.has_tints() && !shadow_maps_.has_native_tints()) return false;
     // Layers by the driver need the maps where it can read them.
-    return !list.has(is_layered) || has_native_layers(list);
+    return !list.has(is_layered) || first_by_driver(list, contents).empty();
 }
 
 std::string Pipeline::first_by_driver(const DrawList& list, const FrameContents& contents) const {

@@ -149,7 +149,7 @@ void Renderer::prepare(Picture& picture) {
     picture.shot.averages_radiance = picture.contents.paths && options.samples > 1;
     picture.with_exact = picture.list.has(
         [](const DrawItem& item) { return item.kind == SurfaceKind::exact && !item.layered; });
-    picture.contents.in_host_memory = is_picture && output_.is_native(picture.shot);
+    picture.contents.in_host_memory = is_picture;
     // What is exact is drawn once, through the pixels' centres: the frames that are averaged go without.
     const bool apart = options.samples > 1 && picture.with_exact;
     picture.averaged = apart ? picture.list.without_exact() : picture.list;
@@ -207,8 +207,7 @@ void Renderer::finish() {
     PassTimer& timer = pipeline_.timer();
     const GBuffer* exact = picture.with_exact ? &pipeline_.targets() : nullptr;
     timer.run("output", [&] {
-        const auto background = background_image(picture.resolved, picture.images);
-        output_.finish(picture.frame, picture.lit, background ? &*background : nullptr, exact);
+        output_.finish(picture.frame, picture.lit, background_image(picture.resolved, picture.images), exact);
     });
     if (picture.shot.motion) move_objects(picture.drawable, picture.scene, *picture.shot.motion, 1);
     if (exact) timer.run("exact", [&] { draw_exact(); });
@@ -280,15 +279,15 @@ void Renderer::evict_unused() {
     drawables_.evict_unused();
 }
 
-std::optional<BackgroundImage> Renderer::background_image(const ResolvedSettings& resolved,
-                                                          const SettingsImages& images) {
+BackgroundImage* Renderer::background_image(const ResolvedSettings& resolved, const SettingsImages& images) {
     const BackgroundSettings& background = resolved.settings.background;
-    if (background.mode != BackgroundMode::image || !images.background) return {};
-    Texture texture;
-    texture.image = images.background;
-    texture.path = background.image;
-    texture.wrap_u = texture.wrap_v = Wrap::clamp;
-    return BackgroundImage{texture, &pipeline_.caches().textures};
+    if (background.mode != BackgroundMode::image || !images.background) return nullptr;
+    if (background_ && background_->texture.image == images.background) return background_.get();
+    background_ = std::make_unique<BackgroundImage>();
+    background_->texture.image = images.background;
+    background_->texture.path = background.image;
+    background_->texture.wrap_u = background_->texture.wrap_v = Wrap::clamp;
+    return background_.get();
 }
 
 void Renderer::draw_custom_over_picture() {

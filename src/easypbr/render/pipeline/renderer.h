@@ -4,7 +4,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -133,18 +132,19 @@ class Renderer {
     /// Draws the exact colours that nothing may mix with, once, through the pixels' centres.
     void draw_exact();
     void draw_custom_over_picture();
-    std::optional<BackgroundImage> background_image(const ResolvedSettings& resolved,
-                                                    const SettingsImages& images);
+    /// Null where there is none.
+    BackgroundImage* background_image(const ResolvedSettings& resolved, const SettingsImages& images);
     void evict_unused();
 
     Pipeline pipeline_;
     DrawableCache drawables_{pipeline_.caches().spacings};
     CustomPasses custom_;
     OutputPass output_{pipeline_.transfers()};
-    std::unique_ptr<KeptSurfaces> kept_;   ///< of a picture that was drawn with `surfaces`
-    Camera camera_;                        ///< that the targets were seen by
-    std::vector<ElementSources> sources_;  ///< of what the targets hold
-    std::unique_ptr<Picture> picture_;     ///< that frames are added to
+    std::unique_ptr<KeptSurfaces> kept_;           ///< of a picture that was drawn with `surfaces`
+    Camera camera_;                                ///< that the targets were seen by
+    std::vector<ElementSources> sources_;          ///< of what the targets hold
+    std::unique_ptr<BackgroundImage> background_;  ///< the last one that was shown
+    std::unique_ptr<Picture> picture_;             ///< that frames are added to
 };
 
 }  // namespace easypbr::render

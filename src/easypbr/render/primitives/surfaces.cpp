@@ -115,7 +115,7 @@ PixelRect Surfaces::draw(const Frame& frame, const DrawList& list, const GBuffer
     // Lines and splats are hidden by what is drawn over everything else wherever it is: by the driver.
     const bool native = is_native() && list.overlays.empty();
     SurfaceOutputs whole = outputs;
-    whole.whole = true;
+    whole.whole |= native;
     whole.emission = native && list.has(&DrawItem::emits);
     draw_groups(frame, list.without(is_over), targets, whole);
     GBuffer& over_everything = over(frame);

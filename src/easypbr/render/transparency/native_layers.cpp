@@ -8,7 +8,11 @@
 namespace easypbr::render {
 
 void NativeLayers::begin(const Frame& frame, const GBuffer& targets, ExtensionSet extensions) {
-    if (layer_.size() != frame.size) layer_ = GBuffer(frame.size);
+    if (layer_.size() != frame.size) {
+        layer_ = GBuffer(frame.size);
+        layer_.from_behind = true;
+    }
+    limits_.backs = false;
     if (extensions) layer_.add_extensions();
     const PixelRect& area = frame.covered;
     limits_.depths.resize(size_t(area.width) * size_t(area.height));
