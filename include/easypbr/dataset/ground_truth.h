@@ -111,8 +111,8 @@ struct GroundTruth {
     std::vector<Instance> instances;
 };
 
-/// Draws what a session shows: that of Viewer::session(). Throws NameError for an unknown layer (with the nearest), ArgumentError for
-/// a flow without its other frame, and what Viewer::render() throws.
+/// Draws what a session shows: that of Viewer::session(). Throws NameError for an unknown layer (with the
+/// nearest), ArgumentError for a flow without its other frame, and what Viewer::render() throws.
 GroundTruth ground_truth(app::Session& session, const std::vector<std::string>& layers,
                          const TruthOptions& options = {});
 
