@@ -36,7 +36,8 @@ TEST(Color, ReadsEverySpelling) {
 }
 
 TEST(Color, ReadsNamesOfCss) {
-    // CSS Color Module Level 4, section 6.1: 148 names, of which seven greys are spelt in two ways, as are cyan and magenta.
+    // CSS Color Module Level 4, section 6.1: 148 names, of which seven greys are spelt in two ways, as are
+    // cyan and magenta.
     EXPECT_EQ(color_names().size(), 148u);
     EXPECT_EQ(to_hex(parse_color("tomato")), "#ff6347");
     EXPECT_EQ(to_hex(parse_color("RebeccaPurple")), "#663399");

@@ -255,9 +255,7 @@ class SvgFile : public testing::Test {
     TemporaryFolder folder;
     app::Session session;
 
-    void SetUp() override {
-        session.scene().show(make_box(), "a <b> & \"c\" \xff");
-    }
+    void SetUp() override { session.scene().show(make_box(), "a <b> & \"c\" \xff"); }
     std::string saved(app::HiddenLines hidden) {
         drawing::save_line_drawing(session, folder / "a.svg", {size, hidden});
         std::ostringstream text;

@@ -120,8 +120,8 @@ TEST(Ground, LiesAtTheFoot) {
         s.ground.mode = GroundMode::shadow;
         const ResolvedSettings resolved = session.resolve(Vec2i(size, size));
         // Lower by 1 / 20000 of the diagonal, so that a floor would hide it.
-        EXPECT_NEAR(resolved.settings.ground.height,
-                    axis.dot(Vec3d(3, 4, 5)) - 0.5 - 5e-5 * std::sqrt(3.0), 1e-6)
+        EXPECT_NEAR(resolved.settings.ground.height, axis.dot(Vec3d(3, 4, 5)) - 0.5 - 5e-5 * std::sqrt(3.0),
+                    1e-6)
             << up;
         EXPECT_TRUE(session.settings().ground.height.value() == std::nullopt) << "before the first picture";
         // The sun in the zenith: all of the shadow is under the box, none is seen.

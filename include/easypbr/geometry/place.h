@@ -33,7 +33,7 @@ Mesh with_size(const Mesh& mesh, double size = 1);
 /// A box that may stand at any angle.
 struct OrientedBox {
     Eigen::Isometry3d T_world_box = Eigen::Isometry3d::Identity();  ///< its centre and axes
-    Vec3d size{0, 0, 0};                                     ///< lengths along its axes, falling
+    Vec3d size{0, 0, 0};                                            ///< lengths along its axes, falling
 };
 
 /// A small box around all vertices in the frame of the mesh's parent. Its axes start as the principal ones of

@@ -14,9 +14,9 @@ namespace easypbr::app {
 
 class SceneWarnings {
   public:
-    /// Logs what is new: a lens for an orthographic camera; a style that needs normals for a mesh without any,
-    /// which is drawn as points; a material with a shader that has no faces to act on; paths that are asked for
-    /// where a material has extensions of glTF.
+    /// Logs what is new: a lens for an orthographic camera; a style that needs normals for a mesh without
+    /// any, which is drawn as points; a material with a shader that has no faces to act on; paths that are
+    /// asked for where a material has extensions of glTF.
     void check(const SceneSnapshot& scene, const Settings& settings, const ResolvedSettings& resolved);
 
   private:

@@ -23,9 +23,7 @@ struct DemoOptions {
 void declare_demo(CLI::App& command, DemoOptions& options) {
     command.add_option("-o,--output", options.output, "Image file to write")->option_text("FILE");
     command.add_option("--size,--resolution", options.size, "Width and height in pixels")->option_text("WxH");
-    command
-        .add_option("--samples", options.samples,
-                    "Number of jittered samples averaged per pixel")
+    command.add_option("--samples", options.samples, "Number of jittered samples averaged per pixel")
         ->option_text("N")
         ->capture_default_str();
 }

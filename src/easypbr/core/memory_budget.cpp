@@ -69,11 +69,7 @@ uint64_t automatic_memory_limit() {
 }
 
 MemoryScope::MemoryScope(std::string name, uint64_t limit)
-    : name_(std::move(name)),
-      left_(limit),
-      limit_(limit),
-      outer_(innermost),
-      shares_(limit == 0 && outer_) {
+    : name_(std::move(name)), left_(limit), limit_(limit), outer_(innermost), shares_(limit == 0 && outer_) {
     if (limit == 0 && !outer_) limit_ = left_ = automatic_memory_limit();
     innermost = this;  // Last: what throws before leaves nothing behind.
 }

@@ -8,8 +8,8 @@
 
 namespace easypbr::geometry {
 
-/// Throws ArgumentError "WHAT: expected a mesh with faces ..." (or vertices, or splats) when there are none; says what
-/// to do when only the descendants have some.
+/// Throws ArgumentError "WHAT: expected a mesh with faces ..." (or vertices, or splats) when there are none;
+/// says what to do when only the descendants have some.
 void require_faces(const char* what, const MeshData& mesh);
 void require_vertices(const char* what, const MeshData& mesh);
 void require_splats(const char* what, const MeshData& mesh);

@@ -46,7 +46,8 @@ Vec3 plane_normal(const Neighborhoods& neighborhoods, size_t i) {
 
 std::vector<Vec3> plane_normals(const Neighborhoods& neighborhoods, const NeighborhoodOptions& options) {
     std::vector<Vec3> normals(neighborhoods.count());
-    parallel_for(normals.size(), surfel_grain, [&](size_t i) { normals[i] = plane_normal(neighborhoods, i); });
+    parallel_for(normals.size(), surfel_grain,
+                 [&](size_t i) { normals[i] = plane_normal(neighborhoods, i); });
     if (options.viewpoint)
         geometry::orient_towards(normals, neighborhoods, *options.viewpoint);
     else

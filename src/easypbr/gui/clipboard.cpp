@@ -15,14 +15,15 @@
 namespace easypbr::gui {
 namespace {
 
-#define EASYPBR_XCB_FUNCTIONS(X)                                                                        \
-    X(xcb_connect)                                                                                      \
-    X(xcb_connection_has_error)                                                                         \
-    X(xcb_disconnect)                                                                                   \
-    X(xcb_get_setup)                                                                                    \
-    X(xcb_setup_roots_iterator) X(xcb_generate_id) X(xcb_create_window) X(xcb_intern_atom)              \
-        X(xcb_intern_atom_reply) X(xcb_convert_selection) X(xcb_get_property) X(xcb_get_property_reply) \
-            X(xcb_get_property_value) X(xcb_get_property_value_length) X(xcb_poll_for_event) X(xcb_flush)
+#define EASYPBR_XCB_FUNCTIONS(X)                                                                         \
+    X(xcb_connect)                                                                                       \
+    X(xcb_connection_has_error)                                                                          \
+    X(xcb_disconnect)                                                                                    \
+    X(xcb_get_setup)                                                                                     \
+    X(xcb_setup_roots_iterator)                                                                          \
+    X(xcb_generate_id) X(xcb_create_window) X(xcb_intern_atom) X(xcb_intern_atom_reply)                  \
+        X(xcb_convert_selection) X(xcb_get_property) X(xcb_get_property_reply) X(xcb_get_property_value) \
+            X(xcb_get_property_value_length) X(xcb_poll_for_event) X(xcb_flush)
 
 /// libxcb, which Xlib is made of and which is therefore there wherever a window is.
 struct Xcb {

@@ -54,8 +54,8 @@ std::vector<double> numbers_for(const nb::object& object, size_t count, const ch
 }
 
 void construct_camera_path(CameraPath* self, const nb::object& keys, const nb::object& segment_s,
-               const nb::object& fov_y_deg, const std::string& mode, const std::string& ease, bool closed,
-               const std::string& axes) {
+                           const nb::object& fov_y_deg, const std::string& mode, const std::string& ease,
+                           bool closed, const std::string& axes) {
     const auto kind = choice_named<Axes>("axes", axes, axes_names);
     std::vector<CameraKey> list;
     for (nb::handle key : keys) list.push_back(key_of(key, kind));

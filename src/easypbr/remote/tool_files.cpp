@@ -27,7 +27,8 @@ std::string size_text(uint64_t bytes) {
 /// Whether a name has a part, small letters or large.
 bool has_part(const std::string& name, const std::string& part) {
     const auto same = [](unsigned char a, unsigned char b) { return std::tolower(a) == std::tolower(b); };
-    return std::search(name.begin(), name.end(), part.begin(), part.end(), same) != name.end() || part.empty();
+    return std::search(name.begin(), name.end(), part.begin(), part.end(), same) != name.end() ||
+           part.empty();
 }
 
 /// Removes what clients have had shown before, with its lights and animations.

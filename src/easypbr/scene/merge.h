@@ -9,8 +9,9 @@ namespace easypbr {
 
 /// The mesh's own arrays after x -> T x, x being local positions; offset, pose and children stay. Normals go
 /// by the inverse transpose, a mirroring T turns the winding of the faces, and T and B become the axes
-/// of the ellipses that T makes of theirs (radii included). A T that flattens (determinant 0) is allowed; what has no
-/// direction left gets (0, 0, 1). The cubes of voxels keep their volume's factor, but cannot turn.
+/// of the ellipses that T makes of theirs (radii included). A T that flattens (determinant 0) is allowed;
+/// what has no direction left gets (0, 0, 1). The cubes of voxels keep their volume's factor, but cannot
+/// turn.
 MeshData transformed(const MeshData& mesh, const Eigen::Affine3d& T);
 
 /// All vertices, faces and edges in the order of the meshes, which count in one common frame: poses and
@@ -18,10 +19,10 @@ MeshData transformed(const MeshData& mesh, const Eigen::Affine3d& T);
 /// Materials and parts are kept, one part for each mesh that has none. What only some of the meshes have is
 /// filled in for the others: normals computed from the faces, zero where there are none (no normal); white;
 /// uv 0; intensity 0; label -1; scalar NaN. Tangents with lengths and voxel sizes are kept only when all
-/// meshes have them (the same), for an ellipse without axes would vanish. Labels or scalars of the same name that belong to
-/// faces here and to vertices there cannot be one array: those of the later mesh are left out with a warning,
-/// and so are other label maps than the first one. Throws ArgumentError when vertices or faces are too many
-/// for 32-bit indices.
+/// meshes have them (the same), for an ellipse without axes would vanish. Labels or scalars of the same name
+/// that belong to faces here and to vertices there cannot be one array: those of the later mesh are left out
+/// with a warning, and so are other label maps than the first one. Throws ArgumentError when vertices or
+/// faces are too many for 32-bit indices.
 MeshData merged(std::span<const MeshData> meshes);
 
 /// The offset of the first node that has vertices: what the tree's other offsets are relative to.

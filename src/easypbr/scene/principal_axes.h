@@ -13,8 +13,8 @@ struct PrincipalAxes {
     Eigen::Matrix2d directions;
 };
 
-/// Of a symmetric matrix: one Jacobi rotation is all that 2 x 2 takes (Golub and Van Loan, Matrix Computations,
-/// 8.5.2). Eigen's general solver costs each source that uses it ten seconds of compiling.
+/// Of a symmetric matrix: one Jacobi rotation is all that 2 x 2 takes (Golub and Van Loan, Matrix
+/// Computations, 8.5.2). Eigen's general solver costs each source that uses it ten seconds of compiling.
 inline PrincipalAxes principal_axes(const Eigen::Matrix2d& symmetric) {
     const double a = symmetric(0, 0), b = symmetric(1, 0), d = symmetric(1, 1);
     Eigen::JacobiRotation<double> rotation;

@@ -19,7 +19,8 @@ struct OffHeader {
 
 class OffHeaderParser {
   public:
-    explicit OffHeaderParser(const Source& source) : source_(source), p_(source.begin()), end_(source.end()) {}
+    explicit OffHeaderParser(const Source& source)
+        : source_(source), p_(source.begin()), end_(source.end()) {}
 
     OffHeader parse() {
         std::string_view word = next_word();
