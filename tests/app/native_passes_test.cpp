@@ -1,0 +1,273 @@
+// Glass, images behind, shadows of what has holes and passes beside them: shaded natively as by the driver.
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include <fmt/format.h>
+
+#include "easypbr/app/custom_pass.h"
+#include "easypbr/app/session.h"
+#include "easypbr/geometry/primitives.h"
+#include "easypbr/io/image/image_io.h"
+#include "easypbr/scene/settings.h"
+#include "native_shading.h"
+#include "render/render_test.h"
+
+namespace easypbr::native_shading_test {
+namespace {
+
+/// Glass before a wall of labels: panes, balls and a slab, behind each other.
+Scene glasses(float roughness, float dispersion) {
+    Scene scene;
+    Image sky(64, 32, 3, PixelType::f32);
+    for (size_t i = 0; i < sky.pixels<float>().size(); ++i)
+        sky.pixels<float>()[i] = 0.2f + 0.8f * float(i % 192) / 192 * float(i / 192 % 32) / 32;
+    scene.set_environment(Environment(sky));
+    Mesh wall = make_box(Vec3(4, 1, 0.2f));
+    Style labels;
+    labels.lit = false;
+    labels.color_by = ColorBy::height;
+    wall.set_style(labels);
+    Mesh ball = make_sphere(0.8f, 48), slab = make_box(Vec3(1, 1, 0.3f)),
+         pane = make_box(Vec3(3, 0.7f, 0.01f));
+    Material glass;
+    glass.transmission = 1;
+    glass.roughness = roughness;
+    glass.base_color = Vec3(0.9f, 1, 0.95f);
+    pane.set_material(glass);
+    glass.thickness = 0.5f;
+    glass.dispersion = dispersion;
+    glass.attenuation_color = Vec3(0.5f, 0.8f, 0.9f);
+    ball.set_material(glass);
+    slab.set_material(glass);
+    const auto place = [&](Mesh mesh, const char* name, const Vec3d& at) {
+        mesh.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(at)));
+        scene.show(mesh, name);
+    };
+    place(wall, "wall", Vec3d(0, 0, -2));
+    place(ball, "ball", Vec3d(-1, 0, 0));
+    place(slab, "slab", Vec3d(0.9, 0, 0));
+    place(pane, "pane", Vec3d(0, 0.3, 1.2));
+    return scene;
+}
+
+// What is seen through glass: thin or a volume, clear, rough or dispersing, over surfaces and over colours
+// past the tone curve. A refracted ray that passes an edge within its rounding meets what is before it for
+// one and what is behind it for the other: 8 of 76800 pixels at most.
+TEST(NativePasses, SeesThroughGlassAsTheDriver) {
+    if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
+    for (const float roughness : {0.0f, 0.4f})
+        for (const float dispersion : {0.0f, 5.0f})
+            for (const int samples : {1, 3}) {
+                const Scene scene = glasses(roughness, dispersion);
+                const auto draw = [&](bool native) {
+                    app::Session session(scene);
+                    Settings& s = session.settings();
+                    s.image.size = Vec2i(320, 240);
+                    s.image.samples = samples;
+                    s.image.antialias = Antialias::none;
+                    s.rays.enabled = false;
+                    s.shadows.enabled = false;
+                    session.allow_native_shading(native);
+                    return session.render();
+                };
+                const Difference d = difference(draw(true), draw(false));
+                EXPECT_LE(d.by_more, d.pixels / 5000)
+                    << "roughness " << roughness << ", dispersion " << dispersion << ", samples " << samples
+                    << ", largest " << d.most;
+            }
+}
+
+// Layers that the driver lights, for the sake of a pass that follows, have their shadow maps where it reads
+// them.
+TEST(NativePasses, LightsGlassAsTheDriverBeforeOwnPasses) {
+    if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
+    Scene scene = glasses(0, 0);
+    Light lamp;
+    lamp.type = LightType::directional;
+    lamp.direction = Vec3(0.3f, -1, -0.5f);
+    scene.set_light("lamp", lamp);
+    const auto draw = [&](bool native) {
+        app::Session session(scene);
+        Settings& s = session.settings();
+        s.image.size = Vec2i(160, 120);
+        s.image.samples = 1;
+        s.image.antialias = Antialias::none;
+        s.path.enabled = s.rays.enabled = false;
+        s.shadows.resolution = 256;
+        s.shadows.mode = ShadowMode::hard;
+        const std::string text =
+            "layout(location = 0) out vec4 o_color;\nvoid main() { o_color = vec4(0.0, 0.25, 0.0, 0.25); }";
+        session.add_pass("own", Stage::picture, std::make_shared<app::ShaderPass>("own", text, Blend::over));
+        session.allow_native_shading(native);
+        return session.render();
+    };
+    const Difference d = difference(draw(true), draw(false));
+    EXPECT_LE(d.by_more, d.pixels / 1000) << "largest " << d.most;
+}
+
+// Ids of a part of the frame are there from the picture before.
+TEST(NativePasses, ClosesGapsAndDrawsOverAllAfterIdsOfAPart) {
+    Mesh cloud = make_sphere(0.3f, 40);
+    cloud.edit([](MeshData& data) { data.style.mode = DrawMode::points; });
+    Scene scene;
+    scene.show(cloud, "cloud");
+    scene.show(make_box(Vec3(0.2f, 0.2f, 0.2f)), "box");
+    const auto draw = [&](bool ids) {
+        app::Session session(scene);
+        session.use_device(DrawDevice::cpu);
+        session.settings().image.size = Vec2i(640, 480);
+        session.settings().image.samples = 1;
+        session.settings().camera.position = Vec3d(0, 0, 6);
+        if (ids) session.render_layers({"object_id"});
+        session.settings().points.hole_filling = 2;
+        const Image filled = session.render();
+        session.settings().style.overlay = true;
+        return std::pair(filled, session.render());
+    };
+    const auto after = draw(true), fresh = draw(false);
+    EXPECT_TRUE(std::ranges::equal(after.first.bytes(), fresh.first.bytes()));
+    EXPECT_TRUE(std::ranges::equal(after.second.bytes(), fresh.second.bytes()));
+}
+
+// FXAA of 16 bits: that of 8 bits, in finer steps, but where it chooses between two blurs.
+TEST(NativePasses, SmoothsEdgesOf16Bits) {
+    Scene scene;
+    scene.show(make_teapot(1, 12), "teapot");
+    app::Session session(scene);
+    session.use_device(DrawDevice::cpu);
+    session.settings().image.size = Vec2i(160, 120);
+    session.settings().image.samples = 1;
+    session.settings().path.enabled = false;
+    const auto draw = [&](Antialias antialias, Encoding encoding) {
+        session.settings().image.antialias = antialias;
+        app::PictureOptions options;
+        options.encoding = encoding;
+        return session.render(options);
+    };
+    const Image coarse = draw(Antialias::fxaa, Encoding::srgb8),
+                fine = draw(Antialias::fxaa, Encoding::srgb16),
+                jagged = draw(Antialias::none, Encoding::srgb16);
+    size_t off = 0, smoothed = 0;
+    for (size_t i = 0; i < coarse.pixels<uint8_t>().size(); ++i) {
+        const int code = coarse.pixels<uint8_t>()[i];
+        const double value = fine.pixels<uint16_t>()[i] / 257.0;
+        off += std::abs(code - value) > 1;
+        smoothed += std::abs(value - jagged.pixels<uint16_t>()[i] / 257.0) > 8;
+    }
+    EXPECT_LE(off, coarse.pixels<uint8_t>().size() / 1000);
+    EXPECT_GT(smoothed, 300u);
+    EXPECT_TRUE(session.context_info().version.empty());
+}
+
+// The driver filters codes of 8 bits, the CPU linear values of 16: at most one step.
+TEST(NativePasses, ShowsImagesBehindAsTheDriver) {
+    if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
+    Image image(37, 23, 3, PixelType::u8);
+    for (size_t i = 0; i < image.pixels<uint8_t>().size(); ++i)
+        image.pixels<uint8_t>()[i] = uint8_t(40 + i * i % 180);
+    const auto file = std::filesystem::temp_directory_path() / "easypbr_native_background.png";
+    io::save_image(image, file);
+    Scene scene;
+    scene.show(make_sphere(1, 20), "ball");
+    for (const int samples : {1, 4}) {
+        const auto draw = [&](bool native) {
+            app::Session session(scene);
+            if (native) session.use_device(DrawDevice::cpu);
+            Settings& s = session.settings();
+            s.image.size = Vec2i(161, 67);
+            s.image.samples = samples;
+            s.image.antialias = Antialias::none;
+            s.rays.enabled = false;
+            s.background.mode = BackgroundMode::image;
+            s.background.image = file.string();
+            session.allow_native_shading(native);
+            const Image picture = session.render();
+            EXPECT_EQ(session.context_info().version.empty(), native);
+            return picture;
+        };
+        const Image native = draw(true);
+        EXPECT_EQ(difference(native, draw(false)).by_more, 0u) << samples << " samples";
+        // All of the width of 37 pixels is seen, and the middle of the height.
+        EXPECT_NEAR(native.at<uint8_t>(0, 33)[1], image.at<uint8_t>(0, 11)[1], 1);
+        EXPECT_EQ(native.at<uint8_t>(0, 0)[3], 255);
+    }
+    std::filesystem::remove(file);
+}
+
+/// A leaf with holes, or coloured glass, over a floor.
+Scene shadowed(AlphaMode mode, bool textured) {
+    const auto texels = [](int channels, auto value) {
+        Image image(32, 32, channels, PixelType::u8);
+        for (size_t i = 0; i < image.pixels<uint8_t>().size(); ++i)
+            image.pixels<uint8_t>()[i] = uint8_t(value(i / size_t(channels), i % size_t(channels)));
+        return std::make_shared<const Image>(image);
+    };
+    Material material;
+    material.alpha_mode = mode;
+    material.double_sided = true;
+    material.base_color = Vec3(0.9f, 0.3f, 0.2f);
+    material.opacity = mode == AlphaMode::blend ? 0.7f : 1.0f;
+    if (textured)
+        material.base_color_texture.image = texels(4, [](size_t texel, size_t channel) {
+            return channel == 3 ? (texel / 4 % 2 ? 255 : 40) : 60 + 90 * ((texel / 32 / 4 + channel) % 3);
+        });
+    Mesh leaf = make_plane(1);
+    leaf.set_material(material);
+    leaf.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0.5, 0)));
+    Mesh floor = make_plane(3);
+    Scene scene;
+    scene.show(floor, "floor");
+    scene.show(leaf, "leaf");
+    for (const LightType type : {LightType::point, LightType::directional}) {
+        Light light;
+        light.type = type;
+        light.position = Vec3(0.4f, 2.5f, 0.3f);
+        light.direction = Vec3(0.2f, -1, 0.1f);
+        light.intensity = type == LightType::point ? 30.0f : 2.0f;
+        light.radius = 0.1f;
+        scene.set_light(type == LightType::point ? "lamp" : "sun", light);
+    }
+    return scene;
+}
+
+Image drawn(const Scene& scene, ShadowMode mode, bool native, bool shadows, bool* loads_driver = nullptr) {
+    app::Session session(scene);
+    Settings& s = session.settings();
+    s.image.size = Vec2i(160, 120);
+    s.image.samples = 1;
+    s.image.antialias = Antialias::none;
+    s.shadows.mode = mode;
+    s.shadows.enabled = shadows;
+    s.shadows.resolution = 256;
+    if (native) session.use_device(DrawDevice::cpu);
+    session.allow_native_shading(native);
+    const Image picture = session.render();
+    if (loads_driver) *loads_driver = !session.context_info().version.empty();
+    return picture;
+}
+
+// What is seen through, or has holes, casts natively what it casts by the driver. Beyond what its own texture
+// makes (the driver takes levels from 2x2 pixels) three pixels may differ, whose texels lie on the edge of a
+// hole. The shadow is a ninth of the floor, partly behind the leaf: more than a fiftieth of the picture.
+TEST(NativePasses, CastsTheDriversTints) {
+    if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
+    for (const AlphaMode alpha : {AlphaMode::mask, AlphaMode::blend})
+        for (const bool textured : {false, true})
+            for (const ShadowMode mode : {ShadowMode::hard, ShadowMode::pcf, ShadowMode::soft}) {
+                const Scene scene = shadowed(alpha, textured);
+                bool loads_driver = true;
+                const Image native = drawn(scene, mode, true, true, &loads_driver);
+                const std::string name =
+                    fmt::format("alpha {}, textured {}, mode {}", int(alpha), textured, int(mode));
+                EXPECT_FALSE(loads_driver) << name;
+                const Difference d = difference(native, drawn(scene, mode, false, true)),
+                                 own = difference(drawn(scene, mode, true, false),
+                                                  drawn(scene, mode, false, false));
+                EXPECT_LE(d.by_more, own.by_more + d.pixels / 5000) << name << ", largest " << d.most;
+                EXPECT_GT(difference(native, drawn(scene, mode, true, false)).by_more, d.pixels / 50) << name;
+            }
+}
+
+}  // namespace
+}  // namespace easypbr::native_shading_test
