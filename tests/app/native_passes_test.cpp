@@ -13,8 +13,12 @@
 #include "native_shading.h"
 #include "render/render_test.h"
 
-namespace easypbr::native_shading_test {
+namespace easypbr::native_passes_test {
 namespace {
+
+using native_shading_test::difference;
+using native_shading_test::Difference;
+using native_shading_test::has_gpu;
 
 /// Glass before a wall of labels: panes, balls and a slab, behind each other.
 Scene glasses(float roughness, float dispersion) {
@@ -270,4 +274,4 @@ TEST(NativePasses, CastsTheDriversTints) {
 }
 
 }  // namespace
-}  // namespace easypbr::native_shading_test
+}  // namespace easypbr::native_passes_test
