@@ -38,6 +38,9 @@ def test_who_decodes_gets_a_video_from_a_key_frame_on(connect, tmp_path):
     client.until_exact()
     turn(client)
     frames = moving(client)
+    # One drawn between its two first messages is a JPEG: the server does not know yet that it decodes.
+    if frames[0].codec == JPEG:
+        frames = frames[1:]
     assert len(frames) >= 5
     assert {frame.codec for frame in frames} == {H264}
     assert frames[0].is_key
