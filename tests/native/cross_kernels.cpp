@@ -335,6 +335,46 @@ void check_lines() {
     });
 }
 
+void check_splats() {
+    constexpr int count = 60, pixels = SplatPixels::size * SplatPixels::size;
+    all_sets("blend_splats", [&](Case& run) {
+        const auto number = [&](float low, float high) { return run.random.number(low, high); };
+        auto* splats = run.array<ScreenSplat>(count);
+        auto* places = run.array<uint32_t>(count);
+        for (int i = 0; i < count; ++i) {
+            const float wide = number(0.5f, 6), high = number(0.5f, 6), turn = number(-0.9f, 0.9f);
+            const float part = 1 / (1 - turn * turn);
+            splats[i] = {number(-4, 36),
+                         number(-4, 36),
+                         part / (wide * wide),
+                         -part * turn / (wide * high),
+                         part / (high * high),
+                         number(0.01f, 1),
+                         number(0, 1),
+                         number(0, 1),
+                         number(0, 1),
+                         number(0.01f, 0.5f),
+                         number(-0.01f, 0.01f),
+                         number(-0.01f, 0.01f),
+                         3 * wide,
+                         3 * high,
+                         number(10, 1000),
+                         uint32_t(i)};
+            places[i] = uint32_t((7 * i) % count);
+        }
+        SplatPixels tile{.left = 8, .top = 16, .is_soft = run.set % 2 == 0, .axis = {0.1f, 0.2f, -1, 0}};
+        for (float** channel : {&tile.red, &tile.green, &tile.blue, &tile.through})
+            *channel = run.output<float>(pixels, Kind::floats);
+        tile.median = run.output<uint32_t>(pixels, Kind::bits);
+        if (run.set % 3 != 0) {
+            tile.farthest = run.floats(pixels, -0.1f, 0.2f);
+            tile.nearest = run.floats(pixels, 0.2f, 0.6f);
+        }
+        if (run.set % 5 < 2) tile.positions = run.output<float>(pixels, Kind::floats);
+        kernels.blend_splats(tile, splats, places, count);
+    });
+}
+
 }  // namespace
 }  // namespace easypbr::native
 
@@ -349,4 +389,5 @@ int main() {
 #undef EASYPBR_CHECK
     check_meshes();
     check_lines();
+    check_splats();
 }

@@ -161,6 +161,60 @@ struct ScreenLine {
 using DrawLines = void (*)(const void* uniforms, const Region& region, const ScreenLine* lines,
                            const uint32_t* chosen, int count, int y0, int y1);
 
+/// Nothing that is less opaque is drawn of Gaussian splats (Kerbl et al. 2023).
+inline constexpr float least_splat_alpha = 1.0f / 255;
+/// No splat hides what is behind it altogether.
+inline constexpr float most_splat_alpha = 0.99f;
+/// Where less light than this comes through, nothing behind is seen (Kerbl et al. 2023).
+inline constexpr float least_splat_transmittance = 1e-4f;
+
+/// Standard deviations from where a splat is densest along a ray, beyond which there is nothing of it:
+/// 1/4000.
+inline constexpr float splat_reach = 3.5f;
+/// To first order a large splat reaches behind the camera or beyond all: no farther than this times its mean.
+inline constexpr float farthest_splat_part = 0.1f;
+
+/// A Gaussian splat on the screen. Its opacity at a pixel's centre p is
+/// opacity * exp(-(xx dx^2 + 2 xy dx dy + yy dy^2) / 2), d = p - centre, and what is seen of it there is
+/// where it is densest along the pixel's ray, at depth + depth_x dx + depth_y dy (Zwicker et al. 2002), to
+/// first order. A cache line.
+struct alignas(64) ScreenSplat {
+    float x, y;                     ///< centre, in pixels of the frame
+    float xx, xy, yy;               ///< inverse of the covariance, per square pixel
+    float opacity;                  ///< at the centre
+    float red, green, blue;         ///< sRGB-encoded, 0 or more
+    float depth;                    ///< of its mean, reversed
+    float depth_x, depth_y;         ///< change of the depth, per pixel
+    float half_width, half_height;  ///< of the box, in pixels, outside of which it is not seen
+    /// Inverse of the standard deviation of its density along a pixel's ray, per unit of depth.
+    float sharpness;
+    uint32_t index;  ///< of the vertex
+};
+
+/// The pixels of a tile of the screen that splats are blended into, row by row.
+struct SplatPixels {
+    static constexpr int size = 16;
+
+    int left = 0, top = 0;                                    ///< first pixel
+    float *red = nullptr, *green = nullptr, *blue = nullptr;  ///< sRGB-encoded, premultiplied
+    float* through = nullptr;  ///< the part of the light from behind that still comes through
+    /// Splats are seen from `farthest` to before `nearest`, reversed depths or infinite; null: all are.
+    const float *farthest = nullptr, *nearest = nullptr;
+    /// Of a splat that a limit passes through the part on its side is seen; else all or nothing, by the depth
+    /// where it is densest along the pixel's ray.
+    bool is_soft = false;
+    uint32_t* median =
+        nullptr;  ///< place of the splat behind which less than half of the light comes through
+    /// Sum of the splats' z in view space, weighed by what each adds to the pixel; null: it is not asked for.
+    float* positions = nullptr;
+    float axis[4] = {};  ///< of reversed depths: (axis[0] z + axis[1]) / (axis[2] z + axis[3])
+};
+
+/// Blends splats, of which `places` are those of the tile from the nearest on, behind what it holds, until
+/// nothing comes through.
+using BlendSplats = void (*)(const SplatPixels& tile, const ScreenSplat* splats, const uint32_t* places,
+                             size_t count);
+
 /// Shaders of pictures: those of cmake/native.cmake.
 enum class Shader {
 #define EASYPBR_NAME(name) name,
@@ -179,6 +233,7 @@ struct Kernels {
     CastersOfTriangles casters_of_triangles;
     ShadeHits shade_hits;
     DrawLines draw_lines;
+    BlendSplats blend_splats;
     ShadeRows shade[shader_count];     ///< by Shader
     ShadeStream stream[stream_count];  ///< by Stream
 };

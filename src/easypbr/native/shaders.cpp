@@ -259,6 +259,11 @@ void draw_lines(const Inputs& inputs, const Region& region, std::span<const Scre
     });
 }
 
+void blend_splats(const SplatPixels& tile, std::span<const ScreenSplat> splats,
+                  std::span<const uint32_t> places) {
+    chosen_set().kernels->blend_splats(tile, splats.data(), places.data(), places.size());
+}
+
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1) {
     const Kernels& k = *chosen_set().kernels;
 #define EASYPBR_CASE(name) \

@@ -75,6 +75,10 @@ EASYPBR_STREAMS(EASYPBR_RUN)
 /// Throws Error when a value is not of the uniform's type, Interrupted.
 void draw_lines(const Inputs& inputs, const Region& region, std::span<const ScreenLine> lines, int y1);
 
+/// Blends splats into a tile, from the nearest on. On the calling thread.
+void blend_splats(const SplatPixels& tile, std::span<const ScreenSplat> splats,
+                  std::span<const uint32_t> places);
+
 /// Shades rows [y0, y1) of a region, on all cores. Throws Error when a value is not of the uniform's type,
 /// Interrupted.
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1);

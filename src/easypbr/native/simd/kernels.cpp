@@ -30,6 +30,7 @@ struct Fragment : TextureReader {
 }  // namespace EASYPBR_ISA
 }  // namespace easypbr::native
 
+#include "easypbr/native/simd/blend_splats.h"
 #include "easypbr/native/simd/shade_hits.h"
 
 namespace easypbr::native::EASYPBR_ISA {
@@ -321,6 +322,7 @@ const Kernels kernels{resolve_triangles,
                       casters_of_triangles,
                       shade_hits,
                       draw_lines,
+                      blend_splats,
                       {EASYPBR_SHADERS(EASYPBR_ROWS)},
                       {EASYPBR_STREAMS(EASYPBR_ARRAYS)}};
 #undef EASYPBR_ARRAYS

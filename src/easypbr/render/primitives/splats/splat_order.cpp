@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <bit>
 #include <cmath>
+#include <memory>
 #include <tuple>
 #include <utility>
 
@@ -17,8 +19,6 @@ struct Keyed {
 };
 
 constexpr size_t sort_block = 1 << 16;
-/// The entries of so many in tiles are counted, those of more estimated.
-constexpr size_t few_splats = 1 << 14;
 constexpr int digit_bits = 11, digit_count = 1 << digit_bits;
 
 size_t block_count(size_t count, size_t block) {
@@ -48,21 +48,20 @@ auto look_of(const ProjectedSplat& s) {
     return std::tie(s.x, s.y, s.opacity, s.xx, s.xy, s.yy, s.red, s.green, s.blue, s.depth_x, s.depth_y);
 }
 
-/// The tiles that a splat is seen in.
-struct TileBox {
-    int x0, y0, x1, y1;
-};
-
-TileBox tile_box(const ProjectedSplat& s, int columns, int first_row, int end_row) {
-    constexpr float scale = 1.0f / SplatTiles::tile_size;
-    const auto tile = [](float pixel, int low, int high) {
-        return int(std::clamp(std::floor(pixel * scale), float(low), float(high)));
-    };
-    // Pixels are seen by their centres.
-    return {tile(std::ceil(s.x - s.half_width - 0.5f), 0, columns),
-            tile(std::ceil(s.y - s.half_height - 0.5f), first_row, end_row),
-            std::min(columns, tile(s.x + s.half_width - 0.5f, -1, columns) + 1),
-            std::min(end_row, tile(s.y + s.half_height - 0.5f, first_row - 1, end_row) + 1)};
+/// Puts splats of equal depth in the order of what they look like.
+void order_equal_depths(std::span<const ProjectedSplat> splats, std::span<Keyed> items) {
+    const auto is_first = [&](size_t i) { return i == 0 || items[i - 1].key != items[i].key; };
+    parallel_chunks(items.size(), sort_block, [&](size_t begin, size_t end) {
+        // A chunk has the runs that begin in it.
+        for (size_t first = begin, past; first < end; first = past) {
+            for (past = first + 1; past < items.size() && items[past].key == items[first].key;) ++past;
+            if (past - first == 1 || !is_first(first)) continue;
+            std::stable_sort(items.begin() + std::ptrdiff_t(first), items.begin() + std::ptrdiff_t(past),
+                             [&](const Keyed& a, const Keyed& b) {
+                                 return look_of(splats[a.place]) < look_of(splats[b.place]);
+                             });
+        }
+    });
 }
 
 int tiles_across(int pixels) {
@@ -73,45 +72,62 @@ int tiles_across(int pixels) {
 
 std::vector<uint32_t> front_to_back(std::span<const ProjectedSplat> splats,
                                     std::span<const uint32_t> places) {
-    std::vector<Keyed> items(places.size()), other(places.size());
+    const size_t count = places.size();
+    auto items = std::make_unique_for_overwrite<Keyed[]>(count),
+         other = std::make_unique_for_overwrite<Keyed[]>(count);
     // Depths are above 0, and their bits rise with them.
-    parallel_for(places.size(), sort_block, [&](size_t i) {
+    parallel_for(count, sort_block, [&](size_t i) {
         items[i] = {~std::bit_cast<uint32_t>(splats[places[i]].depth), places[i]};
     });
     for (int shift = 0; shift < 32; shift += digit_bits) {
-        sort_by_digit(items, other, shift);
+        sort_by_digit({items.get(), count}, {other.get(), count}, shift);
         items.swap(other);
     }
-    for (size_t begin = 0, end; begin < items.size(); begin = end) {
-        for (end = begin + 1; end < items.size() && items[end].key == items[begin].key;) ++end;
-        if (end - begin > 1)
-            std::stable_sort(items.begin() + std::ptrdiff_t(begin), items.begin() + std::ptrdiff_t(end),
-                             [&](const Keyed& a, const Keyed& b) {
-                                 return look_of(splats[a.place]) < look_of(splats[b.place]);
-                             });
-    }
-    other = {};
-    std::vector<uint32_t> order(items.size());
-    parallel_for(order.size(), sort_block, [&](size_t i) { order[i] = items[i].place; });
+    other.reset();
+    order_equal_depths(splats, {items.get(), count});
+    std::vector<uint32_t> order(count);
+    parallel_for(count, sort_block, [&](size_t i) { order[i] = items[i].place; });
     return order;
 }
 
-size_t SplatTiles::estimated_entries(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places,
-                                     Vec2i size) {
-    // Of many splats some are looked at, evenly spread over the depths.
-    const size_t step = places.size() > few_splats ? 16 : 1;
-    const int columns = tiles_across(size.x()), rows = tiles_across(size.y());
-    size_t count = 0;
-    for (size_t i = 0; i < places.size(); i += step) {
-        const TileBox box = tile_box(splats[places[i]], columns, 0, rows);
-        count += size_t(std::max(0, box.x1 - box.x0)) * size_t(std::max(0, box.y1 - box.y0));
-    }
-    return count * step;
+SplatTiles::Box SplatTiles::box_of(const ProjectedSplat& s, int columns, int rows) {
+    constexpr float scale = 1.0f / tile_size;
+    const auto tile = [](float pixel, int last) {
+        return int(std::clamp(std::floor(pixel * scale), -1.0f, float(last)));
+    };
+    // Pixels are seen by their centres.
+    const int x0 = std::max(0, tile(std::ceil(s.x - s.half_width - 0.5f), columns)),
+              y0 = std::max(0, tile(std::ceil(s.y - s.half_height - 0.5f), rows)),
+              x1 = std::min(columns, tile(s.x + s.half_width - 0.5f, columns) + 1),
+              y1 = std::min(rows, tile(s.y + s.half_height - 0.5f, rows) + 1);
+    if (x1 <= x0 || y1 <= y0) return {};
+    return {uint16_t(x0), uint16_t(y0), uint16_t(x1), uint16_t(y1)};
 }
 
-void SplatTiles::bin(std::span<const ProjectedSplat> splats, std::span<const uint32_t> order, Vec2i size,
-                     int first_row, int end_row) {
+void SplatTiles::clear() {
+    boxes_.reset();
+    entries_.reset();
+}
+
+size_t SplatTiles::begin(std::span<const ProjectedSplat> splats, std::span<const uint32_t> order,
+                         Vec2i size) {
     columns_ = tiles_across(size.x());
+    rows_ = tiles_across(size.y());
+    boxes_ = std::make_unique_for_overwrite<Box[]>(order.size());
+    std::atomic<size_t> entries = 0;
+    parallel_chunks(order.size(), sort_block, [&](size_t begin, size_t end) {
+        size_t own = 0;
+        for (size_t i = begin; i < end; ++i) {
+            if (i + 16 < end) __builtin_prefetch(&splats[order[i + 16]]);
+            const Box box = boxes_[i] = box_of(splats[order[i]], columns_, rows_);
+            own += size_t(box.x1 - box.x0) * size_t(box.y1 - box.y0);
+        }
+        entries += own;
+    });
+    return entries;
+}
+
+void SplatTiles::bin(std::span<const uint32_t> order, int first_row, int end_row) {
     first_row_ = first_row;
     const size_t tiles = size_t(columns_) * size_t(end_row - first_row);
     // Few enough that their counts take less room than the lists.
@@ -119,9 +135,9 @@ void SplatTiles::bin(std::span<const ProjectedSplat> splats, std::span<const uin
     std::vector<std::vector<uint32_t>> counts(block_count(order.size(), block), std::vector<uint32_t>(tiles));
     const auto for_each_tile = [&](size_t begin, size_t end, auto&& body) {
         for (size_t i = begin; i < end; ++i) {
-            if (i + 8 < end) __builtin_prefetch(&splats[order[i + 8]]);
-            const TileBox box = tile_box(splats[order[i]], columns_, first_row, end_row);
-            for (int y = box.y0; y < box.y1; ++y)
+            const Box box = boxes_[i];
+            const int y0 = std::max(int(box.y0), first_row), y1 = std::min(int(box.y1), end_row);
+            for (int y = y0; y < y1; ++y)
                 for (int x = box.x0; x < box.x1; ++x)
                     body(size_t(y - first_row) * size_t(columns_) + size_t(x), order[i]);
         }
@@ -136,7 +152,8 @@ void SplatTiles::bin(std::span<const ProjectedSplat> splats, std::span<const uin
         for (auto& own : counts) sum += std::exchange(own[tile], uint32_t(sum));
         first_[tile + 1] = first_[tile] + sum;
     }
-    entries_.resize(first_.back());
+    entries_.reset();
+    entries_ = std::make_unique_for_overwrite<uint32_t[]>(first_.back());
     parallel_chunks(order.size(), block, [&](size_t begin, size_t end) {
         auto& own = counts[begin / block];
         for_each_tile(begin, end,

@@ -108,22 +108,23 @@ bool SplatProjector::widen(const Mat3& axes, ProjectedSplat& splat) const {
     if (item_.style.splat_antialias || view_.keeps_light)
         splat.opacity *= float(std::sqrt(std::max(0.0, own_xx * own_yy - own_xy * own_xy) / area));
     if (splat.opacity < least_splat_alpha) return false;
-    splat.xx = float(yy / area);
-    splat.xy = float(-own_xy / area);
-    splat.yy = float(xx / area);
+    const double per_area = 1 / area;
+    splat.xx = float(yy * per_area);
+    splat.xy = float(-own_xy * per_area);
+    splat.yy = float(xx * per_area);
     // The mean of a Gaussian's depth where column and row are given.
     const double x_depth = own.row(0).dot(own.row(2)), y_depth = own.row(1).dot(own.row(2));
-    splat.depth_x = float((yy * x_depth - own_xy * y_depth) / area);
-    splat.depth_y = float((xx * y_depth - own_xy * x_depth) / area);
+    splat.depth_x = float((yy * x_depth - own_xy * y_depth) * per_area);
+    splat.depth_y = float((xx * y_depth - own_xy * x_depth) * per_area);
     // What is left of its variance.
     const double along =
         own.row(2).squaredNorm() - double(splat.depth_x) * x_depth - double(splat.depth_y) * y_depth;
     splat.sharpness =
         float(1 / std::max(std::sqrt(std::max(0.0, along)), double(splat.depth) * least_deviation));
     // Where its opacity falls to the least that is seen.
-    const double farthest = 2 * std::log(double(splat.opacity) / double(least_splat_alpha));
-    splat.half_width = float(std::sqrt(farthest * xx));
-    splat.half_height = float(std::sqrt(farthest * yy));
+    const float farthest = 2 * std::log(splat.opacity / least_splat_alpha);
+    splat.half_width = std::sqrt(farthest * float(xx));
+    splat.half_height = std::sqrt(farthest * float(yy));
     return splat.x + splat.half_width > 0 && splat.x - splat.half_width < float(view_.size.x()) &&
            splat.y + splat.half_height > 0 && splat.y - splat.half_height < float(view_.size.y());
 }

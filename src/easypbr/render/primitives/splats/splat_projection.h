@@ -3,32 +3,16 @@
 
 #include <cstdint>
 
+#include "easypbr/native/kernels.h"
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/shadow_view.h"
 
 namespace easypbr::render {
 
-/// Nothing that is less opaque is drawn (Kerbl et al. 2023).
-inline constexpr float least_splat_alpha = 1.0f / 255;
-/// No splat hides what is behind it altogether.
-inline constexpr float most_splat_alpha = 0.99f;
-
-/// Its opacity at a pixel's centre p is opacity * exp(-(xx dx^2 + 2 xy dx dy + yy dy^2) / 2), d = p - centre,
-/// and what is seen of it there is where it is densest along the pixel's ray, at depth + depth_x dx + depth_y
-/// dy (Zwicker et al. 2002), to first order. A cache line.
-struct alignas(64) ProjectedSplat {
-    float x, y;                     ///< centre, in pixels of the frame
-    float xx, xy, yy;               ///< inverse of the covariance, per square pixel
-    float opacity;                  ///< at the centre
-    float red, green, blue;         ///< sRGB-encoded, 0 or more
-    float depth;                    ///< of its mean, as GBuffer::depth has it
-    float depth_x, depth_y;         ///< change of the depth, per pixel
-    float half_width, half_height;  ///< of the box, in pixels, outside of which it is not seen
-    /// Inverse of the standard deviation of its density along a pixel's ray, per unit of depth.
-    float sharpness;
-    uint32_t index;  ///< of the vertex
-};
+using native::least_splat_alpha;
+using native::most_splat_alpha;
+using ProjectedSplat = native::ScreenSplat;
 
 /// What splats are projected by.
 struct SplatView {

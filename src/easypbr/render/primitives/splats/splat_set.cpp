@@ -1,6 +1,7 @@
 #include "easypbr/render/primitives/splats/splat_set.h"
 
 #include <algorithm>
+#include <numeric>
 
 #include "easypbr/core/parallel.h"
 
@@ -25,9 +26,15 @@ void SplatSet::project(const SplatView& view, const DrawItem& item, size_t first
             if (projector.project(Eigen::Index(i), own[n])) ++n;
         if (finish) finish(projector, item, {own, n});
     });
-    for (size_t block = 0; block < seen.size(); ++block)
-        for (uint32_t i = 0; i < seen[block]; ++i)
-            order_.push_back(uint32_t(first + block * projection_block + i));
+    // Of each block's in the order.
+    size_t end_of_all = order_.size();
+    std::vector<size_t> ends;
+    for (const uint32_t n : seen) ends.push_back(end_of_all += n);
+    order_.resize(end_of_all);
+    parallel_for(seen.size(), 1, [&](size_t block) {
+        const auto end = order_.begin() + std::ptrdiff_t(ends[block]);
+        std::iota(end - seen[block], end, uint32_t(first + block * projection_block));
+    });
 }
 
 void SplatSet::begin(const SplatView& view, const std::vector<const DrawItem*>& items, const Finish& finish) {
@@ -35,6 +42,7 @@ void SplatSet::begin(const SplatView& view, const std::vector<const DrawItem*>& 
     items_ = items;
     ends_.clear();
     order_.clear();
+    tiles_.clear();
     size_t count = 0;
     for (const DrawItem* item : items) ends_.push_back(count += size_t(item->mesh().V.rows()));
     if (count > room_) {
@@ -44,6 +52,7 @@ void SplatSet::begin(const SplatView& view, const std::vector<const DrawItem*>& 
     }
     for (size_t i = 0; i < items.size(); ++i) project(view, *items[i], i == 0 ? 0 : ends_[i - 1], finish);
     order_ = front_to_back(splats(), order_);
+    entries_ = tiles_.begin(splats(), order_, size_);
 }
 
 const DrawItem& SplatSet::item_of(uint32_t place) const {
@@ -52,12 +61,12 @@ const DrawItem& SplatSet::item_of(uint32_t place) const {
 
 void SplatSet::for_each_tile(const std::function<void(int, int, std::span<const uint32_t>)>& body) {
     if (empty()) return;
-    const int rows = (size_.y() + SplatTiles::tile_size - 1) / SplatTiles::tile_size;
-    const size_t bands = 1 + SplatTiles::estimated_entries(splats(), order_, size_) / most_entries;
+    const int rows = tiles_.rows();
+    const size_t bands = 1 + entries_ / most_entries;
     const int step = std::max(1, rows / int(std::min(bands, size_t(rows))));
     for (int first = 0; first < rows; first += step) {
         const int end = std::min(first + step, rows);
-        tiles_.bin(splats(), order_, size_, first, end);
+        tiles_.bin(order_, first, end);
         parallel_for(size_t(end - first) * size_t(tiles_.columns()), 1, [&](size_t i) {
             const int column = int(i) % tiles_.columns(), row = first + int(i) / tiles_.columns();
             const std::span<const uint32_t> places = tiles_.of(column, row);

@@ -39,6 +39,7 @@ class SplatSet {
     size_t room_ = 0;
     std::vector<uint32_t> order_;
     SplatTiles tiles_;
+    size_t entries_ = 0;  ///< of all tiles' lists
 };
 
 }  // namespace easypbr::render

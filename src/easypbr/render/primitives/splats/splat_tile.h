@@ -9,8 +9,7 @@
 
 namespace easypbr::render {
 
-/// Where less light than this comes through, nothing behind is seen (Kerbl et al. 2023).
-inline constexpr float least_splat_transmittance = 1e-4f;
+using native::least_splat_transmittance;
 
 /// Reversed depths along the view's axis: (a z + b) / (c z + d) at z of view space.
 struct DepthAxis {
@@ -55,10 +54,6 @@ struct alignas(64) SplatTile {
     void blend_resorted(std::span<const ProjectedSplat> splats, std::span<const uint32_t> places);
     /// Nothing blended yet.
     void clear();
-
-  private:
-    void blend(const ProjectedSplat& splat, uint32_t place);
-    bool is_opaque() const;
 };
 
 }  // namespace easypbr::render
