@@ -201,8 +201,6 @@ std::unique_ptr<Context> Context::create(DrawDevice device) {
     const bool asked = device != DrawDevice::automatic;
     if (!asked) device = has_gpu_files() ? DrawDevice::gl : DrawDevice::cpu;
     std::unique_ptr<Context> made(new Context);
-    made->deletions_ = std::make_shared<DeletionQueue>();
-    made->process_ = getpid();
     made->info_.device = device;
     if (device == DrawDevice::gl) {
         try {
@@ -252,6 +250,8 @@ void Context::initialize() {
     if (is_debugging()) glEnable(GL_DEBUG_OUTPUT_SYNCHRONOUS);
     reset_state();
 }
+
+Context::Context() : process_(getpid()), deletions_(std::make_shared<DeletionQueue>()) {}
 
 Context::~Context() {
     deletions_->close();

@@ -76,7 +76,7 @@ class Context {
 
   private:
     friend class ContextScope;
-    Context() = default;
+    Context();
     void load_driver();
     void initialize();
 
