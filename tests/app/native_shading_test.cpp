@@ -85,6 +85,9 @@ class Generator {
         change_effects(s);
     }
 
+    /// Of all meshes' wireframes and normals.
+    Eigen::Index lines() const { return lines_; }
+
   private:
     void change_effects(Settings& s) {
         s.bloom.enabled = chance(0.3);
@@ -139,11 +142,14 @@ class Generator {
     }
     void draw_lines(Mesh& mesh) {
         mesh.edit([&](MeshData& data) {
-            data.style.show_wireframe = chance(0.5);
-            data.style.show_normals = chance(0.5) && !data.N.empty();
+            const bool has_wireframe = chance(0.5), has_normals = chance(0.5) && !data.N.empty();
+            data.style.show_wireframe = has_wireframe;
+            data.style.show_normals = has_normals;
             data.style.line_width = number(0.3f, 6);
             data.style.line_dash = chance(0.7) ? 0.0f : number(1, 9);
             data.style.line_color = color();
+            if (has_wireframe) lines_ += 3 * data.F.rows() / 2;
+            if (has_normals) lines_ += data.V.rows();
         });
     }
     /// Colours of labels and of heights, lit or as they are.
@@ -186,6 +192,7 @@ class Generator {
 
     std::mt19937 random_;
     bool has_layers_ = false, has_over_ = false;
+    Eigen::Index lines_ = 0;
 };
 
 /// 200 in `make check-long`.
@@ -218,17 +225,21 @@ bool is_blurred(unsigned seed) {
 // before it for one and behind it for the other, a normal's angle or a step of depth is beside the least of
 // an outline, FXAA chooses between two blurs, and tone curves are steep where one channel is dark beside a
 // bright one: few pixels differ by more, in all scenes one of 1000, in a single one of 200 nine of 3200.
+// Where more lines are drawn than there are pixels, llvmpipe loses some of them: it truncates to a half after
+// each one that is blended, and natively halves are rounded. There it is at most one of 20.
 TEST(NativeShading, IsTheDrivers) {
     if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
     Difference all;
     for (unsigned seed = 0; seed < scene_count(); ++seed) {
-        const Scene scene = Generator(seed).scene();
+        Generator generator(seed);
+        const Scene scene = generator.scene();
         const Difference d = difference(drawn(scene, seed, true), drawn(scene, seed, false));
         all.pixels += d.pixels;
         all.by_one += d.by_one;
         all.by_more += d.by_more;
         all.most = std::max(all.most, d.most);
-        const size_t part = is_blurred(seed) ? 100 : 400;
+        const bool has_many_lines = size_t(generator.lines()) > d.pixels;
+        const size_t part = has_many_lines ? 20 : is_blurred(seed) ? 100 : 400;
         EXPECT_LE(d.by_more, 2 + d.pixels / part) << "scene " << seed << ", largest " << d.most;
     }
     EXPECT_LE(all.by_more, all.pixels / 1000);
