@@ -126,7 +126,7 @@ void blend_one(const SplatPixels& tile, const ScreenSplat& splat, uint32_t place
         for (int x = columns.first / lanes * lanes; x < columns.end; x += lanes)
             blend_pixels<is_limited, sums_positions>(tile, splat, place,
                                                      steps + (float(tile.left + x) + 0.5f - splat.x), dy,
-                                                     farthest_power, size_t(y * tile_size + x));
+                                                     farthest_power, size_t(y) * tile_size + size_t(x));
     }
 }
 
