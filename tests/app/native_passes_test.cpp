@@ -1,4 +1,5 @@
 // Glass, images behind, shadows of what has holes and passes beside them: shaded natively as by the driver.
+#include <cmath>
 #include <filesystem>
 #include <memory>
 #include <string>
@@ -271,6 +272,69 @@ TEST(NativePasses, CastsTheDriversTints) {
                 EXPECT_LE(d.by_more, own.by_more + d.pixels / 5000) << name << ", largest " << d.most;
                 EXPECT_GT(difference(native, drawn(scene, mode, true, false)).by_more, d.pixels / 50) << name;
             }
+}
+
+/// Two balls of points through each other, around a blended box, over a floor.
+Scene clouds(AlphaMode alpha, bool with_normals) {
+    Scene scene;
+    scene.show(make_box(Vec3(4, 0.1f, 4)), "floor");
+    Mesh box = make_box(Vec3(0.8f, 0.8f, 0.8f));
+    Material pane;
+    pane.base_color = Vec3(0.9f, 0.4f, 0.2f);
+    pane.opacity = 0.4f;
+    box.set_material(pane);
+    box.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(0, 0.9, 0)));
+    scene.show(box, "box");
+    for (const double x : {-0.4, 0.4}) {
+        Mesh ball;
+        ball.edit([&](MeshData& data) {
+            // Along a spiral: no two at one place.
+            constexpr int count = 1000;
+            Array3f::Dense N(count, 3);
+            ArrayXf::Dense C(count, 4);
+            for (int i = 0; i < count; ++i) {
+                const float y = 1 - (2 * float(i) + 1) / count, r = std::sqrt(1 - y * y),
+                            angle = 2.4f * float(i);
+                N.row(i) << r * std::cos(angle), y, r * std::sin(angle);
+                C.row(i) << float(i % 7) / 6, 0.6f, float(i % 5) / 4, 0.2f + 0.15f * float(i % 5);
+            }
+            data.V = Array3f(Array3f::Dense(0.8f * N));
+            data.C = ArrayXf(C);
+            if (with_normals) data.N = Array3f(N);
+            data.style.mode = DrawMode::points;
+            data.style.point_size = 0.1f;
+            data.style.point_size_unit = SizeUnit::world;
+            Material material;
+            material.base_color = Vec3::Ones();
+            material.alpha_mode = alpha;
+            data.materials = {material};
+        });
+        ball.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(x, 0.9, x / 7)));
+        scene.show(ball, x < 0 ? "left" : "right");
+    }
+    Light lamp;
+    lamp.type = LightType::directional;
+    lamp.direction = Vec3(0.3f, -1, -0.5f);
+    lamp.intensity = 2;
+    scene.set_light("lamp", lamp);
+    return scene;
+}
+
+// Points that light passes, among blended faces: with their own light, or shaded by eye-dome lighting, and
+// with their shadows. The driver rounds splats to 1/256 of a pixel. Of each of the 2000 splats, whose radius
+// is about 3 pixels, 0.04 pixels have their centre that near to the edge: 76 altogether.
+TEST(NativePasses, BlendsPointsAsTheDriver) {
+    if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
+    for (const AlphaMode alpha : {AlphaMode::blend, AlphaMode::mask})
+        for (const bool with_normals : {true, false}) {
+            const Scene scene = clouds(alpha, with_normals);
+            bool loads_driver = true;
+            const Image native = drawn(scene, ShadowMode::hard, true, true, &loads_driver);
+            const std::string name = fmt::format("alpha {}, normals {}", int(alpha), with_normals);
+            EXPECT_FALSE(loads_driver) << name;
+            const Difference d = difference(native, drawn(scene, ShadowMode::hard, false, true));
+            EXPECT_LE(d.by_more, d.pixels / 250) << name << ", largest " << d.most;
+        }
 }
 
 }  // namespace

@@ -151,7 +151,7 @@ TEST(Transfers, LayersStayInHostMemory) {
     EXPECT_EQ(*transfers, Transfers());
 }
 
-// Layers of points are drawn by the driver.
+// Layers of surfels are drawn by the driver.
 TEST(Transfers, SurfacesAreUploadedOnceForPassesOfTheDriver) {
     Settings settings;
     settings.ssao.enabled = false;
@@ -160,7 +160,7 @@ TEST(Transfers, SurfacesAreUploadedOnceForPassesOfTheDriver) {
     mist.opacity = 0.5f;
     mist.alpha_mode = AlphaMode::blend;
     Mesh cloud = pane_of(mist);
-    cloud.edit([](MeshData& data) { data.style.mode = DrawMode::points; });
+    cloud.edit([](MeshData& data) { data.style.mode = DrawMode::surfels; });
     scene.show(cloud, "cloud");
     const auto transfers = transfers_of(scene, settings);
     if (!transfers) GTEST_SKIP() << "this machine has a GPU: nothing is drawn natively";

@@ -91,6 +91,52 @@ TEST(TintedShadow, OfAnOpacity) {
         }
 }
 
+/// Square points over the middle of the floor, each as wide as `widths` of their distances.
+Mesh wall_of_points(float opacity, bool by_color, int widths) {
+    constexpr int side = 40;
+    constexpr float spacing = 1.0f / side;
+    MeshData data;
+    Array3f::Dense V(side * side, 3);
+    for (int i = 0; i < side * side; ++i)
+        V.row(i) << spacing * (float(i % side) + 0.5f) - 0.5f, spacing * (float(i / side) + 0.5f) - 0.5f,
+            0.5f;
+    data.V = Array3f(V);
+    if (by_color) data.C = ArrayXf(ArrayXf::Dense(ArrayXf::Dense::Constant(side * side, 4, opacity)));
+    data.materials = {by_color ? matt() : blended(opacity)};
+    data.style.mode = DrawMode::points;
+    data.style.point_shape = PointShape::square;
+    data.style.point_size = spacing * float(widths);
+    data.style.point_size_unit = SizeUnit::world;
+    return Mesh(data);
+}
+
+// Light crosses as many points as their squares lie over each other. A hundredth: some texels' centres lie on
+// the edges of two squares, and vertices' opacities have 8 bits.
+TEST(TintedShadow, OfPoints) {
+    for (const ShadowMode mode : modes)
+        for (const bool by_color : {false, true})
+            for (const int widths : {1, 2}) {
+                app::Session session = under({wall_of_points(0.4f, by_color, widths)}, mode, sun);
+                session.settings().shadows.resolution = 128;  // the narrow squares have one to four texels
+                const Lit lit = lit_floor(session, 1);
+                EXPECT_NEAR(lit.mean.y(), std::pow(0.6, widths * widths), 0.01)
+                    << int(mode) << " " << by_color << " " << widths;
+            }
+}
+
+// Points that an alpha test leaves out cast nothing, those that it keeps all of their shadow.
+TEST(TintedShadow, OfPointsWithAMask) {
+    for (const float cutoff : {0.3f, 0.5f}) {
+        Mesh wall = wall_of_points(0.4f, true, 1);
+        Material masked = matt();
+        masked.alpha_mode = AlphaMode::mask;
+        masked.alpha_cutoff = cutoff;
+        wall.set_material(masked);
+        app::Session session = under({wall}, ShadowMode::hard, sun);
+        EXPECT_NEAR(lit_floor(session, 1).mean.y(), cutoff < 0.4f ? 0 : 1, 0.01) << cutoff;
+    }
+}
+
 // What thin glass does not reflect (F0 is 0.04) has its colour; under every kind of projection.
 TEST(TintedShadow, OfColouredGlass) {
     const Vec3 color(0.9f, 0.5f, 0.1f);

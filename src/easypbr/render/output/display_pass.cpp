@@ -8,6 +8,9 @@
 namespace easypbr::render {
 namespace {
 
+/// Of the factors that eye-dome lighting is made of.
+constexpr gl::Format shade_format = gl::Format::r16;
+
 /// Depth of an orthographic picture in doublings of the distance, as if it were seen from where a perspective
 /// camera of 30 degrees sees the same height.
 double doublings_per_depth(const Camera& camera) {
@@ -20,8 +23,7 @@ float radius_of(const Frame& frame) {
     return std::max(1.0f, frame.resolved->settings.edl.radius * float(frame.picture_size.y()) / 1080);
 }
 
-template <class To>
-void set_eye_dome_uniforms(To& to, const Frame& frame) {
+void set_eye_dome_uniforms(ShaderInputs& to, const Frame& frame) {
     const EdlSettings& eye_dome = frame.resolved->settings.edl;
     to.set("u_size", Vec2(frame.size.cast<float>()));
     to.set("u_eye_dome", Vec2(eye_dome.strength, radius_of(frame)));
@@ -38,6 +40,13 @@ ShaderInputs overlay_inputs(const Frame& frame, const GBuffer& targets) {
     if (!targets.ambient_occlusion) return values;
     values.define("AMBIENT_OCCLUSION");
     values.set("u_ambient_occlusion", targets.ambient_occlusion);
+    return values;
+}
+
+ShaderInputs layer_inputs(const Frame& frame) {
+    ShaderInputs values;
+    values.define(camera_defines(frame));
+    set_eye_dome_uniforms(values, frame);
     return values;
 }
 
@@ -70,19 +79,29 @@ void DisplayPass::shade_overlay(const Frame& frame, const GBuffer& targets, cons
 const gl::Texture& DisplayPass::shade(const Frame& frame, const gl::Texture& nearest,
                                       const gl::Texture& opaque) {
     if (!shade_ || Vec2i(shade_.width(), shade_.height()) != frame.size) {
-        shade_ = gl::Texture(gl::Format::r16, frame.size.x(), frame.size.y());
+        shade_ = gl::Texture(shade_format, frame.size.x(), frame.size.y());
         shaded_ = gl::Framebuffer({&shade_});
     }
     shaded_.bind();
-    const gl::Program& program = shades_.get(camera_defines(frame));
-    program.use();
-    set_eye_dome_uniforms(program, frame);
-    nearest.bind(0);
-    opaque.bind(1);
-    program.set("u_nearest", 0);
-    program.set("u_opaque", 1);
-    gl::draw_screen({});
+    ShaderInputs values = layer_inputs(frame);
+    values.set("u_nearest", nearest);
+    values.set("u_opaque", opaque);
+    layers_.draw(values, {});
     return shade_;
+}
+
+const Target& DisplayPass::shade(const Frame& frame, const Target& nearest, const Target& opaque,
+                                 Transfers& transfers) {
+    if (host_shade_.size() != frame.size) host_shade_ = Target(shade_format, frame.size);
+    host_shade_.write(nearest.area());
+    ShaderInputs values = layer_inputs(frame);
+    values.set("u_nearest", nearest);
+    values.set("u_opaque", opaque);
+    layers_.shade(
+        values,
+        {.target = &host_shade_, .area = nearest.area(), .where = native::Where::covered, .depth = &nearest},
+        transfers);
+    return host_shade_;
 }
 
 }  // namespace easypbr::render

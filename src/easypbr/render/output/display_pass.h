@@ -4,7 +4,6 @@
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
-#include "easypbr/render/frame/programs.h"
 #include "easypbr/render/frame/screen_shader.h"
 
 namespace easypbr::render {
@@ -21,13 +20,18 @@ class DisplayPass {
     /// where the opaque surfaces (both R32F, reversed depth). Until the next call.
     const gl::Texture& shade(const Frame& frame, const gl::Texture& nearest, const gl::Texture& opaque);
 
+    /// The same natively; `nearest` holds what is covered by points.
+    const Target& shade(const Frame& frame, const Target& nearest, const Target& opaque,
+                        Transfers& transfers);
+
     /// How far eye-dome lighting sees, in pixels of a frame of the whole picture.
     static int reach(const Frame& whole);
 
   private:
     ScreenShader surfaces_{"display_surface.frag", native::Shader::display_surface};
-    ProgramVariants shades_{"screen_triangle.vert", "eye_dome_layers.frag"};
+    ScreenShader layers_{"eye_dome_layers.frag", native::Shader::eye_dome_layers};
     gl::Texture shade_;
+    Target host_shade_;
     gl::Framebuffer shaded_;
 };
 

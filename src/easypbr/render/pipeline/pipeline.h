@@ -130,6 +130,7 @@ class Pipeline {
                      const gl::Texture& opaque, const FrameContents& contents, bool with_overlay);
     /// The eye-dome lighting of the layers' points; nothing where there are none.
     const gl::Texture* shade_points(const Frame& frame, const DrawList& layers, const gl::Texture& opaque);
+    const Target* shade_points(const Frame& frame, const DrawList& layers);
     /// Whether a frame is lit natively: its surfaces are in host memory, and nothing of it needs the driver.
     bool is_lit_natively(const DrawList& list, const FrameContents& contents) const;
     void occlude(const Frame& frame, bool native, AmbientOcclusionPass::Normals normals);

@@ -11,6 +11,17 @@ bool is_shaded(const DrawItem& item) {
     return item.kind == SurfaceKind::eye_dome;
 }
 
+/// What eye-dome lighting shades of layers, as far as it can be seen at all.
+DrawList shaded_points(const DrawList& layers) {
+    DrawList shaded = layers.without(std::not_fn(is_shaded));
+    for (auto& [kind, items] : shaded.items)
+        for (DrawItem& item : items) {
+            item.alpha = AlphaMode::mask;
+            item.material.alpha_cutoff = 1e-6f;
+        }
+    return shaded;
+}
+
 /// What layers need to be seen through.
 struct SeeThrough {
     bool any = false, rough = false, volumes = false;
@@ -97,6 +108,7 @@ bool Pipeline::shade_transparent(const Frame& frame, const DrawList& list, const
     native_layers_.begin(frame, targets_, extensions);
     const GBuffer& layer = native_layers_.layer();
     const SeeThrough through(frame, layers, bounds_of(*frame.scene));
+    const Target* shade = shade_points(frame, layers);
     overlays_.begin(frame, list.overlays, targets_, transfers_);
     while (native_layers_.open_layer(frame)) {
         const bool drawn = surfaces_.peel(frame, layers, layer, extensions, native_layers_.limits());
@@ -115,7 +127,7 @@ bool Pipeline::shade_transparent(const Frame& frame, const DrawList& list, const
         light_layer(
             frame, layer, contents,
             {.native = true, .extensions = extensions, .transmission = native_layers_.transmission()});
-        native_layers_.blend(targets_, with_overlay, transfers_);
+        native_layers_.blend(targets_, with_overlay, shade, transfers_);
     }
     overlays_.draw(frame, list.overlays, targets_, nullptr);
     overlays_.draw_over(frame, list.overlays, targets_);
@@ -132,17 +144,21 @@ void Pipeline::light_layer(const Frame& frame, const GBuffer& layer, const Frame
 
 const gl::Texture* Pipeline::shade_points(const Frame& frame, const DrawList& layers,
                                           const gl::Texture& opaque) {
-    DrawList shaded = layers.without(std::not_fn(is_shaded));
+    const DrawList shaded = shaded_points(layers);
     if (shaded.empty()) return nullptr;
-    for (auto& [kind, items] : shaded.items)
-        for (DrawItem& item : items) {
-            item.alpha = AlphaMode::mask;
-            item.material.alpha_cutoff = 1e-6f;  // whatever can be seen at all
-        }
     // The layer is not in use yet.
     transparency_.layer().clear(false);
     surfaces_.draw_by_driver(frame, shaded, transparency_.layer(), {});
     return &display_.shade(frame, transparency_.layer().depth.texture(), opaque);
+}
+
+const Target* Pipeline::shade_points(const Frame& frame, const DrawList& layers) {
+    const DrawList shaded = shaded_points(layers);
+    if (shaded.empty()) return nullptr;
+    // The layer is not in use yet.
+    const Target& nearest = native_layers_.layer().depth;
+    surfaces_.find_nearest(frame, shaded, nearest);
+    return &display_.shade(frame, nearest, targets_.depth, transfers_);
 }
 
 void Pipeline::draw_layers(const Frame& frame, const DrawList& list, const ItemsByKind& overlays,

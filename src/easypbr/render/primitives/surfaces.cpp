@@ -184,6 +184,14 @@ void Surfaces::peel_backs(const Frame& frame, const DrawList& list, const GBuffe
     visible_.resolve(frame, writer);
 }
 
+void Surfaces::find_nearest(const Frame& frame, const DrawList& list, const Target& depths) {
+    visible_.clear(frame.size, frame.covered);
+    for (const Group& group : groups_of(list)) group.kind->rasterise(frame, group.items, 0, visible_);
+    depths.write(visible_.crop());
+    std::ranges::transform(visible_.buffer().pixels(), depths.pixels<float>().begin(),
+                           VisibilityBuffer::depth_of);
+}
+
 void Surfaces::begin_layers(const Frame& frame, const DrawList& list, const gl::Texture& opaque) {
     for (const Group& group : groups_of(list)) group.kind->begin_layers(frame, group.items, opaque);
 }

@@ -47,6 +47,10 @@ class Surfaces {
     void peel_backs(const Frame& frame, const DrawList& list, const GBuffer& targets,
                     const PeelLimits& limits);
 
+    /// Writes how near the nearest surface of each pixel is (R32F, reversed depth), nothing but a rectangle
+    /// of it. All items must be drawn natively.
+    void find_nearest(const Frame& frame, const DrawList& list, const Target& depths);
+
     /// Without a GPU, surfaces are drawn natively; false leaves them to the driver.
     void allow_native(bool allow) { allow_native_ = allow; }
 

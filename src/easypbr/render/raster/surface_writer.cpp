@@ -20,7 +20,8 @@ uint8_t unorm8(float v) {
 
 // What a pixel holds of a surface, in the formats of the targets.
 uint64_t packed_albedo(const SurfacePixel& p) {
-    const uint16_t albedo[4] = {unorm16(p.albedo[0]), unorm16(p.albedo[1]), unorm16(p.albedo[2]), 65535};
+    const uint16_t albedo[4] = {unorm16(p.albedo[0]), unorm16(p.albedo[1]), unorm16(p.albedo[2]),
+                                unorm16(p.alpha)};
     return std::bit_cast<uint64_t>(albedo);
 }
 uint32_t packed_normal(const SurfacePixel& p) {

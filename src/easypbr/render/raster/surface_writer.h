@@ -15,6 +15,7 @@ namespace easypbr::render {
 struct SurfacePixel {
     Vec3 albedo{0, 0, 0};
     Vec3 normal{0, 0, 1};  ///< unit, world, on the side that is seen
+    float alpha = 1;       ///< below 1 in layers alone
     float metallic = 0, roughness = 0;
     SurfaceKind kind = SurfaceKind::lit;
     float depth = 0;        ///< reversed; 0: nothing

@@ -7,7 +7,9 @@
 
 #include "easypbr/core/math.h"
 #include "easypbr/native/kernels.h"
+#include "easypbr/render/raster/point_raster.h"
 #include "easypbr/render/raster/triangle_raster.h"
+#include "easypbr/scene/array.h"
 
 namespace easypbr::render {
 
@@ -26,6 +28,10 @@ class TintLayer {
     int resolution() const { return resolution_; }
     /// Adds triangles; see TriangleRaster. `absorbed` is -ln(transmittance), the same everywhere or by texel.
     bool draw(const ScreenTriangles& triangles, const std::variant<Vec3, TexelAbsorption>& absorbed);
+
+    /// Adds points; each absorbs its own share of all colours.
+    void draw_points(const Array3f& V, const PointSplats& splats,
+                     const std::function<float(size_t point)>& absorbed);
 
     /// What several casters absorb together.
     struct Absorbed {

@@ -169,48 +169,17 @@ bool cover(TriangleRaster& raster, const ScreenTriangles& triangles, std::span<u
 
 void VisibilityBuffer::draw_points(const Array3f& V, const PointSplats& splats, uint32_t first_id,
                                    const std::function<uint64_t(uint32_t id)>& content) {
-    const Vec2i size = raster_.size();
+    const KeyOrder order(limits_);
     const PixelRect& area = raster_.area();
-    const float half_width = 0.5f * float(size.x()), half_height = 0.5f * float(size.y());
-    const float left = float(area.x), right = float(area.x + area.width);
-    const float top = float(area.y), bottom = float(area.y + area.height);
-    const Mat4& m = splats.clip_from_mesh;
-    parallel_chunks(size_t(V.rows()), point_grain, [&](size_t begin, size_t end) {
-        for (size_t i = begin; i < end; ++i) {
-            const float* p = V.data() + 3 * i;
-            const auto row = [&](int r) {
-                return m(r, 0) * p[0] + m(r, 1) * p[1] + m(r, 2) * p[2] + m(r, 3);
-            };
-            const float w = row(3), scale = 1.0f / w;
-            const float depth = row(2) * scale;
-            if (!(w > 0 && depth > 0 && depth <= 1)) continue;
-            const float x = (row(0) * scale + 1) * half_width, y = (1 - row(1) * scale) * half_height;
-            const float diameter = splats.world_pixels > 0
-                                       ? std::max(splats.least_pixels, splats.world_pixels * scale)
-                                       : splats.pixels;
-            const float r = 0.5f * diameter, ry = r * splats.y_per_x;
-            if (!(x + r >= left && x - r < right && y + ry >= top && y - ry < bottom)) continue;
-            const uint64_t key = uint64_t(std::bit_cast<uint32_t>(depth)) << 32 | uint32_t(~(first_id + i));
-            const auto put = [&](int column, int line) {
-                if (column < area.x || column >= area.x + area.width || line < area.y ||
-                    line >= area.y + area.height)
-                    return;
-                raise_point(pixels_[size_t(line - area.y) * size_t(area.width) + size_t(column - area.x)],
-                            key, content);
-            };
-            const int own_x = int(std::floor(x)), own_y = int(std::floor(y));
-            put(own_x, own_y);
-            if (diameter <= 1 && ry <= 0.5f) continue;
-            const int x0 = std::max(int(std::ceil(x - r - 0.5f)), area.x),
-                      x1 = std::min(int(std::floor(x + r - 0.5f)), area.x + area.width - 1);
-            const int y0 = std::max(int(std::ceil(y - ry - 0.5f)), area.y),
-                      y1 = std::min(int(std::floor(y + ry - 0.5f)), area.y + area.height - 1);
-            for (int line = y0; line <= y1; ++line)
-                for (int column = x0; column <= x1; ++column) {
-                    const float dx = float(column) + 0.5f - x, dy = (float(line) + 0.5f - y) / splats.y_per_x;
-                    if (!splats.round || dx * dx + dy * dy <= r * r) put(column, line);
-                }
-        }
+    const PointRaster raster(splats, raster_.size(), area);
+    parallel_for(size_t(V.rows()), point_grain, [&](size_t i) {
+        const ScreenPoint point = raster.project(V.data() + 3 * i);
+        if (point.depth == 0 || (splats.is_drawn && !splats.is_drawn(i))) return;
+        const uint64_t key = order.key(point.depth, first_id + uint32_t(i));
+        raster.cover(point, area, [&](int column, int line) {
+            const size_t pixel = size_t(line - area.y) * size_t(area.width) + size_t(column - area.x);
+            if (order.takes(pixel, point.depth)) raise_point(pixels_[pixel], key, content);
+        });
     });
 }
 

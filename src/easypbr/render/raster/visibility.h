@@ -11,20 +11,11 @@
 #include "easypbr/core/math.h"
 #include "easypbr/native/kernels.h"
 #include "easypbr/render/frame/frame.h"
+#include "easypbr/render/raster/point_raster.h"
 #include "easypbr/render/raster/triangle_raster.h"
 #include "easypbr/scene/array.h"
 
 namespace easypbr::render {
-
-/// How the points of a cloud are splatted.
-struct PointSplats {
-    Mat4 clip_from_mesh = Mat4::Identity();
-    float pixels = 1;        ///< diameter, where world_pixels is 0
-    float world_pixels = 0;  ///< diameter in pixels times the clip coordinate w
-    float least_pixels = 1;  ///< no splat with a world size gets smaller
-    float y_per_x = 1;       ///< height of a splat in parts of its width
-    bool round = true;
-};
 
 /// Triangles have holes: of their pixels those with a lower alpha than the cutoff are left out.
 struct AlphaTest {

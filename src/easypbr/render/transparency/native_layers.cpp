@@ -88,7 +88,8 @@ void NativeLayers::close_exits() {
     transmission_.exit_normal = &exits_.normal;
 }
 
-void NativeLayers::blend(const GBuffer& targets, bool with_overlay, Transfers& transfers) {
+void NativeLayers::blend(const GBuffer& targets, bool with_overlay, const Target* eye_dome,
+                         Transfers& transfers) {
     ShaderInputs values;
     values.set("u_albedo", layer_.albedo);
     values.set("u_material", layer_.material);
@@ -100,6 +101,10 @@ void NativeLayers::blend(const GBuffer& targets, bool with_overlay, Transfers& t
         values.define("OVERLAY");
         values.set("u_overlay", targets.overlay);
         output.further = {&targets.overlay};
+    }
+    if (eye_dome) {
+        values.define("EYE_DOME");
+        values.set("u_shade", *eye_dome);
     }
     blend_.shade(values, output, transfers);
 }

@@ -21,7 +21,7 @@ namespace easypbr::render {
 ///             ... the volumes are drawn into exits() by limits() ...
 ///             close_exits();
 ///         ... layer() is lit, with transmission() ...
-///         blend(targets, with_overlay, transfers);
+///         blend(targets, with_overlay, eye_dome, transfers);
 ///     }
 class NativeLayers {
   public:
@@ -39,8 +39,9 @@ class NativeLayers {
     /// Makes the targets and the limits ready for the volumes' back faces behind the layer.
     void open_exits(const Frame& frame);
     void close_exits();
-    /// Puts the lit layer over the picture.
-    void blend(const GBuffer& targets, bool with_overlay, Transfers& transfers);
+    /// Puts the lit layer over the picture. `eye_dome`: the shade of points without normals, where there are
+    /// any.
+    void blend(const GBuffer& targets, bool with_overlay, const Target* eye_dome, Transfers& transfers);
 
     /// Its targets hold what is covered of the layer, nothing beyond.
     const GBuffer& layer() const { return layer_; }

@@ -12,17 +12,18 @@ namespace {
 /// Points of more pixels are none to drivers: the centres of half of them may lie outside of a tile.
 constexpr int largest_point = 256;
 
-bool is_opaque(const DrawItem& item) {
-    return item.alpha == AlphaMode::opaque;
+bool is_blended(const DrawItem& item) {
+    return item.alpha == AlphaMode::blend;
 }
 
 }  // namespace
 
 bool PointPrimitive::is_native(DrawItems items) const {
-    return std::ranges::all_of(items, is_opaque);
+    return std::ranges::none_of(items, is_blended);
 }
 
 bool PointPrimitive::rasterise(const Frame& frame, DrawItems items, ExtensionSet, VisibleSurfaces& surfaces) {
+    if (surfaces.buffer().takes_backs()) return true;
     const auto content = [&](uint32_t id) { return surfaces.content(id); };
     for (const DrawItem& item : items) {
         const Array3f& V = item.mesh().V;
@@ -36,7 +37,7 @@ bool PointPrimitive::rasterise(const Frame& frame, DrawItems items, ExtensionSet
 }
 
 bool PointPrimitive::cover(const Frame& frame, DrawItems items, std::span<uint8_t> covered) {
-    const auto has_holes = [](const DrawItem& item) { return !is_opaque(item) || item.material.shader; };
+    const auto has_holes = [](const DrawItem& item) { return is_blended(item) || item.material.shader; };
     if (std::ranges::any_of(items, has_holes)) return false;
     VisibleSurfaces surfaces;
     surfaces.clear(frame.size, frame.whole());

@@ -20,10 +20,15 @@ class PointPrimitive final : public Primitive {
     bool is_native(DrawItems items) const override;
     bool rasterise(const Frame& frame, DrawItems items, ExtensionSet extensions,
                    VisibleSurfaces& surfaces) override;
+    bool has_native_layers(DrawItems) const override { return true; }
     bool cover(const Frame& frame, DrawItems items, std::span<uint8_t> covered) override;
     ShadowShape shadow_shape(const DrawItem& item) override;
     void rasterise_shadows(const ShadowView& view, Casters& casters, ShadowDepths& depths) override {
         shadows_.rasterise(view, casters, depths);
+    }
+    bool has_native_tints(DrawItems) const override { return true; }
+    void rasterise_tints(const ShadowView& view, const Casters& casters, TintLayer& layer) override {
+        shadows_.rasterise_tints(view, casters, layer);
     }
     void draw_shadows(const ShadowLayer& layer, const Casters& casters) override {
         shadows_.draw(layer, casters);

@@ -19,8 +19,9 @@ bool is_pushed(const DrawItem& item) {
     return item.kind == SurfaceKind::lit && !item.mesh().N.empty();
 }
 
-bool suits_native(const DrawItem* item) {
-    return item->alpha == AlphaMode::opaque && !item->casts_tint();
+/// -ln of what an opacity lets through; e^-16 is nothing. See shaders/shadow_target.glsl.
+float absorption_of(float opacity) {
+    return -std::log(std::clamp(1 - opacity, 1.125e-7f, 1.0f));
 }
 
 }  // namespace
@@ -52,29 +53,39 @@ void PointShadows::draw(const ShadowLayer& layer, const DrawItem& item) {
 }
 
 void PointShadows::rasterise(const ShadowView& view, Casters& casters, ShadowDepths& depths) {
-    if (std::ranges::none_of(casters, suits_native)) return;
+    if (casters.empty()) return;
     const int size = depths.resolution();
+    const auto same = [](uint32_t) -> uint64_t { return 0; };
     visibility_.clear(Vec2i(size, size), {0, 0, size, size});
     for (const DrawItem* item : casters)
-        if (suits_native(item)) rasterise(ShadowLayer{view, size}, *item);
+        visibility_.draw_points(centres_of(view, *item), splats_of({view, size}, *item), 0, same);
     depths.buffer().add(visibility_);
-    std::erase_if(casters, suits_native);
+    casters.clear();
 }
 
-void PointShadows::rasterise(const ShadowLayer& layer, const DrawItem& item) {
+void PointShadows::rasterise_tints(const ShadowView& view, const Casters& casters, TintLayer& layer) {
+    for (const DrawItem* item : casters)
+        layer.draw_points(centres_of(view, *item), splats_of({view, layer.resolution()}, *item),
+                          [&](size_t point) { return absorption_of(opacity_of(*item, point)); });
+}
+
+PointSplats PointShadows::splats_of(const ShadowLayer& layer, const DrawItem& item) {
     const ShadowView& view = layer.view;
-    const MeshData& mesh = item.mesh();
-    const double r = radius(item);
     PointSplats splats;
     splats.clip_from_mesh = layer.clip_from_mesh(item);
-    splats.world_pixels = float(2 * r * view.scale.x() * layer.resolution);
+    splats.world_pixels = float(2 * radius(item) * view.scale.x() * layer.resolution);
     splats.y_per_x = float(view.scale.y() / view.scale.x());
     splats.least_pixels = 1;
     splats.round = item.style.point_shape == PointShape::round;
-    const auto same = [](uint32_t) -> uint64_t { return 0; };
-    if (!is_pushed(item)) return visibility_.draw_points(mesh.V, splats, 0, same);
+    splats.is_drawn = drawn_points(item);
+    return splats;
+}
+
+Array3f PointShadows::centres_of(const ShadowView& view, const DrawItem& item) {
+    const MeshData& mesh = item.mesh();
+    if (!is_pushed(item)) return mesh.V;
     const Vec4 light = light_in_mesh(view, item);
-    const float in_mesh = float(r / item.scale());
+    const float in_mesh = float(radius(item) / item.scale());
     Array3f::Dense pushed(mesh.V.rows(), 3);
     parallel_for(size_t(mesh.V.rows()), 1 << 12, [&](size_t i) {
         const Vec3 p = mesh.V.row(Eigen::Index(i)), n = mesh.N.row(Eigen::Index(i));
@@ -83,7 +94,7 @@ void PointShadows::rasterise(const ShadowLayer& layer, const DrawItem& item) {
         const float tangent = std::sqrt(std::max(0.0f, 1 - c * c)) / std::max(c, 1e-3f);
         pushed.row(Eigen::Index(i)) = p - l * (in_mesh * (std::min(tangent, steepest) + push));
     });
-    visibility_.draw_points(Array3f(std::move(pushed)), splats, 0, same);
+    return Array3f(std::move(pushed));
 }
 
 }  // namespace easypbr::render

@@ -19,12 +19,15 @@ class PointShadows {
     /// Radius of the disc of a point, in world units.
     double radius(const DrawItem& item);
 
-    // See Primitive. Opaque points are rasterised.
+    // See Primitive.
     void rasterise(const ShadowView& view, Casters& casters, ShadowDepths& depths);
+    void rasterise_tints(const ShadowView& view, const Casters& casters, TintLayer& layer);
     void draw(const ShadowLayer& layer, const Casters& casters);
 
   private:
-    void rasterise(const ShadowLayer& layer, const DrawItem& item);
+    PointSplats splats_of(const ShadowLayer& layer, const DrawItem& item);
+    /// The centres of an item's discs, in its frame.
+    Array3f centres_of(const ShadowView& view, const DrawItem& item);
     void draw(const ShadowLayer& layer, const DrawItem& item);
 
     SpacingCache& spacings_;

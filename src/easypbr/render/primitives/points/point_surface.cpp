@@ -5,6 +5,7 @@
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/octahedral.h"
+#include "easypbr/render/primitives/points/point_splats.h"
 
 namespace easypbr::render {
 
@@ -28,6 +29,7 @@ void PointSurface::resolve(const Frame& frame, const DrawItem& item,
     for (const native::VisiblePixel& p : pixels) {
         SurfacePixel pixel = at(p.face);
         pixel.depth = p.depth;
+        if (item.alpha == AlphaMode::blend) pixel.alpha = opacity_of(item, p.face);
         pixel.metallic = item.material.metallic;
         pixel.roughness = item.material.roughness;
         pixel.kind = item.kind;
@@ -53,9 +55,10 @@ SurfacePixel PointSurface::at(uint32_t point) const {
 
 uint64_t PointSurface::content(uint32_t point) const {
     const Vec3 c = color(point);
+    const float values[4] = {c.x(), c.y(), c.z(), opacity_of(*item_, point)};
     uint64_t bits = 0;
-    for (int k = 0; k < 3; ++k)
-        bits = bits << 10 | uint64_t(std::lrint(std::clamp(c[k], 0.0f, 1.0f) * 1023.0f));
+    for (const float value : values)
+        bits = bits << 8 | uint64_t(std::lrint(std::clamp(value, 0.0f, 1.0f) * 255.0f));
     if (item_->mesh().N.empty()) return bits << 32;
     const Vec2 n = oct_encode(item_->mesh().N.row(point).transpose());
     for (int k = 0; k < 2; ++k) bits = bits << 16 | uint64_t(std::lrint((n[k] + 1) * 32767.5f));

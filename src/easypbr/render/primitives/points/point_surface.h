@@ -14,7 +14,7 @@ class PointSurface final : public VisibleItem {
     void resolve(const Frame& frame, const DrawItem& item, std::span<const native::VisiblePixel> pixels,
                  SurfaceWriter& writer) const override;
 
-    /// Colour and normal as bits: what tells points apart in the picture.
+    /// Colour, opacity and normal as bits: what tells points apart in the picture.
     uint64_t content(uint32_t point) const override;
 
   private:
