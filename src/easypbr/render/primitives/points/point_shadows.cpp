@@ -20,7 +20,7 @@ bool is_pushed(const DrawItem& item) {
 }
 
 /// -ln of what an opacity lets through; e^-16 is nothing. See shaders/shadow_target.glsl.
-float absorption_of(float opacity) {
+float absorbed_by(float opacity) {
     return -std::log(std::clamp(1 - opacity, 1.125e-7f, 1.0f));
 }
 
@@ -66,7 +66,7 @@ void PointShadows::rasterise(const ShadowView& view, Casters& casters, ShadowDep
 void PointShadows::rasterise_tints(const ShadowView& view, const Casters& casters, TintLayer& layer) {
     for (const DrawItem* item : casters)
         layer.draw_points(centres_of(view, *item), splats_of({view, layer.resolution()}, *item),
-                          [&](size_t point) { return absorption_of(opacity_of(*item, point)); });
+                          [&](size_t point) { return absorbed_by(opacity_of(*item, point)); });
 }
 
 PointSplats PointShadows::splats_of(const ShadowLayer& layer, const DrawItem& item) {
