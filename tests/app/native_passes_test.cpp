@@ -274,8 +274,8 @@ TEST(NativePasses, CastsTheDriversTints) {
             }
 }
 
-/// Two balls of points through each other, around a blended box, over a floor.
-Scene clouds(AlphaMode alpha, bool with_normals) {
+/// Two balls of points or surfels through each other, around a blended box, over a floor.
+Scene clouds(AlphaMode alpha, bool with_normals, DrawMode mode = DrawMode::points) {
     Scene scene;
     scene.show(make_box(Vec3(4, 0.1f, 4)), "floor");
     Mesh box = make_box(Vec3(0.8f, 0.8f, 0.8f));
@@ -301,7 +301,7 @@ Scene clouds(AlphaMode alpha, bool with_normals) {
             data.V = Array3f(Array3f::Dense(0.8f * N));
             data.C = ArrayXf(C);
             if (with_normals) data.N = Array3f(N);
-            data.style.mode = DrawMode::points;
+            data.style.mode = mode;
             data.style.point_size = 0.1f;
             data.style.point_size_unit = SizeUnit::world;
             Material material;
@@ -335,6 +335,20 @@ TEST(NativePasses, BlendsPointsAsTheDriver) {
             const Difference d = difference(native, drawn(scene, ShadowMode::hard, false, true));
             EXPECT_LE(d.by_more, d.pixels / 250) << name << ", largest " << d.most;
         }
+}
+
+// The same of surfels. At the rims of the balls, where surfels are seen from their edges, the driver misses
+// some that lie before others: 94 pixels. Natively there are as many layers as in double precision.
+TEST(NativePasses, BlendsSurfelsAsTheDriver) {
+    if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
+    for (const AlphaMode alpha : {AlphaMode::blend, AlphaMode::mask}) {
+        const Scene scene = clouds(alpha, true, DrawMode::surfels);
+        bool loads_driver = true;
+        const Image native = drawn(scene, ShadowMode::hard, true, true, &loads_driver);
+        EXPECT_FALSE(loads_driver) << int(alpha);
+        const Difference d = difference(native, drawn(scene, ShadowMode::hard, false, true));
+        EXPECT_LE(d.by_more, d.pixels / 200) << int(alpha) << ", largest " << d.most;
+    }
 }
 
 }  // namespace

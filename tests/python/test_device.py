@@ -58,12 +58,17 @@ view.settings.background.mode = "transparent"
 assert 128 < view.render()[16, 16, 3] < 255
 view.settings.material.transmission = 0.5
 assert 64 < view.render()[16, 16, 3] < 192
-view.settings.shadows.enabled = False
-view.settings.style.mode = "points"
+for mode in ("points", "surfels"):
+    view.settings.style.mode = mode
+    assert 0 < view.render()[..., 3].max() < 255
+view.settings.style.overlay = True
 try:
     view.render()
 except easypbr.ContextError as error:
     print(error)
+view.settings.material.opacity, view.settings.material.transmission, view.settings.style.overlay = 1, 0, False
+view.add_light("lamp", "directional", direction=(0.3, -1, -0.5))
+assert view.render()[..., 3].max() == 255
 """
     done = subprocess.run([sys.executable, "-c", program], env=environment_without_opengl, capture_output=True, text=True,
                           timeout=120)

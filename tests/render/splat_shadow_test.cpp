@@ -1,5 +1,6 @@
 // Points and surfels cast the shadows that meshes of their shape cast, and receive them.
 #include <random>
+#include <utility>
 
 #include "shadow_test.h"
 
@@ -79,16 +80,51 @@ void expect_shadow(app::Session& session, double within, const char* what, Insid
 
 // A disc at height 1.5 that lies flat, its shadow the same disc, 1.5 further; an ellipse likewise.
 TEST(SplatShadow, OfASurfel) {
-    for (const float other : {0.8f, 0.5f}) {
+    for (const auto& [other, native] :
+         {std::pair(0.8f, true), std::pair(0.5f, true), std::pair(0.5f, false)}) {
         Scene scene;
         app::Session session =
-            session_over(scene, surfel(Vec3(-1.5f, 0, 1.5f), Vec3(0, 0, 1), Vec3(0.8f, 0, 0), other), true);
+            session_over(scene, surfel(Vec3(-1.5f, 0, 1.5f), Vec3(0, 0, 1), Vec3(0.8f, 0, 0), other), native);
         // A texel, and how far the surfel is pushed back: a quarter of its radius along the light, which
         // moves nothing in parallel light.
         expect_shadow(session, 1.5 * texel, "surfel", [&](double x, double y) {
             const double r = std::hypot(x / 0.8, y / other);
             return (1 - r) * other;
         });
+    }
+}
+
+// A lamp close to a disc, which parts of a cube's sides see from its edge, before and behind them. It is
+// pushed to a height of 0.8 and seen from 1.3.
+TEST(SplatShadow, OfASurfelAtALamp) {
+    for (const bool native : {true, false}) {
+        Scene scene;
+        app::Session session =
+            session_over(scene, surfel(Vec3(0, 0, 1), Vec3(0, 0, 1), Vec3(0.8f, 0, 0), 0.8f), native);
+        scene.set_light("light", point(Vec3(0, 0, 1.3f)));
+        // Towards the side a texel is 0.026 wide on the floor.
+        expect_shadow(session, 0.08, native ? "native" : "driver",
+                      [](double x, double y) { return 0.8 * 1.3 / 0.5 - std::hypot(x, y); });
+    }
+}
+
+// Surfels that a mask leaves out cast nothing.
+TEST(SplatShadow, OfMaskedSurfels) {
+    for (const float cutoff : {0.3f, 0.5f}) {
+        Mesh disc = surfel(Vec3(-1.5f, 0, 1.5f), Vec3(0, 0, 1), Vec3(0.8f, 0, 0), 0.8f);
+        Material masked = matt();
+        masked.alpha_mode = AlphaMode::mask;
+        masked.opacity = 0.4f;
+        masked.alpha_cutoff = cutoff;
+        disc.set_material(masked);
+        Scene scene;
+        app::Session session = session_over(scene, disc, true);
+        const LitParts lit = lit_parts(session);
+        int shadowed = 0;
+        for (int y = 0; y < size; ++y)
+            for (int x = 0; x < size; ++x) shadowed += lit.at(x, y) == 0;
+        // Pi 0.8^2 of 36 is a part of 0.056, of which the disc hides nothing from above.
+        EXPECT_NEAR(shadowed, cutoff < 0.4f ? 0.056 * size * size : 0, 40) << cutoff;
     }
 }
 

@@ -151,7 +151,7 @@ TEST(Transfers, LayersStayInHostMemory) {
     EXPECT_EQ(*transfers, Transfers());
 }
 
-// Layers of surfels are drawn by the driver.
+// Layers that are drawn over everything else are the driver's.
 TEST(Transfers, SurfacesAreUploadedOnceForPassesOfTheDriver) {
     Settings settings;
     settings.ssao.enabled = false;
@@ -159,9 +159,9 @@ TEST(Transfers, SurfacesAreUploadedOnceForPassesOfTheDriver) {
     Material mist;
     mist.opacity = 0.5f;
     mist.alpha_mode = AlphaMode::blend;
-    Mesh cloud = pane_of(mist);
-    cloud.edit([](MeshData& data) { data.style.mode = DrawMode::surfels; });
-    scene.show(cloud, "cloud");
+    Mesh pane = pane_of(mist);
+    pane.edit([](MeshData& data) { data.style.overlay = true; });
+    scene.show(pane, "pane");
     const auto transfers = transfers_of(scene, settings);
     if (!transfers) GTEST_SKIP() << "this machine has a GPU: nothing is drawn natively";
     EXPECT_EQ(transfers->uploads, gbuffer_uploads + 1);  // and the light

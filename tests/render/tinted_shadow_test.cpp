@@ -124,6 +124,27 @@ TEST(TintedShadow, OfPoints) {
             }
 }
 
+// Two flat surfels over the middle of the floor: light crosses both.
+TEST(TintedShadow, OfSurfels) {
+    for (const ShadowMode mode : modes)
+        for (const int count : {1, 2}) {
+            MeshData data;
+            Array3f::Dense V(count, 3), N(count, 3), T(count, 3);
+            for (int i = 0; i < count; ++i) {
+                V.row(i) << 0, 0, 0.5f + 0.2f * float(i);
+                N.row(i) << 0, 0, 1;
+                T.row(i) << 0.8f, 0, 0;
+            }
+            data.V = Array3f(V);
+            data.N = Array3f(N);
+            data.T = Array3f(T);
+            data.materials = {blended(0.4f)};
+            data.style.mode = DrawMode::surfels;
+            app::Session session = under({Mesh(data)}, mode, sun);
+            EXPECT_NEAR(lit_floor(session, 1).mean.y(), std::pow(0.6, count), rounding) << int(mode) << count;
+        }
+}
+
 // Points that an alpha test leaves out cast nothing, those that it keeps all of their shadow.
 TEST(TintedShadow, OfPointsWithAMask) {
     for (const float cutoff : {0.3f, 0.5f}) {

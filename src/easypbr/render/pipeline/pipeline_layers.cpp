@@ -108,6 +108,7 @@ bool Pipeline::shade_transparent(const Frame& frame, const DrawList& list, const
     native_layers_.begin(frame, targets_, extensions);
     const GBuffer& layer = native_layers_.layer();
     const SeeThrough through(frame, layers, bounds_of(*frame.scene));
+    surfaces_.begin_native_layers(frame, layers, native_layers_.limits().depths);
     const Target* shade = shade_points(frame, layers);
     overlays_.begin(frame, list.overlays, targets_, transfers_);
     while (native_layers_.open_layer(frame)) {

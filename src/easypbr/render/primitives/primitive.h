@@ -75,9 +75,16 @@ class Primitive {
     /// Sets to 1 what items cover of the frame, row by row; false when only the G-buffer can tell.
     virtual bool cover(const Frame&, DrawItems, std::span<uint8_t>) { return false; }
 
-    /// Whether rasterise() draws these items as layers, by the limits of VisibilityBuffer::begin_layer(), and
-    /// of volumes the back faces where VisibilityBuffer::takes_backs().
+    /// Whether these items can be layers natively: rasterise() draws them by the limits of
+    /// VisibilityBuffer::begin_layer(), and of volumes the back faces where VisibilityBuffer::takes_backs();
+    /// or, where the primitives of a pixel are one surface, add_mean_layer() does.
     virtual bool has_native_layers(DrawItems) const { return false; }
+    /// Nothing behind `opaque` (reversed depths of what is covered of the frame, row by row) is drawn.
+    virtual void begin_mean_layers(const Frame&, DrawItems, std::span<const float> /*opaque*/) {}
+    /// Adds each item's next surface where it is farther than what the layer holds (where the limits ask for
+    /// the nearest: nearer), and sets the limits there. `writer` holds the whole frame. False: there was
+    /// none.
+    virtual bool add_mean_layer(const Frame&, DrawItems, PeelLimits&, SurfaceWriter&) { return false; }
 
     // Layers of what light passes, by the driver. begin_layers() once, then draw_layer() for each that is
     // peeled, and take_layer() for those that hold something.

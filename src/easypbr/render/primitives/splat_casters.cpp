@@ -1,5 +1,8 @@
 #include "easypbr/render/primitives/splat_casters.h"
 
+#include <algorithm>
+#include <cmath>
+
 namespace easypbr::render {
 
 Vec4 light_in_mesh(const ShadowView& view, const DrawItem& item) {
@@ -7,6 +10,10 @@ Vec4 light_in_mesh(const ShadowView& view, const DrawItem& item) {
     const Vec3d v = view.perspective ? Vec3d(inverse * view.position)
                                      : Vec3d(inverse.linear() * -view.R_light_world.row(2).transpose());
     return {float(v.x()), float(v.y()), float(v.z()), view.perspective ? 1.0f : 0.0f};
+}
+
+float absorbed_by(float opacity) {
+    return -std::log(std::clamp(1 - opacity, 1.125e-7f, 1.0f));
 }
 
 std::vector<std::string> caster_defines(const DrawItem& item) {

@@ -165,16 +165,25 @@ void Surfaces::rasterise_layer(const Frame& frame, const DrawList& list, Extensi
         group.kind->rasterise(frame, group.items, extensions, visible_);
 }
 
+void Surfaces::begin_native_layers(const Frame& frame, const DrawList& list, std::span<const float> opaque) {
+    for (const Group& group : groups_of(list)) group.kind->begin_mean_layers(frame, group.items, opaque);
+}
+
 bool Surfaces::peel(const Frame& frame, const DrawList& list, const GBuffer& layer, ExtensionSet extensions,
                     PeelLimits& limits) {
     rasterise_layer(frame, list, extensions, limits);
     visible_.buffer().end_layer(limits);
     const PixelRect seen = visible_.crop();
-    if (seen.width == 0) return false;
-    SurfaceWriter writer(layer, seen,
+    std::vector<Group> means = groups_of(list);
+    std::erase_if(means, [](const Group& group) { return !group.kind->is_mean(); });
+    bool drawn = seen.width > 0;
+    if (!drawn && means.empty()) return false;
+    SurfaceWriter writer(layer, means.empty() ? seen : frame.whole(),
                          {.emission = list.has(&DrawItem::emits), .extensions = extensions != 0});
+    if (!means.empty()) writer.clear();
     visible_.resolve(frame, writer);
-    return true;
+    for (const Group& group : means) drawn |= group.kind->add_mean_layer(frame, group.items, limits, writer);
+    return drawn;
 }
 
 void Surfaces::peel_backs(const Frame& frame, const DrawList& list, const GBuffer& targets,

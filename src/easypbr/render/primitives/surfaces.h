@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "easypbr/render/primitives/primitive.h"
@@ -40,7 +41,9 @@ class Surfaces {
 
     /// Whether all items can be layers natively.
     bool has_native_layers(const DrawList& list) const;
-    /// Writes a layer, nothing but a rectangle of it; false where it would hold nothing.
+    /// Nothing behind `opaque` (reversed depths of what is covered of the frame, row by row) is drawn.
+    void begin_native_layers(const Frame& frame, const DrawList& list, std::span<const float> opaque);
+    /// Writes a layer, perhaps nothing but a rectangle of it; false where it would hold nothing.
     bool peel(const Frame& frame, const DrawList& list, const GBuffer& layer, ExtensionSet extensions,
               PeelLimits& limits);
     /// Writes the back faces of volumes that PeelLimits::backs asks for, nothing but a rectangle of them.

@@ -22,11 +22,20 @@ struct PointSplats {
     std::function<bool(size_t point)> is_drawn = {};  ///< empty: all of them
 };
 
+/// A column or row as a number, no farther out than it matters.
+inline int bounded(float place) {
+    return int(std::clamp(place, -1e6f, 1e6f));
+}
+
 /// A point on a picture, with the half axes of its splat.
 struct ScreenPoint {
     float x = 0, y = 0;
     float rx = 0, ry = 0;
     float depth = 0;  ///< reversed; 0: the point is before the near plane or outside
+
+    /// Rows that it may reach: from the first up to the end.
+    int first_row() const { return bounded(std::floor(y - std::max(ry, 1.0f))); }
+    int end_row() const { return depth > 0 ? bounded(std::ceil(y + std::max(ry, 1.0f))) : first_row(); }
 };
 
 class PointRaster {
@@ -58,14 +67,14 @@ class PointRaster {
     /// one that it lies in, and those whose centres are inside of the splat.
     template <class Put>
     void cover(const ScreenPoint& point, const PixelRect& part, const Put& put) const {
-        const int own_x = int(std::floor(point.x)), own_y = int(std::floor(point.y));
+        const int own_x = bounded(std::floor(point.x)), own_y = bounded(std::floor(point.y));
         if (own_x >= part.x && own_x < part.x + part.width && own_y >= part.y && own_y < part.y + part.height)
             put(own_x, own_y);
         if (point.rx <= 0.5f && point.ry <= 0.5f) return;
-        const int x0 = std::max(int(std::ceil(point.x - point.rx - 0.5f)), part.x),
-                  x1 = std::min(int(std::floor(point.x + point.rx - 0.5f)), part.x + part.width - 1);
-        const int y0 = std::max(int(std::ceil(point.y - point.ry - 0.5f)), part.y),
-                  y1 = std::min(int(std::floor(point.y + point.ry - 0.5f)), part.y + part.height - 1);
+        const int x0 = std::max(bounded(std::ceil(point.x - point.rx - 0.5f)), part.x),
+                  x1 = std::min(bounded(std::floor(point.x + point.rx - 0.5f)), part.x + part.width - 1);
+        const int y0 = std::max(bounded(std::ceil(point.y - point.ry - 0.5f)), part.y),
+                  y1 = std::min(bounded(std::floor(point.y + point.ry - 0.5f)), part.y + part.height - 1);
         for (int line = y0; line <= y1; ++line)
             for (int column = x0; column <= x1; ++column) {
                 if (column == own_x && line == own_y) continue;

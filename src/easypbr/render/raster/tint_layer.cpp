@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <vector>
-
-#include "easypbr/core/parallel.h"
 
 namespace easypbr::render {
 
@@ -78,33 +75,12 @@ bool TintLayer::draw(const ScreenTriangles& triangles, const std::variant<Vec3, 
 
 void TintLayer::draw_points(const Array3f& V, const PointSplats& splats,
                             const std::function<float(size_t point)>& absorbed) {
-    // So many at once: what is projected takes memory.
-    constexpr size_t block = size_t(1) << 18;
-    // Each band of rows takes all points, in their order.
-    const int bands = std::min(thread_count(), resolution_), rows = (resolution_ + bands - 1) / bands;
     const PointRaster raster(splats, {resolution_, resolution_}, {0, 0, resolution_, resolution_});
-    const auto count = size_t(V.rows());
-    std::vector<ScreenPoint> points;
-    for (size_t first = 0; first < count; first += block) {
-        points.resize(std::min(block, count - first));
-        parallel_for(points.size(), size_t(1) << 12,
-                     [&](size_t i) { points[i] = raster.project(V.data() + 3 * (first + i)); });
-        parallel_for(size_t(bands), 1, [&](size_t band) {
-            const int top = int(band) * rows, bottom = std::min(top + rows, resolution_);
-            if (top >= bottom) return;
-            const PixelRect part{0, top, resolution_, bottom - top};
-            for (size_t i = 0; i < points.size(); ++i) {
-                const ScreenPoint& point = points[i];
-                const bool reaches =
-                    std::max(point.ry, 1.0f) >= std::max(float(top) - point.y, point.y - float(bottom));
-                if (point.depth == 0 || !reaches) continue;
-                const Vec3 value = Vec3::Constant(absorbed(first + i));
-                raster.cover(point, part, [&](int column, int line) {
-                    add(size_t(line) * size_t(resolution_) + size_t(column), point.depth, value.data());
-                });
-            }
-        });
-    }
+    const auto project = [&](size_t i) { return raster.project(V.data() + 3 * i); };
+    const auto cover = [&](const ScreenPoint& point, const PixelRect& part, const auto& put) {
+        raster.cover(point, part, [&](int column, int row) { put(column, row, point.depth); });
+    };
+    draw_splats(size_t(V.rows()), project, cover, absorbed);
 }
 
 }  // namespace easypbr::render

@@ -1,11 +1,14 @@
 // What casters that let light through take from it, natively: a layer of ShadowTints in host memory.
 #pragma once
 
+#include <algorithm>
 #include <functional>
 #include <span>
 #include <variant>
+#include <vector>
 
 #include "easypbr/core/math.h"
+#include "easypbr/core/parallel.h"
 #include "easypbr/native/kernels.h"
 #include "easypbr/render/raster/point_raster.h"
 #include "easypbr/render/raster/triangle_raster.h"
@@ -32,6 +35,12 @@ class TintLayer {
     /// Adds points; each absorbs its own share of all colours.
     void draw_points(const Array3f& V, const PointSplats& splats,
                      const std::function<float(size_t point)>& absorbed);
+    /// The same with splats of any shape: `project(i)` makes one, whose first_row() and end_row() say which
+    /// rows it may reach, and `cover(splat, part, put)` calls put(column, row, depth) for its texels in a
+    /// part.
+    template <class Project, class Cover>
+    void draw_splats(size_t count, const Project& project, const Cover& cover,
+                     const std::function<float(size_t splat)>& absorbed);
 
     /// What several casters absorb together.
     struct Absorbed {
@@ -49,5 +58,31 @@ class TintLayer {
     int resolution_;
     TriangleRaster raster_;
 };
+
+template <class Project, class Cover>
+void TintLayer::draw_splats(size_t count, const Project& project, const Cover& cover,
+                            const std::function<float(size_t splat)>& absorbed) {
+    // So many at once: what is projected takes memory.
+    constexpr size_t block = size_t(1) << 18;
+    // Each band of rows takes all splats, in their order.
+    const int bands = std::min(thread_count(), resolution_), rows = (resolution_ + bands - 1) / bands;
+    std::vector<decltype(project(size_t(0)))> splats;
+    for (size_t first = 0; first < count; first += block) {
+        splats.resize(std::min(block, count - first));
+        parallel_for(splats.size(), size_t(1) << 12, [&](size_t i) { splats[i] = project(first + i); });
+        parallel_for(size_t(bands), 1, [&](size_t band) {
+            const int top = int(band) * rows, bottom = std::min(top + rows, resolution_);
+            if (top >= bottom) return;
+            const PixelRect part{0, top, resolution_, bottom - top};
+            for (size_t i = 0; i < splats.size(); ++i) {
+                if (splats[i].first_row() >= bottom || splats[i].end_row() <= top) continue;
+                const Vec3 value = Vec3::Constant(absorbed(first + i));
+                cover(splats[i], part, [&](int column, int row, float depth) {
+                    add(size_t(row) * size_t(resolution_) + size_t(column), depth, value.data());
+                });
+            }
+        });
+    }
+}
 
 }  // namespace easypbr::render

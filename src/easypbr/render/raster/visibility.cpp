@@ -149,9 +149,11 @@ void DepthBuffer::clear(Vec2i size, float nothing) {
 }
 
 bool DepthBuffer::draw(const ScreenTriangles& triangles) {
-    return raster_.draw(triangles, [&](size_t pixel, float depth, uint32_t) {
-        raise(pixels_[pixel], std::bit_cast<int32_t>(depth));
-    });
+    return raster_.draw(triangles, [&](size_t pixel, float depth, uint32_t) { put(pixel, depth); });
+}
+
+void DepthBuffer::put(size_t pixel, float depth) {
+    raise(pixels_[pixel], std::bit_cast<int32_t>(depth));
 }
 
 void DepthBuffer::add(const VisibilityBuffer& other) {

@@ -84,6 +84,8 @@ class DepthBuffer {
     void clear(Vec2i size, float nothing);
     /// See TriangleRaster.
     bool draw(const ScreenTriangles& triangles);
+    /// Keeps the larger of a pixel and a depth; from any thread.
+    void put(size_t pixel, float depth);
     /// Adds what another buffer of the same size and area holds.
     void add(const VisibilityBuffer& other);
     /// Row by row, reversed depths as floats' bits.

@@ -6,6 +6,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/render/primitives/points/point_splats.h"
 #include "easypbr/render/primitives/splat_casters.h"
+#include "easypbr/render/primitives/vertex_alpha.h"
 
 namespace easypbr::render {
 namespace {
@@ -17,11 +18,6 @@ constexpr float push = 1;
 
 bool is_pushed(const DrawItem& item) {
     return item.kind == SurfaceKind::lit && !item.mesh().N.empty();
-}
-
-/// -ln of what an opacity lets through; e^-16 is nothing. See shaders/shadow_target.glsl.
-float absorbed_by(float opacity) {
-    return -std::log(std::clamp(1 - opacity, 1.125e-7f, 1.0f));
 }
 
 }  // namespace
@@ -66,7 +62,7 @@ void PointShadows::rasterise(const ShadowView& view, Casters& casters, ShadowDep
 void PointShadows::rasterise_tints(const ShadowView& view, const Casters& casters, TintLayer& layer) {
     for (const DrawItem* item : casters)
         layer.draw_points(centres_of(view, *item), splats_of({view, layer.resolution()}, *item),
-                          [&](size_t point) { return absorbed_by(opacity_of(*item, point)); });
+                          [&](size_t point) { return absorbed_by(vertex_alpha(*item, point)); });
 }
 
 PointSplats PointShadows::splats_of(const ShadowLayer& layer, const DrawItem& item) {
@@ -77,7 +73,7 @@ PointSplats PointShadows::splats_of(const ShadowLayer& layer, const DrawItem& it
     splats.y_per_x = float(view.scale.y() / view.scale.x());
     splats.least_pixels = 1;
     splats.round = item.style.point_shape == PointShape::round;
-    splats.is_drawn = drawn_points(item);
+    splats.is_drawn = drawn_vertices(item);
     return splats;
 }
 

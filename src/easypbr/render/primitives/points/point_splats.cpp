@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+
+#include "easypbr/render/primitives/vertex_alpha.h"
 
 namespace easypbr::render {
 namespace {
@@ -29,21 +30,8 @@ PointSplats splats_of(const DrawItem& item, const Frame& frame, double spacing) 
     const double least = spacing > 0 ? least_pixels_at_1080 : lonely_pixels_at_1080;
     splats.least_pixels = style.point_size ? 1 : float(std::max(1.0, least * frame.picture_size.y() / 1080));
     splats.pixels = style.point_size && world == 0 ? *style.point_size : splats.least_pixels;
-    splats.is_drawn = drawn_points(item);
+    splats.is_drawn = drawn_vertices(item);
     return splats;
-}
-
-float opacity_of(const DrawItem& item, size_t point) {
-    const ArrayXf& C = item.mesh().C;
-    const bool has_own = item.alpha != AlphaMode::opaque && item.with_colors && C.cols() > 3;
-    return item.material.opacity * (has_own ? C(Eigen::Index(point), 3) : 1.0f);
-}
-
-std::function<bool(size_t point)> drawn_points(const DrawItem& item) {
-    if (item.alpha == AlphaMode::opaque) return {};
-    const float cutoff =
-        item.alpha == AlphaMode::mask ? item.material.alpha_cutoff : std::numeric_limits<float>::denorm_min();
-    return [&item, cutoff](size_t point) { return opacity_of(item, point) >= cutoff; };
 }
 
 }  // namespace easypbr::render

@@ -14,10 +14,4 @@ inline constexpr double spacings_per_splat = 1.5;
 /// Size and shape of an item's splats. `spacing` is the points' mean distance, in their own units.
 PointSplats splats_of(const DrawItem& item, const Frame& frame, double spacing);
 
-/// Of a point, where the item is not opaque.
-float opacity_of(const DrawItem& item, size_t point);
-
-/// Which points an item's alpha leaves, for PointSplats::is_drawn. The item must live as long.
-std::function<bool(size_t point)> drawn_points(const DrawItem& item);
-
 }  // namespace easypbr::render

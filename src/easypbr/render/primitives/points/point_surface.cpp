@@ -5,7 +5,7 @@
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/octahedral.h"
-#include "easypbr/render/primitives/points/point_splats.h"
+#include "easypbr/render/primitives/vertex_alpha.h"
 
 namespace easypbr::render {
 
@@ -29,7 +29,7 @@ void PointSurface::resolve(const Frame& frame, const DrawItem& item,
     for (const native::VisiblePixel& p : pixels) {
         SurfacePixel pixel = at(p.face);
         pixel.depth = p.depth;
-        if (item.alpha == AlphaMode::blend) pixel.alpha = opacity_of(item, p.face);
+        if (item.alpha == AlphaMode::blend) pixel.alpha = vertex_alpha(item, p.face);
         pixel.metallic = item.material.metallic;
         pixel.roughness = item.material.roughness;
         pixel.kind = item.kind;
@@ -55,7 +55,7 @@ SurfacePixel PointSurface::at(uint32_t point) const {
 
 uint64_t PointSurface::content(uint32_t point) const {
     const Vec3 c = color(point);
-    const float values[4] = {c.x(), c.y(), c.z(), opacity_of(*item_, point)};
+    const float values[4] = {c.x(), c.y(), c.z(), vertex_alpha(*item_, point)};
     uint64_t bits = 0;
     for (const float value : values)
         bits = bits << 8 | uint64_t(std::lrint(std::clamp(value, 0.0f, 1.0f) * 255.0f));

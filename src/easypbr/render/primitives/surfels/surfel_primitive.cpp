@@ -19,12 +19,16 @@ void SurfelPrimitive::draw(const Frame& frame, DrawItems items, const GBuffer& t
     splats_.write(frame, outputs);
 }
 
-void SurfelPrimitive::add_mean(const Frame& frame, DrawItems items, std::span<const float> hides,
-                               SurfaceWriter& writer) {
-    std::vector<SoftwareSurfels::Source> sources;
+std::vector<SurfelSource> SurfelPrimitive::sources_of(const Frame& frame, DrawItems items) {
+    std::vector<SurfelSource> sources;
     for (const DrawItem& item : items)
         sources.push_back({&item, SurfelProjector(item, frame, splats_.spacing_of(item))});
-    software_.draw(frame, sources, hides, writer);
+    return sources;
+}
+
+void SurfelPrimitive::add_mean(const Frame& frame, DrawItems items, std::span<const float> hides,
+                               SurfaceWriter& writer) {
+    software_.draw(frame, sources_of(frame, items), hides, writer);
 }
 
 ShadowShape SurfelPrimitive::shadow_shape(const DrawItem& item) {

@@ -22,6 +22,14 @@ class SurfelPrimitive final : public Primitive {
     bool is_mean() const override { return true; }
     void add_mean(const Frame& frame, DrawItems items, std::span<const float> hides,
                   SurfaceWriter& writer) override;
+    bool has_native_layers(DrawItems) const override { return true; }
+    void begin_mean_layers(const Frame& frame, DrawItems items, std::span<const float> opaque) override {
+        software_.begin_layers(frame, sources_of(frame, items), opaque);
+    }
+    bool add_mean_layer(const Frame& frame, DrawItems items, PeelLimits& limits,
+                        SurfaceWriter& writer) override {
+        return software_.add_layer(frame, sources_of(frame, items), limits, writer);
+    }
     void begin_layers(const Frame& frame, DrawItems items, const gl::Texture& opaque) override {
         layers_.begin(frame, items, opaque);
     }
@@ -31,6 +39,13 @@ class SurfelPrimitive final : public Primitive {
     }
     void take_layer(DrawItems items) override { layers_.take(items); }
     ShadowShape shadow_shape(const DrawItem& item) override;
+    void rasterise_shadows(const ShadowView& view, Casters& casters, ShadowDepths& depths) override {
+        shadows_.rasterise(view, casters, depths);
+    }
+    bool has_native_tints(DrawItems) const override { return true; }
+    void rasterise_tints(const ShadowView& view, const Casters& casters, TintLayer& layer) override {
+        shadows_.rasterise_tints(view, casters, layer);
+    }
     void draw_shadows(const ShadowLayer& layer, const Casters& casters) override {
         shadows_.draw(layer, casters);
     }
@@ -42,6 +57,8 @@ class SurfelPrimitive final : public Primitive {
     }
 
   private:
+    std::vector<SurfelSource> sources_of(const Frame& frame, DrawItems items);
+
     SurfelCache buffers_;
     SurfelSplats splats_;
     SurfelLayers layers_;

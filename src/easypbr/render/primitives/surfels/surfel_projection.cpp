@@ -30,27 +30,25 @@ SurfelProjector::SurfelProjector(const DrawItem& item, const Frame& frame, doubl
     radius_ = float(spacing * radii_per_spacing);
 }
 
-void SurfelProjector::axes(Eigen::Index i, Vec3& t, Vec3& b) const {
-    const MeshData& mesh = item_->mesh();
+SurfelAxes surfel_axes(const MeshData& mesh, Eigen::Index i, const Vec3& towards, float radius, float scale) {
     Vec3 n = mesh.N.row(i);
-    t = mesh.T.empty() ? Vec3(0, 0, 0) : Vec3(mesh.T.row(i));
+    const Vec3 t = mesh.T.empty() ? Vec3(0, 0, 0) : Vec3(mesh.T.row(i));
     float length = t.norm();
     // What has no direction faces the viewer; what has no size is as large as the points are apart.
-    if (!(n.squaredNorm() > 0)) n = orthographic_ ? towards_viewer_ : Vec3(eye_ - Vec3(mesh.V.row(i)));
+    if (!(n.squaredNorm() > 0)) n = towards;
     n.normalize();
     Vec3 direction = t - n * n.dot(t);
     if (!(direction.squaredNorm() > 1e-12f * length * length)) direction = any_perpendicular(n);
-    if (!(length > 0)) length = mesh.T.empty() ? radius_ : 0;
+    if (!(length > 0)) length = mesh.T.empty() ? radius : 0;
     const float other = mesh.B.empty() ? length : mesh.B(i);
     direction.normalize();
-    t = direction * (length * scale_);
-    b = n.cross(direction) * (other * scale_);
+    return {direction * (length * scale), n.cross(direction) * (other * scale)};
 }
 
 std::optional<SurfelProjection> SurfelProjector::project(Eigen::Index i) const {
-    Vec3 t, b;
-    axes(i, t, b);
     const Vec3 p = item_->mesh().V.row(i);
+    const auto [t, b] =
+        surfel_axes(item_->mesh(), i, orthographic_ ? towards_viewer_ : Vec3(eye_ - p), radius_, scale_);
     const Mat4& m = clip_from_mesh_;
     const auto clip = [&](int row, const Vec3& v, float one) {
         return m(row, 0) * v.x() + m(row, 1) * v.y() + m(row, 2) * v.z() + m(row, 3) * one;

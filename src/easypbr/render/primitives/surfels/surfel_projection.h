@@ -58,6 +58,13 @@ inline float surfel_weight(float r2) {
     return std::max(f * f, 1e-4f);
 }
 
+/// Semi-axes of a surfel in the mesh's frame. `towards`: the direction that it faces where it has no normal;
+/// `radius`: its size where the mesh has no tangents; `scale`: a factor.
+struct SurfelAxes {
+    Vec3 t, b;
+};
+SurfelAxes surfel_axes(const MeshData& mesh, Eigen::Index i, const Vec3& towards, float radius, float scale);
+
 /// All surfels of an item in a frame.
 class SurfelProjector {
   public:
@@ -71,9 +78,6 @@ class SurfelProjector {
     Vec3 normal(Eigen::Index i) const;
 
   private:
-    /// Semi-axes in the mesh's frame.
-    void axes(Eigen::Index i, Vec3& t, Vec3& b) const;
-
     const DrawItem* item_;
     Mat4 clip_from_mesh_, view_from_mesh_;
     Mat3 normal_from_mesh_, world_from_mesh_;

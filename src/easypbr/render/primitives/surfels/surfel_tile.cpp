@@ -1,0 +1,53 @@
+#include "easypbr/render/primitives/surfels/surfel_tile.h"
+
+#include "easypbr/core/color.h"
+#include "easypbr/render/primitives/vertex_alpha.h"
+
+namespace easypbr::render {
+
+void SurfelTile::place(Vec2i frame, Vec2i tile) {
+    left = tile.x() * size;
+    top = tile.y() * size;
+    right = std::min(left + size, frame.x());
+    bottom = std::min(top + size, frame.y());
+}
+
+std::array<float, SurfelTile::channels> SurfelTile::values_of(const SurfelSource& source,
+                                                              Eigen::Index surfel) {
+    const DrawItem& item = *source.item;
+    const Material& m = item.material;
+    Vec3 albedo = m.base_color;
+    if (item.with_colors)
+        albedo = albedo.cwiseProduct(linear_from_srgb(Vec3(item.mesh().C.row(surfel).head<3>())));
+    const Vec3 n = source.projector.normal(surfel);
+    return {albedo.x(),
+            albedo.y(),
+            albedo.z(),
+            n.x(),
+            n.y(),
+            n.z(),
+            m.metallic,
+            m.roughness,
+            0,
+            1,
+            vertex_alpha(item, size_t(surfel))};
+}
+
+SurfacePixel SurfelTile::mean(const Frame& frame, const DrawItem& item, size_t i) const {
+    const auto& sum = sums[i];
+    const double scale = 1.0 / double(sum[weight]);
+    const auto of = [&](Channel c) { return float(double(sum[c]) * scale); };
+    SurfacePixel pixel;
+    pixel.albedo = Vec3(of(red), of(green), of(blue));
+    pixel.normal = Vec3(of(normal_x), of(normal_y), of(normal_z)).normalized();
+    pixel.metallic = of(metallic);
+    pixel.roughness = of(roughness);
+    if (item.alpha == AlphaMode::blend) pixel.alpha = of(opacity);
+    pixel.kind = item.kind;
+    pixel.depth = reversed_depth(frame, limit[i] * (1 - of(distance)));
+    pixel.object = uint32_t(item.object - frame.scene->objects.data());
+    pixel.is_point = true;
+    return pixel;
+}
+
+}  // namespace easypbr::render
