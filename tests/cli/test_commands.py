@@ -158,9 +158,10 @@ def test_without_opengl_clouds_colour_bars_effects_and_lines_are_drawn(without_o
 
 def test_without_opengl_errors_name_the_pass_and_what_to_install(without_opengl, sphere, tmp_path):
     mist = ("--set", "material.opacity=0.5", "--set", "style.overlay=true", "--mode", "raster")
-    done = without_opengl("render", sphere, "-o", tmp_path / "out.png", *mist)
-    assert done.returncode == 1 and done.stderr.count("\n") == 1
-    assert "transparency: this needs OpenGL" in done.stderr and "Install" in done.stderr
+    for name, settings in {"shadows": mist, "transparency": (*mist, "--set", "shadows.enabled=false")}.items():
+        done = without_opengl("render", sphere, "-o", tmp_path / "out.png", *settings)
+        assert done.returncode == 1 and done.stderr.count("\n") == 1
+        assert f"{name}: this needs OpenGL" in done.stderr and "Install" in done.stderr
     assert not (tmp_path / "out.png").exists()
     done = without_opengl("render", sphere, "-o", tmp_path / "out.png", "--device", "gl")
     assert done.returncode == 1 and "libEGL.so.1 is not installed" in done.stderr
