@@ -49,7 +49,6 @@ void PointShadows::draw(const ShadowLayer& layer, const DrawItem& item) {
 }
 
 void PointShadows::rasterise(const ShadowView& view, Casters& casters, ShadowDepths& depths) {
-    if (casters.empty()) return;
     const int size = depths.resolution();
     const auto same = [](uint32_t) -> uint64_t { return 0; };
     visibility_.clear(Vec2i(size, size), {0, 0, size, size});

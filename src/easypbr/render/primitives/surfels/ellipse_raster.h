@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "easypbr/core/math.h"
 #include "easypbr/core/picture.h"
