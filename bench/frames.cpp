@@ -1,7 +1,8 @@
 // Milliseconds per frame on an orbit, as peer_vtk.py measures them: 3 degrees a frame, each frame finished by
 // reading a pixel back. Prints one JSON line. usage: bench_frames MESH FRAMES ENVIRONMENT WIDTHxHEIGHT
-// [--driver] [--lights=N] [group.name=value]...
+// [--driver] [--lights=N] [--turning-lights] [group.name=value]...
 // --lights=N: that many point lights around the mesh.
+// --turning-lights: they turn about the mesh, one degree a frame: shadows are drawn anew.
 // --driver: OpenGL's driver rasterises all triangles, also where there is no GPU.
 #include <fmt/format.h>
 
@@ -47,11 +48,11 @@ Camera vtk_camera(const Box3d& bounds, double azimuth_deg) {
 }
 
 /// Lights on a spiral around the content, together as bright as one.
-void add_lights(Scene& scene, int count) {
-    const Box3d bounds = scene.snapshot().bounds();
+void set_lights(Scene& scene, const Box3d& bounds, int count, double azimuth_deg) {
     const double distance = 1.5 * bounds.diagonal().norm();
     for (int i = 0; i < count; ++i) {
-        const double z = 1 - (2 * i + 1.0) / count, angle = i * pi * (3 - std::sqrt(5.0)),
+        const double z = 1 - (2 * i + 1.0) / count,
+                     angle = i * pi * (3 - std::sqrt(5.0)) + radians(azimuth_deg),
                      across = std::sqrt(1 - z * z);
         const Vec3d way(across * std::cos(angle), z, across * std::sin(angle));
         Light light;
@@ -81,18 +82,23 @@ int measure(int argc, char** argv) {
     settings.background.mode = BackgroundMode::environment;
     settings.material.roughness = 0.4f;
     settings.material.metallic = 0.0f;
+    const Box3d bounds = scene.snapshot().bounds();
+    int lights = 0;
+    bool turning = false;
     for (int i = 5; i < argc; ++i) {
         const std::string option = argv[i];
         const size_t equals = option.find('=');
         if (option.starts_with("--lights=")) {
-            add_lights(scene, std::stoi(option.substr(9)));
+            lights = std::stoi(option.substr(9));
+            set_lights(scene, bounds, lights, 0);
             continue;
         }
+        if (option == "--turning-lights") turning = true;
         if (option == "--driver") session.allow_native_geometry(false);
         if (equals != std::string::npos)
             set_from_text(settings, option.substr(0, equals), option.substr(equals + 1));
     }
-    session.set_camera(vtk_camera(scene.snapshot().bounds(), 0));
+    session.set_camera(vtk_camera(bounds, 0));
     start = std::chrono::steady_clock::now();
     session.draw_frame();
     const double first = seconds_since(start);
@@ -101,7 +107,8 @@ int measure(int argc, char** argv) {
     std::vector<double> times;
     app::Drawn timed;
     for (int i = 0; i < frames; ++i) {
-        session.set_camera(vtk_camera(scene.snapshot().bounds(), 3.0 * (i + 1)));
+        session.set_camera(vtk_camera(bounds, 3.0 * (i + 1)));
+        if (turning) set_lights(scene, bounds, lights, i + 1);
         start = std::chrono::steady_clock::now();
         timed = session.draw_frame();
         times.push_back(seconds_since(start) * 1e3);

@@ -1,5 +1,5 @@
-#!/usr/bin/python3
-"""Side-by-side baseline: Open3D (Debian package python3-open3d) reads a point cloud.
+#!/usr/bin/env python3
+"""Side-by-side baseline: Open3D (PyPI) reads a point cloud.
 
 usage: peer_open3d.py CLOUD [--compress OUT.pcd]
 Prints one JSON line: seconds to read the file, and the number of points. With --compress it writes the cloud as

@@ -1,9 +1,8 @@
-#!/usr/bin/python3
-"""Side-by-side baseline: VTK 9 (Debian package python3-vtk9) on the same mesh, environment and size.
+#!/usr/bin/env python3
+"""Side-by-side baseline: VTK 9.7 (PyPI) on the same mesh, environment and size.
 
 usage: peer_vtk.py MESH.ply MODE FRAMES [--env FILE.hdr] [--size WxH] [--out PREFIX]
 MODE: phong | pbr (image-based lighting) | full (pbr + SSAO + tone mapping)
-Needs an X display (Debian's VTK has no EGL): Xvfb :99 -screen 0 1920x1080x24 & DISPLAY=:99 peer_vtk.py ...
 Prints one JSON line: seconds to load, for normals and for the first frame; median and minimum ms per frame while the
 camera orbits by 3 degrees a frame, each frame finished by reading a pixel back.
 """

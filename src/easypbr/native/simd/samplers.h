@@ -267,7 +267,20 @@ INLINE vec4 nearest(const Texture& s, vfloat u, vfloat v) {
                                 : low_half(from_bytes8(s.texels + 4 * size_t(at.v[k])));
     return planar(pixels) * (s.is_16_bit ? 1.0f / 65535.0f : 1.0f / 255.0f);
 }
-/// Reads textures, several with the same coordinates one after the other.
+/// Fetches what a footprint covers into the cache.
+INLINE void prefetch(const Texture& s, const TextureFootprint& f) {
+    const size_t bytes = s.is_16_bit ? 8 : 4;
+    const auto fetch_place = [&](const TexturePlace& p) __attribute__((always_inline)) {
+        for (int k = 0; k < lanes; ++k) {
+            __builtin_prefetch(s.texels + bytes * size_t(p.top.v[k]));
+            __builtin_prefetch(s.texels + bytes * size_t(p.bottom.v[k]));
+        }
+    };
+    fetch_place(f.fine);
+    if (f.is_between) fetch_place(f.coarse);
+}
+/// Reads textures, several with the same coordinates one after the other: while the first is filtered, the
+/// texels of the others are fetched.
 class TextureReader {
   public:
     INLINE vec4 textureGrad(const Texture& s, const vec2& uv, const vec2& dx, const vec2& dy, float bias) {
@@ -278,22 +291,37 @@ class TextureReader {
             uv_ = uv;
             dx_ = dx;
             dy_ = dy;
+            prefetch(s, footprint_);
+            for (int i = 0; i < alike_count_; ++i)
+                if (has_same_texels(*alike_[i], s)) prefetch(*alike_[i], footprint_);
+        } else if (alike_count_ < most_alike && !is_known(s)) {
+            alike_[alike_count_++] = &s;
         }
         if (s.is_16_bit) return filtered(s, footprint_, 8, from_shorts8) * (1.0f / 65535.0f);
         return filtered(s, footprint_, 4, from_bytes8) * (1.0f / 255.0f);
     }
 
   private:
+    static constexpr int most_alike = 8;
+
+    INLINE static bool has_same_texels(const Texture& a, const Texture& b) {
+        return a.width == b.width && a.height == b.height && a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v;
+    }
     INLINE bool serves(const Texture& s, const vec2& uv, const vec2& dx, const vec2& dy) const {
-        if (!of_ || s.width != of_->width || s.height != of_->height || s.wrap_u != of_->wrap_u ||
-            s.wrap_v != of_->wrap_v)
-            return false;
+        if (!of_ || !has_same_texels(s, *of_)) return false;
         return !any_lane(!(uv == uv_ && dx == dx_ && dy == dy_));
+    }
+    INLINE bool is_known(const Texture& s) const {
+        for (int i = 0; i < alike_count_; ++i)
+            if (alike_[i] == &s) return true;
+        return false;
     }
 
     TextureFootprint footprint_;
     const Texture* of_ = nullptr;
     vec2 uv_, dx_, dy_;
+    const Texture* alike_[most_alike];  ///< read with the footprint of another
+    int alike_count_ = 0;
 };
 
 /// Nearest, clamped to the borders; z is the layer.
