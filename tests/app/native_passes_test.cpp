@@ -135,6 +135,70 @@ TEST(NativePasses, ClosesGapsAndDrawsOverAllAfterIdsOfAPart) {
     EXPECT_TRUE(std::ranges::equal(after.second.bytes(), fresh.second.bytes()));
 }
 
+/// Surfaces, glass, mist, lines and splats, of each one that is drawn over everything else.
+Scene over_all() {
+    Scene scene;
+    const auto show = [&](Mesh mesh, const std::string& name, const Vec3d& at, bool over) {
+        mesh.edit([&](MeshData& data) { data.style.overlay = over; });
+        mesh.set_T_world_mesh(Eigen::Affine3d(Eigen::Translation3d(at)));
+        scene.show(mesh, name);
+    };
+    const auto with = [](Mesh mesh, float opacity, float transmission) {
+        Material material;
+        material.base_color = Vec3(0.3f, 0.6f, 0.9f);
+        material.opacity = opacity;
+        if (opacity < 1) material.alpha_mode = AlphaMode::blend;
+        material.transmission = transmission;
+        mesh.set_material(material);
+        return mesh;
+    };
+    Mesh lines = make_box(Vec3(1.5f, 0.4f, 0.4f)), splats;
+    lines.edit([](MeshData& data) {
+        data.style.mode = DrawMode::lines;
+        data.style.line_width = 3;
+    });
+    splats.edit([](MeshData& data) {
+        data.V = make_sphere(0.4f, 12).V();
+        const Eigen::Index count = data.V.rows();
+        data.splats.scales = Array3f::Dense(Array3f::Dense::Constant(count, 3, 0.1f));
+        data.splats.rotations = Array4f::Dense(Eigen::RowVector4f(1, 0, 0, 0).replicate(count, 1));
+        data.splats.opacities = Array1f::Dense(Array1f::Dense::Constant(count, 0.8f));
+        data.splats.sh = ArrayXf::Dense(Eigen::RowVector3f(0.7f, 0, -0.7f).replicate(count, 1));
+    });
+    for (const bool over : {false, true}) {
+        const double z = over ? -1.5 : 1;
+        const std::string suffix = over ? " over" : "";
+        show(with(make_teapot(0.8f, 8), 1, 0), "pot" + suffix, Vec3d(-1, 0, z), over);
+        show(with(make_sphere(0.6f, 40), 0.5f, 0), "mist" + suffix, Vec3d(-0.3, 0.5, z + 0.3), over);
+        show(with(make_sphere(0.5f, 40), 1, 1), "glass" + suffix, Vec3d(0.5, -0.2, z + 0.1), over);
+        show(lines, "lines" + suffix, Vec3d(0, 0.2, z), over);
+        show(splats, "splats" + suffix, Vec3d(1, 0.1, z), over);
+    }
+    return scene;
+}
+
+// What is drawn over everything else among layers, lines and splats. Two depths that meet at a pixel may be
+// taken in another order.
+TEST(NativePasses, DrawsOverAllAmongLayersAsTheDriver) {
+    if (has_gpu()) GTEST_SKIP() << "this machine has a GPU: nothing is shaded natively";
+    const Scene scene = over_all();
+    const auto session_of = [&] {
+        app::Session session(scene);
+        session.settings().image.size = Vec2i(200, 150);
+        session.settings().image.samples = 1;
+        session.settings().image.antialias = Antialias::none;
+        session.settings().path.enabled = session.settings().rays.enabled = false;
+        session.settings().shadows.mode = ShadowMode::hard;
+        return session;
+    };
+    app::Session native = session_of(), driver = session_of();
+    native.use_device(DrawDevice::cpu);
+    driver.allow_native_shading(false);
+    const Difference d = difference(native.render(), driver.render());
+    EXPECT_LE(d.by_more, d.pixels / 1000) << "largest " << d.most;
+    EXPECT_TRUE(native.context_info().version.empty());
+}
+
 // FXAA of 16 bits: that of 8 bits, in finer steps, but where it chooses between two blurs.
 TEST(NativePasses, SmoothsEdgesOf16Bits) {
     Scene scene;

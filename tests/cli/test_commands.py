@@ -144,10 +144,11 @@ def test_without_opengl_clouds_colour_bars_effects_and_lines_are_drawn(without_o
     layers, coat = [*lines, "material.opacity=0.5", "ground.mode=shadow"], ["material.clearcoat=1", "path.enabled=false"]
     easypbr("render", sphere, "-o", "backdrop.png", "--size", "13x9")
     backdrop = ["background.mode=image", f"background.image={tmp_path / 'backdrop.png'}"]
+    mist = ["material.opacity=0.5", "style.overlay=true", "style.show_wireframe=true", "path.enabled=false"]
     glass = ["material.transmission=1", "material.thickness=1", "material.roughness=0.2", "path.enabled=false"]
     pictures = (([cloud], []), ([cloud], heights), ([cloud], occlusion), ([sphere], effects), ([sphere], lines),
                 ([sphere], layers), ([sphere], coat), ([sphere], glass),
-                ([sphere], backdrop))
+                ([sphere], mist), ([sphere], backdrop))
     for files, settings in pictures:
         options = ["--size", "64x48", *(word for setting in settings for word in ("--set", setting))]
         done = without_opengl("render", *files, "-o", tmp_path / "without.png", *options)
@@ -157,11 +158,11 @@ def test_without_opengl_clouds_colour_bars_effects_and_lines_are_drawn(without_o
 
 
 def test_without_opengl_errors_name_the_pass_and_what_to_install(without_opengl, sphere, tmp_path):
-    mist = ("--set", "material.opacity=0.5", "--set", "style.overlay=true", "--mode", "raster")
-    for name, settings in {"shadows": mist, "transparency": (*mist, "--set", "shadows.enabled=false")}.items():
-        done = without_opengl("render", sphere, "-o", tmp_path / "out.png", *settings)
-        assert done.returncode == 1 and done.stderr.count("\n") == 1
-        assert f"{name}: this needs OpenGL" in done.stderr and "Install" in done.stderr
+    stripes = tmp_path / "stripes.glsl"
+    stripes.write_text("void surface(inout Surface s) { s.base_color = vec3(1.0, 0.0, 0.0); }\n")
+    done = without_opengl("render", sphere, "-o", tmp_path / "out.png", "--shader", stripes)
+    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    assert "geometry: this needs OpenGL" in done.stderr and "Install" in done.stderr
     assert not (tmp_path / "out.png").exists()
     done = without_opengl("render", sphere, "-o", tmp_path / "out.png", "--device", "gl")
     assert done.returncode == 1 and "libEGL.so.1 is not installed" in done.stderr

@@ -104,7 +104,7 @@ class Pipeline {
     void find_place_light(const Frame& frame, const DrawList& list, const DrawList& casters,
                           const FrameContents& contents);
     /// Depth that hides overlays and layers: of what is drawn over everything else too.
-    const gl::Texture& hiding_depth(const Frame& frame, const DrawList& list);
+    const Target& hiding_depth(const Frame& frame, const DrawList& list, bool native);
     /// Draws the overlays of primitives where there are no layers.
     void draw_overlay_items(const Frame& frame, const DrawList& list, bool native);
     struct LayerKinds {
@@ -125,12 +125,15 @@ class Pipeline {
     /// The same natively.
     bool shade_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
                            bool with_overlay);
+    /// See draw_layers(); whether there were any.
+    bool shade_layers(const Frame& frame, const DrawList& layers, const ItemsByKind& overlays,
+                      const Target& opaque, const FrameContents& contents, bool with_overlay);
     /// Draws layers, and the overlays between them, before the surfaces of which `opaque` is the depth.
     void draw_layers(const Frame& frame, const DrawList& layers, const ItemsByKind& overlays,
-                     const gl::Texture& opaque, const FrameContents& contents, bool with_overlay);
+                     const Target& opaque, const FrameContents& contents, bool with_overlay);
     /// The eye-dome lighting of the layers' points; nothing where there are none.
     const gl::Texture* shade_points(const Frame& frame, const DrawList& layers, const gl::Texture& opaque);
-    const Target* shade_points(const Frame& frame, const DrawList& layers);
+    const Target* shade_points(const Frame& frame, const DrawList& layers, const Target& opaque);
     /// Whether a frame is lit natively: its surfaces are in host memory, and nothing of it needs the driver.
     bool is_lit_natively(const DrawList& list, const FrameContents& contents) const;
     void occlude(const Frame& frame, bool native, AmbientOcclusionPass::Normals normals);
@@ -172,7 +175,7 @@ class Pipeline {
     GBuffer with_ids_;  ///< for effects that ask for ids
     PassTimer timer_;
     bool native_shading_ = true;
-    gl::Texture hiding_depth_;
+    Target hiding_depth_;
     gl::Framebuffer hiding_;
     ProgramVariants hiding_programs_{"screen_triangle.vert", "opaque_limit.frag"};
     /// Bounds of the last scene, and what they were computed from.

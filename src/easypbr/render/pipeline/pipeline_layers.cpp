@@ -38,13 +38,22 @@ struct SeeThrough {
 
 }  // namespace
 
-const gl::Texture& Pipeline::hiding_depth(const Frame& frame, const DrawList& list) {
-    if (!list.without_layers().has(is_over)) return targets_.depth.texture();
-    if (!hiding_depth_ || Vec2i(hiding_depth_.width(), hiding_depth_.height()) != frame.size) {
-        hiding_depth_ = gl::Texture(gl::Format::r32f, frame.size.x(), frame.size.y());
-        hiding_ = gl::Framebuffer({&hiding_depth_});
+const Target& Pipeline::hiding_depth(const Frame& frame, const DrawList& list, bool native) {
+    if (!list.without_layers().has(is_over)) return targets_.depth;
+    if (hiding_depth_.size() != frame.size) {
+        hiding_depth_ = Target(gl::Format::r32f, frame.size);
+        hiding_ = gl::Framebuffer();
+    }
+    if (native) {
+        hiding_depth_.write(frame.whole());
+        std::ranges::transform(targets_.depth.pixels<float>(), surfaces_.over(frame).depth.pixels<float>(),
+                               hiding_depth_.pixels<float>().begin(),
+                               [](float depth, float over) { return over > 0 ? 1.0f : depth; });
+        return hiding_depth_;
     }
     surfaces_.over(frame).upload(transfers_);
+    if (!hiding_) hiding_ = gl::Framebuffer({&hiding_depth_.attachment()});
+    hiding_depth_.drawn();
     const gl::Program& program = hiding_programs_.get({});
     hiding_.bind();
     program.use();
@@ -58,10 +67,8 @@ const gl::Texture& Pipeline::hiding_depth(const Frame& frame, const DrawList& li
 
 void Pipeline::draw_overlay_items(const Frame& frame, const DrawList& list, bool native) {
     if (list.overlays.empty()) return;
-    if (native)
-        overlays_.begin(frame, list.overlays, targets_, transfers_);
-    else
-        overlays_.begin(frame, list.overlays, targets_, hiding_depth(frame, list));
+    overlays_.begin(frame, list.overlays, targets_, hiding_depth(frame, list, native),
+                    native ? &transfers_ : nullptr);
     overlays_.draw(frame, list.overlays, targets_, nullptr);
     overlays_.draw_over(frame, list.overlays, targets_);
 }
@@ -81,16 +88,15 @@ void Pipeline::draw_transparent(const Frame& frame, const DrawList& list, const 
 bool Pipeline::draw_transparent_by_driver(const Frame& frame, const DrawList& list,
                                           const FrameContents& contents, bool with_overlay) {
     const DrawList layers = list.layers();
-    const gl::Texture& opaque = hiding_depth(frame, list);
-    overlays_.begin(frame, list.overlays, targets_, opaque);
+    const Target& opaque = hiding_depth(frame, list, false);
+    overlays_.begin(frame, list.overlays, targets_, opaque, nullptr);
     draw_layers(frame, layers.without(is_over), list.overlays, opaque, contents, with_overlay);
     bool drawn = transparency_.has_layers();
     if (layers.has(is_over)) {
         // Hidden by what is drawn over everything else too, and by nothing but.
         const GBuffer& over = surfaces_.over(frame);
         if (!list.without_layers().has(is_over)) over.clear(false);
-        draw_layers(frame, layers.without(std::not_fn(is_over)), {}, over.depth.texture(), contents,
-                    with_overlay);
+        draw_layers(frame, layers.without(std::not_fn(is_over)), {}, over.depth, contents, with_overlay);
         drawn |= transparency_.has_layers();
     }
     overlays_.draw_over(frame, list.overlays, targets_);
@@ -98,23 +104,40 @@ bool Pipeline::draw_transparent_by_driver(const Frame& frame, const DrawList& li
 }
 
 bool Pipeline::has_native_layers(const DrawList& list) const {
-    return !list.has(is_over) && surfaces_.has_native_layers(list.layers());
+    return surfaces_.has_native_layers(list.layers());
 }
 
 bool Pipeline::shade_transparent(const Frame& frame, const DrawList& list, const FrameContents& contents,
                                  bool with_overlay) {
     const DrawList layers = list.layers();
+    const Target& opaque = hiding_depth(frame, list, true);
+    overlays_.begin(frame, list.overlays, targets_, opaque, &transfers_);
+    bool drawn = shade_layers(frame, layers.without(is_over), list.overlays, opaque, contents, with_overlay);
+    if (layers.has(is_over)) {
+        // Hidden by what is drawn over everything else too, and by nothing but.
+        const Target& over = surfaces_.over(frame).depth;
+        if (!list.without_layers().has(is_over)) {
+            over.write(frame.whole());
+            std::ranges::fill(over.pixels<float>(), 0.0f);
+        }
+        drawn |= shade_layers(frame, layers.without(std::not_fn(is_over)), {}, over, contents, with_overlay);
+    }
+    overlays_.draw_over(frame, list.overlays, targets_);
+    return drawn;
+}
+
+bool Pipeline::shade_layers(const Frame& frame, const DrawList& layers, const ItemsByKind& overlays,
+                            const Target& opaque, const FrameContents& contents, bool with_overlay) {
     const ExtensionSet extensions = layers.extensions();
-    native_layers_.begin(frame, targets_, extensions);
+    native_layers_.begin(frame, opaque, extensions);
     const GBuffer& layer = native_layers_.layer();
     const SeeThrough through(frame, layers, bounds_of(*frame.scene));
     surfaces_.begin_native_layers(frame, layers, native_layers_.limits().depths);
-    const Target* shade = shade_points(frame, layers);
-    overlays_.begin(frame, list.overlays, targets_, transfers_);
+    const Target* shade = shade_points(frame, layers, opaque);
     while (native_layers_.open_layer(frame)) {
         const bool drawn = surfaces_.peel(frame, layers, layer, extensions, native_layers_.limits());
         if (!native_layers_.close_layer(drawn)) break;
-        overlays_.draw(frame, list.overlays, targets_, &layer);
+        overlays_.draw(frame, overlays, targets_, &layer);
         // Paths find what is behind by themselves.
         if (through.any && !contents.paths) {
             native_layers_.keep_picture(frame, targets_, with_overlay, through.rough, through.reach,
@@ -130,8 +153,7 @@ bool Pipeline::shade_transparent(const Frame& frame, const DrawList& list, const
             {.native = true, .extensions = extensions, .transmission = native_layers_.transmission()});
         native_layers_.blend(targets_, with_overlay, shade, transfers_);
     }
-    overlays_.draw(frame, list.overlays, targets_, nullptr);
-    overlays_.draw_over(frame, list.overlays, targets_);
+    overlays_.draw(frame, overlays, targets_, nullptr);
     return native_layers_.has_layers();
 }
 
@@ -153,22 +175,22 @@ const gl::Texture* Pipeline::shade_points(const Frame& frame, const DrawList& la
     return &display_.shade(frame, transparency_.layer().depth.texture(), opaque);
 }
 
-const Target* Pipeline::shade_points(const Frame& frame, const DrawList& layers) {
+const Target* Pipeline::shade_points(const Frame& frame, const DrawList& layers, const Target& opaque) {
     const DrawList shaded = shaded_points(layers);
     if (shaded.empty()) return nullptr;
     // The layer is not in use yet.
     const Target& nearest = native_layers_.layer().depth;
     surfaces_.find_nearest(frame, shaded, nearest);
-    return &display_.shade(frame, nearest, targets_.depth, transfers_);
+    return &display_.shade(frame, nearest, opaque, transfers_);
 }
 
 void Pipeline::draw_layers(const Frame& frame, const DrawList& list, const ItemsByKind& overlays,
-                           const gl::Texture& opaque, const FrameContents& contents, bool with_overlay) {
+                           const Target& opaque, const FrameContents& contents, bool with_overlay) {
     SurfaceOutputs outputs{.extensions = list.extensions()};
     const SeeThrough through(frame, list, bounds_of(*frame.scene));
-    transparency_.begin(frame, targets_, opaque, outputs.extensions, with_overlay);
-    const gl::Texture* shade = shade_points(frame, list, opaque);
-    surfaces_.begin_layers(frame, list, opaque);
+    transparency_.begin(frame, targets_, opaque.texture(), outputs.extensions, with_overlay);
+    const gl::Texture* shade = shade_points(frame, list, opaque.texture());
+    surfaces_.begin_layers(frame, list, opaque.texture());
     outputs.peel = &transparency_.peel();
     while (transparency_.open_layer(frame)) {
         surfaces_.draw_layer(frame, list, transparency_.layer(), outputs);

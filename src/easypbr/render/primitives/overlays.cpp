@@ -18,14 +18,9 @@ void for_each_kind(const Primitives& primitives, const ItemsByKind& items, Draw&
 }  // namespace
 
 void Overlays::begin(const Frame& frame, const ItemsByKind& items, const GBuffer& targets,
-                     const gl::Texture& opaque) {
-    host_ = nullptr;
+                     const Target& opaque, Transfers* host) {
+    host_ = host;
     run(frame, items, targets, {.part = OverlayPart::begin, .opaque = &opaque});
-}
-
-void Overlays::begin(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, Transfers& host) {
-    host_ = &host;
-    run(frame, items, targets, {.part = OverlayPart::begin});
 }
 
 void Overlays::draw(const Frame& frame, const ItemsByKind& items, const GBuffer& targets,

@@ -13,12 +13,10 @@ class Overlays {
     /// The primitives must outlive this.
     explicit Overlays(const Primitives& primitives) : primitives_(primitives) {}
 
-    /// Items, targets and `opaque` stay as they are until draw_over(). See OverlayStep::opaque.
-    void begin(const Frame& frame, const ItemsByKind& items, const GBuffer& targets,
-               const gl::Texture& opaque);
-    /// The same natively: until draw_over() from and to host memory, which holds the layers too. `host` must
-    /// live as long.
-    void begin(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, Transfers& host);
+    /// Items, targets and `opaque` stay as they are until draw_over(). See OverlayStep::opaque. `host` is
+    /// given for native drawing: until draw_over() from and to host memory, which holds the layers too.
+    void begin(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, const Target& opaque,
+               Transfers* host);
     /// Adds what lies behind a layer, or all that is left.
     void draw(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, const GBuffer* next);
     void draw_over(const Frame& frame, const ItemsByKind& items, const GBuffer& targets);

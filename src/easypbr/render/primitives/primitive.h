@@ -34,9 +34,9 @@ struct OverlayStep {
     Part part = Part::begin;
     /// Given for native drawing: the targets and the layer are in host memory.
     Transfers* host = nullptr;
-    /// By the driver, with `begin`: hidden is what lies behind this (R32F, reversed depth), whose normals are
-    /// those of the targets; both stay as they are until `over`.
-    const gl::Texture* opaque = nullptr;
+    /// With `begin`: hidden is what lies behind this (R32F, reversed depth), whose normals are those of the
+    /// targets; both stay as they are until `over`.
+    const Target* opaque = nullptr;
     const GBuffer* next = nullptr;  ///< the layer; none: all that is left
     /// Reversed depths at which kinds that do not lie around others are, 0: nowhere; empty: nowhere at all.
     std::span<const float> others = {};

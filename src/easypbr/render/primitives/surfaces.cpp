@@ -112,8 +112,7 @@ GBuffer& Surfaces::over(const Frame& frame) {
 PixelRect Surfaces::draw(const Frame& frame, const DrawList& list, const GBuffer& targets,
                          const SurfaceOutputs& outputs) {
     if (!list.has(is_over)) return draw_groups(frame, list, targets, outputs);
-    // Lines and splats are hidden by what is drawn over everything else wherever it is: by the driver.
-    const bool native = is_native() && list.overlays.empty();
+    const bool native = is_native();
     SurfaceOutputs whole = outputs;
     whole.whole |= native;
     whole.emission = native && list.has(&DrawItem::emits);

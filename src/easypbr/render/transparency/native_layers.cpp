@@ -7,7 +7,7 @@
 
 namespace easypbr::render {
 
-void NativeLayers::begin(const Frame& frame, const GBuffer& targets, ExtensionSet extensions) {
+void NativeLayers::begin(const Frame& frame, const Target& opaque, ExtensionSet extensions) {
     if (layer_.size() != frame.size) {
         layer_ = GBuffer(frame.size);
         layer_.from_behind = true;
@@ -16,7 +16,7 @@ void NativeLayers::begin(const Frame& frame, const GBuffer& targets, ExtensionSe
     if (extensions) layer_.add_extensions();
     const PixelRect& area = frame.covered;
     limits_.depths.resize(size_t(area.width) * size_t(area.height));
-    targets.depth.copy_out(area, std::as_writable_bytes(std::span(limits_.depths)));
+    opaque.copy_out(area, std::as_writable_bytes(std::span(limits_.depths)));
     count_ = 0;
 }
 

@@ -13,7 +13,7 @@ namespace easypbr::render {
 
 /// Depth peeling from behind as TransparencyPass does it:
 ///
-///     begin(frame, targets, extensions);
+///     begin(frame, opaque, extensions);
 ///     while (open_layer(frame)) {
 ///         if (!close_layer(whether anything of the layered items is drawn into layer() by limits())) break;
 ///         if the layer is transmissive: keep_picture(frame, targets, ...);
@@ -25,9 +25,9 @@ namespace easypbr::render {
 ///     }
 class NativeLayers {
   public:
-    /// The picture in `targets`, which hold the whole frame, is complete but for the layers, whose surfaces
-    /// have these extensions.
-    void begin(const Frame& frame, const GBuffer& targets, ExtensionSet extensions);
+    /// The picture is complete but for the layers, whose surfaces have these extensions. Nothing behind
+    /// `opaque` (R32F, reversed depth, the whole frame) is drawn.
+    void begin(const Frame& frame, const Target& opaque, ExtensionSet extensions);
     /// Makes the next layer ready for drawing; false when the last allowed one has been drawn.
     bool open_layer(const Frame& frame);
     /// `drawn`: whether anything was drawn since open_layer().

@@ -69,9 +69,12 @@ void set_style(To& to, const DrawItem& item) {
 void LinePrimitive::draw_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
                                  const OverlayStep& step) {
     using Part = OverlayStep::Part;
-    if (step.part == Part::begin)
-        return step.host ? begin(frame, items, targets, *step.host)
-                         : begin(frame, items, targets, *step.opaque);
+    if (step.part == Part::begin) {
+        opaque_ = step.opaque;
+        normal_ = &targets.normal;
+        has_last_ = false;
+        return step.host ? begin(frame, items, targets, *step.host) : begin(frame, items, targets);
+    }
     if (step.part == Part::front) return;
     const Kind kind = step.part == Part::over ? Kind::over : Kind::ordered;
     if (step.host)
@@ -81,17 +84,13 @@ void LinePrimitive::draw_overlay(const Frame& frame, DrawItems items, const GBuf
     if (step.next) step.host ? keep_host_last(*step.next) : keep_last(*step.next);
 }
 
-void LinePrimitive::begin(const Frame& frame, DrawItems items, const GBuffer& targets,
-                          const gl::Texture& opaque) {
+void LinePrimitive::begin(const Frame& frame, DrawItems items, const GBuffer& targets) {
     if (!depth_ || overlay_id_ != targets.overlay.attachment().id()) {
         depth_ = gl::Texture(gl::Format::depth32f, frame.size.x(), frame.size.y());
         framebuffer_ = gl::Framebuffer({&targets.overlay.drawn()}, &depth_);
         overlay_id_ = targets.overlay.attachment().id();
         last_depth_ = gl::Texture();
     }
-    opaque_ = &opaque;
-    normal_ = &targets.normal.texture();
-    has_last_ = false;
     in_host_memory_ = false;
     framebuffer_.bind();
     framebuffer_.clear_depth(0);
@@ -146,8 +145,8 @@ void LinePrimitive::bind_surfaces(const gl::Program& program, const GBuffer* nex
         texture.bind(unit);
         program.set(sampler, int(unit));
     };
-    bind(*opaque_, "u_depth_target", 0);
-    bind(*normal_, "u_normal", 1);
+    bind(opaque_->texture(), "u_depth_target", 0);
+    bind(normal_->texture(), "u_normal", 1);
     if (has_last_) {
         bind(last_depth_, "u_last_depth", 3);
         bind(last_normal_, "u_last_normal", 4);
@@ -187,7 +186,6 @@ void LinePrimitive::draw_items(const Frame& frame, DrawItems items, Kind kind, c
 
 void LinePrimitive::begin(const Frame& frame, DrawItems items, const GBuffer& targets, Transfers& transfers) {
     in_host_memory_ = true;
-    has_last_ = false;
     if (nearest_.size() != frame.size) nearest_ = Target(gl::Format::r32f, frame.size);
     nearest_.write(targets.overlay.area());
     std::ranges::fill(nearest_.pixels<float>(), 0.0f);
@@ -220,8 +218,8 @@ void LinePrimitive::shade_items(const Frame& frame, DrawItems items, Kind kind, 
         set_camera_uniforms(values, frame);
         set_style(values, item);
         set_layers(values, kind, next);
-        values.set("u_depth_target", targets.depth);
-        values.set("u_normal", targets.normal);
+        values.set("u_depth_target", *opaque_);
+        values.set("u_normal", *normal_);
         if (kind != Kind::nearest) values.set("u_nearest_line", nearest_);
         for (const Stroke& stroke : strokes_of(item)) {
             const auto& segments = cache_.segments(item.mesh(), stroke.kind, stroke.normal_length);

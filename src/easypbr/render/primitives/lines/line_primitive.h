@@ -24,7 +24,7 @@ class LinePrimitive final : public Primitive {
   private:
     enum class Kind { nearest, ordered, over };
     /// Finds the nearest line of each pixel.
-    void begin(const Frame& frame, DrawItems items, const GBuffer& targets, const gl::Texture& opaque);
+    void begin(const Frame& frame, DrawItems items, const GBuffer& targets);
     void begin(const Frame& frame, DrawItems items, const GBuffer& targets, Transfers& transfers);
     void keep_last(const GBuffer& layer);
     void draw_items(const Frame& frame, DrawItems items, Kind kind, const GBuffer* next = nullptr);
@@ -42,8 +42,8 @@ class LinePrimitive final : public Primitive {
     gl::Texture depth_;
     gl::Framebuffer framebuffer_;
     uint32_t overlay_id_ = 0;
-    bool in_host_memory_ = false;                              ///< where the nearest depths are
-    const gl::Texture *opaque_ = nullptr, *normal_ = nullptr;  ///< since begin_overlay()
+    bool in_host_memory_ = false;                         ///< where the nearest depths are
+    const Target *opaque_ = nullptr, *normal_ = nullptr;  ///< since begin()
     bool has_last_ = false;
     gl::Texture last_depth_, last_normal_;       ///< of the layer that was drawn last
     Target host_last_depth_, host_last_normal_;  ///< the same natively

@@ -156,7 +156,7 @@ void SplatPrimitive::add_mean(const Frame& frame, DrawItems items, std::span<con
 void SplatPrimitive::draw_overlay(const Frame& frame, DrawItems items, const GBuffer& targets,
                                   const OverlayStep& step) {
     using Part = OverlayStep::Part;
-    if (step.part == Part::begin) return begin(frame, items, targets, step);
+    if (step.part == Part::begin) return begin(frame, items, step);
     if (step.part == Part::over) {
         const std::vector<const DrawItem*> over = chosen(items, true);
         if (over.empty()) return;
@@ -167,12 +167,12 @@ void SplatPrimitive::draw_overlay(const Frame& frame, DrawItems items, const GBu
     step.part == Part::behind ? draw_behind(targets, step) : draw_front(targets, step);
 }
 
-void SplatPrimitive::begin(const Frame& frame, DrawItems items, const GBuffer& targets,
-                           const OverlayStep& step) {
+void SplatPrimitive::begin(const Frame& frame, DrawItems items, const OverlayStep& step) {
     const std::vector<const DrawItem*> shown = chosen(items, false);
     compositor_.begin(frame, shown, colors(frame, shown));
     farthest_.clear();
-    if (!compositor_.empty()) farthest_ = step.host ? whole_depths(targets.depth) : read_depths(*step.opaque);
+    if (!compositor_.empty())
+        farthest_ = step.host ? whole_depths(*step.opaque) : read_depths(step.opaque->texture());
 }
 
 ShadowShape SplatPrimitive::shadow_shape(const DrawItem& item) {

@@ -43,7 +43,7 @@ class SplatPrimitive final : public Primitive {
   private:
     using Limits = SplatCompositor::Limits;
 
-    void begin(const Frame& frame, DrawItems items, const GBuffer& targets, const OverlayStep& step);
+    void begin(const Frame& frame, DrawItems items, const OverlayStep& step);
     /// Gives splats the colours that are seen of them, darkened by what hides light from them, or lit.
     SplatSet::Finish colors(const Frame& frame, const std::vector<const DrawItem*>& items);
     SplatSet::Finish own_colors(const Frame& frame, const std::vector<const DrawItem*>& items);
