@@ -215,6 +215,37 @@ struct SplatPixels {
 using BlendSplats = void (*)(const SplatPixels& tile, const ScreenSplat* splats, const uint32_t* places,
                              size_t count);
 
+/// Faces that share vertices, on their way to the screen.
+struct ClusterFaces {
+    static constexpr int most_vertices = 255, most_faces = 256;
+    static constexpr int subpixel_bits = 8, half_pixel = 1 << (subpixel_bits - 1);
+    /// Pixels beyond which vertices are not drawn without being clipped.
+    static constexpr float guard_band = 1 << 15;
+
+    const float* vertices = nullptr;   ///< all x, all y, all z
+    const uint8_t* corners = nullptr;  ///< vertices of faces: all first corners, all second, all third
+    int vertex_count = 0, face_count = 0;
+    float clip_from_mesh[4][4] = {};               ///< [column][row]
+    float half_width = 0, half_height = 0;         ///< of the picture, pixels
+    int left = 0, top = 0, right = 0, bottom = 0;  ///< first and last pixel that is drawn
+    bool both_sides = false, mirrored = false;     ///< see render::ScreenTriangles
+};
+
+/// Its vertices on the screen, and which faces may cover the centre of a pixel.
+struct ClusterScreen {
+    /// Lanes beyond the last vertex or face are written, and lanes read what any byte names.
+    static constexpr int room = 272;
+
+    alignas(64) int32_t x[room], y[room];  ///< 1/256 of a pixel, y downwards
+    alignas(64) float depth[room];         ///< reversed
+    alignas(64) int32_t packed[room];
+    uint8_t kept[room];  ///< faces, in their order
+};
+
+/// The number of faces that are kept; negative where a vertex would have to be clipped, or the cluster is
+/// 128 pixels large.
+using SetUpCluster = int (*)(const ClusterFaces& faces, ClusterScreen& screen);
+
 /// Shaders of pictures: those of cmake/native.cmake.
 enum class Shader {
 #define EASYPBR_NAME(name) name,
@@ -234,6 +265,7 @@ struct Kernels {
     ShadeHits shade_hits;
     DrawLines draw_lines;
     BlendSplats blend_splats;
+    SetUpCluster set_up_cluster;
     ShadeRows shade[shader_count];     ///< by Shader
     ShadeStream stream[stream_count];  ///< by Stream
 };

@@ -264,6 +264,10 @@ void blend_splats(const SplatPixels& tile, std::span<const ScreenSplat> splats,
     chosen_set().kernels->blend_splats(tile, splats.data(), places.data(), places.size());
 }
 
+int set_up_cluster(const ClusterFaces& faces, ClusterScreen& screen) {
+    return chosen_set().kernels->set_up_cluster(faces, screen);
+}
+
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1) {
     const Kernels& k = *chosen_set().kernels;
 #define EASYPBR_CASE(name) \

@@ -79,6 +79,10 @@ void draw_lines(const Inputs& inputs, const Region& region, std::span<const Scre
 void blend_splats(const SplatPixels& tile, std::span<const ScreenSplat> splats,
                   std::span<const uint32_t> places);
 
+/// Projects the vertices of a cluster and finds which of its faces may cover the centre of a pixel; see
+/// SetUpCluster. On the calling thread.
+int set_up_cluster(const ClusterFaces& faces, ClusterScreen& screen);
+
 /// Shades rows [y0, y1) of a region, on all cores. Throws Error when a value is not of the uniform's type,
 /// Interrupted.
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1);

@@ -8,6 +8,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/core/recent_values.h"
 #include "easypbr/core/suggest.h"
 #include "easypbr/scene/mesh.h"
 #include "easypbr/scene/spacing.h"
@@ -64,34 +65,60 @@ namespace {
 
 using Box3f = Eigen::AlignedBox3f;
 
-/// Scans have points far away that nobody wants to see the rest shrink for. Nothing: all vertices count.
-std::optional<Box3f> without_outliers(const MeshData& mesh) {
-    if (!mesh.F.empty() || !mesh.E.empty() || mesh.V.rows() < least_cloud) return {};
-    const Box3d box = trimmed_bounds(mesh.V);
+using Directions = SceneSnapshot::Directions;
+using Support = SceneSnapshot::Support;
+
+bool has_outliers(const MeshData& mesh) {
+    return mesh.F.empty() && mesh.E.empty() && mesh.V.rows() >= least_cloud;
+}
+
+/// Scans have points far away that nobody wants to see the rest shrink for.
+Box3f without_outliers(const Array3f& V) {
+    static RecentValues<uint64_t, Box3d> known(32);
+    const Box3d box = known.get(V.revision(), [&] { return trimmed_bounds(V); });
     return Box3f(Vec3(box.min().cast<float>()), Vec3(box.max().cast<float>()));
 }
+
+Support support_of(const MeshData& mesh, const Directions& directions) {
+    const Array3f& V = mesh.V;
+    std::optional<Box3f> kept;  // nothing: all vertices count
+    if (has_outliers(mesh)) kept = without_outliers(V);
+    Support result = Support::Constant(-std::numeric_limits<double>::infinity());
+    std::mutex mutex;
+    parallel_chunks(size_t(V.rows()), vertex_grain, [&](size_t begin, size_t end) {
+        Support best = Support::Constant(-std::numeric_limits<double>::infinity());
+        for (Eigen::Index i = Eigen::Index(begin); i < Eigen::Index(end); ++i)
+            if (!kept || kept->contains(Vec3(V.row(i))))
+                best =
+                    best.cwiseMax(directions.col(0) * double(V(i, 0)) + directions.col(1) * double(V(i, 1)) +
+                                  directions.col(2) * double(V(i, 2)));
+        // A maximum is the same in any order, so the result does not depend on which thread comes first.
+        std::lock_guard lock(mutex);
+        result = result.cwiseMax(best);
+    });
+    return result;
+}
+
+struct SupportKey {
+    uint64_t vertices;
+    bool trimmed;
+    Directions directions;
+
+    bool operator==(const SupportKey&) const = default;
+};
 
 }  // namespace
 
 SceneSnapshot::Support SceneSnapshot::support(const Directions& directions) const {
+    // The bounds of a scene are asked for in each frame.
+    static RecentValues<SupportKey, Support> known(64);
     Support result = Support::Constant(-std::numeric_limits<double>::infinity());
-    std::mutex mutex;
     for (const Object& object : objects) {
-        const Array3f& V = object.mesh->V;
-        const std::optional<Box3f> kept = without_outliers(*object.mesh);
+        if (object.mesh->V.empty()) continue;
         const Directions local = directions * object.T_world_mesh.linear();
-        const Support offset = directions * object.T_world_mesh.translation();
-        parallel_chunks(size_t(V.rows()), vertex_grain, [&](size_t begin, size_t end) {
-            Support best = Support::Constant(-std::numeric_limits<double>::infinity());
-            for (Eigen::Index i = Eigen::Index(begin); i < Eigen::Index(end); ++i)
-                if (!kept || kept->contains(Vec3(V.row(i))))
-                    best = best.cwiseMax(local.col(0) * double(V(i, 0)) + local.col(1) * double(V(i, 1)) +
-                                         local.col(2) * double(V(i, 2)));
-            best += offset;
-            // A maximum is the same in any order, so the result does not depend on which thread comes first.
-            std::lock_guard lock(mutex);
-            result = result.cwiseMax(best);
-        });
+        const Support own = known.get({object.mesh->V.revision(), has_outliers(*object.mesh), local},
+                                      [&] { return support_of(*object.mesh, local); });
+        result = result.cwiseMax(Support(own + directions * object.T_world_mesh.translation()));
     }
     return result;
 }

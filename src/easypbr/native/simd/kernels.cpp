@@ -31,6 +31,7 @@ struct Fragment : TextureReader {
 }  // namespace easypbr::native
 
 #include "easypbr/native/simd/blend_splats.h"
+#include "easypbr/native/simd/cluster_setup.h"
 #include "easypbr/native/simd/shade_hits.h"
 
 namespace easypbr::native::EASYPBR_ISA {
@@ -323,6 +324,7 @@ const Kernels kernels{resolve_triangles,
                       shade_hits,
                       draw_lines,
                       blend_splats,
+                      set_up_cluster,
                       {EASYPBR_SHADERS(EASYPBR_ROWS)},
                       {EASYPBR_STREAMS(EASYPBR_ARRAYS)}};
 #undef EASYPBR_ARRAYS

@@ -6,12 +6,15 @@
 #include <atomic>
 #include <cmath>
 #include <cstdint>
+#include <span>
 #include <utility>
 #include <vector>
 
 #include "easypbr/core/math.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/native/shaders.h"
 #include "easypbr/render/frame/frame.h"
+#include "easypbr/render/raster/face_clusters.h"
 #include "easypbr/scene/array.h"
 
 namespace easypbr::render {
@@ -26,6 +29,28 @@ struct ScreenTriangles {
     /// two.
     bool both_sides = false, mirrored = false;
     bool clips = false;  ///< what crosses the near plane is cut there; else nothing is drawn then
+    const FaceClusters* clusters = nullptr;  ///< of these faces; null: there are none
+};
+
+/// Which clusters are outside of the picture, or turned away as a whole.
+class ClusterCulling {
+  public:
+    /// Of `area`, a part of a picture of that size.
+    ClusterCulling(const ScreenTriangles& triangles, Vec2i size, const PixelRect& area);
+    bool drops(const FaceClusters::Cluster& cluster) const;
+    /// Nothing of a box would have to be clipped.
+    bool is_inside(const Box3& box) const;
+
+  private:
+    /// Homogeneous points are outside where its product with them is negative.
+    struct Plane {
+        Vec4 plane;
+        float length;  ///< of its first three components
+    };
+    std::array<Plane, 5> planes_;
+    Mat4 clip_from_mesh_;
+    Vec2 half_;
+    Vec4 eye_;  ///< the faces whose planes it is in front of are dropped; 0: none are
 };
 
 /// Rules as OpenGL's: 8 bits of sub-pixel precision, top-left.
@@ -51,11 +76,13 @@ class TriangleRaster {
     bool draw_in_order(const ScreenTriangles& triangles, const Put& put);
 
   private:
-    static constexpr int subpixel_bits = 8, subpixel = 1 << subpixel_bits, half_pixel = subpixel / 2;
+    static constexpr int subpixel_bits = native::ClusterFaces::subpixel_bits, subpixel = 1 << subpixel_bits,
+                         half_pixel = native::ClusterFaces::half_pixel;
     /// Pixels beyond which coordinates are not drawn here; edge functions stay far below 63 bits.
-    static constexpr float guard_band = 1 << 15;
-    static constexpr size_t vertex_grain = 1 << 12, face_grain = 1 << 11, row_grain = 64,
+    static constexpr float guard_band = native::ClusterFaces::guard_band;
+    static constexpr size_t vertex_grain = 1 << 12, face_grain = 1 << 11, row_grain = 64, cluster_grain = 32,
                             prefetch_distance = 24;
+    static constexpr size_t most_kept = 1 << 20;
     /// Triangles up to this many pixels across have edge functions below 2^31: 2 (64 * 256)^2 = 2^29.
     static constexpr int small_extent = 64;
 
@@ -110,6 +137,10 @@ class TriangleRaster {
         template <class Put>
         void draw_face(const ScreenTriangles& t, const std::vector<Vertex>& screen, bool inside, size_t face,
                        const Put& put) const;
+        /// A face whose corners project() may have marked.
+        template <class Put>
+        void draw_corners(const ScreenTriangles& t, const Vertex& a, const Vertex& b, const Vertex& c,
+                          const int32_t* face, const Put& put) const;
         template <class Put>
         void draw_triangle(const Vertex& a, const Vertex& b, const Vertex& c, const Put& put) const;
         /// Of triangles with vertices that project() has marked: cuts off what is before the near plane,
@@ -130,8 +161,32 @@ class TriangleRaster {
         }
     };
 
+    /// Vertices to the screen, rows upwards to rows downwards.
+    struct Projection {
+        Mat4 m;
+        Vec2 half;
+
+        Projection(const ScreenTriangles& t, Vec2i size)
+            : m(t.clip_from_mesh), half(size.cast<float>() / 2) {}
+        Vertex operator()(const float* p) const {
+            const Vec4 clip = m.col(0) * p[0] + m.col(1) * p[1] + m.col(2) * p[2] + m.col(3);
+            const float scale = 1.0f / clip.w();
+            const float x = (clip.x() * scale + 1) * half.x(), y = (1 - clip.y() * scale) * half.y();
+            const float depth = clip.z() * scale;
+            const bool is_inside = clip.w() > 0 && std::abs(x) < guard_band && std::abs(y) < guard_band &&
+                                   depth > 0 && depth <= 1;
+            if (!is_inside) return {0, 0, -1};
+            return {int32_t(std::lrintf(x * subpixel)), int32_t(std::lrintf(y * subpixel)), depth};
+        }
+    };
+
     Window rows(int first, int last) const { return {size_, area_, first, last}; }
     bool project(const ScreenTriangles& triangles);
+    template <class Put>
+    void draw_clusters(const ScreenTriangles& triangles, const ClusterCulling& culling, const Put& put) const;
+    template <class Put>
+    void draw_cluster(const ScreenTriangles& triangles, const FaceClusters::Cluster& cluster,
+                      native::ClusterFaces& faces, native::ClusterScreen& screen, Put& put) const;
     /// First and last pixel whose centre lies between two sub-pixel coordinates.
     static int first_pixel(int32_t low) { return (low + half_pixel - 1) >> subpixel_bits; }
     static int last_pixel(int32_t high) { return (high - half_pixel) >> subpixel_bits; }
@@ -147,14 +202,30 @@ inline void TriangleRaster::Window::draw_face(const ScreenTriangles& t, const st
     const int32_t* f = t.F.data() + 3 * (size_t(t.first_face) + face);
     const Vertex &a = screen[size_t(f[0])], &b = screen[size_t(f[1])], &c = screen[size_t(f[2])];
     const auto to_pixel = [&](size_t pixel, float depth) { put(pixel, depth, uint32_t(face)); };
-    if (!inside && (a.depth < 0 || b.depth < 0 || c.depth < 0))
-        draw_clipped(t, f, to_pixel);
-    else
+    if (inside)
         draw_faced(t, a, b, c, to_pixel);
+    else
+        draw_corners(t, a, b, c, f, to_pixel);
+}
+
+template <class Put>
+inline void TriangleRaster::Window::draw_corners(const ScreenTriangles& t, const Vertex& a, const Vertex& b,
+                                                 const Vertex& c, const int32_t* face, const Put& put) const {
+    if (a.depth < 0 || b.depth < 0 || c.depth < 0)
+        draw_clipped(t, face, put);
+    else
+        draw_faced(t, a, b, c, put);
 }
 
 template <class Put>
 bool TriangleRaster::draw(const ScreenTriangles& t, const Put& put) {
+    if (t.clusters) {
+        const ClusterCulling culling(t, size_, area_);
+        if (t.clips || culling.is_inside(t.clusters->box())) {
+            draw_clusters(t, culling, put);
+            return true;
+        }
+    }
     const bool inside = project(t);
     if (!inside && !t.clips) return false;
     const Window all = rows(area_.y, area_.y + area_.height - 1);
@@ -170,7 +241,63 @@ bool TriangleRaster::draw(const ScreenTriangles& t, const Put& put) {
                           [&](size_t pixel, float depth, uint32_t face) { own(pixel, depth, face); });
         }
     });
+    // Of a large mesh there are clusters the next time.
+    if (screen_.size() > most_kept) screen_ = {};
     return true;
+}
+
+template <class Put>
+void TriangleRaster::draw_clusters(const ScreenTriangles& t, const ClusterCulling& culling,
+                                   const Put& put) const {
+    const std::span<const FaceClusters::Cluster> clusters = t.clusters->clusters();
+    native::ClusterFaces all{.half_width = 0.5f * float(size_.x()),
+                             .half_height = 0.5f * float(size_.y()),
+                             .left = area_.x,
+                             .top = area_.y,
+                             .right = area_.x + area_.width - 1,
+                             .bottom = area_.y + area_.height - 1,
+                             .both_sides = t.both_sides,
+                             .mirrored = t.mirrored};
+    for (int column = 0; column < 4; ++column)
+        for (int row = 0; row < 4; ++row) all.clip_from_mesh[column][row] = t.clip_from_mesh(row, column);
+    parallel_chunks(clusters.size(), cluster_grain, [&](size_t begin, size_t end) {
+        Put own = put;
+        native::ClusterFaces faces = all;
+        native::ClusterScreen screen;
+        for (const FaceClusters::Cluster& cluster : clusters.subspan(begin, end - begin))
+            if (!culling.drops(cluster)) draw_cluster(t, cluster, faces, screen, own);
+    });
+}
+
+template <class Put>
+void TriangleRaster::draw_cluster(const ScreenTriangles& t, const FaceClusters::Cluster& cluster,
+                                  native::ClusterFaces& faces, native::ClusterScreen& screen,
+                                  Put& put) const {
+    const Window all = rows(area_.y, area_.y + area_.height - 1);
+    faces.vertices = cluster.vertices;
+    faces.corners = t.clusters->corners_of(cluster);
+    faces.vertex_count = cluster.vertex_count;
+    faces.face_count = cluster.face_count;
+    const int count = native::set_up_cluster(faces, screen);
+    for (int i = 0; i < count; ++i) {
+        const int face = screen.kept[i];
+        const uint32_t number = t.clusters->face_of(cluster, face);
+        const auto corner = [&](int k) {
+            const int at = faces.corners[k * cluster.face_count + face];
+            return Vertex{screen.x[at], screen.y[at], screen.depth[at]};
+        };
+        all.draw_faced(t, corner(0), corner(1), corner(2),
+                       [&](size_t pixel, float depth) { put(pixel, depth, number); });
+    }
+    if (count >= 0) return;
+    const Projection projection(t, size_);
+    for (int face = 0; face < cluster.face_count; ++face) {
+        const uint32_t number = t.clusters->face_of(cluster, face);
+        const int32_t* f = t.F.data() + 3 * (size_t(t.first_face) + number);
+        const auto corner = [&](int k) { return projection(t.V.data() + 3 * size_t(f[k])); };
+        all.draw_corners(t, corner(0), corner(1), corner(2), f,
+                         [&](size_t pixel, float depth) { put(pixel, depth, number); });
+    }
 }
 
 template <class Put>
@@ -303,23 +430,12 @@ void TriangleRaster::Window::fill(const Vertex& a, const Vertex& b, const Vertex
 inline bool TriangleRaster::project(const ScreenTriangles& t) {
     screen_.resize(size_t(t.V.rows()));
     std::atomic<bool> inside{true};
-    const Vec2 half(0.5f * float(size_.x()), 0.5f * float(size_.y()));
-    const Mat4& m = t.clip_from_mesh;
+    const Projection projection(t, size_);
     parallel_chunks(screen_.size(), vertex_grain, [&](size_t begin, size_t end) {
         bool all_inside = true;
         for (size_t i = begin; i < end; ++i) {
-            const float* p = t.V.data() + 3 * i;
-            const Vec4 clip = m.col(0) * p[0] + m.col(1) * p[1] + m.col(2) * p[2] + m.col(3);
-            const float scale = 1.0f / clip.w();
-            const float x = (clip.x() * scale + 1) * half.x(), y = (1 - clip.y() * scale) * half.y();
-            const float depth = clip.z() * scale;
-            const bool is_inside = clip.w() > 0 && std::abs(x) < guard_band && std::abs(y) < guard_band &&
-                                   depth > 0 && depth <= 1;
-            all_inside &= is_inside;
-            if (is_inside)
-                screen_[i] = {int32_t(std::lrintf(x * subpixel)), int32_t(std::lrintf(y * subpixel)), depth};
-            else
-                screen_[i] = {0, 0, -1};
+            screen_[i] = projection(t.V.data() + 3 * i);
+            all_inside &= screen_[i].depth > 0;
         }
         if (!all_inside) inside = false;
     });

@@ -71,9 +71,15 @@ bool MeshShadows::rasterise_opaque(const ShadowView& view, std::span<const DrawI
     const bool both_sides = !closed_.is_known(mesh) || !std::ranges::all_of(parts, is_solid),
                mirrored = first.object->T_world_mesh.linear().determinant() < 0;
     return std::ranges::all_of(opaque_runs_of(parts), [&](const MeshPart& run) {
-        ScreenTriangles triangles{
-            mesh.V,     mesh.F,   run.first_face, run.face_count, layer.clip_from_mesh(first),
-            both_sides, mirrored, both_sides};
+        ScreenTriangles triangles{mesh.V,
+                                  mesh.F,
+                                  run.first_face,
+                                  run.face_count,
+                                  layer.clip_from_mesh(first),
+                                  both_sides,
+                                  mirrored,
+                                  both_sides,
+                                  native_.clusters_of(mesh, run)};
         if (depths.buffer().draw(triangles)) return true;
         triangles.both_sides = triangles.clips = true;
         return depths.buffer().draw(triangles);

@@ -165,15 +165,16 @@ bool NativeMeshes::rasterise(const Frame& frame, DrawItems items, ExtensionSet e
                                                   std::span<float> alpha) { of->alpha(pixels, alpha); },
                              is_blended ? std::numeric_limits<float>::min() : item.material.alpha_cutoff};
         const uint32_t first = surfaces.add(item, uint32_t(item.part.face_count), std::move(surface));
-        if (!surfaces.buffer().draw(triangles_of(frame, item, known, clip_from_mesh, backs), first,
-                                    has_holes(item) ? &test : nullptr))
-            return false;
+        ScreenTriangles triangles = triangles_of(frame, item, known, clip_from_mesh, backs);
+        triangles.clusters = clusters_.draw(item.mesh(), item.part);
+        if (!surfaces.buffer().draw(triangles, first, has_holes(item) ? &test : nullptr)) return false;
     }
     return true;
 }
 
 void NativeMeshes::evict_unused() {
     facts_.evict_unused();
+    clusters_.evict_unused();
     colors_.evict_unused();
     tangents_.evict_unused();
 }

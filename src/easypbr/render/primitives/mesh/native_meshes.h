@@ -12,6 +12,7 @@
 #include "easypbr/render/primitives/mesh/mesh_material.h"
 #include "easypbr/render/primitives/mesh/mesh_surface.h"
 #include "easypbr/render/primitives/primitive.h"
+#include "easypbr/render/raster/face_clusters.h"
 
 namespace easypbr::render {
 
@@ -33,6 +34,11 @@ class NativeMeshes {
     /// Of vertices, linear r g b a.
     const float* colors_of(const MeshData& mesh);
 
+    /// Of a part that has been drawn more than once; null where there are none.
+    const FaceClusters* clusters_of(const MeshData& mesh, const MeshPart& part) const {
+        return clusters_.find(mesh, part);
+    }
+
     void evict_unused();
 
   private:
@@ -48,6 +54,7 @@ class NativeMeshes {
     RevisionCache<uint64_t, std::vector<float>> colors_;
     /// Of corners, x y z w of 1/32767.
     RevisionCache<std::tuple<uint64_t, uint64_t, uint64_t, uint64_t>, std::vector<int16_t>> tangents_;
+    ClusteredMeshes clusters_;
     gpu::ClosedMeshes& closed_;
     gpu::TextureCache& textures_;
 };

@@ -1,0 +1,72 @@
+#include <algorithm>
+#include <cmath>
+
+#include "easypbr/render/raster/triangle_raster.h"
+
+namespace easypbr::render {
+namespace {
+
+/// The point that projects to no pixel: where the camera is, homogeneous, so that the screen area of a face
+/// has the sign of the point's place before or behind the face's plane.
+Vec4 eye_of(const Mat4& clip_from_mesh) {
+    const Mat4d m = clip_from_mesh.cast<double>();
+    Mat4d rows;
+    rows << m.row(0), m.row(1), m.row(3), Eigen::RowVector4d::Zero();
+    Eigen::Vector4d eye;
+    for (int i = 0; i < 4; ++i) {
+        rows.row(3) = Eigen::RowVector4d::Unit(i);
+        eye[i] = -rows.determinant();
+    }
+    const double size = eye.norm();
+    return size > 0 && std::isfinite(size) ? Vec4((eye / size).cast<float>()) : Vec4(Vec4::Zero());
+}
+
+/// By so much the cone of normals is wider: what is seen from the side may turn when its corners are
+/// rounded.
+constexpr float margin = 0.05f;
+/// The same for spheres around clusters, in parts of their radius.
+constexpr float wider = 1.001f;
+
+}  // namespace
+
+ClusterCulling::ClusterCulling(const ScreenTriangles& t, Vec2i size, const PixelRect& area)
+    : clip_from_mesh_(t.clip_from_mesh), half_(size.cast<float>() / 2), eye_(Vec4::Zero()) {
+    const Mat4& m = t.clip_from_mesh;
+    // The area in normalised device coordinates, a pixel larger.
+    const float left = float(area.x - 1) / half_.x() - 1,
+                right = float(area.x + area.width + 1) / half_.x() - 1,
+                top = 1 - float(area.y - 1) / half_.y(),
+                bottom = 1 - float(area.y + area.height + 1) / half_.y();
+    const Vec4 planes[] = {m.row(0) - left * m.row(3), right * m.row(3) - m.row(0),
+                           m.row(1) - bottom * m.row(3), top * m.row(3) - m.row(1), m.row(3) - m.row(2)};
+    for (size_t i = 0; i < planes_.size(); ++i) planes_[i] = {planes[i], planes[i].head<3>().norm()};
+    if (t.both_sides) return;
+    eye_ = t.mirrored ? Vec4(-eye_of(m)) : eye_of(m);
+}
+
+bool ClusterCulling::drops(const FaceClusters::Cluster& cluster) const {
+    const float radius = wider * cluster.radius;
+    for (const Plane& p : planes_)
+        if (p.plane.head<3>().dot(cluster.center) + p.plane.w() < -radius * p.length) return true;
+    if (!(cluster.spread < 1)) return false;
+    // From a face to the eye; its plane has the eye behind it where this is against the normal.
+    const Vec3 towards = eye_.head<3>() - cluster.center * eye_.w();
+    return -towards.dot(cluster.axis) >
+           (cluster.spread + margin) * towards.norm() + radius * std::abs(eye_.w());
+}
+
+bool ClusterCulling::is_inside(const Box3& box) const {
+    if (box.isEmpty()) return false;
+    const float guard = native::ClusterFaces::guard_band - 1;
+    for (int corner = 0; corner < 8; ++corner) {
+        const Vec3 p = box.corner(Box3::CornerType(corner));
+        const Vec4 clip = clip_from_mesh_ * Vec4(p.x(), p.y(), p.z(), 1);
+        const Vec3 ndc = clip.head<3>() / clip.w();
+        if (!(clip.w() > 0 && ndc.z() > 0 && ndc.z() <= 1)) return false;
+        if (!(std::abs(ndc.x() + 1) * half_.x() < guard && std::abs(1 - ndc.y()) * half_.y() < guard))
+            return false;
+    }
+    return true;
+}
+
+}  // namespace easypbr::render
