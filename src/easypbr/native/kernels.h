@@ -242,6 +242,33 @@ struct ClusterScreen {
     uint8_t kept[room];  ///< faces, in their order
 };
 
+/// Points that are neighbours, on their way to the screen: see render::PointSplats.
+struct PointBatch {
+    static constexpr int most_points = 256;
+
+    const float* points = nullptr;  ///< all x, all y, all z
+    int count = 0;
+    float clip_from_mesh[4][4] = {};                 ///< [column][row]
+    float half_width = 0, half_height = 0;           ///< of the picture, pixels
+    float left = 0, top = 0, right = 0, bottom = 0;  ///< of what is drawn
+    float pixels = 1, world_pixels = 0, least_pixels = 1, y_per_x = 1;
+    bool round = true;
+};
+
+/// The points on the screen. Lanes beyond the last are written.
+struct PointScreen {
+    static constexpr int room = PointBatch::most_points + 16;
+
+    alignas(64) float x[room], y[room], radius[room], depth[room];
+    /// Of splats that are as high as wide and less than 2 pixels: a bit for each of the pixels (column,
+    /// line), (column + 1, line) and the two below that they cover. Of others all bits.
+    alignas(64) int32_t column[room], line[room], covered[room];
+    uint16_t kept[room];  ///< those inside of what is drawn, in their order
+};
+
+/// The number of points that are kept.
+using SetUpPoints = int (*)(const PointBatch& points, PointScreen& screen);
+
 /// The number of faces that are kept; negative where a vertex would have to be clipped, or the cluster is
 /// 128 pixels large.
 using SetUpCluster = int (*)(const ClusterFaces& faces, ClusterScreen& screen);
@@ -266,6 +293,7 @@ struct Kernels {
     DrawLines draw_lines;
     BlendSplats blend_splats;
     SetUpCluster set_up_cluster;
+    SetUpPoints set_up_points;
     ShadeRows shade[shader_count];     ///< by Shader
     ShadeStream stream[stream_count];  ///< by Stream
 };

@@ -268,6 +268,10 @@ int set_up_cluster(const ClusterFaces& faces, ClusterScreen& screen) {
     return chosen_set().kernels->set_up_cluster(faces, screen);
 }
 
+int set_up_points(const PointBatch& points, PointScreen& screen) {
+    return chosen_set().kernels->set_up_points(points, screen);
+}
+
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1) {
     const Kernels& k = *chosen_set().kernels;
 #define EASYPBR_CASE(name) \

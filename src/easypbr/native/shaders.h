@@ -83,6 +83,9 @@ void blend_splats(const SplatPixels& tile, std::span<const ScreenSplat> splats,
 /// SetUpCluster. On the calling thread.
 int set_up_cluster(const ClusterFaces& faces, ClusterScreen& screen);
 
+/// Projects the points of a batch and finds which are inside of what is drawn. On the calling thread.
+int set_up_points(const PointBatch& points, PointScreen& screen);
+
 /// Shades rows [y0, y1) of a region, on all cores. Throws Error when a value is not of the uniform's type,
 /// Interrupted.
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1);

@@ -32,6 +32,7 @@ struct Fragment : TextureReader {
 
 #include "easypbr/native/simd/blend_splats.h"
 #include "easypbr/native/simd/cluster_setup.h"
+#include "easypbr/native/simd/point_setup.h"
 #include "easypbr/native/simd/shade_hits.h"
 
 namespace easypbr::native::EASYPBR_ISA {
@@ -325,6 +326,7 @@ const Kernels kernels{resolve_triangles,
                       draw_lines,
                       blend_splats,
                       set_up_cluster,
+                      set_up_points,
                       {EASYPBR_SHADERS(EASYPBR_ROWS)},
                       {EASYPBR_STREAMS(EASYPBR_ARRAYS)}};
 #undef EASYPBR_ARRAYS

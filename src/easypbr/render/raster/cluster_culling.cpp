@@ -30,24 +30,17 @@ constexpr float wider = 1.001f;
 }  // namespace
 
 ClusterCulling::ClusterCulling(const ScreenTriangles& t, Vec2i size, const PixelRect& area)
-    : clip_from_mesh_(t.clip_from_mesh), half_(size.cast<float>() / 2), eye_(Vec4::Zero()) {
-    const Mat4& m = t.clip_from_mesh;
-    // The area in normalised device coordinates, a pixel larger.
-    const float left = float(area.x - 1) / half_.x() - 1,
-                right = float(area.x + area.width + 1) / half_.x() - 1,
-                top = 1 - float(area.y - 1) / half_.y(),
-                bottom = 1 - float(area.y + area.height + 1) / half_.y();
-    const Vec4 planes[] = {m.row(0) - left * m.row(3), right * m.row(3) - m.row(0),
-                           m.row(1) - bottom * m.row(3), top * m.row(3) - m.row(1), m.row(3) - m.row(2)};
-    for (size_t i = 0; i < planes_.size(); ++i) planes_[i] = {planes[i], planes[i].head<3>().norm()};
+    : frustum_(t.clip_from_mesh, size, area),
+      clip_from_mesh_(t.clip_from_mesh),
+      half_(size.cast<float>() / 2),
+      eye_(Vec4::Zero()) {
     if (t.both_sides) return;
-    eye_ = t.mirrored ? Vec4(-eye_of(m)) : eye_of(m);
+    eye_ = t.mirrored ? Vec4(-eye_of(t.clip_from_mesh)) : eye_of(t.clip_from_mesh);
 }
 
 bool ClusterCulling::drops(const FaceClusters::Cluster& cluster) const {
     const float radius = wider * cluster.radius;
-    for (const Plane& p : planes_)
-        if (p.plane.head<3>().dot(cluster.center) + p.plane.w() < -radius * p.length) return true;
+    if (frustum_.drops(cluster.center, radius)) return true;
     if (!(cluster.spread < 1)) return false;
     // From a face to the eye; its plane has the eye behind it where this is against the normal.
     const Vec3 towards = eye_.head<3>() - cluster.center * eye_.w();

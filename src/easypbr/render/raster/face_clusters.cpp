@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <array>
-#include <atomic>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "easypbr/core/parallel.h"
+#include "easypbr/render/raster/curve_order.h"
 
 namespace easypbr::render {
 namespace {
@@ -53,74 +52,6 @@ void bound(const Array3f& V, const uint32_t* ids, const uint8_t* corners, Cluste
     cluster.axis = axis.cast<float>();
     cluster.spread = float(std::sqrt(std::max(0.0, 1 - least * least)));
 }
-
-/// The two lower bits of each of three are free.
-uint32_t every_third_bit(uint32_t v) {
-    v = (v | v << 16) & 0x030000ff;
-    v = (v | v << 8) & 0x0300f00f;
-    v = (v | v << 4) & 0x030c30c3;
-    return (v | v << 2) & 0x09249249;
-}
-
-/// Of the finite vertices.
-Box3 box_of(const Array3f& V) {
-    constexpr size_t grain = size_t(1) << 16;
-    const auto count = size_t(V.rows());
-    std::vector<Box3> boxes((count + grain - 1) / grain);
-    parallel_chunks(count, grain, [&](size_t begin, size_t end) {
-        Box3& box = boxes[begin / grain];
-        for (size_t i = begin; i < end; ++i) {
-            const Vec3 p = Eigen::Map<const Vec3>(V.data() + 3 * i);
-            if (p.allFinite()) box.extend(p);
-        }
-    });
-    Box3 all;
-    for (const Box3& box : boxes) all.extend(box);
-    return all.isEmpty() ? Box3(Vec3::Zero(), Vec3::Zero()) : all;
-}
-
-/// The place of each face on Morton's curve through the cells of a grid, by its first corner.
-std::vector<uint32_t> places_of(const Array3f& V, const Array3i& F, const MeshPart& part) {
-    constexpr int cells = 1 << 10;
-    const Box3 box = box_of(V);
-    const Vec3 low = box.min();
-    const float scale = cells / std::max(box.sizes().maxCoeff(), std::numeric_limits<float>::min());
-    std::vector<uint32_t> places(size_t(part.face_count));
-    parallel_for(places.size(), size_t(1) << 14, [&](size_t face) {
-        const int32_t vertex = F.data()[3 * (size_t(part.first_face) + face)];
-        const float* const p = V.data() + 3 * size_t(vertex);
-        uint32_t place = 0;
-        for (int i = 0; i < 3; ++i) {
-            const float cell = (p[i] - low[i]) * scale;
-            // What is not a number is in the first cell.
-            place |= every_third_bit(cell > 0 ? uint32_t(std::min(cell, cells - 1.0f)) : 0u) << i;
-        }
-        places[face] = place;
-    });
-    return places;
-}
-
-/// A part's faces by their places on the curve: a radix sort.
-std::vector<uint32_t> spatial_order(const Array3f& V, const Array3i& F, const MeshPart& part) {
-    constexpr int digit_bits = 15;
-    constexpr uint32_t digits = 1u << digit_bits;
-    const std::vector<uint32_t> places = places_of(V, F, part);
-    std::vector<uint32_t> order(places.size()), from(places.size());
-    std::iota(order.begin(), order.end(), 0u);
-    for (int shift = 0; shift < 30; shift += digit_bits) {
-        const auto digit_of = [&](uint32_t face) { return places[face] >> shift & (digits - 1); };
-        order.swap(from);
-        std::vector<uint32_t> next(digits + 1, 0);
-        for (const uint32_t face : from) ++next[digit_of(face) + 1];
-        std::partial_sum(next.begin(), next.end(), next.begin());
-        for (const uint32_t face : from) order[next[digit_of(face)]++] = face;
-    }
-    return order;
-}
-
-}  // namespace
-
-namespace {
 
 /// The vertices of a cluster that is being made. meshoptimizer's meshopt_buildMeshletsScan() does the same,
 /// but clears memory for all vertices of the mesh in each call, and takes buffers for the worst case, which
@@ -213,7 +144,9 @@ FaceClusters::FaceClusters(const Array3f& V, const Array3i& F, const MeshPart& p
     for (const auto& piece : pieces)
         for (const Cluster& cluster : piece) vertices += size_t(cluster.vertex_count);
     const bool reorders = double(vertices) > most_vertices_per_face * double(tried);
-    if (reorders) order_ = spatial_order(V, F, part);
+    if (reorders)
+        order_ = curve_order(
+            V, count, [&](size_t face) { return size_t(F.data()[3 * (size_t(part.first_face) + face)]); });
     if (reorders || tried < count) make(count);
     size_t all = 0;
     for (const auto& piece : pieces) all += piece.size();

@@ -7,7 +7,11 @@
 #include <functional>
 
 #include "easypbr/core/math.h"
+#include "easypbr/core/parallel.h"
 #include "easypbr/core/picture.h"
+#include "easypbr/native/shaders.h"
+#include "easypbr/render/raster/frustum.h"
+#include "easypbr/render/raster/point_batches.h"
 
 namespace easypbr::render {
 
@@ -20,11 +24,18 @@ struct PointSplats {
     float y_per_x = 1;       ///< height of a splat in parts of its width
     bool round = true;
     std::function<bool(size_t point)> is_drawn = {};  ///< empty: all of them
+    const PointBatches* batches = nullptr;            ///< of the cloud; null: there are none
 };
 
-/// A column or row as a number, no farther out than it matters.
-inline int bounded(float place) {
-    return int(std::clamp(place, -1e6f, 1e6f));
+// Columns and rows as numbers, no farther out than they matter: std::floor() is a call for processors without
+// SSE4.1.
+inline int floor_of(float place) {
+    const float near = std::clamp(place, -1e6f, 1e6f);
+    const int towards_zero = int(near);
+    return towards_zero - int(near < float(towards_zero));
+}
+inline int ceil_of(float place) {
+    return -floor_of(-place);
 }
 
 /// A point on a picture, with the half axes of its splat.
@@ -34,8 +45,8 @@ struct ScreenPoint {
     float depth = 0;  ///< reversed; 0: the point is before the near plane or outside
 
     /// Rows that it may reach: from the first up to the end.
-    int first_row() const { return bounded(std::floor(y - std::max(ry, 1.0f))); }
-    int end_row() const { return depth > 0 ? bounded(std::ceil(y + std::max(ry, 1.0f))) : first_row(); }
+    int first_row() const { return floor_of(y - std::max(ry, 1.0f)); }
+    int end_row() const { return depth > 0 ? ceil_of(y + std::max(ry, 1.0f)) : first_row(); }
 };
 
 class PointRaster {
@@ -63,18 +74,42 @@ class PointRaster {
         return inside ? point : ScreenPoint{};
     }
 
+    /// Calls draw(depth, vertex, cover) for all points that project() finds inside, on all cores; cover(put)
+    /// calls put(column, line) as the function below does, for the whole area.
+    template <class Draw>
+    void draw_batches(const PointBatches& batches, const Draw& draw) const {
+        constexpr size_t grain = 16;
+        const Frustum beyond = frustum();
+        parallel_chunks(batches.count(), grain, [&](size_t begin, size_t end) {
+            native::PointBatch own = batch();
+            native::PointScreen screen;
+            for (size_t i = begin; i < end; ++i) {
+                const PointBatches::Sphere& sphere = batches.sphere_of(i);
+                if (beyond.drops(sphere.center, sphere.radius)) continue;
+                own.points = batches.points_of(i);
+                own.count = batches.size_of(i);
+                const int kept = native::set_up_points(own, screen);
+                for (int k = 0; k < kept; ++k) {
+                    const int at = screen.kept[k];
+                    draw(screen.depth[at], batches.ids_of(i)[at],
+                         [&](const auto& put) { cover(screen, at, put); });
+                }
+            }
+        });
+    }
+
     /// Calls put(column, line) once for each pixel of `part`, inside of the area, that a point covers: the
     /// one that it lies in, and those whose centres are inside of the splat.
     template <class Put>
     void cover(const ScreenPoint& point, const PixelRect& part, const Put& put) const {
-        const int own_x = bounded(std::floor(point.x)), own_y = bounded(std::floor(point.y));
+        const int own_x = floor_of(point.x), own_y = floor_of(point.y);
         if (own_x >= part.x && own_x < part.x + part.width && own_y >= part.y && own_y < part.y + part.height)
             put(own_x, own_y);
         if (point.rx <= 0.5f && point.ry <= 0.5f) return;
-        const int x0 = std::max(bounded(std::ceil(point.x - point.rx - 0.5f)), part.x),
-                  x1 = std::min(bounded(std::floor(point.x + point.rx - 0.5f)), part.x + part.width - 1);
-        const int y0 = std::max(bounded(std::ceil(point.y - point.ry - 0.5f)), part.y),
-                  y1 = std::min(bounded(std::floor(point.y + point.ry - 0.5f)), part.y + part.height - 1);
+        const int x0 = std::max(ceil_of(point.x - point.rx - 0.5f), part.x),
+                  x1 = std::min(floor_of(point.x + point.rx - 0.5f), part.x + part.width - 1);
+        const int y0 = std::max(ceil_of(point.y - point.ry - 0.5f), part.y),
+                  y1 = std::min(floor_of(point.y + point.ry - 0.5f), part.y + part.height - 1);
         for (int line = y0; line <= y1; ++line)
             for (int column = x0; column <= x1; ++column) {
                 if (column == own_x && line == own_y) continue;
@@ -87,6 +122,44 @@ class PointRaster {
     const PixelRect& area() const { return area_; }
 
   private:
+    template <class Put>
+    void cover(const native::PointScreen& screen, int at, const Put& put) const {
+        const int covered = screen.covered[at];
+        if (covered >= 0) {
+            const int x = screen.column[at], y = screen.line[at];
+            for (int i = 0; i < 4; ++i)
+                if (covered >> i & 1) put(x + (i & 1), y + (i >> 1));
+            return;
+        }
+        const float rx = screen.radius[at];
+        cover({screen.x[at], screen.y[at], rx, rx * splats_.y_per_x, screen.depth[at]}, area_, put);
+    }
+    /// What set_up_points() needs beside the points.
+    native::PointBatch batch() const {
+        native::PointBatch batch{.half_width = half_size_.x(),
+                                 .half_height = half_size_.y(),
+                                 .left = float(area_.x),
+                                 .top = float(area_.y),
+                                 .right = float(area_.x + area_.width),
+                                 .bottom = float(area_.y + area_.height),
+                                 .pixels = splats_.pixels,
+                                 .world_pixels = splats_.world_pixels,
+                                 .least_pixels = splats_.least_pixels,
+                                 .y_per_x = splats_.y_per_x,
+                                 .round = splats_.round};
+        for (int column = 0; column < 4; ++column)
+            for (int row = 0; row < 4; ++row) batch.clip_from_mesh[column][row] = m_(row, column);
+        return batch;
+    }
+    /// What no splat reaches into.
+    Frustum frustum() const {
+        const float wide = 0.5f * std::max(1.0f, splats_.y_per_x);
+        const bool world = splats_.world_pixels > 0;
+        const Vec2i size = (2 * half_size_).cast<int>();
+        return {m_, size, area_, 1 + wide * (world ? splats_.least_pixels : splats_.pixels),
+                wide * (world ? splats_.world_pixels : 0.0f)};
+    }
+
     Mat4 m_;
     const PointSplats& splats_;
     Vec2 half_size_;

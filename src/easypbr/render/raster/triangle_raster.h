@@ -15,6 +15,7 @@
 #include "easypbr/native/shaders.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/raster/face_clusters.h"
+#include "easypbr/render/raster/frustum.h"
 #include "easypbr/scene/array.h"
 
 namespace easypbr::render {
@@ -42,12 +43,7 @@ class ClusterCulling {
     bool is_inside(const Box3& box) const;
 
   private:
-    /// Homogeneous points are outside where its product with them is negative.
-    struct Plane {
-        Vec4 plane;
-        float length;  ///< of its first three components
-    };
-    std::array<Plane, 5> planes_;
+    Frustum frustum_;
     Mat4 clip_from_mesh_;
     Vec2 half_;
     Vec4 eye_;  ///< the faces whose planes it is in front of are dropped; 0: none are

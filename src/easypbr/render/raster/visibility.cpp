@@ -23,8 +23,9 @@ inline void raise(Key& pixel, Key key) {
     }
 }
 
-/// The same for points: of equal depths the larger content, of equal contents the smaller id is kept.
-void raise_point(uint64_t& pixel, uint64_t key, const std::function<uint64_t(uint32_t)>& content) {
+/// The same for points of a depth that is kept already, or is about to be: of equal depths the larger
+/// content, of equal contents the smaller id.
+void replace_point(uint64_t& pixel, uint64_t key, const std::function<uint64_t(uint32_t)>& content) {
     const std::atomic_ref<uint64_t> cell(pixel);
     uint64_t seen = cell.load(std::memory_order_relaxed);
     for (;;) {
@@ -36,6 +37,10 @@ void raise_point(uint64_t& pixel, uint64_t key, const std::function<uint64_t(uin
         }
         if (cell.compare_exchange_weak(seen, key, std::memory_order_relaxed)) return;
     }
+}
+inline void raise_point(uint64_t& pixel, uint64_t key, const std::function<uint64_t(uint32_t)>& content) {
+    const uint64_t seen = std::atomic_ref(pixel).load(std::memory_order_relaxed);
+    if (seen >> 32 <= key >> 32) replace_point(pixel, key, content);
 }
 
 /// The limit of a pixel of which no layer is left: nothing is as near.
@@ -174,14 +179,19 @@ void VisibilityBuffer::draw_points(const Array3f& V, const PointSplats& splats, 
     const KeyOrder order(limits_);
     const PixelRect& area = raster_.area();
     const PointRaster raster(splats, raster_.size(), area);
+    const auto draw = [&](float depth, uint32_t i, const auto& cover) {
+        if (splats.is_drawn && !splats.is_drawn(i)) return;
+        const uint64_t key = order.key(depth, first_id + i);
+        cover([&](int column, int line) {
+            const size_t pixel = size_t(line - area.y) * size_t(area.width) + size_t(column - area.x);
+            if (order.takes(pixel, depth)) raise_point(pixels_[pixel], key, content);
+        });
+    };
+    if (splats.batches) return raster.draw_batches(*splats.batches, draw);
     parallel_for(size_t(V.rows()), point_grain, [&](size_t i) {
         const ScreenPoint point = raster.project(V.data() + 3 * i);
-        if (point.depth == 0 || (splats.is_drawn && !splats.is_drawn(i))) return;
-        const uint64_t key = order.key(point.depth, first_id + uint32_t(i));
-        raster.cover(point, area, [&](int column, int line) {
-            const size_t pixel = size_t(line - area.y) * size_t(area.width) + size_t(column - area.x);
-            if (order.takes(pixel, point.depth)) raise_point(pixels_[pixel], key, content);
-        });
+        if (point.depth > 0)
+            draw(point.depth, uint32_t(i), [&](const auto& put) { raster.cover(point, area, put); });
     });
 }
 

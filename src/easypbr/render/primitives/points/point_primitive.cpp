@@ -31,7 +31,9 @@ bool PointPrimitive::rasterise(const Frame& frame, DrawItems items, ExtensionSet
         const uint32_t first =
             surfaces.add(item, uint32_t(V.rows()), std::make_unique<PointSurface>(item, frame));
         const double spacing = item.style.point_size ? 0 : spacings_.get(V);
-        surfaces.buffer().draw_points(V, splats_of(item, frame, spacing), first, content);
+        PointSplats splats = splats_of(item, frame, spacing);
+        splats.batches = batches_.draw(V);
+        surfaces.buffer().draw_points(V, splats, first, content);
     }
     return true;
 }

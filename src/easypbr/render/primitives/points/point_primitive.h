@@ -38,11 +38,15 @@ class PointPrimitive final : public Primitive {
     }
     double reach(const DrawItem& item) override { return shadows_.radius(item); }
     int reach_in_pixels(const DrawStyle& style) const override;
-    void evict_unused() override { buffers_.evict_unused(); }
+    void evict_unused() override {
+        buffers_.evict_unused();
+        batches_.evict_unused();
+    }
 
   private:
     SpacingCache& spacings_;
     PointCache buffers_;
+    BatchedClouds batches_;
     PointPass pass_;
     PointShadows shadows_;
 };

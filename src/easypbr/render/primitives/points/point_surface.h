@@ -21,6 +21,7 @@ class PointSurface final : public VisibleItem {
     /// What the point looks like from the eye; its depth is left out.
     SurfacePixel at(uint32_t point) const;
     Vec3 color(uint32_t point) const;
+    void prefetch(uint32_t point) const;
 
     const DrawItem* item_;
     Mat3 normal_from_mesh_, world_from_mesh_;

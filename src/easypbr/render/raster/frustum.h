@@ -1,0 +1,33 @@
+// What is outside of a picture.
+#pragma once
+
+#include <array>
+
+#include "easypbr/core/math.h"
+#include "easypbr/core/picture.h"
+
+namespace easypbr::render {
+
+class Frustum {
+  public:
+    /// Of `area`, a part of a picture of that size. What lies beside it by as many pixels is inside too, and
+    /// by as many divided by the clip coordinate w.
+    Frustum(const Mat4& clip_from_mesh, Vec2i size, const PixelRect& area, float pixels = 1,
+            float pixels_times_w = 0);
+    /// Nothing of a sphere is inside.
+    bool drops(const Vec3& center, float radius) const {
+        for (const Plane& p : planes_)
+            if (p.plane.head<3>().dot(center) + p.plane.w() < -radius * p.length) return true;
+        return false;
+    }
+
+  private:
+    /// Homogeneous points are outside where its product with them is negative.
+    struct Plane {
+        Vec4 plane;
+        float length;  ///< of its first three components
+    };
+    std::array<Plane, 5> planes_;
+};
+
+}  // namespace easypbr::render

@@ -1,0 +1,59 @@
+// The points of a cloud in batches of neighbours: what the raster projects many at once, or leaves out.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "easypbr/core/math.h"
+#include "easypbr/core/revision_cache.h"
+#include "easypbr/native/kernels.h"
+#include "easypbr/scene/array.h"
+
+namespace easypbr::render {
+
+class PointBatches {
+  public:
+    PointBatches() = default;
+    /// On all cores.
+    explicit PointBatches(const Array3f& V);
+
+    size_t count() const { return spheres_.size(); }
+    int size_of(size_t batch) const;
+    /// Of a batch: all x, all y, all z. Lanes beyond them can be read.
+    const float* points_of(size_t batch) const { return &points_[3 * most * batch]; }
+    /// The vertices that they are, in the same order.
+    const uint32_t* ids_of(size_t batch) const { return &ids_[most * batch]; }
+    /// Around the points; infinite where one is not finite.
+    struct Sphere {
+        Vec3 center;
+        float radius;
+    };
+    const Sphere& sphere_of(size_t batch) const { return spheres_[batch]; }
+
+  private:
+    static constexpr size_t most = native::PointBatch::most_points;
+
+    std::vector<uint32_t> ids_;
+    std::vector<float> points_;
+    std::vector<Sphere> spheres_;
+};
+
+/// The batches of clouds, by the revision of their points.
+class BatchedClouds {
+  public:
+    /// Takes note that a cloud is drawn. Its batches are made when it is drawn for the second time: a single
+    /// picture would not earn them back. Null where there are none.
+    const PointBatches* draw(const Array3f& V);
+    void evict_unused() { entries_.evict_unused(); }
+
+  private:
+    /// Points that are drawn in a millisecond.
+    static constexpr Eigen::Index small_cloud = 1 << 15;
+    struct Entry {
+        int draws = 0;
+        PointBatches batches;
+    };
+    RevisionCache<uint64_t, Entry> entries_;
+};
+
+}  // namespace easypbr::render

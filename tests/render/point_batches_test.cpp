@@ -1,0 +1,161 @@
+// Points in batches: the same pixels as point by point, whatever is looked at.
+#include "easypbr/render/raster/point_batches.h"
+
+#include <algorithm>
+#include <limits>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "easypbr/native/shaders.h"
+#include "easypbr/render/raster/visibility.h"
+#include "easypbr/scene/camera.h"
+
+namespace easypbr::render::point_batches_test {
+namespace {
+
+const Vec2i size(160, 120);
+
+/// Points of a cube in no order, many of them at the same place.
+Array3f cloud(int count, unsigned seed) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<float> place(-1, 1);
+    Array3f::Dense V(count, 3);
+    for (int i = 0; i < count; ++i) {
+        if (i > 100 && i % 7 == 0)
+            V.row(i) = V.row(i / 2);
+        else
+            for (int k = 0; k < 3; ++k) V(i, k) = place(random);
+    }
+    return V;
+}
+
+PointSplats splats_from(const Vec3d& eye, bool orthographic) {
+    Camera camera = Camera::look_at(eye, Vec3d::Zero());
+    camera.near = 0.05;
+    camera.far = 50;
+    if (orthographic) camera.projection = Projection::orthographic;
+    PointSplats splats;
+    splats.clip_from_mesh =
+        (camera.projection_matrix(double(size.x()) / size.y()) * camera.view()).cast<float>();
+    return splats;
+}
+
+std::vector<uint64_t> drawn(const Array3f& V, PointSplats splats, const PointBatches* batches,
+                            const PixelRect& area, const PeelLimits* layer = nullptr) {
+    splats.batches = batches;
+    VisibilityBuffer buffer;
+    buffer.clear(size, area);
+    if (layer) buffer.begin_layer(*layer);
+    // Some of those at one place look the same.
+    buffer.draw_points(V, splats, 7, [](uint32_t id) { return uint64_t(id % 3); });
+    return {buffer.pixels().begin(), buffer.pixels().end()};
+}
+
+TEST(PointBatches, HoldEachPointOnce) {
+    const Array3f V = cloud(1000, 1);
+    const PointBatches made(V);
+    std::vector<int> times(size_t(V.rows()), 0);
+    ASSERT_EQ(made.count(), 4u);
+    for (size_t batch = 0; batch < made.count(); ++batch) {
+        const int own = made.size_of(batch);
+        EXPECT_EQ(own, batch < 3 ? 256 : 1000 - 3 * 256);
+        for (int i = 0; i < own; ++i) {
+            const uint32_t id = made.ids_of(batch)[i];
+            ++times.at(id);
+            const float* const p = made.points_of(batch) + i;
+            const Vec3 copy(p[0], p[own], p[2 * own]);
+            ASSERT_EQ(copy, Vec3(V.row(id)));
+            EXPECT_LE((copy - made.sphere_of(batch).center).norm(), made.sphere_of(batch).radius * 1.0001f);
+        }
+    }
+    EXPECT_TRUE(std::ranges::all_of(times, [](int count) { return count == 1; }));
+}
+
+TEST(PointBatches, AreOfNeighbours) {
+    const PointBatches made(cloud(1 << 15, 2));
+    // 128 batches in a cube of 8: each would be a cube with a sphere of 0.34 around it.
+    double sum = 0;
+    for (size_t batch = 0; batch < made.count(); ++batch) sum += double(made.sphere_of(batch).radius);
+    EXPECT_LT(sum / double(made.count()), 0.6);
+}
+
+TEST(PointBatches, DrawWhatPointsDraw) {
+    const Array3f V = cloud(20000, 3);
+    const PointBatches batches(V);
+    const PixelRect whole{0, 0, size.x(), size.y()}, part{37, 21, 64, 50};
+    const std::string before(native::instruction_set());
+    for (const std::string_view name : native::instruction_sets())
+        for (const Vec3d& eye : {Vec3d(3, 2, 4), Vec3d(0.3, 0.2, 0.9), Vec3d(0, 0.4, 0)})
+            for (const bool orthographic : {false, true})
+                for (const bool round : {false, true})
+                    for (const PixelRect& area : {whole, part}) {
+                        native::use_instruction_set(name);
+                        PointSplats splats = splats_from(eye, orthographic);
+                        splats.round = round;
+                        const auto compare = [&](const char* what) {
+                            ASSERT_EQ(drawn(V, splats, &batches, area), drawn(V, splats, nullptr, area))
+                                << what << splats.pixels << " " << name << " from " << eye.transpose()
+                                << orthographic << round << area.width;
+                        };
+                        for (const float pixels : {0.4f, 1.0f, 1.5f, 1.99f, 2.0f, 5.3f}) {
+                            splats.pixels = pixels;
+                            compare("pixels ");
+                        }
+                        splats.world_pixels = 4;
+                        compare("world ");
+                        splats.y_per_x = 0.6f;
+                        compare("flat ");
+                        splats.is_drawn = [](size_t point) { return point % 2 == 0; };
+                        compare("some ");
+                    }
+    native::use_instruction_set(before);
+}
+
+TEST(PointBatches, DrawLayersAndTakeWhatIsNotANumber) {
+    Array3f::Dense V = cloud(5000, 4);
+    V(100, 1) = std::numeric_limits<float>::quiet_NaN();
+    V(2000, 0) = std::numeric_limits<float>::infinity();
+    const Array3f points(V);
+    const PointBatches batches(points);
+    const PixelRect whole{0, 0, size.x(), size.y()};
+    PeelLimits limits;
+    limits.depths.assign(size_t(size.prod()), 0.02f);
+    PointSplats splats = splats_from(Vec3d(2, 1, 2), false);
+    splats.pixels = 1.7f;
+    const auto expected = drawn(points, splats, nullptr, whole, &limits);
+    EXPECT_EQ(drawn(points, splats, &batches, whole, &limits), expected);
+    EXPECT_GT(std::ranges::count_if(expected, [](uint64_t pixel) { return pixel != 0; }), 1000);
+}
+
+// Batches beside the picture are not looked at.
+TEST(PointBatches, AreDroppedAsAWhole) {
+    const Array3f V = cloud(200000, 5);
+    const PointBatches batches(V);
+    const PointSplats splats = splats_from(Vec3d(0, 0, 4), false);
+    const auto dropped = [&](const PixelRect& area) {
+        const Frustum frustum(splats.clip_from_mesh, size, area);
+        int count = 0;
+        for (size_t i = 0; i < batches.count(); ++i)
+            count += frustum.drops(batches.sphere_of(i).center, batches.sphere_of(i).radius);
+        return double(count) / double(batches.count());
+    };
+    EXPECT_EQ(dropped({0, 0, size.x(), size.y()}), 0);
+    EXPECT_GT(dropped({0, 0, 20, 120}), 0.8);
+    // A third of the picture's height is a third of what the camera sees of the cube, a batch a tenth.
+    EXPECT_GT(dropped({60, 40, 40, 40}), 0.4);
+    EXPECT_LT(dropped({60, 40, 40, 40}), 0.9);
+}
+
+TEST(BatchedClouds, AreMadeWhenACloudIsDrawnAgain) {
+    const Array3f large = cloud(1 << 15, 6), small = cloud(1000, 7);
+    BatchedClouds known;
+    EXPECT_EQ(known.draw(large), nullptr);
+    EXPECT_NE(known.draw(large), nullptr);
+    EXPECT_EQ(known.draw(small), nullptr);
+    EXPECT_EQ(known.draw(small), nullptr);
+}
+
+}  // namespace
+}  // namespace easypbr::render::point_batches_test
