@@ -375,6 +375,68 @@ void check_splats() {
     });
 }
 
+/// A camera that looks along -z, at numbers between -1 and 1 that are 3 away.
+void set_view(float (&clip)[4][4]) {
+    const float matrix[4][4] = {{1.5f, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, 0, -1}, {0, 0, 0.1f, 3}};
+    std::memcpy(clip, matrix, sizeof matrix);
+}
+
+void check_clusters() {
+    constexpr int vertices = 203, faces = 250;
+    all_sets("set_up_cluster", [&](Case& run) {
+        auto* corners = run.array<uint8_t>(3 * faces + stream_alignment);
+        for (int i = 0; i < 3 * faces; ++i) corners[i] = uint8_t(run.random.number(0, vertices - 1));
+        // Small enough to be kept, but in the last set.
+        const float reach = run.set % 5 == 4 ? 1.0f : 0.2f;
+        ClusterFaces cluster{.vertices = run.floats(3 * vertices + stream_alignment, -reach, reach),
+                             .corners = corners,
+                             .vertex_count = vertices,
+                             .face_count = faces,
+                             .half_width = 320,
+                             .half_height = 240,
+                             .left = 300,
+                             .top = 200,
+                             .right = 330,
+                             .bottom = 250,
+                             .both_sides = run.set % 3 == 0,
+                             .mirrored = run.set % 2 == 0};
+        set_view(cluster.clip_from_mesh);
+        auto* count = run.output<int32_t>(1, Kind::bits);
+        auto* kept = run.output<uint8_t>(faces, Kind::bits);
+        ClusterScreen screen;
+        *count = kernels.set_up_cluster(cluster, screen);
+        if (*count > 0) std::memcpy(kept, screen.kept, size_t(*count));
+    });
+}
+
+void check_points() {
+    constexpr int count = 199;
+    all_sets("set_up_points", [&](Case& run) {
+        PointBatch batch{.points = run.floats(3 * count + stream_alignment, -1, 1),
+                         .count = count,
+                         .half_width = 320,
+                         .half_height = 240,
+                         .left = 200,
+                         .top = 100,
+                         .right = 500,
+                         .bottom = 300,
+                         .pixels = 0.3f + 0.4f * float(run.set % 5),
+                         .world_pixels = run.set % 2 == 0 ? 0.0f : 4.0f,
+                         .round = run.set % 3 != 0};
+        set_view(batch.clip_from_mesh);
+        auto* found = run.output<int32_t>(1 + 4 * count, Kind::bits);
+        PointScreen screen;
+        found[0] = kernels.set_up_points(batch, screen);
+        for (int i = 0; i < found[0]; ++i) {
+            const int at = screen.kept[i];
+            found[1 + 4 * i] = at;
+            found[2 + 4 * i] = screen.column[at];
+            found[3 + 4 * i] = screen.line[at];
+            found[4 + 4 * i] = screen.covered[at];
+        }
+    });
+}
+
 }  // namespace
 }  // namespace easypbr::native
 
@@ -390,4 +452,6 @@ int main() {
     check_meshes();
     check_lines();
     check_splats();
+    check_clusters();
+    check_points();
 }

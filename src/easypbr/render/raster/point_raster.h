@@ -12,6 +12,7 @@
 #include "easypbr/native/shaders.h"
 #include "easypbr/render/raster/frustum.h"
 #include "easypbr/render/raster/point_batches.h"
+#include "easypbr/render/raster/whole_pixels.h"
 
 namespace easypbr::render {
 
@@ -26,17 +27,6 @@ struct PointSplats {
     std::function<bool(size_t point)> is_drawn = {};  ///< empty: all of them
     const PointBatches* batches = nullptr;            ///< of the cloud; null: there are none
 };
-
-// Columns and rows as numbers, no farther out than they matter: std::floor() is a call for processors without
-// SSE4.1.
-inline int floor_of(float place) {
-    const float near = std::clamp(place, -1e6f, 1e6f);
-    const int towards_zero = int(near);
-    return towards_zero - int(near < float(towards_zero));
-}
-inline int ceil_of(float place) {
-    return -floor_of(-place);
-}
 
 /// A point on a picture, with the half axes of its splat.
 struct ScreenPoint {

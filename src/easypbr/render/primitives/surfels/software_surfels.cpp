@@ -30,40 +30,73 @@ Eigen::Index surfel_of(uint64_t entry) {
 
 }  // namespace
 
+namespace {
+
+/// Tiles of the frame that a surfel reaches into: from the first up to the ends.
+struct TileRange {
+    int x0 = 0, x1 = 0, y0 = 0, y1 = 0;
+
+    TileRange(const SurfelProjection& s, Vec2i tiles) {
+        constexpr int size = SurfelTile::size;
+        const auto [left, right] = pixels_between(s.x0, s.x1, 0, tiles.x() * size);
+        const auto [top, bottom] = pixels_between(s.y0, s.y1, 0, tiles.y() * size);
+        if (left >= right || top >= bottom) return;
+        x0 = left / size;
+        x1 = (right - 1) / size + 1;
+        y0 = top / size;
+        y1 = (bottom - 1) / size + 1;
+    }
+    int count() const { return (x1 - x0) * (y1 - y0); }
+};
+
+/// In place of a tile's number: none, and more than one.
+constexpr uint32_t no_tile = UINT32_MAX, several_tiles = UINT32_MAX - 1;
+
+}  // namespace
+
 void SoftwareSurfels::bin(const std::vector<SurfelSource>& sources, Vec2i frame) {
     const Vec2i tiles = tiles_of(frame);
-    constexpr int tile_size = SurfelTile::size;
     const size_t tile_count = size_t(tiles.x()) * size_t(tiles.y());
-    const auto for_each_tile = [&](const SurfelProjection& s, auto&& body) {
-        const auto [x0, x1] = pixels_between(s.x0, s.x1, 0, tiles.x() * tile_size);
-        const auto [y0, y1] = pixels_between(s.y0, s.y1, 0, tiles.y() * tile_size);
-        if (x0 >= x1 || y0 >= y1) return;
-        for (int ty = y0 / tile_size; ty <= (y1 - 1) / tile_size; ++ty)
-            for (int tx = x0 / tile_size; tx <= (x1 - 1) / tile_size; ++tx)
-                body(size_t(ty) * size_t(tiles.x()) + size_t(tx));
-    };
-    const auto for_each_surfel = [&](auto&& body) {
-        for (size_t k = 0; k < sources.size(); ++k) {
-            const DrawItem& item = *sources[k].item;
-            const auto is_drawn = item.alpha == AlphaMode::mask ? drawn_vertices(item) : nullptr;
-            parallel_for(size_t(item.mesh().V.rows()), binning_grain, [&](size_t i) {
-                if (is_drawn && !is_drawn(i)) return;
-                if (const auto s = sources[k].projector.project(Eigen::Index(i)))
-                    for_each_tile(*s, [&](size_t tile) { body(tile, uint64_t(k) << 32 | i); });
-            });
-        }
+    const auto for_each_tile = [&](const TileRange& range, auto&& body) {
+        for (int y = range.y0; y < range.y1; ++y)
+            for (int x = range.x0; x < range.x1; ++x) body(size_t(y) * size_t(tiles.x()) + size_t(x));
     };
     std::vector<std::atomic<size_t>> counts(tile_count);
-    for_each_surfel([&](size_t tile, uint64_t) { counts[tile].fetch_add(1, std::memory_order_relaxed); });
+    const auto next_in = [&](size_t tile) { return counts[tile].fetch_add(1, std::memory_order_relaxed); };
+    std::vector<std::vector<uint32_t>> tile_of(sources.size());
+    for (size_t k = 0; k < sources.size(); ++k) {
+        const DrawItem& item = *sources[k].item;
+        const auto is_drawn = item.alpha == AlphaMode::mask ? drawn_vertices(item) : nullptr;
+        tile_of[k].assign(size_t(item.mesh().V.rows()), no_tile);
+        parallel_for(tile_of[k].size(), binning_grain, [&](size_t i) {
+            if (is_drawn && !is_drawn(i)) return;
+            const auto s = sources[k].projector.project(Eigen::Index(i));
+            if (!s) return;
+            const TileRange range(*s, tiles);
+            if (range.count() > 0) tile_of[k][i] = several_tiles;
+            for_each_tile(range, [&](size_t tile) {
+                next_in(tile);
+                if (range.count() == 1) tile_of[k][i] = uint32_t(tile);
+            });
+        });
+    }
     first_.assign(tile_count + 1, 0);
     for (size_t i = 0; i < tile_count; ++i) {
         first_[i + 1] = first_[i] + counts[i];
         counts[i] = first_[i];
     }
     entries_.resize(first_.back());
-    for_each_surfel([&](size_t tile, uint64_t entry) {
-        entries_[counts[tile].fetch_add(1, std::memory_order_relaxed)] = entry;
-    });
+    for (size_t k = 0; k < sources.size(); ++k)
+        parallel_for(tile_of[k].size(), binning_grain, [&](size_t i) {
+            const uint32_t tile = tile_of[k][i];
+            const uint64_t entry = uint64_t(k) << 32 | i;
+            if (tile == no_tile) return;
+            if (tile != several_tiles)
+                entries_[next_in(tile)] = entry;
+            else
+                for_each_tile(TileRange(*sources[k].projector.project(Eigen::Index(i)), tiles),
+                              [&](size_t several) { entries_[next_in(several)] = entry; });
+        });
 }
 
 void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<SurfelSource>& sources,
@@ -77,20 +110,23 @@ void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<SurfelSour
     t.for_all([&](int x, int y, size_t i) {
         t.hidden[i] = axial_distance(frame, opaque[size_t(y) * size_t(frame.size.x()) + size_t(x)]);
     });
-    for (const uint64_t entry : entries) {
-        const auto s = sources[entry >> 32].projector.project(surfel_of(entry));
-        t.for_covered(*s, [&](size_t i, const SurfelProjection::Hit& hit) {
-            const float pushed = hit.z + s->band;
+    t.project(sources, entries);
+    for (size_t k = 0; k < entries.size(); ++k) {
+        const uint64_t entry = entries[k];
+        const SurfelProjection& s = t.projections[k];
+        t.for_covered(s, [&](size_t i, const SurfelProjection::Hit& hit) {
+            const float pushed = hit.z + s.band;
             if (hit.z > t.hidden[i] || pushed > t.limit[i] || (pushed == t.limit[i] && entry > t.nearest[i]))
                 return;
             t.limit[i] = pushed;
             t.nearest[i] = entry;
         });
     }
-    for (const uint64_t entry : entries)
-        t.add<false>(sources[entry >> 32], surfel_of(entry), [&](size_t i, const SurfelProjection::Hit& hit) {
-            return hit.z <= t.hidden[i] && hit.z <= t.limit[i];
-        });
+    for (size_t k = 0; k < entries.size(); ++k)
+        t.add<false>(sources[entries[k] >> 32], surfel_of(entries[k]), t.projections[k],
+                     [&](size_t i, const SurfelProjection::Hit& hit) {
+                         return hit.z <= t.hidden[i] && hit.z <= t.limit[i];
+                     });
     t.for_all([&](int x, int y, size_t i) {
         if (t.sums[i][SurfelTile::weight] == 0) return;
         SurfacePixel pixel = t.mean(frame, *sources[t.nearest[i] >> 32].item, i);
@@ -147,21 +183,21 @@ bool SoftwareSurfels::add_layer(const Frame& frame, const std::vector<SurfelSour
         for (auto& sum : t.sums) sum.fill(0);
         t.for_all(
             [&](int x, int y, size_t i) { t.hidden[i] = is_inside(x, y) ? ends_[k][in_area(x, y)] : 0; });
-        for (const uint64_t entry : own) {
-            const auto s = sources[k].projector.project(surfel_of(entry));
-            t.for_covered(*s, [&](size_t i, const SurfelProjection::Hit& hit) {
+        t.project(sources, own);
+        for (const SurfelProjection& s : t.projections)
+            t.for_covered(s, [&](size_t i, const SurfelProjection::Hit& hit) {
                 float& limit = t.limit[i];
                 if (hit.z >= t.hidden[i]) return;
                 // Before the near plane all bands end alike.
-                limit = limits.farthest ? std::max(limit, std::max(hit.z - s->band, near))
-                                        : std::min(limit, hit.z + s->band);
+                limit = limits.farthest ? std::max(limit, std::max(hit.z - s.band, near))
+                                        : std::min(limit, hit.z + s.band);
             });
-        }
-        for (const uint64_t entry : own)
-            t.add<true>(sources[k], surfel_of(entry), [&](size_t i, const SurfelProjection::Hit& hit) {
-                const bool in_band = limits.farthest ? hit.z >= t.limit[i] : hit.z <= t.limit[i];
-                return hit.z < t.hidden[i] && in_band;
-            });
+        for (size_t n = 0; n < own.size(); ++n)
+            t.add<true>(sources[k], surfel_of(own[n]), t.projections[n],
+                        [&](size_t i, const SurfelProjection::Hit& hit) {
+                            const bool in_band = limits.farthest ? hit.z >= t.limit[i] : hit.z <= t.limit[i];
+                            return hit.z < t.hidden[i] && in_band;
+                        });
         t.for_all([&](int x, int y, size_t i) {
             if (t.sums[i][SurfelTile::weight] == 0) return;
             const SurfacePixel pixel = t.mean(frame, *sources[k].item, i);

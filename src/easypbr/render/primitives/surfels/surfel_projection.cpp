@@ -68,7 +68,8 @@ std::optional<SurfelProjection> SurfelProjector::project(Eigen::Index i) const {
     s.z_b = axial(b, 0);
     const float q_ww = wt * wt + wb * wb - s.wc * s.wc;
     // All of it must lie beyond the near plane.
-    if (!(s.wc > 0 && q_ww < 0 && s.z_c - std::hypot(s.z_t, s.z_b) > near_ * 0.999f)) return {};
+    if (!(s.wc > 0 && q_ww < 0 && s.z_c - std::sqrt(s.z_t * s.z_t + s.z_b * s.z_b) > near_ * 0.999f))
+        return {};
     s.centre_x = (clip(0, p, 1) / s.wc + 1) * 0.5f * width_;
     s.centre_y = (1 - clip(1, p, 1) / s.wc) * 0.5f * height_;
     const auto pixel_x = [&](const Vec3& v, float w) {
@@ -96,6 +97,18 @@ std::optional<SurfelProjection> SurfelProjector::project(Eigen::Index i) const {
     if (!(s.x1 > 0 && s.x0 < width_ && s.y1 > 0 && s.y0 < height_)) return {};
     s.band = std::max(t.norm(), b.norm()) * world_from_mesh_.col(0).norm();
     return s;
+}
+
+void SurfelProjector::prefetch(Eigen::Index i) const {
+    const MeshData& mesh = item_->mesh();
+    const auto of = [&](const auto& array) {
+        if (!array.empty()) __builtin_prefetch(array.data() + i * array.cols());
+    };
+    of(mesh.V);
+    of(mesh.N);
+    of(mesh.T);
+    of(mesh.B);
+    if (item_->with_colors) of(mesh.C);
 }
 
 Vec3 SurfelProjector::normal(Eigen::Index i) const {

@@ -74,6 +74,9 @@ class SurfelProjector {
     /// Nothing for a surfel before the near plane or outside of the picture.
     std::optional<SurfelProjection> project(Eigen::Index i) const;
 
+    /// Asks for what the others read of a surfel, and its colour.
+    void prefetch(Eigen::Index i) const;
+
     /// Unit normal in world space, towards the viewer.
     Vec3 normal(Eigen::Index i) const;
 

@@ -12,6 +12,18 @@ void SurfelTile::place(Vec2i frame, Vec2i tile) {
     bottom = std::min(top + size, frame.y());
 }
 
+void SurfelTile::project(const std::vector<SurfelSource>& sources, std::span<const uint64_t> entries) {
+    const auto surfel_of = [](uint64_t entry) { return Eigen::Index(entry & 0xffffffffu); };
+    // Neighbours on the screen may be far apart in memory: what they read is asked for ahead of their turn.
+    constexpr size_t ahead = 12;
+    projections.clear();
+    for (size_t k = 0; k < entries.size(); ++k) {
+        if (k + ahead < entries.size())
+            sources[entries[k + ahead] >> 32].projector.prefetch(surfel_of(entries[k + ahead]));
+        projections.push_back(*sources[entries[k] >> 32].projector.project(surfel_of(entries[k])));
+    }
+}
+
 std::array<float, SurfelTile::channels> SurfelTile::values_of(const SurfelSource& source,
                                                               Eigen::Index surfel) {
     const DrawItem& item = *source.item;

@@ -5,10 +5,13 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "easypbr/render/primitives/surfels/surfel_projection.h"
 #include "easypbr/render/raster/surface_writer.h"
+#include "easypbr/render/raster/whole_pixels.h"
 
 namespace easypbr::render {
 
@@ -31,7 +34,7 @@ inline float axial_distance(const Frame& frame, float depth) {
 
 /// First and one past the last pixel of a row or column whose centres lie in [low, high].
 inline std::pair<int, int> pixels_between(float low, float high, int begin, int end) {
-    return {std::max(begin, int(std::ceil(low - 0.5f))), std::min(end, int(std::floor(high - 0.5f)) + 1)};
+    return {std::max(begin, ceil_of(low - 0.5f)), std::min(end, floor_of(high - 0.5f) + 1)};
 }
 
 /// Limits are axial distances. Sums are of whole numbers, so that the order of the surfels does not matter.
@@ -60,7 +63,11 @@ struct SurfelTile {
     std::array<uint64_t, most_pixels> nearest;
     std::array<std::array<int64_t, channels>, most_pixels> sums;
 
+    std::vector<SurfelProjection> projections;  ///< of project()
+
     void place(Vec2i frame, Vec2i tile);
+    /// Projects the surfels of entries: source in the upper, surfel in the lower half.
+    void project(const std::vector<SurfelSource>& sources, std::span<const uint64_t> entries);
     size_t index(int x, int y) const { return size_t(y - top) * size + size_t(x - left); }
 
     /// Calls body(x, y, index) for all pixels.
@@ -80,9 +87,10 @@ struct SurfelTile {
                     body(index(x, y), hit);
     }
 
-    /// Adds a surfel to the pixels where `takes(index, hit)` says so; their limits are set.
+    /// Adds a surfel, whose projection that is, to the pixels where `takes(index, hit)` says so; their limits
+    /// are set.
     template <bool is_layer, class Takes>
-    void add(const SurfelSource& source, Eigen::Index surfel, Takes&& takes);
+    void add(const SurfelSource& source, Eigen::Index surfel, const SurfelProjection& s, Takes&& takes);
     /// The mean surface of a pixel whose weights are not 0, but for its object and element.
     SurfacePixel mean(const Frame& frame, const DrawItem& item, size_t i) const;
 
@@ -95,11 +103,11 @@ struct SurfelTile {
 };
 
 template <bool is_layer, class Takes>
-void SurfelTile::add(const SurfelSource& source, Eigen::Index surfel, Takes&& takes) {
+void SurfelTile::add(const SurfelSource& source, Eigen::Index surfel, const SurfelProjection& s,
+                     Takes&& takes) {
     constexpr size_t summed = is_layer ? channels : opacity;
-    const auto s = source.projector.project(surfel);
     std::array<float, channels> values = values_of(source, surfel);
-    for_covered(*s, [&](size_t i, const SurfelProjection::Hit& hit) {
+    for_covered(s, [&](size_t i, const SurfelProjection::Hit& hit) {
         if (!takes(i, hit)) return;
         // Relative to the limit: the sum of small numbers keeps the distance's precision.
         values[distance] = (limit[i] - hit.z) / limit[i];
