@@ -62,10 +62,16 @@ for mode in ("points", "surfels"):
     view.settings.style.mode = mode
     assert 0 < view.render()[..., 3].max() < 255
 view.settings.style.overlay = True
+assert 0 < view.render()[..., 3].max() < 255
+box = shapes.box()
+box.material.shader = "void surface(inout Surface s) { s.roughness = 0.3; }"
+view.settings.style.mode = "mesh"
+scene.show(box, "box")
 try:
     view.render()
 except easypbr.ContextError as error:
     print(error)
+scene.show(shapes.box(), "box")
 view.settings.material.opacity, view.settings.material.transmission, view.settings.style.overlay = 1, 0, False
 view.add_light("lamp", "directional", direction=(0.3, -1, -0.5))
 assert view.render()[..., 3].max() == 255

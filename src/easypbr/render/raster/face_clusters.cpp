@@ -161,7 +161,8 @@ FaceClusters::FaceClusters(const Array3f& V, const Array3i& F, const MeshPart& p
 const FaceClusters* ClusteredMeshes::draw(const MeshData& mesh, const MeshPart& part) {
     if (part.face_count < small_part) return nullptr;
     Entry& entry = entries_.get(key_of(mesh, part), [] { return Entry(); });
-    if (++entry.draws == 2) entry.clusters = FaceClusters(mesh.V, mesh.F, part);
+    if (entry.draws == 1) entry.clusters = FaceClusters(mesh.V, mesh.F, part);
+    ++entry.draws;
     return find(mesh, part);
 }
 

@@ -42,7 +42,8 @@ int PointBatches::size_of(size_t batch) const {
 const PointBatches* BatchedClouds::draw(const Array3f& V) {
     if (V.rows() < small_cloud) return nullptr;
     Entry& entry = entries_.get(V.revision(), [] { return Entry(); });
-    if (++entry.draws == 2) entry.batches = PointBatches(V);
+    if (entry.draws == 1) entry.batches = PointBatches(V);
+    ++entry.draws;
     return entry.batches.count() > 0 ? &entry.batches : nullptr;
 }
 
