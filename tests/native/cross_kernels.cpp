@@ -2,6 +2,7 @@
 // with each of several sets of features. scripts/check_aarch64.sh compares what two processors print.
 #include "cross_inputs.h"
 
+#include <algorithm>
 #include <cstdlib>
 
 namespace easypbr::native {
@@ -385,7 +386,7 @@ void check_clusters() {
     constexpr int vertices = 203, faces = 250;
     all_sets("set_up_cluster", [&](Case& run) {
         auto* corners = run.array<uint8_t>(3 * faces + stream_alignment);
-        for (int i = 0; i < 3 * faces; ++i) corners[i] = uint8_t(run.random.number(0, vertices - 1));
+        for (int i = 0; i < 3 * faces; ++i) corners[i] = uint8_t(run.random.below(vertices));
         // Small enough to be kept, but in the last set.
         const float reach = run.set % 5 == 4 ? 1.0f : 0.2f;
         ClusterFaces cluster{.vertices = run.floats(3 * vertices + stream_alignment, -reach, reach),
@@ -403,9 +404,11 @@ void check_clusters() {
         set_view(cluster.clip_from_mesh);
         auto* count = run.output<int32_t>(1, Kind::bits);
         auto* kept = run.output<uint8_t>(faces, Kind::bits);
+        auto* depths = run.output<float>(vertices, Kind::floats);
         ClusterScreen screen;
         *count = kernels.set_up_cluster(cluster, screen);
         if (*count > 0) std::memcpy(kept, screen.kept, size_t(*count));
+        if (*count >= 0) std::copy_n(screen.depth, vertices, depths);
     });
 }
 
@@ -425,10 +428,12 @@ void check_points() {
                          .round = run.set % 3 != 0};
         set_view(batch.clip_from_mesh);
         auto* found = run.output<int32_t>(1 + 4 * count, Kind::bits);
+        auto* depths = run.output<float>(count, Kind::floats);
         PointScreen screen;
         found[0] = kernels.set_up_points(batch, screen);
         for (int i = 0; i < found[0]; ++i) {
             const int at = screen.kept[i];
+            depths[i] = screen.depth[at];
             found[1 + 4 * i] = at;
             found[2 + 4 * i] = screen.column[at];
             found[3 + 4 * i] = screen.line[at];
