@@ -40,7 +40,7 @@ std::vector<uint32_t> places_of(const Array3f& V, size_t count,
                                 const std::function<size_t(size_t)>& vertex_of) {
     constexpr int cells = 1 << 10;
     const Box3 box = box_of(V);
-    const Vec3 low = box.min();
+    const Vec3& low = box.min();
     const float scale = cells / std::max(box.sizes().maxCoeff(), std::numeric_limits<float>::min());
     std::vector<uint32_t> places(count);
     parallel_for(count, size_t(1) << 14, [&](size_t i) {
