@@ -10,7 +10,7 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/core/picture.h"
 #include "easypbr/native/shaders.h"
-#include "easypbr/render/raster/frustum.h"
+#include "easypbr/render/raster/culling.h"
 #include "easypbr/render/raster/point_batches.h"
 #include "easypbr/render/raster/whole_pixels.h"
 

@@ -14,8 +14,8 @@
 #include "easypbr/core/parallel.h"
 #include "easypbr/native/shaders.h"
 #include "easypbr/render/frame/frame.h"
+#include "easypbr/render/raster/culling.h"
 #include "easypbr/render/raster/face_clusters.h"
-#include "easypbr/render/raster/frustum.h"
 #include "easypbr/scene/array.h"
 
 namespace easypbr::render {
@@ -31,22 +31,6 @@ struct ScreenTriangles {
     bool both_sides = false, mirrored = false;
     bool clips = false;  ///< what crosses the near plane is cut there; else nothing is drawn then
     const FaceClusters* clusters = nullptr;  ///< of these faces; null: there are none
-};
-
-/// Which clusters are outside of the picture, or turned away as a whole.
-class ClusterCulling {
-  public:
-    /// Of `area`, a part of a picture of that size.
-    ClusterCulling(const ScreenTriangles& triangles, Vec2i size, const PixelRect& area);
-    bool drops(const FaceClusters::Cluster& cluster) const;
-    /// Nothing of a box would have to be clipped.
-    bool is_inside(const Box3& box) const;
-
-  private:
-    Frustum frustum_;
-    Mat4 clip_from_mesh_;
-    Vec2 half_;
-    Vec4 eye_;  ///< the faces whose planes it is in front of are dropped; 0: none are
 };
 
 /// Rules as OpenGL's: 8 bits of sub-pixel precision, top-left.

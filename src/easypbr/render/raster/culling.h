@@ -1,12 +1,15 @@
-// What is outside of a picture.
+// What is left out as a whole: outside of a picture, or turned away.
 #pragma once
 
 #include <array>
 
 #include "easypbr/core/math.h"
 #include "easypbr/core/picture.h"
+#include "easypbr/render/raster/face_clusters.h"
 
 namespace easypbr::render {
+
+struct ScreenTriangles;
 
 class Frustum {
   public:
@@ -28,6 +31,22 @@ class Frustum {
         float length;  ///< of its first three components
     };
     std::array<Plane, 5> planes_;
+};
+
+/// Which clusters are outside of the picture, or turned away as a whole.
+class ClusterCulling {
+  public:
+    /// Of `area`, a part of a picture of that size.
+    ClusterCulling(const ScreenTriangles& triangles, Vec2i size, const PixelRect& area);
+    bool drops(const FaceClusters::Cluster& cluster) const;
+    /// Nothing of a box would have to be clipped.
+    bool is_inside(const Box3& box) const;
+
+  private:
+    Frustum frustum_;
+    Mat4 clip_from_mesh_;
+    Vec2 half_;
+    Vec4 eye_;  ///< the faces whose planes it is in front of are dropped; 0: none are
 };
 
 }  // namespace easypbr::render
