@@ -28,6 +28,10 @@ constexpr float margin = 0.05f;
 /// The same for spheres around clusters, in parts of their radius.
 constexpr float wider = 1.001f;
 
+/// Where nothing has to be clipped, a pixel smaller.
+constexpr int guard = int(native::ClusterFaces::guard_band) - 1;
+constexpr PixelRect drawn_unclipped{-guard, -guard, 2 * guard, 2 * guard};
+
 }  // namespace
 
 Frustum::Frustum(const Mat4& m, Vec2i size, const PixelRect& area, float pixels, float pixels_times_w) {
@@ -41,14 +45,13 @@ Frustum::Frustum(const Mat4& m, Vec2i size, const PixelRect& area, float pixels,
     const Vec4 across = Vec4(Vec4::Unit(3)) * (pixels_times_w / half.x()),
                along = Vec4(Vec4::Unit(3)) * (pixels_times_w / half.y());
     const Vec4 planes[] = {x - left * w + across, right * w - x + across, y - bottom * w + along,
-                           top * w - y + along, w - Vec4(m.row(2))};
+                           top * w - y + along,   w - Vec4(m.row(2)),     m.row(2)};
     for (size_t i = 0; i < planes_.size(); ++i) planes_[i] = {planes[i], planes[i].head<3>().norm()};
 }
 
 ClusterCulling::ClusterCulling(const ScreenTriangles& t, Vec2i size, const PixelRect& area)
     : frustum_(t.clip_from_mesh, size, area),
-      clip_from_mesh_(t.clip_from_mesh),
-      half_(size.cast<float>() / 2),
+      unclipped_(t.clip_from_mesh, size, drawn_unclipped, 0),
       eye_(Vec4::Zero()) {
     if (t.both_sides) return;
     eye_ = t.mirrored ? Vec4(-eye_of(t.clip_from_mesh)) : eye_of(t.clip_from_mesh);
@@ -64,18 +67,8 @@ bool ClusterCulling::drops(const FaceClusters::Cluster& cluster) const {
            (cluster.spread + margin) * towards.norm() + radius * std::abs(eye_.w());
 }
 
-bool ClusterCulling::is_inside(const Box3& box) const {
-    if (box.isEmpty()) return false;
-    const float guard = native::ClusterFaces::guard_band - 1;
-    for (int corner = 0; corner < 8; ++corner) {
-        const Vec3 p = box.corner(Box3::CornerType(corner));
-        const Vec4 clip = clip_from_mesh_ * Vec4(p.x(), p.y(), p.z(), 1);
-        const Vec3 ndc = clip.head<3>() / clip.w();
-        if (!(clip.w() > 0 && ndc.z() > 0 && ndc.z() <= 1)) return false;
-        if (!(std::abs(ndc.x() + 1) * half_.x() < guard && std::abs(1 - ndc.y()) * half_.y() < guard))
-            return false;
-    }
-    return true;
+bool ClusterCulling::is_inside(const FaceClusters::Cluster& cluster) const {
+    return unclipped_.holds(cluster.center, wider * cluster.radius);
 }
 
 }  // namespace easypbr::render

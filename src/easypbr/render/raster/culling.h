@@ -23,6 +23,12 @@ class Frustum {
             if (p.plane.head<3>().dot(center) + p.plane.w() < -radius * p.length) return true;
         return false;
     }
+    /// All of a sphere is inside.
+    bool holds(const Vec3& center, float radius) const {
+        for (const Plane& p : planes_)
+            if (!(p.plane.head<3>().dot(center) + p.plane.w() > radius * p.length)) return false;
+        return true;
+    }
 
   private:
     /// Homogeneous points are outside where its product with them is negative.
@@ -30,7 +36,7 @@ class Frustum {
         Vec4 plane;
         float length;  ///< of its first three components
     };
-    std::array<Plane, 5> planes_;
+    std::array<Plane, 6> planes_;
 };
 
 /// Which clusters are outside of the picture, or turned away as a whole.
@@ -39,13 +45,11 @@ class ClusterCulling {
     /// Of `area`, a part of a picture of that size.
     ClusterCulling(const ScreenTriangles& triangles, Vec2i size, const PixelRect& area);
     bool drops(const FaceClusters::Cluster& cluster) const;
-    /// Nothing of a box would have to be clipped.
-    bool is_inside(const Box3& box) const;
+    /// Nothing of a cluster would have to be clipped; false where its sphere alone does not tell.
+    bool is_inside(const FaceClusters::Cluster& cluster) const;
 
   private:
-    Frustum frustum_;
-    Mat4 clip_from_mesh_;
-    Vec2 half_;
+    Frustum frustum_, unclipped_;
     Vec4 eye_;  ///< the faces whose planes it is in front of are dropped; 0: none are
 };
 

@@ -152,10 +152,6 @@ FaceClusters::FaceClusters(const Array3f& V, const Array3i& F, const MeshPart& p
     for (const auto& piece : pieces) all += piece.size();
     clusters_.reserve(all);
     for (const auto& piece : pieces) clusters_.insert(clusters_.end(), piece.begin(), piece.end());
-    for (const Cluster& cluster : clusters_) {
-        box_.extend(cluster.center - Vec3::Constant(cluster.radius));
-        box_.extend(cluster.center + Vec3::Constant(cluster.radius));
-    }
 }
 
 const FaceClusters* ClusteredMeshes::draw(const MeshData& mesh, const MeshPart& part) {

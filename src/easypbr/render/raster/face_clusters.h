@@ -43,7 +43,6 @@ class FaceClusters {
         const size_t place = size_t(cluster.first_face) + size_t(face);
         return order_.empty() ? uint32_t(place) : order_[place];
     }
-    const Box3& box() const { return box_; }
 
   private:
     /// Makes the clusters of consecutive faces; `vertices` becomes what they refer to.
@@ -54,7 +53,6 @@ class FaceClusters {
     std::vector<std::vector<float>> vertices_;  ///< copies: those of a cluster are together in memory
     std::vector<uint8_t> corners_;
     std::vector<uint32_t> order_;  ///< faces by place; empty: in their own order
-    Box3 box_;
 };
 
 /// The clusters of parts of meshes, by the revisions of their geometry.

@@ -162,6 +162,8 @@ class TriangleRaster {
 
     Window rows(int first, int last) const { return {size_, area_, first, last}; }
     bool project(const ScreenTriangles& triangles);
+    /// The same of clusters, none of which is drawn yet.
+    bool needs_no_clipping(const ScreenTriangles& triangles, const ClusterCulling& culling) const;
     template <class Put>
     void draw_clusters(const ScreenTriangles& triangles, const ClusterCulling& culling, const Put& put) const;
     template <class Put>
@@ -201,7 +203,7 @@ template <class Put>
 bool TriangleRaster::draw(const ScreenTriangles& t, const Put& put) {
     if (t.clusters) {
         const ClusterCulling culling(t, size_, area_);
-        if (t.clips || culling.is_inside(t.clusters->box())) {
+        if (t.clips || needs_no_clipping(t, culling)) {
             draw_clusters(t, culling, put);
             return true;
         }
@@ -405,6 +407,22 @@ void TriangleRaster::Window::fill(const Vertex& a, const Vertex& b, const Vertex
         }
         ab.value += ab.step_y, bc.value += bc.step_y, ca.value += ca.step_y;
     }
+}
+
+inline bool TriangleRaster::needs_no_clipping(const ScreenTriangles& t, const ClusterCulling& culling) const {
+    const std::span<const FaceClusters::Cluster> clusters = t.clusters->clusters();
+    const Projection projection(t, size_);
+    std::atomic<bool> inside{true};
+    parallel_for(clusters.size(), cluster_grain, [&](size_t i) {
+        const FaceClusters::Cluster& c = clusters[i];
+        if (culling.is_inside(c)) return;
+        for (int k = 0; k < c.vertex_count; ++k) {
+            const float p[] = {c.vertices[k], c.vertices[c.vertex_count + k],
+                               c.vertices[2 * c.vertex_count + k]};
+            if (!(projection(p).depth > 0)) inside = false;
+        }
+    });
+    return inside;
 }
 
 inline bool TriangleRaster::project(const ScreenTriangles& t) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <span>
 
+#include "easypbr/core/parallel.h"
 #include "easypbr/gl/context.h"
 
 namespace easypbr::render {
@@ -55,10 +56,14 @@ void ShadowPass::draw_rest(const ShadowView& view, int resolution, const std::ve
 void ShadowPass::draw(const ShadowView& view, const DrawList& list, int resolution, std::span<float> layer) {
     ShadowDepths depths(depths_, resolution);
     const std::vector<Casters> left = rasterise(view, list, true, depths);
-    if (depths.empty())
-        std::ranges::fill(layer, no_shadow_depth);
-    else
-        std::ranges::copy(std::as_bytes(depths_.bits()), std::as_writable_bytes(layer).begin());
+    parallel_chunks(layer.size(), size_t(1) << 16, [&](size_t begin, size_t end) {
+        const std::span<float> part = layer.subspan(begin, end - begin);
+        if (depths.empty())
+            std::ranges::fill(part, no_shadow_depth);
+        else
+            std::ranges::copy(std::as_bytes(depths_.bits().subspan(begin, part.size())),
+                              std::as_writable_bytes(part).begin());
+    });
     if (std::ranges::all_of(left, &Casters::empty)) return;
 
     gl::Texture map(gl::Format::r32f, resolution, resolution);
