@@ -50,7 +50,7 @@ class ClusterCulling {
 
   private:
     Frustum frustum_, unclipped_;
-    Vec4 eye_;  ///< the faces whose planes it is in front of are dropped; 0: none are
+    Vec4 eye_;  ///< faces that have it behind their planes are dropped; 0: none are
 };
 
 }  // namespace easypbr::render

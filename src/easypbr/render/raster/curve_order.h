@@ -11,8 +11,8 @@
 namespace easypbr::render {
 
 /// The numbers [0, count) by Morton's curve through a grid of 1024^3 cells around all vertices, those of a
-/// cell in their own order; `vertex_of` tells where each is. On all cores. The same as
-/// geometry/spatial_order.h does for points, but of whatever has a vertex, in parallel, and for any number.
+/// cell in their own order; `vertex_of` tells where each is. As geometry/spatial_order.h for points, but of
+/// whatever has a vertex, and vertices may be no numbers.
 std::vector<uint32_t> curve_order(const Array3f& V, size_t count,
                                   const std::function<size_t(size_t)>& vertex_of);
 

@@ -24,10 +24,6 @@ std::span<const uint64_t> entries_of_source(std::span<const uint64_t> entries, s
     return {begin, end};
 }
 
-Eigen::Index surfel_of(uint64_t entry) {
-    return Eigen::Index(entry & 0xffffffffu);
-}
-
 }  // namespace
 
 namespace {
@@ -73,10 +69,9 @@ void SoftwareSurfels::bin(const std::vector<SurfelSource>& sources, Vec2i frame)
             const auto s = sources[k].projector.project(Eigen::Index(i));
             if (!s) return;
             const TileRange range(*s, tiles);
-            if (range.count() > 0) tile_of[k][i] = several_tiles;
             for_each_tile(range, [&](size_t tile) {
                 next_in(tile);
-                if (range.count() == 1) tile_of[k][i] = uint32_t(tile);
+                tile_of[k][i] = range.count() == 1 ? uint32_t(tile) : several_tiles;
             });
         });
     }

@@ -13,7 +13,6 @@ void SurfelTile::place(Vec2i frame, Vec2i tile) {
 }
 
 void SurfelTile::project(const std::vector<SurfelSource>& sources, std::span<const uint64_t> entries) {
-    const auto surfel_of = [](uint64_t entry) { return Eigen::Index(entry & 0xffffffffu); };
     // Neighbours on the screen may be far apart in memory: what they read is asked for ahead of their turn.
     constexpr size_t ahead = 12;
     projections.clear();

@@ -21,6 +21,11 @@ struct SurfelSource {
     SurfelProjector projector;
 };
 
+/// Of an entry: source in the upper, surfel in the lower half.
+inline Eigen::Index surfel_of(uint64_t entry) {
+    return Eigen::Index(entry & 0xffffffffu);
+}
+
 inline float reversed_depth(const Frame& frame, float z) {
     const float near = float(frame.camera.near), far = float(frame.camera.far);
     return frame.orthographic() ? (far - z) / (far - near) : near / z;
@@ -66,7 +71,7 @@ struct SurfelTile {
     std::vector<SurfelProjection> projections;  ///< of project()
 
     void place(Vec2i frame, Vec2i tile);
-    /// Projects the surfels of entries: source in the upper, surfel in the lower half.
+    /// Projects the surfels of entries.
     void project(const std::vector<SurfelSource>& sources, std::span<const uint64_t> entries);
     size_t index(int x, int y) const { return size_t(y - top) * size + size_t(x - left); }
 
