@@ -47,6 +47,22 @@ TEST(Facing, EveryComponentCounts) {
     EXPECT_TRUE(is_closed_outward(points(V), faces(F)));
 }
 
+// More faces than one thread looks through at once, those of a component far from each other.
+TEST(Facing, ManyComponentsInAnyOrder) {
+    const int count = 30000;
+    Eigen::MatrixXf V(4 * count, 3);
+    Eigen::MatrixXi F(4 * count, 3);
+    for (int i = 0; i < count; ++i) {
+        V.middleRows(4 * i, 4) = corners.rowwise() + Eigen::RowVector3f(float(2 * i), 0, 0);
+        for (int k = 0; k < 4; ++k) F.row(k * count + i) = outward.row(k).array() + 4 * i;
+    }
+    EXPECT_TRUE(is_closed_outward(points(V), faces(F)));
+    for (int k = 0; k < 4; ++k) F.row(k * count + 777) = F.row(k * count + 777).reverse().eval();
+    EXPECT_FALSE(is_closed_outward(points(V), faces(F)));
+    F.row(777) = F.row(777).reverse().eval();
+    EXPECT_FALSE(is_closed_outward(points(V), faces(F)));
+}
+
 /// Each face with corners of its own, as creases have them.
 Eigen::MatrixXf unshared(const Eigen::MatrixXi& F) {
     Eigen::MatrixXf V(F.size(), 3);

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "easypbr/core/background.h"
 #include "easypbr/native/shaders.h"
 #include "easypbr/render/raster/visibility.h"
 #include "easypbr/scene/camera.h"
@@ -152,9 +153,13 @@ TEST(BatchedClouds, AreMadeWhenACloudIsDrawnAgain) {
     const Array3f large = cloud(1 << 15, 6), small = cloud(1000, 7);
     BatchedClouds known;
     EXPECT_EQ(known.draw(large), nullptr);
+    known.draw(large);
+    BackgroundWork::wait_for_all();
     EXPECT_NE(known.draw(large), nullptr);
-    EXPECT_EQ(known.draw(small), nullptr);
-    EXPECT_EQ(known.draw(small), nullptr);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_EQ(known.draw(small), nullptr);
+        BackgroundWork::wait_for_all();
+    }
 }
 
 }  // namespace

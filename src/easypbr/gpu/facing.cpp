@@ -1,8 +1,11 @@
 #include "easypbr/gpu/facing.h"
 
+#include <algorithm>
 #include <atomic>
 #include <bit>
 #include <numeric>
+#include <unordered_map>
+#include <utility>
 #include <vector>
 
 #include "easypbr/core/math.h"
@@ -12,6 +15,15 @@ namespace easypbr::gpu {
 namespace {
 
 constexpr size_t face_grain = 1 << 15;
+
+/// Asks for what belongs to the corners of a face some steps ahead: neighbours may be far apart in memory.
+template <class Value>
+void prefetch(const Array3i& F, size_t face, size_t end, const Value* values, size_t values_each) {
+    constexpr size_t ahead = 16;
+    if (face + ahead >= end) return;
+    for (size_t k = 0; k < 3; ++k)
+        __builtin_prefetch(values + values_each * size_t(F.data()[3 * (face + ahead) + k]));
+}
 
 /// A random-looking number for a number (splitmix64's finaliser).
 uint64_t scattered(uint64_t x) {
@@ -23,7 +35,8 @@ uint64_t scattered(uint64_t x) {
 
 /// The same for an undirected edge, negated for one of its directions.
 uint64_t directed_edge(uint64_t a, uint64_t b) {
-    return a < b ? scattered(scattered(a) + b) : -scattered(scattered(b) + a);
+    const uint64_t edge = scattered(std::rotl(std::max(a, b), 32) + std::min(a, b)), sign = a < b ? 0 : ~0ull;
+    return (edge ^ sign) - sign;
 }
 
 /// Every edge is run through as often in one direction as in the other. The sum of random numbers, negated
@@ -65,41 +78,111 @@ std::vector<int32_t> first_at_place(const Array3f& V) {
     return first;
 }
 
-int32_t find_root(std::vector<int32_t>& parent, int32_t i) {
-    while (parent[size_t(i)] != i) i = parent[size_t(i)] = parent[size_t(parent[size_t(i)])];
-    return i;
+/// Sets of numbers that threads join at once. Each points at a smaller one of its set, the least of all at
+/// itself, so that the sets do not depend on the order in which they were joined (Anderson and Woll,
+/// Wait-free parallel algorithms for the union-find problem, 1991).
+class JoinedSets {
+  public:
+    explicit JoinedSets(std::vector<int32_t> parent) : parent_(std::move(parent)) {}
+    const int32_t* parents() const { return parent_.data(); }
+    void join(int32_t a, int32_t b) {
+        for (;;) {
+            a = root_of(a), b = root_of(b);
+            if (a == b) return;
+            if (a < b) std::swap(a, b);
+            int32_t own = a;  // Unless another thread has given it a parent in the meantime.
+            if (parent(a).compare_exchange_strong(own, b, std::memory_order_relaxed)) return;
+        }
+    }
+
+    /// The least number of each number's set, when no thread joins any more.
+    std::vector<int32_t> roots() && {
+        for (int32_t& parent : parent_) parent = parent_[size_t(parent)];
+        return std::move(parent_);
+    }
+
+  private:
+    /// The least number of a number's set, so far.
+    int32_t root_of(int32_t i) {
+        for (;;) {
+            const int32_t above = parent(i).load(std::memory_order_relaxed),
+                          next = parent(above).load(std::memory_order_relaxed);
+            if (above == next) return above;
+            parent(i).store(next, std::memory_order_relaxed);
+            i = next;
+        }
+    }
+    std::atomic_ref<int32_t> parent(int32_t i) { return std::atomic_ref(parent_[size_t(i)]); }
+    std::vector<int32_t> parent_;
+};
+
+Vec3d vertex(const Array3f& V, int32_t i) {
+    return Eigen::Map<const Vec3>(V.data() + 3 * size_t(i)).cast<double>();
+}
+
+struct Volume {
+    int32_t root;
+    double value;
+};
+
+/// Of the faces of a chunk: a volume for each component in it, ordered by root.
+std::vector<Volume> volumes_in(const Array3f& V, const Array3i& F, const std::vector<int32_t>& roots,
+                               size_t begin, size_t end) {
+    std::vector<Volume> volumes;
+    Vec3d origin = Vec3d::Zero();
+    for (size_t i = begin; i < end; ++i) {
+        prefetch(F, i, end, V.data(), 3);
+        const int32_t* const f = F.data() + 3 * i;
+        const int32_t root = roots[size_t(f[0])];
+        if (volumes.empty() || volumes.back().root != root) {
+            volumes.push_back({root, 0});
+            // Relative to the component's first vertex, so that nothing cancels far from the origin.
+            origin = vertex(V, root);
+        }
+        const Vec3d a = vertex(V, f[0]) - origin, b = vertex(V, f[1]) - origin, c = vertex(V, f[2]) - origin;
+        volumes.back().value += a.dot(b.cross(c));
+    }
+    std::ranges::stable_sort(volumes, {}, &Volume::root);
+    size_t count = 0;
+    for (const Volume& volume : volumes)
+        if (count > 0 && volumes[count - 1].root == volume.root)
+            volumes[count - 1].value += volume.value;
+        else
+            volumes[count++] = volume;
+    volumes.resize(count);
+    return volumes;
 }
 
 }  // namespace
 
 bool is_closed_outward(const Array3f& V, const Array3i& F) {
     if (F.rows() == 0) return false;
-    std::vector<int32_t> parent(size_t(V.rows()));
-    if (has_no_boundary(F, [](int32_t v) { return uint64_t(v); }))
+    std::vector<int32_t> parent;
+    if (has_no_boundary(F, [](int32_t v) { return uint64_t(v); })) {
+        parent.resize(size_t(V.rows()));
         std::iota(parent.begin(), parent.end(), 0);
-    else if (has_no_boundary(F, [&](int32_t v) { return place_key(V, v); }))
+    } else if (has_no_boundary(F, [&](int32_t v) { return place_key(V, v); }))
         parent = first_at_place(V);  // Creases and seams have several vertices at one place.
     else
         return false;
-    for (Eigen::Index i = 0; i < F.rows(); ++i)
-        for (const int k : {1, 2}) {
-            const int32_t a = find_root(parent, F(i, 0)), b = find_root(parent, F(i, k));
-            if (a != b) parent[size_t(std::max(a, b))] = std::min(a, b);
+    JoinedSets components(std::move(parent));
+    parallel_chunks(size_t(F.rows()), face_grain, [&](size_t begin, size_t end) {
+        for (size_t i = begin; i < end; ++i) {
+            prefetch(F, i, end, components.parents(), 1);
+            const int32_t* const f = F.data() + 3 * i;
+            components.join(f[0], f[1]);
+            components.join(f[0], f[2]);
         }
-    // Signed volume of each component, relative to its own first vertex so that nothing cancels far from the
-    // origin.
-    std::vector<double> volume(parent.size(), 0.0);
-    for (Eigen::Index i = 0; i < F.rows(); ++i) {
-        const int32_t root = find_root(parent, F(i, 0));
-        const Vec3d origin = V.row(root).transpose().cast<double>();
-        const auto corner = [&](int k) -> Vec3d {
-            return V.row(F(i, k)).transpose().cast<double>() - origin;
-        };
-        volume[size_t(root)] += corner(0).dot(corner(1).cross(corner(2)));
-    }
-    for (Eigen::Index i = 0; i < F.rows(); ++i)
-        if (!(volume[size_t(find_root(parent, F(i, 0)))] > 0)) return false;
-    return true;
+    });
+    const std::vector<int32_t> roots = std::move(components).roots();
+    std::vector<std::vector<Volume>> chunks((size_t(F.rows()) + face_grain - 1) / face_grain);
+    parallel_chunks(size_t(F.rows()), face_grain, [&](size_t begin, size_t end) {
+        chunks[begin / face_grain] = volumes_in(V, F, roots, begin, end);
+    });
+    std::unordered_map<int32_t, double> volumes;
+    for (const auto& chunk : chunks)
+        for (const Volume& volume : chunk) volumes[volume.root] += volume.value;
+    return std::ranges::all_of(volumes, [](const auto& volume) { return volume.second > 0; });
 }
 
 bool normals_agree_with_winding(const Array3f& V, const Array3f& N, const Array3i& F) {

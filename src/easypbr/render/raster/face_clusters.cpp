@@ -157,14 +157,15 @@ FaceClusters::FaceClusters(const Array3f& V, const Array3i& F, const MeshPart& p
 const FaceClusters* ClusteredMeshes::draw(const MeshData& mesh, const MeshPart& part) {
     if (part.face_count < small_part) return nullptr;
     Entry& entry = entries_.get(key_of(mesh, part), [] { return Entry(); });
-    if (entry.draws == 1) entry.clusters = FaceClusters(mesh.V, mesh.F, part);
-    ++entry.draws;
+    if (++entry.draws == 2)
+        entry.clusters = std::make_unique<BackgroundValue<FaceClusters>>(
+            [V = mesh.V, F = mesh.F, part] { return FaceClusters(V, F, part); });
     return find(mesh, part);
 }
 
 const FaceClusters* ClusteredMeshes::find(const MeshData& mesh, const MeshPart& part) const {
     const Entry* const entry = entries_.find(key_of(mesh, part));
-    return entry && !entry->clusters.clusters().empty() ? &entry->clusters : nullptr;
+    return entry && entry->clusters ? entry->clusters->get() : nullptr;
 }
 
 }  // namespace easypbr::render

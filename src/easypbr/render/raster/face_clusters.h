@@ -2,10 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <tuple>
 #include <vector>
 
+#include "easypbr/core/background.h"
 #include "easypbr/core/math.h"
 #include "easypbr/core/revision_cache.h"
 #include "easypbr/native/kernels.h"
@@ -58,8 +60,8 @@ class FaceClusters {
 /// The clusters of parts of meshes, by the revisions of their geometry.
 class ClusteredMeshes {
   public:
-    /// Takes note that a part is drawn. Its clusters are made when it is drawn for the second time: a single
-    /// picture would not earn them back. Null where there are none.
+    /// Takes note that a part is drawn. Its clusters begin to be made when it is drawn for the second
+    /// time: a single picture would not earn them back. Null until there are any.
     const FaceClusters* draw(const MeshData& mesh, const MeshPart& part);
     /// The same of a part that is not noted.
     const FaceClusters* find(const MeshData& mesh, const MeshPart& part) const;
@@ -70,7 +72,7 @@ class ClusteredMeshes {
     static constexpr int small_part = 1 << 15;
     struct Entry {
         int draws = 0;
-        FaceClusters clusters;
+        std::unique_ptr<BackgroundValue<FaceClusters>> clusters;
     };
     using Key = std::tuple<uint64_t, uint64_t, int, int>;
     static Key key_of(const MeshData& mesh, const MeshPart& part) {

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
+#include "easypbr/core/background.h"
 #include "easypbr/core/math.h"
 #include "easypbr/core/revision_cache.h"
 #include "easypbr/native/kernels.h"
@@ -41,8 +43,8 @@ class PointBatches {
 /// The batches of clouds, by the revision of their points.
 class BatchedClouds {
   public:
-    /// Takes note that a cloud is drawn. Its batches are made when it is drawn for the second time: a single
-    /// picture would not earn them back. Null where there are none.
+    /// Takes note that a cloud is drawn. Its batches begin to be made when it is drawn for the second
+    /// time: a single picture would not earn them back. Null until there are any.
     const PointBatches* draw(const Array3f& V);
     void evict_unused() { entries_.evict_unused(); }
 
@@ -51,7 +53,7 @@ class BatchedClouds {
     static constexpr Eigen::Index small_cloud = 1 << 15;
     struct Entry {
         int draws = 0;
-        PointBatches batches;
+        std::unique_ptr<BackgroundValue<PointBatches>> batches;
     };
     RevisionCache<uint64_t, Entry> entries_;
 };
