@@ -57,7 +57,7 @@ def compare(folder, name, setup):
     denoised = curve_of(ours, setup, limit, "filter")
     of_noisy, of_denoised = seconds_to(curve_of(ours, setup, limit, "off")), seconds_to(denoised)
     of_theirs = min(seconds_to(curve_of(pictures, setup, their_limit, "off")) for pictures in theirs.values())
-    seconds, error = denoised[2]
+    seconds, error = denoised[3]  # of 8 samples
     return (f"| {name} | {error:.3f} | {seconds:.2f} | {of_noisy:.2f} | {of_denoised:.2f} | {of_theirs:.2f} "
             f"| {of_noisy / of_theirs:.2f} | {of_denoised / of_theirs:.2f} | {flip(their_limit, limit):.3f} |")
 

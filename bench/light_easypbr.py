@@ -10,7 +10,7 @@ import easypbr
 from easypbr import Material, Mesh, Scene, Viewer
 
 SAMPLES = (1, 2, 4, 8, 16, 32, 64, 128, 256)
-DENOISED_SAMPLES = (2, 4, 8, 16, 32)
+DENOISED_SAMPLES = (1, 2, 4, 8, 16, 32)
 
 
 def write_setups(folder, data, names):

@@ -71,6 +71,33 @@ TEST(Denoise, FilterSmoothsEvenLight) {
     EXPECT_LT(std::sqrt(squares / count - mean * mean), 0.01);
 }
 
+// Few paths find a small lamp: one pixel in five has five times the light, and the variance of that; the
+// others have neither. What is left of a deviation of twice the mean is a fifth of it, as of the mean of
+// hundred pixels. The mean of 2048 pixels is within three of its deviations, 1 / sqrt(2048) each.
+TEST(Denoise, FilterFillsWhatIsDarkByChance) {
+    Made made;
+    std::bernoulli_distribution found(0.2);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 96; ++x) {
+            made.set(x, y, found(made.random) ? 5.0f : 0.0f, 0, Vec3(0, 0, 1), Vec3(0.5f, 0.5f, 0.5f));
+            Vec4& light = made.light.pixels<Vec4>()[size_t(y) * 96 + size_t(x)];
+            light.w() = light.x() * light.x();
+        }
+    Transfers transfers;
+    EdgeAvoidingFilter filter;
+    const Target& smooth = filter.smooth(made.noisy(), transfers);
+    double sum = 0, squares = 0;
+    int count = 0;
+    for (int y = 16; y < 48; ++y)
+        for (int x = 16; x < 80; ++x, ++count) {
+            sum += at(smooth, x, y);
+            squares += std::pow(at(smooth, x, y), 2.0);
+        }
+    const double mean = sum / count;
+    EXPECT_NEAR(mean, 0.5, 0.066);
+    EXPECT_LT(std::sqrt(squares / count - mean * mean), 0.1);
+}
+
 /// Two even halves that differ in one way; the means on both sides of the border after the filter.
 std::pair<float, float> beside_border(float left, float right, const Vec3& right_normal,
                                       const Vec3& right_color) {

@@ -9,6 +9,9 @@
 namespace easypbr::render {
 namespace {
 
+/// Pixels a side. In smaller pictures what varies over a surface is smaller too.
+constexpr int small_picture = 512;
+
 /// So that what a surface's colour hides is not divided by nothing.
 constexpr float least_reflectance = 0.001f;
 
@@ -34,13 +37,23 @@ const Target& EdgeAvoidingFilter::smooth(const NoisyLight& noisy, Transfers& tra
     const Target *from = &noisy.light, *to = &noisy.scratch;
     const PixelRect whole = from->whole();
     change_colors(*from, noisy.color, true);
-    for (int level = 0; level < levels; ++level) {
-        to->write(whole);
+    const auto inputs = [&] {
         ShaderInputs values;
         values.set("u_light", *from);
         values.set("u_surface", noisy.surface);
         values.set("u_reflectance", noisy.color);
         values.set("u_size", Vec2(from->size().cast<float>()));
+        return values;
+    };
+    if (estimate_.size() != from->size()) estimate_ = Target(gl::Format::rgba32f, from->size());
+    estimate_.write(whole);
+    estimating_.shade(inputs(), {.target = &estimate_, .area = whole}, transfers);
+    const int used = from->size().maxCoeff() < small_picture ? levels - 1 : levels;
+    for (int level = 0; level < used; ++level) {
+        to->write(whole);
+        ShaderInputs values = inputs();
+        if (level == 0) values.define("ESTIMATED");
+        if (level == 0) values.set("u_estimate", estimate_);
         values.set("u_step", 1 << level);
         smooth_.shade(values, {.target = to, .area = whole}, transfers);
         std::swap(from, to);

@@ -8,15 +8,17 @@ namespace easypbr::render {
 
 class EdgeAvoidingFilter {
   public:
-    /// Levels of the transform; the last sees as far as `reach` pixels.
-    static constexpr int levels = 5;
-    static constexpr int reach = 2 * ((1 << levels) - 1);
+    /// Levels of the transform, of small pictures one less; the last sees as far as `reach` pixels.
+    static constexpr int levels = 6;
+    static constexpr int reach = 1 << levels;
 
     /// Smooths the light; returns the target that holds it, `light` or `scratch`, both of which are
     /// overwritten.
     const Target& smooth(const NoisyLight& noisy, Transfers& transfers);
 
   private:
+    Target estimate_;
+    ScreenShader estimating_{"denoise_estimate.frag", native::Shader::denoise_estimate};
     ScreenShader smooth_{"denoise_smooth.frag", native::Shader::denoise_smooth};
 };
 

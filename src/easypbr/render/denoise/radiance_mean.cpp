@@ -248,8 +248,7 @@ const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
         const size_t tile = tiles_.tile_at(int(i) % sum_.width(), int(i) / sum_.width());
         return 1 / float(tiles_.frames_of(tile, frames_));
     };
-    // One frame alone says nothing about its noise.
-    if (denoising == Denoising::off || !notes_surfaces_ || frames_ < 2) {
+    if (denoising == Denoising::off || !notes_surfaces_) {
         light_.write(light_.whole());
         const auto to = light_.pixels<Vec4>();
         parallel_for(to.size(), grain, [&](size_t i) { to[i] = sum[i] * scale_of(i); });

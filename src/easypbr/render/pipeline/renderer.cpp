@@ -146,7 +146,7 @@ void Renderer::prepare(Picture& picture) {
                         .paths = traces_paths && is_picture,
                         .layers = options.layers,
                         .custom = is_picture ? &custom_ : nullptr};
-    picture.shot.averages_radiance = picture.contents.paths && options.samples > 1;
+    picture.shot.averages_radiance = picture.contents.paths;
     picture.with_exact = picture.list.has(
         [](const DrawItem& item) { return item.kind == SurfaceKind::exact && !item.layered; });
     picture.contents.in_host_memory = is_picture;
@@ -193,7 +193,7 @@ void Renderer::draw_sample(Picture& picture) {
     const bool reaches_beyond = picture.averaged.reaches_beyond_vertices() || picture.contents.ground;
     picture.frame = make_frame(shot, picture.frames, camera, bounds, reaches_beyond);
     picture.lit = pipeline_.draw(picture.frame, picture.averaged, picture.casters, picture.contents);
-    if (shot.sample_count == 1) return;
+    if (shot.sample_count == 1 && !shot.averages_radiance) return;
     pipeline_.timer().run("accumulate", [&] {
         output_.accumulate(picture.frame, picture.lit, pipeline_.targets());
         if (!picture.ends_tiles) return;

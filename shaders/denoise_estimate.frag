@@ -1,0 +1,46 @@
+// What few frames tell badly, from the same surface around: a pixel's luminance, and how far it varies. The variance of a
+// single pixel is zero where all its paths were dark.
+#include "common_denoise.glsl"
+
+layout(location = 0) out vec4 o_estimate;  // luminance and its variance; variance of the pixel's own light; unused
+
+const int reach = 2;
+// The variance of few frames may be as much too small.
+const float doubt = 2.0;
+
+void main() {
+    ivec2 here = ivec2(gl_FragCoord.xy), last = ivec2(u_size) - 1;
+    Guides own = guides_at(here);
+    vec4 light_here = texelFetch(u_light, here, 0);
+    float sum = 0.0, squares = 0.0, noise = 0.0, noise_of_sum = 0.0, weights = 0.0, weights2 = 0.0;
+    for (int y = -reach; y <= reach; ++y) {
+        for (int x = -reach; x <= reach; ++x) {
+            ivec2 at = here + ivec2(x, y);
+            bool inside = is_inside(at);
+            at = clamp(at, ivec2(0), last);
+            vec4 color = texelFetch(u_reflectance, at, 0), light = texelFetch(u_light, at, 0);
+            float weight = exp(-unlikeness(own, at, color, vec2(float(abs(x)), float(abs(y)))));
+            float bright = luminance(light.rgb);
+            weight = inside && color.a > 0.0 ? weight : 0.0;
+            sum += weight * bright;
+            squares += weight * bright * bright;
+            noise += weight * light.a;
+            noise_of_sum += weight * weight * light.a;
+            weights += weight;
+            weights2 += weight * weight;
+        }
+    }
+    float scale = 1.0 / max(weights, 1e-10);
+    float bright = sum * scale;
+    noise *= scale;
+    noise_of_sum *= scale * scale;
+    // The sample variance around, of as many pixels as equal weights would stand for.
+    float pixels = weights * weights / max(weights2, 1e-10);
+    float around = max(squares * scale - bright * bright, 0.0) * pixels / max(pixels - 1.0, 1.0);
+    // What noise does not explain is detail, which the pixel itself tells (Lee 1980).
+    float detail = noise > 0.0 ? clamp(1.0 - doubt * noise / max(around, 1e-20), 0.0, 1.0) : 1.0;
+    float variance = max(light_here.a, noise);
+    o_estimate = vec4(mix(bright, luminance(light_here.rgb), detail),
+                      max(detail * detail * variance + (1.0 - detail) * (1.0 - detail) * noise_of_sum, noise_of_sum),
+                      variance, 0.0);
+}
