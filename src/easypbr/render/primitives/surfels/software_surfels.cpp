@@ -60,14 +60,20 @@ void SoftwareSurfels::bin(const std::vector<SurfelSource>& sources, Vec2i frame)
     std::vector<std::atomic<size_t>> counts(tile_count);
     const auto next_in = [&](size_t tile) { return counts[tile].fetch_add(1, std::memory_order_relaxed); };
     std::vector<std::vector<uint32_t>> tile_of(sources.size());
+    size_t all = 0;
+    for (const SurfelSource& source : sources) all += size_t(source.item->mesh().V.rows());
+    kept_.resize(all <= most_kept ? sources.size() : 0);
+    const bool keeps = !kept_.empty();
     for (size_t k = 0; k < sources.size(); ++k) {
         const DrawItem& item = *sources[k].item;
         const auto is_drawn = item.alpha == AlphaMode::mask ? drawn_vertices(item) : nullptr;
         tile_of[k].assign(size_t(item.mesh().V.rows()), no_tile);
+        if (keeps) kept_[k].resize(tile_of[k].size());
         parallel_for(tile_of[k].size(), binning_grain, [&](size_t i) {
             if (is_drawn && !is_drawn(i)) return;
             const auto s = sources[k].projector.project(Eigen::Index(i));
             if (!s) return;
+            if (keeps) kept_[k][i] = *s;
             const TileRange range(*s, tiles);
             for_each_tile(range, [&](size_t tile) {
                 next_in(tile);
@@ -89,8 +95,9 @@ void SoftwareSurfels::bin(const std::vector<SurfelSource>& sources, Vec2i frame)
             if (tile != several_tiles)
                 entries_[next_in(tile)] = entry;
             else
-                for_each_tile(TileRange(*sources[k].projector.project(Eigen::Index(i)), tiles),
-                              [&](size_t several) { entries_[next_in(several)] = entry; });
+                for_each_tile(
+                    TileRange(keeps ? kept_[k][i] : *sources[k].projector.project(Eigen::Index(i)), tiles),
+                    [&](size_t several) { entries_[next_in(several)] = entry; });
         });
 }
 
@@ -105,19 +112,25 @@ void SoftwareSurfels::draw_tile(const Frame& frame, const std::vector<SurfelSour
     t.for_all([&](int x, int y, size_t i) {
         t.hidden[i] = axial_distance(frame, opaque[size_t(y) * size_t(frame.size.x()) + size_t(x)]);
     });
-    t.project(sources, entries);
+    t.project(sources, entries, kept_);
+    // What lies behind the limits so far lies behind the last ones, which are nearer.
+    std::vector<uint32_t>& seen = t.seen;
+    seen.clear();
     for (size_t k = 0; k < entries.size(); ++k) {
         const uint64_t entry = entries[k];
         const SurfelProjection& s = t.projections[k];
+        bool may_be_seen = false;
         t.for_covered(s, [&](size_t i, const SurfelProjection::Hit& hit) {
             const float pushed = hit.z + s.band;
-            if (hit.z > t.hidden[i] || pushed > t.limit[i] || (pushed == t.limit[i] && entry > t.nearest[i]))
-                return;
+            if (hit.z > t.hidden[i]) return;
+            may_be_seen |= hit.z <= t.limit[i];
+            if (pushed > t.limit[i] || (pushed == t.limit[i] && entry > t.nearest[i])) return;
             t.limit[i] = pushed;
             t.nearest[i] = entry;
         });
+        if (may_be_seen) seen.push_back(uint32_t(k));
     }
-    for (size_t k = 0; k < entries.size(); ++k)
+    for (const uint32_t k : seen)
         t.add<false>(sources[entries[k] >> 32], surfel_of(entries[k]), t.projections[k],
                      [&](size_t i, const SurfelProjection::Hit& hit) {
                          return hit.z <= t.hidden[i] && hit.z <= t.limit[i];
@@ -178,7 +191,7 @@ bool SoftwareSurfels::add_layer(const Frame& frame, const std::vector<SurfelSour
         for (auto& sum : t.sums) sum.fill(0);
         t.for_all(
             [&](int x, int y, size_t i) { t.hidden[i] = is_inside(x, y) ? ends_[k][in_area(x, y)] : 0; });
-        t.project(sources, own);
+        t.project(sources, own, kept_);
         for (const SurfelProjection& s : t.projections)
             t.for_covered(s, [&](size_t i, const SurfelProjection::Hit& hit) {
                 float& limit = t.limit[i];

@@ -28,6 +28,9 @@ class SoftwareSurfels {
                    SurfaceWriter& writer);
 
   private:
+    /// Surfels whose projections are kept in a frame: 105 MB.
+    static constexpr size_t most_kept = size_t(1) << 20;
+
     void bin(const std::vector<SurfelSource>& sources, Vec2i frame);
     Vec2i tiles_of(Vec2i frame) const { return (frame.array() + SurfelTile::size - 1) / SurfelTile::size; }
     std::span<const uint64_t> entries_of(size_t tile) const {
@@ -39,6 +42,8 @@ class SoftwareSurfels {
     bool add_layer(const Frame& frame, const std::vector<SurfelSource>& sources, Vec2i place,
                    std::span<const uint64_t> entries, PeelLimits& limits, SurfaceWriter& writer);
 
+    /// Projections of each source, by surfel; empty: there are too many to keep.
+    std::vector<std::vector<SurfelProjection>> kept_;
     std::vector<size_t> first_;             ///< of each tile in entries_, and the end
     std::vector<uint64_t> entries_;         ///< source in the upper, surfel in the lower half
     std::vector<std::vector<float>> ends_;  ///< of each source: where its last layer ended, axial distances

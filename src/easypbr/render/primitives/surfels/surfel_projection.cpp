@@ -59,8 +59,11 @@ std::optional<SurfelProjection> SurfelProjector::project(Eigen::Index i) const {
     };
     SurfelProjection s;
     const Vec3 to_viewer = orthographic_ ? towards_viewer_ : Vec3(eye_ - p), n = item_->mesh().N.row(i);
-    const float lengths = n.norm() * to_viewer.norm();
-    s.least = least_radius(lengths > 0 ? n.dot(to_viewer) / lengths : 1);
+    const float lengths = n.norm() * to_viewer.norm(), towards = n.dot(to_viewer);
+    s.least = least_radius(lengths > 0 ? towards / lengths : 1);
+    if (item_->with_colors) s.color = item_->mesh().C.row(i).head<3>();
+    s.normal = n.squaredNorm() > 0 ? Vec3(normal_from_mesh_ * (towards < 0 ? Vec3(-n) : n))
+                                   : Vec3(world_from_mesh_ * to_viewer);
     s.wc = clip(3, p, 1);
     const float wt = clip(3, t, 0), wb = clip(3, b, 0);
     s.z_c = axial(p, 1);
@@ -109,15 +112,6 @@ void SurfelProjector::prefetch(Eigen::Index i) const {
     of(mesh.T);
     of(mesh.B);
     if (item_->with_colors) of(mesh.C);
-}
-
-Vec3 SurfelProjector::normal(Eigen::Index i) const {
-    const MeshData& mesh = item_->mesh();
-    const Vec3 to_viewer = orthographic_ ? towards_viewer_ : Vec3(eye_ - Vec3(mesh.V.row(i)));
-    Vec3 n = mesh.N.row(i);
-    if (!(n.squaredNorm() > 0)) return (world_from_mesh_ * to_viewer).normalized();
-    if (n.dot(to_viewer) < 0) n = -n;
-    return (normal_from_mesh_ * n).normalized();
 }
 
 }  // namespace easypbr::render

@@ -33,6 +33,8 @@ struct SurfelProjection {
     float x0, x1, y0, y1;      ///< box, pixels, relative to nothing
     float least;               ///< half the side of the smallest square it covers, pixels
     float band;                ///< surfels that deep behind the nearest are blended with it
+    Vec3 normal;               ///< in world space, towards the viewer, of any length
+    Vec3 color;                ///< its own, sRGB-encoded; undefined where the item shows none
 
     /// Of a pixel's centre: the squared radius in the ellipse, above 1 outside, and the axial distance.
     struct Hit {
@@ -74,11 +76,8 @@ class SurfelProjector {
     /// Nothing for a surfel before the near plane or outside of the picture.
     std::optional<SurfelProjection> project(Eigen::Index i) const;
 
-    /// Asks for what the others read of a surfel, and its colour.
+    /// Asks for what the others read of a surfel.
     void prefetch(Eigen::Index i) const;
-
-    /// Unit normal in world space, towards the viewer.
-    Vec3 normal(Eigen::Index i) const;
 
   private:
     const DrawItem* item_;

@@ -12,25 +12,32 @@ void SurfelTile::place(Vec2i frame, Vec2i tile) {
     bottom = std::min(top + size, frame.y());
 }
 
-void SurfelTile::project(const std::vector<SurfelSource>& sources, std::span<const uint64_t> entries) {
-    // Neighbours on the screen may be far apart in memory: what they read is asked for ahead of their turn.
-    constexpr size_t ahead = 12;
+void SurfelTile::project(const std::vector<SurfelSource>& sources, std::span<const uint64_t> entries,
+                         std::span<const std::vector<SurfelProjection>> kept) {
+    const auto prefetch = [&](uint64_t entry) {
+        const size_t source = entry >> 32;
+        if (kept.empty()) return sources[source].projector.prefetch(surfel_of(entry));
+        const auto* const from = reinterpret_cast<const char*>(&kept[source][size_t(surfel_of(entry))]);
+        __builtin_prefetch(from);
+        __builtin_prefetch(from + sizeof(SurfelProjection) - 1);
+    };
     projections.clear();
     for (size_t k = 0; k < entries.size(); ++k) {
-        if (k + ahead < entries.size())
-            sources[entries[k + ahead] >> 32].projector.prefetch(surfel_of(entries[k + ahead]));
-        projections.push_back(*sources[entries[k] >> 32].projector.project(surfel_of(entries[k])));
+        if (k + ahead < entries.size()) prefetch(entries[k + ahead]);
+        const size_t source = entries[k] >> 32;
+        const Eigen::Index surfel = surfel_of(entries[k]);
+        projections.push_back(kept.empty() ? *sources[source].projector.project(surfel)
+                                           : kept[source][size_t(surfel)]);
     }
 }
 
-std::array<float, SurfelTile::channels> SurfelTile::values_of(const SurfelSource& source,
-                                                              Eigen::Index surfel) {
+std::array<float, SurfelTile::channels> SurfelTile::values_of(const SurfelSource& source, Eigen::Index surfel,
+                                                              const SurfelProjection& s) {
     const DrawItem& item = *source.item;
     const Material& m = item.material;
     Vec3 albedo = m.base_color;
-    if (item.with_colors)
-        albedo = albedo.cwiseProduct(linear_from_srgb(Vec3(item.mesh().C.row(surfel).head<3>())));
-    const Vec3 n = source.projector.normal(surfel);
+    if (item.with_colors) albedo = albedo.cwiseProduct(linear_from_srgb(s.color));
+    const Vec3 n = s.normal.normalized();
     return {albedo.x(),
             albedo.y(),
             albedo.z(),

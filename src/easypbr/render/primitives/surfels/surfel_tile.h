@@ -46,6 +46,8 @@ inline std::pair<int, int> pixels_between(float low, float high, int begin, int 
 struct SurfelTile {
     static constexpr int size = 64;
     static constexpr size_t most_pixels = size_t(size) * size;
+    /// Neighbours on the screen may be far apart in memory: what they read is asked for ahead of their turn.
+    static constexpr size_t ahead = 12;
 
     enum Channel {
         red,
@@ -69,10 +71,12 @@ struct SurfelTile {
     std::array<std::array<int64_t, channels>, most_pixels> sums;
 
     std::vector<SurfelProjection> projections;  ///< of project()
+    std::vector<uint32_t> seen;                 ///< those of them that something of may be seen
 
     void place(Vec2i frame, Vec2i tile);
-    /// Projects the surfels of entries.
-    void project(const std::vector<SurfelSource>& sources, std::span<const uint64_t> entries);
+    /// Projects the surfels of entries. `kept`: those of each source, by surfel; or none.
+    void project(const std::vector<SurfelSource>& sources, std::span<const uint64_t> entries,
+                 std::span<const std::vector<SurfelProjection>> kept);
     size_t index(int x, int y) const { return size_t(y - top) * size + size_t(x - left); }
 
     /// Calls body(x, y, index) for all pixels.
@@ -104,16 +108,19 @@ struct SurfelTile {
     static constexpr float quantum = 1.0f / (1 << 30);
     static int64_t quantised(float value) { return int64_t(std::lrintf(value * (1 / quantum))); }
     /// What a surfel adds, but for what depends on the pixel.
-    static std::array<float, channels> values_of(const SurfelSource& source, Eigen::Index surfel);
+    static std::array<float, channels> values_of(const SurfelSource& source, Eigen::Index surfel,
+                                                 const SurfelProjection& s);
 };
 
 template <bool is_layer, class Takes>
 void SurfelTile::add(const SurfelSource& source, Eigen::Index surfel, const SurfelProjection& s,
                      Takes&& takes) {
     constexpr size_t summed = is_layer ? channels : opacity;
-    std::array<float, channels> values = values_of(source, surfel);
+    std::array<float, channels> values;
+    bool is_known = false;  // Most surfels of a closed surface are hidden.
     for_covered(s, [&](size_t i, const SurfelProjection::Hit& hit) {
         if (!takes(i, hit)) return;
+        if (!std::exchange(is_known, true)) values = values_of(source, surfel, s);
         // Relative to the limit: the sum of small numbers keeps the distance's precision.
         values[distance] = (limit[i] - hit.z) / limit[i];
         const float w = surfel_weight(hit.r2);
