@@ -78,7 +78,7 @@ class TriangleRaster {
     struct Edge {
         Integer value, step_x, step_y;
 
-        Edge(const Vertex& a, const Vertex& b, int x, int y) {
+        [[gnu::always_inline]] Edge(const Vertex& a, const Vertex& b, int x, int y) {
             const Integer dx = b.x - a.x, dy = b.y - a.y;
             const Integer px = Integer(x) * subpixel + half_pixel - a.x,
                           py = Integer(y) * subpixel + half_pixel - a.y;
@@ -94,7 +94,7 @@ class TriangleRaster {
         const Vertex& a;
         float slope_x, slope_y;
 
-        Plane(const Vertex& a_, const Vertex& b, const Vertex& c) : a(a_) {
+        [[gnu::always_inline]] Plane(const Vertex& a_, const Vertex& b, const Vertex& c) : a(a_) {
             const float bx = float(b.x - a.x), by = float(b.y - a.y), cx = float(c.x - a.x),
                         cy = float(c.y - a.y);
             const float inverse = 1 / (bx * cy - cx * by), db = b.depth - a.depth, dc = c.depth - a.depth;

@@ -16,7 +16,7 @@ constexpr size_t point_grain = 1 << 12;
 
 /// Keeps the larger of a pixel and a key; any order of calls gives the same.
 template <class Key>
-inline void raise(Key& pixel, Key key) {
+[[gnu::always_inline]] inline void raise(Key& pixel, Key key) {
     const std::atomic_ref<Key> cell(pixel);
     Key seen = cell.load(std::memory_order_relaxed);
     while (key > seen && !cell.compare_exchange_weak(seen, key, std::memory_order_relaxed)) {
@@ -154,7 +154,9 @@ void DepthBuffer::clear(Vec2i size, float nothing) {
 }
 
 bool DepthBuffer::draw(const ScreenTriangles& triangles) {
-    return raster_.draw(triangles, [&](size_t pixel, float depth, uint32_t) { put(pixel, depth); });
+    return raster_.draw(triangles, [&](size_t pixel, float depth, uint32_t) {
+        raise(pixels_[pixel], std::bit_cast<int32_t>(depth));
+    });
 }
 
 void DepthBuffer::put(size_t pixel, float depth) {
