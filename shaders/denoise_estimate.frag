@@ -7,6 +7,17 @@ layout(location = 0) out vec4 o_estimate;  // luminance and its variance; varian
 const int reach = 2;
 // The variance of few frames may be as much too small.
 const float doubt = 2.0;
+// A pixel alone that is brighter than those around by more of their deviations, and by so many of its own, is limited: it
+// would show as a spot.
+const float spot_deviations = 12.0;
+const float own_deviations = 4.0;
+
+// What is left of a luminance with the sums of it, of squares and of weights over the pixels around.
+float limited(float bright, float variance, float sum, float squares, float weights) {
+    float mean = sum / max(weights, 1e-10), around = max(squares / max(weights, 1e-10) - mean * mean, 0.0);
+    float most = max(mean + spot_deviations * sqrt(around), bright - own_deviations * sqrt(variance));
+    return weights > 3.0 && bright > most ? most / bright : 1.0;
+}
 
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy), last = ivec2(u_size) - 1;
@@ -30,6 +41,8 @@ void main() {
             weights2 += weight * weight;
         }
     }
+    float bright_here = luminance(light_here.rgb);
+    float part = limited(bright_here, light_here.a, sum - bright_here, squares - bright_here * bright_here, weights - 1.0);
     float scale = 1.0 / max(weights, 1e-10);
     float bright = sum * scale;
     noise *= scale;
@@ -39,8 +52,8 @@ void main() {
     float around = max(squares * scale - bright * bright, 0.0) * pixels / max(pixels - 1.0, 1.0);
     // What noise does not explain is detail, which the pixel itself tells (Lee 1980).
     float detail = noise > 0.0 ? clamp(1.0 - doubt * noise / max(around, 1e-20), 0.0, 1.0) : 1.0;
-    float variance = max(light_here.a, noise);
-    o_estimate = vec4(mix(bright, luminance(light_here.rgb), detail),
+    float variance = max(part * part * light_here.a, noise);
+    o_estimate = vec4(mix(bright, part * bright_here, detail),
                       max(detail * detail * variance + (1.0 - detail) * (1.0 - detail) * noise_of_sum, noise_of_sum),
-                      variance, 0.0);
+                      variance, part);
 }

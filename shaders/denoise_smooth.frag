@@ -11,9 +11,9 @@ layout(location = 0) out vec4 o_light;
 // Standard deviations over which the weight falls with the difference of luminance.
 const float deviations = 4.0;
 
-// The luminance that is compared, its variance, that of the pixel's own.
-vec3 compared(ivec2 at, vec4 light) {
-    return has_estimate ? texelFetch(u_estimate, at, 0).rgb : vec3(luminance(light.rgb), light.a, light.a);
+// The luminance that is compared and its variance; variance of the pixel's own, and how much of its light is taken.
+vec4 compared(ivec2 at, vec4 light) {
+    return has_estimate ? texelFetch(u_estimate, at, 0) : vec4(luminance(light.rgb), light.a, light.a, 1.0);
 }
 
 // Binomial weights: 1 4 6 4 1 of the first level, 1 2 1 of the others, whose taps lie apart.
@@ -26,7 +26,7 @@ float kernel(int offset) {
 void main() {
     ivec2 here = ivec2(gl_FragCoord.xy), last = ivec2(u_size) - 1;
     Guides own = guides_at(here);
-    vec3 compared_here = compared(here, texelFetch(u_light, here, 0));
+    vec4 compared_here = compared(here, texelFetch(u_light, here, 0));
     float bright = compared_here.r, spread = deviations * deviations * compared_here.g + 1e-10;
     vec4 sum = vec4(0.0);
     float weights = 0.0;
@@ -37,12 +37,12 @@ void main() {
             bool inside = is_inside(at);
             at = clamp(at, ivec2(0), last);
             vec4 light = texelFetch(u_light, at, 0), color = texelFetch(u_reflectance, at, 0);
-            vec3 other = compared(at, light);
+            vec4 other = compared(at, light);
             float unlike = other.r - bright;
             vec2 away = float(u_step) * vec2(float(abs(x)), float(abs(y)));
             float weight = exp(-unlikeness(own, at, color, away) - unlike * unlike / spread);
             weight = inside && color.a > 0.0 ? weight * kernel(x) * kernel(y) : 0.0;
-            sum += weight * vec4(light.rgb, weight * other.b);
+            sum += weight * vec4(light.rgb * other.a, weight * other.b);
             weights += weight;
         }
     }
