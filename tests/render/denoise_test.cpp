@@ -50,6 +50,19 @@ float at(const Target& target, int x, int y) {
     return target.pixels<Vec4>()[size_t(y) * size_t(target.width()) + size_t(x)].x();
 }
 
+/// Mean and standard deviation of the pixels that are 16 or more from the border.
+std::pair<double, double> statistics(const Target& target) {
+    double sum = 0, squares = 0;
+    int count = 0;
+    for (int y = 16; y < 48; ++y)
+        for (int x = 16; x < 80; ++x, ++count) {
+            sum += at(target, x, y);
+            squares += std::pow(at(target, x, y), 2.0);
+        }
+    const double mean = sum / count;
+    return {mean, std::sqrt(squares / count - mean * mean)};
+}
+
 // Even light stays even, with a fraction of its noise: the mean over a part of the picture within 1 %, and
 // the deviation, of a tenth, below a fiftieth.
 TEST(Denoise, FilterSmoothsEvenLight) {
@@ -59,16 +72,9 @@ TEST(Denoise, FilterSmoothsEvenLight) {
     Transfers transfers;
     EdgeAvoidingFilter filter;
     const Target& smooth = filter.smooth(made.noisy(), transfers);
-    double sum = 0, squares = 0;
-    int count = 0;
-    for (int y = 16; y < 48; ++y)
-        for (int x = 16; x < 80; ++x, ++count) {
-            sum += at(smooth, x, y);
-            squares += std::pow(at(smooth, x, y), 2.0);
-        }
-    const double mean = sum / count;
+    const auto [mean, deviation] = statistics(smooth);
     EXPECT_NEAR(mean, 0.5, 0.005);
-    EXPECT_LT(std::sqrt(squares / count - mean * mean), 0.01);
+    EXPECT_LT(deviation, 0.01);
 }
 
 // Few paths find a small lamp: one pixel in five has five times the light, and the variance of that; the
@@ -86,16 +92,9 @@ TEST(Denoise, FilterFillsWhatIsDarkByChance) {
     Transfers transfers;
     EdgeAvoidingFilter filter;
     const Target& smooth = filter.smooth(made.noisy(), transfers);
-    double sum = 0, squares = 0;
-    int count = 0;
-    for (int y = 16; y < 48; ++y)
-        for (int x = 16; x < 80; ++x, ++count) {
-            sum += at(smooth, x, y);
-            squares += std::pow(at(smooth, x, y), 2.0);
-        }
-    const double mean = sum / count;
+    const auto [mean, deviation] = statistics(smooth);
     EXPECT_NEAR(mean, 0.5, 0.066);
-    EXPECT_LT(std::sqrt(squares / count - mean * mean), 0.1);
+    EXPECT_LT(deviation, 0.1);
 }
 
 /// Two even halves that differ in one way; the means on both sides of the border after the filter.
