@@ -9,9 +9,6 @@
 namespace easypbr::render {
 namespace {
 
-/// Pixels a side. In smaller pictures what varies over a surface is smaller too.
-constexpr int small_picture = 512;
-
 /// So that what a surface's colour hides is not divided by nothing.
 constexpr float least_reflectance = 0.001f;
 
@@ -48,8 +45,7 @@ const Target& EdgeAvoidingFilter::smooth(const NoisyLight& noisy, Transfers& tra
     if (estimate_.size() != from->size()) estimate_ = Target(gl::Format::rgba32f, from->size());
     estimate_.write(whole);
     estimating_.shade(inputs(), {.target = &estimate_, .area = whole}, transfers);
-    const int used = from->size().maxCoeff() < small_picture ? levels - 1 : levels;
-    for (int level = 0; level < used; ++level) {
+    for (int level = 0; level < levels; ++level) {
         to->write(whole);
         ShaderInputs values = inputs();
         if (level == 0) values.define("ESTIMATED");

@@ -8,9 +8,9 @@ namespace easypbr::render {
 
 class EdgeAvoidingFilter {
   public:
-    /// Levels of the transform, of small pictures one less; the last sees as far as `reach` pixels.
-    static constexpr int levels = 6;
-    static constexpr int reach = 1 << levels;
+    /// Levels of the transform; the last sees as far as `reach` pixels, estimates of two pixels included.
+    static constexpr int levels = 5;
+    static constexpr int reach = (1 << levels) + 2;
 
     /// Smooths the light; returns the target that holds it, `light` or `scratch`, both of which are
     /// overwritten.
