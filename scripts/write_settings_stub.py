@@ -70,16 +70,19 @@ def group(path: tuple, tree: dict) -> list:
     return [*lines, "", f"class {class_name(path)}(SettingsGroup):", *methods, *members]
 
 
-def render_settings(fields, short_names: dict) -> str:
-    """What render() takes beside its arguments: settings by their last part where it is theirs alone, or by a short name."""
+def render_settings(fields, short_names: dict, synonyms: set) -> str:
+    """What render() takes beside its arguments: settings by their last part where it is theirs alone and means nothing else in
+    other programs, or by a short name."""
     last_parts = [field.name.rsplit(".")[-1] for field in fields]
-    keywords = {last: field for field, last in zip(fields, last_parts) if last_parts.count(last) == 1}
+    keywords = {
+        last: field for field, last in zip(fields, last_parts) if last_parts.count(last) == 1 and last not in synonyms
+    }
     keywords |= {short: field for field in fields for short, full in short_names.items() if full == field.name}
     rows = [f"    {name}: {write_type(keywords[name])}" for name in sorted(set(keywords) - RENDER_ARGUMENTS)]
     return "\n".join(["", "class RenderSettings(TypedDict, total=False):", *rows, ""])
 
 
-def stub(fields, short_names: dict) -> str:
+def stub(fields, short_names: dict, synonyms: set) -> str:
     tree: dict = {}
     for field in fields:
         *groups, name = field.name.split(".")
@@ -87,7 +90,7 @@ def stub(fields, short_names: dict) -> str:
         for part in groups:
             place = place.setdefault(part, {})
         place[name] = field
-    return HEADER + BASE + "\n".join(group((), tree)) + "\n" + render_settings(fields, short_names)
+    return HEADER + BASE + "\n".join(group((), tree)) + "\n" + render_settings(fields, short_names, synonyms)
 
 
 if __name__ == "__main__":
@@ -95,4 +98,5 @@ if __name__ == "__main__":
     sys.path.insert(0, str(folder))
     from easypbr import _easypbr, rendering
 
-    (folder / "easypbr/settings.pyi").write_text(stub(_easypbr.fields(), rendering.SHORT_NAMES))
+    synonyms = {synonym.word for synonym in _easypbr.synonyms()}
+    (folder / "easypbr/settings.pyi").write_text(stub(_easypbr.fields(), rendering.SHORT_NAMES, synonyms))

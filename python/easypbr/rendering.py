@@ -179,6 +179,8 @@ def _full_name(name: str) -> str:
     if name in SHORT_NAMES:
         return SHORT_NAMES[name]
     found = [field.name for field in _easypbr.fields() if name in (field.name, field.name.rsplit(".")[-1])]
+    if found and _easypbr.synonym(name) is not None:  # a user who writes width=640 means the image, not the outline
+        raise TypeError(f"render(): {_unknown(name)}; '{found[0]}' is given as settings={{'{found[0]}': ...}}")
     if len(found) == 1:
         return found[0]
     if found:
@@ -205,5 +207,5 @@ def keyword_of(setting: str) -> str:
         return _ARGUMENTS[setting]
     short = [keyword for keyword, full in SHORT_NAMES.items() if full == setting]
     last = setting.rsplit(".")[-1]
-    is_unique = sum(field.name.rsplit(".")[-1] == last for field in _easypbr.fields()) == 1
+    is_unique = sum(field.name.rsplit(".")[-1] == last for field in _easypbr.fields()) == 1 and not _easypbr.synonym(last)
     return f"{short[0]}=..." if short else f"{last}=..." if is_unique else f"settings={{'{setting}': ...}}"
