@@ -29,10 +29,10 @@ void main() {
             ivec2 at = here + ivec2(x, y);
             bool inside = is_inside(at);
             at = clamp(at, ivec2(0), last);
-            vec4 color = texelFetch(u_reflectance, at, 0), light = texelFetch(u_light, at, 0);
-            float weight = exp(-unlikeness(own, at, color, vec2(float(abs(x)), float(abs(y)))));
+            vec4 guides = texelFetch(u_guides, at, 0), light = texelFetch(u_light, at, 0);
+            float weight = exp(-unlikeness(own, guides, vec2(float(abs(x)), float(abs(y)))));
             float bright = luminance(light.rgb);
-            weight = inside && color.a > 0.0 ? weight : 0.0;
+            weight = inside && guides.a > 0.0 ? weight : 0.0;
             sum += weight * bright;
             squares += weight * bright * bright;
             noise += weight * light.a;

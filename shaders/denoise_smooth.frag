@@ -36,12 +36,12 @@ void main() {
             ivec2 at = here + ivec2(x * u_step, y * u_step);
             bool inside = is_inside(at);
             at = clamp(at, ivec2(0), last);
-            vec4 light = texelFetch(u_light, at, 0), color = texelFetch(u_reflectance, at, 0);
+            vec4 light = texelFetch(u_light, at, 0), guides = texelFetch(u_guides, at, 0);
             vec4 other = compared(at, light);
             float unlike = other.r - bright;
             vec2 away = float(u_step) * vec2(float(abs(x)), float(abs(y)));
-            float weight = exp(-unlikeness(own, at, color, away) - unlike * unlike / spread);
-            weight = inside && color.a > 0.0 ? weight * kernel(x) * kernel(y) : 0.0;
+            float weight = exp(-unlikeness(own, guides, away) - unlike * unlike / spread);
+            weight = inside && guides.a > 0.0 ? weight * kernel(x) * kernel(y) : 0.0;
             sum += weight * vec4(light.rgb * other.a, weight * other.b);
             weights += weight;
         }

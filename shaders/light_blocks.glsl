@@ -4,7 +4,8 @@
 struct Light {
     vec4 position;   // relative to the camera; w: 0 directional, 1 point, 2 spot, 3 rectangle, 4 disc, 5 sphere
     vec4 color;      // intensity times colour; w: 1 / range^2, or 0
-    vec4 direction;  // unit, where the light goes; w: area of an area light
+    vec4 direction;  // unit, where the light goes; w: area of an area light, of others the radius of the disc that they are
+                     // seen as, of parallel light at a distance of 1
     vec4 cone;       // spot: scale and offset of the cosine. Rectangle: half the width as a vector, half the height. Disc
                      // and sphere: the radius as a vector, the radius
 };

@@ -19,6 +19,14 @@ vec3 way_to_plane(Light light, vec3 position, vec2 u, out float density) {
     return way;
 }
 
+// The way to a point of the disc that a light is seen as which is no area light; of parallel light at a distance of 1.
+vec3 way_to_disc(vec4 place, vec4 direction, vec3 position, vec2 u) {
+    vec3 middle = place.w > 0.5 ? place.xyz - position : -direction.xyz, b1, b2;
+    frame_around(middle * inversesqrt(max(dot(middle, middle), 1e-30)), b1, b2);
+    float radius = direction.w * sqrt(u.x), phi = 2.0 * pi * u.y;
+    return middle + b1 * (radius * cos(phi)) + b2 * (radius * sin(phi));
+}
+
 // The same for a sphere, by the cone in which it is seen.
 vec3 way_to_sphere(Light light, vec3 position, vec2 u, out float density) {
     vec3 centre = light.position.xyz - position, b1, b2;

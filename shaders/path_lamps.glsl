@@ -8,12 +8,12 @@
 uniform int u_light_count;
 
 in float v_choice;  // in [0, 1)
-in vec2 v_emitter;  // in [0, 1): the point of area lights
+in vec2 v_emitter;  // in [0, 1): the point of the light
 
 out vec3 o_light;    // what arrives of the chosen one, unless it is hidden, as if it stood for all
 out float o_sum;     // luminance of all lights, if none is hidden
 out float o_chosen;  // its number
-out vec3 o_way;      // to its point, of an area light
+out vec3 o_way;      // to its point; of parallel light that of way_to_disc()
 
 // What an area light sends to the view by way of its point.
 vec3 from_area(Light light, Surface s, out vec3 way) {
@@ -31,6 +31,7 @@ void main() {
     Surface s = path_surface();
     float sum = 0.0, u = v_choice, chosen = 0.0;
     vec3 light = vec3(0.0), chosen_way = vec3(0.0);  // of the chosen one; the light of luminance 1
+    vec4 place = vec4(0.0), direction = vec4(0.0);
     for (int i = 0; i < u_light_count; ++i) {
         vec3 l, way = vec3(0.0), c;
         if (has_area_lights && u_lights[i].position.w > 2.5)
@@ -47,10 +48,13 @@ void main() {
         u = min(taken ? u / max(part, 1e-30) : (u - part) / max(1.0 - part, 1e-30), 0.99999994);
         chosen = taken ? float(i) : chosen;
         light = taken ? c / max(weight, 1e-30) : light;
-        chosen_way = taken ? way : chosen_way;
+        if (has_area_lights) chosen_way = taken ? way : chosen_way;
+        place = taken ? u_lights[i].position : place;
+        direction = taken ? u_lights[i].direction : direction;
     }
     o_light = light * sum;
     o_sum = sum;
     o_chosen = chosen;
-    o_way = chosen_way;
+    vec3 to_disc = way_to_disc(place, direction, v_position, v_emitter);
+    o_way = place.w > 2.5 ? chosen_way : to_disc;
 }

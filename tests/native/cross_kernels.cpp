@@ -442,6 +442,20 @@ void check_points() {
     });
 }
 
+void check_paths() {
+    constexpr int count = 203, room = count + stream_alignment;
+    all_sets("sample_paths", [&](Case& run) {
+        const float *first = run.floats(room, 0, 1), *second = run.floats(room, 0, 1);
+        std::vector<uint32_t> seeds(room), samples(room);
+        std::memcpy(seeds.data(), first, sizeof(float) * room);
+        std::memcpy(samples.data(), second, sizeof(float) * room);
+        auto *xs = run.output<float>(room, Kind::floats), *ys = run.output<float>(room, Kind::floats);
+        kernels.sample_paths(seeds.data(), samples.data(), uint32_t(run.set), count, xs, ys);
+        std::fill(xs + count, xs + room, 0.0f);
+        std::fill(ys + count, ys + room, 0.0f);
+    });
+}
+
 }  // namespace
 }  // namespace easypbr::native
 
@@ -458,5 +472,6 @@ int main() {
     check_lines();
     check_splats();
     check_clusters();
+    check_paths();
     check_points();
 }

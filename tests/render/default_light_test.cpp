@@ -4,7 +4,7 @@
 #include <set>
 
 #include "easypbr/app/session.h"
-#include "easypbr/render/raytrace/path_sampler.h"
+#include "easypbr/render/raytrace/path_batch.h"
 #include "easypbr/scene/resolve.h"
 #include "render_test.h"
 
@@ -116,6 +116,18 @@ TEST(PathSampler, NeighboursFillTheSquareTogether) {
                 }
                 EXPECT_EQ(cells.size(), 16u) << side << " " << pair << " " << shape;
             }
+}
+
+// Kernels compute the points of many paths.
+TEST(PathSampler, ManyPathsGetThePointsOfEach) {
+    render::PathBatch batch(37);
+    for (uint32_t i = 0; i < 37; ++i) {
+        render::PathState state;
+        state.sampler = PathSampler(i * 131, i, i % 8, 8);
+        batch.set_state(batch.count++, state);
+    }
+    const render::PathVectors<2> points = batch.points(3, 2);
+    for (size_t i = 0; i < 37; ++i) EXPECT_EQ(points.at(i), batch.state[i].sampler.pair(3, 2)) << i;
 }
 
 // Distant pixels, for which 32 bits have no room, do not repeat each other.

@@ -266,6 +266,11 @@ struct PointScreen {
     uint16_t kept[room];  ///< those inside of what is drawn, in their order
 };
 
+/// Random numbers of `count` paths and at most stream_alignment - 1 more, in [0, 1): a point of a dimension
+/// for each (native/sample_points.h).
+using SamplePaths = void (*)(const uint32_t* seeds, const uint32_t* reversed_samples, uint32_t dimension,
+                             int count, float* xs, float* ys);
+
 /// The number of points that are kept.
 using SetUpPoints = int (*)(const PointBatch& points, PointScreen& screen);
 
@@ -294,6 +299,7 @@ struct Kernels {
     BlendSplats blend_splats;
     SetUpCluster set_up_cluster;
     SetUpPoints set_up_points;
+    SamplePaths sample_paths;
     ShadeRows shade[shader_count];     ///< by Shader
     ShadeStream stream[stream_count];  ///< by Stream
 };

@@ -272,6 +272,11 @@ int set_up_points(const PointBatch& points, PointScreen& screen) {
     return chosen_set().kernels->set_up_points(points, screen);
 }
 
+void sample_paths(const uint32_t* seeds, const uint32_t* reversed_samples, uint32_t dimension, int count,
+                  float* xs, float* ys) {
+    chosen_set().kernels->sample_paths(seeds, reversed_samples, dimension, count, xs, ys);
+}
+
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1) {
     const Kernels& k = *chosen_set().kernels;
 #define EASYPBR_CASE(name) \

@@ -109,6 +109,7 @@ using u_surface = Rgba32f;
 using u_light = Rgba32f;
 using u_reflectance = Rgba32f;
 using u_estimate = Rgba32f;
+using u_guides = Rgba32f;
 using u_visibility = R16;
 using u_shadow_maps = Layers;
 using u_tint_absorption = Layers4;

@@ -33,6 +33,7 @@ struct Fragment : TextureReader {
 #include "easypbr/native/simd/blend_splats.h"
 #include "easypbr/native/simd/cluster_setup.h"
 #include "easypbr/native/simd/point_setup.h"
+#include "easypbr/native/simd/sample_paths.h"
 #include "easypbr/native/simd/shade_hits.h"
 
 namespace easypbr::native::EASYPBR_ISA {
@@ -327,6 +328,7 @@ const Kernels kernels{resolve_triangles,
                       blend_splats,
                       set_up_cluster,
                       set_up_points,
+                      sample_paths,
                       {EASYPBR_SHADERS(EASYPBR_ROWS)},
                       {EASYPBR_STREAMS(EASYPBR_ARRAYS)}};
 #undef EASYPBR_ARRAYS

@@ -34,16 +34,21 @@ const Target& EdgeAvoidingFilter::smooth(const NoisyLight& noisy, Transfers& tra
     const Target *from = &noisy.light, *to = &noisy.scratch;
     const PixelRect whole = from->whole();
     change_colors(*from, noisy.color, true);
+    for (Target* own : {&guides_, &estimate_}) {
+        if (own->size() != from->size()) *own = Target(gl::Format::rgba32f, from->size());
+        own->write(whole);
+    }
+    ShaderInputs sums;
+    sums.set("u_surface", noisy.surface);
+    sums.set("u_reflectance", noisy.color);
+    guiding_.shade(sums, {.target = &guides_, .area = whole}, transfers);
     const auto inputs = [&] {
         ShaderInputs values;
         values.set("u_light", *from);
-        values.set("u_surface", noisy.surface);
-        values.set("u_reflectance", noisy.color);
+        values.set("u_guides", guides_);
         values.set("u_size", Vec2(from->size().cast<float>()));
         return values;
     };
-    if (estimate_.size() != from->size()) estimate_ = Target(gl::Format::rgba32f, from->size());
-    estimate_.write(whole);
     estimating_.shade(inputs(), {.target = &estimate_, .area = whole}, transfers);
     for (int level = 0; level < levels; ++level) {
         to->write(whole);

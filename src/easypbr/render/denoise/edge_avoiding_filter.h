@@ -17,7 +17,8 @@ class EdgeAvoidingFilter {
     const Target& smooth(const NoisyLight& noisy, Transfers& transfers);
 
   private:
-    Target estimate_;
+    Target guides_, estimate_;
+    ScreenShader guiding_{"denoise_guides.frag", native::Shader::denoise_guides};
     ScreenShader estimating_{"denoise_estimate.frag", native::Shader::denoise_estimate};
     ScreenShader smooth_{"denoise_smooth.frag", native::Shader::denoise_smooth};
 };

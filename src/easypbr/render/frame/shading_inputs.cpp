@@ -39,7 +39,9 @@ blocks::Light light_uniform(const ResolvedLight& light, const Vec3d& origin, dou
         add_area(light, unit, to);
         return to;
     }
-    to.direction << light.direction.normalized(), 0;
+    const float radius = light.type == LightType::directional ? std::tan(radians(light.angular_radius_deg))
+                                                              : light.radius / float(unit);
+    to.direction << light.direction.normalized(), radius;
     // KHR_lights_punctual: the cone fades from 1 at the inner to 0 at the outer angle.
     const float inner = float(std::cos(radians(light.inner_cone_deg))),
                 outer = float(std::cos(radians(light.outer_cone_deg)));

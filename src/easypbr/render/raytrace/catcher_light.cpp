@@ -46,6 +46,38 @@ struct CatcherLight::SkyPoint {
     SkySampler::Sample sky;  ///< in it
 };
 
+/// Rays that look whether light arrives.
+struct CatcherLight::Looks {
+    /// Light that arrives unless something is met.
+    void add_open(const RaySegment& ray, uint32_t index, float light) { add(ray, {index, light, false}); }
+    /// Light that is taken to arrive, and does not where something is met.
+    void add_hidden(const RaySegment& ray, uint32_t index, float light) { add(ray, {index, light, true}); }
+
+    void add_to(std::vector<CaughtLight>& to, const RayScene& scene) const {
+        const std::vector<uint8_t> blocked = scene.blocked(rays, Neighbours::scattered);
+        for (size_t i = 0; i < rays.size(); ++i) {
+            const auto [index, light, is_counted] = lights[i];
+            if (!is_counted) to[index].all += light;
+            if (bool(blocked[i]) == is_counted) to[index].arrives += is_counted ? -light : light;
+        }
+    }
+
+  private:
+    struct Light {
+        uint32_t index;
+        float light;
+        bool is_counted;  ///< already
+    };
+    void add(const RaySegment& ray, const Light& light) {
+        if (!(light.light > 0)) return;
+        rays.push_back(ray);
+        lights.push_back(light);
+    }
+
+    std::vector<RaySegment> rays;
+    std::vector<Light> lights;
+};
+
 void CatcherLight::prepare(const RayScene& scene, const PathLights& lights, const SkySampler& sky) {
     scene_ = &scene;
     lights_ = &lights;
@@ -59,93 +91,125 @@ float CatcherLight::distance_of(const Vec3& place) const {
     return ball.radius > 0 ? (place - ball.centre).norm() / ball.radius : no_end;
 }
 
-Vec3 CatcherLight::start_of(const PathBatch& batch, size_t path) const {
-    const Vec3 off_view = RayScene::off_surface(batch.position.at(path), batch.view.at(path));
-    return RayScene::off_surface(off_view, batch.face.at(path), scene_->reach());
+RaySegment CatcherLight::ray_from(const PathBatch& batch, size_t path, const Vec3& direction,
+                                  float distance) const {
+    const Vec3 face = batch.face.at(path);
+    return {
+        RayScene::off_surface(batch.position.at(path), batch.view.at(path) + face, face * scene_->reach()),
+        direction, distance};
 }
 
-bool CatcherLight::is_hidden(const PathBatch& batch, size_t path, const Vec3& direction,
-                             float distance) const {
-    return scene_->blocked(start_of(batch, path), direction, distance);
-}
-
-void CatcherLight::add_hidden_sky(const PathBatch& batch, const SkyPoint& point, CaughtLight& to) const {
-    const RayScene::Ball& ball = scene_->ball();
-    to.all += sky_light_;
-    to.arrives += sky_light_;
-    if (!(ball.radius > 0)) return;
-    const Vec3 place = batch.position.at(point.path);
-    const Cone cone(ball.centre - place, ball.radius);
+void CatcherLight::add_hidden(const PathBatch& batch, const SkyPoint& point, const SkySampler::Sample& sky,
+                              float cone_density, Looks& looks) const {
     const float of_sky = sky_->is_sampled() ? sky_part : 0;
-    if (point.is_chosen && !ball.is_met(place, point.sky.direction)) return;
-    const SkySampler::Sample sky = point.is_chosen ? point.sky : sky_->seen(cone.at(point.u), cone.density());
     const float cosine = batch.normal.at(point.path).dot(sky.direction);
     if (!(cosine > 0)) return;
-    const float density = of_sky * sky.density + (1 - of_sky) * cone.density();
-    const float light = luminance(sky.radiance) * cosine / (float(pi) * density);
-    if (light > 0 && is_hidden(batch, point.path, sky.direction, no_end)) to.arrives -= light;
+    const float density = of_sky * sky.density + (1 - of_sky) * cone_density;
+    looks.add_hidden(ray_from(batch, point.path, sky.direction, no_end), batch.state[point.path].index,
+                     luminance(sky.radiance) * cosine / (float(pi) * density));
 }
 
-void CatcherLight::add_sky(const PathBatch& batch, const SkyPoint& point, CaughtLight& to) const {
-    const Vec3 normal = batch.normal.at(point.path);
-    const auto add = [&](const Vec3& direction, float light, float distance) {
-        if (!(light > 0)) return;
-        to.all += light;
-        if (distance < 0 || !is_hidden(batch, point.path, direction, distance)) to.arrives += light;
+void CatcherLight::add_chosen(const PathBatch& batch, const SkyPoint& point, Looks& looks) const {
+    const float matt = batch.normal.at(point.path).dot(point.sky.direction) / float(pi);
+    if (!(matt > 0)) return;
+    looks.add_open(ray_from(batch, point.path, point.sky.direction, no_end), batch.state[point.path].index,
+                   luminance(point.sky.radiance) * matt / (point.sky.density + matt));
+}
+
+void CatcherLight::add_matt(const PathBatch& batch, size_t path, const SkySampler::Sample& sky, float density,
+                            Looks& looks) const {
+    const auto add = [&](float light, float distance) {
+        looks.add_open(ray_from(batch, path, sky.direction, distance), batch.state[path].index, light);
     };
-    if (point.is_chosen) {
-        const float matt = normal.dot(point.sky.direction) / float(pi);
-        if (matt > 0)
-            add(point.sky.direction, luminance(point.sky.radiance) * matt / (point.sky.density + matt),
-                no_end);
-    }
-    const Vec3 direction =
-        cosine_direction(RayFrame(normal), batch.state[point.path].sampler.pair(0, lobe_point));
-    const float density = normal.dot(direction) / float(pi);
-    if (!(density > 0)) return;
-    const SkySampler::Sample sky = sky_->seen(direction, density);
-    add(direction, luminance(sky.radiance) * density / (sky.density + density), no_end);
-    lights_->for_each_met(
-        batch.position.at(point.path), direction, density,
-        [&](const Vec3& light, float distance) { add(direction, luminance(light), distance); });
+    add(luminance(sky.radiance) * density / (sky.density + density), no_end);
+    lights_->for_each_met(batch.position.at(path), sky.direction, density,
+                          [&](const Vec3& light, float distance) { add(luminance(light), distance); });
 }
 
-void CatcherLight::add_lamp(const PathBatch& batch, size_t path, const ChosenLight& lamp,
-                            CaughtLight& to) const {
-    to.all += lamp.all;
-    const Vec3 place = batch.position.at(path);
-    const Vec2 u = batch.state[path].sampler.pair(0, emitter_point);
-    const PathLights::Towards way = lights_->towards(lamp, place, u, *scene_);
-    const bool can_be_hidden = way.distance > 0 && scene_->ball().is_met(place, way.direction);
-    to.arrives += can_be_hidden
-                      ? lamp.all * luminance(lights_->transmittance(way, start_of(batch, path), *scene_))
-                      : lamp.all;
+void CatcherLight::add_lamps(const PathBatch& batch, std::vector<CaughtLight>& light) const {
+    std::vector<ChosenLight> lamps;
+    lights_->choose(batch, 0, true, lamps);
+    std::vector<RaySegment> rays;
+    std::vector<uint32_t> lights, paths;
+    for (size_t i = 0; i < batch.count; ++i) {
+        if (!(lamps[i].all > 0)) continue;
+        CaughtLight& to = light[batch.state[i].index];
+        to.all += lamps[i].all;
+        const Vec3 place = batch.position.at(i);
+        const RaySegment ray = lights_->towards(lamps[i], place);
+        if (ray.distance > 0 && scene_->ball().is_met(place, ray.direction)) {
+            rays.push_back(ray_from(batch, i, ray.direction, ray.distance));
+            lights.push_back(lamps[i].index);
+            paths.push_back(uint32_t(i));
+        } else {
+            to.arrives += lamps[i].all;
+        }
+    }
+    const std::vector<Vec3> left = lights_->transmittances(rays, lights, *scene_);
+    for (size_t i = 0; i < rays.size(); ++i)
+        light[batch.state[paths[i]].index].arrives += lamps[paths[i]].all * luminance(left[i]);
 }
 
 void CatcherLight::add_samples(const PathBatch& batch, std::vector<CaughtLight>& light) const {
-    std::vector<ChosenLight> lamps;
-    lights_->choose(batch, 0, true, lamps);
-    for (size_t i = 0; i < batch.count; ++i)
-        if (lamps[i].all > 0) add_lamp(batch, i, lamps[i], light[batch.state[i].index]);
+    if (batch.count == 0) return;
+    if (!lights_->empty()) add_lamps(batch, light);
     // Area lights count on directions that are distributed by the cosine.
-    const bool has_areas = lights_->has_areas();
-    if (sky_->empty() && !has_areas) return;
-    for (const SkyPoint& point : sky_points(batch)) {
-        CaughtLight& to = light[batch.state[point.path].index];
-        if (point.sees_cone)
-            add_hidden_sky(batch, point, to);
-        else
-            add_sky(batch, point, to);
+    if (!sky_->empty() || lights_->has_areas()) add_skies(batch, light);
+}
+
+void CatcherLight::add_skies(const PathBatch& batch, std::vector<CaughtLight>& light) const {
+    const std::vector<SkyPoint> points = sky_points(batch);
+    const PathVectors<2> lobe = batch.points(0, lobe_point);
+    const RayScene::Ball& ball = scene_->ball();
+    Looks looks;
+    // Directions whose sky is read together: within cones, and distributed by the cosine.
+    std::vector<size_t> of_points;
+    std::vector<Vec3> directions;
+    std::vector<float> densities;
+    const auto look = [&](size_t i, const Vec3& direction, float density) {
+        of_points.push_back(i);
+        directions.push_back(direction);
+        densities.push_back(density);
+    };
+    for (size_t i = 0; i < points.size(); ++i) {
+        const SkyPoint& point = points[i];
+        const Vec3 place = batch.position.at(i), normal = batch.normal.at(i);
+        if (!point.sees_cone) {
+            if (point.is_chosen) add_chosen(batch, point, looks);
+            const Vec3 direction = cosine_direction(RayFrame(normal), lobe.at(i));
+            const float density = normal.dot(direction) / float(pi);
+            if (density > 0) look(i, direction, density);
+            continue;
+        }
+        CaughtLight& to = light[batch.state[i].index];
+        to.all += sky_light_;
+        to.arrives += sky_light_;
+        if (!(ball.radius > 0)) continue;
+        const Cone cone(ball.centre - place, ball.radius);
+        if (!point.is_chosen)
+            look(i, cone.at(point.u), cone.density());
+        else if (ball.is_met(place, point.sky.direction))
+            add_hidden(batch, point, point.sky, cone.density(), looks);
     }
+    const std::vector<SkySampler::Sample> skies = sky_->seen(directions, densities);
+    for (size_t i = 0; i < skies.size(); ++i) {
+        const SkyPoint& point = points[of_points[i]];
+        if (point.sees_cone)
+            add_hidden(batch, point, skies[i], densities[i], looks);
+        else
+            add_matt(batch, point.path, skies[i], densities[i], looks);
+    }
+    looks.add_to(light, *scene_);
 }
 
 std::vector<CatcherLight::SkyPoint> CatcherLight::sky_points(const PathBatch& batch) const {
     std::vector<SkyPoint> points(batch.count);
     std::vector<Vec2> chosen;
+    const PathVectors<2> numbers = batch.points(0, sky_point);
     for (size_t i = 0; i < batch.count; ++i) {
         SkyPoint& point = points[i];
         point.path = i;
-        point.u = batch.state[i].sampler.pair(0, sky_point);
+        point.u = numbers.at(i);
         point.sees_cone = !lights_->has_areas() && distance_of(batch.position.at(i)) > nearest_cone;
         point.is_chosen = sky_->is_sampled();
         if (point.is_chosen && point.sees_cone) {

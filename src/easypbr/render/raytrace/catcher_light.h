@@ -33,13 +33,19 @@ class CatcherLight {
   private:
     struct Cone;
     struct SkyPoint;
-    void add_lamp(const PathBatch& batch, size_t path, const ChosenLight& lamp, CaughtLight& to) const;
+    void add_lamps(const PathBatch& batch, std::vector<CaughtLight>& light) const;
     std::vector<SkyPoint> sky_points(const PathBatch& batch) const;
-    void add_sky(const PathBatch& batch, const SkyPoint& point, CaughtLight& to) const;
-    /// The same by what the casters hide, of a place outside of their ball.
-    void add_hidden_sky(const PathBatch& batch, const SkyPoint& point, CaughtLight& to) const;
-    Vec3 start_of(const PathBatch& batch, size_t path) const;
-    bool is_hidden(const PathBatch& batch, size_t path, const Vec3& direction, float distance) const;
+    void add_skies(const PathBatch& batch, std::vector<CaughtLight>& light) const;
+    struct Looks;
+    /// What a direction to the casters would bring, of a place outside of their ball.
+    void add_hidden(const PathBatch& batch, const SkyPoint& point, const SkySampler::Sample& sky,
+                    float cone_density, Looks& looks) const;
+    /// What the chosen direction of the sky brings.
+    void add_chosen(const PathBatch& batch, const SkyPoint& point, Looks& looks) const;
+    /// What a direction brings that is distributed by the cosine, area lights included.
+    void add_matt(const PathBatch& batch, size_t path, const SkySampler::Sample& sky, float density,
+                  Looks& looks) const;
+    RaySegment ray_from(const PathBatch& batch, size_t path, const Vec3& direction, float distance) const;
 
     const RayScene* scene_ = nullptr;
     const PathLights* lights_ = nullptr;

@@ -9,6 +9,10 @@
 
 namespace easypbr::render::embree {
 
+/// Rays that are traced together, where no primitive calls back. Those that start beside each other in
+/// similar directions take a part of the time.
+inline constexpr int packet_size = 16;
+
 #if EASYPBR_EMBREE >= 4
 
 using Context = RTCRayQueryContext;
@@ -33,6 +37,21 @@ inline void occlude(RTCScene scene, Context& context, RTCRay& ray) {
     rtcOccluded1(scene, &ray, &arguments);
 }
 
+/// The same of the rays of a packet whose `valid` is -1.
+inline void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
+    RTCIntersectArguments arguments;
+    rtcInitIntersectArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcIntersect16(valid, scene, &rays, &arguments);
+}
+
+inline void occlude(RTCScene scene, const int* valid, RTCRay16& rays) {
+    RTCOccludedArguments arguments;
+    rtcInitOccludedArguments(&arguments);
+    arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
+    rtcOccluded16(valid, scene, &rays, &arguments);
+}
+
 #else
 
 using Context = RTCIntersectContext;
@@ -47,6 +66,20 @@ inline void intersect(RTCScene scene, Context& context, RTCRayHit& ray) {
 
 inline void occlude(RTCScene scene, Context& context, RTCRay& ray) {
     rtcOccluded1(scene, &context, &ray);
+}
+
+inline void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
+    Context context;
+    begin(context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcIntersect16(valid, scene, &context, &rays);
+}
+
+inline void occlude(RTCScene scene, const int* valid, RTCRay16& rays) {
+    Context context;
+    begin(context);
+    context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    rtcOccluded16(valid, scene, &context, &rays);
 }
 
 #endif

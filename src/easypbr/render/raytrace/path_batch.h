@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "easypbr/core/math.h"
-#include "easypbr/native/kernels.h"
+#include "easypbr/native/shaders.h"
 #include "easypbr/render/raytrace/path_sampler.h"
 
 namespace easypbr::render {
@@ -120,7 +120,9 @@ struct PathBatch {
           view(rounded_up(capacity)),
           albedo(rounded_up(capacity)),
           parameters(rounded_up(capacity)),
-          state(rounded_up(capacity)) {
+          state(rounded_up(capacity)),
+          seeds(rounded_up(capacity)),
+          reversed_samples(rounded_up(capacity)) {
         if (!extended) return;
         extensions.emplace(rounded_up(capacity));
         inside.assign(rounded_up(capacity), 0.0f);
@@ -147,6 +149,19 @@ struct PathBatch {
         }
     }
 
+    void set_state(size_t path, const PathState& to) {
+        state[path] = to;
+        seeds[path] = to.sampler.seed();
+        reversed_samples[path] = to.sampler.reversed_sample();
+    }
+    /// PathSampler::pair() of all paths.
+    PathVectors<2> points(uint32_t depth, uint32_t pair) const {
+        PathVectors<2> points(rounded_up(count));
+        native::sample_paths(seeds.data(), reversed_samples.data(), PathSampler::dimension_of(depth, pair),
+                             int(count), points.component[0].data(), points.component[1].data());
+        return points;
+    }
+
     size_t count = 0;
     PathVectors<3> position;
     PathVectors<3> normal;  ///< interpolated and mapped
@@ -155,6 +170,7 @@ struct PathBatch {
     PathVectors<3> albedo;
     PathVectors<2> parameters;  ///< metallic, roughness
     std::vector<PathState> state;
+    std::vector<uint32_t> seeds, reversed_samples;  ///< of their samplers
 
     std::optional<PathExtensions> extensions;
     std::vector<float> inside;  ///< with extensions: 1 where the path comes from within the surface's volume

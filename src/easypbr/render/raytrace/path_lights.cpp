@@ -15,6 +15,9 @@
 namespace easypbr::render {
 namespace {
 
+/// Rays to a place of an emitter end before it: the part of their length.
+constexpr float before_emitter = 1 - 1e-4f;
+
 using Uniforms = std::array<blocks::Light, lights_per_block>;
 
 /// What path_lamps has found for each path.
@@ -58,17 +61,19 @@ ShaderInputs path_inputs(const ResolvedSettings& resolved, const RayScene& scene
 }
 
 void PathLights::prepare(const ResolvedSettings& resolved, const RayScene& scene) {
-    resolved_ = &resolved;
     blocks_.clear();
     areas_.clear();
+    emitters_.clear();
     transmits_ = false;
     for (int i = 0; i < scene.surface_count(); ++i) transmits_ |= scene.item_of(i).casts_tint();
     const auto& lights = resolved.lights;
-    for (const ResolvedLight& light : lights)
-        if (is_area(light.type)) {
-            areas_.push_back(area_of(light, scene));
-            areas_.back().casts_shadows = light.casts_shadows && resolved.settings.shadows.enabled;
-        }
+    for (const ResolvedLight& light : lights) {
+        emitters_.push_back({light.type == LightType::directional, is_area(light.type),
+                             light.casts_shadows && resolved.settings.shadows.enabled});
+        if (!is_area(light.type)) continue;
+        areas_.push_back(area_of(light, scene));
+        areas_.back().casts_shadows = emitters_.back().casts_shadows;
+    }
     for (size_t first = 0; first < lights.size(); first += lights_per_block) {
         const size_t count = std::min(lights.size() - first, lights_per_block);
         Uniforms uniforms{};
@@ -96,11 +101,8 @@ void PathLights::choose(const PathBatch& batch, uint32_t depth, bool caught,
     chosen.assign(batch.count, {});
     if (blocks_.empty()) return;
     Found found(PathBatch::rounded_up(batch.count));
-    for (size_t i = 0; i < batch.count; ++i) {
-        const PathSampler& sampler = batch.state[i].sampler;
-        found.choice[i] = sampler.pair(depth, PathSampler::light_and_lobe).x();
-        if (!areas_.empty()) found.emitter.set(i, sampler.pair(depth, PathSampler::emitter_point));
-    }
+    found.choice = std::move(batch.points(depth, PathSampler::light_and_lobe).component[0]);
+    found.emitter = batch.points(depth, PathSampler::emitter_point);
     for (const Block& block : blocks_) {
         const int count = int(batch.count);
         if (batch.extensions)
@@ -166,35 +168,32 @@ PathLights::Met PathLights::met(const Area& area, const Vec3& place, const Vec3&
     return {distance, inside ? distance * distance / (area.area * cosine) : 0.0f};
 }
 
-PathLights::Towards PathLights::towards(const ChosenLight& chosen, const Vec3& place, const Vec2& u,
-                                        const RayScene& scene) const {
-    const ResolvedLight& light = resolved_->lights[chosen.index];
-    if (!light.casts_shadows || !resolved_->settings.shadows.enabled) return {};
-    if (is_area(light.type)) {
-        const float reach = chosen.way.norm();
-        return reach > 0 ? Towards{chosen.way / reach, reach * (1 - 1e-4f), true} : Towards{};
-    }
-    const bool parallel = light.type == LightType::directional;
-    const double unit = scene.unit();
-    const Vec3 middle =
-        parallel ? Vec3(-light.direction.normalized())
-                 : Vec3(((light.position.cast<double>() - scene.centre()) / unit).cast<float>() - place);
-    const float distance = middle.norm();
-    if (!(distance > 0)) return {};
-    // A point of the disc that the emitter is seen as.
-    const float radius = parallel ? std::tan(radians(light.angular_radius_deg)) : light.radius / float(unit);
-    const RayFrame frame(middle / distance);
-    const float r = radius * std::sqrt(u.x()), phi = float(2 * pi) * u.y();
-    const Vec3 towards = middle + (frame.t * std::cos(phi) + frame.b * std::sin(phi)) * r;
-    const float reach = towards.norm();
-    return {towards / reach, parallel ? std::numeric_limits<float>::infinity() : reach * (1 - 1e-4f), false};
+RaySegment PathLights::towards(const ChosenLight& chosen, const Vec3& from) const {
+    const Emitter& emitter = emitters_[chosen.index];
+    const float reach = chosen.way.norm();
+    if (!emitter.casts_shadows || !(reach > 0)) return {};
+    return {from, chosen.way / reach,
+            emitter.is_parallel ? std::numeric_limits<float>::infinity() : reach * before_emitter};
 }
 
-Vec3 PathLights::transmittance(const Towards& to, const Vec3& from, const RayScene& scene) const {
-    if (to.distance <= 0) return Vec3::Ones();
-    if (transmits_ && !to.is_area) return scene.transmittance(from, to.direction, to.distance);
-    const bool hidden = scene.blocked(from, to.direction, to.distance, Transmissive::met);
-    return hidden ? Vec3(Vec3::Zero()) : Vec3(Vec3::Ones());
+std::vector<Vec3> PathLights::transmittances(std::span<const RaySegment> rays,
+                                             std::span<const uint32_t> lights, const RayScene& scene) const {
+    std::vector<Vec3> left(rays.size(), Vec3::Ones());
+    std::vector<RaySegment> whole;
+    std::vector<size_t> places;
+    for (size_t i = 0; i < rays.size(); ++i) {
+        if (rays[i].distance <= 0) continue;
+        if (transmits_ && !emitters_[lights[i]].is_area) {
+            left[i] = scene.transmittance(rays[i].from, rays[i].direction, rays[i].distance);
+        } else {
+            whole.push_back(rays[i]);
+            places.push_back(i);
+        }
+    }
+    const std::vector<uint8_t> blocked = scene.blocked(whole, Neighbours::similar, Transmissive::met);
+    for (size_t i = 0; i < whole.size(); ++i)
+        if (blocked[i]) left[places[i]] = Vec3::Zero();
+    return left;
 }
 
 }  // namespace easypbr::render

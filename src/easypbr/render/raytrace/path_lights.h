@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "easypbr/native/shaders.h"
@@ -23,29 +24,23 @@ struct ChosenLight {
                0};  ///< what the surface reflects of it, unless it is hidden, as if it stood for all lights
     float all = 0;  ///< luminance of all lights, if none is hidden
     uint32_t index = 0;  ///< in the resolved settings
-    Vec3 way{0, 0, 0};   ///< to the chosen point, of an area light (RayScene's frame)
+    Vec3 way{0, 0, 0};   ///< to its chosen point (RayScene's frame), of parallel light the direction to it
 };
 
 class PathLights {
   public:
-    /// The settings must outlive the calls of the others.
     void prepare(const ResolvedSettings& resolved, const RayScene& scene);
 
     bool empty() const { return blocks_.empty(); }
-    /// Chooses a light for each path of a batch, of area lights a point too. `caught`: the surfaces catch
+    /// Chooses a light for each path of a batch, and a point of it. `caught`: the surfaces catch
     /// shadows.
     void choose(const PathBatch& batch, uint32_t depth, bool caught, std::vector<ChosenLight>& chosen) const;
-    /// Where the emitter of a chosen light is seen from a place (RayScene's frame). `u` chooses the point of
-    /// lights that are not areas.
-    struct Towards {
-        Vec3 direction{0, 0, 0};  ///< unit; 0: at the emitter, or the light casts no shadows
-        float distance = 0;
-        /// Its light is refracted by transmissive surfaces: it does not shine straight through.
-        bool is_area = false;
-    };
-    Towards towards(const ChosenLight& light, const Vec3& place, const Vec2& u, const RayScene& scene) const;
-    /// What reaches a place of the light that comes from there; rays start at `from`.
-    Vec3 transmittance(const Towards& to, const Vec3& from, const RayScene& scene) const;
+    /// The ray from a place (RayScene's frame) to the point of a chosen light; of no length at the light, or
+    /// where it casts no shadows.
+    RaySegment towards(const ChosenLight& light, const Vec3& from) const;
+    /// What reaches places of the light that comes by such rays, of the lights of these indices.
+    std::vector<Vec3> transmittances(std::span<const RaySegment> rays, std::span<const uint32_t> lights,
+                                     const RayScene& scene) const;
     /// Whether there are area lights, which directions meet that are sampled by the BSDF.
     bool has_areas() const { return !areas_.empty(); }
 
@@ -80,8 +75,15 @@ class PathLights {
     };
     static Met met(const Area& area, const Vec3& place, const Vec3& direction);
     static Area area_of(const ResolvedLight& light, const RayScene& scene);
+    /// A light as rays that look for it see it.
+    struct Emitter {
+        bool is_parallel = false;
+        /// Its light is refracted by transmissive surfaces: it does not shine straight through.
+        bool is_area = false;
+        bool casts_shadows = true;
+    };
 
-    const ResolvedSettings* resolved_ = nullptr;
+    std::vector<Emitter> emitters_;  ///< of all lights
     std::vector<Area> areas_;
     std::vector<Block> blocks_;
     bool transmits_ = false;  ///< light passes some surface

@@ -36,6 +36,44 @@ void PathPass::Caught::add(const CaughtLight& light) {
     ++frames;
 }
 
+/// Places that a frame's pixels show, in RayScene's frame: view_position() with what pixels share taken out.
+class PathPass::CameraRays {
+  public:
+    CameraRays(const Frame& frame, const RayScene& scene)
+        : orthographic_(frame.orthographic()), near_(frame.camera.near), far_(frame.camera.far) {
+        const Mat4d& p = frame.clip_from_view;
+        const Vec2d step(2.0 / frame.size.x(), -2.0 / frame.size.y()),
+            shift = orthographic_ ? Vec2d(-p(0, 3), -p(1, 3)) : Vec2d(p(0, 2), p(1, 2));
+        const Mat3d unit_from_view = frame.camera.T_world_cam.linear() / scene.unit();
+        column_ = unit_from_view.col(0) * (step.x() / p(0, 0));
+        row_ = unit_from_view.col(1) * (step.y() / p(1, 1));
+        first_ = unit_from_view.col(0) * ((step.x() / 2 - 1 + shift.x()) / p(0, 0)) +
+                 unit_from_view.col(1) * ((step.y() / 2 + 1 + shift.y()) / p(1, 1));
+        back_ = unit_from_view.col(2);
+        towards_ = frame.camera.T_world_cam.linear().col(2).cast<float>();
+        eye_ = (frame.camera.position() - scene.centre()) / scene.unit();
+        width_ = step.x() / p(0, 0) / scene.unit();
+    }
+
+    /// But for its normal; `depth` is that of the G-buffer, above 0.
+    RayScene::Place place_at(int x, int y, double depth) const {
+        const Vec3d across = first_ + x * column_ + y * row_;
+        const double z = orthographic_ ? far_ + (near_ - far_) * depth : near_ / depth;
+        const Vec3d away = orthographic_ ? Vec3d(across - z * back_) : Vec3d(z * (across - back_));
+        RayScene::Place place;
+        place.position = (away + eye_).cast<float>();
+        place.view = orthographic_ ? towards_ : Vec3(-away.cast<float>().normalized());
+        place.footprint = float(orthographic_ ? width_ : z * width_);
+        return place;
+    }
+
+  private:
+    bool orthographic_;
+    double near_, far_, width_;  ///< of a pixel, in perspective at a distance of 1 along the axis
+    Vec3d first_, column_, row_, back_, eye_;
+    Vec3 towards_;
+};
+
 /// The targets in host memory, and how pixels become places.
 struct PathPass::Pixels {
     Pixels(const Frame& frame_, const GBuffer& targets, const Target& emission_, const RayScene& scene_,
@@ -49,13 +87,12 @@ struct PathPass::Pixels {
           depth(targets.depth),
           emission(emission_),
           radiance(targets.radiance),
-          world_from_view(frame.camera.T_world_cam.linear()),
-          eye(frame.camera.position() - scene.centre()) {}
+          rays(frame, scene) {}
 
-    /// A pixel's surface as the G-buffer has it.
-    struct Place {
-        Vec3 position, view;
-        float footprint;  ///< width of the pixel there, RayScene::unit()
+    /// A path of a pixel, from its surface as the G-buffer has it.
+    struct Start {
+        int x = 0, y = 0;
+        RayScene::Place place;
         PathState state;
     };
     /// Neighbours take turns, by their place in the whole image.
@@ -69,9 +106,10 @@ struct PathPass::Pixels {
         return d && *d > 0 && !(starts.tiles && starts.tiles->has_ended(starts.tiles->tile_at(x, y)));
     }
     /// `index` is that of the pixel's radiance.
-    Place place_of(int x, int y, uint32_t index) const;
-    /// Adds the path of a pixel to a batch.
-    void add(int x, int y, const Place& place, PathBatch& batch) const;
+    Start start_of(int x, int y, uint32_t index) const;
+    /// Adds a path to a batch, at what rays find there.
+    void add(const Start& start, const RayScene::Seen& at, PathBatch& batch) const;
+    Vec3 normal_at(int x, int y) const;
 
     const Frame& frame;
     const RayScene& scene;
@@ -81,41 +119,35 @@ struct PathPass::Pixels {
     HeldPixels<std::array<uint8_t, 4>> material;
     HeldPixels<float> depth;
     HeldPixels<Vec4> emission, radiance;
-    Mat3d world_from_view;
-    Vec3d eye;  ///< relative to the scene's centre
+    const CameraRays rays;
 };
 
-PathPass::Pixels::Place PathPass::Pixels::place_of(int x, int y, uint32_t index) const {
-    const Vec3d position = view_position(frame, {x, y}, *depth.at(x, y));
-    const Vec3d towards = frame.orthographic() ? Vec3d(0, 0, 1) : Vec3d(-position.normalized());
-    const double width = 2 / (frame.size.x() * frame.clip_from_view(0, 0));
+PathPass::Pixels::Start PathPass::Pixels::start_of(int x, int y, uint32_t index) const {
     const Vec2i pixel = frame.origin + Vec2i(x, y);
-    Place place;
-    place.position = ((world_from_view * position + eye) / scene.unit()).cast<float>();
-    place.view = (world_from_view * towards).cast<float>();
-    place.footprint = float((frame.orthographic() ? width : -position.z() * width) / scene.unit());
-    place.state.sampler = PathSampler(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(frame.sample_index),
+    Start start{x, y, rays.place_at(x, y, *depth.at(x, y)), {}};
+    start.place.normal = normal_at(x, y);
+    start.state.sampler = PathSampler(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(frame.sample_index),
                                       uint32_t(frame.sample_count));
-    place.state.index = index;
-    return place;
+    start.state.index = index;
+    return start;
 }
 
-void PathPass::Pixels::add(int x, int y, const Place& place, PathBatch& batch) const {
-    const std::array<uint8_t, 4>& m = *material.at(x, y);
+Vec3 PathPass::Pixels::normal_at(int x, int y) const {
     const std::array<uint16_t, 2>& n = *normal.at(x, y);
-    const Vec3 mapped = oct_decode(Vec2(n[0], n[1]) / 32767.5f - Vec2(1, 1));
-    const std::array<uint16_t, 4>& color = *albedo.at(x, y);
-    const RayScene::Seen at =
-        is_catcher(m[3]) ? RayScene::Seen{place.position, mapped, mapped}
-                         : scene.seen_at(place.position, mapped, place.view, place.footprint, starts.seen);
+    return oct_decode(Vec2(n[0], n[1]) / 32767.5f - Vec2(1, 1));
+}
+
+void PathPass::Pixels::add(const Start& start, const RayScene::Seen& at, PathBatch& batch) const {
+    const std::array<uint8_t, 4>& m = *material.at(start.x, start.y);
+    const std::array<uint16_t, 4>& color = *albedo.at(start.x, start.y);
     const size_t i = batch.count++;
     batch.position.set(i, at.position);
     batch.normal.set(i, at.normal);
     batch.face.set(i, at.face);
-    batch.view.set(i, place.view);
+    batch.view.set(i, start.place.view);
     batch.albedo.set(i, Vec3(color[0], color[1], color[2]) / 65535.0f);
     batch.parameters.set(i, Vec2(m[0], m[1]) / 255.0f);
-    batch.state[i] = place.state;
+    batch.set_state(i, start.state);
 }
 
 PathPass::Caught& PathPass::caught_at(const Pixels& pixels, int x, int y) {
@@ -134,6 +166,10 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
             for (int x = block.x; x < block.x + block.width; ++x)
                 visit(x, y, uint32_t((y - block.y) * block.width + x - block.x));
     };
+    std::vector<Pixels::Start> starts;
+    std::vector<RayScene::Place> places;
+    starts.reserve(count);
+    places.reserve(count);
     each([&](int x, int y, uint32_t index) {
         if (!pixels.is_traced(x, y)) return;
         const uint8_t kind = (*pixels.material.at(x, y))[3];
@@ -141,22 +177,26 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
         const bool catches = is_catcher(kind);
         if (catches && !(pixels.starts.catches && caught_at(pixels, x, y).is_due(pixels.turn_of(x, y))))
             return;
-        const Pixels::Place place = pixels.place_of(x, y, index);
+        const Pixels::Start start = pixels.start_of(x, y, index);
+        const RayScene::Place& place = start.place;
         if (catches) {
             caught_at(pixels, x, y).period = catcher_period(tracer_.catcher().distance_of(place.position));
-            return pixels.add(x, y, place, caught);
+            return pixels.add(start, {place.position, place.normal, place.normal}, caught);
         }
         if (kind == uint8_t(SurfaceKind::extended)) {
             if (const auto hit =
                     pixels.scene.hit_at(place.position, place.view, place.footprint, pixels.starts.seen)) {
                 const float width = place.footprint * float(pixels.scene.unit());
-                hits.push_back(PathTracer::camera_hit(place.state, *hit, -place.view, width));
+                hits.push_back(PathTracer::camera_hit(start.state, *hit, -place.view, width));
                 is_hit[index] = true;
                 return;
             }
         }
-        pixels.add(x, y, place, lit);
+        starts.push_back(start);
+        places.push_back(place);
     });
+    const std::vector<RayScene::Seen> seen = pixels.scene.seen_at(places, pixels.starts.seen);
+    for (size_t i = 0; i < starts.size(); ++i) pixels.add(starts[i], seen[i], lit);
     tracer_.trace(lit, hits, radiance);
     tracer_.catcher().add_samples(caught, light);
     each([&](int x, int y, uint32_t index) {

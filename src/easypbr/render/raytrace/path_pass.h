@@ -23,6 +23,7 @@ class PathPass {
                     const SampledTiles* tiles, Transfers& transfers);
 
   private:
+    class CameraRays;
     struct Pixels;
     /// Of which pixels paths begin, and at what.
     struct Starts {

@@ -10,37 +10,6 @@
 
 namespace easypbr::render {
 
-inline uint32_t reversed_bits(uint32_t x) {
-    x = __builtin_bswap32(x);
-    x = (x & 0x0f0f0f0fu) << 4 | (x >> 4 & 0x0f0f0f0fu);
-    x = (x & 0x33333333u) << 2 | (x >> 2 & 0x33333333u);
-    return (x & 0x55555555u) << 1 | (x >> 1 & 0x55555555u);
-}
-
-/// Owen's scrambling of a number whose bits are reversed (Burley 2020, "Practical Hash-based Owen
-/// Scrambling"; the hash is that of Laine and Karras 2011 with Vegdahl's constants).
-inline uint32_t scrambled_reversed(uint32_t x, uint32_t seed) {
-    x ^= x * 0x3d20adeau;
-    x += seed;
-    x *= (seed >> 16) | 1u;
-    x ^= x * 0x05526c56u;
-    return x ^ x * 0x53a22864u;
-}
-
-/// Second dimension of Sobol's sequence, its bits reversed: a linear function of the bits of the index, for
-/// each byte of it.
-inline const std::array<std::array<uint32_t, 256>, 4>& sobol_table() {
-    static const auto table = [] {
-        std::array<std::array<uint32_t, 256>, 4> values{};
-        uint32_t direction = 1u << 31;
-        for (unsigned bit = 0; bit < 32; ++bit, direction ^= direction >> 1)
-            for (unsigned byte = 0; byte < 256; ++byte)
-                if (byte >> (bit % 8) & 1u) values[bit / 8][byte] ^= reversed_bits(direction);
-        return values;
-    }();
-    return table;
-}
-
 /// Spreads the lower 16 bits to the even places.
 inline uint32_t spread_bits(uint32_t x) {
     x &= 0xffffu;
@@ -75,20 +44,22 @@ class PathSampler {
         const uint32_t side = (32 - std::min(bits, 16u)) / 2;
         const uint32_t inside = (1u << side) - 1;
         reversed_sample_ =
-            reversed_bits((spread_bits(x & inside) | spread_bits(y & inside) << 1) << bits | sample);
+            native::reversed_bits((spread_bits(x & inside) | spread_bits(y & inside) << 1) << bits | sample);
         seed_ = pcg_hash((x >> side) + pcg_hash(y >> side));
     }
 
-    /// In [0, 1)^2, of dimension `pair` of the vertex `depth`.
+    /// In [0, 1)^2, of a pair of dimensions of the vertex `depth`.
     Vec2 pair(uint32_t depth, uint32_t pair) const {
-        const uint32_t seed = pcg_hash(seed_ ^ (depth * 16 + pair) * 0x9e3779b9u);
-        const uint32_t index = reversed_bits(scrambled_reversed(reversed_sample_, seed));
-        const auto& table = sobol_table();
-        const uint32_t y = table[0][index & 255] ^ table[1][index >> 8 & 255] ^ table[2][index >> 16 & 255] ^
-                           table[3][index >> 24];
-        return {unit_number(reversed_bits(scrambled_reversed(index, pcg_hash(seed + 1)))),
-                unit_number(reversed_bits(scrambled_reversed(y, pcg_hash(seed + 2))))};
+        uint32_t x = 0, y = 0;
+        native::sample_point(native::seed_of_dimension(seed_, dimension_of(depth, pair)), reversed_sample_, x,
+                             y);
+        return {unit_number(x), unit_number(y)};
     }
+
+    /// For native::sample_paths().
+    static uint32_t dimension_of(uint32_t depth, uint32_t pair) { return depth * 16 + pair; }
+    uint32_t seed() const { return seed_; }
+    uint32_t reversed_sample() const { return reversed_sample_; }
 
   private:
     uint32_t seed_ = 0, reversed_sample_ = 0;

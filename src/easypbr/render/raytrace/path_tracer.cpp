@@ -158,15 +158,14 @@ void PathTracer::prepare(const ResolvedSettings& resolved, const RayScene& scene
 }
 
 Vec3 PathTracer::start_of(const PathBatch& batch, size_t path) const {
-    const Vec3 view = batch.view.at(path);
-    return RayScene::off_surface(RayScene::off_surface(batch.position.at(path), view), batch.face.at(path),
-                                 scene_->reach());
+    return RayScene::off_surface(batch.position.at(path), batch.view.at(path) + batch.face.at(path),
+                                 batch.face.at(path) * scene_->reach());
 }
 
 Vec3 PathTracer::start_towards(const PathBatch& batch, size_t path, const Vec3& direction) const {
     const Vec3 face = batch.face.at(path);
     if (!batch.extensions || direction.dot(face) > 0) return start_of(batch, path);
-    return RayScene::off_surface(batch.position.at(path), -face, scene_->reach());
+    return RayScene::off_surface(batch.position.at(path), -face, -face * scene_->reach());
 }
 
 Vec3 PathTracer::limited(const Vec3& light, uint32_t bounces) const {
@@ -194,8 +193,9 @@ void PathTracer::choose_directions(const PathBatch& batch, uint32_t depth, Scatt
     std::vector<Emitters::Sample> chosen;
     std::vector<size_t> paths, of_sky;
     std::vector<Vec2> sky_points;
+    const PathVectors<2> points = batch.points(depth, sky_point);
     for (size_t i = 0; i < batch.count; ++i) {
-        Vec2 u = batch.state[i].sampler.pair(depth, sky_point);
+        Vec2 u = points.at(i);
         if (u.x() < emitter_part_) {
             u.x() = std::min(u.x() / emitter_part_, below_one);
             chosen.push_back(emitters_.sample(start_of(batch, i), u));
@@ -230,11 +230,10 @@ void PathTracer::choose_directions(const PathBatch& batch, uint32_t depth, Scatt
 }
 
 void PathTracer::scatter(const PathBatch& batch, uint32_t depth, Scattered& to) const {
-    for (size_t i = 0; i < batch.count; ++i) {
-        const PathSampler& sampler = batch.state[i].sampler;
-        const Vec2 lobe = sampler.pair(depth, lobe_point);
-        to.random.set(i, {lobe.x(), lobe.y(), sampler.pair(depth, light_and_lobe).y()});
-    }
+    PathVectors<2> lobe = batch.points(depth, lobe_point),
+                   light_and_lobe_ = batch.points(depth, light_and_lobe);
+    to.random.component = {std::move(lobe.component[0]), std::move(lobe.component[1]),
+                           std::move(light_and_lobe_.component[1])};
     choose_directions(batch, depth, to);
     const int count = int(batch.count);
     if (batch.extensions)
@@ -243,22 +242,51 @@ void PathTracer::scatter(const PathBatch& batch, uint32_t depth, Scattered& to) 
         native::run(uniforms_.get(), to.stream<native::path_scatter_stream>(batch), count);
 }
 
-void PathTracer::add_direct(const PathBatch& batch, uint32_t depth, const std::vector<ChosenLight>& lamps,
+void PathTracer::add_lamps(const PathBatch& batch, const std::vector<ChosenLight>& lamps,
+                           std::vector<Vec3>& light) const {
+    if (lights_.empty()) return;
+    std::vector<RaySegment> rays;
+    std::vector<uint32_t> lights, paths;
+    rays.reserve(batch.count);
+    lights.reserve(batch.count);
+    paths.reserve(batch.count);
+    for (size_t i = 0; i < batch.count; ++i) {
+        if (!(lamps[i].all > 0)) continue;
+        RaySegment ray = lights_.towards(lamps[i], batch.position.at(i));
+        ray.from = start_towards(batch, i, ray.direction);
+        rays.push_back(ray);
+        lights.push_back(lamps[i].index);
+        paths.push_back(uint32_t(i));
+    }
+    const std::vector<Vec3> left = lights_.transmittances(rays, lights, *scene_);
+    for (size_t i = 0; i < rays.size(); ++i) light[paths[i]] += lamps[paths[i]].light.cwiseProduct(left[i]);
+}
+
+void PathTracer::add_chosen(const PathBatch& batch, const Scattered& scattered,
+                            std::vector<Vec3>& light) const {
+    std::vector<RaySegment> rays;
+    std::vector<uint32_t> paths;
+    rays.reserve(batch.count);
+    paths.reserve(batch.count);
+    for (size_t i = 0; i < batch.count; ++i) {
+        if (!(scattered.chosen_light.at(i).maxCoeff() > 0)) continue;
+        const Vec3 direction = scattered.chosen_direction.at(i);
+        rays.push_back({start_towards(batch, i, direction), direction, scattered.distance[i]});
+        paths.push_back(uint32_t(i));
+    }
+    const std::vector<uint8_t> blocked = scene_->blocked(rays, Neighbours::scattered, Transmissive::met);
+    for (size_t i = 0; i < rays.size(); ++i)
+        if (!blocked[i]) light[paths[i]] += scattered.chosen_light.at(paths[i]);
+}
+
+void PathTracer::add_direct(const PathBatch& batch, const std::vector<ChosenLight>& lamps,
                             const Scattered& scattered, std::vector<Vec3>& radiance) const {
+    std::vector<Vec3> light(batch.count, Vec3::Zero());
+    add_lamps(batch, lamps, light);
+    add_chosen(batch, scattered, light);
     for (size_t i = 0; i < batch.count; ++i) {
         const PathState& state = batch.state[i];
-        Vec3 light = Vec3::Zero();
-        if (lamps[i].all > 0) {
-            const auto to = lights_.towards(lamps[i], batch.position.at(i),
-                                            state.sampler.pair(depth, emitter_point), *scene_);
-            const Vec3 from = start_towards(batch, i, to.direction);
-            light += lamps[i].light.cwiseProduct(lights_.transmittance(to, from, *scene_));
-        }
-        const Vec3 chosen = scattered.chosen_light.at(i), direction = scattered.chosen_direction.at(i);
-        if (chosen.maxCoeff() > 0 && !scene_->blocked(start_towards(batch, i, direction), direction,
-                                                      scattered.distance[i], Transmissive::met))
-            light += chosen;
-        radiance[state.index] += limited(state.throughput.cwiseProduct(light), state.bounces);
+        radiance[state.index] += limited(state.throughput.cwiseProduct(light[i]), state.bounces);
     }
 }
 
@@ -323,6 +351,9 @@ bool PathTracer::goes_on(const PathBatch& batch, size_t path, uint32_t depth, co
 void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered& scattered,
                         std::vector<Hit>& hits, std::vector<Vec3>& radiance) const {
     Escaped escaped;
+    escaped.directions.reserve(batch.count);
+    escaped.densities.reserve(batch.count);
+    escaped.paths.reserve(batch.count);
     for (size_t i = 0; i < batch.count; ++i) {
         PathState state = batch.state[i];
         const uint16_t bounces = state.bounces;
@@ -351,8 +382,9 @@ void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered&
 Vec3 PathTracer::caught_sky(const Hit& at, const Vec2& u) const {
     const RayHit& hit = at.hit;
     const Vec3 up = cosine_direction(RayFrame(hit.normal), u);
-    const bool open = !scene_->blocked(RayScene::off_surface(hit.position, hit.normal, scene_->reach()), up,
-                                       std::numeric_limits<float>::infinity());
+    const bool open =
+        !scene_->blocked(RayScene::off_surface(hit.position, hit.normal, hit.normal * scene_->reach()), up,
+                         std::numeric_limits<float>::infinity());
     return open ? sky_.seen(at.direction, at.density).radiance : Vec3(Vec3::Zero());
 }
 
@@ -384,7 +416,7 @@ size_t add_path(const PathTracer::Hit& hit, const HitSurfaces& surfaces, size_t 
     to.albedo.set(at, surfaces.albedo.at(i));
     // What is shown past the light is as if it were matt.
     to.parameters.set(at, is_lit_kind(surfaces.kind[i]) ? surfaces.parameters.at(i) : Vec2(0, 1));
-    to.state[at] = hit.state;
+    to.set_state(at, hit.state);
     return at;
 }
 
@@ -433,7 +465,7 @@ void PathTracer::step(const PathBatch& batch, uint32_t depth, std::vector<Hit>& 
     lights_.choose(batch, depth, false, lamps);
     Scattered scattered(PathBatch::rounded_up(batch.count));
     scatter(batch, depth, scattered);
-    add_direct(batch, depth, lamps, scattered, radiance);
+    add_direct(batch, lamps, scattered, radiance);
     if (batch.extensions) add_emission(batch, scattered, radiance);
     follow(batch, depth, scattered, hits, radiance);
 }

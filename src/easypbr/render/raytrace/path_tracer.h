@@ -55,8 +55,12 @@ class PathTracer {
     void scatter(const PathBatch& batch, uint32_t depth, Scattered& to) const;
     /// Chooses the direction of next-event estimation for each path: to the sky, or to an emissive surface.
     void choose_directions(const PathBatch& batch, uint32_t depth, Scattered& to) const;
-    void add_direct(const PathBatch& batch, uint32_t depth, const std::vector<ChosenLight>& lamps,
-                    const Scattered& scattered, std::vector<Vec3>& radiance) const;
+    void add_direct(const PathBatch& batch, const std::vector<ChosenLight>& lamps, const Scattered& scattered,
+                    std::vector<Vec3>& radiance) const;
+    /// The parts of that: of the lamps, and of the directions of next-event estimation.
+    void add_lamps(const PathBatch& batch, const std::vector<ChosenLight>& lamps,
+                   std::vector<Vec3>& light) const;
+    void add_chosen(const PathBatch& batch, const Scattered& scattered, std::vector<Vec3>& light) const;
     /// What surfaces with extensions emit.
     void add_emission(const PathBatch& batch, const Scattered& scattered, std::vector<Vec3>& radiance) const;
     /// Follows the paths to the next surface.

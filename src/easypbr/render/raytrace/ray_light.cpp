@@ -73,7 +73,7 @@ Vec3 from_areas(const ResolvedSettings& resolved, const RayScene& scene, const V
     constexpr double before_emitter = 1e-4;
     Vec3 sum = Vec3::Zero();
     const Vec3d place = at.cast<double>() * scene.unit() + scene.centre();
-    const Vec3 from = RayScene::off_surface(at, normal, scene.reach());
+    const Vec3 from = RayScene::off_surface(at, normal, normal * scene.reach());
     for (const ResolvedLight& light : resolved.lights) {
         if (!is_area(light.type)) continue;
         const AreaPoint point = area_point(light, place, u);
@@ -138,7 +138,7 @@ Vec3 RayLight::from_lights(const Vec3& at, const Vec3& normal) const {
         if (falls <= 0) continue;
         const float reach = parallel ? std::numeric_limits<float>::infinity() : distance;
         if (light.casts_shadows && resolved_->settings.shadows.enabled &&
-            scene_->blocked(RayScene::off_surface(at, normal, scene_->reach()), l, reach))
+            scene_->blocked(RayScene::off_surface(at, normal, normal * scene_->reach()), l, reach))
             continue;
         sum += light.color * (light.intensity * falls * cosine / float(pi));
     }
@@ -183,8 +183,8 @@ Vec3 RayLight::radiance(const RayHit& first, const Vec3& along, bool scattered, 
                      : cosine_direction(frame, u);
         if (next.dot(hit.normal) <= 0) break;
         weight = weight.cwiseProduct(mirrored ? Vec3(reflects / likely) : Vec3(diffuse / (1 - likely)));
-        const auto found =
-            scene_->trace(RayScene::off_surface(hit.position, hit.normal, scene_->reach()), next);
+        const auto found = scene_->trace(
+            RayScene::off_surface(hit.position, hit.normal, hit.normal * scene_->reach()), next);
         // What is seen past a matt surface is blurred, so that few paths do: the sky's mean around a
         // direction.
         const bool blurred = scattered || !mirrored;

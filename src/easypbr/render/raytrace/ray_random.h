@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "easypbr/core/math.h"
+#include "easypbr/native/sample_points.h"
 
 namespace easypbr::render {
 
@@ -13,21 +14,7 @@ inline float fraction(double x) {
     return float(x - std::floor(x));
 }
 
-/// The next state of a permuted congruential generator (Jarzynski and Olano 2020, "Hash Functions for GPU
-/// Rendering").
-inline uint32_t pcg_advance(uint32_t state) {
-    return state * 747796405u + 2891336453u;
-}
-
-/// The number that belongs to a state of the generator.
-inline uint32_t pcg_output(uint32_t state) {
-    const uint32_t word = ((state >> ((state >> 28u) + 4u)) ^ state) * 277803737u;
-    return (word >> 22u) ^ word;
-}
-
-inline uint32_t pcg_hash(uint32_t value) {
-    return pcg_output(pcg_advance(value));
-}
+using native::pcg_advance, native::pcg_hash, native::pcg_output;
 
 /// The largest number of single precision below 1.
 inline constexpr float below_one = 1 - 0x1p-24f;

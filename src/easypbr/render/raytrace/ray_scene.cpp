@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -10,150 +9,16 @@
 
 #include "easypbr/core/parallel.h"
 #include "easypbr/render/raytrace/embree_scene.h"
-#include "easypbr/render/raytrace/ray_gaussians.h"
-#include "easypbr/render/raytrace/ray_random.h"
-#include "easypbr/render/raytrace/ray_surface.h"
+#include "easypbr/render/raytrace/ray_callbacks.h"
 
 namespace easypbr::render {
 namespace {
 
-/// Well-spread number in [0, 1) of a ray and the element it meets.
-float hash_of(const RTCRay& ray, unsigned element) {
-    uint32_t state = pcg_advance(element);
-    for (const float value : {ray.dir_x, ray.dir_y, ray.dir_z, ray.org_x, ray.org_y, ray.org_z})
-        state = pcg_hash(state ^ std::bit_cast<uint32_t>(value));
-    return unit_number(state);
-}
+constexpr float no_end = std::numeric_limits<float>::infinity();
 
-RTCRay ray_of(const Vec3& from, const Vec3& direction, float farthest) {
-    RTCRay ray{};
-    ray.org_x = from.x();
-    ray.org_y = from.y();
-    ray.org_z = from.z();
-    ray.dir_x = direction.x();
-    ray.dir_y = direction.y();
-    ray.dir_z = direction.z();
-    ray.tfar = farthest;
-    ray.mask = ~0u;
-    return ray;
-}
-
-/// What a filter needs to know.
-struct Element {
-    const DrawItem* item = nullptr;
-    int first = 0;                                ///< element of the item
-    int triangles = 1;                            ///< of each
-    int faces = 0;                                ///< of a mesh; 0: the elements are no faces
-    const std::vector<Vec3>* vertices = nullptr;  ///< of faces
-    const RayGaussians* gaussians = nullptr;
-
-    int of(unsigned triangle) const { return first + int(triangle) / triangles; }
-};
-
-/// Whether rays pass some places of it.
-bool is_filtered(const DrawItem& item) {
-    return item.alpha != AlphaMode::opaque || item.casts_tint();
-}
-
-/// What a ray asks of the surfaces that it passes. Embree hands it to the filter.
-struct RayQuery {
-    embree::Context context;
-    Transmissive transmissive = Transmissive::passed;
-    Vec3* transmittance = nullptr;  ///< of what is passed straight, where it is asked for
-    bool meets_gaussians = true;
-
-    explicit RayQuery(Transmissive transmissive_) : transmissive(transmissive_) { embree::begin(context); }
-};
-
-/// Light below this part is none.
-constexpr float least_transmittance = 1e-3f;
-
-/// Leaves out holes and what lets the ray through.
-void filter(const RTCFilterFunctionNArguments* args) {
-    const auto& element = *static_cast<const Element*>(args->geometryUserPtr);
-    if (args->valid[0] != -1 || args->N != 1) return;
-    const auto& hit = *reinterpret_cast<const RTCHit*>(args->hit);
-    const auto& query = *reinterpret_cast<const RayQuery*>(args->context);
-    const int index = element.of(hit.primID);
-    if (query.transmittance) {
-        Vec3& left = *query.transmittance;
-        left = left.cwiseProduct(transmittance_at(*element.item, index, hit.u, hit.v));
-        if (left.maxCoeff() > least_transmittance) args->valid[0] = 0;
-        return;
-    }
-    if (query.transmissive == Transmissive::opaque && element.item->alpha == AlphaMode::blend) {
-        args->valid[0] = 0;
-        return;
-    }
-    const float stops = query.transmissive == Transmissive::passed
-                            ? opacity_at(*element.item, index, hit.u, hit.v)
-                            : coverage_at(*element.item, index, hit.u, hit.v);
-    if (query.transmissive == Transmissive::layers && stops > 0) return;
-    const auto& ray = *reinterpret_cast<const RTCRay*>(args->ray);
-    if (stops < 1 && (stops <= 0 || hash_of(ray, hit.primID) >= stops)) args->valid[0] = 0;
-}
-
-Vec3 origin_of(const RTCRay& ray) {
-    return {ray.org_x, ray.org_y, ray.org_z};
-}
-Vec3 direction_of(const RTCRay& ray) {
-    return {ray.dir_x, ray.dir_y, ray.dir_z};
-}
-
-void bound_gaussian(const RTCBoundsFunctionArguments* args) {
-    const auto& element = *static_cast<const Element*>(args->geometryUserPtr);
-    Eigen::AlignedBox3f box = element.gaussians->bounds(args->primID);
-    // Embree leaves out what has no extent.
-    if (box.isEmpty()) box = Eigen::AlignedBox3f(Vec3::Constant(1), Vec3::Constant(-1));
-    RTCBounds& to = *args->bounds_o;
-    to.lower_x = box.min().x();
-    to.lower_y = box.min().y();
-    to.lower_z = box.min().z();
-    to.upper_x = box.max().x();
-    to.upper_y = box.max().y();
-    to.upper_z = box.max().z();
-}
-
-/// Where a ray of a query meets a Gaussian; an opacity of 0 where it does not.
-template <class Arguments>
-RayGaussians::Meeting meeting_of(const Arguments* args, const RTCRay& ray) {
-    if (args->valid[0] != -1 || args->N != 1) return {};
-    if (!reinterpret_cast<const RayQuery*>(args->context)->meets_gaussians) return {};
-    const auto& element = *static_cast<const Element*>(args->geometryUserPtr);
-    const auto meeting = element.gaussians->meet(args->primID, origin_of(ray), direction_of(ray));
-    return meeting.distance > ray.tnear && meeting.distance < ray.tfar ? meeting : RayGaussians::Meeting{};
-}
-
-template <class Arguments>
-bool is_stopped(const Arguments* args, const RTCRay& ray, float opacity) {
-    return opacity > 0 && hash_of(ray, args->primID ^ (args->geomID << 24)) < opacity;
-}
-
-void meet_gaussian(const RTCIntersectFunctionNArguments* args) {
-    auto& found = *reinterpret_cast<RTCRayHit*>(args->rayhit);
-    const RayGaussians::Meeting meeting = meeting_of(args, found.ray);
-    if (!is_stopped(args, found.ray, meeting.opacity)) return;
-    found.ray.tfar = meeting.distance;
-    found.hit.Ng_x = -found.ray.dir_x;
-    found.hit.Ng_y = -found.ray.dir_y;
-    found.hit.Ng_z = -found.ray.dir_z;
-    found.hit.u = found.hit.v = 0;
-    found.hit.primID = args->primID;
-    found.hit.geomID = args->geomID;
-    found.hit.instID[0] = args->context->instID[0];
-}
-
-void occlude_by_gaussian(const RTCOccludedFunctionNArguments* args) {
-    auto& ray = *reinterpret_cast<RTCRay*>(args->ray);
-    const RayGaussians::Meeting meeting = meeting_of(args, ray);
-    bool stops = false;
-    if (Vec3* left = reinterpret_cast<const RayQuery*>(args->context)->transmittance) {
-        *left *= 1 - meeting.opacity;
-        stops = left->maxCoeff() <= least_transmittance;
-    } else {
-        stops = is_stopped(args, ray, meeting.opacity);
-    }
-    if (stops) ray.tfar = -std::numeric_limits<float>::infinity();
+/// Of length 1, and on the side that a ray in this direction comes from.
+Vec3 towards_start(const Vec3& normal, const Vec3& direction) {
+    return normal.normalized() * (normal.dot(direction) > 0 ? -1.0f : 1.0f);
 }
 
 /// What a place that comes from a pixel may be off by.
@@ -171,10 +36,11 @@ struct RayScene::Scene final : RayGeometry {
         return Eigen::Affine3d(from_world * item.object->T_world_mesh);
     }
 
-    void attach(const embree::Geometry& geometry, const Element& element) {
+    void attach(const embree::Geometry& geometry, const RayElement& element) {
         const DrawItem& item = *element.item;
-        elements.push_back(std::make_unique<Element>(element));
+        elements.push_back(std::make_unique<RayElement>(element));
         rtcSetGeometryUserData(geometry.get(), elements.back().get());
+        calls_back |= is_filtered(item) || element.gaussians;
         if (is_filtered(item) && !element.gaussians) {
             rtcSetGeometryIntersectFilterFunction(geometry.get(), filter);
             rtcSetGeometryOccludedFilterFunction(geometry.get(), filter);
@@ -271,7 +137,8 @@ struct RayScene::Scene final : RayGeometry {
     double world_scale;
     Eigen::Affine3d from_world;
     embree::Scene tree;
-    std::vector<std::unique_ptr<Element>> elements;
+    bool calls_back = false;  ///< some primitive does, for each ray alone
+    std::vector<std::unique_ptr<RayElement>> elements;
     std::vector<std::unique_ptr<RayGaussians>> gaussians;
     std::vector<Primitive*> kinds;                      ///< of the elements
     std::vector<std::unique_ptr<HitSurface>> surfaces;  ///< likewise, once they are made
@@ -290,15 +157,16 @@ void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t gen
     if (scene_ && generation == generation_) {
         // The list may be another one of the same casters.
         for (size_t i = 0; i < items.size(); ++i) scene_->elements[i]->item = items[i].second;
-        return;
+        return place_ground();
     }
     generation_ = generation;
     scene_.reset();
     reach_ = 0;
     ball_ = {};
-    if (items.empty() || bounds.isEmpty() || !(bounds.diagonal().norm() > 0)) return;
+    if (items.empty() || bounds.isEmpty() || !(bounds.diagonal().norm() > 0)) return place_ground();
     centre_ = bounds.center();
     unit_ = bounds.diagonal().norm() / 2;
+    place_ground();
     auto made = std::make_unique<Scene>(centre_, unit_);  // kept once all is there: it can be interrupted
     for (const auto& [kind, item] : items) {
         if (item->kind == SurfaceKind::lit) reach_ = std::max(reach_, float(kind->reach(*item) / unit_));
@@ -312,13 +180,19 @@ void RayScene::update(const DrawList& casters, const Box3d& bounds, uint64_t gen
     scene_ = std::move(made);
 }
 
+void RayScene::place_ground() {
+    if (!ground_) return;
+    plane_ = {ground_->up.cast<float>(), float((ground_->height - ground_->up.dot(centre_)) / unit_),
+              float(ground_->radius / unit_)};
+}
+
 void RayScene::make_surfaces(const ResolvedSettings& resolved) {
     ++surfaces_generation_;
     extensions_ = 0;
     if (!scene_) return;
     scene_->surfaces.clear();
     for (size_t i = 0; i < scene_->elements.size(); ++i) {
-        const Element& element = *scene_->elements[i];
+        const RayElement& element = *scene_->elements[i];
         scene_->surfaces.push_back(scene_->kinds[i]->hit_surface(resolved, *element.item));
         if (element.faces > 0) extensions_ |= element.item->extensions();
     }
@@ -337,7 +211,7 @@ const DrawItem& RayScene::item_of(int surface) const {
 }
 
 FaceRange RayScene::emissive_faces(int surface) const {
-    const Element& element = *scene_->elements[size_t(surface)];
+    const RayElement& element = *scene_->elements[size_t(surface)];
     const DrawItem& item = *element.item;
     const Material& material = item.material;
     const bool emits = item.kind == SurfaceKind::lit && !material.unlit && material.emissive.maxCoeff() > 0;
@@ -345,32 +219,37 @@ FaceRange RayScene::emissive_faces(int surface) const {
 }
 
 std::array<Vec3, 3> RayScene::triangle(int surface, int face) const {
-    const Element& element = *scene_->elements[size_t(surface)];
+    const RayElement& element = *scene_->elements[size_t(surface)];
     const auto corner = [&](int c) { return (*element.vertices)[size_t(element.item->mesh().F(face, c))]; };
     return {corner(0), corner(1), corner(2)};
 }
 
-Vec3 RayScene::off_surface(const Vec3& at, const Vec3& normal, float reach) {
+Vec3 RayScene::off_surface(const Vec3& at, const Vec3& away, const Vec3& reach) {
     constexpr float rounding = 2e-5f;  // of positions
-    return at + normal * (std::max(1.0f, at.norm()) * rounding + reach);
+    return at + away * (std::max(1.0f, at.norm()) * rounding) + reach;
 }
 
 float RayScene::ground_distance(const Vec3& from, const Vec3& direction) const {
     constexpr float none = std::numeric_limits<float>::infinity();
     if (!ground_) return none;
-    const Vec3 up = ground_->up.cast<float>();
-    const auto height = float((ground_->height - ground_->up.dot(centre_)) / unit_);
-    const float above = up.dot(from) - height, falls = -up.dot(direction);
+    const Vec3& up = plane_.up;
+    const float above = up.dot(from) - plane_.height, falls = -up.dot(direction);
     if (above <= 0 || falls <= 0) return none;
     const Vec3 at = from + direction * (above / falls);
-    return (at - up * up.dot(at)).norm() * float(unit_) < float(ground_->radius) ? above / falls : none;
+    return (at - up * up.dot(at)).squaredNorm() < plane_.radius * plane_.radius ? above / falls : none;
 }
 
-std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction, Transmissive transmissive,
-                                      bool meets_gaussians) const {
+std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction,
+                                      Transmissive transmissive) const {
+    return first_hit({from, direction, no_end}, transmissive, true);
+}
+
+std::optional<RayHit> RayScene::first_hit(const RaySegment& ray, Transmissive transmissive,
+                                          bool meets_gaussians) const {
+    const Vec3 &from = ray.from, &direction = ray.direction;
     const float to_ground = ground_distance(from, direction);
     RTCRayHit found{};
-    found.ray = ray_of(from, direction, to_ground);
+    found.ray = ray_of(from, direction, std::min(to_ground, ray.distance));
     found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     RayQuery query(transmissive);
     query.meets_gaussians = meets_gaussians;
@@ -379,35 +258,117 @@ std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction, T
     hit.distance = found.ray.tfar;
     hit.position = from + direction * found.ray.tfar;
     if (found.hit.geomID == RTC_INVALID_GEOMETRY_ID) {
-        if (!std::isfinite(to_ground)) return std::nullopt;
-        hit.normal = ground_->up.cast<float>();
+        if (!(to_ground <= ray.distance) || !std::isfinite(to_ground)) return std::nullopt;
+        hit.normal = plane_.up;
         return hit;
     }
-    const Element& element = *scene_->elements[found.hit.geomID];
+    const RayElement& element = *scene_->elements[found.hit.geomID];
     hit.item = element.item;
     hit.surface = int(found.hit.geomID);
     hit.element = element.of(found.hit.primID);
     hit.u = found.hit.u;
     hit.v = found.hit.v;
-    const Vec3 n(found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z);
-    hit.normal = n.normalized() * (n.dot(direction) > 0 ? -1.0f : 1.0f);
+    hit.normal = towards_start({found.hit.Ng_x, found.hit.Ng_y, found.hit.Ng_z}, direction);
     return hit;
 }
 
-RayScene::Seen RayScene::seen_at(const Vec3& place, const Vec3& normal, const Vec3& view, float footprint,
-                                 Transmissive transmissive) const {
-    const float rounding = rounding_at(place), near = std::max(rounding, footprint);
-    const auto hit = trace(place + near * view, -view, transmissive, false);
-    if (!hit || hit->distance > near + rounding) return {place, normal, normal};
-    if (hit->normal.dot(normal) > 0.3f) return {hit->position, hit->normal, normal};
-    const bool stands_before = hit->distance < near - 0.02f * rounding;
-    return stands_before ? Seen{hit->position, hit->normal, hit->normal} : Seen{place, normal, normal};
+namespace {
+
+constexpr size_t packet_size = embree::packet_size;
+
+void set_ray(RTCRay16& rays, size_t i, const RaySegment& ray) {
+    rays.org_x[i] = ray.from.x();
+    rays.org_y[i] = ray.from.y();
+    rays.org_z[i] = ray.from.z();
+    rays.dir_x[i] = ray.direction.x();
+    rays.dir_y[i] = ray.direction.y();
+    rays.dir_z[i] = ray.direction.z();
+    rays.tnear[i] = rays.time[i] = 0;
+    rays.tfar[i] = ray.distance;
+    rays.mask[i] = ~0u;
+    rays.id[i] = rays.flags[i] = 0;
+}
+
+/// Calls `visit(valid, first, count)` for each packet of `rays` numbers. Embree asserts of idle lanes too
+/// that they hold rays.
+template <class Visit>
+void for_each_packet(size_t rays, Visit&& visit) {
+    for (size_t first = 0; first < rays; first += packet_size) {
+        const size_t count = std::min(packet_size, rays - first);
+        alignas(64) std::array<int, packet_size> valid{};
+        std::fill_n(valid.begin(), count, -1);
+        visit(valid.data(), first, count);
+    }
+}
+
+/// Before a place, from where it is looked for.
+float start_before(const RayScene::Place& place) {
+    return std::max(rounding_at(place.position), place.footprint);
+}
+
+RaySegment ray_to(const RayScene::Place& place) {
+    const float near = start_before(place);
+    return {place.position + near * place.view, -place.view, near + rounding_at(place.position)};
+}
+
+RayScene::Seen nothing_at(const RayScene::Place& place) {
+    return {place.position, place.normal, place.normal};
+}
+
+/// `face`: the normal of what the ray to the place ends at.
+RayScene::Seen seen_by(const RayScene::Place& place, const RaySegment& ray, float distance,
+                       const Vec3& face) {
+    const Vec3 position = ray.from + ray.direction * distance;
+    if (face.dot(place.normal) > 0.3f) return {position, face, place.normal};
+    const bool stands_before = distance < start_before(place) - 0.02f * rounding_at(place.position);
+    return stands_before ? RayScene::Seen{position, face, face} : nothing_at(place);
+}
+
+}  // namespace
+
+RayScene::Seen RayScene::seen_at(const Place& place, Transmissive transmissive) const {
+    const RaySegment ray = ray_to(place);
+    const auto hit = first_hit(ray, transmissive, false);
+    return hit ? seen_by(place, ray, hit->distance, hit->normal) : nothing_at(place);
+}
+
+std::vector<RayScene::Seen> RayScene::seen_at(std::span<const Place> places,
+                                              Transmissive transmissive) const {
+    std::vector<Seen> seen(places.size());
+    if (!scene_ || scene_->calls_back) {
+        for (size_t i = 0; i < places.size(); ++i) seen[i] = seen_at(places[i], transmissive);
+        return seen;
+    }
+    for_each_packet(places.size(), [&](const int* valid, size_t first, size_t count) {
+        std::array<RaySegment, packet_size> segments;
+        alignas(64) RTCRayHit16 rays;
+        for (size_t i = 0; i < packet_size; ++i) {
+            segments[i] = ray_to(places[first + std::min(i, count - 1)]);
+            set_ray(rays.ray, i, segments[i]);
+            rays.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
+        }
+        embree::intersect(scene_->tree.get(), valid, rays);
+        for (size_t i = 0; i < count; ++i) {
+            const Place& place = places[first + i];
+            const RaySegment& ray = segments[i];
+            const float to_ground = ground_distance(ray.from, ray.direction);
+            if (to_ground < rays.ray.tfar[i])
+                seen[first + i] = seen_by(place, ray, to_ground, plane_.up);
+            else if (rays.hit.geomID[i] == RTC_INVALID_GEOMETRY_ID)
+                seen[first + i] = nothing_at(place);
+            else
+                seen[first + i] = seen_by(
+                    place, ray, rays.ray.tfar[i],
+                    towards_start({rays.hit.Ng_x[i], rays.hit.Ng_y[i], rays.hit.Ng_z[i]}, ray.direction));
+        }
+    });
+    return seen;
 }
 
 std::optional<RayHit> RayScene::hit_at(const Vec3& place, const Vec3& view, float footprint,
                                        Transmissive transmissive) const {
     const float near = std::max(rounding_at(place), footprint);
-    auto hit = trace(place + near * view, -view, transmissive, false);
+    auto hit = first_hit({place + near * view, -view, no_end}, transmissive, false);
     // At a silhouette the surface may go on behind the place, by more than a pixel.
     if (!hit || hit->surface < 0 || hit->distance > 16 * near) return std::nullopt;
     return hit;
@@ -420,6 +381,26 @@ bool RayScene::blocked(const Vec3& from, const Vec3& direction, float distance,
     RayQuery query(transmissive);
     embree::occlude(scene_->tree.get(), query.context, ray);
     return ray.tfar < 0;
+}
+
+std::vector<uint8_t> RayScene::blocked(std::span<const RaySegment> rays, Neighbours neighbours,
+                                       Transmissive transmissive) const {
+    std::vector<uint8_t> found(rays.size(), 0);
+    if (!scene_) return found;
+    if (scene_->calls_back || neighbours == Neighbours::scattered) {
+        for (size_t i = 0; i < rays.size(); ++i)
+            found[i] = rays[i].distance > 0 &&
+                       blocked(rays[i].from, rays[i].direction, rays[i].distance, transmissive);
+        return found;
+    }
+    for_each_packet(rays.size(), [&](const int* valid, size_t first, size_t count) {
+        alignas(64) RTCRay16 packet;
+        for (size_t i = 0; i < packet_size; ++i) set_ray(packet, i, rays[first + std::min(i, count - 1)]);
+        embree::occlude(scene_->tree.get(), valid, packet);
+        for (size_t i = 0; i < count; ++i)
+            found[first + i] = rays[first + i].distance > 0 && packet.tfar[i] < 0;
+    });
+    return found;
 }
 
 Vec3 RayScene::transmittance(const Vec3& from, const Vec3& direction, float distance) const {

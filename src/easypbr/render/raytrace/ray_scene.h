@@ -4,6 +4,8 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/render/primitives/primitive.h"
@@ -35,6 +37,18 @@ struct RayHit {
     Vec3 position;                   ///< world, relative to RayScene::centre(), in RayScene::unit()
     Vec3 normal;                     ///< unit, of the element itself, towards where the ray came from
     float distance = 0;              ///< in RayScene::unit()
+};
+
+/// A ray from a place in a unit direction, as far as `distance` (RayScene's frame).
+struct RaySegment {
+    Vec3 from{0, 0, 0}, direction{0, 0, 1};
+    float distance = 0;
+};
+
+/// Of rays that are traced together.
+enum class Neighbours {
+    similar,   ///< mostly start beside each other, in almost the same direction: they take a part of the time
+    scattered  ///< in all directions
 };
 
 /// What surfaces that transmit light are to rays.
@@ -91,9 +105,9 @@ class RayScene {
     };
     const Ball& ball() const { return ball_; }
 
-    /// Where rays start that leave a place of a surface with this normal: beyond its roundings, and beyond
-    /// `reach`.
-    static Vec3 off_surface(const Vec3& at, const Vec3& normal, float reach = 0);
+    /// Where rays start that leave a place of a surface: beyond its roundings along `away`, of length 1 or 2,
+    /// and beyond `reach`.
+    static Vec3 off_surface(const Vec3& at, const Vec3& away, const Vec3& reach = Vec3::Zero());
 
     const std::optional<RayGround>& ground() const { return ground_; }
 
@@ -101,8 +115,7 @@ class RayScene {
     /// Gaussians stop the part of the rays that their opacity is, by a hash of the ray; there the normal is
     /// opposite to the direction.
     std::optional<RayHit> trace(const Vec3& from, const Vec3& direction,
-                                Transmissive transmissive = Transmissive::passed,
-                                bool meets_gaussians = true) const;
+                                Transmissive transmissive = Transmissive::passed) const;
     /// What a camera's pixel shows, as rays find it.
     struct Seen {
         Vec3 position;
@@ -112,24 +125,42 @@ class RayScene {
     /// What is seen at a place along `view` (unit, towards the viewer). The rasteriser rounds vertices to a
     /// part of a pixel: a place that lies beyond an adjacent face by less than `footprint`, the width of a
     /// pixel there, moves onto that face.
-    Seen seen_at(const Vec3& place, const Vec3& normal, const Vec3& view, float footprint = 0,
-                 Transmissive transmissive = Transmissive::passed) const;
+    struct Place {
+        Vec3 position, normal, view;
+        float footprint = 0;
+    };
+    Seen seen_at(const Place& place, Transmissive transmissive = Transmissive::passed) const;
+    /// The same of many places: of neighbours in a part of the time.
+    std::vector<Seen> seen_at(std::span<const Place> places, Transmissive transmissive) const;
     /// The surface at a place that is seen along `view`; none where its edges are rounded away.
     std::optional<RayHit> hit_at(const Vec3& place, const Vec3& view, float footprint,
                                  Transmissive transmissive) const;
     /// Whether any caster lies nearer than `distance` (RayScene::unit()).
     bool blocked(const Vec3& from, const Vec3& direction, float distance,
                  Transmissive transmissive = Transmissive::passed) const;
+    /// The same of many rays, 1 where one is blocked. Nothing blocks those of no length or less.
+    std::vector<uint8_t> blocked(std::span<const RaySegment> rays, Neighbours neighbours,
+                                 Transmissive transmissive = Transmissive::passed) const;
     /// What casters nearer than `distance` leave of light that passes them straight.
     Vec3 transmittance(const Vec3& from, const Vec3& direction, float distance) const;
 
   private:
     struct Scene;
+    std::optional<RayHit> first_hit(const RaySegment& ray, Transmissive transmissive,
+                                    bool meets_gaussians) const;
     /// Distance to the ground; infinity where it is not met.
     float ground_distance(const Vec3& from, const Vec3& direction) const;
 
+    void place_ground();
+
     std::unique_ptr<Scene> scene_;
     std::optional<RayGround> ground_;
+    /// The ground in RayScene's frame.
+    struct Plane {
+        Vec3 up{0, 1, 0};
+        float height = 0, radius = 0;
+    };
+    Plane plane_;
     uint64_t generation_ = 0, surfaces_generation_ = 1;
     Vec3d centre_{0, 0, 0};
     double unit_ = 1;
