@@ -16,7 +16,7 @@ namespace easypbr::render {
 namespace {
 
 /// Rays to a place of an emitter end before it: the part of their length.
-constexpr float before_emitter = 1 - 1e-4f;
+constexpr float part_to_emitter = 1 - 1e-4f;
 
 using Uniforms = std::array<blocks::Light, lights_per_block>;
 
@@ -173,7 +173,7 @@ RaySegment PathLights::towards(const ChosenLight& chosen, const Vec3& from) cons
     const float reach = chosen.way.norm();
     if (!emitter.casts_shadows || !(reach > 0)) return {};
     return {from, chosen.way / reach,
-            emitter.is_parallel ? std::numeric_limits<float>::infinity() : reach * before_emitter};
+            emitter.is_parallel ? std::numeric_limits<float>::infinity() : reach * part_to_emitter};
 }
 
 std::vector<Vec3> PathLights::transmittances(std::span<const RaySegment> rays,

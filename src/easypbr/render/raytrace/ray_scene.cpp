@@ -14,7 +14,7 @@
 namespace easypbr::render {
 namespace {
 
-constexpr float no_end = std::numeric_limits<float>::infinity();
+constexpr float endless = std::numeric_limits<float>::infinity();
 
 /// Of length 1, and on the side that a ray in this direction comes from.
 Vec3 towards_start(const Vec3& normal, const Vec3& direction) {
@@ -241,7 +241,7 @@ float RayScene::ground_distance(const Vec3& from, const Vec3& direction) const {
 
 std::optional<RayHit> RayScene::trace(const Vec3& from, const Vec3& direction,
                                       Transmissive transmissive) const {
-    return first_hit({from, direction, no_end}, transmissive, true);
+    return first_hit({from, direction, endless}, transmissive, true);
 }
 
 std::optional<RayHit> RayScene::first_hit(const RaySegment& ray, Transmissive transmissive,
@@ -368,7 +368,7 @@ std::vector<RayScene::Seen> RayScene::seen_at(std::span<const Place> places,
 std::optional<RayHit> RayScene::hit_at(const Vec3& place, const Vec3& view, float footprint,
                                        Transmissive transmissive) const {
     const float near = std::max(rounding_at(place), footprint);
-    auto hit = first_hit({place + near * view, -view, no_end}, transmissive, false);
+    auto hit = first_hit({place + near * view, -view, endless}, transmissive, false);
     // At a silhouette the surface may go on behind the place, by more than a pixel.
     if (!hit || hit->surface < 0 || hit->distance > 16 * near) return std::nullopt;
     return hit;
