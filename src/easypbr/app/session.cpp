@@ -301,6 +301,7 @@ std::map<std::string, Image> Session::render_layers_once(const std::vector<std::
                                                          std::optional<Vec2i> size) {
     Prepared prepared = prepare({size, 1, Encoding::scene_linear});
     prepared.options.layers = true;
+    prepared.options.occlusion = std::ranges::find(layers, render::Layer::ambient_occlusion) != layers.end();
     prepared.options.ids = std::ranges::any_of(layers, [](render::Layer layer) {
         return layer == render::Layer::object_id || layer == render::Layer::element_id;
     });

@@ -98,7 +98,7 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
                    .partly_covered = contents.ground};
     if (has_layers) draw_transparent(frame, list, contents, {pass.empty(), with_overlay}, lit);
     if (contents.custom) contents.custom->draw_in_frame(frame, targets_, timer_, lit);
-    if (!contents.layers) draw_effects(frame, opaque, {.native = pass.empty()}, lit);
+    draw_effects(frame, opaque, {.native = pass.empty()}, lit);
     return lit;
 }
 
@@ -166,7 +166,6 @@ bool Pipeline::is_lit_natively(const DrawList& list, const FrameContents& conten
 
 std::string Pipeline::first_by_driver(const DrawList& list, const FrameContents& contents) const {
     if (list.has(is_layered) && !has_native_layers(list)) return "transparency";
-    if (contents.layers) return "";
     if (contents.custom && !contents.custom->empty()) return "custom passes";
     return contents.in_host_memory ? "" : "output";
 }
@@ -220,7 +219,7 @@ void Pipeline::find_place_light(const Frame& frame, const DrawList& list, const 
     const ResolvedSettings& resolved = *frame.resolved;
     const SplatSettings& splats = resolved.settings.splats;
     const bool is_lit = !resolved.lights.empty() || !resolved.environment.empty(),
-               has_splats = !contents.layers && list.overlays.contains(DrawMode::splats);
+               has_splats = list.overlays.contains(DrawMode::splats);
     const bool relights = has_splats && splats.relight;
     bool receives = has_splats && splats.receive && is_lit;
     darkening_ = {};
@@ -241,7 +240,7 @@ void Pipeline::find_place_light(const Frame& frame, const DrawList& list, const 
 
 bool Pipeline::draws_overlay(const Shot& shot, const FrameContents& contents) const {
     if (has_custom(contents.custom, Stage::overlay)) return true;
-    return !contents.layers && std::ranges::any_of(effects_, [&](const auto& effect) {
+    return std::ranges::any_of(effects_, [&](const auto& effect) {
         return effect->draws_overlay() && effect->is_on(shot);
     });
 }
@@ -277,6 +276,14 @@ void Pipeline::draw_effects(const Frame& frame, const DrawList& opaque, EffectKi
 void Pipeline::draw_surfaces(const Frame& frame, const DrawList& list, const SurfaceOutputs& outputs) {
     if (outputs.ids) targets_.add_ids();
     surfaces_.draw(frame, list, targets_, outputs);
+}
+
+void Pipeline::occlude_surfaces(const Frame& frame, const DrawList& list) {
+    if (!frame.resolved->settings.ssao.enabled) return;
+    const bool native = native_shading_ && targets_.depth.is_ahead();
+    if (!native && targets_.depth.is_ahead()) targets_.upload(transfers_);
+    occlude(frame, native,
+            {.of_points = list.needs_overlay(), .mapped = list.has(&DrawItem::has_mapped_normals)});
 }
 
 const Target* Pipeline::draw_overlay(const Frame& frame, const DrawList& list, const FrameContents& contents,

@@ -35,7 +35,6 @@ struct FrameContents {
     bool ground = false;  ///< a plane under the content belongs to the picture
     bool traced = false;  ///< rays look for the environment's light, in place of ambient occlusion
     bool paths = false;   ///< surfaces are lit by path tracing
-    bool layers = false;  ///< targets are read, no picture: nothing follows the lit surfaces
     /// Those that have ended get no paths; null: all get some.
     const SampledTiles* tiles = nullptr;
     CustomPasses* custom = nullptr;  ///< a program's own passes, where it is a picture
@@ -62,6 +61,8 @@ class Pipeline {
                     const FrameContents& contents);
     /// Fills the G-buffer alone, in whichever memory that is done.
     void draw_surfaces(const Frame& frame, const DrawList& list, const SurfaceOutputs& outputs);
+    /// Finds the ambient occlusion of a frame whose G-buffer was drawn last; nothing where it is not enabled.
+    void occlude_surfaces(const Frame& frame, const DrawList& list);
     /// Clears the overlay and draws what is in it beside surfaces: overlays of primitives, effects, and a
     /// program's own passes. `native`: from and to host memory, which holds a frame that was drawn wholly
     /// natively.

@@ -74,6 +74,21 @@ struct Renderer::Picture {
     bool holds_surfaces = false;  ///< its only frame is what the pixels' centres see
 };
 
+namespace {
+
+/// Of a picture of one frame, at the camera's own place.
+Shot shot_of(const DrawableScene& drawable, const ResolvedSettings& resolved, const DrawOptions& options) {
+    return {.scene = &drawable.scene,
+            .resolved = &resolved,
+            .size = options.size,
+            .picture_size = options.picture_size.isZero() ? options.size : options.picture_size,
+            .origin = options.origin,
+            .reach = options.reach,
+            .sample_count = options.samples};
+}
+
+}  // namespace
+
 Renderer::Renderer() {
     const char* native = std::getenv("EASYPBR_NATIVE");
     if (!native || std::strcmp(native, "0") != 0) return;
@@ -84,6 +99,7 @@ Renderer::~Renderer() = default;
 
 void Renderer::draw(const SceneSnapshot& scene, const ResolvedSettings& resolved, const DrawOptions& options,
                     const SettingsImages& images) {
+    if (options.layers) return draw_layers(scene, resolved, options, images);
     begin(scene, resolved, options, images);
     gl::Pace pace;
     StepProgress progress("picture", "sample", options.samples);
@@ -120,19 +136,13 @@ void Renderer::prepare(Picture& picture) {
     sources_ = picture.drawable.sources;
     const DrawList all =
         draw_list(picture.drawable, resolved.settings, picture.images.textures, picture.images.shader_files);
-    const bool is_picture = !options.layers && !options.ids;
+    const bool is_picture = !options.ids;
     picture.list = is_picture ? all : all.as_surfaces();
     picture.casters = picture.list.as_casters(resolved.settings.splats.cast);
-    const bool accumulated = options.samples > 1 && !options.layers;
-    picture.shot = {.scene = &picture.drawable.scene,
-                    .resolved = &picture.resolved,
-                    .size = options.size,
-                    .picture_size = options.picture_size.isZero() ? options.size : options.picture_size,
-                    .origin = options.origin,
-                    .reach = options.reach,
-                    .sample_count = options.samples,
-                    .motion = accumulated ? options.motion.get() : nullptr,
-                    .through_lens = accumulated && resolved.lens_radius > 0};
+    const bool accumulated = options.samples > 1;
+    picture.shot = shot_of(picture.drawable, picture.resolved, options);
+    picture.shot.motion = accumulated ? options.motion.get() : nullptr;
+    picture.shot.through_lens = accumulated && resolved.lens_radius > 0;
     if (options.surfaces) {
         keep_surfaces(picture.scene, resolved, options.size, picture.images);
         picture.holds_surfaces = options.samples == 1 && !all.has(shows_more) && !all.has_soft_surfaces() &&
@@ -140,11 +150,9 @@ void Renderer::prepare(Picture& picture) {
     }
     const bool traces_paths = resolved.traces_paths && (options.samples > 1 || resolved.asks_for_paths);
     picture.contents = {.ids = options.ids || picture.holds_surfaces,
-                        // Layers are of the content, and are not lit.
                         .ground = GroundPass::is_on(resolved) && is_picture,
-                        .traced = (resolved.traces_rays || traces_paths) && !options.layers,
+                        .traced = resolved.traces_rays || traces_paths,
                         .paths = traces_paths && is_picture,
-                        .layers = options.layers,
                         .custom = is_picture ? &custom_ : nullptr};
     picture.shot.averages_radiance = picture.contents.paths;
     picture.with_exact = picture.list.has(
@@ -241,7 +249,7 @@ void Renderer::draw_exact() {
     // What lies before exact colours is lit and mixed with them in a whole frame.
     if (averaged && has_layers) {
         FrameContents contents = picture.contents;
-        contents.traced = picture.resolved.traces_single_frames && !contents.layers;
+        contents.traced = picture.resolved.traces_single_frames;
         contents.paths = contents.paths && picture.resolved.asks_for_paths;
         lit = pipeline_.draw(frame, picture.list, picture.casters, contents);
         lit.partly_covered |= picture.lit.partly_covered;
@@ -254,6 +262,26 @@ void Renderer::draw_exact() {
         lit.overlay =
             pipeline_.draw_overlay(frame, picture.list, picture.contents, output_.is_finished_natively());
     output_.write_exact(frame, lit, pipeline_.targets(), has_layers);
+}
+
+void Renderer::draw_layers(const SceneSnapshot& scene, const ResolvedSettings& resolved,
+                           const DrawOptions& options, const SettingsImages& images) {
+    picture_.reset();
+    kept_.reset();
+    pipeline_.begin(options.size, resolved);
+    camera_ = resolved.camera;
+    const DrawableScene drawable = drawables_.apply(scene, resolved.settings);
+    sources_ = drawable.sources;
+    const DrawList list =
+        draw_list(drawable, resolved.settings, images.textures, images.shader_files).as_surfaces();
+    Shot shot = shot_of(drawable, resolved, options);
+    shot.sample_count = 1;
+    const Frame frame = make_frame(shot, 0, resolved.camera, pipeline_.bounds_of(drawable.scene),
+                                   list.reaches_beyond_vertices());
+    pipeline_.draw_surfaces(frame, list, {.ids = options.ids});
+    if (options.occlusion) pipeline_.occlude_surfaces(frame, list);
+    evict_unused();
+    gl::flush();
 }
 
 void Renderer::draw_surfaces(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i size,

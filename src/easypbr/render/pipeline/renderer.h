@@ -26,10 +26,11 @@ struct DrawOptions {
     double reach = unlimited_reach;  ///< of a tile: see Frame
     double time_share = 1;           ///< of a tile: its part of image.time_budget
     bool ids = false;                ///< fill the id target too
-    bool layers = false;    ///< read_layer() will be called: blended surfaces stand in it where they are half
-                            ///< opaque or more, and there is no picture
-    bool surfaces = false;  ///< read_surfaces() and read_layer() will be called: where the picture's last
-                            ///< frame does not hold what the pixels' centres see, that is drawn once more
+    bool layers = false;     ///< read_layer() will be called: blended surfaces stand in it where they are
+                             ///< half opaque or more, and there is no picture
+    bool occlusion = false;  ///< with `layers`: Layer::ambient_occlusion, too
+    bool surfaces = false;   ///< read_surfaces() and read_layer() will be called: where the picture's last
+                             ///< frame does not hold what the pixels' centres see, that is drawn once more
     std::shared_ptr<const Motion> motion = {};  ///< since the picture before: blurs what moved, in several
                                                 ///< samples
 };
@@ -125,6 +126,9 @@ class Renderer {
 
   private:
     struct Picture;
+    /// Surfaces through the pixels' centres, without a picture.
+    void draw_layers(const SceneSnapshot& scene, const ResolvedSettings& resolved, const DrawOptions& options,
+                     const SettingsImages& images);
     void prepare(Picture& picture);
     void draw_sample(Picture& picture);
     void keep_surfaces(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i size,
