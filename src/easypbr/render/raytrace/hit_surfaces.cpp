@@ -22,12 +22,12 @@ void put_ground(const RayGround& ground, const native::ElementHit& hit, size_t a
 
 HitSurfaces::HitSurfaces(size_t count, bool with_extensions)
     : normal(PathBatch::rounded_up(count) + native::stream_alignment),
-      face(normal.component[0].size()),
-      albedo(face.component[0].size()),
-      emission(face.component[0].size()),
-      parameters(face.component[0].size()),
-      kind(face.component[0].size()) {
-    if (with_extensions) extensions.emplace(face.component[0].size());
+      face(normal.room()),
+      albedo(face.room()),
+      emission(face.room()),
+      parameters(face.room()),
+      kind(face.room()) {
+    if (with_extensions) extensions.emplace(face.room());
 }
 
 native::HitSurfaces HitSurfaces::from(size_t first) {

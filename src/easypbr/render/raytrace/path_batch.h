@@ -14,30 +14,38 @@ namespace easypbr::render {
 
 /// Vectors, with an array for each component.
 template <int components>
-struct PathVectors {
+class PathVectors {
+  public:
     using Vector = Eigen::Vector<float, components>;
 
-    explicit PathVectors(size_t room) {
-        for (auto& of_one : component) of_one.assign(room, 0.0f);
-    }
+    explicit PathVectors(size_t room) : room_(room), values_(components * stride(), 0.0f) {}
+
+    size_t room() const { return room_; }
     Vector at(size_t i) const {
         Vector v;
-        for (int c = 0; c < components; ++c) v[c] = component[size_t(c)][i];
+        for (int c = 0; c < components; ++c) v[c] = component(c)[i];
         return v;
     }
     void set(size_t i, const Vector& v) {
-        for (int c = 0; c < components; ++c) component[size_t(c)][i] = v[c];
+        for (int c = 0; c < components; ++c) component(c)[i] = v[c];
     }
+    float* component(int c) { return values_.data() + size_t(c) * stride(); }
+    const float* component(int c) const { return values_.data() + size_t(c) * stride(); }
     /// The arrays as a stream (native/shader_streams.h) names them.
     void read_by(const float* (&arrays)[components]) const {
-        for (int c = 0; c < components; ++c) arrays[c] = component[size_t(c)].data();
+        for (int c = 0; c < components; ++c) arrays[c] = component(c);
     }
     /// From element `first` on.
     void written_by(float* (&arrays)[components], size_t first = 0) {
-        for (int c = 0; c < components; ++c) arrays[c] = component[size_t(c)].data() + first;
+        for (int c = 0; c < components; ++c) arrays[c] = component(c) + first;
     }
 
-    std::array<std::vector<float>, size_t(components)> component;
+  private:
+    /// Components at multiples of 4096 bytes would share a part of the cache.
+    size_t stride() const { return room_ + 16; }
+
+    size_t room_;
+    std::vector<float> values_;
 };
 
 /// In place of one channel of red, green and blue.
@@ -158,7 +166,7 @@ struct PathBatch {
     PathVectors<2> points(uint32_t depth, uint32_t pair) const {
         PathVectors<2> points(rounded_up(count));
         native::sample_paths(seeds.data(), reversed_samples.data(), PathSampler::dimension_of(depth, pair),
-                             int(count), points.component[0].data(), points.component[1].data());
+                             int(count), points.component(0), points.component(1));
         return points;
     }
 

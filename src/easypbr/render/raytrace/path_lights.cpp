@@ -101,7 +101,8 @@ void PathLights::choose(const PathBatch& batch, uint32_t depth, bool caught,
     chosen.assign(batch.count, {});
     if (blocks_.empty()) return;
     Found found(PathBatch::rounded_up(batch.count));
-    found.choice = std::move(batch.points(depth, PathSampler::light_and_lobe).component[0]);
+    const PathVectors<2> choices = batch.points(depth, PathSampler::light_and_lobe);
+    std::copy_n(choices.component(0), choices.room(), found.choice.begin());
     found.emitter = batch.points(depth, PathSampler::emitter_point);
     for (const Block& block : blocks_) {
         const int count = int(batch.count);

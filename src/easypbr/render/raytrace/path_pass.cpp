@@ -89,12 +89,6 @@ struct PathPass::Pixels {
           radiance(targets.radiance),
           rays(frame, scene) {}
 
-    /// A path of a pixel, from its surface as the G-buffer has it.
-    struct Start {
-        int x = 0, y = 0;
-        RayScene::Place place;
-        PathState state;
-    };
     /// Neighbours take turns, by their place in the whole image.
     int turn_of(int x, int y) const {
         const Vec2i pixel = frame.origin + Vec2i(x, y);
@@ -105,10 +99,17 @@ struct PathPass::Pixels {
         const float* d = depth.at(x, y);
         return d && *d > 0 && !(starts.tiles && starts.tiles->has_ended(starts.tiles->tile_at(x, y)));
     }
-    /// `index` is that of the pixel's radiance.
-    Start start_of(int x, int y, uint32_t index) const;
-    /// Adds a path to a batch, at what rays find there.
-    void add(const Start& start, const RayScene::Seen& at, PathBatch& batch) const;
+    /// A pixel's surface as the G-buffer has it.
+    RayScene::Place place_of(int x, int y) const {
+        RayScene::Place place = rays.place_at(x, y, *depth.at(x, y));
+        place.normal = normal_at(x, y);
+        return place;
+    }
+    /// Of a pixel's path; `index` is that of its radiance.
+    PathState state_of(int x, int y, uint32_t index) const;
+    /// Adds the path of a pixel to a batch, at what rays find there.
+    void add(int x, int y, const PathState& state, const Vec3& view, const RayScene::Seen& at,
+             PathBatch& batch) const;
     Vec3 normal_at(int x, int y) const;
 
     const Frame& frame;
@@ -122,14 +123,13 @@ struct PathPass::Pixels {
     const CameraRays rays;
 };
 
-PathPass::Pixels::Start PathPass::Pixels::start_of(int x, int y, uint32_t index) const {
+PathState PathPass::Pixels::state_of(int x, int y, uint32_t index) const {
     const Vec2i pixel = frame.origin + Vec2i(x, y);
-    Start start{x, y, rays.place_at(x, y, *depth.at(x, y)), {}};
-    start.place.normal = normal_at(x, y);
-    start.state.sampler = PathSampler(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(frame.sample_index),
-                                      uint32_t(frame.sample_count));
-    start.state.index = index;
-    return start;
+    PathState state;
+    state.sampler = PathSampler(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(frame.sample_index),
+                                uint32_t(frame.sample_count));
+    state.index = index;
+    return state;
 }
 
 Vec3 PathPass::Pixels::normal_at(int x, int y) const {
@@ -137,18 +137,44 @@ Vec3 PathPass::Pixels::normal_at(int x, int y) const {
     return oct_decode(Vec2(n[0], n[1]) / 32767.5f - Vec2(1, 1));
 }
 
-void PathPass::Pixels::add(const Start& start, const RayScene::Seen& at, PathBatch& batch) const {
-    const std::array<uint8_t, 4>& m = *material.at(start.x, start.y);
-    const std::array<uint16_t, 4>& color = *albedo.at(start.x, start.y);
+void PathPass::Pixels::add(int x, int y, const PathState& state, const Vec3& view, const RayScene::Seen& at,
+                           PathBatch& batch) const {
+    const std::array<uint8_t, 4>& m = *material.at(x, y);
+    const std::array<uint16_t, 4>& color = *albedo.at(x, y);
     const size_t i = batch.count++;
     batch.position.set(i, at.position);
     batch.normal.set(i, at.normal);
     batch.face.set(i, at.face);
-    batch.view.set(i, start.place.view);
+    batch.view.set(i, view);
     batch.albedo.set(i, Vec3(color[0], color[1], color[2]) / 65535.0f);
     batch.parameters.set(i, Vec2(m[0], m[1]) / 255.0f);
-    batch.set_state(i, start.state);
+    batch.set_state(i, state);
 }
+
+/// Pixels whose paths start at the same kind of surface.
+struct PathPass::Block {
+    struct Pixel {
+        int x = 0, y = 0;
+        uint32_t index = 0;  ///< in the block
+    };
+
+    void add(int x, int y, uint32_t index, const RayScene::Place& place) {
+        pixels.push_back({x, y, index});
+        places.push_back(place);
+    }
+    /// The paths of all, at what rays find in their places.
+    PathBatch batch(const Pixels& of, std::span<const RayScene::Seen> seen) const {
+        PathBatch batch(pixels.size());
+        for (size_t i = 0; i < pixels.size(); ++i) {
+            const auto [x, y, index] = pixels[i];
+            of.add(x, y, of.state_of(x, y, index), places[i].view, seen[i], batch);
+        }
+        return batch;
+    }
+
+    std::vector<Pixel> pixels;
+    std::vector<RayScene::Place> places;
+};
 
 PathPass::Caught& PathPass::caught_at(const Pixels& pixels, int x, int y) {
     return caught_[size_t(y) * size_t(pixels.frame.size.x()) + size_t(x)];
@@ -156,58 +182,62 @@ PathPass::Caught& PathPass::caught_at(const Pixels& pixels, int x, int y) {
 
 void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
     const auto count = size_t(block.width) * size_t(block.height);
-    PathBatch lit(count), caught(count);
+    Block lit, caught;
+    lit.pixels.reserve(count);
+    lit.places.reserve(count);
     std::vector<PathTracer::Hit> hits;  // of surfaces that the G-buffer does not hold all of
     std::vector<bool> is_hit(count, false);
-    std::vector<Vec3> radiance(count, Vec3::Zero());
-    std::vector<CaughtLight> light(count);
     const auto each = [&](auto&& visit) {
         for (int y = block.y; y < block.y + block.height; ++y)
             for (int x = block.x; x < block.x + block.width; ++x)
-                visit(x, y, uint32_t((y - block.y) * block.width + x - block.x));
+                if (pixels.is_traced(x, y))
+                    visit(x, y, uint32_t((y - block.y) * block.width + x - block.x),
+                          (*pixels.material.at(x, y))[3]);
     };
-    std::vector<Pixels::Start> starts;
-    std::vector<RayScene::Place> places;
-    starts.reserve(count);
-    places.reserve(count);
-    each([&](int x, int y, uint32_t index) {
-        if (!pixels.is_traced(x, y)) return;
-        const uint8_t kind = (*pixels.material.at(x, y))[3];
-        if (!is_catcher(kind) && !is_lit_by_scene(kind)) return;
+    each([&](int x, int y, uint32_t index, uint8_t kind) {
         const bool catches = is_catcher(kind);
+        if (!catches && !is_lit_by_scene(kind)) return;
         if (catches && !(pixels.starts.catches && caught_at(pixels, x, y).is_due(pixels.turn_of(x, y))))
             return;
-        const Pixels::Start start = pixels.start_of(x, y, index);
-        const RayScene::Place& place = start.place;
-        if (catches) {
-            caught_at(pixels, x, y).period = catcher_period(tracer_.catcher().distance_of(place.position));
-            return pixels.add(start, {place.position, place.normal, place.normal}, caught);
-        }
+        const RayScene::Place place = pixels.place_of(x, y);
         if (kind == uint8_t(SurfaceKind::extended)) {
             if (const auto hit =
                     pixels.scene.hit_at(place.position, place.view, place.footprint, pixels.starts.seen)) {
                 const float width = place.footprint * float(pixels.scene.unit());
-                hits.push_back(PathTracer::camera_hit(start.state, *hit, -place.view, width));
+                hits.push_back(
+                    PathTracer::camera_hit(pixels.state_of(x, y, index), *hit, -place.view, width));
                 is_hit[index] = true;
                 return;
             }
         }
-        starts.push_back(start);
-        places.push_back(place);
+        (catches ? caught : lit).add(x, y, index, place);
     });
-    const std::vector<RayScene::Seen> seen = pixels.scene.seen_at(places, pixels.starts.seen);
-    for (size_t i = 0; i < starts.size(); ++i) pixels.add(starts[i], seen[i], lit);
-    tracer_.trace(lit, hits, radiance);
-    tracer_.catcher().add_samples(caught, light);
-    each([&](int x, int y, uint32_t index) {
+    std::vector<Vec3> radiance(count, Vec3::Zero());
+    PathBatch batch = lit.batch(pixels, pixels.scene.seen_at(lit.places, pixels.starts.seen));
+    tracer_.trace(batch, hits, radiance);
+    const std::vector<CaughtLight> light = light_of(pixels, caught, count);
+    each([&](int x, int y, uint32_t index, uint8_t kind) {
         Vec4* to = pixels.radiance.at(x, y);
-        if (!to || !pixels.is_traced(x, y)) return;
+        if (!to) return;
         const Vec4* emission = is_hit[index] ? nullptr : pixels.emission.at(x, y);
         to->head<3>() = radiance[index] + (emission ? Vec3(emission->head<3>()) : Vec3(Vec3::Zero()));
         to->w() = 1;
-        if (!pixels.starts.catches) return;
-        if (is_catcher((*pixels.material.at(x, y))[3])) caught_at(pixels, x, y).add(light[index]);
+        if (pixels.starts.catches && is_catcher(kind)) caught_at(pixels, x, y).add(light[index]);
     });
+}
+
+std::vector<CaughtLight> PathPass::light_of(const Pixels& pixels, const Block& caught, size_t count) {
+    std::vector<CaughtLight> light(count);
+    if (caught.pixels.empty()) return light;
+    std::vector<RayScene::Seen> seen;
+    for (size_t i = 0; i < caught.pixels.size(); ++i) {
+        const RayScene::Place& place = caught.places[i];
+        const auto [x, y, index] = caught.pixels[i];
+        caught_at(pixels, x, y).period = catcher_period(tracer_.catcher().distance_of(place.position));
+        seen.push_back({place.position, place.normal, place.normal});
+    }
+    tracer_.catcher().add_samples(caught.batch(pixels, seen), light);
+    return light;
 }
 
 void PathPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Target* caught,
@@ -222,7 +252,7 @@ void PathPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& 
     if (!caught) return;
     caught->write(frame.whole());
     const auto light = caught->pixels<Vec4>();
-    for (size_t i = 0; i < light.size(); ++i) light[i] = Vec4(caught_[i].of_frame, 1, 0, 0);
+    parallel_for(light.size(), 1 << 14, [&](size_t i) { light[i] = Vec4(caught_[i].of_frame, 1, 0, 0); });
 }
 
 void PathPass::draw_layer(const Frame& frame, const GBuffer& layer, const RayScene& scene,
@@ -236,7 +266,8 @@ void PathPass::trace(const Frame& frame, const GBuffer& targets, const RayScene&
     const Target nothing(gl::Format::rgba32f, frame.size);
     const Target& emission = targets.emission.is_ahead() ? targets.emission : nothing;
     targets.radiance.write(frame.whole());
-    std::ranges::fill(targets.radiance.pixels<Vec4>(), Vec4::Zero());
+    const auto radiance = targets.radiance.pixels<Vec4>();
+    parallel_for(radiance.size(), 1 << 14, [&](size_t i) { radiance[i] = Vec4::Zero(); });
     const Pixels pixels(frame, targets, emission, scene, starts);
     const PixelRect& area = frame.covered;
     const int columns = (area.width + block_width - 1) / block_width,

@@ -33,7 +33,10 @@ class PathPass {
     };
     void trace(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Starts& starts,
                Transfers& transfers);
+    struct Block;
     void trace_block(const Pixels& pixels, const PixelRect& block);
+    /// What surfaces that catch shadows get, by the pixels' index among `count`.
+    std::vector<CaughtLight> light_of(const Pixels& pixels, const Block& caught, size_t count);
 
     PathTracer tracer_;
     /// The part of a shadow catcher's light that arrives at a pixel: the ratio of sums over all frames so

@@ -230,10 +230,10 @@ void PathTracer::choose_directions(const PathBatch& batch, uint32_t depth, Scatt
 }
 
 void PathTracer::scatter(const PathBatch& batch, uint32_t depth, Scattered& to) const {
-    PathVectors<2> lobe = batch.points(depth, lobe_point),
-                   light_and_lobe_ = batch.points(depth, light_and_lobe);
-    to.random.component = {std::move(lobe.component[0]), std::move(lobe.component[1]),
-                           std::move(light_and_lobe_.component[1])};
+    const PathVectors<2> of_lobe = batch.points(depth, lobe_point),
+                         of_choice = batch.points(depth, light_and_lobe);
+    for (int c = 0; c < 2; ++c) std::copy_n(of_lobe.component(c), of_lobe.room(), to.random.component(c));
+    std::copy_n(of_choice.component(1), of_choice.room(), to.random.component(2));
     choose_directions(batch, depth, to);
     const int count = int(batch.count);
     if (batch.extensions)
