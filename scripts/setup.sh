@@ -9,7 +9,7 @@ packages=(
   g++ cmake ninja-build ccache pkg-config
   libeigen3-dev libfmt-dev libtbb-dev nlohmann-json3-dev libcli11-dev libxxhash-dev libfast-float-dev
   libepoxy-dev libegl1 libegl-mesa0 libopengl0 libgl1-mesa-dri
-  libspng-dev libturbojpeg0-dev libwebp-dev libtinyexr-dev zlib1g-dev libmeshoptimizer-dev libnanoflann-dev libassimp-dev libdraco-dev libyaml-cpp-dev
+  libspng-dev libturbojpeg0-dev libwebp-dev libtinyexr-dev zlib1g-dev libzstd-dev libmeshoptimizer-dev libnanoflann-dev libassimp-dev libdraco-dev libyaml-cpp-dev
   libstb-dev fonts-dejavu-core libglfw3-dev libxcb1-dev libimgui-dev libboost-dev
   libavcodec-dev libavformat-dev libavutil-dev libswscale-dev
   libgtest-dev python3-dev python3-venv

@@ -2,6 +2,7 @@
 // made here, code by code, and the expected values by the formulas of the formats in double precision.
 #include <gtest/gtest.h>
 #include <zlib.h>
+#include <zstd.h>
 
 #include <cmath>
 #include <numbers>
@@ -128,6 +129,105 @@ TEST(PackedSplats, DamagedSpzSaysWhy) {
     const std::string whole = io::gzip(spz_content(3).str());
     EXPECT_TRUE(has(said(whole.substr(0, whole.size() / 2)), "truncated"));
     EXPECT_EQ(io::format_of_content(whole), "spz");
+}
+
+std::string zstandard(const std::string& bytes) {
+    std::string packed(ZSTD_compressBound(bytes.size()), '\0');
+    packed.resize(ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), 3));
+    return packed;
+}
+
+/// The same two splats in version 4: a plain header, an extension, the table of sizes, and the arrays.
+struct Spz4 {
+    explicit Spz4(int degree_ = 1) : degree(degree_) {
+        const std::string content = spz_content(3).str().substr(16);
+        size_t begin = 0;
+        for (const size_t size : {18, 2, 6, 6, 8, 18}) {
+            arrays.push_back(content.substr(begin, size));
+            begin += size;
+        }
+    }
+    std::string file() const {
+        Bytes table;
+        std::string packed;
+        for (size_t i = 0; i < arrays.size(); ++i) {
+            const std::string one = zstandard(arrays[i]);
+            table.add_all<uint64_t>({one.size(), arrays[i].size() + (i == 0 ? wrong_size : 0)});
+            packed += one;
+        }
+        Bytes header;
+        header.add_all<uint32_t>({0x5053474e, version, count});
+        header.add_all<uint8_t>(
+            {uint8_t(degree), 12, uint8_t(extension.empty() ? 0 : 2), uint8_t(arrays.size())});
+        header.add_all<uint32_t>({uint32_t(32 + extension.size()), 0, 0, 0});
+        return header.str() + extension + table.str() + packed;
+    }
+
+    uint32_t version = 4, count = 2;
+    int degree;
+    uint64_t wrong_size = 0;
+    std::string extension;
+    std::vector<std::string> arrays;
+};
+
+void expect_same(const MeshData& a, const MeshData& b) {
+    EXPECT_EQ(a.V, b.V);
+    EXPECT_EQ(a.splats.scales, b.splats.scales);
+    EXPECT_EQ(a.splats.rotations, b.splats.rotations);
+    EXPECT_EQ(a.splats.opacities, b.splats.opacities);
+    EXPECT_EQ(a.splats.sh, b.splats.sh);
+}
+
+// The layout of nianticlabs/spz: magic, version, count, degree, fractional bits, flags, arrays, the table's
+// place.
+TEST(PackedSplats, SpzOfVersionFourHoldsTheSame) {
+    const MeshData third = read_spz(io::gzip(spz_content(3).str()));
+    Spz4 plain;
+    EXPECT_EQ(io::format_of_content(plain.file()), "spz");
+    expect_same(read_spz(plain.file()), third);
+    Spz4 extended;
+    extended.extension = "an extension of any length";
+    expect_same(read_spz(extended.file()), third);
+    // Degree 0 has no array of harmonics; of degree 4, which nobody draws, the first three degrees are read.
+    Spz4 level(0);
+    level.arrays.pop_back();
+    EXPECT_EQ(read_spz(level.file()).splats.degree(), 0);
+    Spz4 fourth(4);
+    fourth.arrays.back() = std::string(2 * 72, '\x80');
+    fourth.arrays.back()[72] = '\xff';  // the second splat's first
+    const MeshData mesh = read_spz(fourth.file());
+    EXPECT_EQ(mesh.splats.degree(), 3);
+    EXPECT_EQ(mesh.splats.sh(0, 3), 0);
+    EXPECT_EQ(mesh.splats.sh(1, 3), 127 / 128.0f);
+}
+
+TEST(PackedSplats, DamagedSpzOfVersionFourSaysWhy) {
+    const auto said = [](const Spz4& spz, size_t cut = 0) {
+        const std::string file = spz.file();
+        return message_of([&] { read_spz(file.substr(0, file.size() - cut)); });
+    };
+    EXPECT_EQ(said(Spz4()), "");
+    EXPECT_TRUE(has(message_of([] { read_spz(Spz4().file().substr(0, 20)); }), "32 bytes"));
+    EXPECT_TRUE(has(said(Spz4(), 1), "beyond the file's end"));
+    EXPECT_TRUE(has(message_of([] { read_spz(Spz4().file().substr(0, 60)); }), "table of arrays"));
+    Spz4 spz;
+    spz.version = 5;
+    EXPECT_TRUE(has(said(spz), "version 5"));
+    spz = Spz4();
+    spz.count = 3;
+    EXPECT_TRUE(has(said(spz), "an array of 18 bytes for 3 splats, which take 27"));
+    spz = Spz4();
+    spz.count = 4000000000u;
+    EXPECT_TRUE(has(said(spz), "4000000000 splats"));
+    spz = Spz4();
+    spz.wrong_size = 1;
+    EXPECT_TRUE(has(said(spz), "an array of 19 bytes"));
+    spz = Spz4();
+    spz.arrays.pop_back();
+    EXPECT_TRUE(has(said(spz), "5 arrays"));
+    std::string damaged = Spz4().file();
+    damaged[32 + 6 * 16 + 8] ^= 0x55;
+    EXPECT_NE(message_of([&] { read_spz(damaged); }), "");
 }
 
 /// Splats of degree 3 whose values no code holds exactly.

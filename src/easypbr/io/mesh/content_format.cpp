@@ -19,14 +19,15 @@ struct Magic {
     std::string_view begin;
     const char* format;
 };
-constexpr std::array<Magic, 8> magics{{{"ply\n", "ply"},
+constexpr std::array<Magic, 9> magics{{{"ply\n", "ply"},
                                        {"ply\r", "ply"},
                                        {"glTF", "glb"},
                                        {"\x93NUMPY", "npy"},
                                        {"PK\x03\x04", "npz"},
                                        {"LASF", "las"},
                                        {"# .PCD", "pcd"},
-                                       {"\x1f\x8b", "spz"}}};
+                                       {"\x1f\x8b", "spz"},
+                                       {"NGSP", "spz"}}};
 
 constexpr std::array<std::string_view, 11> obj_keywords{"v", "vt", "vn", "vp",     "f",     "l",
                                                         "o", "g",  "s",  "mtllib", "usemtl"};
