@@ -3,7 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
+
+#if defined(__SSE__)
+#include <xmmintrin.h>
+#endif
 
 #include "easypbr/gpu/facing.h"
 #include "easypbr/render/raytrace/cdf.h"
@@ -15,9 +20,6 @@ namespace {
 /// Barycentric coordinates where a triangle's emission is looked at.
 constexpr std::array<std::array<float, 2>, 4> looked_at{
     {{1.0f / 3, 1.0f / 3}, {0.6f, 0.2f}, {0.2f, 0.6f}, {0.2f, 0.2f}}};
-
-/// So many triangles are weighed against each other for each place.
-constexpr size_t few = 64;
 
 /// Meshes with more faces are taken for open ones: looking takes time.
 constexpr Eigen::Index most_faces = 1 << 14;
@@ -44,6 +46,7 @@ void Emitters::prepare(const RayScene& scene) {
     triangles_.clear();
     ends_.clear();
     chances_.clear();
+    places_.clear();
     brightness_ = 0;
     elements_.assign(size_t(scene.surface_count()), {});
     for (int surface = 0; surface < scene.surface_count(); ++surface) add_surface(scene, surface);
@@ -57,6 +60,7 @@ void Emitters::prepare(const RayScene& scene) {
     for (float& end : ends_) end /= float(sum);
     for (Triangle& triangle : triangles_) triangle.weight /= float(sum);
     for (float& chance : chances_) chance /= float(sum);
+    make_lanes();
     generation_ = scene.surfaces_generation();
 }
 
@@ -90,6 +94,7 @@ void Emitters::add_surface(const RayScene& scene, int surface) {
         const float size = normal.norm();
         const bool shines = emission > 0 && std::isfinite(emission) && size > 0;
         chances_.push_back(shines ? emission : 0);
+        places_.push_back(triangles_.size());
         if (!shines) continue;
         const Vec3 centre = (corners[0] + corners[1] + corners[2]) / 3;
         triangles_.push_back(
@@ -97,19 +102,72 @@ void Emitters::add_surface(const RayScene& scene, int surface) {
     }
 }
 
+namespace {
+
+constexpr float no_limit = std::numeric_limits<float>::infinity();
+
+/// Of each lane.
+template <class Floats>
+Floats square_root(Floats values) {
+#if defined(__SSE__)
+    return Floats(_mm_sqrt_ps(__m128(values)));
+#else
+    for (size_t k = 0; k < sizeof values / sizeof(float); ++k) values[k] = std::sqrt(values[k]);
+    return values;
+#endif
+}
+
+}  // namespace
+
 bool Emitters::are_few() const {
     return triangles_.size() <= few;
 }
 
-float Emitters::importance(const Triangle& triangle, const Vec3& from) const {
-    const Vec3 offset = triangle.centre - from;
-    const float apart = offset.squaredNorm(), facing = -triangle.normal.dot(offset);
-    const Eigen::AlignedBox3f& solid = elements_[size_t(triangle.surface)].solid;
-    if (facing < 0 && !solid.isEmpty() && !solid.contains(from)) return 0;
+void Emitters::make_lanes() {
+    lanes_.clear();
+    if (!are_few()) return;
+    lanes_.resize((triangles_.size() + lane_count - 1) / lane_count);
+    for (size_t i = 0; i < triangles_.size(); ++i) {
+        const Triangle& triangle = triangles_[i];
+        Eigen::AlignedBox3f solid = elements_[size_t(triangle.surface)].solid;
+        // Every place is within what has no inside.
+        if (solid.isEmpty()) solid = {Vec3::Constant(-no_limit), Vec3::Constant(no_limit)};
+        Lanes& lanes = lanes_[i / lane_count];
+        const size_t k = i % lane_count;
+        for (int c = 0; c < 3; ++c) {
+            lanes.centre[c][k] = triangle.centre[c];
+            lanes.normal[c][k] = triangle.normal[c];
+            lanes.least[c][k] = solid.min()[c];
+            lanes.most[c][k] = solid.max()[c];
+        }
+        lanes.area[k] = triangle.area;
+        lanes.light[k] = triangle.weight * triangle.area;
+    }
+}
+
+float Emitters::weigh(const Vec3& from, Weights& ends) const {
     // The least is for what is seen of a triangle beside its centre.
     constexpr float least_cosine = 0.05f;
-    const float cosine = std::abs(facing) / std::sqrt(std::max(apart, 1e-30f));
-    return triangle.weight * triangle.area * (least_cosine + cosine) / std::max(apart, triangle.area);
+    float sum = 0;
+    size_t place = 0;
+    for (const Lanes& lanes : lanes_) {
+        Floats apart = {}, facing = {};
+        Masks inside = ~Masks{};
+        for (int c = 0; c < 3; ++c) {
+            const Floats offset = lanes.centre[c] - from[c], own = Floats{} + from[c];
+            apart += offset * offset;
+            facing -= lanes.normal[c] * offset;
+            inside &= (own >= lanes.least[c]) & (own <= lanes.most[c]);
+        }
+        const Masks hidden = (facing < 0.0f) & ~inside;
+        const Floats size = facing < 0.0f ? -facing : facing,
+                     far = apart > 1e-30f ? apart : Floats{} + 1e-30f;
+        const Floats cosine = size / square_root(far);
+        const Floats shares =
+            lanes.light * (least_cosine + cosine) / (apart > lanes.area ? apart : lanes.area);
+        for (size_t k = 0; k < lane_count; ++k) ends[place++] = sum += hidden[k] ? 0.0f : shares[k];
+    }
+    return sum;
 }
 
 Emitters::Sample Emitters::sample(const Vec3& from, const Vec2& u) const {
@@ -118,9 +176,8 @@ Emitters::Sample Emitters::sample(const Vec3& from, const Vec2& u) const {
         const Triangle& triangle = triangles_[step_of(ends_, u.x(), within)];
         return sample_on(triangle, from, {within, u.y()}, triangle.weight);
     }
-    std::array<float, few> ends;
-    float sum = 0;
-    for (size_t i = 0; i < triangles_.size(); ++i) ends[i] = sum += importance(triangles_[i], from);
+    Weights ends;
+    const float sum = weigh(from, ends);
     if (!(sum > 0)) return {.hit = {}, .surface = triangles_.front().surface, .direction = Vec3::UnitZ()};
     const size_t chosen = step_of(std::span(ends).first(triangles_.size()), u.x() * sum, within);
     const float weight = ends[chosen] - (chosen > 0 ? ends[chosen - 1] : 0);
@@ -156,14 +213,11 @@ float Emitters::density(const RayHit& hit, const Vec3& direction) const {
     float chance = chances_[elements.at + size_t(element)];
     if (chance > 0 && are_few()) {
         const Vec3 from = hit.position - direction * hit.distance;
-        float sum = 0, own = 0;
-        for (const Triangle& triangle : triangles_) {
-            const float weight = importance(triangle, from);
-            sum += weight;
-            if (triangle.surface == hit.surface && triangle.element == hit.element)
-                own = weight / triangle.area;
-        }
-        chance = sum > 0 ? own / sum : 0;
+        Weights ends;
+        const float sum = weigh(from, ends);
+        const size_t place = places_[elements.at + size_t(element)];
+        const float own = ends[place] - (place > 0 ? ends[place - 1] : 0);
+        chance = sum > 0 ? own / (sum * triangles_[place].area) : 0;
     }
     const float cosine = std::abs(hit.normal.dot(direction));
     return cosine > 1e-6f ? chance * hit.distance * hit.distance / cosine : 0;

@@ -1,6 +1,7 @@
 // Emissive triangles as light sources of next-event estimation.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -45,9 +46,23 @@ class Emitters {
     };
     void add_surface(const RayScene& scene, int surface);
     bool are_few() const;
-    /// What a triangle sends to a place, about and relative to the others; 0 where it is hidden by the mesh
-    /// that it belongs to.
-    float importance(const Triangle& triangle, const Vec3& from) const;
+    /// So many triangles are weighed against each other for each place.
+    static constexpr size_t few = 64;
+    static constexpr size_t lane_count = 4;
+    using Floats = float __attribute__((vector_size(lane_count * sizeof(float))));
+    using Masks = int32_t __attribute__((vector_size(lane_count * sizeof(float))));
+    /// Few triangles, several at once; those that fill up the last send nothing.
+    struct Lanes {
+        Floats centre[3] = {}, normal[3] = {};
+        Floats least[3] = {}, most[3] = {};  ///< of the closed mesh that it belongs to, outside of which back
+                                             ///< faces are not seen
+        Floats area = Floats{} + 1.0f, light = {};
+    };
+    using Weights = std::array<float, few>;
+    void make_lanes();
+    /// What triangles send to a place, about and relative to each other; 0 where they are hidden by the mesh
+    /// that they belong to. Each weight is the sum of itself and those before; returns the last.
+    float weigh(const Vec3& from, Weights& ends) const;
     /// Sets what sample() returns for a point of a triangle that is chosen with a density per area.
     Sample sample_on(const Triangle& triangle, const Vec3& from, const Vec2& u, float density) const;
 
@@ -63,6 +78,8 @@ class Emitters {
     };
     std::vector<Elements> elements_;  ///< for each surface
     std::vector<float> chances_;      ///< chance per area
+    std::vector<size_t> places_;      ///< in triangles_, of those that have a chance
+    std::vector<Lanes> lanes_;
     float brightness_ = 0;
 };
 

@@ -123,6 +123,7 @@ struct PathBatch {
     /// `capacity` paths at most; the surfaces of all have extensions, or none has.
     explicit PathBatch(size_t capacity, bool extended = false)
         : position(rounded_up(capacity)),
+          start(rounded_up(capacity)),
           normal(rounded_up(capacity)),
           face(rounded_up(capacity)),
           view(rounded_up(capacity)),
@@ -137,7 +138,7 @@ struct PathBatch {
         extended_paths.resize(rounded_up(capacity));
     }
 
-    static size_t rounded_up(size_t count) {
+    static constexpr size_t rounded_up(size_t count) {
         constexpr auto step = size_t(native::stream_alignment);
         return (count + step - 1) / step * step;
     }
@@ -172,6 +173,7 @@ struct PathBatch {
 
     size_t count = 0;
     PathVectors<3> position;
+    PathVectors<3> start;   ///< of rays that leave on the side that the path comes from: PathTracer sets it
     PathVectors<3> normal;  ///< interpolated and mapped
     PathVectors<3> face;    ///< of the element itself, towards where the path comes from
     PathVectors<3> view;    ///< unit, back along the path

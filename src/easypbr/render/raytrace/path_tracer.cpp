@@ -1,6 +1,7 @@
 #include "easypbr/render/raytrace/path_tracer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -157,14 +158,31 @@ void PathTracer::prepare(const ResolvedSettings& resolved, const RayScene& scene
         absorption_.push_back(absorption_of(scene.item_of(i).material) * float(scene.unit()));
 }
 
-Vec3 PathTracer::start_of(const PathBatch& batch, size_t path) const {
-    return RayScene::off_surface(batch.position.at(path), batch.view.at(path) + batch.face.at(path),
-                                 batch.face.at(path) * scene_->reach());
+void PathTracer::find_starts(PathBatch& batch) const {
+    constexpr size_t together = PathBatch::rounded_up(1);
+    const float reach = scene_->reach();
+    for (size_t first = 0; first < batch.count; first += together) {
+        std::array<float, together> squares{};
+        for (int c = 0; c < 3; ++c) {
+            const float* at = batch.position.component(c) + first;
+            for (size_t k = 0; k < together; ++k) squares[k] += at[k] * at[k];
+        }
+        std::array<float, together> rounding{};
+        for (size_t k = 0; k < together; ++k) rounding[k] = RayScene::rounding(std::sqrt(squares[k]));
+        for (int c = 0; c < 3; ++c) {
+            const float *at = batch.position.component(c) + first, *view = batch.view.component(c) + first,
+                        *face = batch.face.component(c) + first;
+            float* to = batch.start.component(c) + first;
+            for (size_t k = 0; k < together; ++k)
+                to[k] = at[k] + (view[k] + face[k]) * rounding[k] + face[k] * reach;
+        }
+    }
 }
 
 Vec3 PathTracer::start_towards(const PathBatch& batch, size_t path, const Vec3& direction) const {
+    if (!batch.extensions) return batch.start.at(path);
     const Vec3 face = batch.face.at(path);
-    if (!batch.extensions || direction.dot(face) > 0) return start_of(batch, path);
+    if (direction.dot(face) > 0) return batch.start.at(path);
     return RayScene::off_surface(batch.position.at(path), -face, -face * scene_->reach());
 }
 
@@ -198,7 +216,7 @@ void PathTracer::choose_directions(const PathBatch& batch, uint32_t depth, Scatt
         Vec2 u = points.at(i);
         if (u.x() < emitter_part_) {
             u.x() = std::min(u.x() / emitter_part_, below_one);
-            chosen.push_back(emitters_.sample(start_of(batch, i), u));
+            chosen.push_back(emitters_.sample(batch.start.at(i), u));
             paths.push_back(i);
         } else if (sky_.is_sampled()) {
             u.x() = std::min((u.x() - emitter_part_) / (1 - emitter_part_), below_one);
@@ -458,9 +476,10 @@ PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth,
     return next;
 }
 
-void PathTracer::step(const PathBatch& batch, uint32_t depth, std::vector<Hit>& hits,
+void PathTracer::step(PathBatch& batch, uint32_t depth, std::vector<Hit>& hits,
                       std::vector<Vec3>& radiance) const {
     if (batch.count == 0) return;
+    find_starts(batch);
     std::vector<ChosenLight> lamps;
     lights_.choose(batch, depth, false, lamps);
     Scattered scattered(PathBatch::rounded_up(batch.count));

@@ -225,8 +225,7 @@ std::array<Vec3, 3> RayScene::triangle(int surface, int face) const {
 }
 
 Vec3 RayScene::off_surface(const Vec3& at, const Vec3& away, const Vec3& reach) {
-    constexpr float rounding = 2e-5f;  // of positions
-    return at + away * (std::max(1.0f, at.norm()) * rounding) + reach;
+    return at + away * rounding(at.norm()) + reach;
 }
 
 float RayScene::ground_distance(const Vec3& from, const Vec3& direction) const {

@@ -1,6 +1,7 @@
 // What casts shadows as rays find it: triangles and discs in a tree of boxes, on the CPU.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <memory>
 #include <optional>
@@ -105,6 +106,8 @@ class RayScene {
     };
     const Ball& ball() const { return ball_; }
 
+    /// What a place is off by at most that far from the scene's centre.
+    static float rounding(float distance) { return std::max(1.0f, distance) * 2e-5f; }
     /// Where rays start that leave a place of a surface: beyond its roundings along `away`, of length 1 or 2,
     /// and beyond `reach`.
     static Vec3 off_surface(const Vec3& at, const Vec3& away, const Vec3& reach = Vec3::Zero());
