@@ -42,8 +42,7 @@ float lit_filtered(Receiver r) {
             dot(high_high, right * high)) / 9.0;
 }
 
-const int search_taps = 16;
-const int filter_taps = 16;
+uniform int u_soft_taps;  // of the search for casters, and of the filter
 // Widest search and filter, in map coordinates.
 const float widest = 0.15;
 const float golden_angle = 2.39996323;
@@ -63,10 +62,10 @@ float lit_soft(Receiver r, bool needed) {
     vec4 blocks = vec4(greaterThan(casters, texel_planes(plane, r.slope * texel)));
     float sum = dot(blocks, casters), count = dot(blocks, vec4(1.0));
     bool searches = needed && reach > 0.0;
-    int taps = any_lane(searches) ? search_taps : 0;
+    int taps = any_lane(searches) ? u_soft_taps : 0;
     for (int i = 0; i < taps; ++i) {
         // Denser towards the middle: casters near the point are seen in the narrow part of the cone only.
-        float rho = (float(i) + 0.5) / float(search_taps), angle = turn + golden_angle * float(i);
+        float rho = (float(i) + 0.5) / float(u_soft_taps), angle = turn + golden_angle * float(i);
         vec2 at = r.at.xy + search * (rho * vec2(cos(angle), sin(angle)));
         at = (floor(at * u_shadow_resolution) + 0.5) * texel;
         float caster = textureLod(u_shadow_maps, vec3(at, r.at.z), 0.0).r;
@@ -78,9 +77,9 @@ float lit_soft(Receiver r, bool needed) {
     float height = sum / max(count, 1.0) - r.depth;  // of the casters over the point
     vec2 radius = clamp(r.light * height, vec2(0.5 * texel), vec2(widest));
     float lit = 0.0;
-    taps = any_lane(needed && count > 0.0) ? filter_taps : 0;
+    taps = any_lane(needed && count > 0.0) ? u_soft_taps : 0;
     for (int i = 0; i < taps; ++i) {
-        float rho = sqrt((float(i) + 0.5) / float(filter_taps)), angle = turn + golden_angle * float(i);
+        float rho = sqrt((float(i) + 0.5) / float(u_soft_taps)), angle = turn + golden_angle * float(i);
         vec2 at = (r.at.xy + radius * (rho * vec2(cos(angle), sin(angle)))) * u_shadow_resolution - 0.5;
         vec2 base = floor(at), f = at - base;
         corner = base + 1.0;
@@ -89,7 +88,7 @@ float lit_soft(Receiver r, bool needed) {
         vec2 across = mix(texels.wx, texels.zy, f.x);
         lit += mix(across.x, across.y, f.y);
     }
-    return count > 0.0 ? lit / float(filter_taps) : 1.0;
+    return count > 0.0 ? lit / float(u_soft_taps) : 1.0;
 }
 
 // `needed`: whether the light counts at all; what no one needs may be anything.

@@ -55,11 +55,11 @@ vec3 tint_soft(Receiver r, bool needed) {
     float turn = 6.28318531 * frame_noise(gl_FragCoord.xy, u_sample_index);
     float reach = min(r.reach, widest / max(r.light.x, r.light.y));
     float sum = 0.0, count = 0.0;
-    int searched = any_lane(needed) ? 4 + search_taps : 0;
+    int searched = any_lane(needed) ? 4 + u_soft_taps : 0;
     for (int i = 0; i < searched; ++i) {
         // The texels around the point, then those of the cone between the point and the light.
         float tap = float(i - 4);
-        float rho = max(tap + 0.5, 0.0) / float(search_taps), angle = turn + golden_angle * tap;
+        float rho = max(tap + 0.5, 0.0) / float(u_soft_taps), angle = turn + golden_angle * tap;
         vec2 corner = texel * (vec2(float(i & 1), float(i >> 1)) - 0.5), aside = r.light * reach * (rho * vec2(cos(angle), sin(angle)));
         vec2 at = r.at.xy + (i < 4 ? corner : aside);
         ivec2 place = clamp(ivec2(floor(at * u_shadow_resolution)), ivec2(0), ivec2(int(u_shadow_resolution) - 1));

@@ -15,6 +15,10 @@
 namespace easypbr::render {
 namespace {
 
+/// Places that soft shadows look at: of a single frame; of so many frames, which are turned against each other,
+/// half of them do.
+constexpr int soft_taps = 16, frames_of_few_taps = 8;
+
 using LightUniforms = std::array<blocks::Light, lights_per_block>;
 using ShadowUniforms = std::array<blocks::ShadowMap, lights_per_block>;
 
@@ -167,6 +171,7 @@ void set_lights(ShaderInputs& values, const Frame& frame, const LightBlock& bloc
     values.set("u_single_lights", int(block.lights.size() - block.cubes));
     values.set("u_shadow_resolution", float(block.resolution));
     values.set("u_sample_index", float(frame.sample_index));
+    values.set("u_soft_taps", frame.sample_count < frames_of_few_taps ? soft_taps : soft_taps / 2);
     set_noise_uniforms(values, frame);
 }
 
