@@ -1,17 +1,17 @@
 // What denoisers are guided by: edges of what the surfaces are (SVGF; Schied et al. 2017, section 4.4).
-#include "common_guides.glsl"
-
 uniform sampler2D u_light;   // divided by the surface's reflectance; a: variance of the mean's luminance
 uniform sampler2D u_guides;  // of denoise_guides.frag
 uniform vec2 u_size;
 
 // Falls of the weights: over the square of the normals' difference (that of cos^128), of the reflectances', and over the
 // logarithm of the depth beyond the surface's own slope.
-const float normal_fall = 64.0 * 4.0 / (255.0 * 255.0);
-const float color_fall = 30.0 / (255.0 * 255.0);
+const float normal_fall = 64.0 * 4.0;  // of normals that are brought to 0 to 1
+const float color_fall = 30.0;
 const float depth_fall = 80.0;
 
 float luminance(vec3 c) { return dot(c, vec3(0.2126, 0.7152, 0.0722)); }
+
+vec3 unpacked(float bits) { return unpackUnorm4x8(floatBitsToUint(bits)).rgb; }
 
 float depth_at(ivec2 texel) { return texelFetch(u_guides, texel, 0).b; }
 
@@ -19,7 +19,7 @@ float depth_at(ivec2 texel) { return texelFetch(u_guides, texel, 0).b; }
 float slope(float before, float here, float after) { return min(abs(here - before), abs(after - here)); }
 
 struct Guides {
-    vec3 normal, reflectance;  // 0 to 255 each
+    vec3 normal, reflectance;  // 0 to 1 each
     float depth;               // log2
     vec2 slope;                // of the depth, per pixel
     float frames;
@@ -29,8 +29,8 @@ Guides guides_at(ivec2 here) {
     ivec2 last = ivec2(u_size) - 1;
     vec4 guides = texelFetch(u_guides, here, 0);
     Guides g;
-    g.normal = unpacked_bytes(guides.r);
-    g.reflectance = unpacked_bytes(guides.g);
+    g.normal = unpacked(guides.r);
+    g.reflectance = unpacked(guides.g);
     g.depth = guides.b;
     g.frames = guides.a;
     g.slope = vec2(slope(depth_at(max(here - ivec2(1, 0), ivec2(0))), g.depth, depth_at(min(here + ivec2(1, 0), last))),
@@ -40,7 +40,7 @@ Guides guides_at(ivec2 here) {
 
 // The exponent of the weight of a place of the picture, `away` pixels to the sides.
 float unlikeness(Guides own, vec4 guides, vec2 away) {
-    vec3 turned = unpacked_bytes(guides.r) - own.normal, dyed = unpacked_bytes(guides.g) - own.reflectance;
+    vec3 turned = unpacked(guides.r) - own.normal, dyed = unpacked(guides.g) - own.reflectance;
     float sloped = dot(own.slope, away);
     float apart = max(abs(guides.b - own.depth) - 2.0 * sloped, 0.0);
     return normal_fall * dot(turned, turned) + color_fall * dot(dyed, dyed) + depth_fall * apart;

@@ -1,6 +1,4 @@
-// What denoisers are guided by, from sums over the frames.
-#include "common_guides.glsl"
-
+// What denoisers are guided by, from sums over the frames. Drawn natively alone: bits may stand in a float.
 uniform sampler2D u_surface;      // normal; a: log2 of the depth
 uniform sampler2D u_reflectance;  // reflectance; a: the number of frames
 
@@ -11,5 +9,6 @@ void main() {
     vec4 color = texelFetch(u_reflectance, here, 0);
     float scale = 1.0 / max(color.a, 1.0);
     vec4 surface = texelFetch(u_surface, here, 0) * scale;
-    o_guides = vec4(packed_bytes(surface.xyz * 0.5 + 0.5), packed_bytes(color.rgb * scale), surface.a, color.a);
+    o_guides = vec4(uintBitsToFloat(packUnorm4x8(vec4(surface.xyz * 0.5 + 0.5, 0.0))),
+                    uintBitsToFloat(packUnorm4x8(vec4(color.rgb * scale, 0.0))), surface.a, color.a);
 }

@@ -76,7 +76,7 @@ struct Renderer::Picture {
 
 namespace {
 
-/// Of a picture of one frame, at the camera's own place.
+/// Without motion, through a pinhole.
 Shot shot_of(const DrawableScene& drawable, const ResolvedSettings& resolved, const DrawOptions& options) {
     return {.scene = &drawable.scene,
             .resolved = &resolved,

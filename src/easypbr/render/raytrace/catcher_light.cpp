@@ -91,35 +91,27 @@ float CatcherLight::distance_of(const Vec3& place) const {
     return ball.radius > 0 ? (place - ball.centre).norm() / ball.radius : no_end;
 }
 
-RaySegment CatcherLight::ray_from(const PathBatch& batch, size_t path, const Vec3& direction,
-                                  float distance) const {
-    const Vec3 face = batch.face.at(path);
-    return {
-        RayScene::off_surface(batch.position.at(path), batch.view.at(path) + face, face * scene_->reach()),
-        direction, distance};
-}
-
 void CatcherLight::add_hidden(const PathBatch& batch, const SkyPoint& point, const SkySampler::Sample& sky,
                               float cone_density, Looks& looks) const {
     const float of_sky = sky_->is_sampled() ? sky_part : 0;
     const float cosine = batch.normal.at(point.path).dot(sky.direction);
     if (!(cosine > 0)) return;
     const float density = of_sky * sky.density + (1 - of_sky) * cone_density;
-    looks.add_hidden(ray_from(batch, point.path, sky.direction, no_end), batch.state[point.path].index,
+    looks.add_hidden({batch.start.at(point.path), sky.direction, no_end}, batch.state[point.path].index,
                      luminance(sky.radiance) * cosine / (float(pi) * density));
 }
 
 void CatcherLight::add_chosen(const PathBatch& batch, const SkyPoint& point, Looks& looks) const {
     const float matt = batch.normal.at(point.path).dot(point.sky.direction) / float(pi);
     if (!(matt > 0)) return;
-    looks.add_open(ray_from(batch, point.path, point.sky.direction, no_end), batch.state[point.path].index,
+    looks.add_open({batch.start.at(point.path), point.sky.direction, no_end}, batch.state[point.path].index,
                    luminance(point.sky.radiance) * matt / (point.sky.density + matt));
 }
 
 void CatcherLight::add_matt(const PathBatch& batch, size_t path, const SkySampler::Sample& sky, float density,
                             Looks& looks) const {
     const auto add = [&](float light, float distance) {
-        looks.add_open(ray_from(batch, path, sky.direction, distance), batch.state[path].index, light);
+        looks.add_open({batch.start.at(path), sky.direction, distance}, batch.state[path].index, light);
     };
     add(luminance(sky.radiance) * density / (sky.density + density), no_end);
     lights_->for_each_met(batch.position.at(path), sky.direction, density,
@@ -138,7 +130,7 @@ void CatcherLight::add_lamps(const PathBatch& batch, std::vector<CaughtLight>& l
         const Vec3 place = batch.position.at(i);
         const RaySegment ray = lights_->towards(lamps[i], place);
         if (ray.distance > 0 && scene_->ball().is_met(place, ray.direction)) {
-            rays.push_back(ray_from(batch, i, ray.direction, ray.distance));
+            rays.push_back({batch.start.at(i), ray.direction, ray.distance});
             lights.push_back(lamps[i].index);
             paths.push_back(uint32_t(i));
         } else {
@@ -150,8 +142,9 @@ void CatcherLight::add_lamps(const PathBatch& batch, std::vector<CaughtLight>& l
         light[batch.state[paths[i]].index].arrives += lamps[paths[i]].all * luminance(left[i]);
 }
 
-void CatcherLight::add_samples(const PathBatch& batch, std::vector<CaughtLight>& light) const {
+void CatcherLight::add_samples(PathBatch& batch, std::vector<CaughtLight>& light) const {
     if (batch.count == 0) return;
+    batch.find_starts(scene_->reach());
     if (!lights_->empty()) add_lamps(batch, light);
     // Area lights count on directions that are distributed by the cosine.
     if (!sky_->empty() || lights_->has_areas()) add_skies(batch, light);

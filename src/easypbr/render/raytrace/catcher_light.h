@@ -25,7 +25,7 @@ class CatcherLight {
     void prepare(const RayScene& scene, const PathLights& lights, const SkySampler& sky);
 
     /// One sample for each path of a batch, added by the paths' places.
-    void add_samples(const PathBatch& batch, std::vector<CaughtLight>& light) const;
+    void add_samples(PathBatch& batch, std::vector<CaughtLight>& light) const;
 
     /// Of a place (RayScene's frame) from the middle of the ball that holds the casters, in its radii.
     float distance_of(const Vec3& place) const;
@@ -45,7 +45,6 @@ class CatcherLight {
     /// What a direction brings that is distributed by the cosine, area lights included.
     void add_matt(const PathBatch& batch, size_t path, const SkySampler::Sample& sky, float density,
                   Looks& looks) const;
-    RaySegment ray_from(const PathBatch& batch, size_t path, const Vec3& direction, float distance) const;
 
     const RayScene* scene_ = nullptr;
     const PathLights* lights_ = nullptr;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "easypbr/core/math.h"
 #include "easypbr/native/shaders.h"
 #include "easypbr/render/raytrace/path_sampler.h"
+#include "easypbr/render/raytrace/ray_scene.h"
 
 namespace easypbr::render {
 
@@ -171,9 +173,31 @@ struct PathBatch {
         return points;
     }
 
+    /// Sets where rays start that leave the places: as RayScene::off_surface(), along the face's normal and
+    /// back along the path too, so that they are on the right side of other surfaces that meet this one
+    /// there.
+    void find_starts(float reach) {
+        constexpr size_t together = rounded_up(1);
+        for (size_t first = 0; first < count; first += together) {
+            std::array<float, together> rounding{};
+            for (int c = 0; c < 3; ++c) {
+                const float* at = position.component(c) + first;
+                for (size_t k = 0; k < together; ++k) rounding[k] += at[k] * at[k];
+            }
+            for (float& value : rounding) value = RayScene::rounding(std::sqrt(value));
+            for (int c = 0; c < 3; ++c) {
+                const float *at = position.component(c) + first, *back = view.component(c) + first,
+                            *away = face.component(c) + first;
+                float* to = start.component(c) + first;
+                for (size_t k = 0; k < together; ++k)
+                    to[k] = at[k] + (back[k] + away[k]) * rounding[k] + away[k] * reach;
+            }
+        }
+    }
+
     size_t count = 0;
     PathVectors<3> position;
-    PathVectors<3> start;   ///< of rays that leave on the side that the path comes from: PathTracer sets it
+    PathVectors<3> start;   ///< of rays that leave on the side that the path comes from: see find_starts()
     PathVectors<3> normal;  ///< interpolated and mapped
     PathVectors<3> face;    ///< of the element itself, towards where the path comes from
     PathVectors<3> view;    ///< unit, back along the path

@@ -236,7 +236,8 @@ std::vector<CaughtLight> PathPass::light_of(const Pixels& pixels, const Block& c
         caught_at(pixels, x, y).period = catcher_period(tracer_.catcher().distance_of(place.position));
         seen.push_back({place.position, place.normal, place.normal});
     }
-    tracer_.catcher().add_samples(caught.batch(pixels, seen), light);
+    PathBatch batch = caught.batch(pixels, seen);
+    tracer_.catcher().add_samples(batch, light);
     return light;
 }
 

@@ -1,7 +1,6 @@
 #include "easypbr/render/raytrace/path_tracer.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -156,27 +155,6 @@ void PathTracer::prepare(const ResolvedSettings& resolved, const RayScene& scene
     extended_ = with(PathSurfaces::extended, native::Stream::path_scatter_extended);
     for (int i = 0; i < scene.surface_count(); ++i)
         absorption_.push_back(absorption_of(scene.item_of(i).material) * float(scene.unit()));
-}
-
-void PathTracer::find_starts(PathBatch& batch) const {
-    constexpr size_t together = PathBatch::rounded_up(1);
-    const float reach = scene_->reach();
-    for (size_t first = 0; first < batch.count; first += together) {
-        std::array<float, together> squares{};
-        for (int c = 0; c < 3; ++c) {
-            const float* at = batch.position.component(c) + first;
-            for (size_t k = 0; k < together; ++k) squares[k] += at[k] * at[k];
-        }
-        std::array<float, together> rounding{};
-        for (size_t k = 0; k < together; ++k) rounding[k] = RayScene::rounding(std::sqrt(squares[k]));
-        for (int c = 0; c < 3; ++c) {
-            const float *at = batch.position.component(c) + first, *view = batch.view.component(c) + first,
-                        *face = batch.face.component(c) + first;
-            float* to = batch.start.component(c) + first;
-            for (size_t k = 0; k < together; ++k)
-                to[k] = at[k] + (view[k] + face[k]) * rounding[k] + face[k] * reach;
-        }
-    }
 }
 
 Vec3 PathTracer::start_towards(const PathBatch& batch, size_t path, const Vec3& direction) const {
@@ -479,7 +457,7 @@ PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth,
 void PathTracer::step(PathBatch& batch, uint32_t depth, std::vector<Hit>& hits,
                       std::vector<Vec3>& radiance) const {
     if (batch.count == 0) return;
-    find_starts(batch);
+    batch.find_starts(scene_->reach());
     std::vector<ChosenLight> lamps;
     lights_.choose(batch, depth, false, lamps);
     Scattered scattered(PathBatch::rounded_up(batch.count));

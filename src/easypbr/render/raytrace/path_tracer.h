@@ -44,10 +44,7 @@ class PathTracer {
     struct Escaped;
     /// Paths at surfaces without extensions and with them.
     struct Batches;
-    /// Sets where rays start that leave the places of paths: back along the path too, so that it is on the
-    /// right side of other surfaces that meet this one there.
-    void find_starts(PathBatch& batch) const;
-    /// The same of rays in a direction, which may go through the surface.
+    /// Where rays in a direction start, which may go through the surface.
     Vec3 start_towards(const PathBatch& batch, size_t path, const Vec3& direction) const;
     /// One step of all paths of a batch: `hits` gets the surfaces that they meet next.
     void step(PathBatch& batch, uint32_t depth, std::vector<Hit>& hits, std::vector<Vec3>& radiance) const;

@@ -125,13 +125,14 @@ class RayScene {
         Vec3 face;    ///< normal of the element itself: the interpolated one lies above it or below
         Vec3 normal;  ///< the interpolated one, but for a surface that stands before the place
     };
-    /// What is seen at a place along `view` (unit, towards the viewer). The rasteriser rounds vertices to a
-    /// part of a pixel: a place that lies beyond an adjacent face by less than `footprint`, the width of a
-    /// pixel there, moves onto that face.
+    /// A pixel's surface as the rasteriser has it.
     struct Place {
-        Vec3 position, normal, view;
-        float footprint = 0;
+        Vec3 position, normal, view;  ///< view: unit, towards the viewer
+        float footprint = 0;          ///< width of the pixel there
     };
+    /// What is seen at a place along its view. The rasteriser rounds vertices to a
+    /// part of a pixel: a place that lies beyond an adjacent face by less than its footprint moves onto that
+    /// face.
     Seen seen_at(const Place& place, Transmissive transmissive = Transmissive::passed) const;
     /// The same of many places: of neighbours in a part of the time.
     std::vector<Seen> seen_at(std::span<const Place> places, Transmissive transmissive) const;
