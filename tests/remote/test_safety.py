@@ -335,15 +335,16 @@ def test_connections_leave_nothing_behind(server, connect):
     def descriptors():
         return len(os.listdir("/proc/self/fd")), len(os.listdir("/proc/self/task"))
 
-    before = descriptors()
+    before = descriptors()  # Possibly with what an earlier test's server has yet to close.
     for _ in range(200):
         client = Client(server.url)
         client.until_told("welcome")
         client.close()
     deadline = time.monotonic() + 20
-    while descriptors() != before and time.monotonic() < deadline:
+    while any(map(int.__gt__, descriptors(), before)) and time.monotonic() < deadline:
         time.sleep(0.05)
-    assert descriptors() == before
+    files, threads = descriptors()
+    assert files <= before[0] and threads <= before[1]
 
 
 def test_closing_says_goodbye_and_frees_the_port(view):
