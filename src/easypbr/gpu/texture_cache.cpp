@@ -137,7 +137,7 @@ void fill_smaller(const HostLevel<T>& from, Wrap wrap, const HostLevel<T>& to) {
 
 /// Makes room for all levels. Every texel is written once, by whoever makes it: nothing is cleared before.
 template <class T>
-std::unique_ptr<std::byte[]> make_levels(native::Texture& to, std::vector<HostLevel<T>>& levels) {
+PooledVector<std::byte> make_levels(native::Texture& to, std::vector<HostLevel<T>>& levels) {
     size_t count = 0;
     for (int i = 0; i < to.levels; ++i) {
         const int width = std::max(1, to.width >> i), height = std::max(1, to.height >> i);
@@ -146,25 +146,25 @@ std::unique_ptr<std::byte[]> make_levels(native::Texture& to, std::vector<HostLe
         count += size_t(width + 1) * size_t(height);
     }
     // Pairs of texels are read at the last one too.
-    auto texels = std::make_unique_for_overwrite<std::byte[]>((count + 1) * 4 * sizeof(T));
-    T* first = reinterpret_cast<T*>(texels.get());
+    PooledVector<std::byte> texels((count + 1) * 4 * sizeof(T));
+    T* first = reinterpret_cast<T*>(texels.data());
     for (size_t i = 0; i < levels.size(); ++i) levels[i].texels = first + 4 * size_t(to.offsets[i]);
     std::fill_n(first + 4 * count, 4, T(0));
     return texels;
 }
 
 template <class T, class Color, class Alpha>
-std::unique_ptr<std::byte[]> all_levels(const Image& image, Wrap wrap, native::Texture& to, Color&& color,
-                                        Alpha&& alpha) {
+PooledVector<std::byte> all_levels(const Image& image, Wrap wrap, native::Texture& to, Color&& color,
+                                   Alpha&& alpha) {
     std::vector<HostLevel<T>> levels;
-    std::unique_ptr<std::byte[]> texels = make_levels(to, levels);
+    PooledVector<std::byte> texels = make_levels(to, levels);
     fill_level(image, wrap, levels[0], color, alpha);
     for (size_t i = 1; i < levels.size(); ++i) fill_smaller(levels[i - 1], wrap, levels[i]);
     return texels;
 }
 
 /// Fills in what does not depend on where the texels are.
-std::unique_ptr<std::byte[]> host_texels(const Texture& texture, bool color, native::Texture& to) {
+PooledVector<std::byte> host_texels(const Texture& texture, bool color, native::Texture& to) {
     const Image* image = texture.image.get();
     Image changed;
     if (image->type() != PixelType::u8) image = &(changed = to_valid_u8(*image, texture.path));
@@ -222,9 +222,9 @@ const gl::Texture& TextureCache::get(const Texture& texture, bool color) {
 const native::Texture& TextureCache::host(const Texture& texture, bool color) {
     const Key key{texture.image.get(), color, texture.wrap_u, texture.wrap_v, texture.filter};
     const auto make = [&] {
-        HostEntry entry{texture.image, nullptr, {}};
+        HostEntry entry{texture.image, {}, {}};
         entry.texels = host_texels(texture, color, entry.texture);
-        entry.texture.texels = entry.texels.get();
+        entry.texture.texels = entry.texels.data();
         return entry;
     };
     return host_entries_.get(key, make).texture;

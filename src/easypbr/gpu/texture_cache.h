@@ -7,6 +7,7 @@
 #include <tuple>
 #include <vector>
 
+#include "easypbr/core/memory_pool.h"
 #include "easypbr/core/revision_cache.h"
 #include "easypbr/gl/texture.h"
 #include "easypbr/native/views.h"
@@ -36,7 +37,7 @@ class TextureCache {
     };
     struct HostEntry {
         std::shared_ptr<const Image> image;
-        std::unique_ptr<std::byte[]> texels;
+        PooledVector<std::byte> texels;
         native::Texture texture;
     };
     RevisionCache<Key, Entry> entries_;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "easypbr/core/memory_pool.h"
 #include "easypbr/render/denoise/edge_avoiding_filter.h"
 #include "easypbr/render/denoise/open_image_denoise.h"
 #include "easypbr/render/frame/frame.h"
@@ -81,14 +82,14 @@ class RadianceMean {
     Target light_;
     /// What of each pixel is taken note of: that of its first frame with noise.
     enum class Noisy : uint8_t { nothing, radiance, coverage };
-    std::vector<Noisy> noisy_;
+    PooledVector<Noisy> noisy_;
     /// Of pixels that note radiance: sums of the coverage and of its square. Empty where it has no noise.
-    std::vector<Vec2> coverage_;
-    std::vector<Vec4> overlay_sum_;
+    PooledVector<Vec2> coverage_;
+    PooledVector<Vec4> overlay_sum_;
     /// Of the frame: what its overlay leaves of the light. Empty: all.
-    std::vector<float> open_;
+    PooledVector<float> open_;
     /// Sums of that over all frames, and over those that seen_ is of; empty where all of it is left.
-    std::vector<Vec2> weights_;
+    PooledVector<Vec2> weights_;
     Target overlay_mean_;
     EdgeAvoidingFilter filter_;
     OpenImageDenoise oidn_;

@@ -16,6 +16,12 @@ bool contains(const PixelRect& outer, const PixelRect& inner) {
            inner.y + inner.height <= outer.y + outer.height;
 }
 
+/// Makes room for as many undefined bytes.
+void resize(PooledVector<std::byte>& pixels, size_t bytes) {
+    if (bytes > pixels.capacity()) pixels = {};  // nothing to copy
+    pixels.resize(bytes);
+}
+
 }  // namespace
 
 const gl::Texture& Target::attachment() const {
@@ -35,7 +41,7 @@ const gl::Texture& Target::drawn() const {
 
 void Target::write(const PixelRect& area) const {
     area_ = area;
-    host_.resize(bytes_of(area, format_));
+    resize(host_, bytes_of(area, format_));
     newest_ = Newest::host;
     is_complete_ = true;
 }
@@ -56,7 +62,7 @@ void Target::download(const PixelRect& area, Transfers& transfers) const {
     if (newest_ != Newest::texture && (is_complete_ || contains(area_, area))) return;
     area_ = area;
     is_complete_ = contains(area, whole());
-    host_.resize(bytes_of(area, format_));
+    resize(host_, bytes_of(area, format_));
     newest_ = Newest::both;
     if (host_.empty()) return;
     if (!reading_) reading_ = gl::Framebuffer({&attachment()});

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "easypbr/core/math.h"
+#include "easypbr/core/memory_pool.h"
 #include "easypbr/core/picture.h"
 #include "easypbr/gl/texture.h"
 
@@ -96,7 +97,7 @@ class Target {
     // A target is a handle: who holds it may draw to it.
     mutable gl::Texture texture_;
     mutable gl::Framebuffer reading_;
-    mutable std::vector<std::byte> host_;
+    mutable PooledVector<std::byte> host_;
     mutable PixelRect area_;
     mutable Newest newest_ = Newest::texture;
     mutable bool is_complete_ = false;  ///< beyond the rectangle in host memory the picture is zero

@@ -14,6 +14,14 @@ namespace {
 
 constexpr size_t point_grain = 1 << 12;
 
+template <class Key>
+void fill(PooledVector<Key>& pixels, size_t count, Key key) {
+    pixels.resize(count);
+    parallel_chunks(count, size_t(1) << 16, [&](size_t begin, size_t end) {
+        std::fill(pixels.begin() + long(begin), pixels.begin() + long(end), key);
+    });
+}
+
 /// Keeps the larger of a pixel and a key; any order of calls gives the same.
 template <class Key>
 [[gnu::always_inline]] inline void raise(Key& pixel, Key key) {
@@ -71,7 +79,7 @@ struct KeyOrder {
 /// Puts the pixels that pass a test, many at once.
 class TestedPixels {
   public:
-    TestedPixels(const KeyOrder& order, const AlphaTest& test, std::vector<uint64_t>& pixels,
+    TestedPixels(const KeyOrder& order, const AlphaTest& test, PooledVector<uint64_t>& pixels,
                  const PixelRect& area, uint32_t first_id)
         : order_(order), test_(test), pixels_(pixels), area_(area), first_id_(first_id) {}
     /// A copy begins with nothing.
@@ -103,7 +111,7 @@ class TestedPixels {
 
     const KeyOrder order_;
     const AlphaTest& test_;
-    std::vector<uint64_t>& pixels_;
+    PooledVector<uint64_t>& pixels_;
     const PixelRect& area_;
     uint32_t first_id_;
     std::array<native::VisiblePixel, most> waiting_;
@@ -115,7 +123,7 @@ class TestedPixels {
 
 void VisibilityBuffer::clear(Vec2i size, const PixelRect& area) {
     raster_.set_area(size, area);
-    pixels_.assign(size_t(area.width) * size_t(area.height), 0);
+    fill(pixels_, size_t(area.width) * size_t(area.height), uint64_t(0));
     limits_ = nullptr;
 }
 
@@ -146,11 +154,7 @@ bool VisibilityBuffer::draw(const ScreenTriangles& triangles, uint32_t first_id,
 
 void DepthBuffer::clear(Vec2i size, float nothing) {
     raster_.set_area(size, {0, 0, size.x(), size.y()});
-    pixels_.resize(size_t(size.x()) * size_t(size.y()));
-    parallel_chunks(pixels_.size(), size_t(1) << 16, [&](size_t begin, size_t end) {
-        std::fill(pixels_.begin() + long(begin), pixels_.begin() + long(end),
-                  std::bit_cast<int32_t>(nothing));
-    });
+    fill(pixels_, size_t(size.x()) * size_t(size.y()), std::bit_cast<int32_t>(nothing));
 }
 
 bool DepthBuffer::draw(const ScreenTriangles& triangles) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "easypbr/core/math.h"
+#include "easypbr/core/memory_pool.h"
 #include "easypbr/native/kernels.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/raster/point_raster.h"
@@ -26,9 +27,9 @@ struct AlphaTest {
 
 /// One layer of depth peeling. Only what is nearer than a limit is drawn, or with `backs` what is farther.
 struct PeelLimits {
-    std::vector<float> depths;  ///< reversed, of the pixels of the area, row by row
-    bool farthest = true;       ///< of what is drawn the farthest is kept, not the nearest
-    bool backs = false;         ///< instead the nearest back faces of volumes that lie behind the limits
+    PooledVector<float> depths;  ///< reversed, of the pixels of the area, row by row
+    bool farthest = true;        ///< of what is drawn the farthest is kept, not the nearest
+    bool backs = false;          ///< instead the nearest back faces of volumes that lie behind the limits
 };
 
 /// The nearest triangle or point of each pixel of a rectangle. Rules as OpenGL's: 8 bits of sub-pixel
@@ -72,7 +73,7 @@ class VisibilityBuffer {
 
   private:
     TriangleRaster raster_;
-    std::vector<uint64_t> pixels_;  ///< depth in the upper, complement of the id in the lower half
+    PooledVector<uint64_t> pixels_;  ///< depth in the upper, complement of the id in the lower half
     const PeelLimits* limits_ = nullptr;
 };
 
@@ -93,7 +94,7 @@ class DepthBuffer {
 
   private:
     TriangleRaster raster_;
-    std::vector<int32_t> pixels_;  ///< floats' bits: those of positive ones are in the order of their values
+    PooledVector<int32_t> pixels_;  ///< floats' bits: those of positive ones are in the order of their values
 };
 
 /// Sets the pixels of the raster's area to 1 that triangles cover. See TriangleRaster.

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "easypbr/core/memory_pool.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/render/frame/sampled_tiles.h"
@@ -54,7 +55,7 @@ class PathPass {
     };
     Caught& caught_at(const Pixels& pixels, int x, int y);
 
-    std::vector<Caught> caught_;  ///< for each pixel
+    PooledVector<Caught> caught_;  ///< for each pixel
 };
 
 }  // namespace easypbr::render

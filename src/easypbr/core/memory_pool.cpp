@@ -1,0 +1,120 @@
+#include "easypbr/core/memory_pool.h"
+
+#include <algorithm>
+#include <bit>
+#include <mutex>
+
+namespace easypbr {
+namespace {
+
+constexpr auto alignment = std::align_val_t(64);
+#ifdef __SANITIZE_ADDRESS__
+constexpr size_t most_kept = 0;  // The sanitizer knows of memory that is freed.
+#else
+constexpr size_t most_kept = PooledMemory::most_kept;
+#endif
+constexpr size_t most_blocks = 256;
+
+/// In steps of a quarter of a power of two, so that arrays of nearly the same size share memory. Pages that
+/// nobody touches take none.
+size_t block_size(size_t bytes) {
+    const size_t step = std::bit_floor(bytes) / 4;
+    return (bytes + step - 1) / step * step;
+}
+
+void* allocate(size_t bytes) {
+    return ::operator new(bytes, alignment, std::nothrow);
+}
+
+class Pool {
+  public:
+    Pool() { kept_.reserve(most_blocks + 1); }
+
+    /// Null: the system has none either.
+    void* take(size_t bytes) {
+        const std::lock_guard lock(mutex_);
+        // The last that came back is the likeliest to be in a cache.
+        const auto found = std::find_if(kept_.rbegin(), kept_.rend(),
+                                        [&](const Block& block) { return block.bytes == bytes; });
+        void* memory = nullptr;
+        if (found != kept_.rend()) {
+            memory = found->memory;
+            kept_bytes_ -= bytes;
+            kept_.erase(std::next(found).base());
+        } else {
+            const size_t given = given_ + bytes;
+            shrink(most_given_ > given ? most_given_ - given : 0);
+            memory = allocate(bytes);
+            if (!memory) {
+                shrink(0);
+                memory = allocate(bytes);
+            }
+            if (!memory) return nullptr;
+        }
+        given_ += bytes;
+        most_given_ = std::max(most_given_, given_);
+        return memory;
+    }
+
+    void give(void* memory, size_t bytes) noexcept {
+        const std::lock_guard lock(mutex_);
+        given_ -= bytes;
+        kept_.push_back({memory, bytes});
+        kept_bytes_ += bytes;
+        shrink(most_kept);
+    }
+
+    PooledMemory now() {
+        const std::lock_guard lock(mutex_);
+        return {kept_bytes_, given_};
+    }
+
+  private:
+    struct Block {
+        void* memory;
+        size_t bytes;
+    };
+
+    /// Frees the oldest blocks until no more bytes are kept.
+    void shrink(size_t to) {
+        auto block = kept_.begin();
+        for (; kept_bytes_ > to || size_t(kept_.end() - block) > most_blocks; ++block) {
+            kept_bytes_ -= block->bytes;
+            ::operator delete(block->memory, alignment);
+        }
+        kept_.erase(kept_.begin(), block);
+    }
+
+    std::mutex mutex_;
+    std::vector<Block> kept_;  ///< in the order in which they came back
+    size_t kept_bytes_ = 0, given_ = 0, most_given_ = 0;
+};
+
+/// Never destroyed: arrays that outlive static objects give their memory back.
+Pool& pool() {
+    static Pool& only = *new Pool;
+    return only;
+}
+
+}  // namespace
+
+void* take_pooled(size_t bytes) {
+    if (bytes < PooledMemory::smallest) return ::operator new(bytes, alignment);
+    if (bytes > std::numeric_limits<size_t>::max() / 2) throw std::bad_alloc();
+    void* memory = pool().take(block_size(bytes));
+    if (!memory) throw std::bad_alloc();
+    return memory;
+}
+
+void give_pooled(void* memory, size_t bytes) noexcept {
+    if (bytes < PooledMemory::smallest)
+        ::operator delete(memory, alignment);
+    else
+        pool().give(memory, block_size(bytes));
+}
+
+PooledMemory pooled_memory() {
+    return pool().now();
+}
+
+}  // namespace easypbr

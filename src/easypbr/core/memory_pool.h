@@ -1,0 +1,60 @@
+// Memory of large arrays that come and go with frames: it is kept for the next one.
+#pragma once
+
+#include <cstddef>
+#include <limits>
+#include <new>
+#include <vector>
+
+namespace easypbr {
+
+/// Memory for so many bytes, by the pool where it holds a block of that size. The system hands out pages one
+/// by one and clears each, which takes longer than most passes take to fill them. Throws std::bad_alloc. Any
+/// thread.
+void* take_pooled(size_t bytes);
+/// Takes back what take_pooled() gave for as many bytes.
+void give_pooled(void* memory, size_t bytes) noexcept;
+
+/// What the pool holds and has given away, in bytes. Both together are never more than was given away at once
+/// at some time: a request that no block serves frees others.
+struct PooledMemory {
+    /// Beyond it, what comes back is freed.
+    static constexpr size_t most_kept = size_t(256) << 20;
+    /// Smaller arrays are allocated as usual.
+    static constexpr size_t smallest = size_t(256) << 10;
+
+    size_t kept = 0, given = 0;
+};
+PooledMemory pooled_memory();
+
+/// An allocator of std::vector by the pool. Elements that are given no value are undefined.
+template <class T>
+struct PoolAllocator {
+    using value_type = T;
+    PoolAllocator() = default;
+    template <class U>
+    PoolAllocator(const PoolAllocator<U>& /*other*/) noexcept {}  // NOLINT(google-explicit-constructor)
+
+    T* allocate(size_t count) {
+        if (count > std::numeric_limits<size_t>::max() / sizeof(T)) throw std::bad_array_new_length();
+        return static_cast<T*>(take_pooled(count * sizeof(T)));
+    }
+    void deallocate(T* memory, size_t count) noexcept { give_pooled(memory, count * sizeof(T)); }
+    template <class U>
+    void construct(U* at) {
+        ::new (static_cast<void*>(at)) U;
+    }
+    template <class U, class Value>
+    void construct(U* at, Value&& value) {
+        ::new (static_cast<void*>(at)) U(static_cast<Value&&>(value));
+    }
+    template <class U>
+    bool operator==(const PoolAllocator<U>& /*other*/) const noexcept {
+        return true;
+    }
+};
+
+template <class T>
+using PooledVector = std::vector<T, PoolAllocator<T>>;
+
+}  // namespace easypbr
