@@ -12,6 +12,7 @@
 #include "easypbr/core/file.h"
 #include "easypbr/core/parallel.h"
 #include "easypbr/io/image/image_codecs.h"
+#include "easypbr/io/image/image_io.h"
 #include "easypbr/io/video/video.h"
 #include "easypbr/scene/settings.h"
 
