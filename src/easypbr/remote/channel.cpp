@@ -4,6 +4,7 @@
 #include <mutex>
 
 #include "easypbr/remote/mailbox.h"
+#include "easypbr/remote/served_files.h"
 #include "easypbr/remote/views.h"
 #include "easypbr/scene/scene.h"
 #include "easypbr/scene/settings.h"
