@@ -111,6 +111,7 @@ step driver_messages 60 "cd tests/golden && EASYPBR_GL_DEBUG=1 ../../$python dri
 step cuda 40 "$python scripts/gpu_steps.py cuda '$output'"
 step recording 40 "$python scripts/gpu_steps.py recording '$output' ${gpu:+1280}"
 step textures_1_gb 60 "$python scripts/gpu_steps.py textures '$output' ${gpu:+16384}"
+step splats 60 "$python scripts/gpu_steps.py splats '$output' ${gpu:+6000}"
 step bench 120 "$python scripts/gpu_steps.py bench '$output' ${gpu:+23}"
 
 {
@@ -125,7 +126,7 @@ step bench 120 "$python scripts/gpu_steps.py bench '$output' ${gpu:+23}"
   echo '| Step | Result | s |'
   echo '|---|---|---|'
   printf '%s\n' "${rows[@]}"
-  for name in golden driver_messages cuda recording textures_1_gb bench; do
+  for name in golden driver_messages cuda recording textures_1_gb splats bench; do
     [ -s "$output/$name.log" ] || continue
     printf '\n## %s\n\n' "$name"
     tail -40 "$output/$name.log" | sed 's/^/    /'

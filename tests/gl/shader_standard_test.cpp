@@ -61,6 +61,18 @@ Names fragment_shaders() {
     return names;
 }
 
+/// What is linked with its stages: fragment shaders, and compute shaders alone.
+Names last_stages() {
+    Names names = fragment_shaders();
+    for (const std::string& name : shader_names())
+        if (name.ends_with(".comp")) names.push_back(name);
+    return names;
+}
+Names stages_of(const std::string& last) {
+    if (last.ends_with(".comp")) return {last};
+    return {vertex_shader_of(last), last};
+}
+
 /// The macros that lines #if of the text ask for.
 void add_conditions(const std::string& text, Names& macros) {
     std::istringstream lines(text);
@@ -136,7 +148,7 @@ class ShaderStandard : public testing::TestWithParam<std::string> {
 
 TEST_P(ShaderStandard, EveryVariantCompilesAndIsValid) {
     if (!has_tools()) GTEST_SKIP() << "glslang-tools and spirv-tools are not installed";
-    const Names stages = {vertex_shader_of(GetParam()), GetParam()};
+    const Names stages = stages_of(GetParam());
     for (Names variant : variants_of(macros_of(stages))) {
         // What is seen behind is of the extended model's transmission.
         if (std::ranges::count(variant, "BEHIND") > 0) variant.emplace_back("EXTENDED");
@@ -146,7 +158,7 @@ TEST_P(ShaderStandard, EveryVariantCompilesAndIsValid) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, ShaderStandard, testing::ValuesIn(fragment_shaders()),
+INSTANTIATE_TEST_SUITE_P(All, ShaderStandard, testing::ValuesIn(last_stages()),
                          [](const auto& info) { return fs::path(info.param).stem().string(); });
 
 TEST(ShaderStandardVariants, EachTwoMacrosMeetInAllWays) {

@@ -32,8 +32,16 @@ void Buffer::update(size_t offset, std::span<const std::byte> bytes) {
     glNamedBufferSubData(id(), GLintptr(offset), GLsizeiptr(bytes.size()), bytes.data());
 }
 
+void Buffer::read(size_t offset, std::span<std::byte> bytes) const {
+    glGetNamedBufferSubData(id(), GLintptr(offset), GLsizeiptr(bytes.size()), bytes.data());
+}
+
 void Buffer::bind_uniform(unsigned slot) const {
     glBindBufferBase(GL_UNIFORM_BUFFER, slot, id());
+}
+
+void Buffer::bind_storage(unsigned slot) const {
+    glBindBufferBase(GL_SHADER_STORAGE_BUFFER, slot, id());
 }
 
 VertexArray VertexArray::make() {

@@ -18,7 +18,11 @@ class Buffer {
     explicit Buffer(size_t size);
 
     void update(size_t offset, std::span<const std::byte> bytes);
+    /// Waits for what writes it.
+    void read(size_t offset, std::span<std::byte> bytes) const;
     void bind_uniform(unsigned slot) const;
+    /// For shaders that read or write it as an array.
+    void bind_storage(unsigned slot) const;
 
     uint32_t id() const { return object_.id(); }
     size_t size() const { return size_; }

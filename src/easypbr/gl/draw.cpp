@@ -102,6 +102,28 @@ void draw_quads(const DrawState& state, const VertexArray& array, int instances)
     glDrawArraysInstanced(GL_TRIANGLE_STRIP, 0, 4, instances);
 }
 
+void draw_quads(const DrawState& state, const Buffer& counts) {
+    apply(state);
+    Context::current().no_attributes().bind();
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, counts.id());
+    glDrawArraysIndirect(GL_TRIANGLE_STRIP, nullptr);
+    glBindBuffer(GL_DRAW_INDIRECT_BUFFER, 0);
+}
+
+void dispatch(uint32_t groups) {
+    glDispatchCompute(groups, 1, 1);
+    glMemoryBarrier(GL_SHADER_STORAGE_BARRIER_BIT | GL_COMMAND_BARRIER_BIT | GL_BUFFER_UPDATE_BARRIER_BIT);
+}
+
+StorageLimits storage_limits() {
+    GLint64 bytes = 0;
+    GLint groups = 0, of_vertices = 0;
+    glGetInteger64v(GL_MAX_SHADER_STORAGE_BLOCK_SIZE, &bytes);
+    glGetIntegeri_v(GL_MAX_COMPUTE_WORK_GROUP_COUNT, 0, &groups);
+    glGetIntegerv(GL_MAX_VERTEX_SHADER_STORAGE_BLOCKS, &of_vertices);
+    return {size_t(std::max<GLint64>(0, bytes)), uint32_t(std::max(0, groups)), of_vertices};
+}
+
 void draw_triangles(const DrawState& state, const VertexArray& array, int64_t first_index, int index_count) {
     apply(state);
     array.bind();

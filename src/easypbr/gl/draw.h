@@ -62,8 +62,22 @@ void draw_screen(const DrawState& state);
 void draw_points(const DrawState& state, const VertexArray& array, int count);
 /// A triangle strip of four vertices for each instance.
 void draw_quads(const DrawState& state, const VertexArray& array, int instances);
+/// As a buffer says that a compute shader has written: four uint32_t, 4, the number of instances, 0, 0.
+/// Without attributes.
+void draw_quads(const DrawState& state, const Buffer& counts);
 /// Triangles of 32-bit indices.
 void draw_triangles(const DrawState& state, const VertexArray& array, int64_t first_index, int index_count);
+
+/// Runs the compute shader that is in use in so many groups; what comes later sees what it writes.
+void dispatch(uint32_t groups);
+
+/// What storage buffers may be in shaders.
+struct StorageLimits {
+    size_t bytes = 0;     ///< of a buffer
+    uint32_t groups = 0;  ///< of a dispatch()
+    int of_vertices = 0;  ///< buffers that a vertex shader reads
+};
+StorageLimits storage_limits();
 
 /// Sets what DrawState does not hold to what the renderer expects, after code that may have left anything
 /// behind.

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <optional>
 #include <set>
+#include <span>
 #include <sstream>
 
 #include "easypbr/core/error.h"
@@ -183,8 +184,8 @@ std::vector<std::string> embedded_features() {
 
 /// Passes give all their shaders the same macros, so a feature of another shader is none of this one's
 /// mistakes.
-void check_features(const Expanded (&sources)[2], const std::vector<std::string>& defines) {
-    if (sources[0].is_own || sources[1].is_own) return;
+void check_features(std::span<const Expanded> sources, const std::vector<std::string>& defines) {
+    if (std::ranges::any_of(sources, &Expanded::is_own)) return;
     static const std::vector<std::string> embedded = embedded_features();
     std::vector<std::string> known = embedded;
     for (const Expanded& source : sources)
@@ -218,6 +219,43 @@ GLuint compile(GLenum stage, const Expanded& source) {
     glDeleteShader(shader);
     fail(source.is_own, fmt::format("shader {} does not compile:{}", source.shown.front(),
                                     readable_log(log.c_str(), source.shown)));
+}
+
+struct Stage {
+    GLenum kind;
+    const Expanded* source;
+};
+
+void link(GLuint program, std::initializer_list<Stage> stages) {
+    std::vector<GLuint> shaders;
+    const auto drop = [&] {
+        for (const GLuint shader : shaders) {
+            glDetachShader(program, shader);
+            glDeleteShader(shader);
+        }
+    };
+    std::string names;
+    bool is_own = false;
+    for (const Stage& stage : stages) {
+        try {
+            shaders.push_back(compile(stage.kind, *stage.source));
+        } catch (...) {
+            drop();
+            throw;
+        }
+        glAttachShader(program, shaders.back());
+        names += (names.empty() ? "" : " and ") + stage.source->shown.front();
+        is_own |= stage.source->is_own;
+    }
+    glLinkProgram(program);
+    drop();
+    GLint linked = 0;
+    glGetProgramiv(program, GL_LINK_STATUS, &linked);
+    if (linked) return;
+    char log[4096] = "";
+    glGetProgramInfoLog(program, sizeof log, nullptr, log);
+    fail(is_own, fmt::format("{} {} not link: {}", stages.size() > 1 ? "shaders" : "shader",
+                             stages.size() > 1 ? names + " do" : names + " does", log));
 }
 
 Expanded expanded(std::string_view name, const ShaderTexts& texts, const std::vector<std::string>& defines) {
@@ -264,34 +302,22 @@ std::vector<fs::path> shader_files(std::string_view name) {
 Program::Program(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines,
                  const ShaderTexts& texts)
     : object_(ObjectKind::program) {
-    const GLuint program = object_.id();
     const Expanded sources[] = {expanded(vertex, texts, defines), expanded(fragment, texts, defines)};
     check_features(sources, defines);
-    const GLuint vertex_stage = compile(GL_VERTEX_SHADER, sources[0]);
-    GLuint fragment_stage = 0;
-    try {
-        fragment_stage = compile(GL_FRAGMENT_SHADER, sources[1]);
-    } catch (...) {
-        glDeleteShader(vertex_stage);
-        throw;
-    }
-    const GLuint stages[] = {vertex_stage, fragment_stage};
-    for (const GLuint stage : stages) glAttachShader(program, stage);
-    glLinkProgram(program);
-    for (const GLuint stage : stages) {
-        glDetachShader(program, stage);
-        glDeleteShader(stage);
-    }
-    GLint linked = 0;
-    glGetProgramiv(program, GL_LINK_STATUS, &linked);
-    if (!linked) {
-        char log[4096] = "";
-        glGetProgramInfoLog(program, sizeof log, nullptr, log);
-        fail(sources[0].is_own || sources[1].is_own,
-             fmt::format("shaders {} and {} do not link: {}", sources[0].shown.front(),
-                         sources[1].shown.front(), log));
-    }
+    link(object_.id(), {{GL_VERTEX_SHADER, &sources[0]}, {GL_FRAGMENT_SHADER, &sources[1]}});
     read_uniforms();
+}
+
+Program Program::compute(std::string_view shader, const std::vector<std::string>& defines) {
+    const ShaderTexts none;
+    const Expanded source = expanded(shader, none, defines);
+    check_features({&source, 1}, defines);
+    Context::with_driver();
+    Program program;
+    program.object_ = Object(ObjectKind::program);
+    link(program.object_.id(), {{GL_COMPUTE_SHADER, &source}});
+    program.read_uniforms();
+    return program;
 }
 
 void Program::read_uniforms() {
@@ -323,6 +349,10 @@ void Program::use() const {
 
 void Program::set(std::string_view uniform, int value) const {
     glProgramUniform1i(object_.id(), location(uniform), value);
+}
+
+void Program::set(std::string_view uniform, uint32_t value) const {
+    glProgramUniform1ui(object_.id(), location(uniform), value);
 }
 
 void Program::set(std::string_view uniform, float value) const {

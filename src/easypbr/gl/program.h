@@ -38,8 +38,8 @@ struct ShaderStage {
 /// Throws as shader_source() does.
 ShaderStage shader_stage(std::string_view name, const std::vector<std::string>& defines = {});
 
-/// A linked vertex and fragment shader. Uniforms that the linker removed are silently ignored when they are
-/// set.
+/// A linked vertex and fragment shader, or a compute shader. Uniforms that the linker removed are silently
+/// ignored when they are set.
 class Program {
   public:
     Program() = default;
@@ -55,11 +55,15 @@ class Program {
     Program(std::string_view vertex, std::string_view fragment, const std::vector<std::string>& defines = {},
             const ShaderTexts& texts = {});
 
+    /// A compute shader; the same macros and errors.
+    static Program compute(std::string_view shader, const std::vector<std::string>& defines = {});
+
     void use() const;
     /// Whether the linker left a uniform of this name.
     bool has(std::string_view uniform) const { return location(uniform) >= 0; }
 
     void set(std::string_view uniform, int value) const;
+    void set(std::string_view uniform, uint32_t value) const;
     void set(std::string_view uniform, float value) const;
     void set(std::string_view uniform, const Vec2& value) const;
     void set(std::string_view uniform, const Vec3& value) const;

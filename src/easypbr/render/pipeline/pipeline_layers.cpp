@@ -68,7 +68,7 @@ const Target& Pipeline::hiding_depth(const Frame& frame, const DrawList& list, b
 void Pipeline::draw_overlay_items(const Frame& frame, const DrawList& list, bool native) {
     if (list.overlays.empty()) return;
     overlays_.begin(frame, list.overlays, targets_, hiding_depth(frame, list, native),
-                    native ? &transfers_ : nullptr);
+                    native ? &transfers_ : nullptr, !surfaces_.is_native());
     overlays_.draw(frame, list.overlays, targets_, nullptr);
     overlays_.draw_over(frame, list.overlays, targets_);
 }
@@ -89,7 +89,7 @@ bool Pipeline::draw_transparent_by_driver(const Frame& frame, const DrawList& li
                                           const FrameContents& contents, bool with_overlay) {
     const DrawList layers = list.layers();
     const Target& opaque = hiding_depth(frame, list, false);
-    overlays_.begin(frame, list.overlays, targets_, opaque, nullptr);
+    overlays_.begin(frame, list.overlays, targets_, opaque, nullptr, !surfaces_.is_native());
     draw_layers(frame, layers.without(is_over), list.overlays, opaque, contents, with_overlay);
     bool drawn = transparency_.has_layers();
     if (layers.has(is_over)) {
@@ -111,7 +111,7 @@ bool Pipeline::shade_transparent(const Frame& frame, const DrawList& list, const
                                  bool with_overlay) {
     const DrawList layers = list.layers();
     const Target& opaque = hiding_depth(frame, list, true);
-    overlays_.begin(frame, list.overlays, targets_, opaque, &transfers_);
+    overlays_.begin(frame, list.overlays, targets_, opaque, &transfers_, false);
     bool drawn = shade_layers(frame, layers.without(is_over), list.overlays, opaque, contents, with_overlay);
     if (layers.has(is_over)) {
         // Hidden by what is drawn over everything else too, and by nothing but.

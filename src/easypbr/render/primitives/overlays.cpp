@@ -18,8 +18,9 @@ void for_each_kind(const Primitives& primitives, const ItemsByKind& items, Draw&
 }  // namespace
 
 void Overlays::begin(const Frame& frame, const ItemsByKind& items, const GBuffer& targets,
-                     const Target& opaque, Transfers* host) {
+                     const Target& opaque, Transfers* host, bool by_gpu) {
     host_ = host;
+    by_gpu_ = by_gpu;
     run(frame, items, targets, {.part = OverlayPart::begin, .opaque = &opaque});
 }
 
@@ -35,6 +36,7 @@ void Overlays::draw_over(const Frame& frame, const ItemsByKind& items, const GBu
 
 void Overlays::run(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, OverlayStep step) {
     step.host = host_;
+    step.by_gpu = by_gpu_;
     step.others = others_;
     for_each_kind(primitives_, items, [&](Primitive& kind, DrawItems of_kind) {
         kind.draw_overlay(frame, of_kind, targets, step);

@@ -16,7 +16,7 @@ class Overlays {
     /// Items, targets and `opaque` stay as they are until draw_over(). See OverlayStep::opaque. `host` is
     /// given for native drawing: until draw_over() from and to host memory, which holds the layers too.
     void begin(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, const Target& opaque,
-               Transfers* host);
+               Transfers* host, bool by_gpu);
     /// Adds what lies behind a layer, or all that is left.
     void draw(const Frame& frame, const ItemsByKind& items, const GBuffer& targets, const GBuffer* next);
     void draw_over(const Frame& frame, const ItemsByKind& items, const GBuffer& targets);
@@ -27,6 +27,7 @@ class Overlays {
 
     const Primitives& primitives_;
     Transfers* host_ = nullptr;  ///< OverlayStep::host, since the beginning
+    bool by_gpu_ = false;        ///< OverlayStep::by_gpu, since the beginning
     std::vector<float> others_;  ///< OverlayStep::others, since the beginning
 };
 

@@ -34,6 +34,8 @@ struct OverlayStep {
     Part part = Part::begin;
     /// Given for native drawing: the targets and the layer are in host memory.
     Transfers* host = nullptr;
+    /// With `begin` and `over`: a GPU draws, so that kinds that the CPU draws too had better be its own.
+    bool by_gpu = false;
     /// With `begin`: hidden is what lies behind this (R32F, reversed depth), whose normals are those of the
     /// targets; both stay as they are until `over`.
     const Target* opaque = nullptr;

@@ -56,6 +56,7 @@ class Surfaces {
 
     /// Without a GPU, surfaces are drawn natively; false leaves them to the driver.
     void allow_native(bool allow) { allow_native_ = allow; }
+    bool is_native() const;
 
   private:
     /// Items of a list, with their kind.
@@ -64,7 +65,6 @@ class Surfaces {
         DrawItems items;
     };
     std::vector<Group> groups_of(const DrawList& list) const;
-    bool is_native() const;
     /// Finds what is visible of a layer.
     void rasterise_layer(const Frame& frame, const DrawList& list, ExtensionSet extensions,
                          const PeelLimits& limits);

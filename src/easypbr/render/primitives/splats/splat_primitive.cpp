@@ -157,22 +157,49 @@ void SplatPrimitive::draw_overlay(const Frame& frame, DrawItems items, const GBu
                                   const OverlayStep& step) {
     using Part = OverlayStep::Part;
     if (step.part == Part::begin) return begin(frame, items, step);
-    if (step.part == Part::over) {
-        const std::vector<const DrawItem*> over = chosen(items, true);
-        if (over.empty()) return;
-        compositor_.begin(frame, over, colors(frame, over));
-        return blend(targets, {}, step.host != nullptr);
+    if (step.part == Part::over) return draw_over(frame, items, targets, step);
+    if (by_driver_) {
+        if (!step.next && step.others.empty()) {
+            if (step.part == Part::behind) driver_.blend(frame, targets, opaque_);
+            return;
+        }
+        by_driver_ = false;
+        begin_natively(frame, false);
     }
     if (compositor_.empty()) return;
     step.part == Part::behind ? draw_behind(targets, step) : draw_front(targets, step);
 }
 
 void SplatPrimitive::begin(const Frame& frame, DrawItems items, const OverlayStep& step) {
-    const std::vector<const DrawItem*> shown = chosen(items, false);
-    compositor_.begin(frame, shown, colors(frame, shown));
+    shown_ = chosen(items, false);
+    opaque_ = step.opaque;
+    by_driver_ = begin_by_driver(frame, shown_, step);
+    if (!by_driver_) begin_natively(frame, step.host != nullptr);
+}
+
+void SplatPrimitive::begin_natively(const Frame& frame, bool in_host_memory) {
+    compositor_.begin(frame, shown_, colors(frame, shown_));
     farthest_.clear();
     if (!compositor_.empty())
-        farthest_ = step.host ? whole_depths(*step.opaque) : read_depths(step.opaque->texture());
+        farthest_ = in_host_memory ? whole_depths(*opaque_) : read_depths(opaque_->texture());
+}
+
+void SplatPrimitive::draw_over(const Frame& frame, DrawItems items, const GBuffer& targets,
+                               const OverlayStep& step) {
+    const std::vector<const DrawItem*> over = chosen(items, true);
+    if (over.empty()) return;
+    if (begin_by_driver(frame, over, step)) return driver_.blend(frame, targets, nullptr);
+    compositor_.begin(frame, over, colors(frame, over));
+    blend(targets, {}, step.host != nullptr);
+}
+
+bool SplatPrimitive::begin_by_driver(const Frame& frame, const std::vector<const DrawItem*>& items,
+                                     const OverlayStep& step) {
+    if (!step.by_gpu || step.host || items.empty() || frame.resolved->settings.splats.resort) return false;
+    const bool are_lit = SplatLight::relights(*frame.resolved) && light_.light();
+    const auto has_light = [&](const DrawItem* item) { return light_.parts_of(*item, false) != nullptr; };
+    if (are_lit || std::ranges::any_of(items, has_light)) return false;
+    return driver_.begin(frame, items);
 }
 
 ShadowShape SplatPrimitive::shadow_shape(const DrawItem& item) {

@@ -5,16 +5,18 @@
 #include "easypbr/render/frame/programs.h"
 #include "easypbr/render/primitives/primitive.h"
 #include "easypbr/render/primitives/splats/splat_compositor.h"
+#include "easypbr/render/primitives/splats/splat_driver.h"
 #include "easypbr/render/primitives/splats/splat_light.h"
 #include "easypbr/render/primitives/splats/splat_shadows.h"
 
 namespace easypbr::render {
 
-/// Splats are blended natively on every device; where the overlay is a texture they are uploaded. Their
-/// colours pass neither light nor tone curve, unless they are relit. Surfaces hide what is behind them;
-/// of surfaces that light passes some splats are before and others behind. As surfaces (DrawList::
-/// as_surfaces()) splats are where half of the light is stopped: the normal and index of the splat that does
-/// it, and its depth or the expected one.
+/// A GPU blends splats where nothing else is between them and they have their own colours, in the order of
+/// their means; else they are blended natively, and uploaded where the overlay is a texture. Their colours
+/// pass neither light nor tone curve, unless they are relit. Surfaces hide what is behind them; of surfaces
+/// that light passes some splats are before and others behind. As surfaces (DrawList:: as_surfaces()) splats
+/// are where half of the light is stopped: the normal and index of the splat that does it, and its depth or
+/// the expected one.
 class SplatPrimitive final : public Primitive {
   public:
     DrawMode mode() const override { return DrawMode::splats; }
@@ -38,12 +40,19 @@ class SplatPrimitive final : public Primitive {
     std::unique_ptr<HitSurface> hit_surface(const ResolvedSettings& resolved, const DrawItem& item) override;
     void set_place_light(const PlaceLight* light) override { light_.set(light); }
     double reach(const DrawItem& item) override { return shadows_.reach(item); }
-    void evict_unused() override { shadows_.evict_unused(); }
+    void evict_unused() override {
+        shadows_.evict_unused();
+        driver_.evict_unused();
+    }
 
   private:
     using Limits = SplatCompositor::Limits;
 
     void begin(const Frame& frame, DrawItems items, const OverlayStep& step);
+    void begin_natively(const Frame& frame, bool in_host_memory);
+    void draw_over(const Frame& frame, DrawItems items, const GBuffer& targets, const OverlayStep& step);
+    bool begin_by_driver(const Frame& frame, const std::vector<const DrawItem*>& items,
+                         const OverlayStep& step);
     /// Gives splats the colours that are seen of them, darkened by what hides light from them, or lit.
     SplatSet::Finish colors(const Frame& frame, const std::vector<const DrawItem*>& items);
     SplatSet::Finish own_colors(const Frame& frame, const std::vector<const DrawItem*>& items);
@@ -59,6 +68,11 @@ class SplatPrimitive final : public Primitive {
     void shade(const GBuffer& targets, const Limits& limits);
 
     SplatCompositor compositor_;
+    SplatDriver driver_;
+    // Since the beginning.
+    std::vector<const DrawItem*> shown_;
+    const Target* opaque_ = nullptr;
+    bool by_driver_ = false;
     // Reversed depths, see SplatCompositor::Limits; those that are empty are no limits.
     std::vector<float> farthest_;         ///< before which splats are still to be drawn
     std::vector<float> nearest_, split_;  ///< of the step

@@ -1,0 +1,37 @@
+// What a Gaussian splat adds to a pixel, sRGB-encoded and premultiplied: blended from the farthest on.
+#include "common_splat.glsl"
+
+#feature SOFT is_soft
+#feature LIMITED is_limited
+
+uniform sampler2D u_depth_target;  // reversed depth of the surface, 0 where there is none
+
+flat in uint v_splat;
+
+layout(location = 0) out vec4 o_color;
+
+const float reach = 3.5;  // standard deviations along the ray, beyond which a splat has nothing
+
+// Abramowitz and Stegun 1964, 26.2.17.
+float normal_cdf(float deviations) {
+    float x = min(abs(deviations), 10.0), t = 1.0 / (1.0 + 0.2316419 * x);
+    float tail = 0.39894228 * exp(-0.5 * x * x) * t *
+                 (0.319381530 + t * (-0.356563782 + t * (1.781477937 + t * (-1.821255978 + t * 1.330274429))));
+    return deviations < 0.0 ? tail : 1.0 - tail;
+}
+
+void main() {
+    ScreenSplat s = splats[v_splat];
+    vec2 d = gl_FragCoord.xy - s.place.xy;
+    float power = (0.5 * s.shape.x * d.x + s.shape.y * d.y) * d.x + 0.5 * s.shape.z * d.y * d.y;
+    if (any(greaterThan(abs(d), s.place.zw)) || power > log(s.shape.w / least_alpha)) discard;
+    float alpha = min(s.shape.w * exp(-power), most_alpha);
+    float surface = is_limited ? texelFetch(u_depth_target, ivec2(gl_FragCoord.xy), 0).r : 0.0;
+    if (surface > 0.0) {
+        float before = (dot(s.depths.xy, d) + s.color.w - surface) * s.depths.z, margin = is_soft ? reach : 0.0;
+        if (before < -margin) discard;
+        // The part before the surface of a medium with this density.
+        if (before < margin) alpha = 1.0 - exp(normal_cdf(before) * log(1.0 - alpha));
+    }
+    o_color = vec4(s.color.rgb, 1.0) * alpha;
+}
