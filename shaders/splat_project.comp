@@ -1,8 +1,10 @@
 // Projects Gaussian splats, as SplatProjector does on the CPU (Zwicker et al. 2002; Kerbl et al. 2023).
+#include "common_encoding.glsl"
 #include "common_splat.glsl"
 
 #feature ORTHOGRAPHIC is_orthographic
 #feature ANTIALIAS is_antialiased
+#feature DARKENED is_darkened
 
 layout(local_size_x = 256) in;
 
@@ -11,6 +13,8 @@ layout(std430, binding = 3) readonly buffer Shapes { float shapes[]; };       //
 layout(std430, binding = 4) readonly buffer Harmonics { uint harmonics[]; };  // pairs of halves
 layout(std430, binding = 5) writeonly buffer Depths { uint depths[]; };       // keys that splats are sorted by
 layout(std430, binding = 6) buffer Quads { uint quads[4]; };                  // for gl::draw_quads(): instances second
+
+layout(std430, binding = 7) readonly buffer Sides { uint sides[]; };          // bytes: SplatLight::Parts::all_sides()
 
 uniform uint u_count;
 uniform uint u_first;        // place of the first
@@ -22,6 +26,7 @@ uniform vec4 u_picture;      // size of the frame; of the picture
 uniform vec2 u_origin;       // of the frame in the picture
 uniform float u_least_width; // of clip space at the near plane
 uniform uint u_degree;
+uniform mat3 u_normal_from_mesh;
 
 // Variance that training adds, square pixels; the derivative beyond so many half pictures is that at the border.
 const float low_pass = 0.3, derivative_limit = 1.3;
@@ -76,6 +81,19 @@ vec3 color_of(uint i, vec3 d) {
     return max(color, 0.0);
 }
 
+// The colour where surfaces hide a part of the light from the side that is seen, as SplatLight has it. `axes`: unit.
+vec3 darkened(uint i, vec3 color, vec3 semi_axes, mat3 axes, vec3 towards) {
+    uint thinnest = semi_axes.y < semi_axes.x ? 1u : 0u;
+    if (semi_axes.z < semi_axes[thinnest]) thinnest = 2u;
+    vec3 axis = axes[thinnest];
+    vec3 normal = u_normal_from_mesh * (dot(axis, towards) < 0.0 ? -axis : axis), size = abs(normal);
+    uint largest = size.y > size.x ? 1u : 0u;
+    if (size.z > size[largest]) largest = 2u;
+    uint side = 2u * i + (normal[largest] < 0.0 ? 1u : 0u);
+    uint part = (sides[side / 4u] >> (8u * (side % 4u))) & 255u;
+    return part == 255u ? color : srgb_encode(srgb_decode(color) * (float(part - 1u) / 254.0));
+}
+
 // False for one that is not seen.
 bool project(uint i, out ScreenSplat splat) {
     uint s = 8u * i;
@@ -96,7 +114,8 @@ bool project(uint i, out ScreenSplat splat) {
                                      (rows[2].xyz - ndc.z * w) / clip.w));
     mat3 scales = mat3(shapes[s], 0.0, 0.0, 0.0, shapes[s + 1u], 0.0, 0.0, 0.0, shapes[s + 2u]);
     vec4 q = vec4(shapes[s + 3u], shapes[s + 4u], shapes[s + 5u], shapes[s + 6u]);
-    mat3 axes = transpose(derivative * mat3(u_view) * rotation(q) * scales);  // columns: of column, row and depth
+    mat3 turn = rotation(q);
+    mat3 axes = transpose(derivative * mat3(u_view) * turn * scales);  // columns: of column, row and depth
     float own_xx = dot(axes[0], axes[0]), own_yy = dot(axes[1], axes[1]), own_xy = dot(axes[0], axes[1]);
     float xx = own_xx + low_pass, yy = own_yy + low_pass, area = xx * yy - own_xy * own_xy;
     if (!(area > 0.0) || isinf(area)) return false;
@@ -110,8 +129,10 @@ bool project(uint i, out ScreenSplat splat) {
     vec2 reach = sqrt(farthest * vec2(xx, yy));
     if (any(lessThanEqual(place + reach, vec2(0.0))) || any(greaterThanEqual(place - reach, u_picture.xy))) return false;
     vec3 direction = normalize(is_orthographic ? u_eye : mean - u_eye);
+    vec3 color = color_of(i, direction);
+    if (is_darkened) color = darkened(i, color, vec3(shapes[s], shapes[s + 1u], shapes[s + 2u]), turn, -direction);
     splat = ScreenSplat(vec4(place, reach), vec4(yy / area, -own_xy / area, xx / area, opacity),
-                        vec4(color_of(i, direction), ndc.z), vec4(by_place, sharpness, 0.0));
+                        vec4(color, ndc.z), vec4(by_place, sharpness, 0.0));
     return true;
 }
 

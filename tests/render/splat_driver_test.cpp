@@ -122,6 +122,27 @@ TEST(SplatDriver, HidesWhatIsBehindSurfaces) {
     }
 }
 
+// The light of each side is the same byte.
+TEST(SplatDriver, DarkensWhatSurfacesHideLightFrom) {
+    Scene scene;
+    Mesh turned = splats(1000, 1);
+    turned.rotate_axis_angle(Vec3d(1, -2, 1), 40);
+    scene.show(turned, "splats");
+    scene.show(facing_square(0.7f), "square");
+    Light lamp;
+    lamp.type = LightType::directional;
+    lamp.direction = Vec3(0.3f, -0.5f, -1);
+    scene.set_light("lamp", lamp);
+    app::Session session = session_of(scene);
+    session.settings().shadows.enabled = true;
+    session.settings().splats.receive = false;
+    const std::vector<float> plain = picture(session, true);
+    session.settings().splats.receive = true;
+    EXPECT_NE(picture(session, true), plain);
+    for (int frame = 0; frame < 17; ++frame) picture(session, false);
+    expect_the_same(session, Blended::by_driver, "darkened");
+}
+
 TEST(SplatDriver, LeavesWhatItCannotToTheCpu) {
     Scene scene;
     scene.show(splats(500, 0), "splats");

@@ -7,6 +7,7 @@
 
 #include "easypbr/core/interrupt.h"
 #include "easypbr/core/log.h"
+#include "easypbr/remote/served_files.h"
 #include "easypbr/scene/animation.h"
 #include "easypbr/scene/settings.h"
 

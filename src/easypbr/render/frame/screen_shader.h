@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <variant>
 #include <vector>
@@ -21,7 +22,7 @@ namespace easypbr::render {
 class ShaderInputs {
   public:
     /// `NAME`, a feature that is on, or `NAME VALUE`, a macro of the driver's text.
-    void define(std::string macro) { defines_.push_back(std::move(macro)); }
+    void define(std::string_view macro) { defines_.emplace_back(macro); }
     void define(const std::vector<std::string>& macros) {
         defines_.insert(defines_.end(), macros.begin(), macros.end());
     }

@@ -17,7 +17,16 @@ constexpr int buffers_of_vertices = 2;     ///< of shaders/overlay_gaussians.ver
 constexpr std::array<uint32_t, 4> no_quads{4, 0, 0, 0};
 
 /// Of the buffers, as shaders/splat_project.comp has them.
-enum Slot { splats_slot, order_slot, means_slot, shapes_slot, harmonics_slot, depths_slot, quads_slot };
+enum Slot {
+    splats_slot,
+    order_slot,
+    means_slot,
+    shapes_slot,
+    harmonics_slot,
+    depths_slot,
+    quads_slot,
+    sides_slot
+};
 
 uint64_t count_of(const std::vector<const DrawItem*>& items) {
     uint64_t count = 0;
@@ -37,7 +46,7 @@ bool SplatDriver::has_room(const std::vector<const DrawItem*>& items) {
            count_of(items) / group < limits_->groups;
 }
 
-bool SplatDriver::begin(const Frame& frame, const std::vector<const DrawItem*>& items) {
+bool SplatDriver::begin(const Frame& frame, const std::vector<const DrawItem*>& items, SplatLight& light) {
     if (!has_room(items)) return false;
     const auto count = uint32_t(count_of(items));
     try {
@@ -52,7 +61,7 @@ bool SplatDriver::begin(const Frame& frame, const std::vector<const DrawItem*>& 
         quads_.update(0, gl::bytes_of(no_quads));
         uint32_t first = 0;
         for (const DrawItem* item : items) {
-            project(frame, *item, first);
+            project(frame, *item, first, light);
             first += uint32_t(item->mesh().V.rows());
         }
         sort_.run(depths_, order_, count);
@@ -69,13 +78,21 @@ bool SplatDriver::begin(const Frame& frame, const std::vector<const DrawItem*>& 
     return true;
 }
 
-void SplatDriver::project(const Frame& frame, const DrawItem& item, uint32_t first) {
+const gl::Buffer* SplatDriver::sides_of(const DrawItem& item, SplatLight& light) {
+    const std::shared_ptr<SplatLight::Parts> parts = light.parts_of(item, false);
+    if (!parts) return nullptr;
+    return &sides_.get(parts, [&] { return gl::Buffer(parts->all_sides(*light.light(), item)); });
+}
+
+void SplatDriver::project(const Frame& frame, const DrawItem& item, uint32_t first, SplatLight& light) {
     const gpu::SplatBuffers& buffers = buffers_.get(item.mesh(), item.with_colors);
     if (buffers.count == 0) return;
     const SplatView view = view_of(frame);
     std::vector<std::string> defines;
     if (view.orthographic) defines.emplace_back("ORTHOGRAPHIC");
     if (item.style.splat_antialias) defines.emplace_back("ANTIALIAS");
+    const gl::Buffer* sides = sides_of(item, light);
+    if (sides) defines.emplace_back("DARKENED");
     gl::Program& program = projections_[defines];
     if (!program) program = gl::Program::compute("splat_project.comp", defines);
     const Vec3d centre = buffers.centre.cast<double>();
@@ -95,6 +112,8 @@ void SplatDriver::project(const Frame& frame, const DrawItem& item, uint32_t fir
                                   float(view.picture_size.y())));
     program.set("u_origin", Vec2(view.origin.cast<float>()));
     program.set("u_least_width", view.orthographic ? 0.5f : float(view.near));
+    const Mat3d normal_from_mesh = item.object->T_world_mesh.linear().inverse().transpose();
+    program.set("u_normal_from_mesh", Mat3(normal_from_mesh.cast<float>()));
     program.set("u_degree", uint32_t(buffers.degree));
     buffers.means.bind_storage(means_slot);
     buffers.shapes.bind_storage(shapes_slot);
@@ -103,6 +122,7 @@ void SplatDriver::project(const Frame& frame, const DrawItem& item, uint32_t fir
     depths_.bind_storage(depths_slot);
     order_.bind_storage(order_slot);
     quads_.bind_storage(quads_slot);
+    if (sides) sides->bind_storage(sides_slot);
     gl::dispatch((buffers.count + group - 1) / group);
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -13,26 +14,34 @@
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/render/frame/programs.h"
+#include "easypbr/render/primitives/splats/splat_light.h"
 
 namespace easypbr::render {
 
-/// What SplatCompositor does on the CPU, but for splats of the same depth to the last bit, which keep the
-/// order in which they are given, and for harmonics, of 16 bits here.
+/// What SplatCompositor does on the CPU for splats that are not lit, but for splats of the same depth to the
+/// last bit, which keep the order in which they are given, and for harmonics, of 16 bits here.
 class SplatDriver {
   public:
     /// Projects and sorts the splats of the items. False: the driver cannot, or has not the memory.
-    bool begin(const Frame& frame, const std::vector<const DrawItem*>& items);
+    bool begin(const Frame& frame, const std::vector<const DrawItem*>& items, SplatLight& light);
     /// Blends them over the overlay. `opaque` (reversed depth) hides what is behind it; null: nothing does.
     void blend(const Frame& frame, const GBuffer& targets, const Target* opaque);
-    void evict_unused() { buffers_.evict_unused(); }
+    void evict_unused() {
+        buffers_.evict_unused();
+        sides_.evict_unused();
+    }
 
   private:
     bool has_room(const std::vector<const DrawItem*>& items);
-    void project(const Frame& frame, const DrawItem& item, uint32_t first);
+    void project(const Frame& frame, const DrawItem& item, uint32_t first, SplatLight& light);
+    /// Null: all arrives.
+    const gl::Buffer* sides_of(const DrawItem& item, SplatLight& light);
 
     std::optional<gl::StorageLimits> limits_;
     bool has_memory_ = true;
     gpu::SplatBufferCache buffers_;
+    /// Of the light that reaches splats: what is known of both sides of all of them.
+    RevisionCache<std::shared_ptr<SplatLight::Parts>, gl::Buffer> sides_;
     gpu::RadixSort sort_;
     std::map<std::vector<std::string>, gl::Program> projections_;
     gl::Buffer splats_, depths_, order_, quads_;

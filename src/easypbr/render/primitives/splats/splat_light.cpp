@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "easypbr/core/color.h"
+#include "easypbr/core/parallel.h"
 #include "easypbr/render/primitives/splat_color.h"
 
 namespace easypbr::render {
@@ -77,15 +78,33 @@ std::shared_ptr<SplatLight::Parts> SplatLight::parts_of(const DrawItem& item, bo
     return parts_.get(key, [&] { return std::make_shared<Parts>(size_t(mesh.V.rows()), are_lit); });
 }
 
-Vec3 SplatLight::Parts::darkened(const PlaceLight& light, const DrawItem& item, Eigen::Index i,
-                                 const Vec3d& towards, const Vec3& color) {
-    const Vec3d normal = splat_normal(item, i, towards);
+uint8_t SplatLight::Parts::part_of(const PlaceLight& light, const DrawItem& item, Eigen::Index i,
+                                   const Vec3d& normal) {
     std::atomic<uint8_t>& side = sides_[side_of(i, normal)];
     uint8_t part = side.load(std::memory_order_relaxed);
     if (part == unknown) {
         part = uint8_t(1 + std::lround(steps * light.part_at(mean_of(item, i), normal, uint32_t(i))));
         side.store(part, std::memory_order_relaxed);
     }
+    return part;
+}
+
+std::span<const std::byte> SplatLight::Parts::all_sides(const PlaceLight& light, const DrawItem& item) {
+    static_assert(sizeof(sides_[0]) == 1);
+    if (!has_all_)
+        parallel_for(sides_.size() / 2, 256, [&](size_t i) {
+            const auto splat = Eigen::Index(i);
+            const Vec3d normal = splat_normal(item, splat, Vec3d::UnitX());
+            part_of(light, item, splat, normal);
+            part_of(light, item, splat, -normal);
+        });
+    has_all_ = true;
+    return std::as_bytes(std::span(sides_));
+}
+
+Vec3 SplatLight::Parts::darkened(const PlaceLight& light, const DrawItem& item, Eigen::Index i,
+                                 const Vec3d& towards, const Vec3& color) {
+    const uint8_t part = part_of(light, item, i, splat_normal(item, i, towards));
     if (part == uint8_t(1 + steps)) return color;
     return srgb_from_linear(Vec3(linear_from_srgb(color) * (float(part - 1) / steps)));
 }

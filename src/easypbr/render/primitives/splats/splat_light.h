@@ -3,7 +3,9 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "easypbr/core/revision_cache.h"
@@ -39,8 +41,17 @@ class SplatLight {
         /// `towards`, as if it were a matt surface.
         Vec3 lit(const PlaceLight& light, const DrawItem& item, Eigen::Index i, const Vec3d& towards);
 
+        /// Both sides of all splats, two bytes each: the part of the light, from 1, none, to 255, all. Found
+        /// where nobody has asked for them. Not for those that are lit.
+        std::span<const std::byte> all_sides(const PlaceLight& light, const DrawItem& item);
+        /// Counts how often it is called.
+        int count_frames() { return ++frames_; }
+
       private:
         static constexpr uint8_t unknown = 0;
+        uint8_t part_of(const PlaceLight& light, const DrawItem& item, Eigen::Index i, const Vec3d& normal);
+        int frames_ = 0;
+        bool has_all_ = false;
         std::vector<std::atomic<uint8_t>> sides_;       ///< parts from 1 to 255
         std::vector<std::atomic<uint32_t>> lit_sides_;  ///< shared exponents, never 0
     };

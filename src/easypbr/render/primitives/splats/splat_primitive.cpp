@@ -21,6 +21,10 @@ using OverlayPixel = Eigen::Vector4<Eigen::half>;
 /// Flat splats are this thick to rays, in their longest semi-axis.
 constexpr double least_thickness = 1e-3;
 
+/// While surfaces move, the light of splats is found where they are seen, on the CPU; when they rest, that of
+/// all.
+constexpr int frames_before_all_sides = 16;
+
 std::vector<const DrawItem*> chosen(DrawItems items, bool over) {
     std::vector<const DrawItem*> chosen;
     for (const DrawItem& item : items)
@@ -196,10 +200,12 @@ void SplatPrimitive::draw_over(const Frame& frame, DrawItems items, const GBuffe
 bool SplatPrimitive::begin_by_driver(const Frame& frame, const std::vector<const DrawItem*>& items,
                                      const OverlayStep& step) {
     if (!step.by_gpu || step.host || items.empty() || frame.resolved->settings.splats.resort) return false;
-    const bool are_lit = SplatLight::relights(*frame.resolved) && light_.light();
-    const auto has_light = [&](const DrawItem* item) { return light_.parts_of(*item, false) != nullptr; };
-    if (are_lit || std::ranges::any_of(items, has_light)) return false;
-    return driver_.begin(frame, items);
+    if (SplatLight::relights(*frame.resolved) && light_.light()) return false;
+    bool is_new = false;
+    for (const DrawItem* item : items)
+        if (const auto parts = light_.parts_of(*item, false))
+            is_new |= parts->count_frames() <= frames_before_all_sides;
+    return !is_new && driver_.begin(frame, items, light_);
 }
 
 ShadowShape SplatPrimitive::shadow_shape(const DrawItem& item) {
