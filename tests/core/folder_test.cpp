@@ -1,5 +1,6 @@
 #include "easypbr/core/folder.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 
 #include <cerrno>

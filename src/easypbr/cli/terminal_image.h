@@ -4,6 +4,7 @@
 #include <string>
 
 #include "easypbr/core/image.h"
+#include "easypbr/core/math.h"
 
 namespace easypbr::cli {
 

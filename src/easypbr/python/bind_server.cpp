@@ -12,6 +12,7 @@
 #include "easypbr/python/text.h"
 #include "easypbr/remote/page.h"
 #include "easypbr/remote/server.h"
+#include "easypbr/scene/animation.h"
 
 namespace easypbr::python {
 namespace {
