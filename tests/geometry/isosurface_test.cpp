@@ -11,6 +11,7 @@
 
 #include "easypbr/core/error.h"
 #include "easypbr/geometry/isosurface.h"
+#include "easypbr/geometry/place.h"
 #include "easypbr/geometry/repair.h"
 #include "easypbr/geometry/sample.h"
 #include "measure.h"

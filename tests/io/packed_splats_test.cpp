@@ -1,5 +1,5 @@
-// Splats in packed files: SPZ, SuperSplat's compressed PLY, and KHR_gaussian_splatting in glTF. The files are
-// made here, code by code, and the expected values by the formulas of the formats in double precision.
+// Splats in packed files: SPZ, and SuperSplat's compressed PLY. The files are made here, code by code, and
+// the expected values by the formulas of the formats in double precision.
 #include <gtest/gtest.h>
 #include <zlib.h>
 #include <zstd.h>
@@ -12,64 +12,18 @@
 #include "easypbr/core/error.h"
 #include "easypbr/io/archive/deflate.h"
 #include "easypbr/io/mesh/content_format.h"
-#include "easypbr/io/mesh/gltf/glb_writer.h"
-#include "easypbr/io/mesh/gltf/gltf_reader.h"
 #include "easypbr/io/mesh/mesh_io.h"
 #include "easypbr/io/mesh/mesh_readers.h"
 #include "easypbr/scene/mesh.h"
-#include "io/bytes.h"
-#include "io/gltf_builder.h"
+#include "io/packed_splats.h"
 #include "io/temporary_folder.h"
 
 namespace easypbr::packed_splats_test {
 namespace {
 
-constexpr double constant = 0.28209479177387814;
-
-template <class Read>
-std::string message_of(Read&& read) {
-    try {
-        read();
-    } catch (const Error& error) {
-        return error.what();
-    }
-    return {};
-}
-
-bool has(const std::string& text, const std::string& part) {
-    return text.find(part) != std::string::npos;
-}
+using namespace packed_splats;
 
 // SPZ.
-
-Bytes spz_header(uint32_t version, uint32_t count, int degree, int bits = 12, int flags = 0) {
-    Bytes bytes;
-    bytes.add_all<uint32_t>({0x5053474e, version, count});
-    return bytes.add_all<uint8_t>({uint8_t(degree), uint8_t(bits), uint8_t(flags), 0});
-}
-
-void add24(Bytes& bytes, int value) {
-    for (int k = 0; k < 3; ++k) bytes.add(uint8_t(value >> 8 * k));
-}
-
-/// Two splats of degree 1.
-Bytes spz_content(uint32_t version, int flags = 0) {
-    Bytes bytes = spz_header(version, 2, 1, 12, flags);
-    for (const int code : {4096, -4096, 1, -1, 8388607, -8388608}) add24(bytes, code);
-    bytes.add_all<uint8_t>({0, 255});
-    bytes.add_all<uint8_t>({0, 128, 255, 10, 20, 30});
-    bytes.add_all<uint8_t>({0, 160, 255, 80, 90, 100});
-    if (version == 2) {
-        bytes.add_all<uint8_t>({250, 127, 127, 64, 191, 100});
-    } else {
-        // y is the largest; x, z and w have 10 bits each, of which the first is the sign.
-        bytes.add(uint32_t(1u << 30 | 100u << 20 | (512u + 200u) << 10 | 300u));
-        // w is the largest: all others 0.
-        bytes.add(uint32_t(3u << 30));
-    }
-    for (int k = 0; k < 18; ++k) bytes.add(uint8_t(k * 15));
-    return bytes;
-}
 
 MeshData read_spz(const std::string& packed) {
     MeshData mesh = io::read_spz(io::Source(std::string_view(packed), "test.spz"));
@@ -230,41 +184,6 @@ TEST(PackedSplats, DamagedSpzOfVersionFourSaysWhy) {
     EXPECT_NE(message_of([&] { read_spz(damaged); }), "");
 }
 
-/// Splats of degree 3 whose values no code holds exactly.
-MeshData various_splats(int count) {
-    Array3f::Dense V(count, 3), scales(count, 3);
-    Array4f::Dense rotations(count, 4);
-    Array1f::Dense opacities(count);
-    ArrayXf::Dense sh(count, 48);
-    uint32_t state = 1;
-    const auto random = [&] {
-        state = state * 1664525 + 1013904223;
-        return float(state >> 8) / float(1 << 24);
-    };
-    for (int i = 0; i < count; ++i) {
-        for (int k = 0; k < 3; ++k) V(i, k) = 20 * random() - 10;
-        for (int k = 0; k < 3; ++k) scales(i, k) = std::exp(-6 * random());
-        for (int k = 0; k < 4; ++k) rotations(i, k) = random() - 0.5f;
-        opacities(i) = random();
-        for (int k = 0; k < 48; ++k) sh(i, k) = k < 3 ? 4 * random() - 2 : random() - 0.5f;
-    }
-    MeshData mesh;
-    mesh.V = std::move(V);
-    mesh.splats = {std::move(scales), std::move(rotations), std::move(opacities), std::move(sh)};
-    mesh.up = Vec3d(0, 1, 0);
-    return mesh;
-}
-
-/// The largest difference of rotations, which are the same for q and -q.
-float largest_turn(const Array4f& a, const Array4f& b) {
-    float largest = 0;
-    for (Eigen::Index i = 0; i < a.rows(); ++i) {
-        const Eigen::RowVector4f p = a.row(i).normalized(), q = b.row(i).normalized();
-        largest = std::max(largest, std::min((p - q).cwiseAbs().maxCoeff(), (p + q).cwiseAbs().maxCoeff()));
-    }
-    return largest;
-}
-
 TEST(PackedSplats, WrittenSpzDiffersByItsCodes) {
     const MeshData mesh = various_splats(1000);
     const MeshData back = read_spz(io::encode_spz(mesh));
@@ -417,128 +336,6 @@ TEST(PackedSplats, DamagedPlySaysWhy) {
     text = PackedPly().text();
     text.replace(text.find("little"), 6, "big");
     EXPECT_TRUE(has(message_of([&] { read_ply(text); }), "little-endian"));
-}
-
-// glTF.
-
-nlohmann::json& splat_primitive(GltfBuilder& builder, int degree) {
-    nlohmann::json attributes;
-    attributes["POSITION"] = builder.floats({1, 2, 3, 4, 5, 6}, 3);
-    const std::string name = "KHR_gaussian_splatting:";
-    attributes[name + "ROTATION"] = builder.floats({1, 0, 0, 0, 0, 0, 0, 1}, 4);
-    attributes[name + "SCALE"] = builder.floats({0.1f, 0.2f, 0.3f, 0, 1, 2}, 3);
-    attributes[name + "OPACITY"] = builder.floats({0.25f, 1}, 1);
-    for (int l = 0; l <= degree; ++l)
-        for (int k = 0; k <= 2 * l; ++k) {
-            const auto value = float(10 * l + k);
-            attributes[name + "SH_DEGREE_" + std::to_string(l) + "_COEF_" + std::to_string(k)] =
-                builder.floats({value, value + 0.1f, value + 0.2f, -value, 0, 0}, 3);
-        }
-    builder.json["extensionsUsed"] = {"KHR_gaussian_splatting"};
-    if (!builder.json.contains("meshes"))
-        builder.json["meshes"] = {{{"name", "m"}, {"primitives", nlohmann::json::array()}}};
-    auto& primitives = builder.json["meshes"][0]["primitives"];
-    primitives.push_back(
-        {{"attributes", attributes},
-         {"mode", 0},
-         {"extensions",
-          {{"KHR_gaussian_splatting", {{"kernel", "ellipse"}, {"colorSpace", "srgb_rec709_display"}}}}}});
-    return primitives.back();
-}
-
-MeshData node_of(const GltfBuilder& builder) {
-    const auto scene = io::decode_gltf(as_span(builder.glb()), "test.glb");
-    return *scene.mesh.snapshot()->children.at(0).snapshot();
-}
-
-TEST(PackedSplats, GltfOfAllDegrees) {
-    for (int degree = 0; degree <= 3; ++degree) {
-        GltfBuilder builder;
-        splat_primitive(builder, degree);
-        const MeshData mesh = node_of(builder);
-        validate(mesh);
-        ASSERT_EQ(mesh.V.rows(), 2);
-        ASSERT_EQ(mesh.splats.degree(), degree);
-        EXPECT_EQ(mesh.V(1, 2), 6);
-        EXPECT_EQ(mesh.splats.scales(0, 2), 0.3f);
-        EXPECT_EQ(mesh.splats.rotations.row(0), Eigen::RowVector4f(0, 1, 0, 0));
-        EXPECT_EQ(mesh.splats.rotations.row(1), Eigen::RowVector4f(1, 0, 0, 0));
-        EXPECT_EQ(mesh.splats.opacities(0), 0.25f);
-        const int last = 3 * (degree + 1) * (degree + 1) - 1;
-        EXPECT_FLOAT_EQ(mesh.splats.sh(0, last), float(12 * degree) + 0.2f);
-    }
-}
-
-TEST(PackedSplats, GltfWithTrianglesHasThemAsChild) {
-    GltfBuilder builder;
-    builder.triangle();
-    splat_primitive(builder, 0);
-    const MeshData mesh = node_of(builder);
-    EXPECT_EQ(mesh.F.rows(), 1);
-    EXPECT_TRUE(mesh.splats.empty());
-    ASSERT_EQ(mesh.children.size(), 1u);
-    EXPECT_EQ(mesh.children.at(0).snapshot()->splats.scales.rows(), 2);
-}
-
-TEST(PackedSplats, GltfOfLinearColorsIsEncoded) {
-    GltfBuilder builder;
-    auto& primitive = splat_primitive(builder, 0);
-    primitive["extensions"]["KHR_gaussian_splatting"]["colorSpace"] = "lin_rec709_display";
-    // 0.5 + constant * 0.1, encoded.
-    const double linear = 0.5 + constant * 0.1, encoded = 1.055 * std::pow(linear, 1 / 2.4) - 0.055;
-    EXPECT_NEAR(0.5 + constant * double(node_of(builder).splats.sh(0, 1)), encoded, 1e-5);
-}
-
-TEST(PackedSplats, GltfMayHoldSpz) {
-    GltfBuilder builder;
-    const std::string spz = io::gzip(spz_content(2).str());
-    auto& primitive = splat_primitive(builder, 0);
-    primitive["attributes"] = {{"POSITION", primitive["attributes"]["POSITION"]}};
-    primitive["extensions"]["KHR_gaussian_splatting"]["extensions"] = {
-        {"KHR_gaussian_splatting_compression_spz_2",
-         {{"bufferView", builder.view(std::vector<char>(spz.begin(), spz.end()))}}}};
-    builder.json["extensionsRequired"] = {"KHR_gaussian_splatting_compression_spz_2"};
-    EXPECT_EQ(node_of(builder).splats.degree(), 1);
-}
-
-TEST(PackedSplats, DamagedGltfSaysWhy) {
-    const auto said = [](auto&& damage) {
-        GltfBuilder builder;
-        damage(splat_primitive(builder, 1), builder);
-        return message_of([&] { node_of(builder); });
-    };
-    const std::string name = "KHR_gaussian_splatting:";
-    using Json = nlohmann::json;
-    EXPECT_TRUE(has(said([](Json& p, GltfBuilder&) { p["mode"] = 4; }), "POINTS"));
-    for (const std::string part :
-         {"ROTATION", "SCALE", "OPACITY", "SH_DEGREE_0_COEF_0", "SH_DEGREE_1_COEF_1"})
-        EXPECT_TRUE(has(said([&](Json& p, GltfBuilder&) { p["attributes"].erase(name + part); }), part))
-            << part;
-    EXPECT_TRUE(has(said([&](Json& p, GltfBuilder& builder) {
-                        p["attributes"][name + "SCALE"] = builder.floats({1, 1, 1}, 3);
-                    }),
-                    "2 splats"));
-    EXPECT_TRUE(has(said([&](Json& p, GltfBuilder& builder) {
-                        p["attributes"][name + "OPACITY"] = builder.floats({1, 1.5f}, 1);
-                    }),
-                    "opacities"));
-    EXPECT_TRUE(has(said([&](Json& p, GltfBuilder& builder) {
-                        p["attributes"][name + "SCALE"] = builder.floats({1, 1, 1, 1, -1, 1}, 3);
-                    }),
-                    "splat 1 of 2"));
-}
-
-TEST(PackedSplats, WrittenGlbIsTheSame) {
-    const MeshData mesh = various_splats(5);
-    const std::string glb = io::encode_glb(Mesh(mesh));
-    const auto scene = io::decode_gltf(as_span(glb), "test.glb");
-    const MeshData back = *scene.mesh.snapshot()->children.at(0).snapshot();
-    EXPECT_EQ(back.V, mesh.V);
-    EXPECT_EQ(back.splats.scales, mesh.splats.scales);
-    EXPECT_EQ(back.splats.opacities, mesh.splats.opacities);
-    EXPECT_EQ(back.splats.sh, mesh.splats.sh);
-    // Normalised in single precision.
-    EXPECT_LE(largest_turn(back.splats.rotations, mesh.splats.rotations), 1e-6f);
 }
 
 }  // namespace

@@ -1,8 +1,12 @@
+#include <algorithm>
 #include <map>
+#include <string>
+#include <vector>
 
+#include "easypbr/gl/context.h"
+#include "easypbr/render/pipeline/renderer.h"
+#include "easypbr/scene/resolve.h"
 #include "render_test.h"
-
-#include "easypbr/scene/settings.h"
 
 namespace easypbr::id_layer_test {
 namespace {
@@ -36,6 +40,40 @@ TEST(IdLayer, NamesEveryPixel) {
     EXPECT_EQ(pixels[names[2]], 100);
     EXPECT_EQ(pixels[names[1]], 525);
     EXPECT_EQ(ids.at<float>(25, 50)[0], 1.0f);
+}
+
+// Depths and ids need no light.
+TEST(Layers, AreDrawnWithoutLight) {
+    Scene scene;
+    scene.show(make_sphere(1, 32), "ball");
+    scene.set_environment(constant_environment(1));
+    const SceneSnapshot snapshot = scene.snapshot();
+    const Vec2i size(64, 64);
+    const ResolvedSettings resolved = resolve(snapshot, Settings{}, size);
+    const auto context = gl::Context::create(DrawDevice::cpu);
+    const gl::ContextScope scope(*context);
+    render::Renderer renderer;
+    renderer.measure_passes(true);
+    const auto passes = [&](bool layers, bool occlusion) {
+        renderer.draw(snapshot, resolved,
+                      {.size = size, .samples = 1, .layers = layers, .occlusion = occlusion});
+        std::vector<std::string> names;
+        for (const auto& [name, milliseconds] : renderer.pass_times()) names.push_back(name);
+        return names;
+    };
+    const auto has = [](const std::vector<std::string>& names, const char* name) {
+        return std::ranges::count(names, name) > 0;
+    };
+    const std::vector<std::string> picture = passes(false, false), layers = passes(true, false),
+                                   occluded = passes(true, true);
+    for (const char* name : {"lighting", "shadows", "ambient occlusion", "geometry"})
+        EXPECT_TRUE(has(picture, name)) << name;
+    for (const char* name : {"lighting", "shadows", "ambient occlusion"})
+        EXPECT_FALSE(has(layers, name)) << name;
+    EXPECT_GT(renderer.read_layer(render::Layer::depth).at<float>(32, 32)[0], 0);
+    EXPECT_TRUE(has(occluded, "ambient occlusion"));
+    EXPECT_FALSE(has(occluded, "lighting"));
+    EXPECT_FALSE(has(occluded, "shadows"));
 }
 
 }  // namespace

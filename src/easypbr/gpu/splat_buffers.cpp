@@ -18,7 +18,7 @@ int degree_of(const MeshData& mesh, bool with_colors) {
 }
 
 /// Halves of a splat's harmonics; an even number.
-size_t halves_of(int degree) {
+size_t splat_halves(int degree) {
     const auto values = size_t(3 * (degree + 1) * (degree + 1));
     return values + values % 2;
 }
@@ -40,7 +40,7 @@ SplatBuffers make_buffers(const MeshData& mesh, bool with_colors) {
         const auto q = splats.rotations.row(i);
         return std::array<float, 8>{s(0), s(1), s(2), q(0), q(1), q(2), q(3), splats.opacities(i)};
     });
-    const size_t halves = halves_of(buffers.degree);
+    const size_t halves = splat_halves(buffers.degree);
     const Eigen::Index values = 3 * (buffers.degree + 1) * (buffers.degree + 1);
     std::vector<Eigen::half> packed(halves * count);
     parallel_for(count, grain, [&](size_t i) {
@@ -56,7 +56,7 @@ SplatBuffers make_buffers(const MeshData& mesh, bool with_colors) {
 }  // namespace
 
 size_t largest_splat_buffer(const MeshData& mesh, bool with_colors) {
-    return size_t(mesh.V.rows()) * std::max(8 * sizeof(float), 2 * halves_of(degree_of(mesh, with_colors)));
+    return size_t(mesh.V.rows()) * std::max(8 * sizeof(float), 2 * splat_halves(degree_of(mesh, with_colors)));
 }
 
 const SplatBuffers& SplatBufferCache::get(const MeshData& mesh, bool with_colors) {
