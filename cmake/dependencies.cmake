@@ -17,7 +17,6 @@ pkg_check_modules(TURBOJPEG REQUIRED IMPORTED_TARGET libturbojpeg)
 pkg_check_modules(WEBP REQUIRED IMPORTED_TARGET libwebp)
 find_package(tinyexr REQUIRED)
 find_package(ZLIB REQUIRED)
-pkg_check_modules(ZSTD REQUIRED IMPORTED_TARGET libzstd)
 find_package(yaml-cpp REQUIRED)
 # Headers alone; src/easypbr/remote/connection.h and network.cpp include them.
 find_path(BOOST_FOLDER boost/beast.hpp REQUIRED)
@@ -29,12 +28,13 @@ find_path(IMGUI_FOLDER imgui.h PATH_SUFFIXES imgui REQUIRED)
 # As archives, so that nothing of them has to be installed where the library runs.
 find_library(IMGUI_LIBRARY libimgui.a REQUIRED)
 find_library(STB_LIBRARY libstb.a REQUIRED)
+find_library(ZSTD_LIBRARY libzstd.a REQUIRED)
 find_file(EASYPBR_FONT DejaVuSans.ttf PATHS /usr/share/fonts PATH_SUFFIXES truetype/dejavu dejavu dejavu-sans-fonts
           REQUIRED)
 
 add_library(easypbr_dependencies INTERFACE)
 target_link_libraries(easypbr_dependencies INTERFACE Eigen3::Eigen fmt::fmt TBB::tbb nlohmann_json::nlohmann_json
-  meshoptimizer::meshoptimizer nanoflann::nanoflann embree PkgConfig::EPOXY PkgConfig::SPNG PkgConfig::TURBOJPEG PkgConfig::WEBP tinyexr::tinyexr ZLIB::ZLIB PkgConfig::ZSTD yaml-cpp ${CMAKE_DL_LIBS})
+  meshoptimizer::meshoptimizer nanoflann::nanoflann embree PkgConfig::EPOXY PkgConfig::SPNG PkgConfig::TURBOJPEG PkgConfig::WEBP tinyexr::tinyexr ZLIB::ZLIB ${ZSTD_LIBRARY} yaml-cpp ${CMAKE_DL_LIBS})
 # What the room gui alone uses.
 add_library(easypbr_gui_dependencies INTERFACE)
 target_link_libraries(easypbr_gui_dependencies INTERFACE ${IMGUI_LIBRARY} ${STB_LIBRARY})

@@ -20,10 +20,10 @@ import zipfile
 
 #: Debian packages of the libraries that auditwheel bundles, and of what they are linked to.
 BUNDLED = ["libfmt9", "libtbb12", "libmeshoptimizer2d", "libembree3-3", "libepoxy0", "libspng0", "libturbojpeg0",
-           "libwebp7", "libtinyexr1d", "zlib1g", "libzstd1", "libyaml-cpp0.7", "libassimp5", "libdraco7", "libminizip1"]
+           "libwebp7", "libtinyexr1d", "zlib1g", "libyaml-cpp0.7", "libassimp5", "libdraco7", "libminizip1"]
 #: Debian packages of what is compiled in: headers, archives, a font.
 COMPILED = ["libeigen3-dev", "libfmt-dev", "nlohmann-json3-dev", "libcli11-dev", "libxxhash-dev", "libfast-float-dev",
-            "libnanoflann-dev", "libboost1.74-dev", "libimgui-dev", "libstb-dev", "libglfw3-dev", "libxcb1-dev",
+            "libnanoflann-dev", "libzstd-dev", "libboost1.74-dev", "libimgui-dev", "libstb-dev", "libglfw3-dev", "libxcb1-dev",
             "fonts-dejavu-core"]
 COMMON = pathlib.Path("/usr/share/common-licenses")
 

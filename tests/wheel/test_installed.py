@@ -27,9 +27,9 @@ view.recorder.record("img.png")
 
 
 def write_environment(path: pathlib.Path) -> None:
-    """A small map in Radiance's format, without compression."""
+    """A small map in Radiance's format, without compression: an even one would leave no contrast."""
     width, height = 16, 8
-    rows = b"".join(bytes((100 + 8 * y, 120, 140, 129)) * width for y in range(height))
+    rows = b"".join(bytes((250 - 30 * y, 220 - 30 * y, 220 - 30 * y, 129)) * width for y in range(height))
     path.write_bytes(f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n".encode() + rows)
 
 

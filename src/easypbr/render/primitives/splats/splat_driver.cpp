@@ -70,12 +70,29 @@ bool SplatDriver::begin(const Frame& frame, const std::vector<const DrawItem*>& 
     } catch (const ContextError&) {
         // Its memory is smaller than the machine's.
         has_memory_ = false;
-        buffers_ = {};
-        for (gl::Buffer* buffer : {&splats_, &depths_, &order_}) *buffer = {};
-        room_ = 0;
+        drop();
         return false;
     }
+    pictures_without_ = -1;
     return true;
+}
+
+void SplatDriver::drop() {
+    buffers_ = {};
+    sides_ = {};
+    for (gl::Buffer* buffer : {&splats_, &depths_, &order_}) *buffer = {};
+    room_ = 0;
+    sort_ = {};
+    blended_ = {};
+    blending_ = {};
+}
+
+void SplatDriver::evict_unused() {
+    if (pictures_without_ == most_pictures_without) return;
+    if (++pictures_without_ == most_pictures_without) drop();
+    if (pictures_without_ > 0) return;
+    buffers_.evict_unused();
+    sides_.evict_unused();
 }
 
 const gl::Buffer* SplatDriver::sides_of(const DrawItem& item, SplatLight& light) {

@@ -26,12 +26,12 @@ class SplatDriver {
     bool begin(const Frame& frame, const std::vector<const DrawItem*>& items, SplatLight& light);
     /// Blends them over the overlay. `opaque` (reversed depth) hides what is behind it; null: nothing does.
     void blend(const Frame& frame, const GBuffer& targets, const Target* opaque);
-    void evict_unused() {
-        buffers_.evict_unused();
-        sides_.evict_unused();
-    }
+    /// Drops what was not asked for since the last call; all after some pictures that asked for nothing, as
+    /// those of layers do.
+    void evict_unused();
 
   private:
+    void drop();
     bool has_room(const std::vector<const DrawItem*>& items);
     void project(const Frame& frame, const DrawItem& item, uint32_t first, SplatLight& light);
     /// Null: all arrives.
@@ -39,6 +39,8 @@ class SplatDriver {
 
     std::optional<gl::StorageLimits> limits_;
     bool has_memory_ = true;
+    static constexpr int most_pictures_without = 16;
+    int pictures_without_ = most_pictures_without;  ///< since the last that began here
     gpu::SplatBufferCache buffers_;
     /// Of the light that reaches splats: what is known of both sides of all of them.
     RevisionCache<std::shared_ptr<SplatLight::Parts>, gl::Buffer> sides_;
