@@ -27,16 +27,19 @@ view.recorder.record("img.png")
 
 
 def write_environment(path: pathlib.Path) -> None:
-    """A small map in Radiance's format, without compression: an even one would leave no contrast."""
+    """A small map in Radiance's format, without compression."""
     width, height = 16, 8
-    rows = b"".join(bytes((250 - 30 * y, 220 - 30 * y, 220 - 30 * y, 129)) * width for y in range(height))
+    rows = b"".join(bytes((100 + 8 * y, 120, 140, 129)) * width for y in range(height))
     path.write_bytes(f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n".encode() + rows)
 
 
 def write_mesh(path: pathlib.Path) -> None:
+    """Red: before the bright backdrop, under an even sky, a white one would have little contrast."""
     path.write_text("ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+                    "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                     "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
-                    "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
+                    "0 0 0 200 20 20\n1 0 0 200 20 20\n0 1 0 200 20 20\n0 0 1 200 20 20\n"
+                    "3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n")
 
 
 def picture(path: pathlib.Path) -> np.ndarray:
