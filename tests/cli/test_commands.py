@@ -242,6 +242,15 @@ def test_data_sets_need_no_variable_in_a_built_tree(easypbr, environment, tmp_pa
     assert (tmp_path / "drones/records/000000.json").exists()
 
 
+def test_traced_paths_need_no_filtered_environment(environment, box, tmp_path):
+    """Filtering takes longer than what is left of a small image; what is kept of it tells that it was done."""
+    cache = tmp_path / "cache"
+    for mode, entries in (("path", 0), ("raster", 1)):
+        subprocess.run([BINARY, "render", box, "-o", "out.png", "--size", "32x24", "--mode", mode], check=True, cwd=tmp_path,
+                       env={**environment, "EASYPBR_CACHE_DIR": str(cache)})
+        assert len(list(cache.glob("*"))) == entries, mode
+
+
 def test_cache_shows_its_entries_and_drops_the_oldest(environment, box, tmp_path):
     """An entry is 4.2 MB: six faces of 4 half floats at each size, the first 256 (gpu/prefilter.h)."""
     cache = tmp_path / "cache"

@@ -99,7 +99,7 @@ void add_with_first_column(const std::vector<uint16_t>& rows, int width, std::ve
 
 void EnvironmentMaps::prepare(const Environment& environment, const Environment& seen) {
     if (environment_.empty() || environment.hash() != environment_.hash()) {
-        maps_ = prefilter_cached(environment);
+        maps_ = {};
         environment_ = environment;
         prefiltered_ = gl::Texture();
         irradiance_ = gl::Texture();
@@ -113,14 +113,19 @@ void EnvironmentMaps::prepare(const Environment& environment, const Environment&
     }
 }
 
+const PrefilteredEnvironment& EnvironmentMaps::maps() const {
+    if (maps_.radiance.empty()) maps_ = prefilter_cached(environment_);
+    return maps_;
+}
+
 const gl::Texture& EnvironmentMaps::prefiltered() const {
-    if (!prefiltered_) prefiltered_ = cube_texture(levels_of(maps_), PrefilteredEnvironment::base_size);
+    if (!prefiltered_) prefiltered_ = cube_texture(levels_of(maps()), PrefilteredEnvironment::base_size);
     return prefiltered_;
 }
 
 const gl::Texture& EnvironmentMaps::irradiance() const {
     if (!irradiance_)
-        irradiance_ = cube_texture({&maps_.irradiance}, PrefilteredEnvironment::irradiance_size);
+        irradiance_ = cube_texture({&maps().irradiance}, PrefilteredEnvironment::irradiance_size);
     return irradiance_;
 }
 
@@ -131,13 +136,13 @@ const gl::Texture& EnvironmentMaps::equirect() const {
 
 const native::Cube& EnvironmentMaps::host_prefiltered() const {
     if (host_prefiltered_.texels.empty())
-        host_prefiltered_ = host_cube(levels_of(maps_), PrefilteredEnvironment::base_size);
+        host_prefiltered_ = host_cube(levels_of(maps()), PrefilteredEnvironment::base_size);
     return host_prefiltered_.cube;
 }
 
 const native::Cube& EnvironmentMaps::host_irradiance() const {
     if (host_irradiance_.texels.empty())
-        host_irradiance_ = host_cube({&maps_.irradiance}, PrefilteredEnvironment::irradiance_size);
+        host_irradiance_ = host_cube({&maps().irradiance}, PrefilteredEnvironment::irradiance_size);
     return host_irradiance_.cube;
 }
 

@@ -11,12 +11,12 @@
 
 namespace easypbr::gpu {
 
-/// Keeps the maps of the environment used last. Those of the driver and those in host memory are each made
-/// when they are first asked for.
+/// Keeps the maps of the environment used last. Each is made when it is first asked for, those of the driver
+/// and those in host memory: traced paths need none.
 class EnvironmentMaps {
   public:
-    /// Prepares the maps for this environment unless they are those already there, and, unless it is empty,
-    /// the picture of the one that is seen.
+    /// From now on the maps are of this environment, and, unless it is empty, the picture is that of the one
+    /// that is seen.
     void prepare(const Environment& environment, const Environment& seen);
 
     const gl::Texture& prefiltered() const;
@@ -43,8 +43,10 @@ class EnvironmentMaps {
     static HostCube host_cube(const std::vector<const std::vector<uint16_t>*>& levels, int size);
     static HostPanorama host_panorama(const Image& image);
 
+    const PrefilteredEnvironment& maps() const;
+
     Environment environment_, seen_;
-    PrefilteredEnvironment maps_;
+    mutable PrefilteredEnvironment maps_;
     mutable gl::Texture prefiltered_, irradiance_, equirect_;
     mutable HostCube host_prefiltered_, host_irradiance_;
     mutable HostPanorama host_equirect_;
