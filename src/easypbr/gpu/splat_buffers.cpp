@@ -19,7 +19,7 @@ int degree_of(const MeshData& mesh, bool with_colors) {
 
 /// Halves of a splat's harmonics; an even number.
 size_t splat_halves(int degree) {
-    const auto values = size_t(3 * (degree + 1) * (degree + 1));
+    const size_t side = size_t(degree) + 1, values = 3 * side * side;
     return values + values % 2;
 }
 
@@ -56,7 +56,8 @@ SplatBuffers make_buffers(const MeshData& mesh, bool with_colors) {
 }  // namespace
 
 size_t largest_splat_buffer(const MeshData& mesh, bool with_colors) {
-    return size_t(mesh.V.rows()) * std::max(8 * sizeof(float), 2 * splat_halves(degree_of(mesh, with_colors)));
+    return size_t(mesh.V.rows()) *
+           std::max(8 * sizeof(float), 2 * splat_halves(degree_of(mesh, with_colors)));
 }
 
 const SplatBuffers& SplatBufferCache::get(const MeshData& mesh, bool with_colors) {
