@@ -243,7 +243,7 @@ def test_data_sets_need_no_variable_in_a_built_tree(easypbr, environment, tmp_pa
 
 
 def test_traced_paths_need_no_filtered_environment(environment, box, tmp_path):
-    """Filtering takes longer than what is left of a small image; what is kept of it tells that it was done."""
+    """The cache holds filtered environments: path tracing makes none, the split sum of a rasterised image one."""
     cache = tmp_path / "cache"
     for mode, entries in (("path", 0), ("raster", 1)):
         subprocess.run([BINARY, "render", box, "-o", "out.png", "--size", "32x24", "--mode", mode], check=True, cwd=tmp_path,
