@@ -125,7 +125,7 @@ TEST(SplatDriver, HidesWhatIsBehindSurfaces) {
 // The light of each side is the same byte.
 TEST(SplatDriver, DarkensWhatSurfacesHideLightFrom) {
     Scene scene;
-    Mesh turned = splats(1000, 1);
+    Mesh turned = splats(1001, 1);
     turned.rotate_axis_angle(Vec3d(1, -2, 1), 40);
     scene.show(turned, "splats");
     scene.show(facing_square(0.7f), "square");

@@ -23,17 +23,27 @@ size_t splat_halves(int degree) {
     return values + values % 2;
 }
 
+/// Of some of the means, by axis: single ones may lie anywhere.
+Vec3 median_of(const Array3f& V) {
+    const Eigen::Index step = 1 + V.rows() / 1000;
+    Vec3 median;
+    for (int c = 0; c < 3; ++c) {
+        std::vector<float> values;
+        for (Eigen::Index i = 0; i < V.rows(); i += step) values.push_back(V(i, c));
+        const auto middle = values.begin() + std::ptrdiff_t(values.size() / 2);
+        std::nth_element(values.begin(), middle, values.end());
+        median[c] = *middle;
+    }
+    return median;
+}
+
 SplatBuffers make_buffers(const MeshData& mesh, bool with_colors) {
     const SplatArrays& splats = mesh.splats;
     SplatBuffers buffers;
     const auto count = size_t(mesh.V.rows());
     buffers.count = uint32_t(count);
     buffers.degree = degree_of(mesh, with_colors);
-    if (count > 0)
-        buffers.centre =
-            ((mesh.V.colwise().minCoeff().cast<double>() + mesh.V.colwise().maxCoeff().cast<double>()) / 2)
-                .transpose()
-                .cast<float>();
+    if (count > 0) buffers.centre = median_of(mesh.V);
     buffers.means = gl::Buffer(std::as_bytes(std::span(mesh.V.data(), 3 * count)));
     buffers.shapes = converted<std::array<float, 8>>(mesh.V.rows(), [&](Eigen::Index i) {
         const auto s = splats.scales.row(i);

@@ -1,4 +1,4 @@
-// Gaussian splats on the device: 45 bytes each and 6 for each harmonic's red, green and blue.
+// Gaussian splats on the device: 44 bytes each and 6 for each harmonic's red, green and blue.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,7 @@ struct SplatBuffers {
     gl::Buffer harmonics;  ///< 16-bit floats, of an even number for each splat
     uint32_t count = 0;
     int degree = 0;
-    Vec3 centre{0, 0, 0};  ///< of the means' box: matrices of floats are exact around it
+    Vec3 centre{0, 0, 0};  ///< where most means are: matrices of floats are exact around it
 };
 
 /// Bytes of the largest of the buffers.

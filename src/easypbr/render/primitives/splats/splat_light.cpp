@@ -92,7 +92,7 @@ uint8_t SplatLight::Parts::part_of(const PlaceLight& light, const DrawItem& item
 std::span<const std::byte> SplatLight::Parts::all_sides(const PlaceLight& light, const DrawItem& item) {
     static_assert(sizeof(sides_[0]) == 1);
     if (!has_all_)
-        parallel_for(sides_.size() / 2, 256, [&](size_t i) {
+        parallel_for(size_t(item.mesh().V.rows()), 256, [&](size_t i) {
             const auto splat = Eigen::Index(i);
             const Vec3d normal = splat_normal(item, splat, Vec3d::UnitX());
             part_of(light, item, splat, normal);

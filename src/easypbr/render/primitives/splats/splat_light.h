@@ -31,7 +31,7 @@ class SplatLight {
     class Parts {
       public:
         Parts(size_t count, bool are_lit)
-            : sides_(are_lit ? 0 : 2 * count), lit_sides_(are_lit ? 2 * count : 0) {}
+            : sides_(are_lit ? 0 : 2 * (count + count % 2)), lit_sides_(are_lit ? 2 * count : 0) {}
         /// The colour, sRGB-encoded, of a splat that is seen from the side of `towards`; safe to call from
         /// several threads.
         Vec3 darkened(const PlaceLight& light, const DrawItem& item, Eigen::Index i, const Vec3d& towards,
@@ -41,8 +41,8 @@ class SplatLight {
         /// `towards`, as if it were a matt surface.
         Vec3 lit(const PlaceLight& light, const DrawItem& item, Eigen::Index i, const Vec3d& towards);
 
-        /// Both sides of all splats, two bytes each: the part of the light, from 1, none, to 255, all. Found
-        /// where nobody has asked for them. Not for those that are lit.
+        /// Both sides of all splats, two bytes each, in whole words of four: the part of the light, from 1,
+        /// none, to 255, all. Found where nobody has asked for them. Not for those that are lit.
         std::span<const std::byte> all_sides(const PlaceLight& light, const DrawItem& item);
         /// Counts how often it is called.
         int count_frames() { return ++frames_; }
