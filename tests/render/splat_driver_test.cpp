@@ -99,6 +99,19 @@ TEST(SplatDriver, DrawsSplatsFarFromTheOrigin) {
     expect_the_same(session, Blended::by_driver, "far");
 }
 
+// A stray splat leaves the others as exact as they are.
+TEST(SplatDriver, DrawsSplatsBesideAStrayOne) {
+    MeshData mesh = *splats(500, 1).snapshot();
+    Array3f::Dense V = mesh.V;
+    V.row(0) << 3e6f, 3e6f, 3e6f;
+    mesh.V = std::move(V);
+    Scene scene;
+    scene.show(Mesh(mesh), "splats");
+    app::Session session = session_of(scene);
+    session.settings().camera.near = 0.1;
+    expect_the_same(session, Blended::by_driver, "stray");
+}
+
 TEST(SplatDriver, SortsTheSplatsOfAllObjects) {
     Scene scene;
     scene.show(splats(400, 1), "first");
