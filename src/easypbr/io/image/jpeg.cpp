@@ -100,7 +100,8 @@ Image decode_jpeg(Bytes bytes, const std::string& name) {
         tjDecompress2(handle.get(), jpeg_data_of(bytes), bytes.size(), image.pixels<uint8_t>().data(), width,
                       0, height, format, TJFLAG_ACCURATEDCT | TJFLAG_LIMITSCANS),
         handle, name);
-    return cmyk ? rgb_from_cmyk(image, has_adobe_marker(bytes)) : image;
+    if (cmyk) return rgb_from_cmyk(image, has_adobe_marker(bytes));
+    return image;
 }
 
 std::vector<std::byte> encode_jpeg(const Image& image, int quality) {
