@@ -125,17 +125,37 @@ float density_below(vec3 l, Surface s) {
     return visible_density(dot(s.normal, h), s.n_dot_v, roughness * roughness);
 }
 
+// Roughness of a volume's surface spreads what leaves it.
+bool leaves_spread(Surface s) { return is_inside() && !is_clear(s); }
+
+// Of directions in which paths leave a volume: facets as the view sees them (Heitz 2018), refraction (Walter et al. 2007,
+// equation 17), and what Fresnel's reflectance leaves, as left_or_kept() of path_scatter_extended.frag chooses it. A path takes
+// all of the light of such a direction with it, so that this is the BTDF times the cosine, too.
+float leaving(vec3 l, Surface s) {
+    float eta = s.extension.ior;
+    vec3 h = normalize(l + eta * s.view);
+    float inner = dot(h, s.view), outer = -dot(h, l), across = eta * inner - outer;
+    float kept = luminance(F_schlick90(outer, s.extension.f0, vec3(s.extension.f90)));
+    float facets = 4.0 * inner * visible_density(dot(s.normal, h), s.n_dot_v, s.alpha);
+    float density = facets * outer / max(across * across, 1e-12) * (1.0 - kept);
+    return inner > 0.0 && outer > 0.0 && dot(l, v_face) < 0.0 ? density : 0.0;
+}
+
 // Of directions that could have been found by more than one lobe.
 float density_of(vec3 l, Surface s, Lobes lobes) {
     vec3 below = mirrored_at_face(l);
     float above = density_above(l, s, lobes) + density_above(below, s, lobes), through = 0.0;
     if (has_transmission) through = lobes.through * (density_below(l, s) + density_below(below, s));
-    return dot(l, v_face) > 0.0 ? above : through;
+    float outside = dot(l, v_face) > 0.0 ? above : through, inside = is_clear(s) ? 0.0 : leaving(l, s);
+    return is_inside() ? inside : outside;
 }
 
 // Roughness of a thin surface spreads what goes through: next-event estimation finds it, too.
 bool is_spreading(Surface s) { return !is_volume(s) && !is_clear(s); }
 
 // As those of path_plain.glsl.
-vec3 bsdf(vec3 l, Surface s) { return dot(l, v_face) > 0.0 || is_spreading(s) ? reflected(l, s) : vec3(0.0); }
+vec3 bsdf(vec3 l, Surface s) {
+    vec3 outside = dot(l, v_face) > 0.0 || is_spreading(s) ? reflected(l, s) : vec3(0.0);
+    return leaves_spread(s) ? vec3(leaving(l, s)) : outside;
+}
 float bsdf_density(vec3 l, Surface s) { return density_of(l, s, lobes_of(s)); }

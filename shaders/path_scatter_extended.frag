@@ -35,17 +35,17 @@ vec3 refracted(Surface s, vec3 h) {
     return (eta * cosine - sqrt(max(1.0 - eta * eta * (1.0 - cosine * cosine), 0.0))) * h - eta * s.view;
 }
 
+// A direction above the face, or with -1 below it.
+vec3 on_side(vec3 l, float side) { return side * dot(l, v_face) > 0.0 ? l : mirrored_at_face(l); }
+
 // Out of a volume, or back into it: Fresnel's reflectance is the same from both sides, at the angle outside.
 vec3 left_or_kept(Surface s, vec3 h, float u) {
     float eta = s.extension.ior, cosine = dot(h, s.view);
     float sine2 = eta * eta * (1.0 - cosine * cosine), outer = sqrt(max(1.0 - sine2, 0.0));
     float part = luminance(F_schlick90(outer, s.extension.f0, vec3(s.extension.f90)));
     bool leaves = sine2 < 1.0 && u >= part;
-    return leaves ? (eta * cosine - outer) * h - eta * s.view : mirrored_by(h, s.view);
+    return leaves ? (eta * cosine - outer) * h - eta * s.view : on_side(mirrored_by(h, s.view), 1.0);
 }
-
-// A direction above the face, or with -1 below it.
-vec3 on_side(vec3 l, float side) { return side * dot(l, v_face) > 0.0 ? l : mirrored_at_face(l); }
 
 void main() {
     Surface s = path_surface();
@@ -89,6 +89,8 @@ void main() {
     }
     o_direction = l;
     float density = density_of(l, s, lobes);
+    // Next-event estimation finds what leaves a rough volume, and nothing within it.
+    only = only && !(is_inside() && density > 0.0);
     o_density = only ? only_direction : density;
     o_weight = density > 0.0 ? reflected(l, s) / density : vec3(0.0);
     o_weight = only ? s.keep * s.through / max(lobes.through, 1e-6) : o_weight;

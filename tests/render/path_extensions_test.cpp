@@ -62,6 +62,84 @@ TEST(PathExtensions, WhiteFurnaceOfAnisotropy) {
     EXPECT_NEAR(furnace(brushed), 1, 0.06);
 }
 
+/// Radiance 2 on one side, above or below.
+Environment half_environment(bool above) {
+    constexpr int height = 16;
+    Image image(2, height, 3, PixelType::f32);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < 2; ++x)
+            std::fill_n(image.at<float>(x, y), 3, (y < height / 2) == above ? 2.0f : 0.0f);
+    return Environment(image);
+}
+
+// Of two halves of an even environment one is bright enough to be looked for, and found by chance as well:
+// what both leave adds up to all. 0.008: the table of albedos, 0.005, and the noise of 256 samples.
+TEST(PathExtensions, WhiteFurnaceOfTwoHalves) {
+    const std::pair<const char*, Material> materials[] = {
+        {"thin", white([](Material& m) { m.transmission = 1, m.roughness = 0.6f; })},
+        {"rough volume", white([](Material& m) { m.transmission = m.thickness = 1; })},
+        {"rougher volume", white([](Material& m) { m.transmission = m.thickness = 1, m.roughness = 0.8f; })},
+        {"dense volume", white([](Material& m) { m.transmission = m.thickness = 1, m.ior = 2.4f; })},
+        {"coated volume", white([](Material& m) { m.transmission = m.thickness = m.clearcoat = 1; })}};
+    for (const auto& [name, material] : materials) {
+        double sum = 0;
+        for (const bool above : {false, true}) {
+            Scene scene;
+            scene.set_environment(half_environment(above));
+            app::Session session = traced(sphere::session_of(material, scene));
+            session.settings().environment.enabled = true;
+            const auto points = sphere::points_of(render_linear(session, 256), session.camera(), 0.2);
+            double half = 0;
+            for (const sphere::Point& point : points) half += point.radiance.mean() / double(points.size());
+            EXPECT_GT(half, 0.3) << name << " " << above;
+            sum += half / 2;
+        }
+        EXPECT_NEAR(sum, 1, 0.008) << name;
+    }
+}
+
+// An area light and a mesh that emits as much light a ball alike, through its rough surface. 0.02: the noise
+// of 256 samples, 0.01, and what the mesh keeps from leaving.
+TEST(PathExtensions, RoughVolumesSpreadAreaLights) {
+    const Material frosted = white([](Material& m) { m.transmission = m.thickness = 1, m.roughness = 0.7f; });
+    const auto seen = [&](const std::function<void(Scene&)>& add_light) {
+        Scene scene;
+        add_light(scene);
+        app::Session session = traced(sphere::session_of(frosted, scene));
+        session.settings().shadows.enabled = true;
+        double sum = 0;
+        for (const sphere::Point& point :
+             sphere::points_of(render_linear(session, 256), session.camera(), 0.2))
+            sum += point.radiance.mean();
+        return sum;
+    };
+    const double of_light = seen([](Scene& scene) {
+        Light lamp;
+        lamp.type = LightType::rectangle;
+        lamp.position = Vec3(0, 2, -2);
+        lamp.direction = Vec3(0, -1, 1);
+        lamp.width_axis = Vec3(1, 0, 0);
+        lamp.size = Vec2(2, 2);
+        lamp.intensity = 5;
+        scene.set_light("lamp", lamp);
+    });
+    const double of_mesh = seen([](Scene& scene) {
+        Mesh square = facing_square();
+        square.set_material(sphere::with([](Material& m) {
+            m.base_color = Vec3::Zero();
+            m.specular = 0;
+            m.roughness = 1;
+            m.emissive = Vec3::Constant(5);
+        }));
+        Eigen::Affine3d pose = Eigen::Affine3d::Identity();
+        pose.translate(Vec3d(0, 2, -2)).rotate(Eigen::AngleAxisd(pi / 4, Vec3d::UnitX()));
+        square.set_T_world_mesh(pose);
+        scene.show(square, "lamp");
+    });
+    EXPECT_GT(of_light, 0);
+    EXPECT_NEAR(of_mesh / of_light, 1, 0.02);
+}
+
 /// A sphere under one directional light, by paths and rasterised.
 void expect_same_light(const std::string& name, const Material& material) {
     Scene scene;
