@@ -271,6 +271,39 @@ struct PointScreen {
 using SamplePaths = void (*)(const uint32_t* seeds, const uint32_t* reversed_samples, uint32_t dimension,
                              int count, float* xs, float* ys);
 
+/// Emissive triangles, so few that each place weighs them all: an array for each number, in the frame of the
+/// places.
+struct FewEmitters {
+    static constexpr int room = 64;
+
+    int count = 0;
+    float centre[3][room] = {}, normal[3][room] = {};
+    /// Of the closed mesh that it belongs to, outside of which back faces are not seen.
+    float least[3][room] = {}, most[3][room] = {};
+    float area[room] = {}, light[room] = {};  ///< light: relative to the others
+    float corner[3][room] = {}, edge1[3][room] = {}, edge2[3][room] = {};
+};
+
+/// Places that look for light, and points of the unit square. Arrays of a multiple of stream_alignment.
+struct EmitterPlaces {
+    const float *from[3] = {}, *u = nullptr, *v = nullptr;
+};
+
+/// What becomes of them. `density` is per steradian, 0 where no emitter is seen.
+struct EmitterPoints {
+    int32_t* chosen = nullptr;
+    float *u = nullptr, *v = nullptr;  ///< barycentric: weights of the second and third corner
+    float* direction[3] = {};          ///< unit
+    float *distance = nullptr, *cosine = nullptr, *density = nullptr;  ///< cosine: negative on the back
+};
+
+/// A point of an emitter for each place.
+using SampleEmitters = void (*)(const FewEmitters& emitters, const EmitterPlaces& places, int count,
+                                const EmitterPoints& points);
+/// The chance per area that SampleEmitters chooses a point of an emitter, which each place names.
+using ChancesOfEmitters = void (*)(const FewEmitters& emitters, const float* const (&from)[3],
+                                   const int32_t* chosen, int count, float* chances);
+
 /// The number of points that are kept.
 using SetUpPoints = int (*)(const PointBatch& points, PointScreen& screen);
 
@@ -300,6 +333,8 @@ struct Kernels {
     SetUpCluster set_up_cluster;
     SetUpPoints set_up_points;
     SamplePaths sample_paths;
+    SampleEmitters sample_emitters;
+    ChancesOfEmitters chances_of_emitters;
     ShadeRows shade[shader_count];     ///< by Shader
     ShadeStream stream[stream_count];  ///< by Stream
 };

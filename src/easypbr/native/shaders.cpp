@@ -277,6 +277,16 @@ void sample_paths(const uint32_t* seeds, const uint32_t* reversed_samples, uint3
     chosen_set().kernels->sample_paths(seeds, reversed_samples, dimension, count, xs, ys);
 }
 
+void sample_emitters(const FewEmitters& emitters, const EmitterPlaces& places, int count,
+                     const EmitterPoints& points) {
+    chosen_set().kernels->sample_emitters(emitters, places, count, points);
+}
+
+void chances_of_emitters(const FewEmitters& emitters, const float* const (&from)[3], const int32_t* chosen,
+                         int count, float* chances) {
+    chosen_set().kernels->chances_of_emitters(emitters, from, chosen, count, chances);
+}
+
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1) {
     const Kernels& k = *chosen_set().kernels;
 #define EASYPBR_CASE(name) \

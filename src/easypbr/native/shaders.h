@@ -90,6 +90,13 @@ int set_up_points(const PointBatch& points, PointScreen& screen);
 void sample_paths(const uint32_t* seeds, const uint32_t* reversed_samples, uint32_t dimension, int count,
                   float* xs, float* ys);
 
+/// Points of few emitters, as SampleEmitters, and what the chances of points are, as ChancesOfEmitters. On
+/// the calling thread.
+void sample_emitters(const FewEmitters& emitters, const EmitterPlaces& places, int count,
+                     const EmitterPoints& points);
+void chances_of_emitters(const FewEmitters& emitters, const float* const (&from)[3], const int32_t* chosen,
+                         int count, float* chances);
+
 /// Shades rows [y0, y1) of a region, on all cores. Throws Error when a value is not of the uniform's type,
 /// Interrupted.
 void shade(Shader shader, const Inputs& inputs, const Region& region, int y0, int y1);

@@ -33,6 +33,7 @@ struct Fragment : TextureReader {
 #include "easypbr/native/simd/blend_splats.h"
 #include "easypbr/native/simd/cluster_setup.h"
 #include "easypbr/native/simd/point_setup.h"
+#include "easypbr/native/simd/sample_emitters.h"
 #include "easypbr/native/simd/sample_paths.h"
 #include "easypbr/native/simd/shade_hits.h"
 
@@ -329,6 +330,8 @@ const Kernels kernels{resolve_triangles,
                       set_up_cluster,
                       set_up_points,
                       sample_paths,
+                      sample_emitters,
+                      chances_of_emitters,
                       {EASYPBR_SHADERS(EASYPBR_ROWS)},
                       {EASYPBR_STREAMS(EASYPBR_ARRAYS)}};
 #undef EASYPBR_ARRAYS

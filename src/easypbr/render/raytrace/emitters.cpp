@@ -6,10 +6,6 @@
 #include <limits>
 #include <span>
 
-#if defined(__SSE__)
-#include <xmmintrin.h>
-#endif
-
 #include "easypbr/gpu/facing.h"
 #include "easypbr/render/raytrace/cdf.h"
 #include "easypbr/render/raytrace/hit_surfaces.h"
@@ -45,7 +41,6 @@ void Emitters::prepare(const RayScene& scene) {
     generation_ = 0;  // until all is there: it can be interrupted
     triangles_.clear();
     ends_.clear();
-    chances_.clear();
     places_.clear();
     brightness_ = 0;
     elements_.assign(size_t(scene.surface_count()), {});
@@ -59,15 +54,14 @@ void Emitters::prepare(const RayScene& scene) {
     brightness_ = float(sum / 2);
     for (float& end : ends_) end /= float(sum);
     for (Triangle& triangle : triangles_) triangle.weight /= float(sum);
-    for (float& chance : chances_) chance /= float(sum);
-    make_lanes();
+    make_few();
     generation_ = scene.surfaces_generation();
 }
 
 void Emitters::add_surface(const RayScene& scene, int surface) {
     const FaceRange faces = scene.emissive_faces(surface);
     if (faces.count == 0) return;
-    elements_[size_t(surface)] = {faces.first, faces.count, chances_.size(), solid_of(scene, surface)};
+    elements_[size_t(surface)] = {faces.first, faces.count, places_.size(), solid_of(scene, surface)};
     std::vector<native::ElementHit> hits;
     for (int i = 0; i < faces.count; ++i) {
         const auto corners = scene.triangle(surface, faces.first + i);
@@ -84,143 +78,159 @@ void Emitters::add_surface(const RayScene& scene, int surface) {
         }
     }
     const HitSurfaces found = evaluate(scene, hits, std::vector<int>(hits.size(), surface));
+    const bool has_texture = bool(scene.item_of(surface).material.emissive_texture);
     for (int i = 0; i < faces.count; ++i) {
-        float emission = 0;
+        Vec3 emission = Vec3::Zero();
         for (size_t k = 0; k < looked_at.size(); ++k)
-            emission += found.emission.at(size_t(i) * looked_at.size() + k).mean() / float(looked_at.size());
+            emission += found.emission.at(size_t(i) * looked_at.size() + k) / float(looked_at.size());
         const auto corners = scene.triangle(surface, faces.first + i);
         const Vec3 edge1 = corners[1] - corners[0], edge2 = corners[2] - corners[0];
         const Vec3 normal = edge1.cross(edge2);
-        const float size = normal.norm();
-        const bool shines = emission > 0 && std::isfinite(emission) && size > 0;
-        chances_.push_back(shines ? emission : 0);
-        places_.push_back(triangles_.size());
+        const float size = normal.norm(), weight = emission.mean();
+        const bool shines = weight > 0 && std::isfinite(weight) && size > 0;
+        places_.push_back(shines ? int(triangles_.size()) : -1);
         if (!shines) continue;
         const Vec3 centre = (corners[0] + corners[1] + corners[2]) / 3;
-        triangles_.push_back(
-            {corners[0], edge1, edge2, centre, normal / size, size / 2, surface, faces.first + i, emission});
+        triangles_.push_back({corners[0], edge1, edge2, centre, normal / size, size / 2, surface,
+                              faces.first + i, weight, emission, !has_texture});
     }
 }
 
-namespace {
-
-constexpr float no_limit = std::numeric_limits<float>::infinity();
-
-/// Of each lane.
-template <class Floats>
-Floats square_root(Floats values) {
-#if defined(__SSE__)
-    return Floats(_mm_sqrt_ps(__m128(values)));
-#else
-    for (size_t k = 0; k < sizeof values / sizeof(float); ++k) values[k] = std::sqrt(values[k]);
-    return values;
-#endif
-}
-
-}  // namespace
-
-bool Emitters::are_few() const {
-    return triangles_.size() <= few;
-}
-
-void Emitters::make_lanes() {
-    lanes_.clear();
+void Emitters::make_few() {
+    constexpr float no_limit = std::numeric_limits<float>::infinity();
+    few_ = {};
     if (!are_few()) return;
-    lanes_.resize((triangles_.size() + lane_count - 1) / lane_count);
+    few_.count = int(triangles_.size());
     for (size_t i = 0; i < triangles_.size(); ++i) {
         const Triangle& triangle = triangles_[i];
         Eigen::AlignedBox3f solid = elements_[size_t(triangle.surface)].solid;
         // Every place is within what has no inside.
         if (solid.isEmpty()) solid = {Vec3::Constant(-no_limit), Vec3::Constant(no_limit)};
-        Lanes& lanes = lanes_[i / lane_count];
-        const size_t k = i % lane_count;
         for (int c = 0; c < 3; ++c) {
-            lanes.centre[c][k] = triangle.centre[c];
-            lanes.normal[c][k] = triangle.normal[c];
-            lanes.least[c][k] = solid.min()[c];
-            lanes.most[c][k] = solid.max()[c];
+            few_.centre[c][i] = triangle.centre[c];
+            few_.normal[c][i] = triangle.normal[c];
+            few_.least[c][i] = solid.min()[c];
+            few_.most[c][i] = solid.max()[c];
+            few_.corner[c][i] = triangle.corner[c];
+            few_.edge1[c][i] = triangle.edge1[c];
+            few_.edge2[c][i] = triangle.edge2[c];
         }
-        lanes.area[k] = triangle.area;
-        lanes.light[k] = triangle.weight * triangle.area;
+        few_.area[i] = triangle.area;
+        few_.light[i] = triangle.weight * triangle.area;
     }
 }
 
-float Emitters::weigh(const Vec3& from, Weights& ends) const {
-    // The least is for what is seen of a triangle beside its centre.
-    constexpr float least_cosine = 0.05f;
-    float sum = 0;
-    size_t place = 0;
-    for (const Lanes& lanes : lanes_) {
-        Floats apart = {}, facing = {};
-        Masks inside = ~Masks{};
-        for (int c = 0; c < 3; ++c) {
-            const Floats offset = lanes.centre[c] - from[c], own = Floats{} + from[c];
-            apart += offset * offset;
-            facing -= lanes.normal[c] * offset;
-            inside &= (own >= lanes.least[c]) & (own <= lanes.most[c]);
-        }
-        const Masks hidden = (facing < 0.0f) & ~inside;
-        const Floats size = facing < 0.0f ? -facing : facing,
-                     far = apart > 1e-30f ? apart : Floats{} + 1e-30f;
-        const Floats cosine = size / square_root(far);
-        const Floats shares =
-            lanes.light * (least_cosine + cosine) / (apart > lanes.area ? apart : lanes.area);
-        for (size_t k = 0; k < lane_count; ++k) ends[place++] = sum += hidden[k] ? 0.0f : shares[k];
+Emitters::Samples::Samples(size_t count_)
+    : count(count_),
+      direction(PathBatch::rounded_up(count)),
+      radiance(direction.room()),
+      distance(direction.room()),
+      density(direction.room()),
+      triangle(direction.room()),
+      u(direction.room()),
+      v(direction.room()),
+      cosine(direction.room()) {}
+
+Emitters::Samples Emitters::sample(const RayScene& scene, const PathVectors<3>& from,
+                                   const PathVectors<2>& points, size_t count) const {
+    Samples samples(count);
+    if (are_few()) {
+        native::EmitterPlaces places{{}, points.component(0), points.component(1)};
+        from.read_by(places.from);
+        native::EmitterPoints to{samples.triangle.data(), samples.u.data(),      samples.v.data(),      {},
+                                 samples.distance.data(), samples.cosine.data(), samples.density.data()};
+        samples.direction.written_by(to.direction);
+        native::sample_emitters(few_, places, int(count), to);
+    } else {
+        sample_many(from, points, samples);
     }
-    return sum;
+    find_radiance(scene, samples);
+    return samples;
 }
 
-Emitters::Sample Emitters::sample(const Vec3& from, const Vec2& u) const {
-    float within = 0;
-    if (!are_few()) {
-        const Triangle& triangle = triangles_[step_of(ends_, u.x(), within)];
-        return sample_on(triangle, from, {within, u.y()}, triangle.weight);
+void Emitters::sample_many(const PathVectors<3>& from, const PathVectors<2>& points, Samples& samples) const {
+    for (size_t i = 0; i < samples.count; ++i) {
+        const Vec2 u = points.at(i);
+        float within = 0;
+        const size_t chosen = step_of(ends_, u.x(), within);
+        const Triangle& triangle = triangles_[chosen];
+        const float root = std::sqrt(within);
+        samples.triangle[i] = int32_t(chosen);
+        samples.u[i] = root * (1 - u.y());
+        samples.v[i] = root * u.y();
+        const Vec3 step =
+            triangle.corner + samples.u[i] * triangle.edge1 + samples.v[i] * triangle.edge2 - from.at(i);
+        const float distance = step.norm();
+        const Vec3 direction = step / std::max(distance, 1e-30f);
+        samples.distance[i] = distance;
+        samples.direction.set(i, direction);
+        samples.cosine[i] = -triangle.normal.dot(direction);
+        const float cosine = std::abs(samples.cosine[i]);
+        samples.density[i] = cosine > 1e-6f ? triangle.weight * distance * distance / cosine : 0;
     }
-    Weights ends;
-    const float sum = weigh(from, ends);
-    if (!(sum > 0)) return {.hit = {}, .surface = triangles_.front().surface, .direction = Vec3::UnitZ()};
-    const size_t chosen = step_of(std::span(ends).first(triangles_.size()), u.x() * sum, within);
-    const float weight = ends[chosen] - (chosen > 0 ? ends[chosen - 1] : 0);
-    const Triangle& triangle = triangles_[chosen];
-    return sample_on(triangle, from, {within, u.y()}, weight / (sum * triangle.area));
 }
 
-Emitters::Sample Emitters::sample_on(const Triangle& triangle, const Vec3& from, const Vec2& u,
-                                     float density) const {
-    const float root = std::sqrt(u.x());
-    Sample sample;
-    sample.hit.element = uint32_t(triangle.element);
-    sample.hit.u = root * (1 - u.y());
-    sample.hit.v = root * u.y();
-    sample.surface = triangle.surface;
-    const Vec3 step = triangle.corner + sample.hit.u * triangle.edge1 + sample.hit.v * triangle.edge2 - from;
-    sample.distance = step.norm();
-    sample.direction = step / std::max(sample.distance, 1e-30f);
-    Vec3 normal = triangle.normal;
-    const float cosine = -normal.dot(sample.direction);
-    if (cosine < 0) normal = -normal;
-    std::copy_n(normal.data(), 3, sample.hit.normal);
-    if (std::abs(cosine) > 1e-6f)
-        sample.density = density * sample.distance * sample.distance / std::abs(cosine);
-    return sample;
+void Emitters::find_radiance(const RayScene& scene, Samples& samples) const {
+    std::vector<uint32_t> varied;
+    for (size_t i = 0; i < samples.count; ++i) {
+        const Triangle& triangle = triangles_[size_t(samples.triangle[i])];
+        samples.radiance.set(i, triangle.emission);
+        if (!triangle.is_uniform) varied.push_back(uint32_t(i));
+    }
+    if (varied.empty()) return;
+    const auto surface_of = [&](uint32_t i) { return triangles_[size_t(samples.triangle[i])].surface; };
+    std::ranges::stable_sort(varied, {}, surface_of);
+    std::vector<native::ElementHit> hits;
+    std::vector<int> surfaces;
+    for (const uint32_t i : varied) {
+        const Triangle& triangle = triangles_[size_t(samples.triangle[i])];
+        native::ElementHit& hit = hits.emplace_back();
+        hit.element = uint32_t(triangle.element);
+        hit.u = samples.u[i];
+        hit.v = samples.v[i];
+        Eigen::Map<Vec3>(hit.normal) = triangle.normal * (samples.cosine[i] < 0 ? -1.0f : 1.0f);
+        hit.footprint = samples.distance[i] * float(scene.unit()) * ray_widening;
+        surfaces.push_back(triangle.surface);
+    }
+    const HitSurfaces found = evaluate(scene, hits, surfaces);
+    for (size_t k = 0; k < varied.size(); ++k) samples.radiance.set(varied[k], found.emission.at(k));
 }
 
-float Emitters::density(const RayHit& hit, const Vec3& direction) const {
-    if (empty() || hit.surface < 0) return 0;
+int Emitters::triangle_of(const RayHit& hit) const {
+    if (hit.surface < 0) return -1;
     const Elements& elements = elements_[size_t(hit.surface)];
     const int element = hit.element - elements.first;
-    if (element < 0 || element >= elements.count) return 0;
-    float chance = chances_[elements.at + size_t(element)];
-    if (chance > 0 && are_few()) {
-        const Vec3 from = hit.position - direction * hit.distance;
-        Weights ends;
-        const float sum = weigh(from, ends);
-        const size_t place = places_[elements.at + size_t(element)];
-        const float own = ends[place] - (place > 0 ? ends[place - 1] : 0);
-        chance = sum > 0 ? own / (sum * triangles_[place].area) : 0;
+    return element >= 0 && element < elements.count ? places_[elements.at + size_t(element)] : -1;
+}
+
+std::vector<float> Emitters::densities(std::span<const Met> met) const {
+    std::vector<float> found(met.size(), 0.0f);
+    if (empty()) return found;
+    std::vector<uint32_t> of_triangles;
+    for (size_t i = 0; i < met.size(); ++i)
+        if (triangle_of(met[i].hit) >= 0) of_triangles.push_back(uint32_t(i));
+    if (of_triangles.empty()) return found;
+    const size_t room = PathBatch::rounded_up(of_triangles.size());
+    PathVectors<3> from(room);
+    std::vector<int32_t> chosen(room);
+    std::vector<float> chances(room);
+    for (size_t k = 0; k < of_triangles.size(); ++k) {
+        const auto& [hit, direction] = met[of_triangles[k]];
+        chosen[k] = triangle_of(hit);
+        chances[k] = triangles_[size_t(chosen[k])].weight;
+        from.set(k, hit.position - direction * hit.distance);
     }
-    const float cosine = std::abs(hit.normal.dot(direction));
-    return cosine > 1e-6f ? chance * hit.distance * hit.distance / cosine : 0;
+    if (are_few()) {
+        const float* places[3];
+        from.read_by(places);
+        native::chances_of_emitters(few_, places, chosen.data(), int(of_triangles.size()), chances.data());
+    }
+    for (size_t k = 0; k < of_triangles.size(); ++k) {
+        const auto& [hit, direction] = met[of_triangles[k]];
+        const float cosine = std::abs(hit.normal.dot(direction));
+        if (cosine > 1e-6f) found[of_triangles[k]] = chances[k] * hit.distance * hit.distance / cosine;
+    }
+    return found;
 }
 
 }  // namespace easypbr::render

@@ -1,10 +1,11 @@
 // Emissive triangles as light sources of next-event estimation.
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
+#include "easypbr/render/raytrace/path_batch.h"
 #include "easypbr/render/raytrace/ray_scene.h"
 
 namespace easypbr::render {
@@ -23,18 +24,33 @@ class Emitters {
     /// radiance over directions.
     float brightness() const { return brightness_; }
 
-    struct Sample {
-        native::ElementHit hit;  ///< its footprint is not set
-        int surface = 0;         ///< for RayScene::surface()
-        Vec3 direction;          ///< unit
-        float distance = 0;      ///< in RayScene::unit()
-        float density = 0;       ///< per steradian; 0: nothing of them is seen
+    /// Points of triangles that places have chosen, with an array for each number.
+    struct Samples {
+        explicit Samples(size_t count_);
+
+        size_t count;
+        PathVectors<3> direction;     ///< unit
+        PathVectors<3> radiance;      ///< that the point sends
+        std::vector<float> distance;  ///< in RayScene::unit()
+        std::vector<float> density;   ///< per steradian; 0: nothing of them is seen
+
+      private:
+        friend class Emitters;
+        std::vector<int32_t> triangle;
+        std::vector<float> u, v, cosine;
     };
-    /// A point of a triangle by a point of the unit square. `from` in RayScene's frame. There must be one.
-    Sample sample(const Vec3& from, const Vec2& u) const;
-    /// Density of directions that sample() chooses for what a ray has met in one of them; 0 for other
+    /// A point for each of `count` places (RayScene's frame), by points of the unit square. There must be a
+    /// triangle.
+    Samples sample(const RayScene& scene, const PathVectors<3>& from, const PathVectors<2>& points,
+                   size_t count) const;
+    /// What a ray has met, in a sampled direction.
+    struct Met {
+        const RayHit& hit;
+        Vec3 direction;
+    };
+    /// The density with which sample() chooses the directions of rays for what they have met; 0 for other
     /// surfaces.
-    float density(const RayHit& hit, const Vec3& direction) const;
+    std::vector<float> densities(std::span<const Met> met) const;
 
   private:
     struct Triangle {
@@ -43,33 +59,22 @@ class Emitters {
         float area = 0;
         int surface = 0, element = 0;
         float weight = 0;  ///< chance per area
+        Vec3 emission;
+        bool is_uniform = false;  ///< it emits the same everywhere
     };
     void add_surface(const RayScene& scene, int surface);
-    bool are_few() const;
     /// So many triangles are weighed against each other for each place.
-    static constexpr size_t few = 64;
-    static constexpr size_t lane_count = 4;
-    using Floats = float __attribute__((vector_size(lane_count * sizeof(float))));
-    using Masks = int32_t __attribute__((vector_size(lane_count * sizeof(float))));
-    /// Few triangles, several at once; those that fill up the last send nothing.
-    struct Lanes {
-        Floats centre[3] = {}, normal[3] = {};
-        Floats least[3] = {}, most[3] = {};  ///< of the closed mesh that it belongs to, outside of which back
-                                             ///< faces are not seen
-        Floats area = Floats{} + 1.0f, light = {};
-    };
-    using Weights = std::array<float, few>;
-    void make_lanes();
-    /// What triangles send to a place, about and relative to each other; 0 where they are hidden by the mesh
-    /// that they belong to. Each weight is the sum of itself and those before; returns the last.
-    float weigh(const Vec3& from, Weights& ends) const;
-    /// Sets what sample() returns for a point of a triangle that is chosen with a density per area.
-    Sample sample_on(const Triangle& triangle, const Vec3& from, const Vec2& u, float density) const;
+    bool are_few() const { return triangles_.size() <= native::FewEmitters::room; }
+    void make_few();
+    void sample_many(const PathVectors<3>& from, const PathVectors<2>& points, Samples& samples) const;
+    void find_radiance(const RayScene& scene, Samples& samples) const;
+    /// The place in `triangles_` of what a ray has met; -1 where it is none of them.
+    int triangle_of(const RayHit& hit) const;
 
     uint64_t generation_ = 0;
     std::vector<Triangle> triangles_;
     std::vector<float> ends_;  ///< CDF
-    /// The elements of a surface that emits, and where theirs begin in `chances_`.
+    /// The elements of a surface that emits, and where theirs begin in `places_`.
     struct Elements {
         int first = 0, count = 0;
         size_t at = 0;
@@ -77,9 +82,8 @@ class Emitters {
         Eigen::AlignedBox3f solid;
     };
     std::vector<Elements> elements_;  ///< for each surface
-    std::vector<float> chances_;      ///< chance per area
-    std::vector<size_t> places_;      ///< in triangles_, of those that have a chance
-    std::vector<Lanes> lanes_;
+    std::vector<int> places_;         ///< of the elements in `triangles_`; -1: it does not shine
+    native::FewEmitters few_;
     float brightness_ = 0;
 };
 

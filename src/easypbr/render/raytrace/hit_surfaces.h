@@ -9,6 +9,10 @@
 
 namespace easypbr::render {
 
+/// The part of its length by which a ray widens, of directions that a matt surface sends: textures are read
+/// that much blurred.
+inline constexpr float ray_widening = 0.05f;
+
 struct HitSurfaces {
     HitSurfaces(size_t count, bool with_extensions);
     /// The arrays from one of them on.

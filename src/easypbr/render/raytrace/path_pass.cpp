@@ -186,6 +186,7 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
     lit.pixels.reserve(count);
     lit.places.reserve(count);
     std::vector<PathTracer::Hit> hits;  // of surfaces that the G-buffer does not hold all of
+    hits.reserve(count);
     std::vector<bool> is_hit(count, false);
     const auto each = [&](auto&& visit) {
         for (int y = block.y; y < block.y + block.height; ++y)

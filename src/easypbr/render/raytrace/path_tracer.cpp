@@ -15,9 +15,6 @@ namespace {
 
 /// From this surface on paths end at random (Russian roulette).
 constexpr uint32_t first_roulette = 3;
-/// The part of its length by which a ray widens, of directions that a matt surface sends: textures are read
-/// that much blurred.
-constexpr float widening = 0.05f;
 /// Rays to a place on an emissive surface end before it by this part of their length, and of the scene's
 /// radius.
 constexpr float before_emitter = 1e-4f;
@@ -68,6 +65,12 @@ std::vector<uint32_t> sorted_by_surface(size_t count, SurfaceOf&& surface_of) {
 }
 
 }  // namespace
+
+inline Vec3 PathTracer::limited(const Vec3& light, uint32_t bounces) const {
+    if (bounces == 0) return light;
+    const float brightness = luminance(light);
+    return brightness > most_light_ ? Vec3(light * (most_light_ / brightness)) : light;
+}
 
 /// What path_scatter reads and writes beyond the batch.
 struct PathTracer::Scattered {
@@ -140,6 +143,8 @@ void PathTracer::prepare(const ResolvedSettings& resolved, const RayScene& scene
     sky_.prepare(resolved.environment, resolved.R_env_world, resolved.settings.environment.intensity);
     emitters_.prepare(scene);
     catcher_.prepare(scene, lights_, sky_);
+    most_light_ = resolved.settings.path.clamp > 0 ? resolved.settings.path.clamp
+                                                   : std::numeric_limits<float>::infinity();
     const float of_emitters = emitters_.brightness(), of_sky = sky_.brightness();
     emitter_part_ =
         emitters_.empty() ? 0 : std::clamp(of_emitters / (of_emitters + of_sky), least_part, 1 - least_part);
@@ -164,11 +169,6 @@ Vec3 PathTracer::start_towards(const PathBatch& batch, size_t path, const Vec3& 
     return RayScene::off_surface(batch.position.at(path), -face, -face * scene_->reach());
 }
 
-Vec3 PathTracer::limited(const Vec3& light, uint32_t bounces) const {
-    const float most = resolved_->settings.path.clamp, brightness = luminance(light);
-    return bounces > 0 && most > 0 && brightness > most ? Vec3(light * (most / brightness)) : light;
-}
-
 void PathTracer::add_escaped(const Escaped& paths, std::vector<Vec3>& radiance) const {
     const std::vector<SkySampler::Sample> skies = sky_.seen(paths.directions, paths.densities);
     for (size_t i = 0; i < skies.size(); ++i) {
@@ -180,48 +180,48 @@ void PathTracer::add_escaped(const Escaped& paths, std::vector<Vec3>& radiance) 
     }
 }
 
-float PathTracer::emission_weight(const RayHit& hit, const Vec3& direction, float density) const {
-    const float chosen = emitter_part_ * emitters_.density(hit, direction);
-    return chosen > 0 ? density / (density + chosen) : 1.0f;
+std::vector<float> PathTracer::emission_weights(std::span<const Hit> hits) const {
+    std::vector<float> weights(hits.size(), 1.0f);
+    if (emitters_.empty()) return weights;
+    std::vector<Emitters::Met> met;
+    met.reserve(hits.size());
+    for (const Hit& hit : hits) met.push_back({hit.hit, hit.direction});
+    const std::vector<float> densities = emitters_.densities(met);
+    for (size_t i = 0; i < hits.size(); ++i)
+        if (const float chosen = emitter_part_ * densities[i]; chosen > 0)
+            weights[i] = hits[i].density / (hits[i].density + chosen);
+    return weights;
 }
 
 void PathTracer::choose_directions(const PathBatch& batch, uint32_t depth, Scattered& to) const {
-    std::vector<Emitters::Sample> chosen;
-    std::vector<size_t> paths, of_sky;
+    std::vector<uint32_t> of_emitters, of_sky;
     std::vector<Vec2> sky_points;
-    const PathVectors<2> points = batch.points(depth, sky_point);
+    PathVectors<2> points = batch.points(depth, sky_point);
+    PathVectors<3> places(points.room());
     for (size_t i = 0; i < batch.count; ++i) {
         Vec2 u = points.at(i);
         if (u.x() < emitter_part_) {
             u.x() = std::min(u.x() / emitter_part_, below_one);
-            chosen.push_back(emitters_.sample(batch.start.at(i), u));
-            paths.push_back(i);
+            points.set(of_emitters.size(), u);
+            places.set(of_emitters.size(), batch.start.at(i));
+            of_emitters.push_back(uint32_t(i));
         } else if (sky_.is_sampled()) {
             u.x() = std::min((u.x() - emitter_part_) / (1 - emitter_part_), below_one);
             sky_points.push_back(u);
-            of_sky.push_back(i);
+            of_sky.push_back(uint32_t(i));
         }
     }
     const std::vector<SkySampler::Sample> skies = sky_.sample(sky_points);
     for (size_t i = 0; i < of_sky.size(); ++i)
         to.set_direction(of_sky[i], skies[i].direction, skies[i].radiance,
                          (1 - emitter_part_) * skies[i].density);
-    const std::vector<uint32_t> sorted =
-        sorted_by_surface(chosen.size(), [&](size_t i) { return chosen[i].surface; });
-    std::vector<native::ElementHit> hits(chosen.size());
-    std::vector<int> surfaces(chosen.size());
-    for (size_t i = 0; i < chosen.size(); ++i) {
-        const Emitters::Sample& sample = chosen[sorted[i]];
-        hits[i] = sample.hit;
-        hits[i].footprint = sample.distance * float(scene_->unit()) * widening;
-        surfaces[i] = sample.surface;
-    }
-    const HitSurfaces found = evaluate(*scene_, hits, surfaces);
-    for (size_t i = 0; i < chosen.size(); ++i) {
-        const Emitters::Sample& sample = chosen[sorted[i]];
-        const size_t path = paths[sorted[i]];
-        to.set_direction(path, sample.direction, found.emission.at(i), emitter_part_ * sample.density);
-        to.distance[path] = sample.distance * (1 - before_emitter) - before_emitter;
+    if (of_emitters.empty()) return;
+    const Emitters::Samples chosen = emitters_.sample(*scene_, places, points, of_emitters.size());
+    for (size_t i = 0; i < chosen.count; ++i) {
+        const size_t path = of_emitters[i];
+        to.set_direction(path, chosen.direction.at(i), chosen.radiance.at(i),
+                         emitter_part_ * chosen.density[i]);
+        to.distance[path] = chosen.distance[i] * (1 - before_emitter) - before_emitter;
     }
 }
 
@@ -260,19 +260,15 @@ void PathTracer::add_lamps(const PathBatch& batch, const std::vector<ChosenLight
 
 void PathTracer::add_chosen(const PathBatch& batch, const Scattered& scattered,
                             std::vector<Vec3>& light) const {
-    std::vector<RaySegment> rays;
-    std::vector<uint32_t> paths;
-    rays.reserve(batch.count);
-    paths.reserve(batch.count);
     for (size_t i = 0; i < batch.count; ++i) {
-        if (!(scattered.chosen_light.at(i).maxCoeff() > 0)) continue;
+        const Vec3 chosen = scattered.chosen_light.at(i);
+        if (!(chosen.maxCoeff() > 0)) continue;
         const Vec3 direction = scattered.chosen_direction.at(i);
-        rays.push_back({start_towards(batch, i, direction), direction, scattered.distance[i]});
-        paths.push_back(uint32_t(i));
+        const float distance = scattered.distance[i];
+        if (distance <= 0 ||
+            !scene_->blocked(start_towards(batch, i, direction), direction, distance, Transmissive::met))
+            light[i] += chosen;
     }
-    const std::vector<uint8_t> blocked = scene_->blocked(rays, Neighbours::scattered, Transmissive::met);
-    for (size_t i = 0; i < rays.size(); ++i)
-        if (!blocked[i]) light[paths[i]] += scattered.chosen_light.at(paths[i]);
 }
 
 void PathTracer::add_direct(const PathBatch& batch, const std::vector<ChosenLight>& lamps,
@@ -280,9 +276,18 @@ void PathTracer::add_direct(const PathBatch& batch, const std::vector<ChosenLigh
     std::vector<Vec3> light(batch.count, Vec3::Zero());
     add_lamps(batch, lamps, light);
     add_chosen(batch, scattered, light);
+    const auto add = [&](const PathState& state, const Vec3& of_it) {
+        radiance[state.index] += limited(state.throughput.cwiseProduct(of_it), state.bounces);
+    };
     for (size_t i = 0; i < batch.count; ++i) {
-        const PathState& state = batch.state[i];
-        radiance[state.index] += limited(state.throughput.cwiseProduct(light[i]), state.bounces);
+        if (batch.extensions && batch.inside[i] > 0.5f) {
+            // From within a volume all of it has passed the surface.
+            PathState passed = batch.state[i];
+            disperse(batch.extended_paths[i].channel, passed);
+            add(passed, light[i]);
+        } else {
+            add(batch.state[i], light[i]);
+        }
     }
 }
 
@@ -364,8 +369,8 @@ void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered&
             });
         if (hit) {
             absorb(hit->distance, state);
-            hits.push_back({state, *hit, direction, scattered.density[i],
-                            hit->distance * float(scene_->unit()) * widening});
+            hits.emplace_back(state, *hit, direction, scattered.density[i],
+                              hit->distance * float(scene_->unit()) * ray_widening);
         } else {
             escaped.directions.push_back(direction);
             escaped.densities.push_back(scattered.density[i]);
@@ -430,13 +435,13 @@ PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth,
         order[i] = hits[sorted[i]].hit.surface;
     }
     const HitSurfaces surfaces = evaluate(*scene_, elements, order);
+    const std::vector<float> weights = emission_weights(hits);
     const bool with_extensions = extended_ != nullptr;
     Batches next{PathBatch(hits.size()), PathBatch(with_extensions ? hits.size() : 0, with_extensions)};
     for (size_t i = 0; i < hits.size(); ++i) {
         const Hit& hit = hits[sorted[i]];
         if (is_caught(hit, depth, radiance)) continue;
-        const Vec3 emission = hit.state.throughput.cwiseProduct(surfaces.emission.at(i)) *
-                              emission_weight(hit.hit, hit.direction, hit.density);
+        const Vec3 emission = hit.state.throughput.cwiseProduct(surfaces.emission.at(i)) * weights[sorted[i]];
         const bool extended = is_extended_kind(surfaces.kind[i]),
                    ends = hit.state.bounces > resolved_->settings.path.bounces;
         if (!extended || ends) radiance[hit.state.index] += limited(emission, bounces_before(hit));

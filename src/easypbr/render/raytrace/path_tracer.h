@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "easypbr/render/raytrace/catcher_light.h"
@@ -76,8 +77,8 @@ class PathTracer {
     /// The paths that go on from hits.
     Batches arrive(std::vector<Hit>& hits, uint32_t depth, std::vector<Vec3>& radiance) const;
     bool is_caught(const Hit& hit, uint32_t depth, std::vector<Vec3>& radiance) const;
-    /// Part of what a surface emits that a path adds which has met it in a sampled direction.
-    float emission_weight(const RayHit& hit, const Vec3& direction, float density) const;
+    /// Part of what surfaces emit that paths add which have met them in sampled directions.
+    std::vector<float> emission_weights(std::span<const Hit> hits) const;
     /// Adds what the sky sends to paths that have left the scene in sampled directions.
     void add_escaped(const Escaped& paths, std::vector<Vec3>& radiance) const;
     /// What a ground that catches shadows shows of the sky behind it.
@@ -92,6 +93,7 @@ class PathTracer {
     Emitters emitters_;
     CatcherLight catcher_;
     float emitter_part_ = 0;  ///< of the directions of next-event estimation; the others are those of the sky
+    float most_light_ = 0;    ///< that a path adds after a bounce, luminance
     std::shared_ptr<const void> uniforms_, extended_;
     std::vector<Vec3> absorption_;  ///< of the surfaces' volumes, per RayScene::unit()
 };

@@ -23,17 +23,19 @@ inline float hash_of(const RTCRay& ray, unsigned element) {
     return unit_number(state);
 }
 
-inline RTCRay ray_of(const Vec3& from, const Vec3& direction, float farthest) {
-    RTCRay ray{};
+/// Where it is: copies of what has just been written in parts are slow.
+inline void set_ray(const Vec3& from, const Vec3& direction, float farthest, RTCRay& ray) {
     ray.org_x = from.x();
     ray.org_y = from.y();
     ray.org_z = from.z();
+    ray.tnear = 0;
     ray.dir_x = direction.x();
     ray.dir_y = direction.y();
     ray.dir_z = direction.z();
+    ray.time = 0;
     ray.tfar = farthest;
     ray.mask = ~0u;
-    return ray;
+    ray.id = ray.flags = 0;
 }
 
 /// What a filter needs to know.

@@ -247,8 +247,8 @@ std::optional<RayHit> RayScene::first_hit(const RaySegment& ray, Transmissive tr
                                           bool meets_gaussians) const {
     const Vec3 &from = ray.from, &direction = ray.direction;
     const float to_ground = ground_distance(from, direction);
-    RTCRayHit found{};
-    found.ray = ray_of(from, direction, std::min(to_ground, ray.distance));
+    RTCRayHit found;
+    set_ray(from, direction, std::min(to_ground, ray.distance), found.ray);
     found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     RayQuery query(transmissive);
     query.meets_gaussians = meets_gaussians;
@@ -376,7 +376,8 @@ std::optional<RayHit> RayScene::hit_at(const Vec3& place, const Vec3& view, floa
 bool RayScene::blocked(const Vec3& from, const Vec3& direction, float distance,
                        Transmissive transmissive) const {
     if (!scene_) return false;
-    RTCRay ray = ray_of(from, direction, distance);
+    RTCRay ray;
+    set_ray(from, direction, distance, ray);
     RayQuery query(transmissive);
     embree::occlude(scene_->tree.get(), query.context, ray);
     return ray.tfar < 0;
@@ -405,7 +406,8 @@ std::vector<uint8_t> RayScene::blocked(std::span<const RaySegment> rays, Neighbo
 Vec3 RayScene::transmittance(const Vec3& from, const Vec3& direction, float distance) const {
     Vec3 left = Vec3::Ones();
     if (!scene_) return left;
-    RTCRay ray = ray_of(from, direction, distance);
+    RTCRay ray;
+    set_ray(from, direction, distance, ray);
     RayQuery query(Transmissive::passed);
     query.transmittance = &left;
     embree::occlude(scene_->tree.get(), query.context, ray);
