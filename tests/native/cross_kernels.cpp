@@ -456,6 +456,38 @@ void check_paths() {
     });
 }
 
+void check_emitters() {
+    constexpr int count = 203, room = count + stream_alignment;
+    all_sets("emitters", [&](Case& run) {
+        FewEmitters e;
+        e.count = 1 + 4 * run.set;
+        const auto fill = [&](float(&to)[FewEmitters::room], float low, float high) {
+            std::copy_n(run.floats(FewEmitters::room, low, high), FewEmitters::room, to);
+        };
+        for (int c = 0; c < 3; ++c) {
+            for (auto* to : {&e.centre, &e.normal, &e.corner, &e.edge1, &e.edge2}) fill((*to)[c], -1, 1);
+            fill(e.least[c], -1, 0.5f);
+            fill(e.most[c], 0, 1);
+        }
+        fill(e.area, 0.1f, 1);
+        fill(e.light, 0, 1);
+        EmitterPlaces places{{}, run.floats(room, 0, 1), run.floats(room, 0, 1)};
+        for (const float*& from : places.from) from = run.floats(room, -2, 2);
+        EmitterPoints to;
+        to.chosen = run.output<int32_t>(room, Kind::bits);
+        for (float** values : {&to.u, &to.v, &to.direction[0], &to.direction[1], &to.direction[2],
+                               &to.distance, &to.cosine, &to.density})
+            *values = run.output<float>(room, Kind::floats);
+        float* chances = run.output<float>(room, Kind::floats);
+        kernels.sample_emitters(e, places, count, to);
+        kernels.chances_of_emitters(e, places.from, to.chosen, count, chances);
+        std::fill(to.chosen + count, to.chosen + room, 0);
+        for (float* values : {to.u, to.v, to.direction[0], to.direction[1], to.direction[2], to.distance,
+                              to.cosine, to.density, chances})
+            std::fill(values + count, values + room, 0.0f);
+    });
+}
+
 }  // namespace
 }  // namespace easypbr::native
 
@@ -473,5 +505,6 @@ int main() {
     check_splats();
     check_clusters();
     check_paths();
+    check_emitters();
     check_points();
 }
