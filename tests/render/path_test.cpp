@@ -113,6 +113,24 @@ TEST(Paths, ClosedRoomsAreDark) {
     EXPECT_LT(mean_of(render_linear(session, 256)).x(), 1e-6);
 }
 
+// What a texture says of hidden light is for frames whose rays do not find it.
+TEST(Paths, TakeNoNoteOfOcclusionTextures) {
+    Image dark(4, 4, 3, PixelType::u8);
+    const auto seen = [&](bool has_texture, bool by_paths) {
+        Material m = surface(0.5f, 0, 1);
+        if (has_texture) m.occlusion_texture.image = std::make_shared<Image>(dark);
+        Scene scene;
+        scene.show(facing_square(1, m), "square");
+        app::Session session = path_session_under_sky(scene, 8);
+        session.settings().path.enabled = by_paths;
+        look_from(session, Vec3d(0, 0, 4), 20);
+        return mean_of(render_linear(session, 4)).x();
+    };
+    EXPECT_LT(seen(true, false), 0.5 * seen(false, false));
+    EXPECT_EQ(seen(true, true), seen(false, true));
+    EXPECT_GT(seen(true, true), 0.3);
+}
+
 // Lambert: albedo I cos / (pi d^2), of one light without noise.
 TEST(Paths, PointLight) {
     Scene scene;

@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "easypbr/geometry/primitives.h"
+
 namespace easypbr::render::visibility_test {
 namespace {
 

@@ -32,7 +32,8 @@ struct Shot {
     int sample_count = 1;
     const Motion* motion = nullptr;  ///< the frames are of different times, where something moved
     bool through_lens = false;       ///< the frames look through different places of the lens
-    bool averages_radiance = false;  ///< frames are averaged before the tone curve: their light is noisy
+    /// Paths light all surfaces: their light is noisy, and frames are averaged before the tone curve.
+    bool averages_radiance = false;
 };
 
 /// One frame of an accumulated picture, as every pass sees it.

@@ -21,19 +21,18 @@ bool is_catcher(uint8_t kind) {
 /// Every how many frames a place of a shadow catcher gets samples, by its distance from the middle of the
 /// casters in radii: far away they remove little light. By the place alone, so that the ratio stays
 /// consistent.
-int catcher_period(float distance) {
+uint32_t catcher_period(float distance) {
     return distance < 2.2f ? 1 : distance < 4 ? 2 : 4;
 }
 
 }  // namespace
 
 void PathPass::Caught::add(const CaughtLight& light) {
+    const double before = frames * ratio();
     sum.arrives += light.arrives;
     sum.all += light.all;
-    const double mean = sum.all > 0 ? double(sum.arrives) / double(sum.all) : 1;
-    of_frame = float((frames + 1) * mean - frames * ratio);
-    ratio = mean;
     ++frames;
+    of_frame = float(frames * ratio() - before);
 }
 
 /// Places that a frame's pixels show, in RayScene's frame: view_position() with what pixels share taken out.

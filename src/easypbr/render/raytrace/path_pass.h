@@ -1,6 +1,7 @@
 // The light of what is seen, by path tracing on the CPU.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "easypbr/core/memory_pool.h"
@@ -44,15 +45,16 @@ class PathPass {
     /// far.
     struct Caught {
         /// Whether it gets a sample.
-        bool is_due(int turn) const { return period == 0 || turn % period == 0; }
+        bool is_due(int turn) const { return period == 0 || unsigned(turn) % period == 0; }
+        double ratio() const { return sum.all > 0 ? double(sum.arrives) / double(sum.all) : 1; }
         void add(const CaughtLight& light);
 
         CaughtLight sum;
-        double ratio = 0;
-        int frames = 0;
-        int period = 0;      ///< gets a sample every so many frames; 0: not known yet
         float of_frame = 1;  ///< by which the last frame changed the sum of frames, each of this ratio
+        uint32_t frames : 28 = 0;
+        uint32_t period : 4 = 0;  ///< gets a sample every so many frames; 0: not known yet
     };
+    static_assert(sizeof(Caught) == 16, "there is one for each pixel");
     Caught& caught_at(const Pixels& pixels, int x, int y);
 
     PooledVector<Caught> caught_;  ///< for each pixel

@@ -62,7 +62,9 @@ void for_each_texture(const MaterialContext& context, const DrawItem& item, Visi
         const Texture Material::*texture = use.row.texture;
         const bool of_normals =
             texture == &Material::normal_texture || texture == &Material::clearcoat_normal_texture;
-        if ((item.material.*texture) && !(of_normals && item.style.flat)) visit(use, i);
+        const bool is_unread = (of_normals && item.style.flat) ||
+                               (texture == &Material::occlusion_texture && !context.occlusion);
+        if ((item.material.*texture) && !is_unread) visit(use, i);
     }
 }
 

@@ -13,6 +13,7 @@ struct MaterialContext {
     ExtensionSet extensions = 0;                 ///< those that the targets hold; 0: the core model only
     int sample_count = 1;                        ///< of the accumulated picture
     const ResolvedSettings* resolved = nullptr;  ///< needed with extensions
+    bool occlusion = true;                       ///< the material's is read; paths find all of it themselves
 };
 
 /// Macros for what the vertices hold and on which side the surface is seen. `normals_agree`: the winding

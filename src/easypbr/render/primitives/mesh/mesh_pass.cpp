@@ -71,7 +71,8 @@ void MeshPass::draw_item(const Frame& frame, const DrawItem& item, const MeshBuf
     if (item.alpha == AlphaMode::blend)
         defines.emplace_back(outputs.peel ? "ALPHA_BLEND" : "ALPHA_STOCHASTIC");
     if (outputs.peel) defines.emplace_back("PEEL");
-    const MaterialContext context{outputs.extensions, frame.sample_count, frame.resolved};
+    const MaterialContext context{outputs.extensions, frame.sample_count, frame.resolved,
+                                  !frame.averages_radiance};
     add_material_defines(context, item, defines);
 
     const gl::Program& program = program_of(item, defines);

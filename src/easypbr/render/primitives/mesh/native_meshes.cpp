@@ -128,7 +128,7 @@ std::unique_ptr<HitSurface> NativeMeshes::hit_surface(const ResolvedSettings& re
     DrawItem plain = item;
     plain.material.shader = {};
     // What the footprint of a ray blurs is not blurred less for being jittered.
-    const ShaderInputs inputs = inputs_of({item.extensions(), 1, &resolved}, plain, known);
+    const ShaderInputs inputs = inputs_of({item.extensions(), 1, &resolved, false}, plain, known);
     Transfers none;
     const auto uniforms = item.extensions() ? native::extended_uniforms : native::surface_uniforms;
     return std::make_unique<MeshHits>(item, known, uniforms(inputs.native(none)),
@@ -143,7 +143,8 @@ std::unique_ptr<MeshSurface> NativeMeshes::surface_of(const Frame& frame, const 
     const bool is_plain = !item.textured() && !item.with_colors && !item.emits() && !is_extended &&
                           item.alpha == AlphaMode::opaque;
     if (is_plain) return surface;
-    const ShaderInputs inputs = inputs_of({extensions, frame.sample_count, frame.resolved}, item, known);
+    const MaterialContext context{extensions, frame.sample_count, frame.resolved, !frame.averages_radiance};
+    const ShaderInputs inputs = inputs_of(context, item, known);
     Transfers none;
     const auto uniforms = is_extended ? native::extended_uniforms : native::surface_uniforms;
     surface->vary(uniforms(inputs.native(none)), is_extended, attributes_of(item, known));
