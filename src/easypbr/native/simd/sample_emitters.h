@@ -1,7 +1,7 @@
 // Points of few emissive triangles, for many places at once: see render::Emitters.
 #pragma once
 
-#include "easypbr/native/simd/vectors.h"
+#include "easypbr/native/simd/texels.h"
 
 namespace easypbr::native::EASYPBR_ISA {
 

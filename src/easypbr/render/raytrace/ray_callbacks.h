@@ -24,7 +24,7 @@ inline float hash_of(const RTCRay& ray, unsigned element) {
 }
 
 /// Where it is: copies of what has just been written in parts are slow.
-inline void set_ray(const Vec3& from, const Vec3& direction, float farthest, RTCRay& ray) {
+inline void put_ray(const Vec3& from, const Vec3& direction, float farthest, RTCRay& ray) {
     ray.org_x = from.x();
     ray.org_y = from.y();
     ray.org_z = from.z();

@@ -248,7 +248,7 @@ std::optional<RayHit> RayScene::first_hit(const RaySegment& ray, Transmissive tr
     const Vec3 &from = ray.from, &direction = ray.direction;
     const float to_ground = ground_distance(from, direction);
     RTCRayHit found;
-    set_ray(from, direction, std::min(to_ground, ray.distance), found.ray);
+    put_ray(from, direction, std::min(to_ground, ray.distance), found.ray);
     found.hit.geomID = RTC_INVALID_GEOMETRY_ID;
     RayQuery query(transmissive);
     query.meets_gaussians = meets_gaussians;
@@ -377,7 +377,7 @@ bool RayScene::blocked(const Vec3& from, const Vec3& direction, float distance,
                        Transmissive transmissive) const {
     if (!scene_) return false;
     RTCRay ray;
-    set_ray(from, direction, distance, ray);
+    put_ray(from, direction, distance, ray);
     RayQuery query(transmissive);
     embree::occlude(scene_->tree.get(), query.context, ray);
     return ray.tfar < 0;
@@ -407,7 +407,7 @@ Vec3 RayScene::transmittance(const Vec3& from, const Vec3& direction, float dist
     Vec3 left = Vec3::Ones();
     if (!scene_) return left;
     RTCRay ray;
-    set_ray(from, direction, distance, ray);
+    put_ray(from, direction, distance, ray);
     RayQuery query(Transmissive::passed);
     query.transmittance = &left;
     embree::occlude(scene_->tree.get(), query.context, ray);
