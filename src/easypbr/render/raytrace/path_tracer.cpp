@@ -369,8 +369,8 @@ void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered&
             });
         if (hit) {
             absorb(hit->distance, state);
-            hits.emplace_back(state, *hit, direction, scattered.density[i],
-                              hit->distance * float(scene_->unit()) * ray_widening);
+            hits.push_back({state, *hit, direction, scattered.density[i],
+                            hit->distance * float(scene_->unit()) * ray_widening});
         } else {
             escaped.directions.push_back(direction);
             escaped.densities.push_back(scattered.density[i]);
