@@ -33,11 +33,6 @@ INLINE vfloat gather_emitters(const float* values, vint chosen) {
     return as_float(gather(reinterpret_cast<const int32_t*>(values), chosen).v);
 }
 
-template <class T, class Vector>
-INLINE void store_from(T* to, int first, Vector values) {
-    std::memcpy(to + first, &values.v, sizeof values.v);
-}
-
 inline void sample_emitters(const FewEmitters& e, const EmitterPlaces& places, int count,
                             const EmitterPoints& to) {
     for (int first = 0; first < count; first += lanes) {
@@ -69,17 +64,18 @@ inline void sample_emitters(const FewEmitters& e, const EmitterPlaces& places, i
         vfloat cosine = 0.0f;
         for (int c = 0; c < 3; ++c) {
             const vfloat direction = step[c] * scale;
-            store_from(to.direction[c], first, direction);
+            store_lanes(to.direction[c], size_t(first), direction);
             cosine += -normal[c] * direction;
         }
         const vfloat per_area = share / max(sum * gather_emitters(e.area, chosen), 1e-30f);
         const vfloat density = per_area * distance * distance / max(abs(cosine), 1e-30f);
-        store_from(to.chosen, first, chosen);
-        store_from(to.u, first, weight1);
-        store_from(to.v, first, weight2);
-        store_from(to.distance, first, distance);
-        store_from(to.cosine, first, cosine);
-        store_from(to.density, first, select(abs(cosine) > 1e-6f && sum > 0.0f, density, vfloat(0.0f)));
+        std::memcpy(to.chosen + first, &chosen.v, sizeof chosen.v);
+        store_lanes(to.u, size_t(first), weight1);
+        store_lanes(to.v, size_t(first), weight2);
+        store_lanes(to.distance, size_t(first), distance);
+        store_lanes(to.cosine, size_t(first), cosine);
+        store_lanes(to.density, size_t(first),
+                    select(abs(cosine) > 1e-6f && sum > 0.0f, density, vfloat(0.0f)));
     }
 }
 
@@ -96,7 +92,7 @@ inline void chances_of_emitters(const FewEmitters& e, const float* const (&place
             sum += share;
         }
         const vfloat per_area = own / max(sum * gather_emitters(e.area, which), 1e-30f);
-        store_from(chances, first, select(sum > 0.0f, per_area, vfloat(0.0f)));
+        store_lanes(chances, size_t(first), select(sum > 0.0f, per_area, vfloat(0.0f)));
     }
 }
 
