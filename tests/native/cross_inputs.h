@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <deque>
 #include <limits>
@@ -436,5 +437,19 @@ class Filler {
     Random& random_;
     bool orthographic_;
 };
+
+/// Calls `body` with the run of each set.
+template <class Body>
+void all_sets(std::string_view kernel, Body&& body) {
+    Case::forget();
+    for (int set = 0; set < sets; ++set) {
+        Case run(kernel, set);
+        body(run);
+        run.report();
+    }
+    if (Case::tells_something()) return;
+    std::fprintf(stderr, "%.*s wrote nothing, or few numbers\n", int(kernel.size()), kernel.data());
+    std::exit(1);
+}
 
 }  // namespace easypbr::native

@@ -1,9 +1,7 @@
 // Runs all kernels of one instruction set, which EASYPBR_ISA names, and prints a hash of what each writes
 // with each of several sets of features. scripts/check_aarch64.sh compares what two processors print.
 #include "cross_inputs.h"
-
-#include <algorithm>
-#include <cstdlib>
+#include "cross_places.h"
 
 namespace easypbr::native {
 
@@ -38,20 +36,6 @@ Uniforms uniforms_of(Case& run) {
     }
     u.visit(Filler(run, orthographic));
     return u;
-}
-
-/// Calls `body` with the run of each set.
-template <class Body>
-void all_sets(std::string_view kernel, Body&& body) {
-    Case::forget();
-    for (int set = 0; set < sets; ++set) {
-        Case run(kernel, set);
-        body(run);
-        run.report();
-    }
-    if (Case::tells_something()) return;
-    std::fprintf(stderr, "%.*s wrote nothing, or few numbers\n", int(kernel.size()), kernel.data());
-    std::exit(1);
 }
 
 /// Pixels that a shader writes: blended otherwise, and others of them, in each set. In every other set they
@@ -336,158 +320,6 @@ void check_lines() {
     });
 }
 
-void check_splats() {
-    constexpr int count = 60, pixels = SplatPixels::size * SplatPixels::size;
-    all_sets("blend_splats", [&](Case& run) {
-        const auto number = [&](float low, float high) { return run.random.number(low, high); };
-        auto* splats = run.array<ScreenSplat>(count);
-        auto* places = run.array<uint32_t>(count);
-        for (int i = 0; i < count; ++i) {
-            const float wide = number(0.5f, 6), high = number(0.5f, 6), turn = number(-0.9f, 0.9f);
-            const float part = 1 / (1 - turn * turn);
-            splats[i] = {number(-4, 36),
-                         number(-4, 36),
-                         part / (wide * wide),
-                         -part * turn / (wide * high),
-                         part / (high * high),
-                         number(0.01f, 1),
-                         number(0, 1),
-                         number(0, 1),
-                         number(0, 1),
-                         number(0.01f, 0.5f),
-                         number(-0.01f, 0.01f),
-                         number(-0.01f, 0.01f),
-                         3 * wide,
-                         3 * high,
-                         number(10, 1000),
-                         uint32_t(i)};
-            places[i] = uint32_t((7 * i) % count);
-        }
-        SplatPixels tile{.left = 8, .top = 16, .is_soft = run.set % 2 == 0, .axis = {0.1f, 0.2f, -1, 0}};
-        for (float** channel : {&tile.red, &tile.green, &tile.blue, &tile.through})
-            *channel = run.output<float>(pixels, Kind::floats);
-        tile.median = run.output<uint32_t>(pixels, Kind::bits);
-        if (run.set % 3 != 0) {
-            tile.farthest = run.floats(pixels, -0.1f, 0.2f);
-            tile.nearest = run.floats(pixels, 0.2f, 0.6f);
-        }
-        if (run.set % 5 < 2) tile.positions = run.output<float>(pixels, Kind::floats);
-        kernels.blend_splats(tile, splats, places, count);
-    });
-}
-
-/// A camera that looks along -z, at numbers between -1 and 1 that are 3 away.
-void set_view(float (&clip)[4][4]) {
-    const float matrix[4][4] = {{1.5f, 0, 0, 0}, {0, 2, 0, 0}, {0, 0, 0, -1}, {0, 0, 0.1f, 3}};
-    std::memcpy(clip, matrix, sizeof matrix);
-}
-
-void check_clusters() {
-    constexpr int vertices = 203, faces = 250;
-    all_sets("set_up_cluster", [&](Case& run) {
-        auto* corners = run.array<uint8_t>(3 * faces + stream_alignment);
-        for (int i = 0; i < 3 * faces; ++i) corners[i] = uint8_t(run.random.below(vertices));
-        // Small enough to be kept, but in the last set.
-        const float reach = run.set % 5 == 4 ? 1.0f : 0.2f;
-        ClusterFaces cluster{.vertices = run.floats(3 * vertices + stream_alignment, -reach, reach),
-                             .corners = corners,
-                             .vertex_count = vertices,
-                             .face_count = faces,
-                             .half_width = 320,
-                             .half_height = 240,
-                             .left = 300,
-                             .top = 200,
-                             .right = 330,
-                             .bottom = 250,
-                             .both_sides = run.set % 3 == 0,
-                             .mirrored = run.set % 2 == 0};
-        set_view(cluster.clip_from_mesh);
-        auto* count = run.output<int32_t>(1, Kind::bits);
-        auto* kept = run.output<uint8_t>(faces, Kind::bits);
-        auto* depths = run.output<float>(vertices, Kind::floats);
-        ClusterScreen screen;
-        *count = kernels.set_up_cluster(cluster, screen);
-        if (*count > 0) std::memcpy(kept, screen.kept, size_t(*count));
-        if (*count >= 0) std::copy_n(screen.depth, vertices, depths);
-    });
-}
-
-void check_points() {
-    constexpr int count = 199;
-    all_sets("set_up_points", [&](Case& run) {
-        PointBatch batch{.points = run.floats(3 * count + stream_alignment, -1, 1),
-                         .count = count,
-                         .half_width = 320,
-                         .half_height = 240,
-                         .left = 200,
-                         .top = 100,
-                         .right = 500,
-                         .bottom = 300,
-                         .pixels = 0.3f + 0.4f * float(run.set % 5),
-                         .world_pixels = run.set % 2 == 0 ? 0.0f : 4.0f,
-                         .round = run.set % 3 != 0};
-        set_view(batch.clip_from_mesh);
-        auto* found = run.output<int32_t>(1 + 4 * count, Kind::bits);
-        auto* depths = run.output<float>(count, Kind::floats);
-        PointScreen screen;
-        found[0] = kernels.set_up_points(batch, screen);
-        for (int i = 0; i < found[0]; ++i) {
-            const int at = screen.kept[i];
-            depths[i] = screen.depth[at];
-            found[1 + 4 * i] = at;
-            found[2 + 4 * i] = screen.column[at];
-            found[3 + 4 * i] = screen.line[at];
-            found[4 + 4 * i] = screen.covered[at];
-        }
-    });
-}
-
-void check_paths() {
-    constexpr int count = 203, room = count + stream_alignment;
-    all_sets("sample_paths", [&](Case& run) {
-        const float *first = run.floats(room, 0, 1), *second = run.floats(room, 0, 1);
-        std::vector<uint32_t> seeds(room), samples(room);
-        std::memcpy(seeds.data(), first, sizeof(float) * room);
-        std::memcpy(samples.data(), second, sizeof(float) * room);
-        auto *xs = run.output<float>(room, Kind::floats), *ys = run.output<float>(room, Kind::floats);
-        kernels.sample_paths(seeds.data(), samples.data(), uint32_t(run.set), count, xs, ys);
-        std::fill(xs + count, xs + room, 0.0f);
-        std::fill(ys + count, ys + room, 0.0f);
-    });
-}
-
-void check_emitters() {
-    constexpr int count = 203, room = count + stream_alignment;
-    all_sets("emitters", [&](Case& run) {
-        FewEmitters e;
-        e.count = 1 + 4 * run.set;
-        const auto fill = [&](float(&to)[FewEmitters::room], float low, float high) {
-            std::copy_n(run.floats(FewEmitters::room, low, high), FewEmitters::room, to);
-        };
-        for (int c = 0; c < 3; ++c) {
-            for (auto* to : {&e.centre, &e.normal, &e.corner, &e.edge1, &e.edge2}) fill((*to)[c], -1, 1);
-            fill(e.least[c], -1, 0.5f);
-            fill(e.most[c], 0, 1);
-        }
-        fill(e.area, 0.1f, 1);
-        fill(e.light, 0, 1);
-        EmitterPlaces places{{}, run.floats(room, 0, 1), run.floats(room, 0, 1)};
-        for (const float*& from : places.from) from = run.floats(room, -2, 2);
-        EmitterPoints to;
-        to.chosen = run.output<int32_t>(room, Kind::bits);
-        for (float** values : {&to.u, &to.v, &to.direction[0], &to.direction[1], &to.direction[2],
-                               &to.distance, &to.cosine, &to.density})
-            *values = run.output<float>(room, Kind::floats);
-        float* chances = run.output<float>(room, Kind::floats);
-        kernels.sample_emitters(e, places, count, to);
-        kernels.chances_of_emitters(e, places.from, to.chosen, count, chances);
-        std::fill(to.chosen + count, to.chosen + room, 0);
-        for (float* values : {to.u, to.v, to.direction[0], to.direction[1], to.direction[2], to.distance,
-                              to.cosine, to.density, chances})
-            std::fill(values + count, values + room, 0.0f);
-    });
-}
-
 }  // namespace
 }  // namespace easypbr::native
 
@@ -502,9 +334,9 @@ int main() {
 #undef EASYPBR_CHECK
     check_meshes();
     check_lines();
-    check_splats();
-    check_clusters();
-    check_paths();
-    check_emitters();
-    check_points();
+    check_splats(kernels);
+    check_clusters(kernels);
+    check_paths(kernels);
+    check_emitters(kernels);
+    check_points(kernels);
 }
