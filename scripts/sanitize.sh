@@ -7,9 +7,10 @@ case ${1:-} in
   address | thread) sanitizers=("$1"); shift ;;
   *) sanitizers=(address thread) ;;
 esac
-# Mesa and its JIT keep memory until the process ends; what leaks is theirs. Tests send themselves SIGBUS.
-export ASAN_OPTIONS=detect_leaks=0:handle_sigbus=0 UBSAN_OPTIONS=print_stacktrace=1
-export TSAN_OPTIONS="suppressions=$PWD/scripts/tsan.supp history_size=4 second_deadlock_stack=1 handle_sigbus=0"
+# Mesa and its JIT keep memory until the process ends; what leaks is theirs. Tests send themselves SIGBUS,
+# and ask for more memory than there is.
+export ASAN_OPTIONS=detect_leaks=0:handle_sigbus=0:allocator_may_return_null=1 UBSAN_OPTIONS=print_stacktrace=1
+export TSAN_OPTIONS="suppressions=$PWD/scripts/tsan.supp history_size=4 second_deadlock_stack=1 handle_sigbus=0 allocator_may_return_null=1"
 failed=0
 for sanitizer in "${sanitizers[@]}"; do
   preset=asan

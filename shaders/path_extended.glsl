@@ -128,6 +128,11 @@ float density_below(vec3 l, Surface s) {
 // Roughness of a volume's surface spreads what leaves it.
 bool leaves_spread(Surface s) { return is_inside() && !is_clear(s); }
 
+// What stays in a volume at a facet: Fresnel's reflectance is the same from both sides, at the angle outside.
+float kept_part(float outer_cosine, Surface s) {
+    return luminance(F_schlick90(outer_cosine, s.extension.f0, vec3(s.extension.f90)));
+}
+
 // Of directions in which paths leave a volume: facets as the view sees them (Heitz 2018), refraction (Walter et al. 2007,
 // equation 17), and what Fresnel's reflectance leaves, as left_or_kept() of path_scatter_extended.frag chooses it. A path takes
 // all of the light of such a direction with it, so that this is the BTDF times the cosine, too.
@@ -135,9 +140,8 @@ float leaving(vec3 l, Surface s) {
     float eta = s.extension.ior;
     vec3 h = normalize(l + eta * s.view);
     float inner = dot(h, s.view), outer = -dot(h, l), across = eta * inner - outer;
-    float kept = luminance(F_schlick90(outer, s.extension.f0, vec3(s.extension.f90)));
     float facets = 4.0 * inner * visible_density(dot(s.normal, h), s.n_dot_v, s.alpha);
-    float density = facets * outer / max(across * across, 1e-12) * (1.0 - kept);
+    float density = facets * outer / max(across * across, 1e-12) * (1.0 - kept_part(outer, s));
     return inner > 0.0 && outer > 0.0 && dot(l, v_face) < 0.0 ? density : 0.0;
 }
 

@@ -38,12 +38,11 @@ vec3 refracted(Surface s, vec3 h) {
 // A direction above the face, or with -1 below it.
 vec3 on_side(vec3 l, float side) { return side * dot(l, v_face) > 0.0 ? l : mirrored_at_face(l); }
 
-// Out of a volume, or back into it: Fresnel's reflectance is the same from both sides, at the angle outside.
+// Out of a volume, or back into it.
 vec3 left_or_kept(Surface s, vec3 h, float u) {
     float eta = s.extension.ior, cosine = dot(h, s.view);
     float sine2 = eta * eta * (1.0 - cosine * cosine), outer = sqrt(max(1.0 - sine2, 0.0));
-    float part = luminance(F_schlick90(outer, s.extension.f0, vec3(s.extension.f90)));
-    bool leaves = sine2 < 1.0 && u >= part;
+    bool leaves = sine2 < 1.0 && u >= kept_part(outer, s);
     return leaves ? (eta * cosine - outer) * h - eta * s.view : on_side(mirrored_by(h, s.view), 1.0);
 }
 

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "easypbr/core/error.h"
+#include "easypbr/core/memory_pool.h"
 #include "easypbr/geometry/surfels.h"
 #include "easypbr/gl/context.h"
 #include "easypbr/render/frame/target.h"
@@ -31,6 +32,28 @@ class TargetTest : public testing::Test {
     const Target target_{gl::Format::r32f, Vec2i(3, 2)};
     Transfers transfers_;
 };
+
+TEST_F(TargetTest, ReleasesHostMemory) {
+    const Target large(gl::Format::rgba32f, Vec2i(256, 128));
+    const size_t given = pooled_memory().given;
+    large.write(large.whole());
+    EXPECT_EQ(pooled_memory().given, given + size_t{256} * 128 * 16);
+    large.release();
+    EXPECT_EQ(pooled_memory().given, given);
+    EXPECT_FALSE(large.is_ahead());
+    EXPECT_TRUE(large.pixels<Vec4>().empty());
+    // It is written again as if it were new.
+    large.write({8, 4, 2, 1});
+    EXPECT_EQ(large.pixels<Vec4>().size(), 2u);
+}
+
+TEST_F(TargetTest, KeepsItsTextureWhenHostMemoryIsReleased) {
+    clear_texture(5);
+    target_.download(target_.whole(), transfers_);
+    target_.release();
+    EXPECT_EQ(target_.read<float>(transfers_), std::vector<float>(6, 5.0f));
+    EXPECT_EQ(transfers_.downloads, 2);
+}
 
 TEST_F(TargetTest, HostMemoryIsReadWithoutATransfer) {
     write({1, 0, 2, 2});

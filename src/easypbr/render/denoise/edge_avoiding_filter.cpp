@@ -57,8 +57,10 @@ const Target& EdgeAvoidingFilter::smooth(const NoisyLight& noisy, Transfers& tra
         if (level == 0) values.set("u_estimate", estimate_);
         values.set("u_step", 1 << level);
         smooth_.shade(values, {.target = to, .area = whole}, transfers);
+        estimate_.release();
         std::swap(from, to);
     }
+    guides_.release();
     change_colors(*from, noisy.color, false);
     return *from;
 }

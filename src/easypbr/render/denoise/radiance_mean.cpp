@@ -94,6 +94,7 @@ void RadianceMean::add(const Frame& frame, const PixelRect& area, const GBuffer&
                        Transfers& transfers) {
     begin_weights();
     ++frames_;
+    light_.release();
     sample_.download(area, transfers);
     const HeldPixels<Vec4> sample(sample_), sum(sum_);
     parallel_for(size_t(area.height), 16, [&](size_t row) {
@@ -105,16 +106,15 @@ void RadianceMean::add(const Frame& frame, const PixelRect& area, const GBuffer&
             if (!weights_.empty()) weights_[i].x() += open_part(i);
         }
     });
-    if (!notes_surfaces_) {
-        open_.clear();
-        return;
+    if (notes_surfaces_) {
+        for (const Target* target : {&surfaces.albedo, &surfaces.normal, &surfaces.material, &surfaces.depth})
+            target->download(area, transfers);
+        if (see_through && !frame.resolved->settings.background.shows_environment())
+            coverage_.resize(noisy_.size(), Vec2::Zero());
+        add_surfaces(frame, area, surfaces);
     }
-    for (const Target* target : {&surfaces.albedo, &surfaces.normal, &surfaces.material, &surfaces.depth})
-        target->download(area, transfers);
-    if (see_through && !frame.resolved->settings.background.shows_environment())
-        coverage_.resize(noisy_.size(), Vec2::Zero());
-    add_surfaces(frame, area, surfaces);
     open_.clear();
+    sample_.release();
 }
 
 void RadianceMean::begin_weights() {

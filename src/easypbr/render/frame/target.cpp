@@ -16,9 +16,14 @@ bool contains(const PixelRect& outer, const PixelRect& inner) {
            inner.y + inner.height <= outer.y + outer.height;
 }
 
+/// Clearing a vector, or assigning an empty list, would keep its memory.
+void free_memory(PooledVector<std::byte>& pixels) {
+    PooledVector<std::byte>().swap(pixels);
+}
+
 /// Makes room for as many undefined bytes.
 void resize(PooledVector<std::byte>& pixels, size_t bytes) {
-    if (bytes > pixels.capacity()) pixels = {};  // nothing to copy
+    if (bytes > pixels.capacity()) free_memory(pixels);  // nothing to copy
     pixels.resize(bytes);
 }
 
@@ -44,6 +49,13 @@ void Target::write(const PixelRect& area) const {
     resize(host_, bytes_of(area, format_));
     newest_ = Newest::host;
     is_complete_ = true;
+}
+
+void Target::release() const {
+    free_memory(host_);
+    area_ = {};
+    is_complete_ = false;
+    newest_ = Newest::texture;
 }
 
 void Target::upload(Transfers& transfers) const {

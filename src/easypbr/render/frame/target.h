@@ -60,6 +60,8 @@ class Target {
     void write(const PixelRect& area) const;
     /// Whatever it holds is out of date.
     void forget() const { newest_ = Newest::texture; }
+    /// Gives host memory back. What was there alone is lost.
+    void release() const;
     /// The rectangle in host memory.
     const PixelRect& area() const { return area_; }
     /// Its pixels, row by row: all channels as values of T.

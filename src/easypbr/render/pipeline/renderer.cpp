@@ -214,6 +214,8 @@ void Renderer::finish() {
     Picture& picture = *picture_;
     PassTimer& timer = pipeline_.timer();
     const GBuffer* exact = picture.with_exact ? &pipeline_.targets() : nullptr;
+    // All of the last frame's light is in the mean: denoising takes the memory.
+    if (picture.shot.averages_radiance && custom_.empty()) pipeline_.targets().radiance.release();
     timer.run("output", [&] {
         output_.finish(picture.frame, picture.lit, background_image(picture.resolved, picture.images), exact);
     });

@@ -151,6 +151,7 @@ void GroundPass::shade_finish(const Frame& frame, const GBuffer& targets, const 
                    .area = frame.whole(),
                    .store = catches ? native::Store::replace : native::Store::multiply},
                   transfers);
+    light_.release();
 }
 
 }  // namespace easypbr::render

@@ -36,8 +36,9 @@ class GroundPass {
 
     /// The same in host memory, where the targets hold the whole frame.
     void shade(const Frame& frame, const GBuffer& targets);
-    /// RGBA32F: see light(). It has to be written before it is added to.
+    /// RGBA32F: see light(). It has to be written before it is added to, in each frame.
     const Target& caught_light(const Frame& frame);
+    /// Releases caught_light().
     void shade_finish(const Frame& frame, const GBuffer& targets, const Box3d& bounds, Transfers& transfers);
 
   private:
