@@ -34,14 +34,15 @@ const Target& EdgeAvoidingFilter::smooth(const NoisyLight& noisy, Transfers& tra
     const Target *from = &noisy.light, *to = &noisy.scratch;
     const PixelRect whole = from->whole();
     change_colors(*from, noisy.color, true);
-    for (Target* own : {&guides_, &estimate_}) {
+    for (Target* own : {&guides_, &estimate_})
         if (own->size() != from->size()) *own = Target(gl::Format::rgba32f, from->size());
-        own->write(whole);
-    }
+    guides_.write(whole);
     ShaderInputs sums;
     sums.set("u_surface", noisy.surface);
     sums.set("u_reflectance", noisy.color);
     guiding_.shade(sums, {.target = &guides_, .area = whole}, transfers);
+    if (noisy.is_last) noisy.surface.release();
+    estimate_.write(whole);
     const auto inputs = [&] {
         ShaderInputs values;
         values.set("u_light", *from);

@@ -16,6 +16,7 @@ struct NoisyLight {
     const Target& color;
     /// Undefined; for what denoisers write.
     const Target& scratch;
+    bool is_last = false;  ///< `surface` is not needed any more, and may be released
 };
 
 }  // namespace easypbr::render

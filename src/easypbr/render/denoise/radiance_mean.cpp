@@ -69,6 +69,7 @@ void clear(const Target& target) {
 
 void RadianceMean::begin(Vec2i size, bool with_surfaces) {
     frames_ = 0;
+    is_last_ = false;
     tiles_.begin(size);
     overlay_sum_.clear();
     coverage_.clear();
@@ -256,7 +257,7 @@ const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
     }
     const std::vector<float> coverage = denoised_coverage(denoising, transfers);
     write_noisy_light();
-    const Target& result = denoised(denoising, color_, transfers);
+    const Target& result = denoised(denoising, color_, is_last_, transfers);
     const auto to = result.pixels<Vec4>(), seen = seen_.pixels<Vec4>(), color = color_.pixels<Vec4>();
     parallel_for(to.size(), grain, [&](size_t i) {
         const Vec3 changed = (to[i].head<3>() * color[i].w() - seen[i].head<3>()) *
@@ -270,8 +271,9 @@ const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
     return result;
 }
 
-const Target& RadianceMean::denoised(Denoising denoising, const Target& color, Transfers& transfers) {
-    const NoisyLight noisy{light_, surface_, color, sample_};
+const Target& RadianceMean::denoised(Denoising denoising, const Target& color, bool is_last,
+                                     Transfers& transfers) {
+    const NoisyLight noisy{light_, surface_, color, sample_, is_last};
     return denoising == Denoising::oidn ? oidn_.denoise(noisy) : filter_.smooth(noisy, transfers);
 }
 
@@ -284,7 +286,7 @@ std::vector<float> RadianceMean::denoised_coverage(Denoising denoising, Transfer
     const auto color = color_.pixels<Vec4>();
     std::ranges::transform(color, white.pixels<Vec4>().begin(),
                            [](const Vec4& sum) { return Vec4(Vec4::Constant(sum.w())); });
-    const auto result = denoised(denoising, white, transfers).pixels<Vec4>();
+    const auto result = denoised(denoising, white, false, transfers).pixels<Vec4>();
     std::vector<float> changes(result.size());
     parallel_for(changes.size(), grain, [&](size_t i) {
         if (noisy_[i] == Noisy::radiance)

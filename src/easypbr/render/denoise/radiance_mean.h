@@ -41,6 +41,9 @@ class RadianceMean {
     void end_tiles(float noise, float exposure);
     const SampledTiles& tiles() const { return tiles_; }
 
+    /// No frame follows: the next mean() is the last of these frames, and releases what it has used.
+    void end() { is_last_ = true; }
+
     /// The means so far, in host memory; of radiance 0 where overlays leave none of it. They live until the
     /// next call of a member. Throws Error when a denoiser that is asked for by name fails.
     const Target& mean(Denoising denoising, Transfers& transfers);
@@ -66,7 +69,7 @@ class RadianceMean {
     TileError error_of(size_t tile, float exposure) const;
     void write_noisy_light();
     void write_noisy_coverage();
-    const Target& denoised(Denoising denoising, const Target& color, Transfers& transfers);
+    const Target& denoised(Denoising denoising, const Target& color, bool is_last, Transfers& transfers);
     /// What denoising adds to the sum of the coverages of pixels whose light is denoised; empty where none
     /// has noise.
     std::vector<float> denoised_coverage(Denoising denoising, Transfers& transfers);
@@ -74,7 +77,8 @@ class RadianceMean {
     int frames_ = 0;
     SampledTiles tiles_;
     bool notes_surfaces_ = false;
-    Target sum_;  ///< of all frames
+    bool is_last_ = false;  ///< see end()
+    Target sum_;            ///< of all frames
     /// Of frames that show a surface: its radiance, of a shadow catcher over nothing its coverage; a: the sum
     /// of squares of the luminance; and what NoisyLight has.
     Target seen_, surface_, color_;

@@ -89,6 +89,8 @@ class Pipeline {
         shadow_maps_.allow_native(allow);
     }
     void allow_native_shading(bool allow) { native_shading_ = allow; }
+    /// No frame follows that adds to what paths have found so far.
+    void end_paths() { paths_.end(); }
     void evict_unused();
 
   private:

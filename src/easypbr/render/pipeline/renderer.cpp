@@ -214,15 +214,21 @@ void Renderer::finish() {
     Picture& picture = *picture_;
     PassTimer& timer = pipeline_.timer();
     const GBuffer* exact = picture.with_exact ? &pipeline_.targets() : nullptr;
-    // All of the last frame's light is in the mean: denoising takes the memory.
-    if (picture.shot.averages_radiance && custom_.empty()) pipeline_.targets().radiance.release();
+    const bool is_last = is_complete();
+    if (picture.shot.averages_radiance) {
+        // All of the last frame's light is in the mean: denoising takes the memory.
+        if (custom_.empty()) pipeline_.targets().radiance.release();
+        if (is_last) {
+            pipeline_.end_paths();
+            output_.end();
+        }
+    }
     timer.run("output", [&] {
         output_.finish(picture.frame, picture.lit, background_image(picture.resolved, picture.images), exact);
     });
     if (picture.shot.motion) move_objects(picture.drawable, picture.scene, *picture.shot.motion, 1);
     if (exact) timer.run("exact", [&] { draw_exact(); });
     if (picture.contents.custom) draw_custom_over_picture();
-    const bool is_last = is_complete();
     if (is_last && picture.options.surfaces && !picture.holds_surfaces)
         timer.run("surfaces", [&] { kept_->draw(pipeline_); });
     // Once a picture: frames after the first ask for less than the first did.

@@ -24,6 +24,9 @@ class PathPass {
     void draw_layer(const Frame& frame, const GBuffer& layer, const RayScene& scene,
                     const SampledTiles* tiles, Transfers& transfers);
 
+    /// Releases what draw() keeps from frame to frame: the next one begins a picture.
+    void end() { PooledVector<Caught>().swap(caught_); }
+
   private:
     class CameraRays;
     struct Pixels;
