@@ -366,6 +366,30 @@ def paths() -> np.ndarray:
     return row(pictures)
 
 
+def fireflies() -> np.ndarray:
+    """A closed room with a block of gold: bright pixels of few samples, the same with their light spread, many samples."""
+    scene = Scene()
+    white, gold = Material(base_color="#d8d4cc", roughness=1), Material(base_color="#ffc557", metallic=1, roughness=0.15)
+    for name, size, place, material in (
+            ("floor", (2, 0.05, 2), (0, -1, 0), white), ("ceiling", (2, 0.05, 2), (0, 1, 0), white), ("back", (2, 2, 0.05), (0, 0, -1), white),
+            ("left", (0.05, 2, 2), (-1, 0, 0), Material(base_color="#c03020", roughness=1)),
+            ("right", (0.05, 2, 2), (1, 0, 0), Material(base_color="#3878c0", roughness=1)), ("block", (0.55, 1.1, 0.55), (-0.35, -0.43, -0.35), gold),
+            ("lamp", (0.4, 0.02, 0.4), (0, 0.96, 0), Material(base_color="#000000", emissive=(12, 12, 12)))):
+        part = shapes.box(size)
+        part.material = material
+        part.translate(place)
+        scene.show(part, name)
+    view = Viewer((290, 290), {"camera": {"position": (0, 0, 4.4), "target": (0, 0, 0), "fov_y_deg": 28}, "environment": {"enabled": False},
+                               "path": {"enabled": True, "denoise": "off"}}, scene)
+    for lamp in ("key", "fill", "rim"):
+        view.lights[lamp].enabled = False
+    pictures = []
+    for clamp, samples in ((0, 16), (0.25, 16), (0, 4096)):
+        view.settings.path.clamp = clamp
+        pictures.append(view.render(samples=samples))
+    return row(pictures)
+
+
 def bloom() -> np.ndarray:
     """Without, with a threshold, with a tenth of all light spread."""
     scene = on_floor(teapot("#ffe29b", 1, 0.2))

@@ -288,6 +288,15 @@ const Case cases[] = {
          s.lights.key.enabled = true;
      },
      4},
+    // Rare paths are spread over the pixels around.
+    {"fireflies", solids,
+     [](Settings& s) {
+         s.path.enabled = true;
+         s.path.denoise = Denoising::off;
+         s.path.clamp = 0.01f;
+         s.lights.key.enabled = true;
+     },
+     4},
     {"blurred_background", solids, [](Settings& s) { s.background.mode = BackgroundMode::blur; }},
     {"points", [] { return showing(cloud()); }, [](Settings& s) { s.edl.radius = 8.5f; }},
     // Its widest ring is 93 pixels from the middle, much farther than splats of 3 pixels ask a tile to see.

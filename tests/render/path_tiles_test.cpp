@@ -47,11 +47,13 @@ struct Wall {
         light.intensity = 80;
         scene.set_light("lamp", light);
     }
-    app::Session session(float noise) const {
+    /// By default no light is spread from tile to tile.
+    app::Session session(float noise, float clamp = 0) const {
         app::Session session = plain_session(scene, size);
         Settings& s = session.settings();
         s.path.enabled = true;
         s.path.denoise = Denoising::off;
+        s.path.clamp = clamp;
         s.image.noise = noise;
         s.shadows.enabled = true;
         look_from(session, Vec3d(0, 0, 4), 30);
@@ -122,7 +124,16 @@ TEST(PathTiles, SamplesGoWhereTheErrorIs) {
     EXPECT_TRUE(std::ranges::equal(session.render({std::nullopt, most}).bytes(), picture.bytes()));
 }
 
-// Where light spreads from tile to tile all of them go on until the picture ends.
+// Light of rare paths is spread beyond tiles, to those that have not ended: none of it is lost. Of 255, as
+// above; the limit is low enough that a part of all light by way of the ball is beyond it.
+TEST(PathTiles, LoseNoLightThatIsSpread) {
+    const Wall wall;
+    app::Session all = wall.session(0), ends = wall.session(asked, 0.01f);
+    EXPECT_NEAR(mean_code(ends.render({std::nullopt, most})), mean_code(all.render({std::nullopt, most})),
+                0.1);
+}
+
+// Where bloom spreads light from tile to tile all of them go on until the picture ends.
 TEST(PathTiles, GoOnWhereLightSpreads) {
     const Wall wall;
     app::Session ends = wall.session(asked), goes_on = wall.session(0);

@@ -26,8 +26,10 @@ struct BasicPathSettings {
     /// On: single frames too. Automatic: images of several samples if ssao.enabled, unless a setting of
     /// ssao, rays or shadows is given or a material has extensions of glTF.
     MaybeAuto<bool> enabled{};
-    int bounces = 8;   ///< surfaces that a path meets after the one that is seen, 0 to 64
-    float clamp = 10;  ///< most luminance that a path adds beyond direct light, 0: unlimited
+    int bounces = 8;  ///< surfaces that a path meets after the one that is seen, 0 to 64
+    /// Luminance, as exposed, that a path adds to its pixel beyond direct light while paths as bright are
+    /// rare; what is above it is spread over the surfaces around. 0: none is spread.
+    float clamp = 0.25f;
     Denoising denoise = Denoising::best;
 };
 using PathSettings = BasicPathSettings<Auto>;

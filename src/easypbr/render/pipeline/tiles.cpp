@@ -12,6 +12,7 @@
 #include "easypbr/render/effects/ground/ground_pass.h"
 #include "easypbr/render/output/display_pass.h"
 #include "easypbr/render/primitives/primitive.h"
+#include "easypbr/render/raytrace/firefly_filter.h"
 #include "easypbr/scene/draw_style.h"
 #include "easypbr/scene/resolve.h"
 
@@ -98,7 +99,7 @@ Guard guard_of(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec
         // What rough glass shows is blurred by a quarter of its reach, seen through twice as wide a filter.
         guard.pixels += int(1.5 * most_reach_beside_transmission);
     }
-    if (resolved.traces_paths) guard.pixels += EdgeAvoidingFilter::reach;
+    if (resolved.traces_paths) guard.pixels += EdgeAvoidingFilter::reach + FireflyFilter::reach;
     for (const auto& effect : make_effects()) guard.pixels += effect->reach(whole, bounds);
     return guard;
 }

@@ -50,6 +50,22 @@ class PathVectors {
     std::vector<float> values_;
 };
 
+/// The radiance that paths bring, by PathState::index.
+struct PathRadiance {
+    explicit PathRadiance(size_t count) : within(count, Vec3::Zero()) {}
+
+    void add(uint32_t index, const Vec3& found) { within[index] += found; }
+    /// A part of it alone is within the limit.
+    void add(uint32_t index, const Vec3& found, float part) {
+        if (beyond.empty()) beyond.assign(within.size(), Vec3::Zero());
+        within[index] += found * part;
+        beyond[index] += found * (1 - part);
+    }
+
+    std::vector<Vec3> within;
+    std::vector<Vec3> beyond;  ///< what exceeds the limit of PathTracer::prepare(); empty where nothing does
+};
+
 /// In place of one channel of red, green and blue.
 inline constexpr int8_t all_channels = -1;
 
@@ -62,6 +78,7 @@ struct PathState {
     uint16_t passages = 0;  ///< surfaces that it has passed, or whose volume it has not left
     /// Surfaces whose volumes the path is in, the innermost first; -1: none.
     std::array<int, 2> volumes{-1, -1};
+    bool is_wide = false;  ///< at least one surface before the last one has scattered it widely
     int8_t channel = all_channels;  ///< the only one that is left once a volume has dispersed the light
 };
 

@@ -1,6 +1,7 @@
 #include "easypbr/render/raytrace/path_pass.h"
 
 #include <algorithm>
+#include <limits>
 
 #include "easypbr/core/octahedral.h"
 #include "easypbr/core/parallel.h"
@@ -23,6 +24,15 @@ bool is_catcher(uint8_t kind) {
 /// consistent.
 uint32_t catcher_period(float distance) {
     return distance < 2.2f ? 1 : distance < 4 ? 2 : 4;
+}
+
+/// So much of the light that is spread goes to black surfaces too, which reflect light in other ways.
+constexpr float least_reflectance = 0.05f;
+
+/// Luminance of a path's light that stays at its pixel, however rare such paths are.
+float most_light(const ResolvedSettings& resolved) {
+    const float clamp = resolved.settings.path.clamp;
+    return clamp > 0 ? clamp / resolved.exposure : std::numeric_limits<float>::infinity();
 }
 
 }  // namespace
@@ -212,15 +222,16 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
         }
         (catches ? caught : lit).add(x, y, index, place);
     });
-    std::vector<Vec3> radiance(count, Vec3::Zero());
+    PathRadiance radiance(count);
     PathBatch batch = lit.batch(pixels, pixels.scene.seen_at(lit.places, pixels.starts.seen));
     tracer_.trace(batch, hits, radiance);
     const std::vector<CaughtLight> light = light_of(pixels, caught, count);
+    fireflies_.take(block, radiance);
     each([&](int x, int y, uint32_t index, uint8_t kind) {
         Vec4* to = pixels.radiance.at(x, y);
         if (!to) return;
         const Vec4* emission = is_hit[index] ? nullptr : pixels.emission.at(x, y);
-        to->head<3>() = radiance[index] + (emission ? Vec3(emission->head<3>()) : Vec3(Vec3::Zero()));
+        to->head<3>() = radiance.within[index] + (emission ? Vec3(emission->head<3>()) : Vec3(Vec3::Zero()));
         to->w() = 1;
         if (pixels.starts.catches && is_catcher(kind)) caught_at(pixels, x, y).add(light[index]);
     });
@@ -241,12 +252,28 @@ std::vector<CaughtLight> PathPass::light_of(const Pixels& pixels, const Block& c
     return light;
 }
 
+void PathPass::spread_fireflies(const Pixels& pixels) {
+    const auto reflectance = [&](int x, int y) {
+        if (!pixels.is_traced(x, y)) return Vec3(Vec3::Zero());
+        const auto [metallic, roughness, unused, kind] = *pixels.material.at(x, y);
+        if (!is_lit_by_scene(kind) || is_catcher(kind)) return Vec3(Vec3::Zero());
+        // Smooth metals scatter little of it widely.
+        const float part = 1 - float(metallic) / 255 * (1 - float(roughness) / 255);
+        const std::array<uint16_t, 4>& color = *pixels.albedo.at(x, y);
+        return Vec3((Vec3(color[0], color[1], color[2]) * (part / 65535)).cwiseMax(least_reflectance));
+    };
+    fireflies_.spread(reflectance, [&](int x, int y, const Vec3& light) {
+        if (Vec4* to = pixels.radiance.at(x, y)) to->head<3>() += light;
+    });
+}
+
 void PathPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Target* caught,
                     const SampledTiles* tiles, Transfers& transfers) {
     if (caught && (frame.sample_index == 0 || caught_.size() != size_t(frame.size.prod())))
         caught_.assign(size_t(frame.size.prod()), {});
     if (!caught) caught_.clear();
-    tracer_.prepare(*frame.resolved, scene);
+    tracer_.prepare(*frame.resolved, scene, most_light(*frame.resolved));
+    if (frame.sample_index == 0) fireflies_.begin_picture();
     const bool has_blended = frame.resolved->settings.transparency.mode == TransparencyMode::stochastic;
     const Transmissive seen = has_blended ? Transmissive::met : Transmissive::opaque;
     trace(frame, targets, scene, {tiles, seen, caught != nullptr}, transfers);
@@ -271,13 +298,18 @@ void PathPass::trace(const Frame& frame, const GBuffer& targets, const RayScene&
     parallel_for(radiance.size(), 1 << 14, [&](size_t i) { radiance[i] = Vec4::Zero(); });
     const Pixels pixels(frame, targets, emission, scene, starts);
     const PixelRect& area = frame.covered;
-    const int columns = (area.width + block_width - 1) / block_width,
-              rows = (area.height + block_height - 1) / block_height;
+    // Blocks hold whole cells.
+    const int left = area.x / FireflyFilter::cell * FireflyFilter::cell,
+              top = area.y / FireflyFilter::cell * FireflyFilter::cell;
+    const int right = area.x + area.width, bottom = area.y + area.height;
+    const int columns = (right - left + block_width - 1) / block_width,
+              rows = (bottom - top + block_height - 1) / block_height;
+    fireflies_.begin_frame(frame.size);
     parallel_for(size_t(std::max(0, columns * rows)), 1, [&](size_t i) {
-        const int x = area.x + int(i) % columns * block_width, y = area.y + int(i) / columns * block_height;
-        trace_block(pixels, {x, y, std::min(block_width, area.x + area.width - x),
-                             std::min(block_height, area.y + area.height - y)});
+        const int x = left + int(i) % columns * block_width, y = top + int(i) / columns * block_height;
+        trace_block(pixels, {x, y, std::min(block_width, right - x), std::min(block_height, bottom - y)});
     });
+    spread_fireflies(pixels);
 }
 
 }  // namespace easypbr::render

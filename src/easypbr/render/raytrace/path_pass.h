@@ -8,6 +8,7 @@
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/render/frame/sampled_tiles.h"
+#include "easypbr/render/raytrace/firefly_filter.h"
 #include "easypbr/render/raytrace/path_tracer.h"
 
 namespace easypbr::render {
@@ -25,7 +26,10 @@ class PathPass {
                     const SampledTiles* tiles, Transfers& transfers);
 
     /// Releases what draw() keeps from frame to frame: the next one begins a picture.
-    void end() { PooledVector<Caught>().swap(caught_); }
+    void end() {
+        PooledVector<Caught>().swap(caught_);
+        fireflies_.end();
+    }
 
   private:
     class CameraRays;
@@ -40,10 +44,13 @@ class PathPass {
                Transfers& transfers);
     struct Block;
     void trace_block(const Pixels& pixels, const PixelRect& block);
+    /// Adds what fireflies_ spreads.
+    void spread_fireflies(const Pixels& pixels);
     /// What surfaces that catch shadows get, by the pixels' index among `count`.
     std::vector<CaughtLight> light_of(const Pixels& pixels, const Block& caught, size_t count);
 
     PathTracer tracer_;
+    FireflyFilter fireflies_;
     /// The part of a shadow catcher's light that arrives at a pixel: the ratio of sums over all frames so
     /// far.
     struct Caught {

@@ -23,6 +23,8 @@ constexpr float before_emitter = 1e-4f;
 constexpr float least_part = 0.1f;
 /// Surfaces that a path passes before it ends at random. They take little of its throughput.
 constexpr uint16_t sure_passages = 16;
+/// Per steradian: surfaces scatter light widely in directions of less, as lobes of 30 degrees are.
+constexpr float widest_density = 4;
 /// Of directions that are the only ones.
 constexpr float only_direction = 1e30f;
 
@@ -66,10 +68,12 @@ std::vector<uint32_t> sorted_by_surface(size_t count, SurfaceOf&& surface_of) {
 
 }  // namespace
 
-inline Vec3 PathTracer::limited(const Vec3& light, uint32_t bounces) const {
-    if (bounces == 0) return light;
-    const float brightness = luminance(light);
-    return brightness > most_light_ ? Vec3(light * (most_light_ / brightness)) : light;
+inline void PathTracer::add(uint32_t index, const Vec3& found, bool is_wide, PathRadiance& to) const {
+    const float brightness = is_wide ? luminance(found) : 0;
+    if (brightness > most_light_)
+        to.add(index, found, most_light_ / brightness);
+    else
+        to.add(index, found);
 }
 
 /// What path_scatter reads and writes beyond the batch.
@@ -120,7 +124,8 @@ struct PathTracer::Scattered {
 struct PathTracer::Escaped {
     struct Path {
         Vec3 throughput;
-        uint32_t index, bounces;
+        uint32_t index;
+        bool is_wide;
     };
     std::vector<Vec3> directions;
     std::vector<float> densities;
@@ -136,15 +141,14 @@ PathTracer::Hit PathTracer::camera_hit(const PathState& state, const RayHit& hit
     return {state, hit, direction, only_direction, footprint};
 }
 
-void PathTracer::prepare(const ResolvedSettings& resolved, const RayScene& scene) {
+void PathTracer::prepare(const ResolvedSettings& resolved, const RayScene& scene, float most) {
     resolved_ = &resolved;
     scene_ = &scene;
     lights_.prepare(resolved, scene);
     sky_.prepare(resolved.environment, resolved.R_env_world, resolved.settings.environment.intensity);
     emitters_.prepare(scene);
     catcher_.prepare(scene, lights_, sky_);
-    most_light_ = resolved.settings.path.clamp > 0 ? resolved.settings.path.clamp
-                                                   : std::numeric_limits<float>::infinity();
+    most_light_ = most;
     const float of_emitters = emitters_.brightness(), of_sky = sky_.brightness();
     emitter_part_ =
         emitters_.empty() ? 0 : std::clamp(of_emitters / (of_emitters + of_sky), least_part, 1 - least_part);
@@ -169,14 +173,13 @@ Vec3 PathTracer::start_towards(const PathBatch& batch, size_t path, const Vec3& 
     return RayScene::off_surface(batch.position.at(path), -face, -face * scene_->reach());
 }
 
-void PathTracer::add_escaped(const Escaped& paths, std::vector<Vec3>& radiance) const {
+void PathTracer::add_escaped(const Escaped& paths, PathRadiance& radiance) const {
     const std::vector<SkySampler::Sample> skies = sky_.seen(paths.directions, paths.densities);
     for (size_t i = 0; i < skies.size(); ++i) {
         const float density = paths.densities[i];
         const float weight = density / (density + (1 - emitter_part_) * skies[i].density);
         const Escaped::Path& path = paths.paths[i];
-        radiance[path.index] +=
-            limited(path.throughput.cwiseProduct(skies[i].radiance * weight), path.bounces);
+        add(path.index, path.throughput.cwiseProduct(skies[i].radiance * weight), path.is_wide, radiance);
     }
 }
 
@@ -272,31 +275,31 @@ void PathTracer::add_chosen(const PathBatch& batch, const Scattered& scattered,
 }
 
 void PathTracer::add_direct(const PathBatch& batch, const std::vector<ChosenLight>& lamps,
-                            const Scattered& scattered, std::vector<Vec3>& radiance) const {
+                            const Scattered& scattered, PathRadiance& radiance) const {
     std::vector<Vec3> light(batch.count, Vec3::Zero());
     add_lamps(batch, lamps, light);
     add_chosen(batch, scattered, light);
-    const auto add = [&](const PathState& state, const Vec3& of_it) {
-        radiance[state.index] += limited(state.throughput.cwiseProduct(of_it), state.bounces);
+    const auto add_to = [&](const PathState& state, const Vec3& of_it) {
+        add(state.index, state.throughput.cwiseProduct(of_it), state.is_wide, radiance);
     };
     for (size_t i = 0; i < batch.count; ++i) {
         if (batch.extensions && batch.inside[i] > 0.5f) {
             // From within a volume all of it has passed the surface.
             PathState passed = batch.state[i];
             disperse(batch.extended_paths[i].channel, passed);
-            add(passed, light[i]);
+            add_to(passed, light[i]);
         } else {
-            add(batch.state[i], light[i]);
+            add_to(batch.state[i], light[i]);
         }
     }
 }
 
 void PathTracer::add_emission(const PathBatch& batch, const Scattered& scattered,
-                              std::vector<Vec3>& radiance) const {
+                              PathRadiance& radiance) const {
     for (size_t i = 0; i < batch.count; ++i) {
         const PathState& state = batch.state[i];
         const Vec3 kept = batch.extended_paths[i].emission.cwiseProduct(scattered.keep.at(i));
-        radiance[state.index] += limited(kept, state.bounces);
+        add(state.index, kept, state.is_wide, radiance);
     }
 }
 
@@ -350,23 +353,23 @@ bool PathTracer::goes_on(const PathBatch& batch, size_t path, uint32_t depth, co
 }
 
 void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered& scattered,
-                        std::vector<Hit>& hits, std::vector<Vec3>& radiance) const {
+                        std::vector<Hit>& hits, PathRadiance& radiance) const {
     Escaped escaped;
     escaped.directions.reserve(batch.count);
     escaped.densities.reserve(batch.count);
     escaped.paths.reserve(batch.count);
     for (size_t i = 0; i < batch.count; ++i) {
         PathState state = batch.state[i];
-        const uint16_t bounces = state.bounces;
+        const bool is_wide = state.is_wide;
         state.throughput = state.throughput.cwiseProduct(scattered.weight.at(i));
         const Vec3 direction = scattered.direction.at(i);
         if (!goes_on(batch, i, depth, direction, state)) continue;
         const auto hit = scene_->trace(start_towards(batch, i, direction), direction, Transmissive::met);
-        lights_.for_each_met(
-            batch.position.at(i), direction, scattered.density[i], [&](const Vec3& light, float distance) {
-                if (hit && hit->distance < distance) return;
-                radiance[state.index] += limited(state.throughput.cwiseProduct(light), bounces);
-            });
+        lights_.for_each_met(batch.position.at(i), direction, scattered.density[i],
+                             [&](const Vec3& light, float distance) {
+                                 if (hit && hit->distance < distance) return;
+                                 add(state.index, state.throughput.cwiseProduct(light), is_wide, radiance);
+                             });
         if (hit) {
             absorb(hit->distance, state);
             hits.push_back({state, *hit, direction, scattered.density[i],
@@ -374,7 +377,7 @@ void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered&
         } else {
             escaped.directions.push_back(direction);
             escaped.densities.push_back(scattered.density[i]);
-            escaped.paths.push_back({state.throughput, state.index, bounces});
+            escaped.paths.push_back({state.throughput, state.index, is_wide});
         }
     }
     add_escaped(escaped, radiance);
@@ -389,19 +392,10 @@ Vec3 PathTracer::caught_sky(const Hit& at, const Vec2& u) const {
     return open ? sky_.seen(at.direction, at.density).radiance : Vec3(Vec3::Zero());
 }
 
-namespace {
-
-/// Of the surface that the path has left last.
-uint32_t bounces_before(const PathTracer::Hit& hit) {
-    return std::max<uint32_t>(hit.state.bounces, 1) - 1;
-}
-
-}  // namespace
-
-bool PathTracer::is_caught(const Hit& hit, uint32_t depth, std::vector<Vec3>& radiance) const {
+bool PathTracer::is_caught(const Hit& hit, uint32_t depth, PathRadiance& radiance) const {
     if (hit.hit.surface >= 0 || !scene_->ground()->shadow_catcher) return false;
     const Vec3 sky = caught_sky(hit, hit.state.sampler.pair(depth, emitter_point));
-    radiance[hit.state.index] += limited(hit.state.throughput.cwiseProduct(sky), bounces_before(hit));
+    add(hit.state.index, hit.state.throughput.cwiseProduct(sky), hit.state.is_wide, radiance);
     return true;
 }
 
@@ -417,14 +411,15 @@ size_t add_path(const PathTracer::Hit& hit, const HitSurfaces& surfaces, size_t 
     to.albedo.set(at, surfaces.albedo.at(i));
     // What is shown past the light is as if it were matt.
     to.parameters.set(at, is_lit_kind(surfaces.kind[i]) ? surfaces.parameters.at(i) : Vec2(0, 1));
-    to.set_state(at, hit.state);
+    PathState state = hit.state;
+    state.is_wide |= hit.density < widest_density;
+    to.set_state(at, state);
     return at;
 }
 
 }  // namespace
 
-PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth,
-                                       std::vector<Vec3>& radiance) const {
+PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth, PathRadiance& radiance) const {
     // Surfaces are evaluated item by item.
     const std::vector<uint32_t> sorted =
         sorted_by_surface(hits.size(), [&](size_t i) { return hits[i].hit.surface; });
@@ -444,7 +439,7 @@ PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth,
         const Vec3 emission = hit.state.throughput.cwiseProduct(surfaces.emission.at(i)) * weights[sorted[i]];
         const bool extended = is_extended_kind(surfaces.kind[i]),
                    ends = hit.state.bounces > resolved_->settings.path.bounces;
-        if (!extended || ends) radiance[hit.state.index] += limited(emission, bounces_before(hit));
+        if (!extended || ends) add(hit.state.index, emission, hit.state.is_wide, radiance);
         if (surfaces.kind[i] > 0.9f || ends) continue;
         const size_t at = add_path(hit, surfaces, i, extended ? next.extended : next.plain);
         if (!extended) continue;
@@ -460,7 +455,7 @@ PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth,
 }
 
 void PathTracer::step(PathBatch& batch, uint32_t depth, std::vector<Hit>& hits,
-                      std::vector<Vec3>& radiance) const {
+                      PathRadiance& radiance) const {
     if (batch.count == 0) return;
     batch.find_starts(scene_->reach());
     std::vector<ChosenLight> lamps;
@@ -472,7 +467,7 @@ void PathTracer::step(PathBatch& batch, uint32_t depth, std::vector<Hit>& hits,
     follow(batch, depth, scattered, hits, radiance);
 }
 
-void PathTracer::trace(PathBatch& batch, std::vector<Hit>& hits, std::vector<Vec3>& radiance) const {
+void PathTracer::trace(PathBatch& batch, std::vector<Hit>& hits, PathRadiance& radiance) const {
     Batches at = arrive(hits, 0, radiance);
     step(batch, 0, hits, radiance);
     step(at.plain, 0, hits, radiance);

@@ -20,8 +20,9 @@ namespace easypbr::render {
 /// shine straight through transmissive surfaces; all other light is refracted.
 class PathTracer {
   public:
-    /// The settings and the scene must outlive the calls of the others.
-    void prepare(const ResolvedSettings& resolved, const RayScene& scene);
+    /// The settings and the scene must outlive the calls of the others. `most`: luminance that one path adds
+    /// within the limit of PathRadiance, once a surface has scattered it widely.
+    void prepare(const ResolvedSettings& resolved, const RayScene& scene, float most);
 
     /// A path that has met a surface.
     struct Hit {
@@ -36,7 +37,7 @@ class PathTracer {
 
     /// Adds the radiance of each path to its place in `radiance`: of those of a batch, whose surfaces have no
     /// extensions, and of others that have met a surface. Both are used up.
-    void trace(PathBatch& batch, std::vector<Hit>& hits, std::vector<Vec3>& radiance) const;
+    void trace(PathBatch& batch, std::vector<Hit>& hits, PathRadiance& radiance) const;
     /// Of surfaces that catch shadows.
     const CatcherLight& catcher() const { return catcher_; }
 
@@ -48,21 +49,21 @@ class PathTracer {
     /// Where rays in a direction start, which may go through the surface.
     Vec3 start_towards(const PathBatch& batch, size_t path, const Vec3& direction) const;
     /// One step of all paths of a batch: `hits` gets the surfaces that they meet next.
-    void step(PathBatch& batch, uint32_t depth, std::vector<Hit>& hits, std::vector<Vec3>& radiance) const;
+    void step(PathBatch& batch, uint32_t depth, std::vector<Hit>& hits, PathRadiance& radiance) const;
     void scatter(const PathBatch& batch, uint32_t depth, Scattered& to) const;
     /// Chooses the direction of next-event estimation for each path: to the sky, or to an emissive surface.
     void choose_directions(const PathBatch& batch, uint32_t depth, Scattered& to) const;
     void add_direct(const PathBatch& batch, const std::vector<ChosenLight>& lamps, const Scattered& scattered,
-                    std::vector<Vec3>& radiance) const;
+                    PathRadiance& radiance) const;
     /// The parts of that: of the lamps, and of the directions of next-event estimation.
     void add_lamps(const PathBatch& batch, const std::vector<ChosenLight>& lamps,
                    std::vector<Vec3>& light) const;
     void add_chosen(const PathBatch& batch, const Scattered& scattered, std::vector<Vec3>& light) const;
     /// What surfaces with extensions emit.
-    void add_emission(const PathBatch& batch, const Scattered& scattered, std::vector<Vec3>& radiance) const;
+    void add_emission(const PathBatch& batch, const Scattered& scattered, PathRadiance& radiance) const;
     /// Follows the paths to the next surface.
     void follow(const PathBatch& batch, uint32_t depth, const Scattered& scattered, std::vector<Hit>& hits,
-                std::vector<Vec3>& radiance) const;
+                PathRadiance& radiance) const;
     /// What a path becomes that goes on in a direction; false where it ends.
     bool goes_on(const PathBatch& batch, size_t path, uint32_t depth, const Vec3& direction,
                  PathState& state) const;
@@ -75,16 +76,16 @@ class PathTracer {
     /// Weakens a path by the volume that it is in.
     void absorb(float distance, PathState& state) const;
     /// The paths that go on from hits.
-    Batches arrive(std::vector<Hit>& hits, uint32_t depth, std::vector<Vec3>& radiance) const;
-    bool is_caught(const Hit& hit, uint32_t depth, std::vector<Vec3>& radiance) const;
+    Batches arrive(std::vector<Hit>& hits, uint32_t depth, PathRadiance& radiance) const;
+    bool is_caught(const Hit& hit, uint32_t depth, PathRadiance& radiance) const;
     /// Part of what surfaces emit that paths add which have met them in sampled directions.
     std::vector<float> emission_weights(std::span<const Hit> hits) const;
     /// Adds what the sky sends to paths that have left the scene in sampled directions.
-    void add_escaped(const Escaped& paths, std::vector<Vec3>& radiance) const;
+    void add_escaped(const Escaped& paths, PathRadiance& radiance) const;
     /// What a ground that catches shadows shows of the sky behind it.
     Vec3 caught_sky(const Hit& at, const Vec2& u) const;
-    /// Light that a path adds after some bounces.
-    Vec3 limited(const Vec3& light, uint32_t bounces) const;
+    /// Adds what a path has found at a surface; see PathState::is_wide.
+    void add(uint32_t index, const Vec3& found, bool is_wide, PathRadiance& to) const;
 
     const ResolvedSettings* resolved_ = nullptr;
     const RayScene* scene_ = nullptr;

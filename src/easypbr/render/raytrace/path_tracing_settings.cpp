@@ -18,11 +18,12 @@ void add_path(Table& table) {
              "shadows is given.")));
     table.push_back(make("path.bounces", EASYPBR_AT(path.bounces),
                          "Surfaces that a path meets after the one that is seen.", "", {0, 64}));
-    table.push_back(
-        make("path.clamp", EASYPBR_AT(path.clamp),
-             "Most luminance that a path adds beyond direct light, against bright single pixels; 0 is "
-             "unlimited and unbiased.",
-             "", {0, unlimited}));
+    table.push_back(make(
+        "path.clamp", EASYPBR_AT(path.clamp),
+        "Luminance, as exposed, that a path adds to its pixel beyond direct light while paths as bright are "
+        "rare; what is above it is spread over the surfaces around, against bright single pixels. 0: none "
+        "is spread, which is unbiased.",
+        "", {0, unlimited}));
     table.push_back(make(
         "path.denoise", EASYPBR_AT(path.denoise),
         "Takes the noise out of path traced images: oidn by Intel Open Image Denoise, filter by a built-in "

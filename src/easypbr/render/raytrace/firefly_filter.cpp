@@ -1,0 +1,161 @@
+#include "easypbr/render/raytrace/firefly_filter.h"
+
+#include <algorithm>
+#include <array>
+
+#include "easypbr/core/luminance.h"
+#include "easypbr/core/parallel.h"
+
+namespace easypbr::render {
+namespace {
+
+/// Binomial, over cells.
+using Kernel = std::array<float, 5>;
+constexpr Kernel kernel = {0.0625f, 0.25f, 0.375f, 0.25f, 0.0625f};
+constexpr Kernel squared_kernel = {0.00390625f, 0.0625f, 0.140625f, 0.0625f, 0.00390625f};
+constexpr int radius = int(kernel.size()) / 2;
+// A pixel's light comes by way of cells beside it, and depends on the pixels beside those that they reach.
+static_assert(FireflyFilter::reach == 2 * (radius + 1) * FireflyFilter::cell);
+
+/// The two cells of a row or column that a pixel lies between.
+struct Between {
+    int first, second;
+    float part;  ///< of the second
+
+    Between(int pixel, int cells) {
+        constexpr int half = FireflyFilter::cell / 2;
+        const int from = (pixel + half) / FireflyFilter::cell - 1;
+        part = (float(pixel + half - (from + 1) * FireflyFilter::cell) + 0.5f) / FireflyFilter::cell;
+        first = std::max(from, 0);
+        second = std::min(from + 1, cells - 1);
+    }
+};
+
+}  // namespace
+
+void FireflyFilter::begin_frame(const Vec2i& size) {
+    size_ = size;
+    cells_ = (size + Vec2i::Constant(cell - 1)) / cell;
+    const auto count = size_t(cells_.x()) * size_t(cells_.y());
+    taken_.assign(count, Vec3::Zero());
+    if (cells_found_.size() != count) cells_found_.assign(count, {});
+}
+
+void FireflyFilter::take(const PixelRect& block, PathRadiance& radiance) {
+    if (radiance.beyond.empty()) return;
+    const auto each = [&](auto&& visit) {
+        for (int y = 0; y < block.height; ++y)
+            for (int x = 0; x < block.width; ++x) {
+                const auto i = size_t(y) * size_t(block.width) + size_t(x);
+                if (const float bright = luminance(radiance.beyond[i]); bright > 0)
+                    visit(i, cell_at((block.x + x) / cell, (block.y + y) / cell), bright);
+            }
+    };
+    each([&](size_t, size_t of_cell, float bright) {
+        cells_found_[of_cell].light += bright;
+        cells_found_[of_cell].squares += bright * bright;
+    });
+    each([&](size_t i, size_t of_cell, float bright) {
+        const Vec3 stays = staying(cells_found_[of_cell], bright) * radiance.beyond[i];
+        radiance.within[i] += stays;
+        taken_[of_cell] += radiance.beyond[i] - stays;
+    });
+}
+
+float FireflyFilter::staying(const Found& found, float bright) {
+    // Of the part p: p^2 / paths is the variance of the pixel, (1 - p)^2 * contrast the square of its bias.
+    const float paths = found.light / (bright * cell * cell);
+    return paths * found.contrast / (1 + paths * found.contrast);
+}
+
+template <class Value>
+void FireflyFilter::blur(std::vector<Value>& values, const std::array<float, 5>& taps) const {
+    const int columns = cells_.x(), rows = cells_.y();
+    std::vector<Value> across(values.size());
+    const auto blurred = [&](const std::vector<Value>& from, int at, int count, size_t first, size_t step) {
+        Value sum = from[first + size_t(at) * step] * taps[radius];
+        for (int k = std::max(-radius, -at); k <= std::min(radius, count - 1 - at); ++k)
+            if (k != 0) sum += taps[size_t(k + radius)] * from[first + size_t(at + k) * step];
+        return sum;
+    };
+    parallel_for(size_t(rows), 16, [&](size_t row) {
+        const size_t first = row * size_t(columns);
+        for (int x = 0; x < columns; ++x) across[first + size_t(x)] = blurred(values, x, columns, first, 1);
+    });
+    parallel_for(size_t(rows), 16, [&](size_t row) {
+        for (int x = 0; x < columns; ++x)
+            values[row * size_t(columns) + size_t(x)] =
+                blurred(across, int(row), rows, size_t(x), size_t(columns));
+    });
+}
+
+std::vector<Vec3> FireflyFilter::around(const Reflectance& reflectance) const {
+    std::vector<Vec3> sums(taken_.size(), Vec3::Zero());
+    parallel_for(size_t(cells_.y()), 4, [&](size_t row) {
+        const int first = std::max(int(row) * cell - cell, 0),
+                  last = std::min(int(row) * cell + 2 * cell, size_.y());
+        Vec3* const to = sums.data() + cell_at(0, int(row));
+        for (int y = first; y < last; ++y) {
+            const Between rows(y, cells_.y());
+            const float part =
+                (rows.first == int(row) ? 1 - rows.part : 0) + (rows.second == int(row) ? rows.part : 0);
+            if (!(part > 0)) continue;
+            for (int x = 0; x < size_.x(); ++x) {
+                const Between columns(x, cells_.x());
+                const Vec3 of_pixel = part * reflectance(x, y);
+                to[columns.first] += (1 - columns.part) * of_pixel;
+                to[columns.second] += columns.part * of_pixel;
+            }
+        }
+    });
+    return sums;
+}
+
+void FireflyFilter::compare(const std::vector<Vec3>& own, const std::vector<Vec3>& reached) {
+    // What cells would get if all light was spread, and its variance.
+    std::vector<float> light(cells_found_.size()), variance(light.size());
+    for (size_t i = 0; i < light.size(); ++i) {
+        const Found& found = cells_found_[i];
+        if (!(found.light > 0)) continue;
+        const float all = luminance(reached[i]);
+        light[i] = found.light / all;
+        variance[i] = found.squares / (all * all);
+    }
+    blur(light, kernel);
+    blur(variance, squared_kernel);
+    for (size_t i = 0; i < light.size(); ++i) {
+        Found& found = cells_found_[i];
+        const float all = luminance(own[i]), spread = light[i] * all, change = spread - found.light,
+                    noise = found.squares + variance[i] * all * all, most = std::max(spread, found.light);
+        found.contrast = most > 0 ? std::max(change * change - noise, 0.0f) / (most * most) : 0;
+    }
+}
+
+void FireflyFilter::spread(const Reflectance& reflectance, const Receive& receive) {
+    const auto is_any = [](const Vec3& light) { return light.maxCoeff() > 0; };
+    if (std::ranges::none_of(taken_, is_any)) return;
+    const std::vector<Vec3> own = around(reflectance);
+    std::vector<Vec3> sums = own;
+    blur(sums, kernel);
+    compare(own, sums);
+    for (size_t i = 0; i < taken_.size(); ++i)
+        if (is_any(taken_[i])) taken_[i] = taken_[i].cwiseQuotient(sums[i]);
+    blur(taken_, kernel);
+    parallel_for(size_t(size_.y()), 16, [&](size_t row) {
+        const int y = int(row);
+        const Between rows(y, cells_.y());
+        for (int x = 0; x < size_.x(); ++x) {
+            const Between columns(x, cells_.x());
+            const auto along = [&](int of_row) {
+                return Vec3((1 - columns.part) * taken_[cell_at(columns.first, of_row)] +
+                            columns.part * taken_[cell_at(columns.second, of_row)]);
+            };
+            const Vec3 light = (1 - rows.part) * along(rows.first) + rows.part * along(rows.second);
+            if (!is_any(light)) continue;
+            if (const Vec3 of_pixel = reflectance(x, y); is_any(of_pixel))
+                receive(x, y, of_pixel.cwiseProduct(light));
+        }
+    });
+}
+
+}  // namespace easypbr::render

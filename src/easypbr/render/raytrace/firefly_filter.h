@@ -1,0 +1,68 @@
+// Light of rare bright paths, which would be single bright pixels.
+#pragma once
+
+#include <array>
+#include <functional>
+#include <vector>
+
+#include "easypbr/core/math.h"
+#include "easypbr/core/picture.h"
+#include "easypbr/render/raytrace/path_batch.h"
+
+namespace easypbr::render {
+
+/// Spreads light of rare bright paths over the surfaces around their pixels, and loses none of it. How many
+/// paths as bright a pixel is expected to have found is told by all pixels of its square, as in Zirr et al.
+/// 2018 ("Re-weighting Firefly Samples for Improved Finite-Sample Monte Carlo Estimates"). That is the noise
+/// of what stays at its pixel; the squares around tell what spreading changes. The part that stays makes
+/// their sum least: as samples are added, all light comes to stay where it is found.
+class FireflyFilter {
+  public:
+    /// Pixels that light is added up in squares of.
+    static constexpr int cell = 4;
+    /// What a pixel gets depends on pixels no farther than this.
+    static constexpr int reach = 6 * cell;
+
+    /// Forgets the light of all frames.
+    void begin_picture() { cells_found_.clear(); }
+    /// Forgets the light that is to be spread.
+    void begin_frame(const Vec2i& size);
+    void end() { *this = {}; }
+
+    /// Takes what is rare from the light beyond the limit, and adds the rest of it to that within.
+    /// `radiance`: of a block's pixels, row by row. Safe to call from several threads for blocks of different
+    /// whole cells.
+    void take(const PixelRect& block, PathRadiance& radiance);
+
+    /// Which part of light a pixel scatters, 0 where it must not get any; not 0 where any was taken.
+    using Reflectance = std::function<Vec3(int x, int y)>;
+    using Receive = std::function<void(int x, int y, const Vec3& light)>;
+    /// Calls `receive` with what pixels get: in proportion to their reflectance, less with the distance, and
+    /// all together what was taken. Both are called from several threads.
+    void spread(const Reflectance& reflectance, const Receive& receive);
+
+  private:
+    size_t cell_at(int column, int row) const { return size_t(row) * size_t(cells_.x()) + size_t(column); }
+    /// Of a cell in all frames, beyond the limit.
+    struct Found {
+        float light = 0;    ///< luminance
+        float squares = 0;  ///< of the luminance of each path
+        /// The square of what spreading changes, in parts of the light, but for noise.
+        float contrast = 0;
+    };
+    /// The part of a path's light that stays at its pixel.
+    static float staying(const Found& found, float bright);
+
+    /// The reflectance of the pixels around the middle of each cell, by their distance.
+    std::vector<Vec3> around(const Reflectance& reflectance) const;
+    /// Spreads values over the cells around.
+    template <class Value>
+    void blur(std::vector<Value>& values, const std::array<float, 5>& taps) const;
+    void compare(const std::vector<Vec3>& own, const std::vector<Vec3>& reached);
+
+    Vec2i size_{0, 0}, cells_{0, 0};
+    std::vector<Vec3> taken_;  ///< for each cell
+    std::vector<Found> cells_found_;
+};
+
+}  // namespace easypbr::render
