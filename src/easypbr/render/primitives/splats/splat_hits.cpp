@@ -2,7 +2,7 @@
 
 #include "easypbr/core/color.h"
 #include "easypbr/render/frame/inverse_tone.h"
-#include "easypbr/render/primitives/splat_color.h"
+#include "easypbr/render/primitives/splats/splat_color.h"
 
 namespace easypbr::render {
 

@@ -5,7 +5,7 @@
 
 #include "easypbr/core/color.h"
 #include "easypbr/core/parallel.h"
-#include "easypbr/render/primitives/splat_color.h"
+#include "easypbr/render/primitives/splats/splat_color.h"
 
 namespace easypbr::render {
 namespace {

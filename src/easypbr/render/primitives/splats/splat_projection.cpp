@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "easypbr/render/primitives/splat_color.h"
+#include "easypbr/render/primitives/splats/splat_color.h"
 
 namespace easypbr::render {
 namespace {

@@ -1,10 +1,16 @@
-#include "easypbr/render/primitives/splat_color.h"
+// The colour of a splat from a direction: real spherical harmonics up to degree 3.
+#pragma once
 
+#include "easypbr/core/math.h"
+#include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/scene/splat_basis.h"
 
 namespace easypbr::render {
 
-Vec3 splat_color(const float* sh, int degree, const Vec3& direction) {
+/// sRGB-encoded, 0 or more. `sh` holds (degree + 1)^2 times red, green, blue (see SplatArrays::sh);
+/// `direction` is a unit vector from the camera to the splat in the frame of the splats. Basis and signs are
+/// those of Kerbl et al. 2023.
+inline Vec3 splat_color(const float* sh, int degree, const Vec3& direction) {
     float basis[16];
     spherical_harmonics(direction, degree, basis);
     const int count = (degree + 1) * (degree + 1);
@@ -17,7 +23,8 @@ Vec3 splat_color(const float* sh, int degree, const Vec3& direction) {
     return Vec3(red, green, blue).cwiseMax(0.0f);
 }
 
-Vec3 splat_color(const DrawItem& item, Eigen::Index splat, const Vec3& direction) {
+/// The colour of a splat of an item, sRGB-encoded, to a ray of this unit direction in the world.
+inline Vec3 splat_color(const DrawItem& item, Eigen::Index splat, const Vec3& direction) {
     const MeshData& mesh = item.mesh();
     if (item.with_colors) return mesh.C.row(splat).head<3>().transpose();
     const Mat3 to_mesh = item.object->T_world_mesh.linear().inverse().cast<float>();
