@@ -384,7 +384,7 @@ def fireflies() -> np.ndarray:
     for lamp in ("key", "fill", "rim"):
         view.lights[lamp].enabled = False
     pictures = []
-    for clamp, samples in ((0, 16), (0.25, 16), (0, 4096)):
+    for clamp, samples in ((0, 16), (0.25, 16), (0, 1024)):
         view.settings.path.clamp = clamp
         pictures.append(view.render(samples=samples))
     return row(pictures)
@@ -615,7 +615,7 @@ def assembly_drawing() -> str:
         return view.save_svg(pathlib.Path(folder) / "assembly.svg").read_text()
 
 
-PICTURES = [demo, materials, lights, area_lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion, rays, modes, paths,
+PICTURES = [demo, materials, lights, area_lights, backgrounds, tone_curves, antialiasing, layers, fits, shading, ambient_occlusion, rays, modes, paths, fireflies,
             bloom, outlines, depth_of_field, geometry, all_shapes, glass, camera_path, shadows, ground, drones, viewer,
             viewer_slices, viewer_path, viewer_animations, viewer_lights, viewer_own, segmentation, detection, own_shading,
             outline, devices]

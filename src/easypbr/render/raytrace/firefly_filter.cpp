@@ -33,7 +33,8 @@ struct Between {
 
 }  // namespace
 
-void FireflyFilter::begin_frame(const Vec2i& size) {
+void FireflyFilter::begin_frame(const Vec2i& size, float most) {
+    most_ = most;
     size_ = size;
     cells_ = (size + Vec2i::Constant(cell - 1)) / cell;
     const auto count = size_t(cells_.x()) * size_t(cells_.y());
@@ -56,9 +57,9 @@ void FireflyFilter::take(const PixelRect& block, PathRadiance& radiance) {
         cells_found_[of_cell].squares += bright * bright;
     });
     each([&](size_t i, size_t of_cell, float bright) {
-        const Vec3 stays = staying(cells_found_[of_cell], bright) * radiance.beyond[i];
-        radiance.within[i] += stays;
-        taken_[of_cell] += radiance.beyond[i] - stays;
+        const float part = staying(cells_found_[of_cell], bright);
+        radiance.within[i] += part * radiance.beyond[i];
+        taken_[of_cell] += std::min(1 - part, most_ / bright) * radiance.beyond[i];
     });
 }
 
@@ -72,20 +73,22 @@ template <class Value>
 void FireflyFilter::blur(std::vector<Value>& values, const std::array<float, 5>& taps) const {
     const int columns = cells_.x(), rows = cells_.y();
     std::vector<Value> across(values.size());
-    const auto blurred = [&](const std::vector<Value>& from, int at, int count, size_t first, size_t step) {
-        Value sum = from[first + size_t(at) * step] * taps[radius];
+    // `here` is element `at` of a line of `count`.
+    const auto blurred = [&](const Value* here, int at, int count, ptrdiff_t step) {
+        Value sum = *here * taps[radius];
         for (int k = std::max(-radius, -at); k <= std::min(radius, count - 1 - at); ++k)
-            if (k != 0) sum += taps[size_t(k + radius)] * from[first + size_t(at + k) * step];
+            if (k != 0) sum += taps[size_t(k + radius)] * here[k * step];
         return sum;
     };
     parallel_for(size_t(rows), 16, [&](size_t row) {
-        const size_t first = row * size_t(columns);
-        for (int x = 0; x < columns; ++x) across[first + size_t(x)] = blurred(values, x, columns, first, 1);
+        const size_t first = cell_at(0, int(row));
+        for (int x = 0; x < columns; ++x)
+            across[first + size_t(x)] = blurred(&values[first + size_t(x)], x, columns, 1);
     });
     parallel_for(size_t(rows), 16, [&](size_t row) {
+        const size_t first = cell_at(0, int(row));
         for (int x = 0; x < columns; ++x)
-            values[row * size_t(columns) + size_t(x)] =
-                blurred(across, int(row), rows, size_t(x), size_t(columns));
+            values[first + size_t(x)] = blurred(&across[first + size_t(x)], int(row), rows, columns);
     });
 }
 

@@ -11,7 +11,7 @@
 
 namespace easypbr::render {
 
-/// Spreads light of rare bright paths over the surfaces around their pixels, and loses none of it. How many
+/// Spreads light of rare bright paths over the surfaces around their pixels. How many
 /// paths as bright a pixel is expected to have found is told by all pixels of its square, as in Zirr et al.
 /// 2018 ("Re-weighting Firefly Samples for Improved Finite-Sample Monte Carlo Estimates"). That is the noise
 /// of what stays at its pixel; the squares around tell what spreading changes. The part that stays makes
@@ -25,8 +25,9 @@ class FireflyFilter {
 
     /// Forgets the light of all frames.
     void begin_picture() { cells_found_.clear(); }
-    /// Forgets the light that is to be spread.
-    void begin_frame(const Vec2i& size);
+    /// Forgets the light that is to be spread. `most`: luminance of one path that is spread; what is above it
+    /// would show as a spot, and is lost.
+    void begin_frame(const Vec2i& size, float most);
     void end() { *this = {}; }
 
     /// Takes what is rare from the light beyond the limit, and adds the rest of it to that within.
@@ -61,6 +62,7 @@ class FireflyFilter {
     void compare(const std::vector<Vec3>& own, const std::vector<Vec3>& reached);
 
     Vec2i size_{0, 0}, cells_{0, 0};
+    float most_ = 0;
     std::vector<Vec3> taken_;  ///< for each cell
     std::vector<Found> cells_found_;
 };

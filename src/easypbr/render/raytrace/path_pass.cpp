@@ -35,6 +35,13 @@ float most_light(const ResolvedSettings& resolved) {
     return clamp > 0 ? clamp / resolved.exposure : std::numeric_limits<float>::infinity();
 }
 
+/// Luminance of a path's light that is spread: about a hundred pixels get it, and in the mean of all frames
+/// so far it is a twentieth of the limit to each of them at most.
+float most_spread(const Frame& frame) {
+    constexpr float pixels = 100, visible = 0.05f;
+    return most_light(*frame.resolved) * pixels * visible * float(frame.sample_index + 1);
+}
+
 }  // namespace
 
 void PathPass::Caught::add(const CaughtLight& light) {
@@ -304,7 +311,7 @@ void PathPass::trace(const Frame& frame, const GBuffer& targets, const RayScene&
     const int right = area.x + area.width, bottom = area.y + area.height;
     const int columns = (right - left + block_width - 1) / block_width,
               rows = (bottom - top + block_height - 1) / block_height;
-    fireflies_.begin_frame(frame.size);
+    fireflies_.begin_frame(frame.size, most_spread(frame));
     parallel_for(size_t(std::max(0, columns * rows)), 1, [&](size_t i) {
         const int x = left + int(i) % columns * block_width, y = top + int(i) / columns * block_height;
         trace_block(pixels, {x, y, std::min(block_width, right - x), std::min(block_height, bottom - y)});
