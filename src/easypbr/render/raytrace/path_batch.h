@@ -69,6 +69,13 @@ struct PathRadiance {
 /// In place of one channel of red, green and blue.
 inline constexpr int8_t all_channels = -1;
 
+/// How the surfaces before the last one have reflected a path, or scattered it.
+enum class Scattering : uint8_t {
+    none,    ///< it is seen through clear surfaces at most
+    narrow,  ///< as mirrors do
+    wide     ///< one of them at least in a direction of low density
+};
+
 /// What has become of a path so far.
 struct PathState {
     Vec3 throughput{1, 1, 1};
@@ -78,7 +85,7 @@ struct PathState {
     uint16_t passages = 0;  ///< surfaces that it has passed, or whose volume it has not left
     /// Surfaces whose volumes the path is in, the innermost first; -1: none.
     std::array<int, 2> volumes{-1, -1};
-    bool is_wide = false;  ///< at least one surface before the last one has scattered it widely
+    Scattering scattered = Scattering::none;
     int8_t channel = all_channels;  ///< the only one that is left once a volume has dispersed the light
 };
 

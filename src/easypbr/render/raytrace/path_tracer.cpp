@@ -25,6 +25,8 @@ constexpr float least_part = 0.1f;
 constexpr uint16_t sure_passages = 16;
 /// Per steradian: surfaces scatter light widely in directions of less, as lobes of 30 degrees are.
 constexpr float widest_density = 4;
+/// Mirrors show what they face as it is up to so many times the limit: the sun by way of two of them is rare.
+constexpr float narrow_light = 40;
 /// Of directions that are the only ones.
 constexpr float only_direction = 1e30f;
 
@@ -68,12 +70,13 @@ std::vector<uint32_t> sorted_by_surface(size_t count, SurfaceOf&& surface_of) {
 
 }  // namespace
 
-inline void PathTracer::add(uint32_t index, const Vec3& found, bool is_wide, PathRadiance& to) const {
-    const float brightness = is_wide ? luminance(found) : 0;
-    if (brightness > most_light_)
-        to.add(index, found, most_light_ / brightness);
-    else
-        to.add(index, found);
+inline void PathTracer::add(uint32_t index, const Vec3& found, Scattering scattered, PathRadiance& to) const {
+    if (scattered == Scattering::none) return to.add(index, found);
+    const bool is_wide = scattered == Scattering::wide;
+    const float most = is_wide ? most_light_ : narrow_light * most_light_, brightness = luminance(found);
+    if (!(brightness > most)) return to.add(index, found);
+    if (is_wide) return to.add(index, found, most / brightness);
+    to.add(index, found * (most / brightness));
 }
 
 /// What path_scatter reads and writes beyond the batch.
@@ -125,7 +128,7 @@ struct PathTracer::Escaped {
     struct Path {
         Vec3 throughput;
         uint32_t index;
-        bool is_wide;
+        Scattering scattered;
     };
     std::vector<Vec3> directions;
     std::vector<float> densities;
@@ -179,7 +182,7 @@ void PathTracer::add_escaped(const Escaped& paths, PathRadiance& radiance) const
         const float density = paths.densities[i];
         const float weight = density / (density + (1 - emitter_part_) * skies[i].density);
         const Escaped::Path& path = paths.paths[i];
-        add(path.index, path.throughput.cwiseProduct(skies[i].radiance * weight), path.is_wide, radiance);
+        add(path.index, path.throughput.cwiseProduct(skies[i].radiance * weight), path.scattered, radiance);
     }
 }
 
@@ -280,7 +283,7 @@ void PathTracer::add_direct(const PathBatch& batch, const std::vector<ChosenLigh
     add_lamps(batch, lamps, light);
     add_chosen(batch, scattered, light);
     const auto add_to = [&](const PathState& state, const Vec3& of_it) {
-        add(state.index, state.throughput.cwiseProduct(of_it), state.is_wide, radiance);
+        add(state.index, state.throughput.cwiseProduct(of_it), state.scattered, radiance);
     };
     for (size_t i = 0; i < batch.count; ++i) {
         if (batch.extensions && batch.inside[i] > 0.5f) {
@@ -299,7 +302,7 @@ void PathTracer::add_emission(const PathBatch& batch, const Scattered& scattered
     for (size_t i = 0; i < batch.count; ++i) {
         const PathState& state = batch.state[i];
         const Vec3 kept = batch.extended_paths[i].emission.cwiseProduct(scattered.keep.at(i));
-        add(state.index, kept, state.is_wide, radiance);
+        add(state.index, kept, state.scattered, radiance);
     }
 }
 
@@ -360,7 +363,7 @@ void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered&
     escaped.paths.reserve(batch.count);
     for (size_t i = 0; i < batch.count; ++i) {
         PathState state = batch.state[i];
-        const bool is_wide = state.is_wide;
+        const Scattering before = state.scattered;
         state.throughput = state.throughput.cwiseProduct(scattered.weight.at(i));
         const Vec3 direction = scattered.direction.at(i);
         if (!goes_on(batch, i, depth, direction, state)) continue;
@@ -368,7 +371,7 @@ void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered&
         lights_.for_each_met(batch.position.at(i), direction, scattered.density[i],
                              [&](const Vec3& light, float distance) {
                                  if (hit && hit->distance < distance) return;
-                                 add(state.index, state.throughput.cwiseProduct(light), is_wide, radiance);
+                                 add(state.index, state.throughput.cwiseProduct(light), before, radiance);
                              });
         if (hit) {
             absorb(hit->distance, state);
@@ -377,7 +380,7 @@ void PathTracer::follow(const PathBatch& batch, uint32_t depth, const Scattered&
         } else {
             escaped.directions.push_back(direction);
             escaped.densities.push_back(scattered.density[i]);
-            escaped.paths.push_back({state.throughput, state.index, is_wide});
+            escaped.paths.push_back({state.throughput, state.index, before});
         }
     }
     add_escaped(escaped, radiance);
@@ -395,7 +398,7 @@ Vec3 PathTracer::caught_sky(const Hit& at, const Vec2& u) const {
 bool PathTracer::is_caught(const Hit& hit, uint32_t depth, PathRadiance& radiance) const {
     if (hit.hit.surface >= 0 || !scene_->ground()->shadow_catcher) return false;
     const Vec3 sky = caught_sky(hit, hit.state.sampler.pair(depth, emitter_point));
-    add(hit.state.index, hit.state.throughput.cwiseProduct(sky), hit.state.is_wide, radiance);
+    add(hit.state.index, hit.state.throughput.cwiseProduct(sky), hit.state.scattered, radiance);
     return true;
 }
 
@@ -412,7 +415,10 @@ size_t add_path(const PathTracer::Hit& hit, const HitSurfaces& surfaces, size_t 
     // What is shown past the light is as if it were matt.
     to.parameters.set(at, is_lit_kind(surfaces.kind[i]) ? surfaces.parameters.at(i) : Vec2(0, 1));
     PathState state = hit.state;
-    state.is_wide |= hit.density < widest_density;
+    if (hit.density < widest_density)
+        state.scattered = Scattering::wide;
+    else if (state.scattered == Scattering::none && state.bounces > 0)
+        state.scattered = Scattering::narrow;
     to.set_state(at, state);
     return at;
 }
@@ -439,7 +445,7 @@ PathTracer::Batches PathTracer::arrive(std::vector<Hit>& hits, uint32_t depth, P
         const Vec3 emission = hit.state.throughput.cwiseProduct(surfaces.emission.at(i)) * weights[sorted[i]];
         const bool extended = is_extended_kind(surfaces.kind[i]),
                    ends = hit.state.bounces > resolved_->settings.path.bounces;
-        if (!extended || ends) add(hit.state.index, emission, hit.state.is_wide, radiance);
+        if (!extended || ends) add(hit.state.index, emission, hit.state.scattered, radiance);
         if (surfaces.kind[i] > 0.9f || ends) continue;
         const size_t at = add_path(hit, surfaces, i, extended ? next.extended : next.plain);
         if (!extended) continue;

@@ -20,8 +20,9 @@ namespace easypbr::render {
 /// shine straight through transmissive surfaces; all other light is refracted.
 class PathTracer {
   public:
-    /// The settings and the scene must outlive the calls of the others. `most`: luminance that one path adds
-    /// within the limit of PathRadiance, once a surface has scattered it widely.
+    /// The settings and the scene must outlive the calls of the others. `most`: luminance of one path that is
+    /// within the limit of PathRadiance, once it is scattered widely; of other reflected light, what is above
+    /// 40 times that is lost.
     void prepare(const ResolvedSettings& resolved, const RayScene& scene, float most);
 
     /// A path that has met a surface.
@@ -84,8 +85,8 @@ class PathTracer {
     void add_escaped(const Escaped& paths, PathRadiance& radiance) const;
     /// What a ground that catches shadows shows of the sky behind it.
     Vec3 caught_sky(const Hit& at, const Vec2& u) const;
-    /// Adds what a path has found at a surface; see PathState::is_wide.
-    void add(uint32_t index, const Vec3& found, bool is_wide, PathRadiance& to) const;
+    /// Adds what a path has found at a surface.
+    void add(uint32_t index, const Vec3& found, Scattering scattered, PathRadiance& to) const;
 
     const ResolvedSettings* resolved_ = nullptr;
     const RayScene* scene_ = nullptr;
