@@ -72,12 +72,13 @@ float FireflyFilter::staying(const Found& found, float bright) {
 template <class Value>
 void FireflyFilter::blur(std::vector<Value>& values, const std::array<float, 5>& taps) const {
     const int columns = cells_.x(), rows = cells_.y();
+    const float* const middle = taps.data() + radius;
     std::vector<Value> across(values.size());
     // `here` is element `at` of a line of `count`.
     const auto blurred = [&](const Value* here, int at, int count, ptrdiff_t step) {
-        Value sum = *here * taps[radius];
+        Value sum = *here * *middle;
         for (int k = std::max(-radius, -at); k <= std::min(radius, count - 1 - at); ++k)
-            if (k != 0) sum += taps[size_t(k + radius)] * here[k * step];
+            if (k != 0) sum += middle[k] * here[k * step];
         return sum;
     };
     parallel_for(size_t(rows), 16, [&](size_t row) {

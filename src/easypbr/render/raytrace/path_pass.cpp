@@ -27,7 +27,7 @@ uint32_t catcher_period(float distance) {
 }
 
 /// So much of the light that is spread goes to black surfaces too, which reflect light in other ways.
-constexpr float least_reflectance = 0.05f;
+constexpr float black_reflectance = 0.05f;
 
 /// Luminance of a path's light that stays at its pixel, however rare such paths are.
 float most_light(const ResolvedSettings& resolved) {
@@ -267,7 +267,7 @@ void PathPass::spread_fireflies(const Pixels& pixels) {
         // Smooth metals scatter little of it widely.
         const float part = 1 - float(metallic) / 255 * (1 - float(roughness) / 255);
         const std::array<uint16_t, 4>& color = *pixels.albedo.at(x, y);
-        return Vec3((Vec3(color[0], color[1], color[2]) * (part / 65535)).cwiseMax(least_reflectance));
+        return Vec3((Vec3(color[0], color[1], color[2]) * (part / 65535)).cwiseMax(black_reflectance));
     };
     fireflies_.spread(reflectance, [&](int x, int y, const Vec3& light) {
         if (Vec4* to = pixels.radiance.at(x, y)) to->head<3>() += light;
