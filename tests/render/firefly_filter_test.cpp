@@ -107,8 +107,8 @@ TEST(FireflyFilter, ReachesNoFarther) {
 }
 
 // What is found in one square alone, and again and again, comes to stay. After n frames a pixel is expected
-// to have found n / 16 such paths. Spreading leaves 0.375^2 of the light in the square; the variance of sums
-// of n paths is n of one, and what is left of it after spreading is less by the square.
+// to have found n / 16 such paths. If all light was spread, 0.375^2 of it would be left in the square. The
+// variance of the sum of n paths is n times the square of one; of what is left of it, 0.375^4 times that.
 TEST(FireflyFilter, KeepsWhatIsFoundOften) {
     FireflyFilter filter;
     const auto even = [](int, int) { return Vec3(1, 1, 1); };
@@ -127,6 +127,18 @@ TEST(FireflyFilter, KeepsWhatIsFoundOften) {
     EXPECT_NEAR(bright[index_of(18, 10)].x(), 200 * 0.13, 200 * 0.05);
     filter.begin_picture();
     EXPECT_LT(drawn(filter, beyond(18, 10, Vec3(2, 2, 2)), even)[index_of(18, 10)].x(), 0.1f);
+}
+
+// Surfaces that later frames do not show leave no numbers that are none.
+TEST(FireflyFilter, BearsSurfacesThatGo) {
+    FireflyFilter filter;
+    const auto even = [](int, int) { return Vec3(1, 1, 1); };
+    for (int frame = 0; frame < 4; ++frame) drawn(filter, beyond(2, 2, Vec3(2, 2, 2)), even);
+    const auto right = [](int x, int) { return Vec3::Constant(x > 12 ? 1.0f : 0.0f).eval(); };
+    for (int frame = 0; frame < 4; ++frame) {
+        const Pixels pixels = drawn(filter, beyond(40, 22, Vec3(2, 2, 2)), right);
+        EXPECT_NEAR(sum_of(pixels).x(), 2, 1e-5);
+    }
 }
 
 // Of light that would show as a spot the rest is lost.

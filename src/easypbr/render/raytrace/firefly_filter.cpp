@@ -120,8 +120,9 @@ void FireflyFilter::compare(const std::vector<Vec3>& own, const std::vector<Vec3
     std::vector<float> light(cells_found_.size()), variance(light.size());
     for (size_t i = 0; i < light.size(); ++i) {
         const Found& found = cells_found_[i];
-        if (!(found.light > 0)) continue;
         const float all = luminance(reached[i]);
+        // There is no surface any more around what other frames have found, or its tiles have ended.
+        if (!(found.light > 0 && all > 0)) continue;
         light[i] = found.light / all;
         variance[i] = found.squares / (all * all);
     }
