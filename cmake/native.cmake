@@ -4,7 +4,7 @@ set(native_shaders lighting_surface lighting_surface_extended background_environ
                    accumulate_sample antialias_fxaa occlusion_select occlusion_horizon occlusion_hemisphere occlusion_blur occlusion_magnify
                    lighting_catcher ground_finish occlusion_normals display_surface exact_surface
                    bloom_blocks bloom_gather bloom_resample focus_halve focus_gather focus_compose
-                   outline_edges outline_lines denoise_guides denoise_estimate denoise_smooth transparency_layer transparency_behind
+                   outline_edges outline_lines denoise_estimate denoise_smooth transparency_layer transparency_behind
                    downsample_picture eye_dome_layers)
 set(native_surface_shaders mesh_resolve mesh_extended shadow_depth)
 set(native_stream_shaders path_lamps path_scatter path_lamps_extended path_scatter_extended display_color)

@@ -1,6 +1,6 @@
 // What denoisers are guided by: edges of what the surfaces are (SVGF; Schied et al. 2017, section 4.4).
 uniform sampler2D u_light;   // divided by the surface's reflectance; a: variance of the mean's luminance
-uniform sampler2D u_guides;  // of denoise_guides.frag
+uniform sampler2D u_guides;  // packed normal and reflectance, log2 of the depth, the number of frames
 uniform vec2 u_size;
 
 // Falls of the weights: over the square of the normals' difference (that of cos^128), of the reflectances', and over the

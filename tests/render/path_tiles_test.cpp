@@ -31,6 +31,44 @@ TEST(SampledTiles, CoverThePicture) {
     EXPECT_FALSE(tiles.has_ended(5));
 }
 
+// The tiles of a rectangle are those of its pixels, and no others.
+TEST(TileGrid, KnowsTheTilesOfARectangle) {
+    const render::TileGrid grid({100, 50});
+    for (const PixelRect& area :
+         {PixelRect{0, 0, 100, 50}, {15, 16, 2, 16}, {31, 47, 1, 3}, {96, 48, 4, 2}}) {
+        std::vector<size_t> expected;
+        for (int y = area.y; y < area.y + area.height; ++y)
+            for (int x = area.x; x < area.x + area.width; ++x) expected.push_back(grid.tile_at(x, y));
+        std::ranges::sort(expected);
+        const auto repeated = std::ranges::unique(expected);
+        expected.erase(repeated.begin(), repeated.end());
+        EXPECT_EQ(grid.tiles_in(area), expected);
+    }
+    EXPECT_TRUE(grid.tiles_in({20, 20, 0, 5}).empty());
+}
+
+// Values stay where they were written, the others are those of T(), also once others have been forgotten.
+TEST(TilePixels, HoldWhatWasWritten) {
+    struct Value {
+        int x = -1, y = -2;
+    };
+    render::TilePixels<Value> pixels;
+    for (int round = 0; round < 2; ++round) {
+        pixels.begin({600, 400});
+        for (int y = 0; y < 400; ++y)
+            for (int x = (y / 16 % 2) * 16; x < 600; x += x % 16 == 15 ? 17 : 1)
+                pixels.make(pixels.grid().tile_at(x, y))[render::TileGrid::place_of(x, y)] = {x, y};
+        for (int y = 0; y < 400; ++y)
+            for (int x = 0; x < 600; ++x) {
+                const bool is_written = (x / 16 + y / 16) % 2 == 0;
+                const Value value = pixels.at(x, y);
+                ASSERT_EQ(value.x, is_written ? x : -1);
+                ASSERT_EQ(value.y, is_written ? y : -2);
+            }
+        EXPECT_EQ(pixels.of(1), nullptr);
+    }
+}
+
 /// A wall that fills the picture, lit by a lamp from beside, which a ball hides from a part of it: noise is
 /// in the penumbra, and hardly any elsewhere.
 struct Wall {

@@ -1,5 +1,7 @@
 #include "easypbr/core/memory_pool.h"
 
+#include <sys/mman.h>
+
 #include <algorithm>
 #include <bit>
 #include <mutex>
@@ -22,8 +24,22 @@ size_t block_size(size_t bytes) {
     return (bytes + step - 1) / step * step;
 }
 
+/// Null: there is none. Pages go back to the system when it is freed, which a heap with holes would keep.
 void* allocate(size_t bytes) {
+#ifdef __SANITIZE_ADDRESS__
     return ::operator new(bytes, alignment, std::nothrow);
+#else
+    void* memory = ::mmap(nullptr, bytes, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+    return memory == MAP_FAILED ? nullptr : memory;
+#endif
+}
+
+void deallocate(void* memory, [[maybe_unused]] size_t bytes) {
+#ifdef __SANITIZE_ADDRESS__
+    ::operator delete(memory, alignment);
+#else
+    ::munmap(memory, bytes);
+#endif
 }
 
 class Pool {
@@ -80,7 +96,7 @@ class Pool {
         auto block = kept_.begin();
         for (; kept_bytes_ > to || size_t(kept_.end() - block) > most_blocks; ++block) {
             kept_bytes_ -= block->bytes;
-            ::operator delete(block->memory, alignment);
+            deallocate(block->memory, block->bytes);
         }
         kept_.erase(kept_.begin(), block);
     }

@@ -17,8 +17,13 @@ class EdgeAvoidingFilter {
     const Target& smooth(const NoisyLight& noisy, Transfers& transfers);
 
   private:
-    Target guides_, estimate_;
-    ScreenShader guiding_{"denoise_guides.frag", native::Shader::denoise_guides};
+    /// Of the first level: pixels whose estimates it compares.
+    static constexpr int first_reach = 2;
+    void write_guides(const NoisyLight& noisy);
+
+    /// For each pixel: packed normal and reflectance, log2 of the depth, the number of frames.
+    Target guides_;
+    Target estimate_;  ///< of denoise_estimate.frag, of a band of rows
     ScreenShader estimating_{"denoise_estimate.frag", native::Shader::denoise_estimate};
     ScreenShader smooth_{"denoise_smooth.frag", native::Shader::denoise_smooth};
 };

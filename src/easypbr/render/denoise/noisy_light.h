@@ -1,22 +1,90 @@
 // What denoisers are given.
 #pragma once
 
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
 #include "easypbr/core/math.h"
+#include "easypbr/core/parallel.h"
 #include "easypbr/render/frame/target.h"
+#include "easypbr/render/frame/tile_pixels.h"
 
 namespace easypbr::render {
 
-/// Light of the surfaces that a picture shows, and what they are; all in host memory, RGBA32F and whole.
+/// What guides denoisers: means over the frames that show a surface with noisy light at a pixel. Steps of
+/// 1 / 65535 are finer than they tell apart.
+struct SurfaceMean {
+    using Steps = std::array<uint16_t, 3>;
+
+    float depth = 0;      ///< log2 of it; of an orthographic picture itself
+    Steps normal{};       ///< world normal, half of 65535 for 0
+    Steps reflectance{};  ///< linear, 65535 for 1
+    uint32_t frames = 0;
+
+    static Vec3 values(const Steps& steps) { return Vec3(steps[0], steps[1], steps[2]) / most; }
+    Vec3 mean_normal() const { return 2 * values(normal) - Vec3::Ones(); }
+    Vec3 mean_reflectance() const { return values(reflectance); }
+
+    void add(const Vec3& frame_normal, const Vec3& frame_reflectance, float frame_depth) {
+        const float part = 1 / float(++frames);
+        move(normal, (frame_normal + Vec3::Ones()) / 2, part);
+        move(reflectance, frame_reflectance, part);
+        depth += (frame_depth - depth) * part;
+    }
+
+  private:
+    static constexpr float most = 65535;
+    static void move(Steps& mean, const Vec3& to, float part) {
+        for (int i = 0; i < 3; ++i) {
+            const auto from = float(mean[size_t(i)]);
+            const float moved = from + (std::clamp(to[i], 0.0f, 1.0f) * most - from) * part;
+            mean[size_t(i)] = uint16_t(moved + 0.5f);
+        }
+    }
+};
+
+/// Of what a pixel's light is taken note: that of its first frame with noise.
+enum class Noisy : uint8_t { nothing, radiance, coverage };
+
+/// Sums over the frames that SurfaceMean is of.
+struct NoisyPixel {
+    Vec3 light = Vec3::Zero();  ///< radiance; three times the coverage where that is what is noisy
+    float squares = 0;          ///< of the luminance
+    float alpha = 0;            ///< of radiance: what is left of its coverage by overlays
+    SurfaceMean surface;
+    Noisy noisy = Noisy::nothing;
+};
+static_assert(sizeof(NoisyPixel) == 44, "there is one for each pixel");
+
+/// Light of the surfaces that a picture shows, and what they are.
 struct NoisyLight {
-    /// Mean radiance; a: variance of that mean's luminance. 0 where no surface is.
+    /// In host memory, RGBA32F and whole: mean radiance; a: variance of that mean's luminance. 0 where no
+    /// surface is.
     const Target& light;
-    /// Sums over the frames that show a surface at the pixel: world normal; a: log2 of the depth.
-    const Target& surface;
-    /// Likewise: linear reflectance, 0 to 1; a: the number of frames.
-    const Target& color;
-    /// Undefined; for what denoisers write.
+    const TilePixels<NoisyPixel>& pixels;
+    /// RGBA32F, undefined; for what denoisers write.
     const Target& scratch;
-    bool is_last = false;  ///< `surface` is not needed any more, and may be released
+    bool is_white = false;  ///< nothing of the light is reflected: colours of surfaces do not matter
+
+    Vec3 reflectance(const SurfaceMean& surface) const {
+        return is_white ? Vec3(Vec3::Ones()) : surface.mean_reflectance();
+    }
+
+    /// Calls visit(index, surface) for each pixel, by its index row by row, on all cores.
+    template <class Visit>
+    void each(Visit&& visit) const {
+        static const SurfaceMean none;
+        const TileGrid& grid = pixels.grid();
+        parallel_for(grid.count(), 64, [&](size_t tile) {
+            const NoisyPixel* of = pixels.of(tile);
+            const PixelRect area = grid.area_of(tile);
+            for (int y = area.y; y < area.y + area.height; ++y)
+                for (int x = area.x; x < area.x + area.width; ++x)
+                    visit(size_t(y) * size_t(grid.size().x()) + size_t(x),
+                          of ? of[TileGrid::place_of(x, y)].surface : none);
+        });
+    }
 };
 
 }  // namespace easypbr::render

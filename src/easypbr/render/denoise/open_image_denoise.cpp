@@ -107,15 +107,6 @@ void check(const Library& oidn, void* device) {
             fmt::format("path.denoise: Open Image Denoise failed: {}", message ? message : "no reason"));
 }
 
-/// Means of sums in RGB; 0 where there are none.
-std::vector<Vec4> means_of(const Target& sums, const Target& counts) {
-    const auto from = sums.pixels<Vec4>(), count = counts.pixels<Vec4>();
-    std::vector<Vec4> to(from.size());
-    parallel_for(to.size(), size_t(1) << 14,
-                 [&](size_t i) { to[i] = from[i] / std::max(1.0f, count[i].w()); });
-    return to;
-}
-
 }  // namespace
 
 void add_denoiser_folder(const fs::path& folder) {
@@ -152,8 +143,13 @@ const Target& OpenImageDenoise::denoise(const NoisyLight& noisy) {
         oidn->commit_device(device_);
         check(*oidn, device_);
     }
-    std::vector<Vec4> normal = means_of(noisy.surface, noisy.color),
-                      albedo = means_of(noisy.color, noisy.color);
+    const size_t count = noisy.light.pixels<Vec4>().size();
+    std::vector<Vec4> normal(count, Vec4::Zero()), albedo(count, Vec4::Zero());
+    noisy.each([&](size_t i, const SurfaceMean& surface) {
+        if (surface.frames == 0) return;
+        normal[i].head<3>() = surface.mean_normal();
+        albedo[i].head<3>() = noisy.reflectance(surface);
+    });
     noisy.scratch.write(noisy.scratch.whole());
     void* filter = oidn->new_filter(device_, "RT");
     const auto image = [&](const char* name, std::span<Vec4> pixels) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <optional>
 
 #include "easypbr/core/luminance.h"
 #include "easypbr/core/octahedral.h"
@@ -14,9 +15,6 @@
 
 namespace easypbr::render {
 namespace {
-
-/// Pixels of one task of parallel loops.
-constexpr size_t grain = size_t(1) << 14;
 
 /// A ground that has faded further is as good as not there.
 constexpr float least_coverage = 1.0f / 64;
@@ -36,10 +34,10 @@ Vec3 reflectance(const Vec3& base, float metallic) {
     return (base + Vec3::Constant(dielectric * (1 - metallic))).cwiseMin(1.0f);
 }
 
-/// Of a mean's luminance, from a pixel of RadianceMean's `seen_`, by the sample variance; of one frame its
-/// own square.
-float variance_of(const Vec4& seen, float count) {
-    const float bright = luminance(seen.head<3>()) / count, squares = seen.w() / count;
+/// Of a mean's luminance, by the sample variance; of one frame its own square.
+float variance_of(const NoisyPixel& pixel) {
+    const auto count = float(pixel.surface.frames);
+    const float bright = luminance(pixel.light) / count, squares = pixel.squares / count;
     return count > 1 ? std::max(0.0f, squares - bright * bright) / (count - 1) : squares;
 }
 
@@ -60,117 +58,143 @@ constexpr int frames_of_silhouettes = 16;
 /// Of fewer pixels of a tile the noise is not known: they are of a silhouette.
 constexpr int least_pixels = 32;
 
-void clear(const Target& target) {
-    target.write(target.whole());
-    std::ranges::fill(target.pixels<Vec4>(), Vec4::Zero());
+PixelRect common(const PixelRect& a, const PixelRect& b) {
+    const int x = std::max(a.x, b.x), y = std::max(a.y, b.y);
+    return {x, y, std::min(a.x + a.width, b.x + b.width) - x, std::min(a.y + a.height, b.y + b.height) - y};
 }
 
 }  // namespace
 
+class RadianceMean::FrameSurfaces {
+  public:
+    FrameSurfaces(const Frame& frame, const GBuffer& surfaces)
+        : albedo_(surfaces.albedo),
+          normal_(surfaces.normal),
+          material_(surfaces.material),
+          depth_(surfaces.depth),
+          orthographic_(frame.orthographic()),
+          over_nothing_(!frame.resolved->settings.background.shows_environment()) {}
+
+    /// What is noisy of a sample.
+    Noisy kind_of(int x, int y, const Vec4& sample) const {
+        const float* depth = depth_.at(x, y);
+        if (!depth || *depth <= 0) return Noisy::nothing;
+        const uint8_t kind = (*material_.at(x, y))[3];
+        if (!is_noisy(kind) || (is_lit_by_scene(kind) && sample.w() < least_coverage)) return Noisy::nothing;
+        return !is_lit_by_scene(kind) && over_nothing_ ? Noisy::coverage : Noisy::radiance;
+    }
+    /// Of a sample that is noisy.
+    void add_to(SurfaceMean& mean, int x, int y, const Vec4& sample) const {
+        const std::array<uint8_t, 4>& m = *material_.at(x, y);
+        const std::array<uint16_t, 4>& a = *albedo_.at(x, y);
+        const std::array<uint16_t, 2>& n = *normal_.at(x, y);
+        const float depth = *depth_.at(x, y);
+        // Where a ground fades its radiance does, as if it reflected less.
+        const Vec3 reflects = is_lit_by_scene(m[3])
+                                  ? Vec3(reflectance(Vec3(a[0], a[1], a[2]) / 65535.0f, float(m[0]) / 255) *
+                                         std::clamp(sample.w(), 0.0f, 1.0f))
+                                  : Vec3(Vec3::Ones());
+        // The depth of orthographic pictures is linear in [0, 1]: what is logarithmic elsewhere.
+        mean.add(oct_decode(Vec2(n[0], n[1]) / 32767.5f - Vec2(1, 1)), reflects,
+                 orthographic_ ? depth : std::log2(depth));
+    }
+
+  private:
+    HeldPixels<std::array<uint16_t, 4>> albedo_;
+    HeldPixels<std::array<uint16_t, 2>> normal_;
+    HeldPixels<std::array<uint8_t, 4>> material_;
+    HeldPixels<float> depth_;
+    bool orthographic_, over_nothing_;
+};
+
 void RadianceMean::begin(Vec2i size, bool with_surfaces) {
     frames_ = 0;
-    is_last_ = false;
     tiles_.begin(size);
     overlay_sum_.clear();
     coverage_.clear();
     open_.clear();
     weights_.clear();
     notes_surfaces_ = with_surfaces;
-    const auto make = [&](Target& target) {
-        if (target.size() != size) target = Target(gl::Format::rgba32f, size);
-    };
-    make(sum_);
-    make(sample_);
-    make(light_);
-    clear(sum_);
-    if (!with_surfaces) return;
-    noisy_.assign(size_t(size.prod()), Noisy::nothing);
-    for (Target* target : {&seen_, &surface_, &color_}) {
-        make(*target);
-        clear(*target);
-    }
+    beside_.begin(size);
+    noisy_.begin(size);
+    for (Target* target : {&sample_, &light_})
+        if (target->size() != size) *target = Target(gl::Format::rgba32f, size);
 }
 
-void RadianceMean::add(const Frame& frame, const PixelRect& area, const GBuffer& surfaces, bool see_through,
-                       Transfers& transfers) {
+void RadianceMean::begin_frame(const Frame& frame, bool see_through) {
     begin_weights();
     ++frames_;
     light_.release();
-    sample_.download(area, transfers);
-    const HeldPixels<Vec4> sample(sample_), sum(sum_);
-    parallel_for(size_t(area.height), 16, [&](size_t row) {
-        const int y = area.y + int(row);
-        for (int x = area.x; x < area.x + area.width; ++x) {
-            if (tiles_.has_ended(tiles_.tile_at(x, y))) continue;
-            const size_t i = index_of(x, y);
-            *sum.at(x, y) += open_part(i) * *sample.at(x, y);
-            if (!weights_.empty()) weights_[i].x() += open_part(i);
-        }
-    });
-    if (notes_surfaces_) {
-        for (const Target* target : {&surfaces.albedo, &surfaces.normal, &surfaces.material, &surfaces.depth})
-            target->download(area, transfers);
-        if (see_through && !frame.resolved->settings.background.shows_environment())
-            coverage_.resize(noisy_.size(), Vec2::Zero());
-        add_surfaces(frame, area, surfaces);
-    }
+    if (notes_surfaces_ && see_through && !frame.resolved->settings.background.shows_environment())
+        coverage_.resize(size_t(frame.size.prod()), Vec2::Zero());
+}
+
+void RadianceMean::end_frame() {
     open_.clear();
     sample_.release();
+}
+
+void RadianceMean::add(const Frame& frame, const PixelRect& area, const GBuffer& surfaces,
+                       Transfers& transfers) {
+    sample_.download(area, transfers);
+    if (notes_surfaces_)
+        for (const Target* target : {&surfaces.albedo, &surfaces.normal, &surfaces.material, &surfaces.depth})
+            target->download(area, transfers);
+    std::optional<FrameSurfaces> of_frame;
+    if (notes_surfaces_) of_frame.emplace(frame, surfaces);
+    const std::vector<size_t> tiles = tiles_.tiles_in(area);
+    parallel_for(tiles.size(), 16, [&](size_t i) {
+        if (!tiles_.has_ended(tiles[i]))
+            add_to_tile(tiles[i], common(tiles_.area_of(tiles[i]), area), of_frame ? &*of_frame : nullptr);
+    });
 }
 
 void RadianceMean::begin_weights() {
     if (open_.empty() || !weights_.empty()) return;
     // Nothing was over the frames before.
     weights_.assign(open_.size(), Vec2(float(frames_), 0));
-    if (!notes_surfaces_) return;
-    const auto color = color_.pixels<Vec4>();
-    for (size_t i = 0; i < weights_.size(); ++i) weights_[i].y() = color[i].w();
+    each({0, 0, tiles_.size().x(), tiles_.size().y()},
+         [&](size_t i, int x, int y) { weights_[i].y() = float(noisy_.at(x, y).surface.frames); });
 }
 
-void RadianceMean::add_surfaces(const Frame& frame, const PixelRect& area, const GBuffer& surfaces) {
-    const HeldPixels<Vec4> sample(sample_), seen(seen_), surface(surface_), color(color_);
-    const HeldPixels<std::array<uint16_t, 4>> albedo(surfaces.albedo);
-    const HeldPixels<std::array<uint16_t, 2>> normal(surfaces.normal);
-    const HeldPixels<std::array<uint8_t, 4>> material(surfaces.material);
-    const HeldPixels<float> depth(surfaces.depth);
-    // The depth of orthographic pictures is linear in [0, 1]: what is logarithmic elsewhere.
-    const bool orthographic = frame.orthographic();
-    const bool over_nothing = !frame.resolved->settings.background.shows_environment();
-    parallel_for(size_t(area.height), 16, [&](size_t row) {
-        const int y = area.y + int(row);
-        for (int x = area.x; x < area.x + area.width; ++x) {
-            const float* d = depth.at(x, y);
-            if (!d || *d <= 0 || tiles_.has_ended(tiles_.tile_at(x, y))) continue;
-            const std::array<uint8_t, 4>& m = *material.at(x, y);
-            if (!is_noisy(m[3])) continue;
-            const Vec4& of_frame = *sample.at(x, y);
-            const bool is_caught = !is_lit_by_scene(m[3]);
-            if (!is_caught && of_frame.w() < least_coverage) continue;
-            const Noisy kind = is_caught && over_nothing ? Noisy::coverage : Noisy::radiance;
-            const size_t i = index_of(x, y);
-            Noisy& noted = noisy_[i];
-            if (noted == Noisy::nothing) noted = kind;
-            if (noted != kind) continue;
-            const Vec3 light =
-                kind == Noisy::coverage ? Vec3(Vec3::Constant(of_frame.w())) : Vec3(of_frame.head<3>());
-            const float bright = luminance(light);
-            const std::array<uint16_t, 4>& a = *albedo.at(x, y);
-            const std::array<uint16_t, 2>& n = *normal.at(x, y);
-            const Vec3 direction = oct_decode(Vec2(n[0], n[1]) / 32767.5f - Vec2(1, 1));
-            // Where a ground fades its radiance does, as if it reflected less.
-            const Vec3 reflects =
-                is_caught ? Vec3(Vec3::Ones())
-                          : Vec3(reflectance(Vec3(a[0], a[1], a[2]) / 65535.0f, float(m[0]) / 255) *
-                                 std::clamp(of_frame.w(), 0.0f, 1.0f));
-            if (!coverage_.empty() && kind == Noisy::radiance)
-                coverage_[i] += Vec2(of_frame.w(), of_frame.w() * of_frame.w());
-            if (!weights_.empty()) weights_[i].y() += open_part(i);
-            *seen.at(x, y) += Vec4(light.x(), light.y(), light.z(), bright * bright);
-            *surface.at(x, y) +=
-                Vec4(direction.x(), direction.y(), direction.z(), orthographic ? *d : std::log2(*d));
-            *color.at(x, y) += Vec4(reflects.x(), reflects.y(), reflects.z(), 1);
+void RadianceMean::add_to_tile(size_t tile, const PixelRect& area, const FrameSurfaces* surfaces) {
+    const HeldPixels<Vec4> sample(sample_);
+    each(area, [&](size_t i, int x, int y) {
+        const Vec4& of_frame = *sample.at(x, y);
+        const size_t place = TileGrid::place_of(x, y);
+        Vec4 beside = open_part(i) * of_frame;
+        const Noisy kind = surfaces ? surfaces->kind_of(x, y, of_frame) : Noisy::nothing;
+        if (kind != Noisy::nothing) {
+            NoisyPixel& pixel = noisy_.make(tile)[place];
+            if (pixel.noisy == Noisy::nothing) pixel.noisy = kind;
+            if (pixel.noisy == kind) {
+                beside = add_to_pixel(pixel, i, of_frame);
+                surfaces->add_to(pixel.surface, x, y, of_frame);
+            }
         }
+        if (!weights_.empty()) weights_[i].x() += open_part(i);
+        if ((beside.array() != 0).any()) beside_.make(tile)[place].radiance += beside;
     });
+}
+
+Vec4 RadianceMean::add_to_pixel(NoisyPixel& pixel, size_t index, const Vec4& sample) {
+    const float open = open_part(index);
+    const bool is_coverage = pixel.noisy == Noisy::coverage;
+    const Vec3 light = is_coverage ? Vec3(Vec3::Constant(sample.w())) : Vec3(sample.head<3>());
+    const float bright = luminance(light);
+    pixel.light += light;
+    pixel.squares += bright * bright;
+    if (!weights_.empty()) weights_[index].y() += open;
+    Vec4 beside = Vec4::Zero();
+    if (is_coverage) {
+        beside.head<3>() = open * sample.head<3>();
+        if (open != 1) beside.w() = (open - 1) * bright;
+        return beside;
+    }
+    pixel.alpha += open * sample.w();
+    if (!coverage_.empty()) coverage_[index] += Vec2(sample.w(), sample.w() * sample.w());
+    if (open != 1) beside.head<3>() = (open - 1) * light;
+    return beside;
 }
 
 void RadianceMean::add_overlay(const Frame& frame, const Target& overlay, Transfers& transfers) {
@@ -191,25 +215,24 @@ void RadianceMean::add_overlay(const Frame& frame, const Target& overlay, Transf
 }
 
 RadianceMean::TileError RadianceMean::error_of(size_t tile, float exposure) const {
-    const auto seen = seen_.pixels<Vec4>(), color = color_.pixels<Vec4>();
-    const PixelRect area = tiles_.area_of(tile);
-    const int frames = tiles_.frames_of(tile, frames_);
     TileError error;
-    for (int y = area.y; y < area.y + area.height; ++y)
-        for (int x = area.x; x < area.x + area.width; ++x) {
-            const size_t i = index_of(x, y);
-            const float count = color[i].w();
-            if (!(count > 0)) continue;
-            const float deviation = std::sqrt(variance_of(seen[i], count)),
-                        bright = exposure * luminance(seen[i].head<3>()) / count;
-            // A coverage is displayed as it is.
-            const float displayed =
-                noisy_[i] == Noisy::coverage ? deviation : exposure * deviation * display_slope(bright);
-            error.mean += displayed;
-            error.quadratic += displayed * displayed;
-            error.has_silhouette |= int(count) != frames;
-            ++error.pixels;
-        }
+    const NoisyPixel* noisy = noisy_.of(tile);
+    if (!noisy) return error;
+    const int frames = tiles_.frames_of(tile, frames_);
+    each(tiles_.area_of(tile), [&](size_t /*index*/, int x, int y) {
+        const NoisyPixel& pixel = noisy[TileGrid::place_of(x, y)];
+        const uint32_t count = pixel.surface.frames;
+        if (count == 0) return;
+        const float deviation = std::sqrt(variance_of(pixel)),
+                    bright = exposure * luminance(pixel.light) / float(count);
+        // A coverage is displayed as it is.
+        const float displayed =
+            pixel.noisy == Noisy::coverage ? deviation : exposure * deviation * display_slope(bright);
+        error.mean += displayed;
+        error.quadratic += displayed * displayed;
+        error.has_silhouette |= int(count) != frames;
+        ++error.pixels;
+    });
     const float pixels = float(std::max(error.pixels, 1));
     error.mean /= pixels;
     error.quadratic = std::sqrt(error.quadratic / pixels);
@@ -243,90 +266,113 @@ void RadianceMean::end_tiles(float noise, float exposure) {
 const Target& RadianceMean::mean(Denoising denoising, Transfers& transfers) {
     const bool finds_oidn = denoising == Denoising::best && !OpenImageDenoise::version().empty();
     if (denoising == Denoising::best) denoising = finds_oidn ? Denoising::oidn : Denoising::filter;
-    const auto sum = sum_.pixels<Vec4>();
-    const auto scale_of = [&](size_t i) {
-        if (!weights_.empty()) return weights_[i].x() > least_open ? 1 / weights_[i].x() : 0.0f;
-        const size_t tile = tiles_.tile_at(int(i) % sum_.width(), int(i) / sum_.width());
-        return 1 / float(tiles_.frames_of(tile, frames_));
-    };
     if (denoising == Denoising::off || !notes_surfaces_) {
         light_.write(light_.whole());
-        const auto to = light_.pixels<Vec4>();
-        parallel_for(to.size(), grain, [&](size_t i) { to[i] = sum[i] * scale_of(i); });
+        write_mean(light_, nullptr, {});
         return light_;
     }
     const std::vector<float> coverage = denoised_coverage(denoising, transfers);
     write_noisy_light();
-    const Target& result = denoised(denoising, color_, is_last_, transfers);
-    const auto to = result.pixels<Vec4>(), seen = seen_.pixels<Vec4>(), color = color_.pixels<Vec4>();
-    parallel_for(to.size(), grain, [&](size_t i) {
-        const Vec3 changed = (to[i].head<3>() * color[i].w() - seen[i].head<3>()) *
-                             (weights_.empty() ? 1.0f : open_part_of_seen(i));
-        to[i] = sum[i];
-        if (noisy_[i] == Noisy::radiance) to[i].head<3>() += changed;
-        if (noisy_[i] == Noisy::coverage) to[i].w() += luminance(changed);
-        if (!coverage.empty()) to[i].w() += coverage[i] * (weights_.empty() ? 1.0f : open_part_of_seen(i));
-        to[i] *= scale_of(i);
-    });
+    const Target& result = denoised(denoising, false, transfers);
+    write_mean(result, &result, coverage);
     return result;
 }
 
-const Target& RadianceMean::denoised(Denoising denoising, const Target& color, bool is_last,
-                                     Transfers& transfers) {
-    const NoisyLight noisy{light_, surface_, color, sample_, is_last};
+void RadianceMean::write_mean(const Target& to, const Target* light, const std::vector<float>& coverage) {
+    const auto pixels = to.pixels<Vec4>();
+    parallel_for(tiles_.count(), 64, [&](size_t tile) {
+        const NoisyPixel* noisy = noisy_.of(tile);
+        const Sum* beside = beside_.of(tile);
+        const auto frames = float(tiles_.frames_of(tile, frames_));
+        each(tiles_.area_of(tile), [&](size_t i, int x, int y) {
+            const size_t place = TileGrid::place_of(x, y);
+            Vec4 sum = beside ? beside[place].radiance : Vec4(Vec4::Zero());
+            if (noisy && noisy[place].surface.frames > 0) {
+                const NoisyPixel& pixel = noisy[place];
+                const auto count = float(pixel.surface.frames);
+                const float open = weights_.empty() ? 1.0f : weights_[i].y() / count;
+                Vec3 seen = pixel.light;
+                if (light) {
+                    seen = light->pixels<Vec4>()[i].head<3>() * count;
+                    if (open != 1) seen = pixel.light + (seen - pixel.light) * open;
+                }
+                if (pixel.noisy == Noisy::coverage) {
+                    sum.w() += luminance(seen);
+                } else {
+                    sum.head<3>() += seen;
+                    sum.w() += pixel.alpha;
+                    if (!coverage.empty()) sum.w() += coverage[i] * open;
+                }
+            }
+            const float weight = weights_.empty() ? frames : weights_[i].x();
+            pixels[i] = weight > least_open ? Vec4(sum / weight) : Vec4(Vec4::Zero());
+        });
+    });
+}
+
+const Target& RadianceMean::denoised(Denoising denoising, bool is_white, Transfers& transfers) {
+    const NoisyLight noisy{light_, noisy_, sample_, is_white};
     return denoising == Denoising::oidn ? oidn_.denoise(noisy) : filter_.smooth(noisy, transfers);
 }
 
 std::vector<float> RadianceMean::denoised_coverage(Denoising denoising, Transfers& transfers) {
     if (coverage_.empty()) return {};
     write_noisy_coverage();
-    // Nothing of it is reflected.
-    const Target white(gl::Format::rgba32f, color_.size());
-    white.write(white.whole());
-    const auto color = color_.pixels<Vec4>();
-    std::ranges::transform(color, white.pixels<Vec4>().begin(),
-                           [](const Vec4& sum) { return Vec4(Vec4::Constant(sum.w())); });
-    const auto result = denoised(denoising, white, false, transfers).pixels<Vec4>();
+    const auto result = denoised(denoising, true, transfers).pixels<Vec4>();
     std::vector<float> changes(result.size());
-    parallel_for(changes.size(), grain, [&](size_t i) {
-        if (noisy_[i] == Noisy::radiance)
-            changes[i] = luminance(result[i].head<3>()) * color[i].w() - coverage_[i].x();
+    parallel_for(tiles_.count(), 64, [&](size_t tile) {
+        const NoisyPixel* noisy = noisy_.of(tile);
+        if (!noisy) return;
+        each(tiles_.area_of(tile), [&](size_t i, int x, int y) {
+            const NoisyPixel& pixel = noisy[TileGrid::place_of(x, y)];
+            if (pixel.noisy == Noisy::radiance)
+                changes[i] = luminance(result[i].head<3>()) * float(pixel.surface.frames) - coverage_[i].x();
+        });
     });
     return changes;
 }
 
 void RadianceMean::write_noisy_coverage() {
     write_noisy_light();
-    const auto to = light_.pixels<Vec4>(), color = color_.pixels<Vec4>();
-    parallel_for(to.size(), grain, [&](size_t i) {
-        const float count = color[i].w();
-        if (noisy_[i] != Noisy::radiance || !(count > 0)) return;
-        const float mean = coverage_[i].x() / count, squares = coverage_[i].y() / count;
-        const float variance = count > 1 ? std::max(0.0f, squares - mean * mean) / (count - 1) : squares;
-        to[i] = Vec4(mean, mean, mean, variance);
+    const auto to = light_.pixels<Vec4>();
+    parallel_for(tiles_.count(), 64, [&](size_t tile) {
+        const NoisyPixel* noisy = noisy_.of(tile);
+        if (!noisy) return;
+        each(tiles_.area_of(tile), [&](size_t i, int x, int y) {
+            const NoisyPixel& pixel = noisy[TileGrid::place_of(x, y)];
+            if (pixel.noisy != Noisy::radiance) return;
+            const auto count = float(pixel.surface.frames);
+            const float mean = coverage_[i].x() / count, squares = coverage_[i].y() / count;
+            const float variance = count > 1 ? std::max(0.0f, squares - mean * mean) / (count - 1) : squares;
+            to[i] = Vec4(mean, mean, mean, variance);
+        });
     });
 }
 
 void RadianceMean::write_noisy_light() {
     light_.write(light_.whole());
-    const auto to = light_.pixels<Vec4>(), seen = seen_.pixels<Vec4>(), color = color_.pixels<Vec4>();
-    parallel_for(to.size(), grain, [&](size_t i) {
-        const float count = color[i].w();
-        to[i].setZero();
-        if (!(count > 0)) return;
-        const Vec3 mean = seen[i].head<3>() / count;
-        to[i] = Vec4(mean.x(), mean.y(), mean.z(), variance_of(seen[i], count));
+    const auto to = light_.pixels<Vec4>();
+    parallel_for(tiles_.count(), 64, [&](size_t tile) {
+        const NoisyPixel* noisy = noisy_.of(tile);
+        each(tiles_.area_of(tile), [&](size_t i, int x, int y) {
+            to[i].setZero();
+            if (!noisy || noisy[TileGrid::place_of(x, y)].surface.frames == 0) return;
+            const NoisyPixel& pixel = noisy[TileGrid::place_of(x, y)];
+            to[i].head<3>() = pixel.light / float(pixel.surface.frames);
+            to[i].w() = variance_of(pixel);
+        });
     });
 }
 
 const Target* RadianceMean::overlay_mean() {
     if (overlay_sum_.empty()) return nullptr;
-    const Vec2i size = sum_.size();
+    const Vec2i size = tiles_.size();
     if (overlay_mean_.size() != size) overlay_mean_ = Target(gl::Format::rgba16f, size);
     overlay_mean_.write(overlay_mean_.whole());
     const auto to = overlay_mean_.pixels<Eigen::Vector4<Eigen::half>>();
     const float scale = 1 / float(frames_);
-    parallel_for(to.size(), grain, [&](size_t i) { to[i] = (overlay_sum_[i] * scale).cast<Eigen::half>(); });
+    parallel_for(to.size(), size_t(1) << 14,
+                 [&](size_t i) { to[i] = (overlay_sum_[i] * scale).cast<Eigen::half>(); });
     return &overlay_mean_;
 }
 

@@ -20,16 +20,18 @@ class RadianceMean {
     /// Forgets all frames. `with_surfaces`: they are taken note of, for mean() with a denoiser and noise().
     void begin(Vec2i size, bool with_surfaces);
 
+    /// Adds a frame's overlay, RGBA16F, before begin_frame(): each frame counts by what its overlay leaves of
+    /// it.
+    void add_overlay(const Frame& frame, const Target& overlay, Transfers& transfers);
+    /// `see_through`: what surfaces cover may be noisy as well as their light, since a shadow catcher is seen
+    /// through them.
+    void begin_frame(const Frame& frame, bool see_through);
     /// Takes a frame's radiance, RGBA32F: written before add(), in either memory.
     const Target& sample() const { return sample_; }
     /// Adds what sample() holds in a rectangle of a frame with these surfaces, but for tiles that have ended.
-    /// Downloads what is not in host memory. `see_through`: what surfaces cover may be noisy as well as their
-    /// light, since a shadow catcher is seen through them.
-    void add(const Frame& frame, const PixelRect& area, const GBuffer& surfaces, bool see_through,
-             Transfers& transfers);
-    /// Adds a frame's overlay, RGBA16F, before its radiance: each frame counts by what its overlay leaves of
-    /// it.
-    void add_overlay(const Frame& frame, const Target& overlay, Transfers& transfers);
+    /// Downloads what is not in host memory. No two rectangles of a frame may overlap.
+    void add(const Frame& frame, const PixelRect& area, const GBuffer& surfaces, Transfers& transfers);
+    void end_frame();
 
     /// Of the frames so far: the standard error of what is displayed with an exposure, of white, that 95 of
     /// 100 squares of 16 x 16 pixels are below; 0 where no surface is. Surfaces must be taken note of.
@@ -41,9 +43,6 @@ class RadianceMean {
     void end_tiles(float noise, float exposure);
     const SampledTiles& tiles() const { return tiles_; }
 
-    /// No frame follows: the next mean() is the last of these frames, and releases what it has used.
-    void end() { is_last_ = true; }
-
     /// The means so far, in host memory; of radiance 0 where overlays leave none of it. They live until the
     /// next call of a member. Throws Error when a denoiser that is asked for by name fails.
     const Target& mean(Denoising denoising, Transfers& transfers);
@@ -51,15 +50,20 @@ class RadianceMean {
     const Target* overlay_mean();
 
   private:
-    size_t index_of(int x, int y) const { return size_t(y) * size_t(sum_.width()) + size_t(x); }
+    size_t index_of(int x, int y) const { return size_t(y) * size_t(sample_.width()) + size_t(x); }
     float open_part(size_t pixel) const { return open_.empty() ? 1.0f : open_[pixel]; }
-    /// On the mean over the frames that seen_ is of.
-    float open_part_of_seen(size_t pixel) const {
-        const float count = color_.pixels<Vec4>()[pixel].w();
-        return count > 0 ? weights_[pixel].y() / count : 0.0f;
+    /// Calls visit(index, x, y) for all pixels of a rectangle, row by row.
+    template <class Visit>
+    void each(const PixelRect& area, Visit&& visit) const {
+        for (int y = area.y; y < area.y + area.height; ++y)
+            for (int x = area.x; x < area.x + area.width; ++x) visit(index_of(x, y), x, y);
     }
     void begin_weights();
-    void add_surfaces(const Frame& frame, const PixelRect& area, const GBuffer& surfaces);
+    /// A frame's surfaces in host memory.
+    class FrameSurfaces;
+    void add_to_tile(size_t tile, const PixelRect& area, const FrameSurfaces* surfaces);
+    /// What of the frame is to be added beside it.
+    Vec4 add_to_pixel(NoisyPixel& pixel, size_t index, const Vec4& sample);
     /// Standard errors of what is displayed, over the pixels of a tile that show a surface.
     struct TileError {
         float mean = 0, quadratic = 0;
@@ -69,30 +73,32 @@ class RadianceMean {
     TileError error_of(size_t tile, float exposure) const;
     void write_noisy_light();
     void write_noisy_coverage();
-    const Target& denoised(Denoising denoising, const Target& color, bool is_last, Transfers& transfers);
+    /// What light_ holds.
+    const Target& denoised(Denoising denoising, bool is_white, Transfers& transfers);
     /// What denoising adds to the sum of the coverages of pixels whose light is denoised; empty where none
     /// has noise.
     std::vector<float> denoised_coverage(Denoising denoising, Transfers& transfers);
+    /// Writes the mean of all frames. `light`, unless it is null: what is seen in place of the noisy light;
+    /// it may be the same target.
+    void write_mean(const Target& to, const Target* light, const std::vector<float>& coverage);
 
     int frames_ = 0;
     SampledTiles tiles_;
     bool notes_surfaces_ = false;
-    bool is_last_ = false;  ///< see end()
-    Target sum_;            ///< of all frames
-    /// Of frames that show a surface: its radiance, of a shadow catcher over nothing its coverage; a: the sum
-    /// of squares of the luminance; and what NoisyLight has.
-    Target seen_, surface_, color_;
+    /// Sums of all frames: of pixels with noise, and beside them of what is not noisy.
+    TilePixels<NoisyPixel> noisy_;
+    struct Sum {
+        Vec4 radiance = Vec4::Zero();
+    };
+    TilePixels<Sum> beside_;
     Target sample_;  ///< later a scratch target of denoisers, and the mean
     Target light_;
-    /// What of each pixel is taken note of: that of its first frame with noise.
-    enum class Noisy : uint8_t { nothing, radiance, coverage };
-    PooledVector<Noisy> noisy_;
     /// Of pixels that note radiance: sums of the coverage and of its square. Empty where it has no noise.
     PooledVector<Vec2> coverage_;
     PooledVector<Vec4> overlay_sum_;
     /// Of the frame: what its overlay leaves of the light. Empty: all.
     PooledVector<float> open_;
-    /// Sums of that over all frames, and over those that seen_ is of; empty where all of it is left.
+    /// Sums of that over all frames, and over those that show a surface; empty where all of it is left.
     PooledVector<Vec2> weights_;
     Target overlay_mean_;
     EdgeAvoidingFilter filter_;

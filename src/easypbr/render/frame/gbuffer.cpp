@@ -156,6 +156,12 @@ void GBuffer::upload(Transfers& transfers) const {
     depth.copy_to(depth_test(), transfers);
 }
 
+void GBuffer::release() const {
+    for (const Target* target : {&albedo, &normal, &material, &depth, &radiance, &emission, &id, &element,
+                                 &extension[0], &extension[1], &overlay, &ambient_occlusion})
+        target->release();
+}
+
 gl::DrawState GBuffer::covered_state(const gl::Blending& blending) const {
     // The screen's triangle lies infinitely far: "less" draws it where there is geometry, and SIMD
     // rasterisers skip the rest before shading.

@@ -80,6 +80,9 @@ struct GBuffer {
     /// lit, else with what lighting them needs.
     void upload(Transfers& transfers) const;
 
+    /// Gives host memory back: nothing but sizes and textures stay.
+    void release() const;
+
     /// The state of a screen pass that touches the pixels that hold geometry, and no others.
     gl::DrawState covered_state(const gl::Blending& blending = gl::replace) const;
 

@@ -147,6 +147,9 @@ bool is_whole(const Frame& frame, const LitPicture& lit) {
     return frame.resolved->settings.background.shows_environment() || lit.spreads;
 }
 
+/// Rows of noisy light that are held at once on their way to the mean.
+constexpr int sample_rows = 128;
+
 /// Screen passes touch only where geometry may be, when nothing else was drawn.
 gl::DrawState limited_to(const PixelRect& area, const Frame& frame, const LitPicture& lit,
                          const gl::Blending& blending = gl::replace) {
@@ -208,17 +211,24 @@ void OutputPass::add_radiance(const Frame& frame, const LitPicture& lit_frame, c
     lit.partly_covered = true;
     const ShaderInputs values = sample_inputs(frame, lit, Encoding::scene_linear);
     const PixelRect area = is_whole(frame, lit) ? frame.whole() : lit.covered;
+    const GBuffer& seen = lit.guides ? *lit.guides : surfaces;
     const Target& sample = mean_.sample();
+    mean_.begin_frame(frame, lit.guides != nullptr);
     if (lit.radiance->is_ahead()) {
-        sample.write(area);
-        accumulate_.shade(values, {.target = &sample, .area = area}, transfers_);
+        for (int y = 0; y < area.height; y += sample_rows) {
+            const PixelRect band{area.x, area.y + y, area.width, std::min(sample_rows, area.height - y)};
+            sample.write(band);
+            accumulate_.shade(values, {.target = &sample, .area = band}, transfers_);
+            mean_.add(frame, band, seen, transfers_);
+        }
     } else {
         sample.drawn();
         sample_framebuffer_ = gl::Framebuffer({&sample.attachment()});
         sample_framebuffer_.bind();
         accumulate_.draw(values, screen_state(area));
+        mean_.add(frame, area, seen, transfers_);
     }
-    mean_.add(frame, area, lit.guides ? *lit.guides : surfaces, lit.guides != nullptr, transfers_);
+    mean_.end_frame();
 }
 
 float OutputPass::noise(const Frame& frame) const {

@@ -39,8 +39,6 @@ class OutputPass {
     void end_tiles(const Frame& frame);
     /// Which still get samples.
     const SampledTiles& tiles() const { return mean_.tiles(); }
-    /// No frame follows: the next finish() is the picture's last, and releases what it has used.
-    void end() { mean_.end(); }
     /// Writes the picture from the sum of the frames so far, or from the radiance of the only one.
     /// `exact`: the G-buffer whose exact colours anti-aliasing leaves alone, where there are some.
     void finish(const Frame& frame, const LitPicture& lit, BackgroundImage* background, const GBuffer* exact);

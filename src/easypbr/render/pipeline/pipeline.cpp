@@ -69,6 +69,8 @@ LitPicture Pipeline::draw(const Frame& frame, const DrawList& list, const DrawLi
 
     const PixelRect drawn =
         timer_.run("geometry", [&] { return surfaces_.draw(frame, opaque, targets_, outputs); });
+    // Paths take longer than clearing new memory.
+    if (contents.paths) surfaces_.release();
     const Frame seen = frame.covering(contents.ground ? frame.covered : drawn);
     shadow_maps_.begin(seen, casters, bounds, receivers_of(list, contents));
     const bool native = is_lit_natively(list, contents);
@@ -119,11 +121,11 @@ void Pipeline::light_surfaces(const Frame& frame, const DrawList& casters, const
 void Pipeline::trace_paths(const Frame& frame, const SampledTiles* tiles, bool native, bool caught) {
     timer_.run("paths", [&] {
         if (frame.sample_index == 0 || frame.motion) ray_scene_.make_surfaces(*frame.resolved);
-        paths_.draw(frame, targets_, ray_scene_, caught ? &ground_.caught_light(frame) : nullptr, tiles,
+        paths_.draw(frame, targets_, ray_scene_, caught ? &ground_.caught_part(frame) : nullptr, tiles,
                     transfers_);
         if (native) return;
         targets_.radiance.upload(transfers_);
-        if (caught) ground_.caught_light(frame).upload(transfers_);
+        if (caught) ground_.caught_part(frame).upload(transfers_);
     });
 }
 

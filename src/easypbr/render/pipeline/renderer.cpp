@@ -116,6 +116,7 @@ void Renderer::begin(const SceneSnapshot& scene, const ResolvedSettings& resolve
         throw ArgumentError(fmt::format("samples: expected 1 or more, got {}", options.samples));
     picture_.reset();
     kept_.reset();
+    has_layers_ = false;
     pipeline_.begin(options.size, resolved);
     camera_ = resolved.camera;
     output_.begin(options.size, options.encoding);
@@ -200,10 +201,13 @@ void Renderer::draw_sample(Picture& picture) {
     if (picture.contents.ground) GroundPass::widen_depth(camera, picture.resolved, bounds);
     const bool reaches_beyond = picture.averaged.reaches_beyond_vertices() || picture.contents.ground;
     picture.frame = make_frame(shot, picture.frames, camera, bounds, reaches_beyond);
+    has_layers_ = true;
     picture.lit = pipeline_.draw(picture.frame, picture.averaged, picture.casters, picture.contents);
     if (shot.sample_count == 1 && !shot.averages_radiance) return;
     pipeline_.timer().run("accumulate", [&] {
         output_.accumulate(picture.frame, picture.lit, pipeline_.targets());
+        // All of its light is in the mean.
+        if (shot.averages_radiance && custom_.empty()) pipeline_.targets().radiance.release();
         if (!picture.ends_tiles) return;
         output_.end_tiles(picture.frame);
         picture.contents.tiles = &output_.tiles();
@@ -212,16 +216,12 @@ void Renderer::draw_sample(Picture& picture) {
 
 void Renderer::finish() {
     Picture& picture = *picture_;
+    const bool is_last = is_complete();
     PassTimer& timer = pipeline_.timer();
     const GBuffer* exact = picture.with_exact ? &pipeline_.targets() : nullptr;
-    const bool is_last = is_complete();
-    if (picture.shot.averages_radiance) {
-        // All of the last frame's light is in the mean: denoising takes the memory.
-        if (custom_.empty()) pipeline_.targets().radiance.release();
-        if (is_last) {
-            pipeline_.end_paths();
-            output_.end();
-        }
+    if (is_last && picture.shot.averages_radiance) {
+        pipeline_.end_paths();
+        if (custom_.empty() && !exact && !picture.holds_surfaces) release_targets();
     }
     timer.run("output", [&] {
         output_.finish(picture.frame, picture.lit, background_image(picture.resolved, picture.images), exact);
@@ -230,11 +230,16 @@ void Renderer::finish() {
     if (exact) timer.run("exact", [&] { draw_exact(); });
     if (picture.contents.custom) draw_custom_over_picture();
     if (is_last && picture.options.surfaces && !picture.holds_surfaces)
-        timer.run("surfaces", [&] { kept_->draw(pipeline_); });
+        timer.run("surfaces", [&] { draw_kept(); });
     // Once a picture: frames after the first ask for less than the first did.
     if (!std::exchange(picture.is_finished, true)) evict_unused();
     if (is_last) picture_.reset();
     gl::flush();
+}
+
+void Renderer::release_targets() {
+    pipeline_.targets().release();
+    has_layers_ = false;
 }
 
 void Renderer::draw_exact() {
@@ -287,6 +292,7 @@ void Renderer::draw_layers(const SceneSnapshot& scene, const ResolvedSettings& r
     const Frame frame = make_frame(shot, 0, resolved.camera, pipeline_.bounds_of(drawable.scene),
                                    list.reaches_beyond_vertices());
     pipeline_.draw_surfaces(frame, list, {.ids = options.ids});
+    has_layers_ = true;
     if (options.occlusion) pipeline_.occlude_surfaces(frame, list);
     evict_unused();
     gl::flush();
@@ -298,7 +304,7 @@ void Renderer::draw_surfaces(const SceneSnapshot& scene, const ResolvedSettings&
     pipeline_.begin(size, resolved);
     camera_ = resolved.camera;
     keep_surfaces(scene, resolved, size, images);
-    kept_->draw(pipeline_);
+    draw_kept();
     evict_unused();
     gl::flush();
 }
@@ -308,6 +314,11 @@ void Renderer::keep_surfaces(const SceneSnapshot& scene, const ResolvedSettings&
     kept_ = std::make_unique<KeptSurfaces>(scene, drawables_.apply(scene, resolved.settings), resolved, size,
                                            images.textures, images.shader_files);
     sources_ = kept_->sources();
+}
+
+void Renderer::draw_kept() {
+    kept_->draw(pipeline_);
+    has_layers_ = true;
 }
 
 void Renderer::evict_unused() {
@@ -356,6 +367,7 @@ Image Renderer::begin_reading(gl::Readback& readback) const {
 }
 
 Image Renderer::read_layer(Layer layer) const {
+    if (!has_layers_) throw ArgumentError("read_layer: the last picture was drawn without surfaces");
     return render::read_layer(layer, pipeline_.targets(), camera_, sources_, pipeline_.transfers());
 }
 

@@ -90,6 +90,8 @@ class Renderer {
     /// Begins to read the picture back, as it is now: an image of its size and kind, whose bytes
     /// readback.finish() fills. Nothing is pending of a picture in host memory, which the image is at once.
     Image begin_reading(gl::Readback& readback) const;
+    /// Throws ArgumentError for a path traced picture that was drawn without `surfaces`: the memory went to
+    /// its denoiser.
     Image read_layer(Layer layer) const;
     /// What the pixels' centres see; of a picture drawn with `surfaces`.
     SurfaceFrame read_surfaces() const;
@@ -133,6 +135,9 @@ class Renderer {
     void draw_sample(Picture& picture);
     void keep_surfaces(const SceneSnapshot& scene, const ResolvedSettings& resolved, Vec2i size,
                        const SettingsImages& images);
+    void draw_kept();
+    /// All that the last frame tells is in its picture.
+    void release_targets();
     /// Draws the exact colours that nothing may mix with, once, through the pixels' centres.
     void draw_exact();
     void draw_custom_over_picture();
@@ -144,6 +149,7 @@ class Renderer {
     DrawableCache drawables_{pipeline_.caches().spacings};
     CustomPasses custom_;
     OutputPass output_{pipeline_.transfers()};
+    bool has_layers_ = false;                      ///< the targets hold what read_layer() reads
     std::unique_ptr<KeptSurfaces> kept_;           ///< of a picture that was drawn with `surfaces`
     Camera camera_;                                ///< that the targets were seen by
     std::vector<ElementSources> sources_;          ///< of what the targets hold

@@ -22,6 +22,8 @@ class Surfaces {
     /// rectangle that all surfaces and overlays are inside.
     PixelRect draw(const Frame& frame, const DrawList& list, const GBuffer& targets,
                    const SurfaceOutputs& outputs);
+    /// Gives back the memory that draw() works in.
+    void release() { visible_.release(); }
     /// Adds surfaces by the driver, to cleared targets.
     void draw_by_driver(const Frame& frame, const DrawList& list, const GBuffer& targets,
                         const SurfaceOutputs& outputs);

@@ -39,6 +39,9 @@ class VisibilityBuffer {
     /// Nothing is visible. `size` is that of the whole picture, `area` the part that is kept.
     void clear(Vec2i size, const PixelRect& area);
 
+    /// Gives the memory back: clear() comes next.
+    void release() { PooledVector<uint64_t>().swap(pixels_); }
+
     /// After clear(): what is drawn until end_layer() is one layer. The limits must live until then.
     void begin_layer(const PeelLimits& limits);
     /// Makes the layer what is visible. Its depths are the limits of the next one; where it holds nothing the

@@ -13,6 +13,11 @@ void VisibleSurfaces::clear(Vec2i size, const PixelRect& area) {
     next_id_ = 0;
 }
 
+void VisibleSurfaces::release() {
+    clear({0, 0}, {});
+    buffer_.release();
+}
+
 uint32_t VisibleSurfaces::add(const DrawItem& item, uint32_t count, std::unique_ptr<VisibleItem> visible) {
     const auto first = uint32_t(next_id_);
     items_.push_back({first, &item, std::move(visible)});

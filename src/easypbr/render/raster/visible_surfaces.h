@@ -29,6 +29,9 @@ class VisibleSurfaces {
     /// Nothing is visible in a rectangle of a picture.
     void clear(Vec2i size, const PixelRect& area);
 
+    /// Gives the memory back: clear() comes next.
+    void release();
+
     /// Whether so many primitives more can be told apart.
     bool has_room(int64_t count) const { return next_id_ + count < int64_t(UINT32_MAX); }
     /// Adds an item of so many primitives; returns the id of the first, to be drawn into buffer().

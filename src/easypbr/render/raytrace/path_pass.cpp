@@ -44,12 +44,12 @@ float most_spread(const Frame& frame) {
 
 }  // namespace
 
-void PathPass::Caught::add(const CaughtLight& light) {
+float PathPass::Caught::add(const CaughtLight& light) {
     const double before = frames * ratio();
     sum.arrives += light.arrives;
     sum.all += light.all;
     ++frames;
-    of_frame = float(frames * ratio() - before);
+    return float(frames * ratio() - before);
 }
 
 /// Places that a frame's pixels show, in RayScene's frame: view_position() with what pixels share taken out.
@@ -103,6 +103,7 @@ struct PathPass::Pixels {
           depth(targets.depth),
           emission(emission_),
           radiance(targets.radiance),
+          caught(starts.caught ? *starts.caught : targets.depth),
           rays(frame, scene) {}
 
     /// Neighbours take turns, by their place in the whole image.
@@ -136,6 +137,7 @@ struct PathPass::Pixels {
     HeldPixels<std::array<uint8_t, 4>> material;
     HeldPixels<float> depth;
     HeldPixels<Vec4> emission, radiance;
+    HeldPixels<float> caught;  ///< of a shadow catcher
     const CameraRays rays;
 };
 
@@ -192,8 +194,8 @@ struct PathPass::Block {
     std::vector<RayScene::Place> places;
 };
 
-PathPass::Caught& PathPass::caught_at(const Pixels& pixels, int x, int y) {
-    return caught_[size_t(y) * size_t(pixels.frame.size.x()) + size_t(x)];
+PathPass::Caught& PathPass::caught_at(int x, int y) {
+    return caught_.make(caught_.grid().tile_at(x, y))[TileGrid::place_of(x, y)];
 }
 
 void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
@@ -214,8 +216,7 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
     each([&](int x, int y, uint32_t index, uint8_t kind) {
         const bool catches = is_catcher(kind);
         if (!catches && !is_lit_by_scene(kind)) return;
-        if (catches && !(pixels.starts.catches && caught_at(pixels, x, y).is_due(pixels.turn_of(x, y))))
-            return;
+        if (catches && !(pixels.starts.caught && caught_at(x, y).is_due(pixels.turn_of(x, y)))) return;
         const RayScene::Place place = pixels.place_of(x, y);
         if (kind == uint8_t(SurfaceKind::extended)) {
             if (const auto hit =
@@ -240,7 +241,8 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
         const Vec4* emission = is_hit[index] ? nullptr : pixels.emission.at(x, y);
         to->head<3>() = radiance.within[index] + (emission ? Vec3(emission->head<3>()) : Vec3(Vec3::Zero()));
         to->w() = 1;
-        if (pixels.starts.catches && is_catcher(kind)) caught_at(pixels, x, y).add(light[index]);
+        if (pixels.starts.caught && is_catcher(kind))
+            *pixels.caught.at(x, y) = caught_at(x, y).add(light[index]);
     });
 }
 
@@ -251,7 +253,7 @@ std::vector<CaughtLight> PathPass::light_of(const Pixels& pixels, const Block& c
     for (size_t i = 0; i < caught.pixels.size(); ++i) {
         const RayScene::Place& place = caught.places[i];
         const auto [x, y, index] = caught.pixels[i];
-        caught_at(pixels, x, y).period = catcher_period(tracer_.catcher().distance_of(place.position));
+        caught_at(x, y).period = catcher_period(tracer_.catcher().distance_of(place.position));
         seen.push_back({place.position, place.normal, place.normal});
     }
     PathBatch batch = caught.batch(pixels, seen);
@@ -276,23 +278,22 @@ void PathPass::spread_fireflies(const Pixels& pixels) {
 
 void PathPass::draw(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Target* caught,
                     const SampledTiles* tiles, Transfers& transfers) {
-    if (caught && (frame.sample_index == 0 || caught_.size() != size_t(frame.size.prod())))
-        caught_.assign(size_t(frame.size.prod()), {});
-    if (!caught) caught_.clear();
+    if (caught && (frame.sample_index == 0 || caught_.grid().size() != frame.size)) caught_.begin(frame.size);
+    if (!caught) caught_.release();
+    if (caught) {
+        caught->write(frame.whole());
+        std::ranges::fill(caught->pixels<float>(), 1.0f);
+    }
     tracer_.prepare(*frame.resolved, scene, most_light(*frame.resolved));
     if (frame.sample_index == 0) fireflies_.begin_picture();
     const bool has_blended = frame.resolved->settings.transparency.mode == TransparencyMode::stochastic;
     const Transmissive seen = has_blended ? Transmissive::met : Transmissive::opaque;
-    trace(frame, targets, scene, {tiles, seen, caught != nullptr}, transfers);
-    if (!caught) return;
-    caught->write(frame.whole());
-    const auto light = caught->pixels<Vec4>();
-    parallel_for(light.size(), 1 << 14, [&](size_t i) { light[i] = Vec4(caught_[i].of_frame, 1, 0, 0); });
+    trace(frame, targets, scene, {tiles, seen, caught}, transfers);
 }
 
 void PathPass::draw_layer(const Frame& frame, const GBuffer& layer, const RayScene& scene,
                           const SampledTiles* tiles, Transfers& transfers) {
-    trace(frame, layer, scene, {tiles, Transmissive::layers, false}, transfers);
+    trace(frame, layer, scene, {tiles, Transmissive::layers, nullptr}, transfers);
 }
 
 void PathPass::trace(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Starts& starts,
@@ -305,9 +306,10 @@ void PathPass::trace(const Frame& frame, const GBuffer& targets, const RayScene&
     parallel_for(radiance.size(), 1 << 14, [&](size_t i) { radiance[i] = Vec4::Zero(); });
     const Pixels pixels(frame, targets, emission, scene, starts);
     const PixelRect& area = frame.covered;
-    // Blocks hold whole cells.
-    const int left = area.x / FireflyFilter::cell * FireflyFilter::cell,
-              top = area.y / FireflyFilter::cell * FireflyFilter::cell;
+    // Blocks hold whole tiles, and whole cells.
+    constexpr int side = SampledTiles::side;
+    static_assert(side % FireflyFilter::cell == 0);
+    const int left = area.x / side * side, top = area.y / side * side;
     const int right = area.x + area.width, bottom = area.y + area.height;
     const int columns = (right - left + block_width - 1) / block_width,
               rows = (bottom - top + block_height - 1) / block_height;

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "easypbr/core/memory_pool.h"
 #include "easypbr/render/frame/frame.h"
 #include "easypbr/render/frame/gbuffer.h"
 #include "easypbr/render/frame/sampled_tiles.h"
@@ -17,7 +16,7 @@ namespace easypbr::render {
 class PathPass {
   public:
     /// Writes the radiance of all that the G-buffer holds, in host memory: emission and what paths bring.
-    /// `caught`, unless it is null: of a ground that catches shadows, see GroundPass::caught_light().
+    /// `caught`, unless it is null: of a ground that catches shadows, see GroundPass::caught_part().
     /// `tiles`, unless it is null: no path starts in those that have ended, whose radiance is 0.
     void draw(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Target* caught,
               const SampledTiles* tiles, Transfers& transfers);
@@ -27,7 +26,7 @@ class PathPass {
 
     /// Releases what draw() keeps from frame to frame: the next one begins a picture.
     void end() {
-        PooledVector<Caught>().swap(caught_);
+        caught_.release();
         fireflies_.end();
     }
 
@@ -38,7 +37,7 @@ class PathPass {
     struct Starts {
         const SampledTiles* tiles = nullptr;
         Transmissive seen = Transmissive::opaque;  ///< how rays find what a pixel shows
-        bool catches = false;                      ///< a shadow catcher's light is wanted
+        const Target* caught = nullptr;            ///< a shadow catcher's light is wanted
     };
     void trace(const Frame& frame, const GBuffer& targets, const RayScene& scene, const Starts& starts,
                Transfers& transfers);
@@ -57,17 +56,17 @@ class PathPass {
         /// Whether it gets a sample.
         bool is_due(int turn) const { return period == 0 || unsigned(turn) % period == 0; }
         double ratio() const { return sum.all > 0 ? double(sum.arrives) / double(sum.all) : 1; }
-        void add(const CaughtLight& light);
+        /// Returns by how much it changes the sum of frames, each of this ratio.
+        float add(const CaughtLight& light);
 
         CaughtLight sum;
-        float of_frame = 1;  ///< by which the last frame changed the sum of frames, each of this ratio
         uint32_t frames : 28 = 0;
         uint32_t period : 4 = 0;  ///< gets a sample every so many frames; 0: not known yet
     };
-    static_assert(sizeof(Caught) == 16, "there is one for each pixel");
-    Caught& caught_at(const Pixels& pixels, int x, int y);
+    static_assert(sizeof(Caught) == 12, "there is one for each pixel of a ground");
+    Caught& caught_at(int x, int y);
 
-    PooledVector<Caught> caught_;  ///< for each pixel
+    TilePixels<Caught> caught_;
 };
 
 }  // namespace easypbr::render

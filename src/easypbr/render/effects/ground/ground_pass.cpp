@@ -68,9 +68,9 @@ void GroundPass::draw(const Frame& frame, const GBuffer& targets) {
     gl::draw_screen({.depth_test = gl::DepthTest::greater, .write_depth = true});
 }
 
-const Target& GroundPass::caught_light(const Frame& frame) {
-    if (light_.size() != frame.size) {
-        light_ = Target(gl::Format::rgba32f, frame.size);
+const Target& GroundPass::light_of(const Frame& frame, gl::Format format) {
+    if (light_.size() != frame.size || light_.format() != format) {
+        light_ = Target(format, frame.size);
         depth_id_ = 0;
     }
     return light_;
@@ -95,7 +95,9 @@ ShaderInputs GroundPass::finish_inputs(const Frame& frame, const GBuffer& target
     values.set("u_material", targets.material);
     if (ground.mode == GroundMode::shadow) {
         values.define("CATCHER");
-        values.set("u_light", light_);
+        const bool is_part = light_.format() == gl::Format::r32f;
+        if (is_part) values.define("PART");
+        values.set(is_part ? "u_part" : "u_light", light_);
         values.set("u_strength", ground.shadow_strength);
         return values;
     }

@@ -37,11 +37,14 @@ class GroundPass {
     /// The same in host memory, where the targets hold the whole frame.
     void shade(const Frame& frame, const GBuffer& targets);
     /// RGBA32F: see light(). It has to be written before it is added to, in each frame.
-    const Target& caught_light(const Frame& frame);
-    /// Releases caught_light().
+    const Target& caught_light(const Frame& frame) { return light_of(frame, gl::Format::rgba32f); }
+    /// R32F, in its place: the part of the light that arrives.
+    const Target& caught_part(const Frame& frame) { return light_of(frame, gl::Format::r32f); }
+    /// Releases caught_light() and caught_part(), whichever was asked for last.
     void shade_finish(const Frame& frame, const GBuffer& targets, const Box3d& bounds, Transfers& transfers);
 
   private:
+    const Target& light_of(const Frame& frame, gl::Format format);
     ShaderInputs finish_inputs(const Frame& frame, const GBuffer& targets, const Box3d& bounds) const;
 
     Target light_;
