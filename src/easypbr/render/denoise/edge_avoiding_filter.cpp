@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 #include "easypbr/core/luminance.h"
@@ -33,7 +34,7 @@ void change_colors(const Target& light, const NoisyLight& noisy, bool out) {
 /// Numbers from 0 to 1 in eight bits each, as unpackUnorm4x8() of GLSL reads them from a float's bits.
 float packed(const Vec3& values) {
     uint32_t bits = 0;
-    for (int i = 0; i < 3; ++i) bits |= uint32_t(values[i] * 255 + 0.5f) << (8 * i);
+    for (int i = 0; i < 3; ++i) bits |= uint32_t(std::lrint(values[i] * 255)) << (8 * i);
     return std::bit_cast<float>(bits);
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 
 #include "easypbr/core/math.h"
@@ -39,7 +40,7 @@ struct SurfaceMean {
         for (int i = 0; i < 3; ++i) {
             const auto from = float(mean[size_t(i)]);
             const float moved = from + (std::clamp(to[i], 0.0f, 1.0f) * most - from) * part;
-            mean[size_t(i)] = uint16_t(moved + 0.5f);
+            mean[size_t(i)] = uint16_t(std::lrint(moved));
         }
     }
 };
