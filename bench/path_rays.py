@@ -43,6 +43,8 @@ def main() -> None:
     if sys.argv[1:2] == ["measure"]:
         measure(sys.argv[2], sys.argv[3], *map(int, sys.argv[4:]))
         return
+    if len(sys.argv) < 2:
+        sys.exit(__doc__)
     path, size, samples = (sys.argv[1:] + ["1280x720", "8"][len(sys.argv) - 2:])[:3]
     with tempfile.TemporaryDirectory() as folder:
         counter = f"{folder}/count_rays.so"

@@ -108,7 +108,8 @@ TEST(FireflyFilter, ReachesNoFarther) {
 
 // What is found in one square alone, and again and again, comes to stay. After n frames a pixel is expected
 // to have found n / 16 such paths. If all light was spread, 0.375^2 of it would be left in the square. The
-// variance of the sum of n paths is n times the square of one; of what is left of it, 0.375^4 times that.
+// variance of the sum of n paths is n times the square of one path's light; scaled by 0.375^2, that of the
+// spread light is 0.375^4 times as large.
 TEST(FireflyFilter, KeepsWhatIsFoundOften) {
     FireflyFilter filter;
     const auto even = [](int, int) { return Vec3(1, 1, 1); };

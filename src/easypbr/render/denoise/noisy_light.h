@@ -50,9 +50,9 @@ enum class Noisy : uint8_t { nothing, radiance, coverage };
 
 /// Sums over the frames that SurfaceMean is of.
 struct NoisyPixel {
-    Vec3 light = Vec3::Zero();  ///< radiance; three times the coverage where that is what is noisy
+    Vec3 light = Vec3::Zero();  ///< radiance, or the coverage in each channel
     float squares = 0;          ///< of the luminance
-    float alpha = 0;            ///< of radiance: what is left of its coverage by overlays
+    float alpha = 0;            ///< weighted by the transmittance of overlays; 0 where coverage is noisy
     SurfaceMean surface;
     Noisy noisy = Noisy::nothing;
 };
