@@ -225,5 +225,29 @@ TEST(Transfers, NativeGroundTruthNeverLeavesHostMemory) {
     EXPECT_EQ(renderer.transfers(), Transfers());
 }
 
+// A path traced picture needs its G-buffer no more once all frames are in the mean. Who asked for surfaces
+// has them, and a frame of rasterised light keeps its own.
+TEST(Renderer, PathTracedPicturesKeepNoSurfacesUnlessAsked) {
+    const auto context = gl::Context::create();
+    const gl::ContextScope scope(*context);
+    const Scene scene = scene_of(make_sphere(1));
+    const SceneSnapshot snapshot = scene.snapshot();
+    const Vec2i size(64, 48);
+    Settings settings;
+    settings.path.enabled = true;
+    const ResolvedSettings paths = resolve(snapshot, settings, size);
+    settings.path.enabled = false;
+    Renderer renderer;
+    renderer.draw(snapshot, resolve(snapshot, settings, size), {size, 2});
+    EXPECT_EQ(renderer.read_layer(Layer::depth).width(), size.x());
+    renderer.draw(snapshot, paths, {size, 2});
+    EXPECT_THROW(renderer.read_layer(Layer::depth), ArgumentError);
+    EXPECT_EQ(renderer.read_picture().width(), size.x());
+    DrawOptions options{size, 2};
+    options.surfaces = true;
+    renderer.draw(snapshot, paths, options);
+    EXPECT_EQ(renderer.read_layer(Layer::depth).width(), size.x());
+}
+
 }  // namespace
 }  // namespace easypbr::render::target_test
