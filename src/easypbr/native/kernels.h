@@ -271,6 +271,37 @@ struct PointScreen {
 using SamplePaths = void (*)(const uint32_t* seeds, const uint32_t* reversed_samples, uint32_t dimension,
                              int count, float* xs, float* ys);
 
+/// The rays of a camera's pixels, in the frame of the places that they end at. Pixels share all but their
+/// column and row.
+struct CameraRays {
+    bool orthographic = false;
+    double near = 1, far = 2;
+    /// Width of a pixel, in perspective at a distance of 1 along the axis.
+    double width = 0;
+    /// The way to the pixel in column 0 and row 0 and on to the next ones, in perspective at that distance.
+    double first[3] = {}, column[3] = {}, row[3] = {};
+    double back[3] = {}, eye[3] = {};  ///< back: the axis, towards the viewer
+    float towards[3] = {};             ///< of orthographic cameras: unit, towards the viewer
+};
+
+/// What the G-buffer holds at pixels: an array for each number, with room for a multiple of stream_alignment.
+struct PixelSurfaces {
+    const int32_t *x = nullptr, *y = nullptr;
+    const float* depth = nullptr;                           ///< above 0
+    const uint32_t *normal = nullptr, *material = nullptr;  ///< as in the targets
+    const uint32_t *red_green = nullptr, *blue = nullptr;   ///< albedo; 16 bits each
+};
+
+/// What is there: an array for each component.
+struct CameraPlaces {
+    float *position[3] = {}, *view[3] = {}, *normal[3] = {};  ///< view: unit, towards the viewer
+    float* footprint = nullptr;                               ///< width of the pixel there
+    float *albedo[3] = {}, *parameters[2] = {};               ///< parameters: metallic, roughness
+};
+
+using FindPlaces = void (*)(const CameraRays& rays, const PixelSurfaces& pixels, int count,
+                            const CameraPlaces& places);
+
 /// Emissive triangles, so few that each place weighs them all: an array for each number, in the frame of the
 /// places.
 struct FewEmitters {
@@ -332,6 +363,7 @@ struct Kernels {
     BlendSplats blend_splats;
     SetUpCluster set_up_cluster;
     SetUpPoints set_up_points;
+    FindPlaces find_places;
     SamplePaths sample_paths;
     SampleEmitters sample_emitters;
     ChancesOfEmitters chances_of_emitters;

@@ -272,6 +272,10 @@ int set_up_points(const PointBatch& points, PointScreen& screen) {
     return chosen_set().kernels->set_up_points(points, screen);
 }
 
+void find_places(const CameraRays& rays, const PixelSurfaces& pixels, int count, const CameraPlaces& places) {
+    chosen_set().kernels->find_places(rays, pixels, count, places);
+}
+
 void sample_paths(const uint32_t* seeds, const uint32_t* reversed_samples, uint32_t dimension, int count,
                   float* xs, float* ys) {
     chosen_set().kernels->sample_paths(seeds, reversed_samples, dimension, count, xs, ys);

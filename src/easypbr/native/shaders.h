@@ -86,6 +86,9 @@ int set_up_cluster(const ClusterFaces& faces, ClusterScreen& screen);
 /// Projects the points of a batch and finds which are inside of what is drawn. On the calling thread.
 int set_up_points(const PointBatch& points, PointScreen& screen);
 
+/// The places that pixels show and their surfaces, as FindPlaces. On the calling thread.
+void find_places(const CameraRays& rays, const PixelSurfaces& pixels, int count, const CameraPlaces& places);
+
 /// The points of a dimension of paths, as SamplePaths. On the calling thread.
 void sample_paths(const uint32_t* seeds, const uint32_t* reversed_samples, uint32_t dimension, int count,
                   float* xs, float* ys);

@@ -31,6 +31,7 @@ struct Fragment : TextureReader {
 }  // namespace easypbr::native
 
 #include "easypbr/native/simd/blend_splats.h"
+#include "easypbr/native/simd/camera_places.h"
 #include "easypbr/native/simd/cluster_setup.h"
 #include "easypbr/native/simd/point_setup.h"
 #include "easypbr/native/simd/sample_emitters.h"
@@ -329,6 +330,7 @@ const Kernels kernels{resolve_triangles,
                       blend_splats,
                       set_up_cluster,
                       set_up_points,
+                      find_places,
                       sample_paths,
                       sample_emitters,
                       chances_of_emitters,

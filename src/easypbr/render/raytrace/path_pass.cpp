@@ -1,10 +1,13 @@
 #include "easypbr/render/raytrace/path_pass.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <limits>
+#include <utility>
 
-#include "easypbr/core/octahedral.h"
 #include "easypbr/core/parallel.h"
+#include "easypbr/native/shaders.h"
 #include "easypbr/render/frame/held_pixels.h"
 #include "easypbr/render/frame/surface_kind.h"
 #include "easypbr/scene/resolve.h"
@@ -52,43 +55,32 @@ float PathPass::Caught::add(const CaughtLight& light) {
     return float(frames * ratio() - before);
 }
 
-/// Places that a frame's pixels show, in RayScene's frame: view_position() with what pixels share taken out.
-class PathPass::CameraRays {
-  public:
-    CameraRays(const Frame& frame, const RayScene& scene)
-        : orthographic_(frame.orthographic()), near_(frame.camera.near), far_(frame.camera.far) {
-        const Mat4d& p = frame.clip_from_view;
-        const Vec2d step(2.0 / frame.size.x(), -2.0 / frame.size.y()),
-            shift = orthographic_ ? Vec2d(-p(0, 3), -p(1, 3)) : Vec2d(p(0, 2), p(1, 2));
-        const Mat3d unit_from_view = frame.camera.T_world_cam.linear() / scene.unit();
-        column_ = unit_from_view.col(0) * (step.x() / p(0, 0));
-        row_ = unit_from_view.col(1) * (step.y() / p(1, 1));
-        first_ = unit_from_view.col(0) * ((step.x() / 2 - 1 + shift.x()) / p(0, 0)) +
-                 unit_from_view.col(1) * ((step.y() / 2 + 1 + shift.y()) / p(1, 1));
-        back_ = unit_from_view.col(2);
-        towards_ = frame.camera.T_world_cam.linear().col(2).cast<float>();
-        eye_ = (frame.camera.position() - scene.centre()) / scene.unit();
-        width_ = step.x() / p(0, 0) / scene.unit();
-    }
+namespace {
 
-    /// But for its normal; `depth` is that of the G-buffer, above 0.
-    RayScene::Place place_at(int x, int y, double depth) const {
-        const Vec3d across = first_ + x * column_ + y * row_;
-        const double z = orthographic_ ? far_ + (near_ - far_) * depth : near_ / depth;
-        const Vec3d away = orthographic_ ? Vec3d(across - z * back_) : Vec3d(z * (across - back_));
-        RayScene::Place place;
-        place.position = (away + eye_).cast<float>();
-        place.view = orthographic_ ? towards_ : Vec3(-away.cast<float>().normalized());
-        place.footprint = float(orthographic_ ? width_ : z * width_);
-        return place;
-    }
+/// Places are in RayScene's frame: view_position() with what pixels share taken out.
+native::CameraRays camera_rays(const Frame& frame, const RayScene& scene) {
+    native::CameraRays rays;
+    rays.orthographic = frame.orthographic();
+    rays.near = frame.camera.near;
+    rays.far = frame.camera.far;
+    const Mat4d& p = frame.clip_from_view;
+    const Vec2d step(2.0 / frame.size.x(), -2.0 / frame.size.y()),
+        shift = rays.orthographic ? Vec2d(-p(0, 3), -p(1, 3)) : Vec2d(p(0, 2), p(1, 2));
+    const Mat3d unit_from_view = frame.camera.T_world_cam.linear() / scene.unit();
+    const auto set = [](double(&to)[3], const Vec3d& v) { std::copy_n(v.data(), 3, to); };
+    set(rays.column, unit_from_view.col(0) * (step.x() / p(0, 0)));
+    set(rays.row, unit_from_view.col(1) * (step.y() / p(1, 1)));
+    set(rays.first, unit_from_view.col(0) * ((step.x() / 2 - 1 + shift.x()) / p(0, 0)) +
+                        unit_from_view.col(1) * ((step.y() / 2 + 1 + shift.y()) / p(1, 1)));
+    set(rays.back, unit_from_view.col(2));
+    set(rays.eye, (frame.camera.position() - scene.centre()) / scene.unit());
+    const Vec3 towards = frame.camera.T_world_cam.linear().col(2).cast<float>();
+    std::copy_n(towards.data(), 3, rays.towards);
+    rays.width = step.x() / p(0, 0) / scene.unit();
+    return rays;
+}
 
-  private:
-    bool orthographic_;
-    double near_, far_, width_;  ///< of a pixel, in perspective at a distance of 1 along the axis
-    Vec3d first_, column_, row_, back_, eye_;
-    Vec3 towards_;
-};
+}  // namespace
 
 /// The targets in host memory, and how pixels become places.
 struct PathPass::Pixels {
@@ -104,7 +96,7 @@ struct PathPass::Pixels {
           emission(emission_),
           radiance(targets.radiance),
           caught(starts.caught ? *starts.caught : targets.depth),
-          rays(frame, scene) {}
+          rays(camera_rays(frame, scene)) {}
 
     /// Neighbours take turns, by their place in the whole image.
     int turn_of(int x, int y) const {
@@ -116,82 +108,84 @@ struct PathPass::Pixels {
         const float* d = depth.at(x, y);
         return d && *d > 0 && !(starts.tiles && starts.tiles->has_ended(starts.tiles->tile_at(x, y)));
     }
-    /// A pixel's surface as the G-buffer has it.
-    RayScene::Place place_of(int x, int y) const {
-        RayScene::Place place = rays.place_at(x, y, *depth.at(x, y));
-        place.normal = normal_at(x, y);
-        return place;
-    }
     /// Of a pixel's path; `index` is that of its radiance.
-    PathState state_of(int x, int y, uint32_t index) const;
-    /// Adds the path of a pixel to a batch, at what rays find there.
-    void add(int x, int y, const PathState& state, const Vec3& view, const RayScene::Seen& at,
-             PathBatch& batch) const;
-    Vec3 normal_at(int x, int y) const;
+    PathState state_of(int x, int y, uint32_t index) const {
+        const Vec2i pixel = frame.origin + Vec2i(x, y);
+        PathState state;
+        state.sampler = PathSampler(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(frame.sample_index),
+                                    uint32_t(frame.sample_count));
+        state.index = index;
+        return state;
+    }
 
     const Frame& frame;
     const RayScene& scene;
     const Starts starts;
     HeldPixels<std::array<uint16_t, 4>> albedo;
-    HeldPixels<std::array<uint16_t, 2>> normal;
+    HeldPixels<uint32_t> normal;
     HeldPixels<std::array<uint8_t, 4>> material;
     HeldPixels<float> depth;
     HeldPixels<Vec4> emission, radiance;
     HeldPixels<float> caught;  ///< of a shadow catcher
-    const CameraRays rays;
+    const native::CameraRays rays;
 };
 
-PathState PathPass::Pixels::state_of(int x, int y, uint32_t index) const {
-    const Vec2i pixel = frame.origin + Vec2i(x, y);
-    PathState state;
-    state.sampler = PathSampler(uint32_t(pixel.x()), uint32_t(pixel.y()), uint32_t(frame.sample_index),
-                                uint32_t(frame.sample_count));
-    state.index = index;
-    return state;
-}
-
-Vec3 PathPass::Pixels::normal_at(int x, int y) const {
-    const std::array<uint16_t, 2>& n = *normal.at(x, y);
-    return oct_decode(Vec2(n[0], n[1]) / 32767.5f - Vec2(1, 1));
-}
-
-void PathPass::Pixels::add(int x, int y, const PathState& state, const Vec3& view, const RayScene::Seen& at,
-                           PathBatch& batch) const {
-    const std::array<uint8_t, 4>& m = *material.at(x, y);
-    const std::array<uint16_t, 4>& color = *albedo.at(x, y);
-    const size_t i = batch.count++;
-    batch.position.set(i, at.position);
-    batch.normal.set(i, at.normal);
-    batch.face.set(i, at.face);
-    batch.view.set(i, view);
-    batch.albedo.set(i, Vec3(color[0], color[1], color[2]) / 65535.0f);
-    batch.parameters.set(i, Vec2(m[0], m[1]) / 255.0f);
-    batch.set_state(i, state);
-}
-
-/// Pixels whose paths start at the same kind of surface.
+/// Pixels whose paths start at the same kind of surface, and what the G-buffer holds there.
 struct PathPass::Block {
-    struct Pixel {
-        int x = 0, y = 0;
-        uint32_t index = 0;  ///< in the block
-    };
+    static constexpr size_t room = size_t(block_width) * block_height + native::stream_alignment;
 
-    void add(int x, int y, uint32_t index, const RayScene::Place& place) {
-        pixels.push_back({x, y, index});
-        places.push_back(place);
+    void add(const Pixels& pixels, int x_, int y_, uint32_t index_) {
+        const size_t i = count++;
+        x[i] = x_;
+        y[i] = y_;
+        index[i] = index_;
+        depth[i] = *pixels.depth.at(x_, y_);
+        normal[i] = *pixels.normal.at(x_, y_);
+        material[i] = std::bit_cast<uint32_t>(*pixels.material.at(x_, y_));
+        const std::array<uint16_t, 4>& color = *pixels.albedo.at(x_, y_);
+        red_green[i] = uint32_t(color[0]) | uint32_t(color[1]) << 16;
+        blue[i] = color[2];
     }
-    /// The paths of all, at what rays find in their places.
-    PathBatch batch(const Pixels& of, std::span<const RayScene::Seen> seen) const {
-        PathBatch batch(pixels.size());
-        for (size_t i = 0; i < pixels.size(); ++i) {
-            const auto [x, y, index] = pixels[i];
-            of.add(x, y, of.state_of(x, y, index), places[i].view, seen[i], batch);
-        }
-        return batch;
+    void add(const Block& from, size_t i) {
+        for (auto numbers : {&Block::normal, &Block::material, &Block::red_green, &Block::blue, &Block::index})
+            (this->*numbers)[count] = (from.*numbers)[i];
+        x[count] = from.x[i];
+        y[count] = from.y[i];
+        depth[count++] = from.depth[i];
+    }
+    /// Finds the places of all, and their surfaces for a batch. Behind the last place the arrays repeat it.
+    void find(const Pixels& pixels, RayScene::Places& places, PathBatch& batch) {
+        places.count = batch.count = count;
+        if (count == 0) return;
+        const size_t last = count - 1;
+        while (count < whole_streams(last + 1)) add(*this, last);
+        count = last + 1;
+        native::CameraPlaces to;
+        places.position.written_by(to.position);
+        places.view.written_by(to.view);
+        places.normal.written_by(to.normal);
+        to.footprint = places.footprint.data();
+        batch.albedo.written_by(to.albedo);
+        batch.parameters.written_by(to.parameters);
+        native::find_places(pixels.rays,
+                            {x.data(), y.data(), depth.data(), normal.data(), material.data(),
+                             red_green.data(), blue.data()},
+                            int(count), to);
+    }
+    /// Starts the paths of a batch at what is seen.
+    void start(const Pixels& pixels, RayScene::Places& seen, PathBatch& batch) const {
+        batch.position = std::move(seen.position);
+        batch.normal = std::move(seen.normal);
+        batch.face = std::move(seen.face);
+        batch.view = std::move(seen.view);
+        for (size_t i = 0; i < count; ++i) batch.set_state(i, pixels.state_of(x[i], y[i], index[i]));
     }
 
-    std::vector<Pixel> pixels;
-    std::vector<RayScene::Place> places;
+    size_t count = 0;
+    std::array<int32_t, room> x, y;
+    std::array<float, room> depth;
+    std::array<uint32_t, room> normal, material, red_green, blue;
+    std::array<uint32_t, room> index;  ///< of the pixel in the block
 };
 
 PathPass::Caught& PathPass::caught_at(int x, int y) {
@@ -200,12 +194,7 @@ PathPass::Caught& PathPass::caught_at(int x, int y) {
 
 void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
     const auto count = size_t(block.width) * size_t(block.height);
-    Block lit, caught;
-    lit.pixels.reserve(count);
-    lit.places.reserve(count);
-    std::vector<PathTracer::Hit> hits;  // of surfaces that the G-buffer does not hold all of
-    hits.reserve(count);
-    std::vector<bool> is_hit(count, false);
+    Block lit, caught, extended;
     const auto each = [&](auto&& visit) {
         for (int y = block.y; y < block.y + block.height; ++y)
             for (int x = block.x; x < block.x + block.width; ++x)
@@ -214,24 +203,21 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
                           (*pixels.material.at(x, y))[3]);
     };
     each([&](int x, int y, uint32_t index, uint8_t kind) {
-        const bool catches = is_catcher(kind);
-        if (!catches && !is_lit_by_scene(kind)) return;
-        if (catches && !(pixels.starts.caught && caught_at(x, y).is_due(pixels.turn_of(x, y)))) return;
-        const RayScene::Place place = pixels.place_of(x, y);
-        if (kind == uint8_t(SurfaceKind::extended)) {
-            if (const auto hit =
-                    pixels.scene.hit_at(place.position, place.view, place.footprint, pixels.starts.seen)) {
-                const float width = place.footprint * float(pixels.scene.unit());
-                hits.push_back(
-                    PathTracer::camera_hit(pixels.state_of(x, y, index), *hit, -place.view, width));
-                is_hit[index] = true;
-                return;
-            }
-        }
-        (catches ? caught : lit).add(x, y, index, place);
+        if (kind == uint8_t(SurfaceKind::extended))
+            extended.add(pixels, x, y, index);
+        else if (is_lit_by_scene(kind))
+            lit.add(pixels, x, y, index);
+        else if (is_catcher(kind) && pixels.starts.caught && caught_at(x, y).is_due(pixels.turn_of(x, y)))
+            caught.add(pixels, x, y, index);
     });
+    std::vector<bool> is_hit(count, false);
+    std::vector<PathTracer::Hit> hits = hits_of(pixels, extended, is_hit, lit);
     PathRadiance radiance(count);
-    PathBatch batch = lit.batch(pixels, pixels.scene.seen_at(lit.places, pixels.starts.seen));
+    RayScene::Places places(lit.count);
+    PathBatch batch(lit.count);
+    lit.find(pixels, places, batch);
+    pixels.scene.see(places, pixels.starts.seen);
+    lit.start(pixels, places, batch);
     tracer_.trace(batch, hits, radiance);
     const std::vector<CaughtLight> light = light_of(pixels, caught, count);
     fireflies_.take(block, radiance);
@@ -246,17 +232,40 @@ void PathPass::trace_block(const Pixels& pixels, const PixelRect& block) {
     });
 }
 
-std::vector<CaughtLight> PathPass::light_of(const Pixels& pixels, const Block& caught, size_t count) {
-    std::vector<CaughtLight> light(count);
-    if (caught.pixels.empty()) return light;
-    std::vector<RayScene::Seen> seen;
-    for (size_t i = 0; i < caught.pixels.size(); ++i) {
-        const RayScene::Place& place = caught.places[i];
-        const auto [x, y, index] = caught.pixels[i];
-        caught_at(x, y).period = catcher_period(tracer_.catcher().distance_of(place.position));
-        seen.push_back({place.position, place.normal, place.normal});
+std::vector<PathTracer::Hit> PathPass::hits_of(const Pixels& pixels, Block& extended,
+                                               std::vector<bool>& is_hit, Block& others) const {
+    std::vector<PathTracer::Hit> hits;
+    if (extended.count == 0) return hits;
+    hits.reserve(extended.count);
+    RayScene::Places places(extended.count);
+    PathBatch surfaces(extended.count);
+    extended.find(pixels, places, surfaces);
+    for (size_t i = 0; i < extended.count; ++i) {
+        const RayScene::Place at = places.at(i);
+        const auto hit = pixels.scene.hit_at(at.position, at.view, at.footprint, pixels.starts.seen);
+        if (!hit) {
+            others.add(extended, i);
+            continue;
+        }
+        const uint32_t index = extended.index[i];
+        hits.push_back(PathTracer::camera_hit(pixels.state_of(extended.x[i], extended.y[i], index), *hit,
+                                              -at.view, at.footprint * float(pixels.scene.unit())));
+        is_hit[index] = true;
     }
-    PathBatch batch = caught.batch(pixels, seen);
+    return hits;
+}
+
+std::vector<CaughtLight> PathPass::light_of(const Pixels& pixels, Block& caught, size_t count) {
+    std::vector<CaughtLight> light(count);
+    if (caught.count == 0) return light;
+    RayScene::Places places(caught.count);
+    PathBatch batch(caught.count);
+    caught.find(pixels, places, batch);
+    for (size_t i = 0; i < caught.count; ++i)
+        caught_at(caught.x[i], caught.y[i]).period =
+            catcher_period(tracer_.catcher().distance_of(places.position.at(i)));
+    places.face = places.normal;
+    caught.start(pixels, places, batch);
     tracer_.catcher().add_samples(batch, light);
     return light;
 }

@@ -31,7 +31,6 @@ class PathPass {
     }
 
   private:
-    class CameraRays;
     struct Pixels;
     /// Of which pixels paths begin, and at what.
     struct Starts {
@@ -45,8 +44,12 @@ class PathPass {
     void trace_block(const Pixels& pixels, const PixelRect& block);
     /// Adds what fireflies_ spreads.
     void spread_fireflies(const Pixels& pixels);
+    /// What rays find of pixels whose surfaces the G-buffer does not hold all of: notes them, and adds those of
+    /// which they find nothing to `others`.
+    std::vector<PathTracer::Hit> hits_of(const Pixels& pixels, Block& extended, std::vector<bool>& is_hit,
+                                         Block& others) const;
     /// What surfaces that catch shadows get, by the pixels' index among `count`.
-    std::vector<CaughtLight> light_of(const Pixels& pixels, const Block& caught, size_t count);
+    std::vector<CaughtLight> light_of(const Pixels& pixels, Block& caught, size_t count);
 
     PathTracer tracer_;
     FireflyFilter fireflies_;

@@ -10,6 +10,7 @@
 
 #include "easypbr/render/drawables/draw_list.h"
 #include "easypbr/render/primitives/primitive.h"
+#include "easypbr/render/raytrace/path_vectors.h"
 
 namespace easypbr::render {
 
@@ -134,8 +135,26 @@ class RayScene {
     /// part of a pixel: a place that lies beyond an adjacent face by less than its footprint moves onto that
     /// face.
     Seen seen_at(const Place& place, Transmissive transmissive = Transmissive::passed) const;
-    /// The same of many places: of neighbours in a part of the time.
-    std::vector<Seen> seen_at(std::span<const Place> places, Transmissive transmissive) const;
+    /// Many places, with an array for each number.
+    struct Places {
+        /// `capacity` places at most.
+        explicit Places(size_t capacity)
+            : position(whole_streams(capacity)),
+              normal(position.room()),
+              view(position.room()),
+              face(position.room()),
+              footprint(position.room()) {}
+
+        Place at(size_t i) const { return {position.at(i), normal.at(i), view.at(i), footprint[i]}; }
+
+        size_t count = 0;
+        PathVectors<3> position, normal, view;
+        PathVectors<3> face;  ///< of what is seen
+        std::vector<float> footprint;
+    };
+    /// The same of many places: puts what is seen there in their stead. Of neighbours in a part of the time.
+    /// Behind the last place the arrays hold others up to a multiple of native::stream_alignment.
+    void see(Places& places, Transmissive transmissive) const;
     /// The surface at a place that is seen along `view`; none where its edges are rounded away.
     std::optional<RayHit> hit_at(const Vec3& place, const Vec3& view, float footprint,
                                  Transmissive transmissive) const;
@@ -154,6 +173,9 @@ class RayScene {
                                     bool meets_gaussians) const;
     /// Distance to the ground; infinity where it is not met.
     float ground_distance(const Vec3& from, const Vec3& direction) const;
+    struct PlaceRays;
+    /// What is seen at a packet of places from `first` on, once its rays are traced.
+    void see_packet(Places& places, size_t first, const PlaceRays& rays) const;
 
     void place_ground();
 
